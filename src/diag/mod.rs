@@ -1,0 +1,212 @@
+//! Diagnostics: what went wrong, where, and what to do about it.
+//!
+//! An operation that knows no place returns a [`Fault`]; whoever knows the place turns it into a
+//! [`Diagnostic`] with [`At::at`]. Nothing here prints: [`render`] makes text.
+
+mod code;
+pub mod render;
+pub mod suggest;
+
+pub use code::Code;
+
+use crate::source::Span;
+
+/// How bad it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// Worth knowing, nothing is wrong.
+    Note,
+    /// The work goes on; the result may not be what was meant.
+    Warning,
+    /// The work named could not be done.
+    Error,
+}
+
+/// A place and what is to be said about it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Label {
+    /// The place.
+    pub span: Span,
+    /// Few words; may be empty.
+    pub text: String,
+    /// Whether this is where the fault is, rather than something related.
+    pub primary: bool,
+}
+
+/// One step of the way from the outermost script to the fault.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frame {
+    /// Where the call is written.
+    pub span: Span,
+    /// What was called, such as ``script `GAPILib_INI.mos` `` or ``function `Fit` ``.
+    pub what: String,
+}
+
+/// A fault without a place: what an operation returns.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fault {
+    /// Its kind.
+    pub code: Code,
+    /// One sentence, lower case, no final stop, Modelica names in backticks.
+    pub message: String,
+    /// Actions, each one sentence.
+    pub helps: Vec<String>,
+}
+
+/// A fault with its place: what a stage returns and what the user sees. Boxed inside, so that
+/// `Result<T, Diagnostic>` stays small.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Diagnostic(Box<Report>);
+
+/// The content of a [`Diagnostic`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    /// Its kind.
+    pub code: Code,
+    /// How bad it is.
+    pub severity: Severity,
+    /// One sentence that is enough by itself.
+    pub message: String,
+    /// Places, the primary one first.
+    pub labels: Vec<Label>,
+    /// Actions, each one sentence.
+    pub helps: Vec<String>,
+    /// The calls that led here, innermost first.
+    pub trace: Vec<Frame>,
+}
+
+impl Fault {
+    /// A fault with this code and message.
+    pub fn new(code: Code, message: impl Into<String>) -> Fault {
+        Fault { code, message: message.into(), helps: Vec::new() }
+    }
+
+    /// Adds an action.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Fault {
+        self.helps.push(help.into());
+        self
+    }
+
+    /// Adds an action if there is one.
+    #[must_use]
+    pub fn help_if(mut self, help: Option<String>) -> Fault {
+        self.helps.extend(help);
+        self
+    }
+
+    /// Gives the fault its place.
+    pub fn at(self, span: Span) -> Diagnostic {
+        self.labelled(span, "")
+    }
+
+    /// Gives the fault its place and says a few words there.
+    pub fn labelled(self, span: Span, text: impl Into<String>) -> Diagnostic {
+        Diagnostic(Box::new(Report {
+            code: self.code,
+            severity: Severity::Error,
+            message: self.message,
+            labels: vec![Label { span, text: text.into(), primary: true }],
+            helps: self.helps,
+            trace: Vec::new(),
+        }))
+    }
+}
+
+impl std::fmt::Display for Fault {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Fault {}
+
+impl Diagnostic {
+    /// The same as a warning.
+    #[must_use]
+    pub fn warning(mut self) -> Diagnostic {
+        self.0.severity = Severity::Warning;
+        self
+    }
+
+    /// The same as a note.
+    #[must_use]
+    pub fn note(mut self) -> Diagnostic {
+        self.0.severity = Severity::Note;
+        self
+    }
+
+    /// Adds an action.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Diagnostic {
+        self.0.helps.push(help.into());
+        self
+    }
+
+    /// Adds a related place.
+    #[must_use]
+    pub fn related(mut self, span: Span, text: impl Into<String>) -> Diagnostic {
+        self.0.labels.push(Label { span, text: text.into(), primary: false });
+        self
+    }
+
+    /// Adds the next outer call.
+    #[must_use]
+    pub fn called_from(mut self, span: Span, what: impl Into<String>) -> Diagnostic {
+        self.0.trace.push(Frame { span, what: what.into() });
+        self
+    }
+
+    /// Where the fault is; [`Span::NONE`] if nowhere.
+    pub fn span(&self) -> Span {
+        self.0.labels.first().map_or(Span::NONE, |label| label.span)
+    }
+
+    /// Whether it is an error.
+    pub fn is_error(&self) -> bool {
+        self.0.severity == Severity::Error
+    }
+}
+
+impl std::ops::Deref for Diagnostic {
+    type Target = Report;
+    fn deref(&self) -> &Report {
+        &self.0
+    }
+}
+
+impl std::fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Diagnostic {}
+
+/// Gives the error of a result its place.
+pub trait At<T> {
+    /// `Err(fault)` becomes `Err(fault.at(span))`.
+    fn at(self, span: Span) -> Result<T, Diagnostic>;
+}
+
+impl<T> At<T> for Result<T, Fault> {
+    fn at(self, span: Span) -> Result<T, Diagnostic> {
+        self.map_err(|fault| fault.at(span))
+    }
+}
+
+/// Makes a [`Fault`]: `fault!(CODE, "cannot add {a} and {b}"; help: "…")`.
+#[macro_export]
+macro_rules! fault {
+    ($code:expr, $($message:expr),+ $(; help: $($help:expr),+)* $(;)?) => {
+        $crate::diag::Fault::new($code, format!($($message),+))$(.help(format!($($help),+)))*
+    };
+}
+
+/// Returns a [`Fault`] as an error: `bail!(CODE, "…"; help: "…")`.
+#[macro_export]
+macro_rules! bail {
+    ($($arguments:tt)*) => {
+        return Err($crate::fault!($($arguments)*).into())
+    };
+}

@@ -1,0 +1,95 @@
+//! Diagnostics as text for terminals.
+
+use super::{Diagnostic, Severity};
+use crate::source::{SourceMap, Span};
+use codespan_reporting::diagnostic as cr;
+use codespan_reporting::files::{Error, Files};
+use codespan_reporting::term;
+use std::ops::Range;
+
+/// The diagnostic as the user sees it, with or without colours (ANSI escapes).
+pub fn render(diagnostic: &Diagnostic, sources: &SourceMap, colour: bool) -> String {
+    let shown = convert(diagnostic, sources);
+    let config = term::Config::default();
+    let mut text = if colour {
+        let mut buffer = codespan_reporting::term::termcolor::Buffer::ansi();
+        match term::emit_to_write_style(&mut buffer, &config, sources, &shown) {
+            Ok(()) => String::from_utf8_lossy(buffer.as_slice()).into_owned(),
+            Err(_) => plain_line(diagnostic),
+        }
+    } else {
+        let mut buffer = String::new();
+        match term::emit_to_string(&mut buffer, &config, sources, &shown) {
+            Ok(()) => buffer,
+            Err(_) => plain_line(diagnostic),
+        }
+    };
+    while text.ends_with("\n\n") {
+        text.pop();
+    }
+    text
+}
+
+fn plain_line(diagnostic: &Diagnostic) -> String {
+    format!("error[{}]: {}\n", diagnostic.code.slug, diagnostic.message)
+}
+
+fn convert(diagnostic: &Diagnostic, sources: &SourceMap) -> cr::Diagnostic<usize> {
+    let severity = match diagnostic.severity {
+        Severity::Note => cr::Severity::Note,
+        Severity::Warning => cr::Severity::Warning,
+        Severity::Error => cr::Severity::Error,
+    };
+    let labels = diagnostic
+        .labels
+        .iter()
+        .filter(|label| sources.get(label.span.source).is_some())
+        .map(|label| {
+            let style =
+                if label.primary { cr::LabelStyle::Primary } else { cr::LabelStyle::Secondary };
+            cr::Label::new(style, label.span.source.0 as usize, range(label.span))
+                .with_message(&label.text)
+        })
+        .collect();
+    let trace = diagnostic
+        .trace
+        .iter()
+        .map(|frame| format!("in {}, called at {}", frame.what, sources.location(frame.span)));
+    let helps = diagnostic.helps.iter().map(|help| format!("help: {help}"));
+    cr::Diagnostic::new(severity)
+        .with_code(diagnostic.code.slug)
+        .with_message(&diagnostic.message)
+        .with_labels(labels)
+        .with_notes(helps.chain(trace).collect())
+}
+
+fn range(span: Span) -> Range<usize> {
+    span.start as usize..span.end as usize
+}
+
+impl<'a> Files<'a> for SourceMap {
+    type FileId = usize;
+    type Name = &'a str;
+    type Source = &'a str;
+
+    fn name(&'a self, id: usize) -> Result<&'a str, Error> {
+        self.get(crate::source::SourceId(id as u32)).map(|s| &*s.name).ok_or(Error::FileMissing)
+    }
+
+    fn source(&'a self, id: usize) -> Result<&'a str, Error> {
+        self.get(crate::source::SourceId(id as u32)).map(|s| &*s.text).ok_or(Error::FileMissing)
+    }
+
+    fn line_index(&'a self, id: usize, byte_index: usize) -> Result<usize, Error> {
+        let source = self.get(crate::source::SourceId(id as u32)).ok_or(Error::FileMissing)?;
+        Ok(source.line_column(byte_index).line - 1)
+    }
+
+    fn line_range(&'a self, id: usize, line_index: usize) -> Result<Range<usize>, Error> {
+        let source = self.get(crate::source::SourceId(id as u32)).ok_or(Error::FileMissing)?;
+        source.line_range(line_index).ok_or(Error::LineTooLarge {
+            given: line_index,
+            max: source.line_count().saturating_sub(1),
+        })
+    }
+}

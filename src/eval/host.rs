@@ -1,0 +1,50 @@
+//! Who answers what an expression cannot answer by itself.
+
+use super::Function;
+use crate::diag::{Diagnostic, Fault};
+use crate::name::Name;
+use crate::source::Span;
+use crate::syntax::ast;
+use crate::value::Value;
+use std::sync::Arc;
+
+/// A function implemented in Rust, without effects, of values alone.
+pub type Intrinsic = fn(&[Value]) -> Result<Value, Fault>;
+
+/// What a called name stands for.
+pub enum Callee {
+    /// A function written in Modelica.
+    Function(Arc<Function>),
+    /// A command that the host runs itself: [`Host::call_builtin`] gets the unevaluated
+    /// arguments' values as [`Host`] wants them.
+    Builtin(Arc<Function>),
+}
+
+/// Answers calls and names that are not local to the function or script being evaluated.
+pub trait Host {
+    /// The function of this name, as seen from where the evaluated text stands; `None` if there is
+    /// none. Functions of MLS §3.7 and §10.3 are answered by `eval` itself after the host declined.
+    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Fault>;
+
+    /// Runs a builtin: `arguments` are complete, in the order of the header's inputs, defaults
+    /// filled in. Returns its outputs, as many as the header declares.
+    fn call_builtin(
+        &mut self,
+        header: &Arc<Function>,
+        arguments: Vec<Value>,
+        span: Span,
+    ) -> Result<Vec<Value>, Diagnostic>;
+
+    /// The value of a global variable, package constant or enumeration literal; `None` if there is
+    /// none.
+    fn variable(
+        &mut self,
+        reference: &ast::ComponentReference,
+    ) -> Result<Option<Value>, Diagnostic>;
+
+    /// Asked between statements and loop turns: whether to stop (the user pressed Ctrl-C), and the
+    /// error to stop with.
+    fn interrupted(&mut self) -> Option<Fault> {
+        None
+    }
+}

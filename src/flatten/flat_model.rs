@@ -1,0 +1,147 @@
+//! The flat model: variables and equations without classes. Data only.
+//!
+//! Arrays of components are taken apart (`c[2].x`), arrays of predefined types stay arrays
+//! (`c[2].x` of size 3 is one variable). In every expression a [`ast::ComponentReference`] is either
+//! the full path of a [`Variable`] (literal subscripts in all parts but the last; any subscripts on
+//! the last),
+//! `time`, or a loop variable; function names are full names of [`FlatModel::functions`] or of
+//! intrinsics (MLS §3.7, §10.3). Enumeration literals are replaced by
+//! [`ast::ExpressionKind::Integer`] ordinals.
+
+use crate::eval::Function;
+use crate::name::Name;
+use crate::source::Span;
+use crate::syntax::ast::{self, CausalityPrefix, Expression, Statement};
+use crate::value::EnumerationDefinition;
+use indexmap::IndexMap;
+use std::sync::Arc;
+
+/// A flat model.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct FlatModel {
+    /// Full name of the class, with its modification if there was one.
+    pub name: String,
+    /// The class's string.
+    pub description: Option<Arc<str>>,
+    /// Variables by flat name, in order of declaration.
+    pub variables: IndexMap<Arc<str>, Variable>,
+    /// Equations, loops kept, branches on parameters chosen, connections resolved.
+    pub equations: Vec<ast::Equation>,
+    /// Initial equations.
+    pub initial_equations: Vec<ast::Equation>,
+    /// Algorithm sections.
+    pub algorithms: Vec<Vec<Statement>>,
+    /// Initial algorithm sections.
+    pub initial_algorithms: Vec<Vec<Statement>>,
+    /// Functions called, directly and indirectly, by full name.
+    pub functions: IndexMap<Name, Arc<Function>>,
+    /// The `experiment` annotation.
+    pub experiment: Experiment,
+    /// Where the class is defined.
+    pub span: Option<Span>,
+}
+
+/// The `experiment` annotation (MLS §18.4): `None` where it says nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Experiment {
+    /// `StartTime`, seconds.
+    pub start_time: Option<f64>,
+    /// `StopTime`, seconds.
+    pub stop_time: Option<f64>,
+    /// `Interval`, seconds.
+    pub interval: Option<f64>,
+    /// `Tolerance`, relative.
+    pub tolerance: Option<f64>,
+}
+
+/// A variable of a flat model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Variable {
+    /// Its full path, such as `pack.cell[2].V`.
+    pub name: Arc<str>,
+    /// Its predefined type.
+    pub base: BaseType,
+    /// Sizes of its dimensions; empty for a scalar.
+    pub dims: Vec<usize>,
+    /// When it may change.
+    pub variability: Variability,
+    /// `input` or `output`, of top-level components only.
+    pub causality: Option<CausalityPrefix>,
+    /// `final`, here or on a component that holds it, or on its binding.
+    pub is_final: bool,
+    /// Whether it is protected or lies in a protected component.
+    pub protected: bool,
+    /// `annotation(Evaluate = …)`.
+    pub evaluate: bool,
+    /// Whether its value shaped the model (an array size, a chosen branch, a condition).
+    pub structural: bool,
+    /// Whether the component stands directly in the class that was flattened.
+    pub top_level: bool,
+    /// Attributes by name (`start`, `fixed`, `min`, `max`, `nominal`, `unit`, `displayUnit`,
+    /// `quantity`, `stateSelect`).
+    pub attributes: IndexMap<&'static str, Attribute>,
+    /// The binding: an equation for a variable, the value of a parameter.
+    pub binding: Option<Expression>,
+    /// The string behind it.
+    pub description: Option<Arc<str>>,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// The value of an attribute.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Attribute {
+    /// A scalar, which with an array holds for `each` element, or an array of the same size.
+    pub value: Expression,
+    /// Whether the model set it `final`.
+    pub is_final: bool,
+}
+
+/// The predefined type of a variable.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BaseType {
+    /// `Real`
+    Real,
+    /// `Integer`
+    Integer,
+    /// `Boolean`
+    Boolean,
+    /// `String`
+    String,
+    /// An enumeration
+    Enumeration(Arc<EnumerationDefinition>),
+}
+
+/// When a variable may change (MLS §3.8).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Variability {
+    /// Never.
+    Constant,
+    /// Not during a simulation.
+    Parameter,
+    /// At events.
+    Discrete,
+    /// Always.
+    Continuous,
+}
+
+impl Variable {
+    /// Whether a user may set it between runs without compiling again: a parameter that is not
+    /// final, not `Evaluate = true` and did not shape the model.
+    pub fn is_tunable(&self) -> bool {
+        self.variability == Variability::Parameter
+            && !self.is_final
+            && !self.evaluate
+            && !self.structural
+    }
+
+    /// Number of scalars.
+    pub fn len(&self) -> usize {
+        self.dims.iter().product()
+    }
+
+    /// Whether it is an array of size zero.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}

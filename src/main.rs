@@ -1,0 +1,3 @@
+//! The command `gapi`.
+
+fn main() {}

@@ -1,0 +1,65 @@
+//! Why an evaluation or a simulation failed: numbers and indices, no names.
+
+/// Why one evaluation of a system failed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Failure {
+    /// An argument outside a function's domain, a division by zero, or an overflow: `place` is a
+    /// number that the system can explain.
+    Domain {
+        /// What the system can explain.
+        place: u32,
+    },
+    /// An `assert` of level error does not hold.
+    Assertion {
+        /// Which one.
+        assertion: u32,
+    },
+    /// A nonlinear block did not converge.
+    Newton {
+        /// Which block.
+        block: u32,
+    },
+    /// A linear block is singular.
+    Singular {
+        /// Which block.
+        block: u32,
+    },
+    /// Initial values could not be found.
+    Initialization {
+        /// Which block of the initial system.
+        block: u32,
+    },
+    /// Event iteration did not end.
+    EventIteration,
+}
+
+/// Why a simulation failed, and when.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("{kind:?} at t = {time}")]
+pub struct SimError {
+    /// Simulated time, seconds.
+    pub time: f64,
+    /// Why.
+    pub kind: SimErrorKind,
+}
+
+/// The kinds of failure of a simulation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SimErrorKind {
+    /// Initial values could not be found.
+    Initialization(Failure),
+    /// An evaluation failed, also with the smallest step.
+    Evaluation(Failure),
+    /// The error test or the nonlinear solver kept failing down to the smallest step.
+    StepSize,
+    /// More steps than the budget allows.
+    StepBudget,
+    /// More wall-clock time than the budget allows.
+    TimeBudget,
+    /// The iteration matrix is singular at the smallest step.
+    Singular,
+    /// More events than make sense in this interval.
+    Chattering,
+    /// A value became infinite or not a number.
+    NotFinite,
+}

@@ -1,0 +1,68 @@
+//! What the integrators see: a semi-explicit system with its own workspace.
+
+use super::Failure;
+
+/// A system in the form
+///
+/// ```text
+///   ẋ = f(t, x, v)      n_differential equations
+///   0 = g(t, x, v)      n_algebraic equations
+/// ```
+///
+/// with y = (x, v), zero crossings, and observed variables. Methods take `&mut self` because a
+/// system owns its workspace; one compiled program gives any number of independent systems.
+/// Discrete state (frozen relations, `pre` values) lives in the system and changes only in
+/// [`DaeSystem::initialize`] and [`DaeSystem::handle_event`].
+pub trait DaeSystem {
+    /// Number of differential variables x; they come first in y.
+    fn n_differential(&self) -> usize;
+    /// Number of algebraic variables v.
+    fn n_algebraic(&self) -> usize;
+    /// Typical magnitude of every y, positive.
+    fn nominal(&self, out: &mut [f64]);
+    /// Writes (f, g) at (t, y).
+    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure>;
+    /// The sparsity pattern of ∂(f, g)/∂y, by columns.
+    fn pattern(&self) -> &Pattern;
+    /// Writes the nonzeros of ∂(f, g)/∂y at (t, y), in the order of the pattern.
+    fn jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure>;
+    /// Writes consistent initial values of y at `t` (MLS §8.6).
+    fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure>;
+    /// Number of zero-crossing functions.
+    fn n_crossings(&self) -> usize;
+    /// Writes the zero-crossing functions; an event is a change of sign.
+    fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure>;
+    /// The next time event after `t`, if any is known.
+    fn next_time_event(&self, t: f64) -> Option<f64>;
+    /// Event iteration at (t, y) (MLS §8.5): updates the discrete state, may change y.
+    fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure>;
+    /// Checks at an accepted step what must hold there (assertions).
+    fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure>;
+    /// Number of observed variables.
+    fn n_observed(&self) -> usize;
+    /// Writes the observed variables at (t, y).
+    fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure>;
+}
+
+/// What an event did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EventOutcome {
+    /// Goes on; `y_changed` if continuous variables jumped or branches changed.
+    Continue {
+        /// Whether the integrator must restart.
+        y_changed: bool,
+    },
+    /// `terminate(…)` was called.
+    Terminate,
+}
+
+/// A sparsity pattern in compressed columns.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Pattern {
+    /// Rows and columns.
+    pub n: usize,
+    /// Start of every column in `rows`; `n + 1` numbers.
+    pub column_starts: Vec<usize>,
+    /// Row of every nonzero, ascending within a column.
+    pub rows: Vec<usize>,
+}

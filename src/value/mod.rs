@@ -1,0 +1,100 @@
+//! Values of expressions in scripts and functions (MLS ch. 3, 10). They know no places: their
+//! operations return [`Fault`](crate::diag::Fault)s.
+
+mod array;
+mod record;
+
+pub use array::{ArrayValue, Elements};
+pub use record::RecordValue;
+
+use crate::name::{Ident, Name};
+use std::sync::Arc;
+
+/// A value.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// `Real`
+    Real(f64),
+    /// `Integer`
+    Integer(i64),
+    /// `Boolean`
+    Boolean(bool),
+    /// `String`
+    String(Arc<str>),
+    /// A literal of an enumeration.
+    Enumeration(EnumerationValue),
+    /// An array of any rank of scalars or records.
+    Array(ArrayValue),
+    /// A record.
+    Record(RecordValue),
+    /// A class's name, for arguments of type `TypeName`.
+    TypeName(Name),
+    /// A variable's name as written, for arguments of type `VariableName`.
+    VariableName(Arc<str>),
+    /// A function, perhaps with some arguments given (MLS §12.4.2).
+    Function(FunctionValue),
+    /// The outputs of a call: none, or several. Never one.
+    Tuple(Vec<Value>),
+}
+
+/// A literal of an enumeration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnumerationValue {
+    /// The enumeration and all its literals.
+    pub definition: Arc<EnumerationDefinition>,
+    /// Which literal, from 1 (as `Integer(e)` gives it).
+    pub ordinal: i64,
+}
+
+/// An enumeration type.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnumerationDefinition {
+    /// Its full name.
+    pub name: Name,
+    /// Its literals in order.
+    pub literals: Vec<Ident>,
+}
+
+/// A function as a value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FunctionValue {
+    /// Its full name.
+    pub name: Name,
+    /// Arguments given already.
+    pub named: Vec<(Ident, Value)>,
+}
+
+impl Value {
+    /// A string value.
+    pub fn string(text: impl Into<Arc<str>>) -> Value {
+        Value::String(text.into())
+    }
+
+    /// A vector of Reals.
+    pub fn reals(values: Vec<f64>) -> Value {
+        Value::Array(ArrayValue::vector(Elements::Real(values)))
+    }
+
+    /// No value: the result of a call without outputs.
+    pub fn nothing() -> Value {
+        Value::Tuple(Vec::new())
+    }
+
+    /// What kind of value it is, in Modelica's words, for messages: `Real`, `Integer[2, 3]`.
+    pub fn type_name(&self) -> String {
+        match self {
+            Value::Real(_) => "Real".into(),
+            Value::Integer(_) => "Integer".into(),
+            Value::Boolean(_) => "Boolean".into(),
+            Value::String(_) => "String".into(),
+            Value::Enumeration(value) => value.definition.name.to_string(),
+            Value::Array(array) => array.type_name(),
+            Value::Record(record) => record.type_name.to_string(),
+            Value::TypeName(_) => "TypeName".into(),
+            Value::VariableName(_) => "VariableName".into(),
+            Value::Function(_) => "function".into(),
+            Value::Tuple(values) if values.is_empty() => "no value".into(),
+            Value::Tuple(_) => "several values".into(),
+        }
+    }
+}
