@@ -4,7 +4,7 @@ use crate::codes;
 
 codes! {
     /// A parameter that the model does not have.
-    UNKNOWN_PARAMETER = "unknown-parameter":
+    PARAMETER_NOT_FOUND = "parameter-not-found":
         "## What it means\n\nA name given as parameter to identify is no parameter of the model.\n\n## Example\n\n`Parameter_Names = {\"A\", \"Ilimit\"}` for a model whose parameter is named `Ilim`.\n\n## What to do\n\nUse a name that the message lists; parameters of components are written with dots, such as `cell.R`.",
     /// A parameter whose value is fixed when the model is translated.
     FIXED_PARAMETER = "fixed-parameter":
