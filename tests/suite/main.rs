@@ -1,2 +1,3 @@
 //! The integration tests; one module per suite.
 mod grammar;
+mod syntax_properties;
