@@ -1,38 +1,58 @@
 //! References to variables and their parts: `a[2].b[1, :]`, read and assigned without copying the
 //! array that they reach into.
 
+use super::Evaluator;
 use super::errors::UNKNOWN_VARIABLE;
 use super::scope::{Variable, named};
-use super::Evaluator;
-use crate::diag::{At, Diagnostic, Fault};
+use crate::diag::{At, Diagnostic};
 use crate::fault;
 use crate::name::Ident;
 use crate::source::Span;
-use crate::syntax::ast::{ComponentReference, Expression, ExpressionKind, ReferencePart, Subscript};
+use crate::syntax::ast::{
+    ComponentReference, Expression, ExpressionKind, ReferencePart, Subscript,
+};
 use crate::value::{Elements, Index, Step, Value};
 
 impl Evaluator<'_> {
     /// The value of `a`, `a[i]`, `a.b[i].c`, ….
-    pub(super) fn reference(&mut self, reference: &ComponentReference) -> Result<Value, Diagnostic> {
-        let Some(first) = self.local(reference)? else { return self.global(reference) };
-        if let ([part], [subscripts @ ..]) = (reference.parts.as_slice(), first.subscripts.as_slice())
-        {
-            if subscripts.is_empty() {
-                return self.whole(part.name, reference.span);
-            }
-            if let Some(element) = self.element(part, reference.span)? {
-                return Ok(element);
+    pub(super) fn reference(
+        &mut self,
+        reference: &ComponentReference,
+    ) -> Result<Value, Diagnostic> {
+        if let ([part], false) = (reference.parts.as_slice(), reference.global) {
+            let found = match part.subscripts.as_slice() {
+                [] => self.scope.get(part.name).cloned(),
+                _ => self.element(part, reference.span)?,
+            };
+            if let Some(value) = found {
+                return Ok(value);
             }
         }
+        let Some(first) = self.local(reference)? else { return self.global(reference) };
         let path = self.path(first.name, &reference.parts)?;
-        let value = self.variable_value(first.name)?;
-        let value = value.part(&path).map_err(|fault| at_path(fault, reference))?;
+        let value = self.variable_value(first.name)?.part(&path);
+        let value = value.map_err(|fault| named(first.name, fault).at(reference.span))?;
         if let Some(variable) = self.scope.variables.get(&first.name)
             && !self.is_iterator(first.name)
         {
             variable.check_assigned(first.name, &path).at(reference.span)?;
         }
         Ok(value)
+    }
+
+    /// The sizes of a variable or a part of one, which need not have a value yet; `None` for a
+    /// global name.
+    pub(super) fn sizes_of(
+        &mut self,
+        reference: &ComponentReference,
+    ) -> Result<Option<Vec<usize>>, Diagnostic> {
+        let Some(first) = self.local(reference)? else { return Ok(None) };
+        if reference.as_ident().is_some() {
+            return Ok(Some(self.variable_value(first.name)?.dims().to_vec()));
+        }
+        let path = self.path(first.name, &reference.parts)?;
+        let part = self.variable_value(first.name)?.part(&path).at(reference.span)?;
+        Ok(Some(part.dims().to_vec()))
     }
 
     /// Assigns to a variable or a part of one.
@@ -58,7 +78,7 @@ impl Evaluator<'_> {
         let variable = self.variable_mut(first.name, target.span)?;
         variable
             .set_part(first.name, &path, value)
-            .map_err(|fault| at_path(named(first.name, fault), target))
+            .map_err(|fault| named(first.name, fault).at(target.span))
     }
 
     /// Whether assigning to a name nobody knows makes a variable.
@@ -134,30 +154,9 @@ impl Evaluator<'_> {
         }
     }
 
-    fn whole(&self, name: Ident, span: Span) -> Result<Value, Diagnostic> {
-        for (iterator, value) in self.scope.iterators.iter().rev() {
-            if *iterator == name {
-                return Ok(value.clone());
-            }
-        }
-        match self.scope.variables.get(&name) {
-            Some(variable) => {
-                if variable.unassigned.is_some() {
-                    variable.check_assigned(name, &[]).at(span)?;
-                }
-                Ok(variable.value.clone())
-            }
-            None => Err(self.scope.unknown(name).at(span)),
-        }
-    }
-
     /// The quick way to a single element: `x[i]`, `x[i, j]` with Integer subscripts. `None` where
     /// the general way has to be taken.
-    fn element(
-        &mut self,
-        part: &ReferencePart,
-        span: Span,
-    ) -> Result<Option<Value>, Diagnostic> {
+    fn element(&mut self, part: &ReferencePart, span: Span) -> Result<Option<Value>, Diagnostic> {
         let Some(positions) = self.positions(part)? else { return Ok(None) };
         let positions = positions.as_slice();
         if let Some(variable) = self.scope.variables.get(&part.name)
@@ -305,8 +304,4 @@ impl Positions {
     fn as_slice(&self) -> &[i64] {
         &self.values[..self.count]
     }
-}
-
-fn at_path(fault: Fault, reference: &ComponentReference) -> Diagnostic {
-    fault.at(reference.span)
 }

@@ -10,7 +10,6 @@ use crate::syntax::ast::{
     Statement, StatementKind,
 };
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 /// An error if the numbers differ. Where the size of an equation cannot be told from its text, the
 /// model is left to the matching of equations and unknowns.
@@ -162,23 +161,16 @@ fn targets(statements: &[Statement], out: &mut BTreeSet<String>) {
                 out.extend(targets.iter().flatten().map(path));
             }
             StatementKind::If { branches, otherwise } => {
-                branches.iter().for_each(|(_, body)| targets_of(body, out));
+                branches.iter().for_each(|(_, body)| targets(body, out));
                 targets(otherwise, out);
             }
             StatementKind::For { body, .. } | StatementKind::While { body, .. } => {
                 targets(body, out);
             }
             StatementKind::When { branches } => {
-                branches.iter().for_each(|(_, body)| targets_of(body, out));
+                branches.iter().for_each(|(_, body)| targets(body, out));
             }
             StatementKind::Call(_) | StatementKind::Break | StatementKind::Return => {}
         }
     }
 }
-
-fn targets_of(statements: &[Statement], out: &mut BTreeSet<String>) {
-    targets(statements, out);
-}
-
-/// Shared with the printer.
-pub(super) type Text = Arc<str>;

@@ -1,3 +1,5 @@
 //! The integration tests; one module per suite.
+
+mod architecture;
 mod grammar;
 mod syntax_properties;
