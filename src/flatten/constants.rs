@@ -63,7 +63,9 @@ impl Instantiation<'_> {
             }
             Some(None) => {
                 let name = &self.variables[variable].0.name;
-                return Err(fault!(NOT_CONSTANT, "the value of `{name}` depends on itself").at(span));
+                return Err(
+                    fault!(NOT_CONSTANT, "the value of `{name}` depends on itself").at(span)
+                );
             }
             None => {}
         }
@@ -176,9 +178,7 @@ impl Instantiation<'_> {
     fn is_constant(&self, package: NodeId, name: Ident) -> bool {
         self.composite_of(package)
             .and_then(|composite| composite.members.get(&name))
-            .is_some_and(|member| {
-                member.declaration.variability == Some(Variability::Constant)
-            })
+            .is_some_and(|member| member.declaration.variability == Some(Variability::Constant))
     }
 
     fn through_short_classes(&self, mut class: ClassId) -> ClassId {

@@ -1,6 +1,7 @@
 //! Collects the components of a class, inherited ones included (MLS §5.6.1, §7.1), and finds out
 //! what their types are made of (MLS §4.6).
 
+use super::Variability;
 use super::errors::{
     CYCLIC_CLASS, DUPLICATE_ELEMENT, NOT_SUPPORTED, TYPE_MISMATCH, UNKNOWN_ELEMENT,
 };
@@ -8,7 +9,6 @@ use super::instance::{Context, Declaration, Member, MemberState, NodeId, Shape};
 use super::library::{ClassId, Library};
 use super::lookup::Type;
 use super::modification::Modifier;
-use super::Variability;
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::name::Ident;
@@ -82,7 +82,8 @@ impl Library {
             let context = Context { node, class: found.parent };
             let own = Modifier::of_arguments(&short.modification, context)?;
             let merged = own.overridden_by(modifier, found.definition.name.node)?;
-            let base = self.base_class(self.lookup_in(found.parent, &short.target)?, &short.target)?;
+            let base =
+                self.base_class(self.lookup_in(found.parent, &short.target)?, &short.target)?;
             return self.collect_into(base, node, merged, protected, out, depth + 1);
         }
         for (visibility, element) in found.elements() {
@@ -124,8 +125,11 @@ impl Library {
         depth: usize,
     ) -> Result<Modifier, Diagnostic> {
         if !extends.deselected.is_empty() {
-            return Err(fault!(NOT_SUPPORTED, "`break` in an extends clause is not translated yet")
-                .at(extends.span));
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "`break` in an extends clause is not translated yet"
+            )
+            .at(extends.span));
         }
         let base = self.base_class(self.lookup_base(class, &extends.base)?, &extends.base)?;
         let context = Context { node, class: Some(class) };
@@ -168,8 +172,7 @@ impl Library {
             .at(declaration.span)
             .related(known.declaration.span, "the other one"));
         }
-        let member =
-            Member { declaration: Arc::new(declaration), state: MemberState::Pending };
+        let member = Member { declaration: Arc::new(declaration), state: MemberState::Pending };
         out.members.insert(name, member);
         Ok(())
     }
@@ -296,12 +299,8 @@ impl Library {
         let class = self.class(id);
         match class.definition.restriction {
             Restriction::Package | Restriction::Function { .. } | Restriction::Operator => {
-                Err(fault!(
-                    TYPE_MISMATCH,
-                    "`{}` cannot be the type of a component",
-                    class.name
-                )
-                .at(specifier.span))
+                Err(fault!(TYPE_MISMATCH, "`{}` cannot be the type of a component", class.name)
+                    .at(specifier.span))
             }
             Restriction::ExpandableConnector | Restriction::OperatorRecord => Err(fault!(
                 NOT_SUPPORTED,

@@ -1,17 +1,16 @@
 //! Equations of the instances: names resolved, loops unrolled, branches on parameters chosen
 //! where they must be (MLS §8.3, §8.6).
 
+use super::FlatModel;
 use super::errors::{NOT_SUPPORTED, TYPE_MISMATCH};
 use super::instance::{Context, MemberState, NodeId, NodeKind};
 use super::instantiation::Instantiation;
 use super::resolve::{Local, literal};
-use super::FlatModel;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::name::Ident;
 use crate::syntax::ast::{
-    Equation, EquationKind, Expression, ExpressionKind, ForIndex,
-    ReferencePart, Section,
+    Equation, EquationKind, Expression, ExpressionKind, ForIndex, ReferencePart, Section,
 };
 use crate::value::{ArrayValue, Elements, Value};
 
@@ -84,8 +83,9 @@ impl Instantiation<'_> {
                 }
             }
             Section::External(external) => {
-                return Err(fault!(NOT_SUPPORTED, "only functions can be external")
-                    .at(external.span));
+                return Err(
+                    fault!(NOT_SUPPORTED, "only functions can be external").at(external.span)
+                );
             }
             Section::Elements { .. } | Section::Annotation(_) => {}
         }
@@ -128,8 +128,9 @@ impl Instantiation<'_> {
             }
             EquationKind::Call(call) => EquationKind::Call(self.resolve(call, context, local)?),
             EquationKind::Connect { .. } => {
-                return Err(fault!(NOT_SUPPORTED, "connections are not translated yet")
-                    .at(equation.span));
+                return Err(
+                    fault!(NOT_SUPPORTED, "connections are not translated yet").at(equation.span)
+                );
             }
         };
         out.push(Equation { kind, comment: Default::default(), span: equation.span });
@@ -228,8 +229,9 @@ impl Instantiation<'_> {
             turn.names.push((index.name.node, Some(literal(&value, span))));
             self.unroll(inner, body, context, &turn, out)?;
             if out.len() > MAX_EQUATIONS {
-                return Err(fault!(super::errors::TOO_LARGE, "the loop has too many equations")
-                    .at(span));
+                return Err(
+                    fault!(super::errors::TOO_LARGE, "the loop has too many equations").at(span)
+                );
             }
         }
         Ok(())

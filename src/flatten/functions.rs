@@ -226,11 +226,7 @@ impl Instantiation<'_> {
         Ok(components)
     }
 
-    fn value_type(
-        &mut self,
-        shape: &Shape,
-        span: Span,
-    ) -> Result<ValueType, Diagnostic> {
+    fn value_type(&mut self, shape: &Shape, span: Span) -> Result<ValueType, Diagnostic> {
         let class = match shape {
             Shape::Predefined(Predefined::Real) => return Ok(ValueType::Real),
             Shape::Predefined(Predefined::Integer) => return Ok(ValueType::Integer),
@@ -251,11 +247,7 @@ impl Instantiation<'_> {
         }
     }
 
-    fn body(
-        &mut self,
-        lineage: &[ClassId],
-        local: &Local,
-    ) -> Result<FunctionBody, Diagnostic> {
+    fn body(&mut self, lineage: &[ClassId], local: &Local) -> Result<FunctionBody, Diagnostic> {
         let library = self.library;
         let mut statements = Vec::new();
         for base in lineage {
@@ -328,9 +320,9 @@ impl Instantiation<'_> {
                 condition: self.resolve(condition, context, local)?,
                 body: self.statements(body, context, local)?,
             },
-            StatementKind::When { branches } => StatementKind::When {
-                branches: self.statement_branches(branches, context, local)?,
-            },
+            StatementKind::When { branches } => {
+                StatementKind::When { branches: self.statement_branches(branches, context, local)? }
+            }
             StatementKind::Break => StatementKind::Break,
             StatementKind::Return => StatementKind::Return,
         };

@@ -114,7 +114,6 @@ pub(super) struct Leaf {
     pub(super) variable: usize,
     /// Its binding and attributes as written, resolved when the tree is whole.
     pub(super) modifier: Modifier,
-    pub(super) context: Context,
 }
 
 impl Shape {

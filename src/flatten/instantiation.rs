@@ -1,11 +1,11 @@
 //! Builds the instance tree (MLS §5.6.1), component by component as they are needed: a parameter
 //! that gives a size may be declared behind the array that it sizes.
 
+use super::constants::Read;
 use super::errors::{
     CYCLIC_CLASS, NOT_CONSTANT, PARTIAL_CLASS, SIZE_MISMATCH, TOO_LARGE, TYPE_MISMATCH,
     UNKNOWN_ELEMENT,
 };
-use super::constants::Read;
 use super::instance::{
     Composite, Context, Declaration, Inherited, Leaf, Member, MemberState, Node, NodeId, NodeKind,
     Shape,
@@ -29,9 +29,8 @@ const MAX_SCALARS: usize = 2_000_000;
 const MAX_DEPTH: usize = 60;
 
 /// The attributes of the predefined types (MLS §4.9).
-pub(super) const ATTRIBUTES: [&str; 9] = [
-    "quantity", "unit", "displayUnit", "min", "max", "start", "fixed", "nominal", "stateSelect",
-];
+pub(super) const ATTRIBUTES: [&str; 9] =
+    ["quantity", "unit", "displayUnit", "min", "max", "start", "fixed", "nominal", "stateSelect"];
 
 /// The growing tree.
 pub(super) struct Instantiation<'a> {
@@ -94,10 +93,8 @@ impl<'a> Instantiation<'a> {
             return Err(fault!(CYCLIC_CLASS, "`{name}` contains a component of its own class")
                 .at(definition.name.span));
         }
-        let record = matches!(
-            definition.restriction,
-            Restriction::Record | Restriction::OperatorRecord
-        );
+        let record =
+            matches!(definition.restriction, Restriction::Record | Restriction::OperatorRecord);
         let node = NodeId(self.nodes.len());
         let binding = modifier.binding.clone();
         let mut collected = self.library.collect(class, node, modifier)?;
@@ -381,11 +378,7 @@ impl<'a> Instantiation<'a> {
             description: declared.description.clone(),
             span: declared.span,
         };
-        let leaf = Leaf {
-            variable: self.variables.len(),
-            modifier: declared.modifier.clone(),
-            context: Context { node, class: self.composite_of(node).map(|c| c.class) },
-        };
+        let leaf = Leaf { variable: self.variables.len(), modifier: declared.modifier.clone() };
         let id = NodeId(self.nodes.len());
         if !self.in_package(node) {
             self.variable_of.insert(name.clone(), leaf.variable);
@@ -456,9 +449,8 @@ pub(super) fn picked(value: Expression, indices: &[usize]) -> Expression {
         return value;
     }
     let span = value.span;
-    let subscript = |at: &usize| {
-        Subscript::Index(Expression::new(ExpressionKind::Integer(*at as i64), span))
-    };
+    let subscript =
+        |at: &usize| Subscript::Index(Expression::new(ExpressionKind::Integer(*at as i64), span));
     let subscripts = indices.iter().map(subscript).collect();
     Expression::new(ExpressionKind::Subscripted { base: Box::new(value), subscripts }, span)
 }

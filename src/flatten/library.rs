@@ -110,7 +110,11 @@ impl Library {
         }
     }
 
-    fn add_elements(&mut self, id: ClassId, definition: &ClassDefinition) -> Result<(), Diagnostic> {
+    fn add_elements(
+        &mut self,
+        id: ClassId,
+        definition: &ClassDefinition,
+    ) -> Result<(), Diagnostic> {
         let ClassSpecifier::Long(long) = &definition.specifier else { return Ok(()) };
         for section in &long.sections {
             let Section::Elements { elements, .. } = section else { continue };

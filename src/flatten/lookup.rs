@@ -92,12 +92,7 @@ impl Library {
     }
 
     /// A simple name: declared, inherited or imported by the class or by one that encloses it.
-    fn lookup_simple(
-        &self,
-        scope: ClassId,
-        name: Ident,
-        visited: &mut Visited,
-    ) -> Option<ClassId> {
+    fn lookup_simple(&self, scope: ClassId, name: Ident, visited: &mut Visited) -> Option<ClassId> {
         let mut scope = Some(scope);
         while let Some(id) = scope {
             let found = self.member(id, name, visited).or_else(|| self.imported(id, name));
@@ -121,10 +116,7 @@ impl Library {
         if !visited.insert(class) {
             return None;
         }
-        let found = self
-            .bases(class)
-            .iter()
-            .find_map(|base| self.member(*base, name, visited));
+        let found = self.bases(class).iter().find_map(|base| self.member(*base, name, visited));
         visited.remove(&class);
         found
     }
@@ -150,11 +142,9 @@ impl Library {
     }
 
     fn imported(&self, class: ClassId, name: Ident) -> Option<ClassId> {
-        let global = |name: &Name| {
-            match self.lookup_with(None, name, &mut Visited::new()) {
-                Some(Type::Class(found)) => Some(found),
-                _ => None,
-            }
+        let global = |name: &Name| match self.lookup_with(None, name, &mut Visited::new()) {
+            Some(Type::Class(found)) => Some(found),
+            _ => None,
         };
         let imports = &self.class(class).imports;
         let named = imports.iter().find_map(|import| match import {

@@ -43,7 +43,7 @@ impl Modifier {
         context: Context,
     ) -> Result<Modifier, Diagnostic> {
         let Some(modification) = modification else { return Ok(Modifier::default()) };
-        let mut modifier = Modifier::of_arguments(&modification.arguments, context)?;
+        let mut modifier = Modifier::of_each(&modification.arguments, each, context)?;
         modifier.binding = modification.binding.as_ref().map(|binding| {
             let value = match binding {
                 Binding::Expression(value) => Some(value.clone()),
@@ -59,15 +59,24 @@ impl Modifier {
         arguments: &[Argument],
         context: Context,
     ) -> Result<Modifier, Diagnostic> {
+        Modifier::of_each(arguments, false, context)
+    }
+
+    /// As [`Modifier::of_arguments`], inside an argument that may be marked `each`.
+    fn of_each(
+        arguments: &[Argument],
+        each: bool,
+        context: Context,
+    ) -> Result<Modifier, Diagnostic> {
         let mut merged = Modifier::default();
         for argument in arguments {
             let Argument::Element(element) = argument else {
                 let Argument::Redeclaration(redeclaration) = argument else { continue };
-                return Err(
-                    fault!(NOT_SUPPORTED, "redeclarations are not translated yet").at(redeclaration.span)
-                );
+                return Err(fault!(NOT_SUPPORTED, "redeclarations are not translated yet")
+                    .at(redeclaration.span));
             };
-            let mut inner = Modifier::new(element.modification.as_ref(), element.each, context)?;
+            let each = each || element.each;
+            let mut inner = Modifier::new(element.modification.as_ref(), each, context)?;
             inner.is_final = element.is_final;
             inner.span = Some(element.name.span);
             let mut parts = element.name.node.parts.iter().rev();

@@ -63,7 +63,7 @@ impl Instantiation<'_> {
         context: Context,
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
-        let mut sub = |this: &mut Self, inner: &Expression| this.resolve(inner, context, local);
+        let sub = |this: &mut Self, inner: &Expression| this.resolve(inner, context, local);
         let kind = match &e.kind {
             ExpressionKind::Real(_)
             | ExpressionKind::Integer(_)
@@ -167,7 +167,8 @@ impl Instantiation<'_> {
         let mut inner = local.clone();
         let mut resolved = Vec::with_capacity(indices.len());
         for index in indices {
-            let range = index.range.as_ref().map(|r| self.resolve(r, context, &inner)).transpose()?;
+            let range =
+                index.range.as_ref().map(|r| self.resolve(r, context, &inner)).transpose()?;
             resolved.push(ForIndex { name: index.name, range });
             inner.names.push((index.name.node, None));
         }
@@ -292,8 +293,9 @@ impl Instantiation<'_> {
                     return self.variable_reference(id, subscripts, whole.span, local);
                 }
                 if !part.subscripts.is_empty() {
-                    return Err(fault!(SIZE_MISMATCH, "`{}` is not an array", part.name)
-                        .at(whole.span));
+                    return Err(
+                        fault!(SIZE_MISMATCH, "`{}` is not an array", part.name).at(whole.span)
+                    );
                 }
                 self.walk(id, rest, whole, context, local)
             }
@@ -369,8 +371,10 @@ impl Instantiation<'_> {
                     .collect();
                 Ok((all?, true))
             }
-            other => Err(fault!(SIZE_MISMATCH, "an index must be Integer, not {}", other.type_name())
-                .at(e.span)),
+            other => {
+                Err(fault!(SIZE_MISMATCH, "an index must be Integer, not {}", other.type_name())
+                    .at(e.span))
+            }
         }
     }
 
@@ -414,8 +418,9 @@ impl Instantiation<'_> {
         let class = composite.class;
         if !composite.record {
             let path = &self.nodes[node.0].path;
-            return Err(fault!(NOT_SUPPORTED, "`{path}` is no record and has no value")
-                .at(whole.span));
+            return Err(
+                fault!(NOT_SUPPORTED, "`{path}` is no record and has no value").at(whole.span)
+            );
         }
         let names: Vec<Ident> = composite.members.keys().copied().collect();
         let mut named = Vec::with_capacity(names.len());
@@ -494,7 +499,11 @@ impl Instantiation<'_> {
     }
 
     /// The diagnostic for a name that is neither a component nor a constant.
-    pub(super) fn unknown_name(&self, reference: &ComponentReference, context: Context) -> Diagnostic {
+    pub(super) fn unknown_name(
+        &self,
+        reference: &ComponentReference,
+        context: Context,
+    ) -> Diagnostic {
         let name = reference.name();
         let known: Vec<Ident> = self
             .composite_of(context.node)
@@ -520,9 +529,7 @@ pub(super) fn flat_reference(path: &str, span: Span) -> ComponentReference {
         let subscripts = indices
             .split(',')
             .filter_map(|index| index.parse().ok())
-            .map(|index| {
-                Subscript::Index(Expression::new(ExpressionKind::Integer(index), span))
-            })
+            .map(|index| Subscript::Index(Expression::new(ExpressionKind::Integer(index), span)))
             .collect();
         parts.push(ReferencePart { name: Ident::new(name), subscripts });
     }
@@ -571,9 +578,9 @@ pub(super) fn literal(value: &Value, span: Span) -> Expression {
         Value::Function(function) => {
             ExpressionKind::Reference(ComponentReference::from_name(&function.name, span))
         }
-        Value::Tuple(values) => ExpressionKind::Tuple(
-            values.iter().map(|value| Some(literal(value, span))).collect(),
-        ),
+        Value::Tuple(values) => {
+            ExpressionKind::Tuple(values.iter().map(|value| Some(literal(value, span))).collect())
+        }
     };
     Expression::new(kind, span)
 }
@@ -592,9 +599,7 @@ fn array_literal(
         (0..*size).map(|at| array_literal(inner, offset + at * stride, array, span)).collect();
     if elements.is_empty() {
         // An empty constructor has no size: `zeros` has (MLS §10.3.3).
-        let sizes = dims.iter().map(|n| {
-            Expression::new(ExpressionKind::Integer(*n as i64), span)
-        });
+        let sizes = dims.iter().map(|n| Expression::new(ExpressionKind::Integer(*n as i64), span));
         let arguments = Arguments { positional: sizes.collect(), ..Arguments::default() };
         let function = ComponentReference::from_name(&Name::parse("zeros"), span);
         let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };

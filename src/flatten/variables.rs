@@ -142,13 +142,15 @@ fn check_array(
 ) -> Result<(), Diagnostic> {
     let name = &variable.name;
     let Some((size, inner)) = dims.split_first() else {
-        return Err(fault!(SIZE_MISMATCH, "the value of `{name}` has more dimensions than it")
-            .at(e.span));
+        return Err(
+            fault!(SIZE_MISMATCH, "the value of `{name}` has more dimensions than it").at(e.span)
+        );
     };
     if elements.len() != *size {
         let count = elements.len();
-        return Err(fault!(SIZE_MISMATCH, "`{name}` needs {size} elements here, not {count}")
-            .at(e.span));
+        return Err(
+            fault!(SIZE_MISMATCH, "`{name}` needs {size} elements here, not {count}").at(e.span)
+        );
     }
     elements.iter().try_for_each(|element| match &element.kind {
         ExpressionKind::Array(deeper) => check_array(deeper, element, base, inner, variable),
