@@ -196,7 +196,8 @@ impl Run<'_> {
     /// Makes a step; whether it ended at a time event.
     fn step(&mut self) -> Result<bool, SimErrorKind> {
         let stop = self.problem.settings.stop;
-        let event = self.problem.system.next_time_event(self.t).filter(|event| *event <= stop);
+        let event = self.problem.system.next_time_event(self.t);
+        let event = event.filter(|event| *event > self.t && *event <= stop);
         let mut limit = event.unwrap_or(stop);
         if !self.has_unknowns {
             limit = self.output_point().map_or(limit, |point| limit.min(point));
