@@ -1,3 +1,8 @@
 //! The integration tests; one module per suite.
 
 mod architecture;
+mod flat_class;
+mod grammar;
+mod simulation;
+mod structure;
+mod syntax_properties;
