@@ -1,6 +1,9 @@
 //! The integration tests; one module per suite.
 
 mod architecture;
+mod flat_class;
 mod flattening;
 mod grammar;
+mod simulation;
+mod structure;
 mod syntax_properties;
