@@ -1,4 +1,5 @@
 //! The integration tests; one module per suite.
 
 mod mat;
+mod plot;
 mod results;
