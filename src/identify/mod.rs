@@ -4,12 +4,16 @@
 pub mod errors;
 pub mod fitness;
 
+mod evaluation;
+mod model;
 mod outcome;
 mod points;
 mod recorder;
 mod table;
 mod uncertainty;
 
+pub use evaluation::{Evaluator, Question, Simulated};
+pub use model::{Instance, Model, Parameter};
 pub use outcome::{Correlated, FitPoint, Identified, Outcome};
 pub use points::{Path, time_of};
 pub use recorder::{Best, FitnessSource, Measurement, Quantity, Recorder, Study};
