@@ -5,10 +5,15 @@ pub mod errors;
 pub mod fitness;
 
 mod evaluation;
+#[cfg(test)]
+mod evaluation_tests;
 mod model;
 mod outcome;
 mod points;
+#[cfg(test)]
+mod problems;
 mod recorder;
+mod sensitivity;
 mod table;
 mod uncertainty;
 
@@ -17,4 +22,5 @@ pub use model::{Instance, Model, Parameter};
 pub use outcome::{Correlated, FitPoint, Identified, Outcome};
 pub use points::{Path, time_of};
 pub use recorder::{Best, FitnessSource, Measurement, Quantity, Recorder, Study};
+pub use sensitivity::deviations;
 pub use uncertainty::{Uncertainty, uncertainty};
