@@ -76,8 +76,8 @@ proptest! {
             successors[a].push(b);
             reach[a][b] = true;
         }
-        for i in 0..6 {
-            reach[i][i] = true;
+        for (i, row) in reach.iter_mut().enumerate() {
+            row[i] = true;
         }
         for k in 0..6 {
             for i in 0..6 {

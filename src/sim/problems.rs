@@ -15,6 +15,8 @@ pub(super) struct TestProblem {
     pub(super) event: fn(f64, &mut [f64], &mut [f64]) -> EventOutcome,
     pub(super) discrete: Vec<f64>,
     pub(super) assertion: fn(&[f64]) -> bool,
+    /// All of y unless set.
+    pub(super) observed: Option<fn(f64, &[f64]) -> f64>,
     pattern: Pattern,
     start_discrete: Vec<f64>,
 }
@@ -37,6 +39,7 @@ impl TestProblem {
             event: |_, _, _| EventOutcome::Continue { y_changed: false },
             discrete: Vec::new(),
             assertion: |_| true,
+            observed: None,
             pattern: Pattern {
                 n,
                 column_starts: (0..=n).map(|j| j * n).collect(),
@@ -44,6 +47,11 @@ impl TestProblem {
             },
             start_discrete: Vec::new(),
         }
+    }
+
+    fn difference_scale(&self, j: usize) -> f64 {
+        let nominal = self.nominal[j];
+        if nominal > 0.0 && nominal.is_finite() { nominal } else { 1.0 }
     }
 
     pub(super) fn with_discrete(mut self, discrete: &[f64]) -> TestProblem {
@@ -92,7 +100,7 @@ impl DaeSystem for TestProblem {
         let mut moved = y.to_vec();
         let (mut plus, mut minus) = (vec![0.0; n], vec![0.0; n]);
         for j in 0..n {
-            let h = 1e-6 * y[j].abs().max(self.nominal[j]);
+            let h = 1e-6 * y[j].abs().max(self.difference_scale(j));
             moved[j] = y[j] + h;
             (self.rhs)(t, &moved, &self.discrete, &mut plus);
             moved[j] = y[j] - h;
@@ -133,11 +141,14 @@ impl DaeSystem for TestProblem {
     }
 
     fn n_observed(&self) -> usize {
-        self.initial.len()
+        if self.observed.is_some() { 1 } else { self.initial.len() }
     }
 
-    fn observe(&mut self, _: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
-        out.copy_from_slice(y);
+    fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        match self.observed {
+            Some(observed) => out[0] = observed(t, y),
+            None => out.copy_from_slice(y),
+        }
         Ok(())
     }
 }
@@ -247,4 +258,119 @@ pub(super) fn chattering() -> TestProblem {
                 EventOutcome::Continue { y_changed: true }
             },
         )
+}
+
+/// x' = x², x(0) = 1: x = 1 / (1 − t), which ends at t = 1.
+pub(super) fn blow_up() -> TestProblem {
+    TestProblem::new(&[1.0], 1, |_, y, _, out| out[0] = y[0] * y[0])
+}
+
+/// x' = −1 − √x, x(0) = 1: √x − log(1 + √x) = (1 − log 2) − t/2, which reaches 0, where the root
+/// ends, at t = 2 (1 − log 2).
+pub(super) fn end_of_domain() -> TestProblem {
+    TestProblem::new(&[1.0], 1, |_, y, _, out| out[0] = -1.0 - y[0].sqrt())
+}
+
+/// Heat conduction: x'_i = k (x_{i−1} − 2 x_i + x_{i+1}) with zero at both ends, started in its
+/// slowest mode, which decays by exp(−rate t) as a whole.
+pub(super) struct HeatRod {
+    pattern: Pattern,
+    n: usize,
+}
+
+impl HeatRod {
+    pub(super) fn new(n: usize) -> HeatRod {
+        let mut pattern = Pattern { n, column_starts: vec![0], rows: Vec::new() };
+        for j in 0..n {
+            pattern.rows.extend(j.saturating_sub(1)..(j + 2).min(n));
+            pattern.column_starts.push(pattern.rows.len());
+        }
+        HeatRod { pattern, n }
+    }
+
+    fn angle(&self) -> f64 {
+        std::f64::consts::PI / (self.n as f64 + 1.0)
+    }
+
+    fn conductance(&self) -> f64 {
+        0.1 * (self.n as f64 + 1.0).powi(2)
+    }
+
+    pub(super) fn rate(&self) -> f64 {
+        self.conductance() * (2.0 - 2.0 * self.angle().cos())
+    }
+
+    pub(super) fn start(&self, i: usize) -> f64 {
+        ((i as f64 + 1.0) * self.angle()).sin()
+    }
+}
+
+impl DaeSystem for HeatRod {
+    fn n_differential(&self) -> usize {
+        self.n
+    }
+
+    fn n_algebraic(&self) -> usize {
+        0
+    }
+
+    fn nominal(&self, out: &mut [f64]) {
+        out.fill(1.0);
+    }
+
+    fn rhs(&mut self, _: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        let k = self.conductance();
+        let at = |i: Option<usize>| i.and_then(|i| y.get(i)).copied().unwrap_or(0.0);
+        for (i, out) in out.iter_mut().enumerate() {
+            *out = k * (at(i.checked_sub(1)) - 2.0 * y[i] + at(Some(i + 1)));
+        }
+        Ok(())
+    }
+
+    fn pattern(&self) -> &Pattern {
+        &self.pattern
+    }
+
+    fn jacobian(&mut self, _: f64, _: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        let k = self.conductance();
+        let columns = (0..self.n).flat_map(|j| self.pattern.column(j).map(move |_| j));
+        for ((value, row), column) in values.iter_mut().zip(&self.pattern.rows).zip(columns) {
+            *value = if *row == column { -2.0 * k } else { k };
+        }
+        Ok(())
+    }
+
+    fn initialize(&mut self, _: f64, y: &mut [f64]) -> Result<(), Failure> {
+        (0..self.n).for_each(|i| y[i] = self.start(i));
+        Ok(())
+    }
+
+    fn n_crossings(&self) -> usize {
+        0
+    }
+
+    fn crossings(&mut self, _: f64, _: &[f64], _: &mut [f64]) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    fn next_time_event(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn handle_event(&mut self, _: f64, _: &mut [f64]) -> Result<EventOutcome, Failure> {
+        Ok(EventOutcome::Continue { y_changed: false })
+    }
+
+    fn check(&mut self, _: f64, _: &[f64]) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    fn n_observed(&self) -> usize {
+        self.n
+    }
+
+    fn observe(&mut self, _: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        out.copy_from_slice(y);
+        Ok(())
+    }
 }

@@ -58,6 +58,9 @@ impl Simulator {
         let n = system.n_differential() + system.n_algebraic();
         self.resize(system, n);
         system.nominal(&mut self.nominal);
+        for nominal in self.nominal.iter_mut().filter(|n| !n.is_finite() || **n <= 0.0) {
+            *nominal = 1.0;
+        }
         out.reset(system.n_observed());
         let integrator: &mut dyn Integrator = if n == 0 {
             &mut self.without_unknowns

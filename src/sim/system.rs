@@ -18,7 +18,7 @@ pub trait DaeSystem {
     fn n_differential(&self) -> usize;
     /// Number of algebraic variables v.
     fn n_algebraic(&self) -> usize;
-    /// Typical magnitude of every y, positive.
+    /// Typical magnitude of every y; what is not positive and finite counts as 1.
     fn nominal(&self, out: &mut [f64]);
     /// Writes (f, g) at (t, y).
     fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure>;
@@ -67,4 +67,11 @@ pub struct Pattern {
     pub column_starts: Vec<usize>,
     /// Row of every nonzero, ascending within a column.
     pub rows: Vec<usize>,
+}
+
+impl Pattern {
+    /// The nonzeros of a column: positions in `rows` and in the values.
+    pub fn column(&self, column: usize) -> std::ops::Range<usize> {
+        self.column_starts[column]..self.column_starts[column + 1]
+    }
 }

@@ -11,7 +11,7 @@
 //!
 //! The corrector is solved by Newton's method with the matrix I − c ∂f/∂y over −∂g/∂y, whose
 //! columns are scaled by the nominal values. The Jacobian is kept until the corrector converges
-//! slowly. Between steps the interpolating polynomial of the differences gives y. The first step
+//! slowly: at once if it fails, with the next change of c if it needed more than two iterations. Between steps the interpolating polynomial of the differences gives y. The first step
 //! after a restart has order 1; v has no slope there and takes no part in its error test.
 //!
 //! This is what `dassl` and its relatives name here: our own method of the same family, not
@@ -77,8 +77,9 @@ struct Bdf {
     delta: Vec<f64>,
     weights: Vec<f64>,
     iteration: IterationMatrix,
-    /// How fast the corrector converged lately.
+    /// How fast the corrector converged lately, and after how many iterations.
     rate: f64,
+    iterations: usize,
 }
 
 /// The matrix of the corrector.
@@ -126,7 +127,7 @@ impl IterationMatrix {
         self.factorized_for = None;
         for column in 0..self.pattern.n {
             let scale = problem.nominal[column];
-            for k in self.pattern.column_starts[column]..self.pattern.column_starts[column + 1] {
+            for k in self.pattern.column(column) {
                 let row = self.pattern.rows[k];
                 let identity = f64::from(u8::from(row == column));
                 self.values[k] = if row < n_differential {
@@ -277,6 +278,9 @@ impl Bdf {
     /// Solves the corrector, if need be with a new Jacobian. Returns the number of iterations.
     fn correct(&mut self, problem: &mut Problem, t_new: f64) -> Result<usize, SimErrorKind> {
         let c = self.h / alpha(self.order);
+        if self.iterations > 2 && self.iteration.factorized_for != Some(c) {
+            self.iteration.is_evaluated = false;
+        }
         loop {
             if !self.iteration.is_evaluated {
                 self.iteration.evaluate(problem, t_new, &self.predicted)?;
@@ -286,7 +290,10 @@ impl Bdf {
                 self.rate = 1.0;
             }
             match self.iterate(problem, t_new, c)? {
-                Corrected::Converged(iterations) => return Ok(iterations),
+                Corrected::Converged(iterations) => {
+                    self.iterations = iterations;
+                    return Ok(iterations);
+                }
                 Corrected::Slow if self.iteration.is_current => {
                     return Err(SimErrorKind::StepSize);
                 }
@@ -341,10 +348,8 @@ fn binomials(order: usize, factor: f64) -> [[f64; MAX_ORDER + 1]; MAX_ORDER + 1]
     let mut matrix = [[0.0; MAX_ORDER + 1]; MAX_ORDER + 1];
     matrix[0] = [1.0; MAX_ORDER + 1];
     for i in 1..=order {
-        for j in 0..=order {
-            let m = i as f64;
-            matrix[i][j] = matrix[i - 1][j] * (m - 1.0 - factor * j as f64) / m;
-        }
+        let m = i as f64;
+        matrix[i] = std::array::from_fn(|j| matrix[i - 1][j] * (m - 1.0 - factor * j as f64) / m);
     }
     matrix
 }
@@ -365,6 +370,7 @@ impl Integrator for Bdf {
         self.equal_steps = 0;
         self.fresh = true;
         self.rate = 1.0;
+        self.iterations = 0;
         self.differences.iter_mut().for_each(|difference| difference.fill(0.0));
         self.differences[0].copy_from_slice(y);
         for i in 0..self.n_differential {

@@ -64,10 +64,7 @@ pub struct DenseMatrix {
 impl DenseMatrix {
     fn new(pattern: &Pattern) -> DenseMatrix {
         let n = pattern.n;
-        let of_column = |j: usize| {
-            let rows = &pattern.rows[pattern.column_starts[j]..pattern.column_starts[j + 1]];
-            rows.iter().map(move |i| i + j * n)
-        };
+        let of_column = |j: usize| pattern.rows[pattern.column(j)].iter().map(move |i| i + j * n);
         DenseMatrix { positions: (0..n).flat_map(of_column).collect(), lu: DenseLu::new(n) }
     }
 

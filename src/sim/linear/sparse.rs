@@ -170,10 +170,10 @@ impl Elimination {
     fn new(pattern: &Pattern, values: &[f64]) -> Elimination {
         let n = pattern.n;
         let (mut rows, mut columns) = (vec![Vec::new(); n], vec![Vec::new(); n]);
-        for j in 0..n {
-            for position in pattern.column_starts[j]..pattern.column_starts[j + 1] {
+        for (j, column) in columns.iter_mut().enumerate() {
+            for position in pattern.column(j) {
                 rows[pattern.rows[position]].push((j, values[position]));
-                columns[j].push(pattern.rows[position]);
+                column.push(pattern.rows[position]);
             }
         }
         let shortest = rows.iter().enumerate().map(|(i, row)| (row.len(), i)).collect();
@@ -263,9 +263,9 @@ impl Elimination {
         let new_column = inverse(&columns);
         let new_row = inverse(&rows);
         let mut entries = vec![Vec::new(); n];
-        for j in 0..n {
-            for position in pattern.column_starts[j]..pattern.column_starts[j + 1] {
-                entries[new_row[pattern.rows[position]]].push((new_column[j], position));
+        for (j, new_column) in new_column.iter().enumerate() {
+            for position in pattern.column(j) {
+                entries[new_row[pattern.rows[position]]].push((*new_column, position));
             }
         }
         let lower: Vec<Vec<usize>> = rows.iter().map(|row| self.lower[*row].clone()).collect();

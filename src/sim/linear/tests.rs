@@ -31,9 +31,9 @@ fn sparse_matrix(n: usize) -> impl Strategy<Value = (Pattern, Vec<f64>)> {
 
 fn product(pattern: &Pattern, values: &[f64], x: &[f64]) -> Vec<f64> {
     let mut b = vec![0.0; pattern.n];
-    for j in 0..pattern.n {
-        for position in pattern.column_starts[j]..pattern.column_starts[j + 1] {
-            b[pattern.rows[position]] += values[position] * x[j];
+    for (j, x) in x.iter().enumerate() {
+        for position in pattern.column(j) {
+            b[pattern.rows[position]] += values[position] * x;
         }
     }
     b
