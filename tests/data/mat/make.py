@@ -31,6 +31,8 @@ import scipy.sparse
 rich["sparse"] = scipy.sparse.csc_matrix(a)
 savemat("scipy_v5.mat", rich, format="5")
 savemat("scipy_v7.mat", rich, format="5", do_compression=True)
+# The independent reader of the tests knows numbers only.
+savemat("scipy_v7_numbers.mat", {"A": a, "x": x, "i2": a.astype("i2")}, do_compression=True)
 
 # Forms that no common writer makes any more, byte by byte.
 def v4(mopt, rows, cols, name, data, order, imag=0):
