@@ -1,7 +1,6 @@
-//! Codes of scripts, and the table of all codes of the program.
+//! Codes of scripts.
 
 use crate::codes;
-use crate::diag::Code;
 
 codes! {
     /// A script to run does not exist.
@@ -55,9 +54,4 @@ codes! {
     /// A bare command that does not exist.
     UNKNOWN_COMMAND = "unknown-command":
         "## What it means\n\nA line begins with a word that is no command.\n\n## Example\n\n`claer`\n\n## What to do\n\nCommands without parentheses are `clear`, `clearlog`, `cd`, `exit`, `quit`, `list` and `variables`.",
-}
-
-/// The codes of every stage, in the order of the pipeline.
-pub fn all() -> Vec<Code> {
-    [crate::registry::CODES, CODES].concat()
 }
