@@ -4,6 +4,7 @@ use super::errors::FILE_ERROR;
 use super::Session;
 use crate::diag::Fault;
 use crate::syntax;
+use crate::value::Value;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -89,4 +90,26 @@ pub(super) fn cannot(verb: &str, path: &Path, error: &io::Error) -> Fault {
         _ => error.to_string().to_lowercase(),
     };
     Fault::new(FILE_ERROR, format!("cannot {verb} `{}`: {reason}", path.display()))
+}
+
+impl Session {
+    /// Removes a file or an empty directory.
+    pub(super) fn remove_file(&mut self, path: &Path) -> Result<(), Fault> {
+        self.world.remove(path).map_err(|error| cannot("remove", path, &error))
+    }
+
+    /// Makes a directory and the ones it lies in.
+    pub(super) fn create_directory(&mut self, path: &Path) -> Result<(), Fault> {
+        self.world.create_dirs(path).map_err(|error| cannot("make", path, &error))
+    }
+
+    /// A negative answer: `true`, or `false` and the fault reported.
+    pub fn succeeded(&mut self, result: Result<(), Fault>) -> Value {
+        Value::Boolean(self.or_report(result).is_some())
+    }
+
+    /// The value, or `None` and the fault reported.
+    pub fn or_report<T>(&mut self, result: Result<T, Fault>) -> Option<T> {
+        result.map_err(|fault| self.report_fault(fault)).ok()
+    }
 }

@@ -8,6 +8,8 @@
 //! ```
 
 pub mod builtins;
+mod callees;
+mod classes;
 pub mod codes;
 mod echo;
 pub mod errors;
@@ -19,6 +21,7 @@ mod scripts;
 mod session;
 mod statements;
 mod transcript;
+mod variables;
 pub mod world;
 
 pub use messages::Messages;

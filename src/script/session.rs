@@ -1,5 +1,7 @@
 //! The session: everything that lasts from one statement to the next.
 
+use super::callees::Callees;
+use super::classes::Classes;
 use super::follow_up::FollowUps;
 use super::scripts::{Frame, ParsedScripts};
 use super::world::World;
@@ -119,6 +121,10 @@ pub struct Session {
     pub(super) silent: usize,
     /// `echo(false)` was called.
     pub(super) muted: bool,
+    pub(super) classes: Classes,
+    pub(super) callees: Callees,
+    /// The turn of the outermost loop being run, and how many there are.
+    pub(super) loop_turn: Option<(usize, Option<usize>)>,
     extensions: HashMap<TypeId, Box<dyn Any>>,
     at_end: Vec<fn(&mut Session) -> Result<(), Diagnostic>>,
 }
@@ -145,6 +151,9 @@ impl Session {
             windowless: BTreeSet::new(),
             silent: 0,
             muted: false,
+            classes: Classes::default(),
+            callees: Callees::default(),
+            loop_turn: None,
             extensions: HashMap::new(),
             at_end: Vec::new(),
         }
@@ -183,6 +192,12 @@ impl Session {
     /// The value of a script's variable.
     pub fn variable(&self, name: &str) -> Option<&Value> {
         self.scope.get(Ident::new(name))
+    }
+
+    /// The turn, from 0, of the outermost loop that is being run, and the number of turns if it is
+    /// known: what a progress bar shows.
+    pub fn loop_turn(&self) -> Option<(usize, Option<usize>)> {
+        self.loop_turn
     }
 
     /// The dialect in force.

@@ -2,7 +2,7 @@
 
 use super::errors::{BAD_IMPORT, FOLLOW_UP, NO_TRANSLATED_MODEL, UNKNOWN_COMMAND};
 use super::session::Stop;
-use super::{Dialect, Session, builtins};
+use super::{Session, builtins};
 use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::eval::{self, Scope, ValueType};
 use crate::fault;
@@ -216,15 +216,18 @@ impl Session {
     /// Changes the working directory and shows it; an empty path only shows it.
     pub(super) fn change_directory(&mut self, path: &str) -> Result<(), Fault> {
         if !path.is_empty() {
-            let path = self.expanded(Path::new(path));
-            let changed = self.world.set_current_dir(&path);
-            changed.map_err(|error| super::files::cannot("change to", &path, &error))?;
+            self.go_to(path)?;
         }
-        if self.dialect == Dialect::Dymola {
-            let shown = format!("{}\n", self.world.current_dir().display());
-            self.print(&shown);
-        }
+        let shown = format!("{}\n", self.world.current_dir().display());
+        self.print(&shown);
         Ok(())
+    }
+
+    /// Changes the working directory.
+    pub(super) fn go_to(&mut self, path: &str) -> Result<(), Fault> {
+        let path = self.expanded(Path::new(path));
+        let changed = self.world.set_current_dir(&path);
+        changed.map_err(|error| super::files::cannot("change to", &path, &error))
     }
 
     /// What a name without a variable stands for in the model translated last, or why nothing.

@@ -2,14 +2,27 @@
 //! header in Modelica and implemented in Rust beside it, one file per family.
 
 mod args;
+mod conversion;
+mod files;
 mod header;
+mod messages;
+mod scanning;
+mod scripts;
+mod settings;
+mod streams;
+mod strings;
+mod system;
+mod windows;
 
-pub use args::{Args, FromValue, Matrix};
+pub use args::Args;
+pub(in crate::script) use strings::COMPARE_TYPE;
 
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::Function;
 use crate::name::Name;
 use crate::script::{Dialect, Session};
+use crate::source::SourceId;
+use crate::syntax;
 use crate::value::Value;
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, OnceLock};
@@ -64,7 +77,25 @@ pub struct Family {
 
 /// All families. Where a bare name occurs more than once, the session's dialect decides, then the
 /// order here.
-pub const FAMILIES: &[&Family] = &[];
+pub static FAMILIES: &[&Family] = &[
+    &conversion::FAMILY,
+    &files::FAMILY,
+    &files::OPENMODELICA,
+    &messages::FAMILY,
+    &scripts::FAMILY,
+    &scripts::OPENMODELICA,
+    &settings::FAMILY,
+    &settings::LIST_FAMILY,
+    &streams::FAMILY,
+    &streams::BARE_PRINT,
+    &system::FAMILY,
+    &system::DYMOLA,
+    &system::OPENMODELICA,
+    &windows::FAMILY,
+    // Last: its names are short words that other families use too.
+    &strings::FAMILY,
+    &scanning::FAMILY,
+];
 
 /// One entry of the table: the command with its family; the header is parsed when first needed.
 struct Known {
@@ -107,10 +138,17 @@ impl Builtin {
 }
 
 impl BuiltinId {
+    /// The command whose header this is.
+    pub(super) fn of(header: &Arc<Function>) -> Option<BuiltinId> {
+        let candidates = BY_NAME.get(header.name.last()?.as_str())?;
+        let is_it = |at: &usize| TABLE[*at].function.get().is_some_and(|f| Arc::ptr_eq(f, header));
+        candidates.iter().copied().find(is_it).map(BuiltinId)
+    }
+
     /// The header as a function, parsed once.
     pub(super) fn function(self) -> Arc<Function> {
         let known = &TABLE[self.0];
-        known.function.get_or_init(|| Arc::new(parsed(known.builtin.header))).clone()
+        known.function.get_or_init(|| Arc::new(parsed(known.builtin))).clone()
     }
 
     /// The declaration as written.
@@ -166,7 +204,45 @@ pub fn names() -> Vec<&'static str> {
     names
 }
 
-fn parsed(text: &'static str) -> Function {
-    let _ = text;
-    unimplemented!()
+/// The packages of commands, sorted.
+pub(super) fn packages() -> Vec<&'static str> {
+    let mut packages: Vec<&'static str> =
+        FAMILIES.iter().flat_map(|family| family.packages).copied().collect();
+    packages.sort_unstable();
+    packages.dedup();
+    packages
+}
+
+fn parsed(builtin: &Builtin) -> Function {
+    let stored = syntax::parse_stored_definition(SourceId::NONE, builtin.header);
+    match stored.as_ref().map(|stored| stored.classes.as_slice()) {
+        Ok([class]) => header::function(class),
+        _ => panic!("the header of `{}` is Modelica: a test parses all", builtin.name()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_header_declares_the_name_it_is_found_by() {
+        for known in TABLE.iter() {
+            let function = parsed(known.builtin);
+            assert_eq!(function.name.to_string(), known.builtin.name());
+            assert!(function.description.is_some(), "{} has no description", function.name);
+        }
+    }
+
+    #[test]
+    fn a_bare_name_follows_the_dialect_and_a_full_one_its_package() {
+        let header = |name: &str, dialect| {
+            find(&Name::parse(name), dialect).map(|id| id.function().inputs[0].name.as_str())
+        };
+        assert_eq!(header("print", Dialect::Dymola), Some("string"));
+        assert_eq!(header("print", Dialect::OpenModelica), Some("str"));
+        let full = "Modelica.Utilities.Streams.print";
+        assert_eq!(header(full, Dialect::OpenModelica), Some("string"));
+        assert_eq!(header("Modelica.Utilities.Strings.print", Dialect::Dymola), None);
+    }
 }
