@@ -5,7 +5,7 @@ use crate::bail;
 use crate::script::Session;
 use crate::script::errors::BAD_ARGUMENT;
 use crate::value::Value;
-use crate::value::format::significant;
+use crate::value::format;
 
 /// The commands of this file.
 pub const FAMILY: Family = Family {
@@ -33,7 +33,8 @@ fn real_string(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let Ok(digits @ 1..=40) = usize::try_from(precision) else {
         bail!(BAD_ARGUMENT, "`precision` of `realString` is {precision}, outside 1 to 40")
     };
-    Ok(padded(significant(number, digits), width))
+    let text = format::formatted(&Value::Real(number), &format!(".{digits}g"))?;
+    Ok(padded(text.to_string(), width))
 }
 
 const INTEGER_STRING: &str = r#"
