@@ -1,4 +1,5 @@
 //! The integration tests; one module per suite.
 
 mod architecture;
+mod grammar;
 mod mat;
