@@ -67,7 +67,7 @@ impl Evaluator<'_> {
             Target::Intrinsic(entry) => {
                 self.call_entry(entry, arguments, span).map(|value| vec![value])
             }
-            Target::Unknown => self.call_type(function, arguments, span),
+            Target::Unknown => self.call_type(function, arguments),
         }
     }
 
@@ -165,7 +165,6 @@ impl Evaluator<'_> {
         &mut self,
         function: &ComponentReference,
         arguments: &ast::Arguments,
-        span: Span,
     ) -> Result<Vec<Value>, Diagnostic> {
         if let [argument] = arguments.positional.as_slice()
             && arguments.named.is_empty()
@@ -300,18 +299,26 @@ impl Evaluator<'_> {
     /// else.
     fn written(&mut self, argument: &Expression) -> Result<Arc<str>, Diagnostic> {
         match &argument.kind {
-            ExpressionKind::Reference(_) => Ok(crate::syntax::print_expression(argument).into()),
-            ExpressionKind::Call { function, .. }
+            ExpressionKind::Reference(reference) if reference.as_name().is_some() => {
+                Ok(reference.name().to_string().into())
+            }
+            ExpressionKind::Call { function, arguments }
                 if function.as_ident().is_some_and(|name| name == "der") =>
             {
-                Ok(crate::syntax::print_expression(argument).into())
+                let [state] = arguments.positional.as_slice() else {
+                    return Err(
+                        Fault::new(WRONG_ARGUMENTS, "`der` takes one name").at(argument.span)
+                    );
+                };
+                Ok(format!("der({})", self.written(state)?).into())
             }
             _ => match self.expression(argument)? {
                 Value::String(text) | Value::VariableName(text) => Ok(text),
                 Value::TypeName(name) => Ok(name.to_string().into()),
                 other => Err(fault!(
                     WRONG_ARGUMENTS,
-                    "expected a name, got a value of type {}", other.type_name()
+                    "expected a name, got a value of type {}",
+                    other.type_name()
                 )
                 .at(argument.span)),
             },
@@ -360,17 +367,15 @@ impl<'f> Binding<'f> {
         let inputs = &self.function.inputs;
         let Some(at) = inputs.iter().position(|input| input.name == name) else {
             let names = inputs.iter().map(|input| input.name.as_str());
-            return Err(fault!(
-                WRONG_ARGUMENTS,
-                "`{}` has no input `{name}`", self.function.name
-            )
-            .help_if(suggest::did_you_mean(name.as_str(), names))
-            .help(format!("its inputs are {}", self.inputs())));
+            return Err(fault!(WRONG_ARGUMENTS, "`{}` has no input `{name}`", self.function.name)
+                .help_if(suggest::did_you_mean(name.as_str(), names))
+                .help(format!("its inputs are {}", self.inputs())));
         };
         if self.taken[at] {
             return Err(fault!(
                 WRONG_ARGUMENTS,
-                "the input `{name}` of `{}` is given twice", self.function.name
+                "the input `{name}` of `{}` is given twice",
+                self.function.name
             ));
         }
         self.taken[at] = true;

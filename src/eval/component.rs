@@ -152,7 +152,8 @@ impl Evaluator<'_> {
             Value::Array(literals) if literals.rank() == 1 => Ok(literals.elements.len()),
             other => Err(fault!(
                 TYPE_MISMATCH,
-                "the size of a dimension must be an Integer, not a {}", other.type_name()
+                "the size of a dimension must be an Integer, not a {}",
+                other.type_name()
             )
             .at(expression.span)),
         }

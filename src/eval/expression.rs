@@ -89,7 +89,8 @@ impl Evaluator<'_> {
             Value::Boolean(value) => Ok(value),
             other => Err(fault!(
                 TYPE_MISMATCH,
-                "a condition must be a Boolean, not a {}", other.type_name()
+                "a condition must be a Boolean, not a {}",
+                other.type_name()
             )
             .at(expression.span)),
         }
@@ -176,11 +177,7 @@ impl Evaluator<'_> {
         construct::matrix(rows).at(span)
     }
 
-    fn tuple(
-        &mut self,
-        elements: &[Option<Expression>],
-        span: Span,
-    ) -> Result<Value, Diagnostic> {
+    fn tuple(&mut self, elements: &[Option<Expression>], span: Span) -> Result<Value, Diagnostic> {
         let missing =
             || Fault::new(WRONG_OUTPUTS, "an output list with a gap is no value").at(span);
         let values = elements

@@ -118,7 +118,8 @@ impl Evaluator<'_> {
             if name == "product" && value.rank() > 0 {
                 return Err(fault!(
                     TYPE_MISMATCH,
-                    "`product` multiplies scalars, not values of type {}", value.type_name()
+                    "`product` multiplies scalars, not values of type {}",
+                    value.type_name()
                 ));
             }
             total = Some(match total.take() {

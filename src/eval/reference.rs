@@ -1,21 +1,27 @@
 //! References to variables and their parts: `a[2].b[1, :]`, read and assigned without copying the
 //! array that they reach into.
 
+use super::Evaluator;
 use super::errors::UNKNOWN_VARIABLE;
 use super::scope::{Variable, named};
-use super::Evaluator;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
 use crate::name::Ident;
 use crate::source::Span;
-use crate::syntax::ast::{ComponentReference, Expression, ExpressionKind, ReferencePart, Subscript};
+use crate::syntax::ast::{
+    ComponentReference, Expression, ExpressionKind, ReferencePart, Subscript,
+};
 use crate::value::{Elements, Index, Step, Value};
 
 impl Evaluator<'_> {
     /// The value of `a`, `a[i]`, `a.b[i].c`, ….
-    pub(super) fn reference(&mut self, reference: &ComponentReference) -> Result<Value, Diagnostic> {
+    pub(super) fn reference(
+        &mut self,
+        reference: &ComponentReference,
+    ) -> Result<Value, Diagnostic> {
         let Some(first) = self.local(reference)? else { return self.global(reference) };
-        if let ([part], [subscripts @ ..]) = (reference.parts.as_slice(), first.subscripts.as_slice())
+        if let ([part], [subscripts @ ..]) =
+            (reference.parts.as_slice(), first.subscripts.as_slice())
         {
             if subscripts.is_empty() {
                 return self.whole(part.name, reference.span);
@@ -153,11 +159,7 @@ impl Evaluator<'_> {
 
     /// The quick way to a single element: `x[i]`, `x[i, j]` with Integer subscripts. `None` where
     /// the general way has to be taken.
-    fn element(
-        &mut self,
-        part: &ReferencePart,
-        span: Span,
-    ) -> Result<Option<Value>, Diagnostic> {
+    fn element(&mut self, part: &ReferencePart, span: Span) -> Result<Option<Value>, Diagnostic> {
         let Some(positions) = self.positions(part)? else { return Ok(None) };
         let positions = positions.as_slice();
         if let Some(variable) = self.scope.variables.get(&part.name)

@@ -1,6 +1,6 @@
 //! The variables of a script or of a function being executed.
 
-use super::errors::{NOT_ASSIGNABLE, NO_VALUE_YET, UNKNOWN_VARIABLE};
+use super::errors::{NO_VALUE_YET, NOT_ASSIGNABLE, UNKNOWN_VARIABLE};
 use super::{Function, FunctionComponent, ValueType};
 use crate::diag::{Fault, suggest};
 use crate::name::Ident;
@@ -136,9 +136,10 @@ impl Scope {
         if self.iterators.iter().any(|(iterator, _)| *iterator == name) {
             bail!(NOT_ASSIGNABLE, "the loop variable `{name}` cannot be assigned");
         }
+        let is_script = self.is_script();
         match self.variables.get_mut(&name) {
             Some(variable) => variable.set(name, value),
-            None if self.is_script() => {
+            None if is_script => {
                 self.variables.insert(name, Variable::undeclared(value));
                 Ok(())
             }
@@ -243,7 +244,12 @@ impl Variable {
     }
 
     /// Overwrites a part.
-    pub(super) fn set_part(&mut self, name: Ident, path: &[Step], value: Value) -> Result<(), Fault> {
+    pub(super) fn set_part(
+        &mut self,
+        name: Ident,
+        path: &[Step],
+        value: Value,
+    ) -> Result<(), Fault> {
         if self.read_only {
             return Err(read_only(name));
         }
@@ -302,8 +308,7 @@ pub(super) fn named(name: Ident, mut fault: Fault) -> Fault {
 }
 
 fn count_false(shadow: &Value) -> usize {
-    let in_record =
-        |record: &RecordValue| record.fields.values().map(count_false).sum::<usize>();
+    let in_record = |record: &RecordValue| record.fields.values().map(count_false).sum::<usize>();
     match shadow {
         Value::Boolean(assigned) => usize::from(!assigned),
         Value::Record(record) => in_record(record),

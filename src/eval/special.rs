@@ -1,7 +1,7 @@
 //! Operators whose arguments are not simply evaluated, or that take named ones (MLS §3.7).
 
-use super::errors::{ASSERTION_FAILED, MODEL_ONLY, TERMINATED, WRONG_ARGUMENTS};
 use super::Evaluator;
+use super::errors::{ASSERTION_FAILED, MODEL_ONLY, TERMINATED, WRONG_ARGUMENTS};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
 use crate::name::Ident;
@@ -34,8 +34,22 @@ pub(super) enum Special {
 }
 
 const MODEL_OPERATORS: &[&str] = &[
-    "der", "pre", "edge", "change", "reinit", "sample", "initial", "terminal", "delay", "inStream",
-    "actualStream", "cardinality", "spatialDistribution", "previous", "hold", "noClock",
+    "der",
+    "pre",
+    "edge",
+    "change",
+    "reinit",
+    "sample",
+    "initial",
+    "terminal",
+    "delay",
+    "inStream",
+    "actualStream",
+    "cardinality",
+    "spatialDistribution",
+    "previous",
+    "hold",
+    "noClock",
 ];
 
 /// The special operator of this name.
@@ -114,7 +128,8 @@ impl Evaluator<'_> {
             Some(size) => Ok(Value::Integer(*size as i64)),
             None => Err(fault!(
                 DOMAIN_ERROR,
-                "there is no dimension {wanted}: the array has {}", dims.len()
+                "there is no dimension {wanted}: the array has {}",
+                dims.len()
             )
             .at(dimension.span)),
         }
@@ -208,11 +223,10 @@ impl Evaluator<'_> {
         }
         match self.expression(level)? {
             Value::Enumeration(value) => Ok(value.literal()),
-            other => Err(fault!(
-                TYPE_MISMATCH,
-                "expected an AssertionLevel, got {}", other.type_name()
-            )
-            .at(level.span)),
+            other => {
+                Err(fault!(TYPE_MISMATCH, "expected an AssertionLevel, got {}", other.type_name())
+                    .at(level.span))
+            }
         }
     }
 }
@@ -238,7 +252,8 @@ fn taken<'a, const N: usize>(
             Some(slot @ None) => *slot = Some(&argument.value),
             _ => {
                 let name = argument.name.node;
-                let fault = fault!(WRONG_ARGUMENTS, "the argument `{name}` is unknown or given twice");
+                let fault =
+                    fault!(WRONG_ARGUMENTS, "the argument `{name}` is unknown or given twice");
                 return Err(fault.at(argument.name.span));
             }
         }
@@ -263,12 +278,7 @@ struct TextOptions {
 
 impl Default for TextOptions {
     fn default() -> TextOptions {
-        TextOptions {
-            significant_digits: 6,
-            minimum_length: 0,
-            left_justified: true,
-            format: None,
-        }
+        TextOptions { significant_digits: 6, minimum_length: 0, left_justified: true, format: None }
     }
 }
 

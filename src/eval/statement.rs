@@ -67,7 +67,9 @@ impl Evaluator<'_> {
         if outputs.len() < targets.len() {
             let fault = fault!(
                 WRONG_OUTPUTS,
-                "{} results are wanted, but the function has {}", targets.len(), count(outputs.len())
+                "{} results are wanted, but the function has {}",
+                targets.len(),
+                count(outputs.len())
             );
             return Err(fault.at(call.span));
         }

@@ -21,11 +21,15 @@ impl Declared {
             return Ok(());
         }
         let dims = value.dims();
-        if dims == [0] && self.dims.len() > 1 && self.dims.iter().any(|d| d.is_none_or(|n| n == 0)) {
+        if dims == [0] && self.dims.len() > 1 && self.dims.iter().any(|d| d.is_none_or(|n| n == 0))
+        {
             return Ok(());
         }
         let fits = dims.len() == self.dims.len()
-            && dims.iter().zip(&self.dims).all(|(size, declared)| declared.is_none_or(|d| d == *size));
+            && dims
+                .iter()
+                .zip(&self.dims)
+                .all(|(size, declared)| declared.is_none_or(|d| d == *size));
         if fits {
             return Ok(());
         }

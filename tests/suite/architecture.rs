@@ -23,10 +23,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("eval", &["syntax", "value", "symbolic", "name", "source", "diag"]),
     ("results", &["sim", "mat", "registry", "diag"]),
     ("flatten", &["syntax", "eval", "value", "symbolic", "name", "source", "diag"]),
-    (
-        "dae",
-        &["flatten", "eval", "value", "syntax", "symbolic", "graph", "name", "source", "diag"],
-    ),
+    ("dae", &["flatten", "eval", "value", "syntax", "symbolic", "graph", "name", "source", "diag"]),
     (
         "compile",
         &[
@@ -47,8 +44,16 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
 
 /// Words that only the outermost layer may use, because they reach the outside world.
 const OUTSIDE: &[&str] = &[
-    "println!", "eprintln!", "print!(", "eprint!(", "std::fs", "std::env", "std::process",
-    "SystemTime", "Instant::now", "std::net",
+    "println!",
+    "eprintln!",
+    "print!(",
+    "eprint!(",
+    "std::fs",
+    "std::env",
+    "std::process",
+    "SystemTime",
+    "Instant::now",
+    "std::net",
 ];
 
 fn sources() -> Vec<(PathBuf, String)> {

@@ -96,7 +96,11 @@ fn matrix(arguments: &[Value]) -> Result<Value, Fault> {
     match &arguments[0] {
         Value::Array(array) if array.rank() > 2 => {
             if array.dims[2..].iter().any(|size| *size != 1) {
-                return Err(unsuitable("matrix", "dimensions of size 1 behind the first two", &arguments[0]));
+                return Err(unsuitable(
+                    "matrix",
+                    "dimensions of size 1 behind the first two",
+                    &arguments[0],
+                ));
             }
             let (dims, elements) = (array.dims[..2].to_vec(), array.elements.clone());
             Ok(Value::Array(ArrayValue { dims, elements }))

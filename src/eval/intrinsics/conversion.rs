@@ -6,8 +6,7 @@ use crate::diag::Fault;
 use crate::value::Value;
 use crate::value::errors::TYPE_MISMATCH;
 
-pub(super) const FUNCTIONS: &[Entry] =
-    &[Entry::of_scalars("Integer", 1, ordinal)];
+pub(super) const FUNCTIONS: &[Entry] = &[Entry::of_scalars("Integer", 1, ordinal)];
 
 /// `Integer(e)`: which literal of its enumeration, from 1.
 fn ordinal(arguments: &[Value]) -> Result<Value, Fault> {

@@ -73,9 +73,9 @@ fn typed(function: &Function, arguments: &[Value], value: f64) -> Result<Value, 
 }
 
 fn number(name: &str, value: &Value) -> Result<f64, Fault> {
-    value.as_real().ok_or_else(|| {
-        fault!(TYPE_MISMATCH, "`{name}` is not defined for {}", value.type_name())
-    })
+    value
+        .as_real()
+        .ok_or_else(|| fault!(TYPE_MISMATCH, "`{name}` is not defined for {}", value.type_name()))
 }
 
 /// Applies a function of scalars; arrays must have equal sizes and are gone through together,

@@ -21,7 +21,10 @@ fn extreme(name: &str, arguments: &[Value], better: Ordering) -> Result<Value, F
         [Value::Array(array)] => {
             let mut elements = (0..array.elements.len()).map(|at| array.elements.get(at));
             let Some(first) = elements.next() else {
-                return Err(fault!(DOMAIN_ERROR, "`{name}` of an array without elements has no value"));
+                return Err(fault!(
+                    DOMAIN_ERROR,
+                    "`{name}` of an array without elements has no value"
+                ));
             };
             elements.try_fold(first, |best, next| chosen(name, best, next, better))
         }
