@@ -228,7 +228,7 @@ impl Evaluator<'_> {
             }
         }
         let values = self.complete(header, given, span)?;
-        self.host.call_builtin(header, values, span)
+        self.host.call_builtin_among(header, values, span, self.scope)
     }
 
     /// Values for the inputs of a function, `None` where nothing is given and a default exists.

@@ -11,7 +11,9 @@ pub mod errors;
 mod failure;
 mod lower;
 mod parser;
+pub mod print;
 mod scan;
+pub mod visit;
 
 pub use decode::decode;
 

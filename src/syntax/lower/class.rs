@@ -134,7 +134,9 @@ fn sections(mut composition: Nodes<'_>) -> Lowered<Vec<Section>> {
     let first = composition.enter(Rule::element_list);
     elements(first, None, &mut sections)?;
     loop {
-        push_annotation(&mut composition, &mut sections)?;
+        while composition.peek() == Some(Rule::annotation_clause) {
+            push_annotation(&mut composition, &mut sections)?;
+        }
         let Some(node) = composition.next() else { return Ok(sections) };
         let rule = node.as_rule();
         let mut inside = composition.inside(node);

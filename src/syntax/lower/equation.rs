@@ -2,7 +2,7 @@
 
 use super::{Lowered, comment, expression};
 use crate::fault;
-use crate::syntax::ast::{Equation, EquationKind, Expression, ExpressionKind};
+use crate::syntax::ast::{BinaryOperator, Equation, EquationKind, Expression, ExpressionKind};
 use crate::syntax::errors::SYNTAX_ERROR;
 use crate::syntax::parser::{Nodes, Rule};
 
@@ -61,7 +61,13 @@ fn equation_or_procedure(mut inside: Nodes<'_>) -> Lowered<EquationKind> {
     if matches!(left.kind, ExpressionKind::Call { .. }) {
         return Ok(EquationKind::Call(left));
     }
+    let compares =
+        matches!(left.kind, ExpressionKind::Binary { operator: BinaryOperator::Equal, .. });
+    let help = match compares {
+        true => "write `=`: `==` only compares",
+        false => "write `left = right`, or a call such as `assert(...)`",
+    };
     Err(fault!(SYNTAX_ERROR, "an equation needs `=`")
-        .help("write `left = right`, or a call such as `assert(...)`")
+        .help(help)
         .labelled(left.span, "this is an expression only"))
 }

@@ -2,6 +2,7 @@
 
 use super::Problem;
 use super::tokens::{Token, TokenKind};
+use crate::diag::Diagnostic;
 use crate::fault;
 use crate::source::{SourceId, Span};
 use crate::syntax::errors::MISMATCHED_END;
@@ -19,6 +20,8 @@ struct Block<'t> {
     name: &'t str,
     start: usize,
     end: usize,
+    /// An `if` directly behind the `else` of this one.
+    else_if: Option<Span>,
 }
 
 /// How much of a class's head was read.
@@ -41,6 +44,8 @@ pub(super) struct Blocks<'t> {
     start: bool,
     /// Between `for`, `if`, … and `loop` or `then`.
     header: bool,
+    /// Directly behind the `else` of a clause.
+    after_else: bool,
 }
 
 impl<'t> Blocks<'t> {
@@ -52,6 +57,7 @@ impl<'t> Blocks<'t> {
             head: Head::None,
             start: true,
             header: false,
+            after_else: false,
         }
     }
 
@@ -113,7 +119,13 @@ impl<'t> Blocks<'t> {
 
     fn push_class(&mut self, name: &Token<'t>) {
         self.classes += 1;
-        self.stack.push(Block { keyword: "", name: name.text, start: name.start, end: name.end });
+        self.stack.push(Block {
+            keyword: "",
+            name: name.text,
+            start: name.start,
+            end: name.end,
+            else_if: None,
+        });
         self.start = true;
         self.header = false;
     }
@@ -121,6 +133,7 @@ impl<'t> Blocks<'t> {
     /// Takes a word outside brackets into account.
     pub(super) fn word(&mut self, token: &Token<'t>, after_end: bool) -> Result<(), Problem> {
         let at_start = std::mem::replace(&mut self.start, false);
+        let after_else = std::mem::replace(&mut self.after_else, false);
         match token.text {
             _ if after_end => return self.close(token),
             "for" | "if" | "while" | "when" if at_start => {
@@ -129,12 +142,22 @@ impl<'t> Blocks<'t> {
                     name: token.text,
                     start: token.start,
                     end: token.end,
+                    else_if: None,
                 };
+                if let Some(outer) = self.stack.last_mut()
+                    && after_else
+                    && token.text == "if"
+                {
+                    outer.else_if = Some(Span::new(self.source, token.start, token.end));
+                }
                 self.stack.push(block);
                 self.header = true;
             }
             "elseif" | "elsewhen" if at_start => self.header = true,
-            "else" if at_start => self.start = true,
+            "else" if at_start => {
+                self.start = true;
+                self.after_else = true;
+            }
             "then" | "loop" if self.header => {
                 self.header = false;
                 self.start = true;
@@ -169,11 +192,21 @@ impl<'t> Blocks<'t> {
     /// The innermost block that the text leaves open.
     pub(super) fn unclosed(&self, end: usize) -> Option<Problem> {
         let block = self.stack.last()?;
+        if let Some(inner) = block.else_if {
+            return Some(Problem { from: end, diagnostic: else_if(inner) });
+        }
         let diagnostic = fault!(MISMATCHED_END, "{} has no `end {}`", described(block), block.name)
             .help(format!("write `end {};` where it ends", block.name))
             .labelled(Span::new(self.source, block.start, block.end), "opened here");
         Some(Problem { from: end, diagnostic })
     }
+}
+
+/// The usual cause of an `if` that stays open.
+fn else_if(inner: Span) -> Diagnostic {
+    fault!(MISMATCHED_END, "the `if` of `else if` has no `end if` of its own")
+        .help("write `elseif`, which needs none")
+        .at(inner)
 }
 
 fn described(block: &Block<'_>) -> String {

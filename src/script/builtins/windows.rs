@@ -1,0 +1,56 @@
+//! Commands about windows of graphical tools: accepted, said once each, without effect.
+
+use super::{Args, Builtin, Failure, Family};
+use crate::script::Session;
+use crate::value::Value;
+
+macro_rules! windowless {
+    ($($name:literal),* $(,)?) => {
+        &[$(Builtin {
+            header: concat!(
+                "function ", $name, " \"Concerns a window; has no effect here.\"\n",
+                "  input Any arguments = 0;\n  output Boolean ok;\nend ", $name, ";\n"
+            ),
+            run: no_effect,
+        }),*]
+    };
+}
+
+/// The commands of this file. They take any arguments.
+pub const FAMILY: Family = Family {
+    packages: &[],
+    dialect: None,
+    builtins: windowless![
+        "animationSetup",
+        "animationPosition",
+        "animationColor",
+        "visualize3dModel",
+        "RunAnimation",
+        "AnimateRunning",
+        "loadAnimation",
+        "exportAnimation",
+        "plotHeading",
+        "plotText",
+        "plotWindowSetup",
+        "plotSetup",
+        "savelog",
+        "trace",
+        "beep",
+        "experimentSetupOutput",
+        "closeModel",
+        "saveSettings",
+        "SetDymolaCompiler",
+        "ShowMessageWindow",
+        "showMessageWindow",
+    ],
+};
+
+/// Whether a command accepts arguments of any number and name.
+pub(super) fn takes_anything(builtin: &Builtin) -> bool {
+    FAMILY.builtins.iter().any(|known| known.header == builtin.header)
+}
+
+fn no_effect(session: &mut Session, args: Args) -> Result<Value, Failure> {
+    session.no_effect(args.command());
+    Ok(true.into())
+}
