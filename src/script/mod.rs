@@ -16,6 +16,7 @@ pub mod errors;
 mod files;
 mod follow_up;
 mod host;
+mod identification;
 mod messages;
 mod scripts;
 mod session;

@@ -1,5 +1,7 @@
 //! Where the shipped files are.
 
+use gapilib::script::world::MemoryWorld;
+use gapilib::script::{RunStatus, Session};
 use std::path::{Path, PathBuf};
 
 /// A path of the project.
@@ -25,4 +27,26 @@ fn collect(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
             found.push(path);
         }
     }
+}
+
+/// A world in memory that holds the shipped scripts, data and models in its working directory.
+pub(crate) fn world() -> MemoryWorld {
+    ["scripts", "models"].into_iter().fold(MemoryWorld::new(), |mut world, folder| {
+        let mut found = Vec::new();
+        for ending in ["mos", "mat", "csv", "mo", "order"] {
+            collect(&project(folder), ending, &mut found);
+        }
+        for path in found {
+            let name = path.strip_prefix(project("")).unwrap().to_owned();
+            world = world.with_file(name, std::fs::read(&path).unwrap());
+        }
+        world
+    })
+}
+
+/// A session in that world, with one more script, which has been run.
+pub(crate) fn run(name: &str, script: &str) -> (Session, RunStatus) {
+    let mut session = Session::new(Box::new(world().with_file(name, script)));
+    let status = session.run_file(Path::new(name));
+    (session, status)
 }

@@ -334,4 +334,3 @@ end realpath;
 fn realpath(session: &mut Session, args: Args) -> Result<Value, Failure> {
     full_path_name(session, args)
 }
-

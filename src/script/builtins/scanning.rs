@@ -112,7 +112,11 @@ impl Scanner {
         let colon = if self.message.is_empty() { "" } else { ": " };
         Fault::new(
             SCRIPT_ERROR,
-            format!("expected {what} at character {} of \"{text}\"{colon}{}", self.at + 1, self.message),
+            format!(
+                "expected {what} at character {} of \"{text}\"{colon}{}",
+                self.at + 1,
+                self.message
+            ),
         )
     }
 

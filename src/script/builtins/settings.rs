@@ -132,9 +132,8 @@ fn help(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         }
         None => {
             let known = super::names();
-            let fault = crate::fault!(
-                crate::script::errors::BAD_ARGUMENT, "there is no command `{name}`"
-            );
+            let fault =
+                crate::fault!(crate::script::errors::BAD_ARGUMENT, "there is no command `{name}`");
             let hint = crate::diag::suggest::did_you_mean(&name, known.iter().copied());
             session.report_fault(fault.help_if(hint));
             Ok(false.into())
