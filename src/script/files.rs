@@ -1,7 +1,7 @@
 //! Files as commands see them: found, read and written with errors that say what to do.
 
-use super::errors::FILE_ERROR;
 use super::Session;
+use super::errors::FILE_ERROR;
 use crate::diag::Fault;
 use crate::syntax;
 use crate::value::Value;

@@ -42,7 +42,8 @@ impl Host for Session {
             Err(Failure::Elsewhere(mut diagnostics)) => {
                 let last = diagnostics.pop();
                 diagnostics.into_iter().for_each(|diagnostic| self.report(diagnostic));
-                Err(last.unwrap_or_else(|| Fault::new(super::errors::SCRIPT_ERROR, "failed").at(span)))
+                Err(last
+                    .unwrap_or_else(|| Fault::new(super::errors::SCRIPT_ERROR, "failed").at(span)))
             }
         }
     }

@@ -255,12 +255,18 @@ fn dialect_of(kind: &InteractiveKind) -> Option<Dialect> {
     let Expression { kind: ExpressionKind::Call { function, arguments }, .. } = call else {
         return None;
     };
-    let has_class = arguments.positional.first().is_some_and(|first| {
-        matches!(&first.kind, ExpressionKind::Reference(_))
-    });
+    let has_class = arguments
+        .positional
+        .first()
+        .is_some_and(|first| matches!(&first.kind, ExpressionKind::Reference(_)));
     match function.as_ident()?.as_str() {
-        "loadModel" | "getErrorString" | "loadString" | "buildModel" | "setCommandLineOptions"
-        | "instantiateModel" | "loadFile" => Some(Dialect::OpenModelica),
+        "loadModel"
+        | "getErrorString"
+        | "loadString"
+        | "buildModel"
+        | "setCommandLineOptions"
+        | "instantiateModel"
+        | "loadFile" => Some(Dialect::OpenModelica),
         "simulate" | "checkModel" if has_class => Some(Dialect::OpenModelica),
         "simulateModel" | "translateModel" | "RunScript" | "openModel" => Some(Dialect::Dymola),
         _ => None,

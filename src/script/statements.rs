@@ -141,9 +141,9 @@ impl Session {
                 self.open_packages.push(package.clone());
                 Ok(())
             }
-            ImportKind::Group(package, names) => names
-                .iter()
-                .try_for_each(|name| self.import_as(Some(*name), package.child(*name), import.span)),
+            ImportKind::Group(package, names) => names.iter().try_for_each(|name| {
+                self.import_as(Some(*name), package.child(*name), import.span)
+            }),
         }
     }
 
@@ -235,8 +235,9 @@ impl Session {
         if !self.follow_ups.is_missing(name) {
             return None;
         }
-        let message =
-            format!("`{name}` has no value because an earlier statement failed; this and other consequences of it are not done");
+        let message = format!(
+            "`{name}` has no value because an earlier statement failed; this and other consequences of it are not done"
+        );
         Some(Fault::new(FOLLOW_UP, message).at(span).note())
     }
 

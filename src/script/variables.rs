@@ -20,8 +20,7 @@ impl Session {
 
     /// Sets a flag; `false` if the name is not one of a flag.
     pub(super) fn set_flag(&mut self, target: &ComponentReference, value: &Value) -> bool {
-        let is_flag = target.parts.len() > 1
-            && FLAG_ROOTS.contains(&target.parts[0].name.as_str());
+        let is_flag = target.parts.len() > 1 && FLAG_ROOTS.contains(&target.parts[0].name.as_str());
         if is_flag {
             self.flags.insert(target.name().to_string(), value.clone());
         }

@@ -3,3 +3,4 @@
 mod architecture;
 mod grammar;
 mod mat;
+mod transcripts;

@@ -10,7 +10,7 @@ use crate::value::Value;
 use std::path::{Path, PathBuf};
 
 /// `Modelica.Utilities.Files`.
-pub const FAMILY: Family = Family {
+pub(super) const FAMILY: Family = Family {
     packages: &["Modelica.Utilities.Files"],
     dialect: Some(Dialect::Dymola),
     builtins: &[
@@ -28,7 +28,7 @@ pub const FAMILY: Family = Family {
 };
 
 /// OpenModelica's file commands.
-pub const OPENMODELICA: Family = Family {
+pub(super) const OPENMODELICA: Family = Family {
     packages: &["OpenModelica.Scripting"],
     dialect: Some(Dialect::OpenModelica),
     builtins: &[
@@ -334,4 +334,3 @@ end realpath;
 fn realpath(session: &mut Session, args: Args) -> Result<Value, Failure> {
     full_path_name(session, args)
 }
-

@@ -106,11 +106,7 @@ struct Known {
 
 static TABLE: LazyLock<Vec<Known>> = LazyLock::new(|| {
     let of = |family: &'static &'static Family| {
-        family.builtins.iter().map(|builtin| Known {
-            family,
-            builtin,
-            function: OnceLock::new(),
-        })
+        family.builtins.iter().map(|builtin| Known { family, builtin, function: OnceLock::new() })
     };
     FAMILIES.iter().flat_map(of).collect()
 });
@@ -157,7 +153,11 @@ impl BuiltinId {
     }
 
     /// Runs the command.
-    pub(super) fn run(self, session: &mut Session, arguments: Vec<Value>) -> Result<Value, Failure> {
+    pub(super) fn run(
+        self,
+        session: &mut Session,
+        arguments: Vec<Value>,
+    ) -> Result<Value, Failure> {
         let args = Args::new(self.function(), arguments);
         (TABLE[self.0].builtin.run)(session, args)
     }
@@ -172,7 +172,8 @@ pub(super) fn find(name: &Name, dialect: Dialect) -> Option<BuiltinId> {
         let package = Name::new(name.parent().parts).to_string();
         let belongs = |family: &Family| {
             family.packages.contains(&package.as_str())
-                || package.starts_with("DymolaCommands.") && family.dialect != Some(Dialect::OpenModelica)
+                || package.starts_with("DymolaCommands.")
+                    && family.dialect != Some(Dialect::OpenModelica)
                 || package == "OpenModelica.Scripting" && family.dialect != Some(Dialect::Dymola)
         };
         return candidates.iter().copied().find(|at| belongs(TABLE[*at].family)).map(BuiltinId);

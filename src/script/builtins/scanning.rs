@@ -10,7 +10,7 @@ use crate::script::errors::SCRIPT_ERROR;
 use crate::value::Value;
 
 /// The commands of this file.
-pub const FAMILY: Family = Family {
+pub(super) const FAMILY: Family = Family {
     packages: &["Modelica.Utilities.Strings"],
     dialect: None,
     builtins: &[
@@ -112,7 +112,11 @@ impl Scanner {
         let colon = if self.message.is_empty() { "" } else { ": " };
         Fault::new(
             SCRIPT_ERROR,
-            format!("expected {what} at character {} of \"{text}\"{colon}{}", self.at + 1, self.message),
+            format!(
+                "expected {what} at character {} of \"{text}\"{colon}{}",
+                self.at + 1,
+                self.message
+            ),
         )
     }
 

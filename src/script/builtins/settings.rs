@@ -5,7 +5,7 @@ use crate::script::{Dialect, Session};
 use crate::value::Value;
 
 /// The commands of this file.
-pub const FAMILY: Family = Family {
+pub(super) const FAMILY: Family = Family {
     packages: &[],
     dialect: None,
     builtins: &[
@@ -20,7 +20,7 @@ pub const FAMILY: Family = Family {
 };
 
 /// Dymola's `list`, which is about variables.
-pub const LIST_FAMILY: Family = Family {
+pub(super) const LIST_FAMILY: Family = Family {
     packages: &["DymolaCommands.SimulatorAPI"],
     dialect: Some(Dialect::Dymola),
     builtins: &[Builtin { header: LIST, run: variables }],
@@ -132,9 +132,8 @@ fn help(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         }
         None => {
             let known = super::names();
-            let fault = crate::fault!(
-                crate::script::errors::BAD_ARGUMENT, "there is no command `{name}`"
-            );
+            let fault =
+                crate::fault!(crate::script::errors::BAD_ARGUMENT, "there is no command `{name}`");
             let hint = crate::diag::suggest::did_you_mean(&name, known.iter().copied());
             session.report_fault(fault.help_if(hint));
             Ok(false.into())
