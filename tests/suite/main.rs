@@ -3,4 +3,5 @@
 mod architecture;
 mod grammar;
 mod mat;
+mod results;
 mod transcripts;
