@@ -2,8 +2,11 @@
 
 mod architecture;
 mod gapilib;
+mod grammar;
 mod identification;
 mod mat;
 mod models;
+mod results;
 mod scripts;
 mod shipped;
+mod transcripts;

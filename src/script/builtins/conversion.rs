@@ -1,14 +1,12 @@
 //! Numbers as texts, as Dymola's scripts write them.
 
 use super::{Args, Builtin, Failure, Family};
-use crate::bail;
 use crate::script::Session;
-use crate::script::errors::BAD_ARGUMENT;
 use crate::value::Value;
 use crate::value::format;
 
 /// The commands of this file.
-pub const FAMILY: Family = Family {
+pub(super) const FAMILY: Family = Family {
     packages: &[],
     dialect: None,
     builtins: &[
@@ -30,11 +28,7 @@ end realString;
 fn real_string(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let (number, width, precision): (f64, i64, i64) =
         (args.take("number")?, args.take("minimumWidth")?, args.take("precision")?);
-    let Ok(digits @ 1..=40) = usize::try_from(precision) else {
-        bail!(BAD_ARGUMENT, "`precision` of `realString` is {precision}, outside 1 to 40")
-    };
-    let text = format::formatted(&Value::Real(number), &format!(".{digits}g"))?;
-    Ok(padded(text.to_string(), width))
+    Ok(Value::String(format::text(&Value::Real(number), precision, width, false)?))
 }
 
 const INTEGER_STRING: &str = r#"
@@ -47,7 +41,7 @@ end integerString;
 
 fn integer_string(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let (number, width): (i64, i64) = (args.take("number")?, args.take("minimumWidth")?);
-    Ok(padded(number.to_string(), width))
+    Ok(Value::String(format::text(&Value::Integer(number), 6, width, false)?))
 }
 
 const BOOLEAN_STRING: &str = r#"
@@ -60,11 +54,5 @@ end booleanString;
 
 fn boolean_string(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let (value, width): (bool, i64) = (args.take("value")?, args.take("minimumWidth")?);
-    Ok(padded(value.to_string(), width))
-}
-
-/// The text with blanks before it up to a width.
-fn padded(text: String, width: i64) -> Value {
-    let width = usize::try_from(width).unwrap_or(0).min(10_000);
-    format!("{text:>width$}").into()
+    Ok(Value::String(format::text(&Value::Boolean(value), 6, width, false)?))
 }

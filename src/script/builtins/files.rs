@@ -10,7 +10,7 @@ use crate::value::Value;
 use std::path::{Path, PathBuf};
 
 /// `Modelica.Utilities.Files`.
-pub const FAMILY: Family = Family {
+pub(super) const FAMILY: Family = Family {
     packages: &["Modelica.Utilities.Files"],
     dialect: Some(Dialect::Dymola),
     builtins: &[
@@ -28,7 +28,7 @@ pub const FAMILY: Family = Family {
 };
 
 /// OpenModelica's file commands.
-pub const OPENMODELICA: Family = Family {
+pub(super) const OPENMODELICA: Family = Family {
     packages: &["OpenModelica.Scripting"],
     dialect: Some(Dialect::OpenModelica),
     builtins: &[

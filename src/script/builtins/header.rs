@@ -26,6 +26,9 @@ pub(super) fn function(class: &ClassDefinition) -> Function {
     let ClassSpecifier::Long(long) = &class.specifier else { return function };
     function.description = long.description.clone();
     for section in &long.sections {
+        if let Section::Annotation(annotation) = section {
+            function.annotation.extend(annotation.arguments.iter().cloned());
+        }
         let Section::Elements { elements, .. } = section else { continue };
         for element in elements {
             let Element::Component(clause) = element else { continue };

@@ -6,7 +6,7 @@ use crate::script::Session;
 use crate::value::Value;
 
 /// The commands of this file.
-pub const FAMILY: Family = Family {
+pub(super) const FAMILY: Family = Family {
     packages: &[],
     dialect: None,
     builtins: &[

@@ -10,7 +10,7 @@ use crate::script::errors::SCRIPT_ERROR;
 use crate::value::Value;
 
 /// The commands of this file.
-pub const FAMILY: Family = Family {
+pub(super) const FAMILY: Family = Family {
     packages: &["Modelica.Utilities.Strings"],
     dialect: None,
     builtins: &[

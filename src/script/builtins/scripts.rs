@@ -5,14 +5,14 @@ use crate::script::{Dialect, Session};
 use crate::value::Value;
 
 /// Dymola's `RunScript`.
-pub const FAMILY: Family = Family {
+pub(super) const FAMILY: Family = Family {
     packages: &["DymolaCommands.System"],
     dialect: Some(Dialect::Dymola),
     builtins: &[Builtin { header: RUN_SCRIPT, run: run_script }],
 };
 
 /// OpenModelica's `runScript`.
-pub const OPENMODELICA: Family = Family {
+pub(super) const OPENMODELICA: Family = Family {
     packages: &["OpenModelica.Scripting"],
     dialect: Some(Dialect::OpenModelica),
     builtins: &[Builtin { header: RUN_SCRIPT_OPENMODELICA, run: run_script_openmodelica }],

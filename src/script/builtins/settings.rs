@@ -5,7 +5,7 @@ use crate::script::{Dialect, Session};
 use crate::value::Value;
 
 /// The commands of this file.
-pub const FAMILY: Family = Family {
+pub(super) const FAMILY: Family = Family {
     packages: &[],
     dialect: None,
     builtins: &[
@@ -20,7 +20,7 @@ pub const FAMILY: Family = Family {
 };
 
 /// Dymola's `list`, which is about variables.
-pub const LIST_FAMILY: Family = Family {
+pub(super) const LIST_FAMILY: Family = Family {
     packages: &["DymolaCommands.SimulatorAPI"],
     dialect: Some(Dialect::Dymola),
     builtins: &[Builtin { header: LIST, run: variables }],

@@ -10,7 +10,7 @@ use crate::value::Value;
 use std::path::Path;
 
 /// The commands of this file.
-pub const FAMILY: Family = Family {
+pub(super) const FAMILY: Family = Family {
     packages: &["Modelica.Utilities.Streams"],
     dialect: Some(Dialect::Dymola),
     builtins: &[
@@ -24,7 +24,7 @@ pub const FAMILY: Family = Family {
 };
 
 /// What OpenModelica's bare `print` does.
-pub const BARE_PRINT: Family = Family {
+pub(super) const BARE_PRINT: Family = Family {
     packages: &["OpenModelica.Scripting"],
     dialect: Some(Dialect::OpenModelica),
     builtins: &[Builtin { header: PRINT_BARE, run: print_bare }],

@@ -10,7 +10,7 @@ use crate::value::{ArrayValue, Elements, EnumerationDefinition, EnumerationValue
 use std::sync::{Arc, LazyLock};
 
 /// The commands of this file.
-pub const FAMILY: Family = Family {
+pub(super) const FAMILY: Family = Family {
     packages: &["Modelica.Utilities.Strings"],
     dialect: None,
     builtins: &[

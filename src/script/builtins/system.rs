@@ -9,7 +9,7 @@ use crate::script::{Dialect, Session};
 use crate::value::Value;
 
 /// Commands with the same meaning in both tools.
-pub const FAMILY: Family = Family {
+pub(super) const FAMILY: Family = Family {
     packages: &["Modelica.Utilities.System"],
     dialect: None,
     builtins: &[
@@ -25,14 +25,14 @@ pub const FAMILY: Family = Family {
 };
 
 /// `cd` as Dymola has it.
-pub const DYMOLA: Family = Family {
+pub(super) const DYMOLA: Family = Family {
     packages: &["DymolaCommands.System"],
     dialect: Some(Dialect::Dymola),
     builtins: &[Builtin { header: CD, run: cd }],
 };
 
 /// `cd` as OpenModelica has it, and its environment.
-pub const OPENMODELICA: Family = Family {
+pub(super) const OPENMODELICA: Family = Family {
     packages: &["OpenModelica.Scripting"],
     dialect: Some(Dialect::OpenModelica),
     builtins: &[

@@ -9,7 +9,7 @@ macro_rules! windowless {
         &[$(Builtin {
             header: concat!(
                 "function ", $name, " \"Concerns a window; has no effect here.\"\n",
-                "  input Any arguments = 0;\n  output Boolean ok;\nend ", $name, ";\n"
+                "  output Boolean ok;\n  annotation(variadic = true);\nend ", $name, ";\n"
             ),
             run: no_effect,
         }),*]
@@ -17,7 +17,7 @@ macro_rules! windowless {
 }
 
 /// The commands of this file. They take any arguments.
-pub const FAMILY: Family = Family {
+pub(super) const FAMILY: Family = Family {
     packages: &[],
     dialect: None,
     builtins: windowless![
@@ -44,11 +44,6 @@ pub const FAMILY: Family = Family {
         "showMessageWindow",
     ],
 };
-
-/// Whether a command accepts arguments of any number and name.
-pub(super) fn takes_anything(builtin: &Builtin) -> bool {
-    FAMILY.builtins.iter().any(|known| known.header == builtin.header)
-}
 
 fn no_effect(session: &mut Session, args: Args) -> Result<Value, Failure> {
     session.no_effect(args.command());
