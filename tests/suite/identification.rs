@@ -12,9 +12,9 @@ fn shortened(ini: &str, cycles: usize, change: &str) -> String {
 }
 
 fn run(ini: &str, cycles: usize, change: &str) -> Session {
-    let (session, status) = shipped::run("scripts/test.mos", &shortened(ini, cycles, change));
-    assert_eq!(status.errors, 0, "an error was reported");
-    session
+    let run = shipped::run("scripts/test.mos", &shortened(ini, cycles, change));
+    assert_eq!(run.errors, "");
+    run.session
 }
 
 fn written(session: &Session, name: &str) -> String {
@@ -96,7 +96,8 @@ fn the_twin_is_fitted_and_its_resistance_called_not_determined() {
 
 #[test]
 fn the_noise_free_twin_has_its_optimum_at_the_published_values() {
-    let published = "New_Generation[1,:] := {0.0390, 1.4e-3, 1.5856e-6, 0.0918, 7.2860e-4, 0.2265};";
+    let published =
+        "New_Generation[1,:] := {0.0390, 1.4e-3, 1.5856e-6, 0.0918, 7.2860e-4, 0.2265};";
     let best = result(&run("twin/GAPILib_INI.mos", 1, published))["best_fit"].as_f64().unwrap();
     assert!(best < 1e-27, "{best}");
 }
@@ -105,8 +106,8 @@ fn the_noise_free_twin_has_its_optimum_at_the_published_values() {
 fn own_fitness_and_own_stop_condition_replace_those_of_the_library() {
     let script = "RunScript(\"GAPILib_INI.mos\")\nN_Cycle = 200\nFit_Target = 0.2\n\
                   RunScript(\"GAPILib_CYCLE.mos\")\n";
-    let (session, status) = shipped::run("scripts/own_fitness/test.mos", script);
-    assert_eq!(status.errors, 0);
+    let shipped::Run { session, errors, .. } = shipped::run("scripts/own_fitness/test.mos", script);
+    assert_eq!(errors, "");
     let result = result(&session);
     let best = result["best_fit"].as_f64().unwrap();
     let worst = written(&session, "fit.csv")
@@ -142,18 +143,16 @@ fn other_names_of_variables_do_the_same() {
           ordenada := GAPILib.Basics.Fit_Order(poblacion, error, 100, 70, 1)\n  \
           poblacion := [GAPILib.Basics.Cross(70, 1, ordenada); ordenada[1:29,:]]\n\
         end for\n";
-    let (session, status) = shipped::run("scripts/test.mos", script);
-    assert_eq!(status.errors, 0);
+    let shipped::Run { session, errors, .. } = shipped::run("scripts/test.mos", script);
+    assert_eq!(errors, "");
     assert_eq!(result(&session)["generations"], 3);
 }
 
-/// Runs the shipped scripts with a changed INI and gives the codes of the errors.
-fn refusal(change: &str) -> Vec<&'static str> {
-    let (session, status) =
-        shipped::run("scripts/test.mos", &shortened("GAPILib_INI.mos", 1, change));
-    assert_eq!(status.code, 1, "{change}");
-    let errors = session.messages.all().iter().filter(|message| message.is_error());
-    errors.map(|message| message.code.slug).collect()
+/// Whether the shipped scripts with a changed INI end with this code.
+fn assert_refused(change: &str, code: &str) {
+    let run = shipped::run("scripts/test.mos", &shortened("GAPILib_INI.mos", 1, change));
+    assert_eq!(run.status.code, 1, "{change}");
+    assert!(run.codes().contains(&code), "{change}: {}", run.errors);
 }
 
 #[test]
@@ -173,8 +172,7 @@ fn wrong_settings_are_refused_with_their_codes() {
         ("Seed = [1, 2, 3, 0, 0, 0]", "bad-seed"),
         ("Xexp[2] := 0/0", "division-by-zero"),
     ] {
-        let found = refusal(change);
-        assert!(found.contains(&code), "{change}: {found:?}");
+        assert_refused(change, code);
     }
 }
 
@@ -188,27 +186,21 @@ fn wrong_data_are_refused_with_their_codes() {
         (read("data/missing.mat", "i", "V"), "file-error"),
         (read(good, "j", "V"), "unknown-matrix"),
     ] {
-        let found = refusal(&change);
-        assert!(found.contains(&code), "{change}: {found:?}");
+        assert_refused(&change, code);
     }
-    for (bytes, code) in [
-        ("i,V\n0,1\n0.1,nan\n", "bad-data"),
-    ] {
-        let world = shipped::world().with_file("scripts/bad.csv", bytes);
-        let mut session = Session::new(Box::new(world));
-        session.run_text("test.mos", &read("scripts/bad.csv", "i", "V"));
-        let codes: Vec<&str> = session.messages.all().iter().map(|m| m.code.slug).collect();
-        assert_eq!(codes, [code]);
-    }
-    let session_with = |x: usize, y: usize| {
-        let matrix = |n: usize| gapilib::mat::Matrix::column_vector(vec![1.0; n]);
-        let bytes = gapilib::mat::write_v4([("i", &matrix(x)), ("V", &matrix(y))]).unwrap();
-        let mut session = Session::new(Box::new(shipped::world().with_file("d.mat", bytes)));
-        session.run_text("test.mos", &read("d.mat", "i", "V"));
-        session.messages.all().iter().map(|m| m.code.slug).collect::<Vec<_>>()
+    let codes = |file: &str, bytes: &[u8]| {
+        let world =
+            shipped::world().with_file(file, bytes).with_file("test.mos", read(file, "i", "V"));
+        let run = shipped::run_in(world, "test.mos");
+        run.codes().iter().map(|&code| code.to_owned()).collect::<Vec<_>>()
     };
-    assert_eq!(session_with(3, 2), ["data-sizes-differ"]);
-    assert_eq!(session_with(3, 3), [] as [&str; 0]);
+    assert_eq!(codes("d.csv", b"i,V\n0,1\n0.1,NaN\n"), ["bad-data"]);
+    let mat = |x: usize, y: usize| {
+        let [x, y] = [x, y].map(|n| gapilib::mat::Matrix::column_vector(vec![1.0; n]));
+        gapilib::mat::write_v4([("i", &x), ("V", &y)]).unwrap()
+    };
+    assert_eq!(codes("d.mat", &mat(3, 2)), ["data-sizes-differ"]);
+    assert_eq!(codes("d.mat", &mat(3, 3)), [] as [&str; 0]);
 }
 
 /// The command itself, so that threads are real.

@@ -44,9 +44,34 @@ pub(crate) fn world() -> MemoryWorld {
     })
 }
 
-/// A session in that world, with one more script, which has been run.
-pub(crate) fn run(name: &str, script: &str) -> (Session, RunStatus) {
-    let mut session = Session::new(Box::new(world().with_file(name, script)));
+/// What a script did.
+pub(crate) struct Run {
+    /// The session afterwards.
+    pub(crate) session: Session,
+    /// How it ended.
+    pub(crate) status: RunStatus,
+    /// What it wrote to standard error.
+    pub(crate) errors: String,
+}
+
+impl Run {
+    /// The codes of the errors, in order.
+    pub(crate) fn codes(&self) -> Vec<&str> {
+        let code = |line: &'_ str| Some(line.strip_prefix("error[")?.split_once(']')?.0.len());
+        let lines = self.errors.lines();
+        lines.filter_map(|line| code(line).map(|length| &line[6..6 + length])).collect()
+    }
+}
+
+/// Runs a script in the world of the shipped files, in which it gets this name.
+pub(crate) fn run(name: &str, script: &str) -> Run {
+    run_in(world().with_file(name, script), name)
+}
+
+/// Runs a script of this world.
+pub(crate) fn run_in(world: MemoryWorld, name: &str) -> Run {
+    let streams = world.streams();
+    let mut session = Session::new(Box::new(world));
     let status = session.run_file(Path::new(name));
-    (session, status)
+    Run { session, status, errors: streams.errors() }
 }
