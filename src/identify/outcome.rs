@@ -258,7 +258,7 @@ pub(super) mod tests {
         let mut recorder = Recorder::default();
         let (x, y) = (vec![0.0, 1.0, 2.0], vec![1.0, 2.0, 3.0]);
         recorder.measured(Measurement { file: "line.mat".into(), x: x.clone(), y: y.clone() });
-        recorder.seeded([12345.0; 6]);
+        recorder.seeded([12345.0; 6], [1.0; 6]);
         recorder.searched(&[0.0, 0.0], &[10.0, 1.0]);
         let genomes = Genomes::new(2, vec![1.0, 1.0, 2.0, 0.5]).unwrap();
         let simulated = [1.0, 2.0, 3.003, f64::NAN, f64::NAN, f64::NAN];

@@ -96,11 +96,20 @@ pub struct Recorder {
     pub failures: u64,
     /// Why simulations failed, and how often.
     pub causes: IndexMap<String, u64>,
+    /// The random numbers being drawn: the seed they began with, and the one they go on with.
+    chain: Option<Chain>,
     /// What `Yexp` was compared with last.
     measured_y: Option<Vec<f64>>,
     sorted_by_fit_order: bool,
     fitness_by_fit: bool,
     pending: Pending,
+}
+
+/// Calls of `Ram_Gen_ARENA`, each with the seed that the one before gave.
+#[derive(Debug, Clone, Copy)]
+struct Chain {
+    first: [f64; 6],
+    next: [f64; 6],
 }
 
 /// Individuals simulated since the last generation ended.
@@ -120,9 +129,27 @@ impl Recorder {
         self.measurement = Some(measurement);
     }
 
-    /// `Ram_Gen_ARENA` was called with this seed.
-    pub fn seeded(&mut self, seed: [f64; 6]) {
-        self.seed.get_or_insert(seed);
+    /// `Ram_Gen_ARENA` was called with `seed` and gave `next` to go on with.
+    pub fn seeded(&mut self, seed: [f64; 6], next: [f64; 6]) {
+        let first = match self.chain {
+            Some(chain) if chain.next == seed => chain.first,
+            _ => seed,
+        };
+        self.chain = Some(Chain { first, next });
+        self.seed.get_or_insert(first);
+    }
+
+    /// Begins to record another run and returns the one before, finished. Its random numbers are
+    /// those drawn with the seed that a script set last.
+    pub fn begin_next(&mut self) -> Recorder {
+        let next = Recorder {
+            seed: self.chain.map(|chain| chain.first),
+            chain: self.chain,
+            ..Recorder::default()
+        };
+        let mut before = std::mem::replace(self, next);
+        before.finish();
+        before
     }
 
     /// `Mutation` was called with these search ranges.
@@ -319,6 +346,23 @@ mod tests {
         }
         assert_eq!(recorder.history.generations.len(), 2);
         assert_eq!(recorder.best.unwrap().fitness, 0.0);
+    }
+
+    #[test]
+    fn another_run_has_its_own_seed() {
+        let seed = |entry: f64| [entry; 6];
+        let mut recorder = Recorder::default();
+        recorder.seeded(seed(1.0), seed(2.0));
+        recorder.seeded(seed(2.0), seed(3.0));
+        recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &[7.0], &messages(&[""]));
+        recorder.seeded(seed(3.0), seed(4.0));
+        recorder.ordered(&genomes(&[5.0]), &[42.0]);
+        recorder.seeded(seed(7.0), seed(8.0));
+        recorder.seeded(seed(8.0), seed(9.0));
+        let before = recorder.begin_next();
+        assert_eq!((before.seed, before.evaluations), (Some(seed(1.0)), 1));
+        recorder.seeded(seed(9.0), seed(10.0));
+        assert_eq!((recorder.seed, recorder.evaluations), (Some(seed(7.0)), 0));
     }
 
     #[test]

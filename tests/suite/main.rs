@@ -3,10 +3,16 @@
 mod architecture;
 mod flat_class;
 mod flattening;
+mod gapilib;
 mod grammar;
+mod identification;
 mod mat;
+mod models;
 mod plot;
 mod results;
+mod scripts;
+mod shipped;
 mod simulation;
 mod structure;
 mod syntax_properties;
+mod transcripts;
