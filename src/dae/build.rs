@@ -112,9 +112,7 @@ impl<'a> Builder<'a> {
                 return Err(fault!(PARAMETER_CYCLE, "`{}` depends on itself", variable.name)
                     .at(variable.span));
             }
-            (Folding::Unvisited, Some(binding))
-                if fixed && variable.base != BaseType::String =>
-            {
+            (Folding::Unvisited, Some(binding)) if fixed && variable.base != BaseType::String => {
                 self.folding[position] = Folding::InProgress;
                 let array = self.sized(binding, &variable.dims)?;
                 for (at, element) in array.elements.iter().enumerate() {
@@ -197,8 +195,11 @@ impl<'a> Builder<'a> {
             if *name == "fixed" && variable.variability == Variability::Parameter {
                 let free = (first..first + variable.len()).any(|i| !self.dae.variables[i].fixed);
                 if free {
-                    return Err(fault!(NOT_SUPPORTED,
-                        "parameter `{}` with `fixed = false` is not supported yet", variable.name)
+                    return Err(fault!(
+                        NOT_SUPPORTED,
+                        "parameter `{}` with `fixed = false` is not supported yet",
+                        variable.name
+                    )
                     .at(e.span));
                 }
             }
@@ -225,8 +226,9 @@ impl<'a> Builder<'a> {
         loops: &mut Vec<(crate::name::Ident, Expr)>,
     ) -> Result<(), Diagnostic> {
         if self.dae.equations.len() > MAX_EQUATIONS {
-            return Err(fault!(NOT_SUPPORTED, "more than {MAX_EQUATIONS} equations")
-                .at(equation.span));
+            return Err(
+                fault!(NOT_SUPPORTED, "more than {MAX_EQUATIONS} equations").at(equation.span)
+            );
         }
         match &equation.kind {
             EquationKind::Equal { left, right } => {
@@ -357,9 +359,12 @@ impl<'a> Builder<'a> {
         let not = self.dae.pool.not(condition);
         self.guard_assertions(asserted, not);
         if first.len() != second.len() {
-            return Err(fault!(super::errors::UNBALANCED_MODEL,
+            return Err(fault!(
+                super::errors::UNBALANCED_MODEL,
                 "the branches of this if-equation have {} and {} equations",
-                first.len(), second.len())
+                first.len(),
+                second.len()
+            )
             .at(span));
         }
         let pool = &mut self.dae.pool;
@@ -415,10 +420,8 @@ impl<'a> Builder<'a> {
         match name.as_str() {
             "assert" => self.assertion(arguments, call.span, loops),
             _ if name.starts_with("Connections.") => Ok(()),
-            _ => {
-                Err(fault!(NOT_SUPPORTED, "`{name}(…)` as an equation is not supported yet")
-                    .at(call.span))
-            }
+            _ => Err(fault!(NOT_SUPPORTED, "`{name}(…)` as an equation is not supported yet")
+                .at(call.span)),
         }
     }
 
@@ -466,8 +469,12 @@ fn pairs(a: &Lowered<Expr>, b: &Lowered<Expr>, span: Span) -> Result<Vec<Equatio
         return Err(fault!(NOT_SUPPORTED, "equations of texts are not supported").at(span));
     };
     if x.len() != y.len() || std::mem::discriminant(&x) != std::mem::discriminant(&y) {
-        return Err(fault!(ARRAY_MISMATCH, "the sides of this equation have {} and {} elements",
-            x.len(), y.len())
+        return Err(fault!(
+            ARRAY_MISMATCH,
+            "the sides of this equation have {} and {} elements",
+            x.len(),
+            y.len()
+        )
         .at(span));
     }
     if let (Lowered::Array(x), Lowered::Array(y)) = (a, b)

@@ -46,9 +46,13 @@ pub(crate) fn component_shape<T: Target>(
         match subscript {
             Subscript::Index(size) => dims.push(lowering.known_size(size)?),
             Subscript::All(place) => {
-                return Err(fault!(NOT_SUPPORTED, "the size of `{}` is not declared", component.name)
-                    .at(*place)
-                    .related(span, "called here"));
+                return Err(fault!(
+                    NOT_SUPPORTED,
+                    "the size of `{}` is not declared",
+                    component.name
+                )
+                .at(*place)
+                .related(span, "called here"));
             }
         }
     }
@@ -62,8 +66,11 @@ pub(crate) fn component_shape<T: Target>(
         ValueType::Real | ValueType::Integer | ValueType::Boolean | ValueType::Enumeration(_) => {
             Ok(Shape::Array(dims))
         }
-        _ => Err(fault!(NOT_SUPPORTED,
-            "`{}` is of a type that functions in equations cannot have", component.name)
+        _ => Err(fault!(
+            NOT_SUPPORTED,
+            "`{}` is of a type that functions in equations cannot have",
+            component.name
+        )
         .at(component.span)),
     }
 }
@@ -200,4 +207,3 @@ impl Target for Sizes<'_> {
         Err(fault!(NOT_SUPPORTED, "a derivative in a function").at(span))
     }
 }
-

@@ -75,9 +75,10 @@ pub fn sort(flat: &FlatModel) -> Result<SortedDae, Diagnostic> {
 fn zero_inputs(dae: &mut Dae) {
     for position in 0..dae.variables.len() {
         let variable = &dae.variables[position];
-        let bound = dae.equations.iter().any(|equation| {
-            dae.pool.as_variable(equation.left) == Some(VarId(position as u32))
-        });
+        let bound = dae
+            .equations
+            .iter()
+            .any(|equation| dae.pool.as_variable(equation.left) == Some(VarId(position as u32)));
         if variable.causality == Some(crate::syntax::ast::CausalityPrefix::Input)
             && variable.kind == Kind::Unknown
             && !bound

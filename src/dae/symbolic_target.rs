@@ -161,8 +161,12 @@ impl Target for Builder<'_> {
         let mut known = Vec::new();
         for (input, argument) in function.inputs.iter().zip(&arguments) {
             let Some(shape) = argument.shape() else {
-                return Err(fault!(NOT_SUPPORTED,
-                    "the text argument `{}` of `{}` is not supported", input.name, function.name)
+                return Err(fault!(
+                    NOT_SUPPORTED,
+                    "the text argument `{}` of `{}` is not supported",
+                    input.name,
+                    function.name
+                )
                 .at(span));
             };
             let before = scalars.len();
@@ -176,8 +180,12 @@ impl Target for Builder<'_> {
         }
         let functions = &self.flat.functions;
         let outputs = shapes(function, &inputs, &known, functions, span)?;
-        let instance =
-            FunctionInstance { function: function.clone(), inputs, outputs: outputs.clone(), known };
+        let instance = FunctionInstance {
+            function: function.clone(),
+            inputs,
+            outputs: outputs.clone(),
+            known,
+        };
         let id = self.instance(instance);
         let mut next = 0;
         let mut results = Vec::new();
@@ -209,12 +217,24 @@ impl Target for Builder<'_> {
                 .at(span)));
             }
             "initial" => Operator::Constant(1.0),
-            "pre" | "edge" | "change" | "sample" | "delay" | "reinit" | "terminal" | "terminate"
-            | "semiLinear" | "spatialDistribution" | "cardinality" | "inStream"
-            | "actualStream" | "getInstanceName" | "String" | "previous" | "hold" => {
-                return Some(Err(
-                    fault!(NOT_SUPPORTED, "`{name}` is not supported yet").at(span)
-                ));
+            "pre"
+            | "edge"
+            | "change"
+            | "sample"
+            | "delay"
+            | "reinit"
+            | "terminal"
+            | "terminate"
+            | "semiLinear"
+            | "spatialDistribution"
+            | "cardinality"
+            | "inStream"
+            | "actualStream"
+            | "getInstanceName"
+            | "String"
+            | "previous"
+            | "hold" => {
+                return Some(Err(fault!(NOT_SUPPORTED, "`{name}` is not supported yet").at(span)));
             }
             _ => return None,
         }))
@@ -316,8 +336,10 @@ pub(crate) fn refuse_impure(function: &Function, span: Span) -> Result<(), Diagn
         (_, true) => "is impure",
         _ => return Ok(()),
     };
-    Err(fault!(NOT_SUPPORTED, "the function `{}` {reason} and cannot be used in equations",
-        function.name)
+    Err(fault!(
+        NOT_SUPPORTED,
+        "the function `{}` {reason} and cannot be used in equations",
+        function.name
+    )
     .at(span))
 }
-

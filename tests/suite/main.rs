@@ -1,6 +1,7 @@
 //! The integration tests; one module per suite.
 
 mod architecture;
+mod diagnostics;
 mod grammar;
 mod mat;
 mod results;

@@ -243,8 +243,11 @@ impl<'a, T: Target> Lowering<'a, T> {
         let array = self.array(e)?;
         match array.elements.as_slice() {
             [element] if array.dims.is_empty() => Ok(*element),
-            _ => Err(fault!(ARRAY_MISMATCH, "an array of size {} stands where a scalar is needed",
-                sizes(&array.dims))
+            _ => Err(fault!(
+                ARRAY_MISMATCH,
+                "an array of size {} stands where a scalar is needed",
+                sizes(&array.dims)
+            )
             .at(e.span)),
         }
     }

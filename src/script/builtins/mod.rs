@@ -5,7 +5,9 @@ mod args;
 mod conversion;
 mod files;
 mod header;
+mod matrices;
 mod messages;
+mod results;
 mod scanning;
 mod scripts;
 mod settings;
@@ -15,7 +17,7 @@ mod system;
 mod windows;
 
 pub use args::Args;
-pub(in crate::script) use strings::COMPARE_TYPE;
+pub(in crate::script) use strings::constant;
 
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::Function;
@@ -81,7 +83,10 @@ pub static FAMILIES: &[&Family] = &[
     &conversion::FAMILY,
     &files::FAMILY,
     &files::OPENMODELICA,
+    &matrices::FAMILY,
     &messages::FAMILY,
+    &results::FAMILY,
+    &results::OPENMODELICA,
     &scripts::FAMILY,
     &scripts::OPENMODELICA,
     &settings::FAMILY,
