@@ -1,3 +1,7 @@
 //! The command `gapi`.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    gapilib::cli::main()
+}

@@ -42,6 +42,34 @@ pub trait Host {
         reference: &ast::ComponentReference,
     ) -> Result<Option<Value>, Diagnostic>;
 
+    /// Assigns to a dotted or global name that is no variable of the scope, such as a parameter of
+    /// the model translated last or a flag; `false` if there is nothing of that name.
+    fn assign(
+        &mut self,
+        target: &ast::ComponentReference,
+        value: Value,
+        span: Span,
+    ) -> Result<bool, Diagnostic> {
+        let _ = (target, value, span);
+        Ok(false)
+    }
+
+    /// Takes a warning: an `assert` of level `AssertionLevel.warning` whose condition is false.
+    fn warn(&mut self, warning: Diagnostic) {
+        let _ = warning;
+    }
+
+    /// Names of functions, for "did you mean".
+    fn function_names(&mut self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// Told before each turn of an outermost loop of a script, not of a function: `turn` counts
+    /// from 0, `turns` is `None` in a `while` loop.
+    fn loop_turn(&mut self, turn: usize, turns: Option<usize>) {
+        let _ = (turn, turns);
+    }
+
     /// Asked between statements and loop turns: whether to stop (the user pressed Ctrl-C), and the
     /// error to stop with.
     fn interrupted(&mut self) -> Option<Fault> {

@@ -1,9 +1,98 @@
 //! Evaluates syntax trees to values: expressions (MLS ch. 3, 10), statements (MLS ch. 11) and
 //! functions written in Modelica (MLS ch. 12). Who answers calls and names that are not local is
 //! the [`Host`].
+//!
+//! The variables are in a [`Scope`]. Elements are read and overwritten in place; a variable, an
+//! element or an output without a value is a fault, never a zero.
 
+mod argument;
+mod call;
+mod component;
+mod deduction;
+mod depth;
+pub mod errors;
+mod execution;
+mod expression;
+mod flow;
 mod function;
 mod host;
+mod intrinsics;
+mod iteration;
+mod reference;
+mod scope;
+mod special;
+mod statement;
+mod types;
+mod variable;
+mod vectorization;
 
+#[cfg(test)]
+mod tests;
+
+pub use call::Arguments;
+pub use depth::{MAX_CALLS, with_stack};
+pub use flow::Flow;
 pub use function::{Function, FunctionBody, FunctionComponent, ValueType};
 pub use host::{Callee, Host, Intrinsic};
+pub use intrinsics::{call_intrinsic, intrinsic_names};
+pub use scope::Scope;
+
+use crate::diag::Diagnostic;
+use crate::source::Span;
+use crate::syntax::ast;
+use crate::value::Value;
+use std::sync::Arc;
+
+/// The value of an expression. A call of a function with no output or with several gives a
+/// [`Value::Tuple`].
+pub fn evaluate(
+    expression: &ast::Expression,
+    scope: &mut Scope,
+    host: &mut dyn Host,
+) -> Result<Value, Diagnostic> {
+    let _entry = depth::Entry::new();
+    let mut values = Evaluator { scope, host }.outputs(expression)?;
+    Ok(match values.len() {
+        1 => values.remove(0),
+        _ => Value::Tuple(values),
+    })
+}
+
+/// Executes statements in order.
+pub fn execute(
+    statements: &[ast::Statement],
+    scope: &mut Scope,
+    host: &mut dyn Host,
+) -> Result<Flow, Diagnostic> {
+    let _entry = depth::Entry::new();
+    Evaluator { scope, host }.statements(statements)
+}
+
+/// Calls a function with these arguments and returns its outputs. `span` is where the call is
+/// written.
+pub fn call_function(
+    function: &Arc<Function>,
+    arguments: Arguments,
+    span: Span,
+    host: &mut dyn Host,
+) -> Result<Vec<Value>, Diagnostic> {
+    let _entry = depth::Entry::new();
+    let mut scope = Scope::script();
+    Evaluator { scope: &mut scope, host }.call_with(function, arguments, span)
+}
+
+/// The sizes that declared dimensions stand for; `None` where any size is accepted.
+pub fn evaluate_dimensions(
+    dims: &[ast::Subscript],
+    scope: &mut Scope,
+    host: &mut dyn Host,
+) -> Result<Vec<Option<usize>>, Diagnostic> {
+    let _entry = depth::Entry::new();
+    Evaluator { scope, host }.dimensions(dims)
+}
+
+/// Evaluates and executes in one scope.
+struct Evaluator<'a> {
+    scope: &'a mut Scope,
+    host: &'a mut dyn Host,
+}

@@ -2,9 +2,23 @@
 //! operations return [`Fault`](crate::diag::Fault)s.
 
 mod array;
+mod cast;
+pub mod construct;
+pub mod errors;
+pub mod format;
+mod index;
+pub mod ops;
+mod path;
 mod record;
+pub mod show;
 
-pub use array::{ArrayValue, Elements};
+#[cfg(test)]
+mod tests;
+
+pub use array::{ArrayValue, Elements, MAX_ELEMENTS, element_count, sizes};
+pub use cast::{FromValue, IntoValue, RealMatrix};
+pub use index::Index;
+pub use path::Step;
 pub use record::RecordValue;
 
 use crate::name::{Ident, Name};
@@ -53,6 +67,20 @@ pub struct EnumerationDefinition {
     pub name: Name,
     /// Its literals in order.
     pub literals: Vec<Ident>,
+}
+
+impl EnumerationValue {
+    /// The literal's own name.
+    pub fn literal(&self) -> &'static str {
+        let at = usize::try_from(self.ordinal - 1).ok();
+        at.and_then(|at| self.definition.literals.get(at)).map_or("?", |ident| ident.as_str())
+    }
+}
+
+impl std::fmt::Display for EnumerationValue {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}.{}", self.definition.name, self.literal())
+    }
 }
 
 /// A function as a value.

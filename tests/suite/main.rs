@@ -1,1 +1,4 @@
 //! The integration tests; one module per suite.
+
+mod architecture;
+mod grammar;

@@ -1,0 +1,68 @@
+//! The works cited in this crate, each under an anchor.
+//!
+//! <a id="rubio-2006"></a>
+//! - **rubio-2006** — M. A. Rubio, A. Urquia, L. González, D. Guinea, S. Dormido: GAPILib, a
+//!   Modelica library for model parameter identification using genetic algorithms. 5th
+//!   International Modelica Conference, 2006.
+//!
+//! <a id="mls-3.6"></a>
+//! - **mls-3.6** — Modelica Association: Modelica, a unified object-oriented language for systems
+//!   modeling. Language specification, version 3.6, 2023.
+//!
+//! <a id="lecuyer-1999"></a>
+//! - **lecuyer-1999** — P. L'Ecuyer: Good parameters and implementations for combined multiple
+//!   recursive random number generators. Operations Research 47(1), 1999, 159–164.
+//!
+//! <a id="lecuyer-2002"></a>
+//! - **lecuyer-2002** — P. L'Ecuyer, R. Simard, E. J. Chen, W. D. Kelton: An object-oriented
+//!   random-number package with many long streams and substreams. Operations Research 50(6), 2002,
+//!   1073–1075.
+//!
+//! <a id="larminie-dicks-2000"></a>
+//! - **larminie-dicks-2000** — J. Larminie, A. Dicks: Fuel cell systems explained. Wiley, 2000.
+//!
+//! <a id="brenan-campbell-petzold-1996"></a>
+//! - **brenan-campbell-petzold-1996** — K. E. Brenan, S. L. Campbell, L. R. Petzold: Numerical
+//!   solution of initial-value problems in differential-algebraic equations. SIAM, 1996 (DASSL).
+//!
+//! <a id="shampine-reichelt-1997"></a>
+//! - **shampine-reichelt-1997** — L. F. Shampine, M. W. Reichelt: The MATLAB ODE suite. SIAM
+//!   Journal on Scientific Computing 18(1), 1997, 1–22 (NDF formulas).
+//!
+//! <a id="hindmarsh-2005"></a>
+//! - **hindmarsh-2005** — A. C. Hindmarsh et al.: SUNDIALS, suite of nonlinear and
+//!   differential/algebraic equation solvers. ACM Transactions on Mathematical Software 31(3),
+//!   2005, 363–396.
+//!
+//! <a id="hairer-norsett-wanner-1993"></a>
+//! - **hairer-norsett-wanner-1993** — E. Hairer, S. P. Nørsett, G. Wanner: Solving ordinary
+//!   differential equations I. Springer, 1993.
+//!
+//! <a id="hairer-wanner-1996"></a>
+//! - **hairer-wanner-1996** — E. Hairer, G. Wanner: Solving ordinary differential equations II.
+//!   Springer, 1996.
+//!
+//! <a id="tarjan-1972"></a>
+//! - **tarjan-1972** — R. Tarjan: Depth-first search and linear graph algorithms. SIAM Journal on
+//!   Computing 1(2), 1972, 146–160.
+//!
+//! <a id="dulmage-mendelsohn-1958"></a>
+//! - **dulmage-mendelsohn-1958** — A. L. Dulmage, N. S. Mendelsohn: Coverings of bipartite graphs.
+//!   Canadian Journal of Mathematics 10, 1958, 517–534.
+//!
+//! <a id="hopcroft-karp-1973"></a>
+//! - **hopcroft-karp-1973** — J. E. Hopcroft, R. M. Karp: An n^5/2 algorithm for maximum matchings
+//!   in bipartite graphs. SIAM Journal on Computing 2(4), 1973, 225–231.
+//!
+//! <a id="carpanzano-maffezzoni-1998"></a>
+//! - **carpanzano-maffezzoni-1998** — E. Carpanzano, C. Maffezzoni: Symbolic manipulation
+//!   techniques for model simplification in object-oriented modelling of large scale continuous
+//!   systems. Mathematics and Computers in Simulation 48(2), 1998, 133–150.
+//!
+//! <a id="cellier-kofman-2006"></a>
+//! - **cellier-kofman-2006** — F. E. Cellier, E. Kofman: Continuous system simulation. Springer,
+//!   2006.
+//!
+//! <a id="goldberg-1989"></a>
+//! - **goldberg-1989** — D. E. Goldberg: Genetic algorithms in search, optimization and machine
+//!   learning. Addison-Wesley, 1989.

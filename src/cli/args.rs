@@ -1,0 +1,219 @@
+//! The command line's grammar.
+
+use clap::builder::styling::{AnsiColor, Styles};
+use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
+use std::path::PathBuf;
+
+const STYLES: Styles = Styles::styled()
+    .header(AnsiColor::Green.on_default().bold())
+    .usage(AnsiColor::Green.on_default().bold())
+    .literal(AnsiColor::Cyan.on_default().bold())
+    .placeholder(AnsiColor::Cyan.on_default());
+
+const EXAMPLES: &str = "\
+Examples:
+  gapi run scripts/GAPILib.mos                 identify a measured polarization curve
+  gapi run scripts/GAPILib.mos --out fit1      the same, results in the folder fit1
+  gapi check models --model CaseStudies.PolarizationCurve
+  gapi simulate models --model CaseStudies.PolarizationCurve --set R=0.3 --output curve.csv
+  gapi explain unknown-class                   what a diagnostic's code means";
+
+/// Runs GAPILib scripts: identifies the parameters of Modelica models from measured data with a
+/// genetic algorithm.
+#[derive(Debug, Parser)]
+#[command(name = "gapi", version, styles = STYLES, after_help = EXAMPLES)]
+#[command(propagate_version = true, subcommand_required = true, arg_required_else_help = true)]
+pub struct Cli {
+    /// What to do
+    #[command(subcommand)]
+    pub command: Command,
+    /// Settings of every command
+    #[command(flatten)]
+    pub global: Global,
+}
+
+/// Settings of every command.
+#[derive(Debug, Args)]
+pub struct Global {
+    /// When to use colours
+    #[arg(long, value_enum, default_value_t = Colour::Auto, global = true, value_name = "WHEN")]
+    pub color: Colour,
+    /// A folder with Modelica packages, loadable by name (repeatable; also MODELICAPATH)
+    #[arg(long, global = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub library: Vec<PathBuf>,
+}
+
+/// When to use colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Colour {
+    /// On a terminal, unless NO_COLOR is set
+    Auto,
+    /// Always
+    Always,
+    /// Never
+    Never,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run a script
+    Run(RunArgs),
+    /// Simulate a model
+    Simulate(SimulateArgs),
+    /// Check Modelica files, or one model down to its sorted equations
+    Check(CheckArgs),
+    /// Print a model as flat Modelica
+    Flatten(FlattenArgs),
+    /// Explain a diagnostic's code
+    Explain(ExplainArgs),
+    /// Print shell completions
+    Completions(CompletionsArgs),
+}
+
+/// Arguments of `gapi run`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi run scripts/GAPILib.mos
+  gapi run scripts/twin/GAPILib.mos --out twin --threads 1
+  gapi run my.mos --transcript my.txt --quiet --strict
+
+Exit code: 0 if all went well, 1 if an error happened that the script did not read,
+2 for a wrong command line, 130 if interrupted.")]
+pub struct RunArgs {
+    /// The script (.mos)
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub script: PathBuf,
+    /// Folder for results and figures
+    #[arg(long, default_value = "results", value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
+    /// Threads to use [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Write every statement with its answer to a file
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub transcript: Option<PathBuf>,
+    /// Show errors only
+    #[arg(long, short)]
+    pub quiet: bool,
+    /// Stop at the first error
+    #[arg(long, conflicts_with = "lenient")]
+    pub strict: bool,
+    /// End with exit code 0 whatever happened
+    #[arg(long)]
+    pub lenient: bool,
+}
+
+/// Arguments of `gapi simulate`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi simulate models --model CaseStudies.PolarizationCurve --output curve.csv
+  gapi simulate Decay.mo --model Decay --stop-time 5 --intervals 50 --set k=2
+
+What the command line does not say comes from the model's experiment annotation.")]
+pub struct SimulateArgs {
+    /// Modelica files, or folders with packages
+    #[arg(required = true, value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    pub files: Vec<PathBuf>,
+    /// The class to simulate; it may carry a modification: 'M(p = 2)'
+    #[arg(long, value_name = "CLASS")]
+    pub model: String,
+    /// Start of the simulation in seconds
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub start_time: Option<f64>,
+    /// End of the simulation in seconds
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub stop_time: Option<f64>,
+    /// Number of output intervals
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub intervals: Option<u32>,
+    /// Relative tolerance
+    #[arg(long, value_name = "E")]
+    pub tolerance: Option<f64>,
+    /// Integration method
+    #[arg(long, value_name = "M")]
+    pub method: Option<String>,
+    /// Give a parameter a value (repeatable)
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = name_and_value)]
+    pub set: Vec<(String, f64)>,
+    /// Where the trajectories go; the ending decides the format
+    #[arg(long, short, value_name = "FILE.mat|.csv", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+}
+
+/// Arguments of `gapi check`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi check models
+  gapi check models --model CaseStudies.PolarizationCurve")]
+pub struct CheckArgs {
+    /// Modelica files, scripts, or folders with packages
+    #[arg(required = true, value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    pub files: Vec<PathBuf>,
+    /// The class to check as a model
+    #[arg(long, value_name = "CLASS")]
+    pub model: Option<String>,
+}
+
+/// Arguments of `gapi flatten`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  gapi flatten models --model CaseStudies.PolarizationCurve")]
+pub struct FlattenArgs {
+    /// Modelica files, or folders with packages
+    #[arg(required = true, value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    pub files: Vec<PathBuf>,
+    /// The class to flatten
+    #[arg(long, value_name = "CLASS")]
+    pub model: String,
+}
+
+/// Arguments of `gapi explain`.
+#[derive(Debug, Args)]
+pub struct ExplainArgs {
+    /// The code, as it stands in brackets behind `error`; without it, all codes are listed
+    pub code: Option<String>,
+}
+
+/// Arguments of `gapi completions`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  gapi completions bash > ~/.local/share/bash-completion/completions/gapi")]
+pub struct CompletionsArgs {
+    /// The shell
+    pub shell: clap_complete::Shell,
+}
+
+fn name_and_value(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
+    let value = match value.trim() {
+        "true" => 1.0,
+        "false" => 0.0,
+        number => number.parse().map_err(|_| format!("`{number}` is not a number"))?,
+    };
+    Ok((name.trim().to_owned(), value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn settings_are_names_with_numbers() {
+        assert_eq!(name_and_value("a.b = -1e3"), Ok(("a.b".to_owned(), -1e3)));
+        assert_eq!(name_and_value("on=true"), Ok(("on".to_owned(), 1.0)));
+        assert!(name_and_value("a").is_err());
+        assert!(name_and_value("a=x").is_err());
+    }
+}

@@ -1,0 +1,25 @@
+//! `gapi explain CODE`: what a diagnostic's code means.
+
+use super::args::ExplainArgs;
+use super::terminal;
+use crate::diag::suggest;
+use crate::script::codes;
+use std::process::ExitCode;
+
+/// Prints the explanation of one code, or the list of all.
+pub fn explain(arguments: &ExplainArgs) -> ExitCode {
+    let Some(wanted) = &arguments.code else {
+        let list: String = codes::all().iter().map(|code| format!("{}\n", code.slug)).collect();
+        terminal::print(&list);
+        return ExitCode::SUCCESS;
+    };
+    if let Some(code) = codes::all().into_iter().find(|code| code.slug == wanted) {
+        terminal::print(&format!("# {}\n\n{}\n", code.slug, code.explanation.trim()));
+        return ExitCode::SUCCESS;
+    }
+    let slugs: Vec<&str> = codes::all().iter().map(|code| code.slug).collect();
+    let hint = suggest::did_you_mean(wanted, slugs)
+        .unwrap_or_else(|| "`gapi explain` lists all codes".to_owned());
+    terminal::eprint(&format!("error: no code is named `{wanted}`\nhelp: {hint}\n"));
+    ExitCode::from(2)
+}

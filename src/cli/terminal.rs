@@ -1,0 +1,116 @@
+//! The terminal: the only place that prints.
+#![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is where printing happens")]
+
+use super::args::Colour;
+use crate::script::world::Progress;
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use std::io::{IsTerminal, Write as _};
+use std::time::Duration;
+
+/// Standard output, standard error and the progress bar between them.
+pub struct Terminal {
+    colour: bool,
+    quiet: bool,
+    bar: Option<ProgressBar>,
+}
+
+impl Terminal {
+    /// A terminal that follows the user's wishes about colours.
+    pub fn new(colour: Colour, quiet: bool) -> Terminal {
+        let wanted = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+        let colour = match colour {
+            Colour::Always => true,
+            Colour::Never => false,
+            Colour::Auto => wanted && std::io::stderr().is_terminal(),
+        };
+        Terminal { colour, quiet, bar: None }
+    }
+
+    /// Whether diagnostics are coloured.
+    pub fn colour(&self) -> bool {
+        self.colour
+    }
+
+    /// Writes to standard output. A reader that went away (`| head`) is not an error.
+    pub fn print(&mut self, text: &str) {
+        if self.quiet {
+            return;
+        }
+        self.suspended(|| {
+            let mut out = std::io::stdout().lock();
+            let _ = out.write_all(text.as_bytes());
+            let _ = out.flush();
+        });
+    }
+
+    /// Writes to standard error.
+    pub fn eprint(&mut self, text: &str) {
+        self.suspended(|| {
+            let _ = std::io::stderr().lock().write_all(text.as_bytes());
+        });
+    }
+
+    /// Draws how far the work is; on a terminal only.
+    pub fn progress(&mut self, progress: &Progress) {
+        if self.quiet || !std::io::stderr().is_terminal() {
+            return;
+        }
+        let bar = self.bar.get_or_insert_with(|| new_bar(progress));
+        if progress.total > 0 {
+            bar.set_length(progress.total);
+        }
+        bar.set_position(progress.done);
+        let best = progress.best.map_or(String::new(), |best| format!("best {best:.4e}"));
+        bar.set_message(format!("{best}  failures {}", progress.failures));
+        if progress.total > 0 && progress.done >= progress.total {
+            self.finish_progress();
+        }
+    }
+
+    /// Takes the progress bar away.
+    pub fn finish_progress(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+    }
+
+    fn suspended(&self, work: impl FnOnce()) {
+        match &self.bar {
+            Some(bar) => bar.suspend(work),
+            None => work(),
+        }
+    }
+}
+
+fn new_bar(progress: &Progress) -> ProgressBar {
+    let known = progress.total > 0;
+    let template = if known {
+        "{prefix} {pos}/{len} {bar:30.cyan/dim} {msg}  {left} left"
+    } else {
+        "{prefix} {pos} {spinner} {msg}  {elapsed}"
+    };
+    let style = ProgressStyle::with_template(template)
+        .unwrap_or_else(|_| ProgressStyle::default_bar())
+        .with_key("left", |state: &ProgressState, text: &mut dyn std::fmt::Write| {
+            let _ = write!(text, "{:#}", HumanDuration(round_up(state.eta())));
+        });
+    let target = ProgressDrawTarget::stderr_with_hz(10);
+    let bar = ProgressBar::with_draw_target(known.then_some(progress.total), target);
+    bar.set_style(style);
+    bar.set_prefix(progress.label.clone());
+    bar
+}
+
+fn round_up(duration: Duration) -> Duration {
+    Duration::from_secs(duration.as_secs() + u64::from(duration.subsec_nanos() > 0))
+}
+
+/// Writes to standard output where there is no session.
+pub fn print(text: &str) {
+    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+}
+
+/// Writes to standard error where there is no session.
+pub fn eprint(text: &str) {
+    let _ = std::io::stderr().lock().write_all(text.as_bytes());
+}

@@ -1,0 +1,191 @@
+//! The world of a real run: disk, clock, environment, terminal, Ctrl-C.
+
+use super::terminal::Terminal;
+use crate::script::world::{Progress, Stamp, World};
+use std::fs;
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
+
+/// The operating system as scripts see it. The working directory is the session's own, so that
+/// `cd` in a script changes nothing outside it.
+pub struct SystemWorld {
+    terminal: Terminal,
+    current: PathBuf,
+    output: PathBuf,
+    threads: usize,
+    started: Instant,
+    interrupt: Arc<AtomicBool>,
+}
+
+impl SystemWorld {
+    /// A world that writes its results below `output` and computes with `threads` threads.
+    pub fn new(terminal: Terminal, output: &Path, threads: Option<usize>) -> io::Result<Self> {
+        let current = std::env::current_dir()?;
+        let available = std::thread::available_parallelism().map_or(1, usize::from);
+        Ok(SystemWorld {
+            output: current.join(output),
+            current,
+            terminal,
+            threads: threads.unwrap_or(available).max(1),
+            started: Instant::now(),
+            interrupt: Arc::default(),
+        })
+    }
+
+    /// Makes Ctrl-C ask the run to stop; a second one ends the process at once.
+    pub fn catch_interrupts(&self) {
+        let flag = Arc::clone(&self.interrupt);
+        let caught = ctrlc::set_handler(move || {
+            if flag.swap(true, Ordering::SeqCst) {
+                #[allow(clippy::exit, reason = "the user asked twice")]
+                std::process::exit(130);
+            }
+        });
+        // Without a handler Ctrl-C ends the process as it always did.
+        drop(caught);
+    }
+
+    fn at(&self, path: &Path) -> PathBuf {
+        self.current.join(path)
+    }
+}
+
+impl World for SystemWorld {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        fs::read(self.at(path))
+    }
+
+    fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        write_atomically(&self.at(path), bytes)
+    }
+
+    fn append(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        let mut file = fs::OpenOptions::new().append(true).create(true).open(self.at(path))?;
+        file.write_all(bytes)
+    }
+
+    fn remove(&mut self, path: &Path) -> io::Result<()> {
+        let path = self.at(path);
+        if path.is_dir() { fs::remove_dir(path) } else { fs::remove_file(path) }
+    }
+
+    fn exists(&self, path: &Path) -> bool {
+        self.at(path).exists()
+    }
+
+    fn is_dir(&self, path: &Path) -> bool {
+        self.at(path).is_dir()
+    }
+
+    fn stamp(&self, path: &Path) -> Option<Stamp> {
+        let metadata = fs::metadata(self.at(path)).ok()?;
+        let modified = metadata.modified().ok()?.duration_since(UNIX_EPOCH).ok()?;
+        Some(Stamp(modified.as_nanos() as u64, metadata.len()))
+    }
+
+    fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
+        let mut names = Vec::new();
+        for entry in fs::read_dir(self.at(path))? {
+            names.push(entry?.file_name().to_string_lossy().into_owned());
+        }
+        names.sort();
+        Ok(names)
+    }
+
+    fn create_dirs(&mut self, path: &Path) -> io::Result<()> {
+        fs::create_dir_all(self.at(path))
+    }
+
+    fn current_dir(&self) -> PathBuf {
+        self.current.clone()
+    }
+
+    fn set_current_dir(&mut self, path: &Path) -> io::Result<()> {
+        let wanted = self.absolute(path);
+        if !wanted.is_dir() {
+            return Err(io::Error::new(io::ErrorKind::NotFound, "no such directory"));
+        }
+        self.current = wanted;
+        Ok(())
+    }
+
+    fn env(&self, name: &str) -> Option<String> {
+        std::env::var(name).ok()
+    }
+
+    fn print(&mut self, text: &str) {
+        self.terminal.print(text);
+    }
+
+    fn eprint(&mut self, text: &str) {
+        self.terminal.eprint(text);
+    }
+
+    fn monotonic_seconds(&self) -> f64 {
+        self.started.elapsed().as_secs_f64()
+    }
+
+    fn unix_seconds(&self) -> u64 {
+        SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs())
+    }
+
+    fn interrupted(&self) -> bool {
+        self.interrupt.load(Ordering::Relaxed)
+    }
+
+    fn threads(&self) -> usize {
+        self.threads
+    }
+
+    fn output_dir(&self) -> PathBuf {
+        self.output.clone()
+    }
+
+    fn progress(&mut self, progress: &Progress) {
+        self.terminal.progress(progress);
+    }
+
+    fn colour(&self) -> bool {
+        self.terminal.colour()
+    }
+}
+
+/// Writes beside the file and renames, so that an interrupted write leaves the old file whole.
+fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let Some(name) = path.file_name() else {
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, "not a file name"));
+    };
+    if fs::symlink_metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
+        // A device, a pipe or a link: replacing it would not be what was asked.
+        return fs::write(path, bytes);
+    }
+    let mut temporary_name = name.to_owned();
+    temporary_name.push(format!(".{}.tmp", std::process::id()));
+    let temporary = path.with_file_name(temporary_name);
+    let written = fs::write(&temporary, bytes).and_then(|()| fs::rename(&temporary, path));
+    if written.is_err() {
+        // The error of the write is the one to report.
+        let _ = fs::remove_file(&temporary);
+    }
+    written
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_failed_write_leaves_nothing_behind() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let missing = folder.path().join("no such folder").join("file");
+        assert!(write_atomically(&missing, b"x").is_err());
+        let path = folder.path().join("file");
+        write_atomically(&path, b"one").expect("a writable folder");
+        write_atomically(&path, b"two").expect("a writable folder");
+        assert_eq!(fs::read(&path).expect("the file"), b"two");
+        assert_eq!(fs::read_dir(folder.path()).expect("the folder").count(), 1);
+    }
+}

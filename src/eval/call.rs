@@ -1,0 +1,253 @@
+//! Calls: which function a name stands for.
+
+use super::argument::Binding;
+use super::errors::{UNKNOWN_FUNCTION, WRONG_ARGUMENTS};
+use super::{Callee, Evaluator, Function, intrinsics, special};
+use crate::diag::{At, Diagnostic, Fault, suggest};
+use crate::fault;
+use crate::name::{Ident, Name};
+use crate::source::Span;
+use crate::syntax::ast::{self, ComponentReference, ExpressionKind};
+use crate::value::{Elements, FunctionValue, Value};
+use std::sync::Arc;
+
+/// Arguments that have been evaluated.
+#[derive(Debug, Clone, Default)]
+pub struct Arguments {
+    /// Positional arguments.
+    pub positional: Vec<Value>,
+    /// Named arguments.
+    pub named: Vec<(Ident, Value)>,
+}
+
+impl From<Vec<Value>> for Arguments {
+    fn from(positional: Vec<Value>) -> Arguments {
+        Arguments { positional, named: Vec::new() }
+    }
+}
+
+/// What a called name stands for.
+#[derive(Clone)]
+pub(super) enum Target {
+    Function(Arc<Function>),
+    Builtin(Arc<Function>),
+    /// An operator whose arguments are not simply evaluated.
+    Special(special::Special),
+    Intrinsic(&'static intrinsics::Entry),
+    Unknown,
+}
+
+impl Evaluator<'_> {
+    /// Calls what the name stands for and returns its outputs.
+    pub(super) fn call(
+        &mut self,
+        function: &ComponentReference,
+        arguments: &ast::Arguments,
+        span: Span,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        if !arguments.iterators.is_empty() {
+            return self.call_with_iterators(function, arguments, span);
+        }
+        if let Some(name) = function.as_ident()
+            && let Some(Value::Function(value)) = self.scope.get(name)
+        {
+            let value = value.clone();
+            return self.call_value(&value, arguments, span);
+        }
+        match self.target(function)? {
+            Target::Function(function) => {
+                let given = self.bound(&function, arguments, &[], span)?;
+                self.call_bound(&function, given, span)
+            }
+            Target::Builtin(header) => {
+                let given = self.bound(&header, arguments, &[], span)?;
+                self.call_builtin(&header, given, span)
+            }
+            Target::Special(special) => self.special(special, arguments, span),
+            Target::Intrinsic(entry) => {
+                self.call_entry(entry, arguments, span).map(|value| vec![value])
+            }
+            Target::Unknown => self.call_type(function, arguments),
+        }
+    }
+
+    /// Calls with values in place of expressions.
+    pub(super) fn call_with(
+        &mut self,
+        function: &Arc<Function>,
+        arguments: Arguments,
+        span: Span,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        let mut binding = Binding::new(function);
+        for value in arguments.positional {
+            let at = binding.next_positional().at(span)?;
+            binding.values[at] = Some(value);
+        }
+        for (name, value) in arguments.named {
+            let at = binding.named(name).at(span)?;
+            binding.values[at] = Some(value);
+        }
+        let given = binding.finish().at(span)?;
+        self.call_bound(function, given, span)
+    }
+
+    fn target(&mut self, reference: &ComponentReference) -> Result<Target, Diagnostic> {
+        let address = std::ptr::from_ref(reference).addr();
+        if let Some(target) = self.scope.callees.get(&address) {
+            return Ok(target.clone());
+        }
+        let target = self.look_up(&reference.name(), reference.span)?;
+        if !self.scope.is_script() {
+            self.scope.callees.insert(address, target.clone());
+        }
+        Ok(target)
+    }
+
+    fn look_up(&mut self, name: &Name, span: Span) -> Result<Target, Diagnostic> {
+        Ok(match self.host.callee(name).at(span)? {
+            Some(Callee::Function(function)) => Target::Function(function),
+            Some(Callee::Builtin(header)) => Target::Builtin(header),
+            None => match name.parts.as_slice() {
+                [ident] => special::find(ident.as_str())
+                    .map(Target::Special)
+                    .or_else(|| intrinsics::find(ident.as_str()).map(Target::Intrinsic))
+                    .unwrap_or(Target::Unknown),
+                _ => Target::Unknown,
+            },
+        })
+    }
+
+    fn call_with_iterators(
+        &mut self,
+        function: &ComponentReference,
+        arguments: &ast::Arguments,
+        span: Span,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        if let (Some(name), [element]) = (function.as_ident(), arguments.positional.as_slice())
+            && let Some(value) =
+                self.reduction(name.as_str(), element, &arguments.iterators, span)?
+        {
+            return Ok(vec![value]);
+        }
+        Err(fault!(
+            UNKNOWN_FUNCTION,
+            "`{}` takes no iterators", function.name();
+            help: "`sum`, `product`, `min`, `max` and `array` do"
+        )
+        .at(span))
+    }
+
+    /// Calls a function that was given as an argument.
+    fn call_value(
+        &mut self,
+        value: &FunctionValue,
+        arguments: &ast::Arguments,
+        span: Span,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        match self.look_up(&value.name, span)? {
+            Target::Function(function) => {
+                let given = self.bound(&function, arguments, &value.named, span)?;
+                self.call_bound(&function, given, span)
+            }
+            Target::Builtin(header) => {
+                let given = self.bound(&header, arguments, &value.named, span)?;
+                self.call_builtin(&header, given, span)
+            }
+            Target::Intrinsic(entry) if value.named.is_empty() => {
+                self.call_entry(entry, arguments, span).map(|value| vec![value])
+            }
+            _ => Err(self.unknown_function(&value.name).at(span)),
+        }
+    }
+
+    /// `E(i)` for an enumeration `E`: the literal number `i` (MLS §4.9.5.3).
+    fn call_type(
+        &mut self,
+        function: &ComponentReference,
+        arguments: &ast::Arguments,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        if let [argument] = arguments.positional.as_slice()
+            && arguments.named.is_empty()
+            && let Some(Value::Array(literals)) = self.host.variable(function)?
+            && matches!(literals.elements, Elements::Enumeration(_))
+        {
+            let ordinal = self.expression(argument)?;
+            let index = crate::value::Index::from_value(ordinal).at(argument.span)?;
+            return literals.select(&[index]).map(|value| vec![value]).at(argument.span);
+        }
+        Err(self.unknown_function(&function.name()).at(function.span))
+    }
+
+    fn unknown_function(&mut self, name: &Name) -> Fault {
+        let wanted = name.to_string();
+        let mut known = self.host.function_names();
+        known.extend(intrinsics::intrinsic_names().map(str::to_owned));
+        fault!(UNKNOWN_FUNCTION, "there is no function `{wanted}`")
+            .help_if(suggest::did_you_mean(&wanted, known.iter().map(String::as_str)))
+    }
+
+    fn call_entry(
+        &mut self,
+        entry: &'static intrinsics::Entry,
+        arguments: &ast::Arguments,
+        span: Span,
+    ) -> Result<Value, Diagnostic> {
+        if let Some(named) = arguments.named.first() {
+            let fault = fault!(
+                WRONG_ARGUMENTS,
+                "`{}` takes positional arguments only", entry.name;
+                help: "leave out `{} =`", named.name.node
+            );
+            return Err(fault.at(named.name.span));
+        }
+        match arguments.positional.as_slice() {
+            [only] => {
+                let value = self.expression(only)?;
+                entry.call(std::slice::from_ref(&value)).at(span)
+            }
+            [first, second] => {
+                let values = [self.expression(first)?, self.expression(second)?];
+                entry.call(&values).at(span)
+            }
+            all => {
+                let values = self.expressions(all)?;
+                entry.call(&values).at(span)
+            }
+        }
+    }
+
+    fn call_builtin(
+        &mut self,
+        header: &Arc<Function>,
+        mut given: Vec<Option<Value>>,
+        span: Span,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        for (input, value) in header.inputs.iter().zip(&mut given) {
+            if let Some(actual) = value.take() {
+                *value = Some(reshaped(actual, &input.dims));
+            }
+        }
+        let values = self.complete(header, given, span)?;
+        self.host.call_builtin(header, values, span)
+    }
+}
+
+/// A row `[1, n]` or column `[n, 1]` as a vector where the built-in wants a vector, and a vector as
+/// a row where it wants `[1, n]`.
+fn reshaped(value: Value, wanted: &[ast::Subscript]) -> Value {
+    let is_one = |subscript: &ast::Subscript| match subscript {
+        ast::Subscript::Index(size) => size.kind == ExpressionKind::Integer(1),
+        ast::Subscript::All(_) => false,
+    };
+    match value {
+        Value::Array(mut array) => {
+            match (array.dims.as_slice(), wanted) {
+                (&[1, size] | &[size, 1], [_]) => array.dims = vec![size],
+                (&[size], [first, _]) if is_one(first) => array.dims = vec![1, size],
+                _ => {}
+            }
+            Value::Array(array)
+        }
+        other => other,
+    }
+}

@@ -1,0 +1,162 @@
+//! Components of functions and records: their sizes, bindings and storage (MLS §12.4.4).
+
+use super::errors::MISPLACED;
+use super::scope::Owner;
+use super::variable::{Declared, Variable, named, shadow_of};
+use super::{Evaluator, FunctionComponent, Scope, ValueType};
+use crate::diag::{At, Diagnostic};
+use crate::fault;
+use crate::name::{Ident, Name};
+use crate::syntax::ast::{Expression, ExpressionKind, Subscript};
+use crate::value::errors::{DOMAIN_ERROR, TYPE_MISMATCH};
+use crate::value::{RecordValue, Value};
+use indexmap::IndexMap;
+use std::sync::Arc;
+
+impl Evaluator<'_> {
+    /// Declares the component of this name if the function or record has one that is not declared
+    /// yet: bindings and sizes may refer to components in any order, as long as they do not need
+    /// each other.
+    pub(super) fn prepare(&mut self, name: Ident) -> Result<(), Diagnostic> {
+        if self.scope.variables.contains_key(&name) {
+            return Ok(());
+        }
+        match self.scope.owner.clone() {
+            Owner::Script => Ok(()),
+            Owner::Function(function) => {
+                if let Some(at) = function.inputs.iter().position(|input| input.name == name) {
+                    let given = self.scope.given.get_mut(at).and_then(Option::take);
+                    return self.declare(&function.inputs[at], given, true);
+                }
+                let mut others = function.outputs.iter().chain(&function.locals);
+                match others.find(|component| component.name == name) {
+                    Some(component) => self.declare(component, None, false),
+                    None => Ok(()),
+                }
+            }
+            Owner::Record(components) => match components.get(&name) {
+                Some(component) => self.declare(component, None, false),
+                None => Ok(()),
+            },
+        }
+    }
+
+    /// Declares a component with the value given by the caller, that of its binding, or none yet.
+    fn declare(
+        &mut self,
+        component: &FunctionComponent,
+        given: Option<Value>,
+        is_input: bool,
+    ) -> Result<(), Diagnostic> {
+        if self.scope.in_progress.contains(&component.name) {
+            let fault = fault!(MISPLACED, "the declaration of `{}` needs itself", component.name);
+            return Err(fault.at(component.span));
+        }
+        self.scope.in_progress.push(component.name);
+        let variable = self.new_variable(component, given, is_input);
+        self.scope.in_progress.pop();
+        self.scope.variables.insert(component.name, variable?);
+        Ok(())
+    }
+
+    fn new_variable(
+        &mut self,
+        component: &FunctionComponent,
+        given: Option<Value>,
+        is_input: bool,
+    ) -> Result<Variable, Diagnostic> {
+        let dims = self.dimensions(&component.dims)?;
+        let declared = Declared { value_type: component.value_type.clone(), dims };
+        let (value, span) = match (given, &component.binding) {
+            (Some(value), _) => (Some(value), self.scope.call_span),
+            (None, Some(binding)) => (Some(self.argument(component, binding)?), binding.span),
+            (None, None) => (None, component.span),
+        };
+        match value {
+            Some(value) => {
+                let value = declared
+                    .convert(value)
+                    .map_err(|fault| named(component.name, fault).at(span))?;
+                Ok(Variable {
+                    value,
+                    unassigned: None,
+                    declared: Some(declared),
+                    read_only: is_input,
+                })
+            }
+            None => self.unassigned(declared).map_err(|d| d.related(component.span, "")),
+        }
+    }
+
+    fn unassigned(&mut self, declared: Declared) -> Result<Variable, Diagnostic> {
+        let span = self.scope.call_span;
+        if let ValueType::Record(name, components) = &declared.value_type {
+            let (record, shadow) = self.record_storage(name, components)?;
+            let (value, shadow) = declared.repeated(record, shadow).at(span)?;
+            return Ok(Variable::partly_assigned(value, shadow, declared));
+        }
+        Variable::without_value(declared).at(span)
+    }
+
+    /// A record whose components have their bindings' values, and which of them have one.
+    pub(super) fn record_storage(
+        &mut self,
+        name: &Name,
+        components: &Arc<IndexMap<Ident, FunctionComponent>>,
+    ) -> Result<(Value, Value), Diagnostic> {
+        let mut scope = Scope::of_record(components.clone(), self.scope.call_span);
+        let mut inner = Evaluator { scope: &mut scope, host: self.host };
+        let mut values = IndexMap::new();
+        let mut shadows = IndexMap::new();
+        for component in components.keys() {
+            inner.prepare(*component)?;
+            if let Some(variable) = inner.scope.variables.get(component) {
+                let shadow = match variable.shadow() {
+                    Some(shadow) => shadow.clone(),
+                    None => shadow_of(&variable.value, true),
+                };
+                values.insert(*component, variable.value.clone());
+                shadows.insert(*component, shadow);
+            }
+        }
+        Ok((
+            Value::Record(RecordValue { type_name: name.clone(), fields: values }),
+            Value::Record(RecordValue { type_name: name.clone(), fields: shadows }),
+        ))
+    }
+
+    /// The sizes that declared dimensions stand for; `None` for `:`.
+    pub(super) fn dimensions(
+        &mut self,
+        dims: &[Subscript],
+    ) -> Result<Vec<Option<usize>>, Diagnostic> {
+        dims.iter()
+            .map(|subscript| match subscript {
+                Subscript::All(_) => Ok(None),
+                Subscript::Index(expression) => self.dimension(expression).map(Some),
+            })
+            .collect()
+    }
+
+    fn dimension(&mut self, expression: &Expression) -> Result<usize, Diagnostic> {
+        if let ExpressionKind::Reference(reference) = &expression.kind
+            && reference.as_ident().is_some_and(|name| name == "Boolean")
+        {
+            return Ok(2);
+        }
+        match self.expression(expression)? {
+            Value::Integer(size) => usize::try_from(size).map_err(|_| {
+                fault!(DOMAIN_ERROR, "the size {size} of a dimension is negative")
+                    .at(expression.span)
+            }),
+            // The name of an enumeration stands for all its literals.
+            Value::Array(literals) if literals.rank() == 1 => Ok(literals.elements.len()),
+            other => Err(fault!(
+                TYPE_MISMATCH,
+                "the size of a dimension must be an Integer, not a {}",
+                other.type_name()
+            )
+            .at(expression.span)),
+        }
+    }
+}

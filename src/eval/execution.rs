@@ -1,0 +1,116 @@
+//! Executing a function: its components, its algorithm, its outputs (MLS §12.4).
+
+use super::errors::EXTERNAL_FUNCTION;
+use super::variable::Variable;
+use super::{Evaluator, Function, FunctionBody, Scope, ValueType, depth};
+use crate::diag::{At, Diagnostic};
+use crate::fault;
+use crate::source::Span;
+use crate::value::{RecordValue, Value};
+use indexmap::IndexMap;
+use std::sync::Arc;
+
+impl Evaluator<'_> {
+    /// Runs a function with values for its inputs, `None` where the default counts.
+    pub(super) fn run(
+        &mut self,
+        function: &Arc<Function>,
+        given: Vec<Option<Value>>,
+        span: Span,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        let _call = depth::Call::new(&function.name).at(span)?;
+        self.check_interrupted(span)?;
+        let mut scope = Scope::of_function(function.clone(), given, span);
+        let mut inner = Evaluator { scope: &mut scope, host: self.host };
+        inner.body(function).map_err(|error| traced(error, function, span))
+    }
+
+    /// Values for all inputs of a header, its defaults evaluated.
+    pub(super) fn complete(
+        &mut self,
+        header: &Arc<Function>,
+        given: Vec<Option<Value>>,
+        span: Span,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        let mut scope = Scope::of_function(header.clone(), given, span);
+        let mut inner = Evaluator { scope: &mut scope, host: self.host };
+        header
+            .inputs
+            .iter()
+            .map(|input| {
+                inner.prepare(input.name)?;
+                inner.variable_value(input.name).cloned()
+            })
+            .collect()
+    }
+
+    fn body(&mut self, function: &Arc<Function>) -> Result<Vec<Value>, Diagnostic> {
+        for input in &function.inputs {
+            self.prepare(input.name)?;
+        }
+        match &function.body {
+            FunctionBody::RecordConstructor => return self.constructed(function),
+            FunctionBody::External(external) => {
+                let fault = fault!(
+                    EXTERNAL_FUNCTION,
+                    "`{}` is an external function, which the program cannot call", function.name;
+                    help: "write its algorithm in Modelica"
+                );
+                return Err(fault.at(external.span));
+            }
+            FunctionBody::Algorithm(statements) => {
+                for component in function.outputs.iter().chain(&function.locals) {
+                    self.prepare(component.name)?;
+                }
+                self.statements(statements)?;
+            }
+        }
+        function
+            .outputs
+            .iter()
+            .map(|output| match self.scope.variables.get_mut(&output.name) {
+                Some(variable) => {
+                    variable.check_assigned(output.name, &[]).at(output.span)?;
+                    Ok(std::mem::replace(&mut variable.value, Value::Boolean(false)))
+                }
+                None => Err(self.scope.unknown(output.name).at(output.span)),
+            })
+            .collect()
+    }
+
+    /// The record made of the inputs (MLS §12.6).
+    fn constructed(&mut self, function: &Function) -> Result<Vec<Value>, Diagnostic> {
+        let mut records = Vec::with_capacity(1);
+        for output in &function.outputs {
+            let ValueType::Record(type_name, components) = &output.value_type else { continue };
+            let mut fields = IndexMap::with_capacity(components.len());
+            for (name, component) in components.iter() {
+                if !self.scope.variables.contains_key(name)
+                    && let Some(binding) = &component.binding
+                {
+                    let value = self.expression(binding)?;
+                    self.scope.variables.insert(*name, Variable::undeclared(value));
+                }
+                let value = self.scope.get(*name).cloned();
+                let missing = || self.scope.unknown(*name).at(component.span);
+                fields.insert(*name, value.ok_or_else(missing)?);
+            }
+            let record = RecordValue { type_name: type_name.clone(), fields };
+            records.push(Value::Record(record));
+        }
+        Ok(records)
+    }
+}
+
+/// The most calls that a trace shows.
+const MAX_FRAMES: usize = 30;
+
+/// Adds the call to the trace; a function calling itself from the same place is shown once.
+fn traced(error: Diagnostic, function: &Function, span: Span) -> Diagnostic {
+    let what = format!("function `{}`", function.name);
+    let is_repeated = error.trace.last().is_some_and(|f| f.span == span && f.what == what);
+    if is_repeated || error.trace.len() >= MAX_FRAMES {
+        return error;
+    }
+    error.called_from(span, what)
+}

@@ -1,0 +1,231 @@
+//! Expressions (MLS ch. 3).
+
+use super::errors::{MISPLACED, WRONG_OUTPUTS};
+use super::{Evaluator, depth};
+use crate::diag::{At, Diagnostic, Fault};
+use crate::fault;
+use crate::name::Name;
+use crate::source::Span;
+use crate::syntax::ast::{
+    BinaryOperator, Expression, ExpressionKind, NamedArgument, UnaryOperator,
+};
+use crate::value::construct::{self, Range};
+use crate::value::errors::TYPE_MISMATCH;
+use crate::value::{FunctionValue, Value, ops};
+
+impl Evaluator<'_> {
+    /// All outputs of a call; the one value of any other expression.
+    pub(super) fn outputs(&mut self, expression: &Expression) -> Result<Vec<Value>, Diagnostic> {
+        match &expression.kind {
+            ExpressionKind::Call { function, arguments } => {
+                self.call(function, arguments, expression.span)
+            }
+            _ => Ok(vec![self.expression(expression)?]),
+        }
+    }
+
+    /// The value of an expression; of a call the first output.
+    pub(super) fn expression(&mut self, expression: &Expression) -> Result<Value, Diagnostic> {
+        match &expression.kind {
+            ExpressionKind::Real(value) => Ok(Value::Real(*value)),
+            ExpressionKind::Integer(value) => Ok(Value::Integer(*value)),
+            ExpressionKind::Boolean(value) => Ok(Value::Boolean(*value)),
+            ExpressionKind::String(text) => Ok(Value::String(text.clone())),
+            ExpressionKind::Reference(reference) => self.reference(reference),
+            ExpressionKind::End => self.end(expression.span),
+            _ => {
+                depth::check_nesting().at(expression.span)?;
+                self.composite(expression)
+            }
+        }
+    }
+
+    fn composite(&mut self, expression: &Expression) -> Result<Value, Diagnostic> {
+        let span = expression.span;
+        match &expression.kind {
+            ExpressionKind::Binary { operator, left, right } => {
+                self.binary(*operator, left, right, span)
+            }
+            ExpressionKind::Unary { operator, operand } => self.unary(*operator, operand, span),
+            ExpressionKind::Call { .. } => self.first_output(expression),
+            ExpressionKind::If { branches, otherwise } => self.chosen(branches, otherwise),
+            ExpressionKind::Range { start, step, stop } => {
+                self.range(start, step.as_deref(), stop, span)?.into_value().at(span)
+            }
+            ExpressionKind::Array(elements) => {
+                let values = self.expressions(elements)?;
+                construct::array(values).at(span)
+            }
+            ExpressionKind::Comprehension { element, indices } => {
+                self.comprehension(element, indices, span)
+            }
+            ExpressionKind::Matrix(rows) => self.matrix(rows, span),
+            ExpressionKind::Tuple(elements) => self.tuple(elements, span),
+            ExpressionKind::PartialApplication { function, named } => {
+                self.partial_application(function, named)
+            }
+            ExpressionKind::Subscripted { base, subscripts } => {
+                let base = self.expression(base)?;
+                let indices = self.subscripts(subscripts, base.dims())?;
+                base.part(&[crate::value::Step::Index(indices)]).at(span)
+            }
+            ExpressionKind::Field { base, name } => {
+                self.expression(base)?.part(&[crate::value::Step::Field(*name)]).at(span)
+            }
+            _ => self.expression(expression),
+        }
+    }
+
+    pub(super) fn expressions(
+        &mut self,
+        expressions: &[Expression],
+    ) -> Result<Vec<Value>, Diagnostic> {
+        expressions.iter().map(|expression| self.expression(expression)).collect()
+    }
+
+    /// A condition: a scalar Boolean.
+    pub(super) fn condition(&mut self, expression: &Expression) -> Result<bool, Diagnostic> {
+        match self.expression(expression)? {
+            Value::Boolean(value) => Ok(value),
+            other => Err(fault!(
+                TYPE_MISMATCH,
+                "a condition must be a Boolean, not a {}",
+                other.type_name()
+            )
+            .at(expression.span)),
+        }
+    }
+
+    fn first_output(&mut self, call: &Expression) -> Result<Value, Diagnostic> {
+        let mut outputs = self.outputs(call)?;
+        if outputs.is_empty() {
+            let message = "a value is wanted here, but the function called has no output";
+            return Err(Fault::new(WRONG_OUTPUTS, message).at(call.span));
+        }
+        Ok(outputs.swap_remove(0))
+    }
+
+    fn end(&mut self, span: Span) -> Result<Value, Diagnostic> {
+        match self.scope.ends.last() {
+            Some(size) => Ok(Value::Integer(*size as i64)),
+            None => {
+                Err(Fault::new(MISPLACED, "`end` has a meaning inside of subscripts only").at(span))
+            }
+        }
+    }
+
+    fn unary(
+        &mut self,
+        operator: UnaryOperator,
+        operand: &Expression,
+        span: Span,
+    ) -> Result<Value, Diagnostic> {
+        let value = self.expression(operand)?;
+        match operator {
+            UnaryOperator::Plus | UnaryOperator::ElementwisePlus => ops::plus(value).at(span),
+            UnaryOperator::Minus | UnaryOperator::ElementwiseMinus => ops::negate(&value).at(span),
+            UnaryOperator::Not => ops::not(&value).at(span),
+        }
+    }
+
+    fn binary(
+        &mut self,
+        operator: BinaryOperator,
+        left: &Expression,
+        right: &Expression,
+        span: Span,
+    ) -> Result<Value, Diagnostic> {
+        let a = self.expression(left)?;
+        match (operator, &a) {
+            (BinaryOperator::And, Value::Boolean(false)) => return Ok(a),
+            (BinaryOperator::Or, Value::Boolean(true)) => return Ok(a),
+            _ => {}
+        }
+        let b = self.expression(right)?;
+        apply(operator, &a, &b).at(span)
+    }
+
+    /// Only the chosen branch is evaluated (MLS §3.3).
+    fn chosen(
+        &mut self,
+        branches: &[(Expression, Expression)],
+        otherwise: &Expression,
+    ) -> Result<Value, Diagnostic> {
+        for (condition, value) in branches {
+            if self.condition(condition)? {
+                return self.expression(value);
+            }
+        }
+        self.expression(otherwise)
+    }
+
+    pub(super) fn range(
+        &mut self,
+        start: &Expression,
+        step: Option<&Expression>,
+        stop: &Expression,
+        span: Span,
+    ) -> Result<Range, Diagnostic> {
+        let start = self.expression(start)?;
+        let step = step.map(|step| self.expression(step)).transpose()?;
+        let stop = self.expression(stop)?;
+        Range::new(&start, step.as_ref(), &stop).at(span)
+    }
+
+    fn matrix(&mut self, rows: &[Vec<Expression>], span: Span) -> Result<Value, Diagnostic> {
+        let rows = rows.iter().map(|row| self.expressions(row)).collect::<Result<Vec<_>, _>>()?;
+        construct::matrix(rows).at(span)
+    }
+
+    fn tuple(&mut self, elements: &[Option<Expression>], span: Span) -> Result<Value, Diagnostic> {
+        let missing =
+            || Fault::new(WRONG_OUTPUTS, "an output list with a gap is no value").at(span);
+        let values = elements
+            .iter()
+            .map(|element| self.expression(element.as_ref().ok_or_else(missing)?))
+            .collect::<Result<Vec<_>, Diagnostic>>()?;
+        Ok(Value::Tuple(values))
+    }
+
+    /// `function f(x = 1)` (MLS §12.4.2.1)
+    pub(super) fn partial_application(
+        &mut self,
+        function: &Name,
+        named: &[NamedArgument],
+    ) -> Result<Value, Diagnostic> {
+        let given = named
+            .iter()
+            .map(|argument| Ok((argument.name.node, self.expression(&argument.value)?)))
+            .collect::<Result<Vec<_>, Diagnostic>>()?;
+        let local = function.first().filter(|_| function.is_simple());
+        if let Some(Value::Function(known)) = local.and_then(|ident| self.scope.get(ident)) {
+            let mut known = known.clone();
+            known.named.extend(given);
+            return Ok(Value::Function(known));
+        }
+        Ok(Value::Function(FunctionValue { name: function.clone(), named: given }))
+    }
+}
+
+fn apply(operator: BinaryOperator, a: &Value, b: &Value) -> Result<Value, Fault> {
+    match operator {
+        BinaryOperator::Add => ops::add(a, b),
+        BinaryOperator::Subtract => ops::subtract(a, b),
+        BinaryOperator::Multiply => ops::multiply(a, b),
+        BinaryOperator::Divide => ops::divide(a, b),
+        BinaryOperator::Power => ops::power(a, b),
+        BinaryOperator::ElementwiseAdd => ops::elementwise_add(a, b),
+        BinaryOperator::ElementwiseSubtract => ops::elementwise_subtract(a, b),
+        BinaryOperator::ElementwiseMultiply => ops::elementwise_multiply(a, b),
+        BinaryOperator::ElementwiseDivide => ops::elementwise_divide(a, b),
+        BinaryOperator::ElementwisePower => ops::elementwise_power(a, b),
+        BinaryOperator::Less => ops::less(a, b).map(Value::Boolean),
+        BinaryOperator::LessEqual => ops::less_equal(a, b).map(Value::Boolean),
+        BinaryOperator::Greater => ops::greater(a, b).map(Value::Boolean),
+        BinaryOperator::GreaterEqual => ops::greater_equal(a, b).map(Value::Boolean),
+        BinaryOperator::Equal => ops::equal(a, b).map(Value::Boolean),
+        BinaryOperator::NotEqual => ops::not_equal(a, b).map(Value::Boolean),
+        BinaryOperator::And => ops::and(a, b),
+        BinaryOperator::Or => ops::or(a, b),
+    }
+}

@@ -1,0 +1,12 @@
+//! Where execution goes on after a statement.
+
+/// Where execution goes on after a statement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Flow {
+    /// With the next statement.
+    Next,
+    /// Behind the innermost loop (`break`, MLS §11.2.5).
+    Break,
+    /// Behind the end of the function (`return`, MLS §11.2.6).
+    Return,
+}

@@ -1,0 +1,87 @@
+//! Reductions of arrays: `min`, `max`, `sum`, `product` (MLS §10.3.4). With iterators they are
+//! evaluated element by element elsewhere.
+
+use super::Entry;
+use crate::diag::Fault;
+use crate::fault;
+use crate::value::errors::{DOMAIN_ERROR, INTEGER_OVERFLOW, TYPE_MISMATCH};
+use crate::value::{ArrayValue, Elements, Value, ops};
+use std::cmp::Ordering;
+
+pub(super) const FUNCTIONS: &[Entry] = &[
+    Entry::of_values("max", 1, 2, |values| extreme("max", values, Ordering::Greater)),
+    Entry::of_values("min", 1, 2, |values| extreme("min", values, Ordering::Less)),
+    Entry::of_values("product", 1, 1, product),
+    Entry::of_values("sum", 1, 1, sum),
+];
+
+/// Of two scalars, or of the elements of one array. A NaN among them is the result.
+fn extreme(name: &str, arguments: &[Value], better: Ordering) -> Result<Value, Fault> {
+    match arguments {
+        [Value::Array(array)] => {
+            let mut elements = (0..array.elements.len()).map(|at| array.elements.get(at));
+            let Some(first) = elements.next() else { return of_none(name, array, better) };
+            elements.try_fold(first, |best, next| chosen(name, best, next, better))
+        }
+        [a, b] => {
+            let both = chosen(name, a.clone(), b.clone(), better)?;
+            let is_real = matches!(a, Value::Real(_)) || matches!(b, Value::Real(_));
+            Ok(if is_real { both.promoted() } else { both })
+        }
+        _ => Err(fault!(TYPE_MISMATCH, "`{name}` takes two scalars or one array")),
+    }
+}
+
+/// The least value of the type for `max`, the greatest for `min` (MLS §10.3.4.1).
+fn of_none(name: &str, array: &ArrayValue, better: Ordering) -> Result<Value, Fault> {
+    let is_min = better == Ordering::Less;
+    match &array.elements {
+        Elements::Real(_) => Ok(Value::Real(if is_min { f64::MAX } else { f64::MIN })),
+        Elements::Integer(_) => Ok(Value::Integer(if is_min { i64::MAX } else { i64::MIN })),
+        Elements::Boolean(_) => Ok(Value::Boolean(is_min)),
+        _ => Err(fault!(DOMAIN_ERROR, "`{name}` of an array without elements has no value")),
+    }
+}
+
+fn chosen(name: &str, best: Value, next: Value, better: Ordering) -> Result<Value, Fault> {
+    match ops::order(name, &next, &best)? {
+        Some(order) if order == better => Ok(next),
+        Some(_) => Ok(best),
+        None if matches!(best, Value::Real(x) if x.is_nan()) => Ok(best),
+        None => Ok(next),
+    }
+}
+
+fn sum(arguments: &[Value]) -> Result<Value, Fault> {
+    match &arguments[0] {
+        Value::Array(ArrayValue { elements: Elements::Real(values), .. }) => {
+            Ok(Value::Real(values.iter().sum()))
+        }
+        Value::Array(ArrayValue { elements: Elements::Integer(values), .. }) => {
+            let total = values.iter().try_fold(0i64, |sum, value| sum.checked_add(*value));
+            total.map(Value::Integer).ok_or_else(|| overflow("sum"))
+        }
+        other => Err(unsuitable("sum", other)),
+    }
+}
+
+fn product(arguments: &[Value]) -> Result<Value, Fault> {
+    match &arguments[0] {
+        Value::Array(ArrayValue { elements: Elements::Real(values), .. }) => {
+            Ok(Value::Real(values.iter().product()))
+        }
+        Value::Array(ArrayValue { elements: Elements::Integer(values), .. }) => {
+            let total = values.iter().try_fold(1i64, |product, value| product.checked_mul(*value));
+            total.map(Value::Integer).ok_or_else(|| overflow("product"))
+        }
+        other => Err(unsuitable("product", other)),
+    }
+}
+
+fn overflow(name: &str) -> Fault {
+    fault!(INTEGER_OVERFLOW, "the {name} does not fit in an Integer")
+}
+
+fn unsuitable(name: &str, value: &Value) -> Fault {
+    fault!(TYPE_MISMATCH, "`{name}` needs an array of numbers, got {}", value.type_name())
+}

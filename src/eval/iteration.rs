@@ -1,0 +1,183 @@
+//! Iterators: loops' ranges, comprehensions `{e for i in r}` (MLS §10.4.1) and reductions
+//! `sum(e for i in r)` (MLS §10.3.4).
+
+use super::Evaluator;
+use super::deduction;
+use super::errors::MISPLACED;
+use crate::diag::{At, Diagnostic, Fault};
+use crate::fault;
+use crate::source::Span;
+use crate::syntax::ast::{Expression, ExpressionKind, ForIndex, Statement};
+use crate::value::construct::{self, Range};
+use crate::value::errors::{DOMAIN_ERROR, TYPE_MISMATCH};
+use crate::value::{Value, ops};
+
+/// What a deduced range is looked for in.
+#[derive(Clone, Copy)]
+pub(super) enum Body<'b> {
+    /// Of a loop.
+    Statements(&'b [Statement]),
+    /// Of a comprehension.
+    Expression(&'b Expression),
+}
+
+impl Evaluator<'_> {
+    /// The values that a loop variable takes.
+    pub(super) fn iterated(
+        &mut self,
+        index: &ForIndex,
+        body: Body<'_>,
+    ) -> Result<Range, Diagnostic> {
+        match &index.range {
+            None => self.deduced(index, body),
+            Some(expression) => match &expression.kind {
+                ExpressionKind::Range { start, step, stop } => {
+                    self.range(start, step.as_deref(), stop, expression.span)
+                }
+                ExpressionKind::Reference(reference)
+                    if reference.as_ident().is_some_and(|name| name == "Boolean") =>
+                {
+                    Ok(Range::Values(vec![Value::Boolean(false), Value::Boolean(true)]))
+                }
+                _ => {
+                    let value = self.expression(expression)?;
+                    Range::over(value).at(expression.span)
+                }
+            },
+        }
+    }
+
+    /// The range `1:size(x, d)` of the array `x` that the loop variable is a subscript of
+    /// (MLS §11.2.2.1).
+    fn deduced(&mut self, index: &ForIndex, body: Body<'_>) -> Result<Range, Diagnostic> {
+        let name = index.name.node;
+        let uses = deduction::subscript_uses(name, body);
+        let mut sizes = Vec::new();
+        for found in &uses {
+            let dims = match self.sizes_of(&found.array)? {
+                Some(dims) => dims,
+                None => self.reference(&found.array)?.dims().to_vec(),
+            };
+            if let Some(size) = dims.get(found.dimension) {
+                sizes.push((*size, found.array.span));
+            }
+        }
+        // The references looked at are copies: their addresses may be used again.
+        self.scope.callees.clear();
+        let Some((size, _)) = sizes.first().copied() else {
+            let fault = fault!(
+                MISPLACED,
+                "the range of `{name}` is not written and cannot be deduced";
+                help: "write `{name} in 1:n`, or use `{name}` as the subscript of an array"
+            );
+            return Err(fault.at(index.name.span));
+        };
+        if let Some((other, span)) = sizes.iter().find(|(other, _)| *other != size) {
+            let fault = fault!(
+                MISPLACED,
+                "`{name}` is the subscript of dimensions with the sizes {size} and {other}";
+                help: "write the range of `{name}`"
+            );
+            return Err(fault.at(index.name.span).related(*span, "a different size"));
+        }
+        Range::new(&Value::Integer(1), None, &Value::Integer(size as i64)).at(index.name.span)
+    }
+
+    /// `{e for i in r, j in s}`: the last iterator is the first dimension's, as in
+    /// `{{e for i in r} for j in s}` (MLS §10.4.1.1).
+    pub(super) fn comprehension(
+        &mut self,
+        element: &Expression,
+        indices: &[ForIndex],
+        span: Span,
+    ) -> Result<Value, Diagnostic> {
+        let Some((outer, inner)) = indices.split_last() else { return self.expression(element) };
+        let range = self.iterated(outer, Body::Expression(element))?;
+        let mut values = Vec::with_capacity(range.count().min(1 << 16));
+        self.with_each(outer, &range, |evaluator| {
+            values.push(evaluator.comprehension(element, inner, span)?);
+            Ok(())
+        })?;
+        construct::array(values).at(span)
+    }
+
+    /// `sum`, `product`, `min`, `max`, `array` with iterators; `None` for any other name.
+    pub(super) fn reduction(
+        &mut self,
+        name: &str,
+        element: &Expression,
+        indices: &[ForIndex],
+        span: Span,
+    ) -> Result<Option<Value>, Diagnostic> {
+        let combine: fn(&Value, &Value) -> Result<Value, Fault> = match name {
+            "array" => return self.comprehension(element, indices, span).map(Some),
+            "sum" => ops::add,
+            "product" => ops::multiply,
+            "min" => |a, b| Ok(if ops::less(b, a)? { b.clone() } else { a.clone() }),
+            "max" => |a, b| Ok(if ops::greater(b, a)? { b.clone() } else { a.clone() }),
+            _ => return Ok(None),
+        };
+        let mut total = None;
+        self.reduce(element, indices, &mut |value| {
+            if name == "product" && value.rank() > 0 {
+                return Err(fault!(
+                    TYPE_MISMATCH,
+                    "`product` multiplies scalars, not values of type {}",
+                    value.type_name()
+                ));
+            }
+            total = Some(match total.take() {
+                None => value,
+                Some(before) => combine(&before, &value)?,
+            });
+            Ok(())
+        })?;
+        if let Some(total) = total {
+            return Ok(Some(total));
+        }
+        match name {
+            "sum" => Ok(Some(Value::Integer(0))),
+            "product" => Ok(Some(Value::Integer(1))),
+            _ => Err(fault!(DOMAIN_ERROR, "`{name}` of no element has no value").at(span)),
+        }
+    }
+
+    fn reduce(
+        &mut self,
+        element: &Expression,
+        indices: &[ForIndex],
+        take: &mut dyn FnMut(Value) -> Result<(), Fault>,
+    ) -> Result<(), Diagnostic> {
+        let Some((outer, inner)) = indices.split_last() else {
+            let value = self.expression(element)?;
+            return take(value).at(element.span);
+        };
+        let range = self.iterated(outer, Body::Expression(element))?;
+        self.with_each(outer, &range, |evaluator| evaluator.reduce(element, inner, take))
+    }
+
+    fn with_each(
+        &mut self,
+        index: &ForIndex,
+        range: &Range,
+        mut turn: impl FnMut(&mut Self) -> Result<(), Diagnostic>,
+    ) -> Result<(), Diagnostic> {
+        for at in 0..range.count() {
+            if at % 4096 == 4095 {
+                self.check_interrupted(index.name.span)?;
+            }
+            self.scope.iterators.push((index.name.node, range.get(at)));
+            let result = turn(self);
+            self.scope.iterators.pop();
+            result?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn check_interrupted(&mut self, span: Span) -> Result<(), Diagnostic> {
+        match self.host.interrupted() {
+            Some(fault) => Err(fault.at(span)),
+            None => Ok(()),
+        }
+    }
+}

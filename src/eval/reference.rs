@@ -1,0 +1,307 @@
+//! References to variables and their parts: `a[2].b[1, :]`, read and assigned without copying the
+//! array that they reach into.
+
+use super::Evaluator;
+use super::errors::UNKNOWN_VARIABLE;
+use super::variable::{Variable, named};
+use crate::diag::{At, Diagnostic};
+use crate::fault;
+use crate::name::Ident;
+use crate::source::Span;
+use crate::syntax::ast::{
+    ComponentReference, Expression, ExpressionKind, ReferencePart, Subscript,
+};
+use crate::value::{Elements, Index, Step, Value};
+
+impl Evaluator<'_> {
+    /// The value of `a`, `a[i]`, `a.b[i].c`, ….
+    pub(super) fn reference(
+        &mut self,
+        reference: &ComponentReference,
+    ) -> Result<Value, Diagnostic> {
+        if let ([part], false) = (reference.parts.as_slice(), reference.global) {
+            let found = match part.subscripts.as_slice() {
+                [] => self.scope.get(part.name).cloned(),
+                _ => self.element(part, reference.span)?,
+            };
+            if let Some(value) = found {
+                return Ok(value);
+            }
+        }
+        let Some(first) = self.local(reference)? else { return self.global(reference) };
+        let path = self.path(first.name, &reference.parts)?;
+        let value = self.variable_value(first.name)?.part(&path);
+        let value = value.map_err(|fault| named(first.name, fault).at(reference.span))?;
+        if let Some(variable) = self.scope.variables.get(&first.name)
+            && !self.is_iterator(first.name)
+        {
+            variable.check_assigned(first.name, &path).at(reference.span)?;
+        }
+        Ok(value)
+    }
+
+    /// The sizes of a variable or a part of one, which need not have a value yet; `None` for a
+    /// global name.
+    pub(super) fn sizes_of(
+        &mut self,
+        reference: &ComponentReference,
+    ) -> Result<Option<Vec<usize>>, Diagnostic> {
+        let Some(first) = self.local(reference)? else { return Ok(None) };
+        if reference.as_ident().is_some() {
+            return Ok(Some(self.variable_value(first.name)?.dims().to_vec()));
+        }
+        let path = self.path(first.name, &reference.parts)?;
+        let part = self.variable_value(first.name)?.part(&path).at(reference.span)?;
+        Ok(Some(part.dims().to_vec()))
+    }
+
+    /// Assigns to a variable or a part of one.
+    pub(super) fn assign(
+        &mut self,
+        target: &ComponentReference,
+        value: Value,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        let first = &target.parts[0];
+        self.prepare(first.name)?;
+        let known = !target.global && self.scope.variables.contains_key(&first.name);
+        if let (Some(name), true) = (target.as_ident(), known || self.may_declare(target)) {
+            return self.scope.set(name, value).at(span);
+        }
+        if !known {
+            return self.assign_global(target, value, span);
+        }
+        if let Some(done) = self.assign_element(target, &value)? {
+            return Ok(done);
+        }
+        let path = self.path(first.name, &target.parts)?;
+        let variable = self.variable_mut(first.name, target.span)?;
+        variable
+            .set_part(first.name, &path, value)
+            .map_err(|fault| named(first.name, fault).at(target.span))
+    }
+
+    /// Whether assigning to a name nobody knows makes a variable.
+    fn may_declare(&self, target: &ComponentReference) -> bool {
+        self.scope.is_script() && target.as_ident().is_some()
+    }
+
+    fn assign_global(
+        &mut self,
+        target: &ComponentReference,
+        value: Value,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        if self.host.assign(target, value, span)? {
+            return Ok(());
+        }
+        Err(self.scope.unknown(target.parts[0].name).at(target.span))
+    }
+
+    /// The first part of a reference, if it names a variable of this scope.
+    fn local<'r>(
+        &mut self,
+        reference: &'r ComponentReference,
+    ) -> Result<Option<&'r ReferencePart>, Diagnostic> {
+        let first = &reference.parts[0];
+        if reference.global {
+            return Ok(None);
+        }
+        if self.is_iterator(first.name) || self.scope.variables.contains_key(&first.name) {
+            return Ok(Some(first));
+        }
+        self.prepare(first.name)?;
+        Ok(self.scope.variables.contains_key(&first.name).then_some(first))
+    }
+
+    fn is_iterator(&self, name: Ident) -> bool {
+        self.scope.iterators.iter().any(|(iterator, _)| *iterator == name)
+    }
+
+    fn global(&mut self, reference: &ComponentReference) -> Result<Value, Diagnostic> {
+        if let Some(value) = self.host.variable(reference)? {
+            return Ok(value);
+        }
+        let fault = match reference.as_ident() {
+            Some(name) => self.scope.unknown(name),
+            None => {
+                fault!(UNKNOWN_VARIABLE, "there is no variable `{}` here", reference.name())
+            }
+        };
+        Err(fault.at(reference.span))
+    }
+
+    /// The stored value, whether complete or not.
+    pub(super) fn variable_value(&self, name: Ident) -> Result<&Value, Diagnostic> {
+        let iterator = self.scope.iterators.iter().rev().find(|(iterator, _)| *iterator == name);
+        match iterator {
+            Some((_, value)) => Ok(value),
+            None => match self.scope.variables.get(&name) {
+                Some(variable) => Ok(&variable.value),
+                None => Err(self.scope.unknown(name).at(Span::NONE)),
+            },
+        }
+    }
+
+    fn variable_mut(&mut self, name: Ident, span: Span) -> Result<&mut Variable, Diagnostic> {
+        if self.is_iterator(name) || !self.scope.variables.contains_key(&name) {
+            let code = super::errors::NOT_ASSIGNABLE;
+            return Err(fault!(code, "the loop variable `{name}` cannot be assigned").at(span));
+        }
+        match self.scope.variables.get_mut(&name) {
+            Some(variable) => Ok(variable),
+            None => Err(fault!(UNKNOWN_VARIABLE, "there is no variable `{name}` here").at(span)),
+        }
+    }
+
+    /// The quick way to a single element: `x[i]`, `x[i, j]` with Integer subscripts. `None` where
+    /// the general way has to be taken.
+    fn element(&mut self, part: &ReferencePart, span: Span) -> Result<Option<Value>, Diagnostic> {
+        let Some(positions) = self.positions(part)? else { return Ok(None) };
+        let positions = positions.as_slice();
+        if let Some(variable) = self.scope.variables.get(&part.name)
+            && variable.unassigned.is_none()
+            && !self.is_iterator(part.name)
+            && let Value::Array(array) = &variable.value
+            && array.rank() == positions.len()
+        {
+            let offset = array.offset(positions).map_err(|f| named(part.name, f).at(span))?;
+            return Ok(Some(array.elements.get(offset)));
+        }
+        Ok(None)
+    }
+
+    /// The quick way to overwrite a single element of an array of numbers.
+    fn assign_element(
+        &mut self,
+        target: &ComponentReference,
+        value: &Value,
+    ) -> Result<Option<()>, Diagnostic> {
+        let [part] = target.parts.as_slice() else { return Ok(None) };
+        let Some(positions) = self.positions(part)? else { return Ok(None) };
+        let positions = positions.as_slice();
+        if self.is_iterator(part.name) {
+            return Ok(None);
+        }
+        let Some(variable) = self.scope.variables.get_mut(&part.name) else { return Ok(None) };
+        if variable.read_only || variable.unassigned.is_some() {
+            return Ok(None);
+        }
+        let Value::Array(array) = &mut variable.value else { return Ok(None) };
+        if array.rank() != positions.len() {
+            return Ok(None);
+        }
+        let offset = array.offset(positions).map_err(|f| named(part.name, f).at(target.span))?;
+        match (&mut array.elements, value) {
+            (Elements::Real(values), Value::Real(value)) => values[offset] = *value,
+            (Elements::Real(values), Value::Integer(value)) => values[offset] = *value as f64,
+            (Elements::Integer(values), Value::Integer(value)) => values[offset] = *value,
+            (Elements::Boolean(values), Value::Boolean(value)) => values[offset] = *value,
+            _ => return Ok(None),
+        }
+        Ok(Some(()))
+    }
+
+    /// The values of at most four subscripts that are literals or names of Integers. Nothing with
+    /// an effect is evaluated, so that the general way may evaluate them again.
+    fn positions(&mut self, part: &ReferencePart) -> Result<Option<Positions>, Diagnostic> {
+        let mut positions = Positions { values: [0; 4], count: 0 };
+        for subscript in &part.subscripts {
+            let Subscript::Index(expression) = subscript else { return Ok(None) };
+            let Some(position) = self.quick_integer(expression) else { return Ok(None) };
+            if positions.count == positions.values.len() {
+                return Ok(None);
+            }
+            positions.values[positions.count] = position;
+            positions.count += 1;
+        }
+        Ok(Some(positions))
+    }
+
+    fn quick_integer(&self, expression: &Expression) -> Option<i64> {
+        match &expression.kind {
+            ExpressionKind::Integer(value) => Some(*value),
+            ExpressionKind::Reference(reference) => match self.scope.get(reference.as_ident()?)? {
+                Value::Integer(value) => Some(*value),
+                _ => None,
+            },
+            ExpressionKind::Binary { operator, left, right } => {
+                use crate::syntax::ast::BinaryOperator;
+                let (a, b) = (self.quick_integer(left)?, self.quick_integer(right)?);
+                match operator {
+                    BinaryOperator::Add => a.checked_add(b),
+                    BinaryOperator::Subtract => a.checked_sub(b),
+                    _ => None,
+                }
+            }
+            _ => None,
+        }
+    }
+
+    /// The way from a variable to the part that a reference names, its subscripts evaluated.
+    fn path(&mut self, root: Ident, parts: &[ReferencePart]) -> Result<Vec<Step>, Diagnostic> {
+        let mut path = Vec::with_capacity(2 * parts.len());
+        for (at, part) in parts.iter().enumerate() {
+            if at > 0 {
+                path.push(Step::Field(part.name));
+            }
+            if part.subscripts.is_empty() {
+                continue;
+            }
+            let dims = self.dims_of(root, &path, part)?;
+            path.push(Step::Index(self.subscripts(&part.subscripts, &dims)?));
+        }
+        Ok(path)
+    }
+
+    /// Sizes of what the subscripts of a part apply to. For a field of an array of records these
+    /// are the sizes of one record's field.
+    fn dims_of(
+        &self,
+        root: Ident,
+        path: &[Step],
+        part: &ReferencePart,
+    ) -> Result<Vec<usize>, Diagnostic> {
+        let value = self.variable_value(root)?;
+        if path.is_empty() {
+            return Ok(value.dims().to_vec());
+        }
+        let reached = value.part(path).at(part.subscripts[0].span())?;
+        let outer = path[..path.len() - 1].to_vec();
+        let slices = value.part(&outer).at(part.subscripts[0].span())?.rank();
+        Ok(reached.dims()[slices.min(reached.rank())..].to_vec())
+    }
+
+    /// Evaluates subscripts of something with these sizes: `end` is the size of its dimension.
+    pub(super) fn subscripts(
+        &mut self,
+        subscripts: &[Subscript],
+        dims: &[usize],
+    ) -> Result<Vec<Index>, Diagnostic> {
+        let mut indices = Vec::with_capacity(subscripts.len());
+        for (dimension, subscript) in subscripts.iter().enumerate() {
+            indices.push(match subscript {
+                Subscript::All(_) => Index::All,
+                Subscript::Index(expression) => {
+                    self.scope.ends.push(dims.get(dimension).copied().unwrap_or(0));
+                    let value = self.expression(expression);
+                    self.scope.ends.pop();
+                    Index::from_value(value?).at(expression.span)?
+                }
+            });
+        }
+        Ok(indices)
+    }
+}
+
+/// The values of a few subscripts, without a vector on the heap.
+struct Positions {
+    values: [i64; 4],
+    count: usize,
+}
+
+impl Positions {
+    fn as_slice(&self) -> &[i64] {
+        &self.values[..self.count]
+    }
+}

@@ -1,0 +1,186 @@
+//! Statements (MLS §11.2).
+
+use super::errors::{MISPLACED, MODEL_ONLY, WRONG_OUTPUTS};
+use super::iteration::Body;
+use super::{Evaluator, Flow};
+use crate::diag::{Diagnostic, Fault};
+use crate::fault;
+use crate::source::Span;
+use crate::syntax::ast::{
+    ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
+};
+
+impl Evaluator<'_> {
+    /// Executes statements in order, until one leads elsewhere.
+    pub(super) fn statements(&mut self, statements: &[Statement]) -> Result<Flow, Diagnostic> {
+        for statement in statements {
+            let flow = self.statement(statement)?;
+            if flow != Flow::Next {
+                return Ok(flow);
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    fn statement(&mut self, statement: &Statement) -> Result<Flow, Diagnostic> {
+        match &statement.kind {
+            StatementKind::Assign { target, value } => {
+                let new = self.expression(value)?;
+                self.assign(target, new, statement.span)?;
+            }
+            StatementKind::MultiAssign { targets, value } => self.assign_outputs(targets, value)?,
+            StatementKind::Call(call) => {
+                self.check_interrupted(statement.span)?;
+                self.outputs(call)?;
+            }
+            StatementKind::If { branches, otherwise } => {
+                return self.if_statement(branches, otherwise);
+            }
+            StatementKind::For { indices, body } => return self.for_statement(indices, body),
+            StatementKind::While { condition, body } => {
+                return self.while_statement(condition, body);
+            }
+            StatementKind::When { .. } => {
+                let message = "a `when` has a meaning in models only";
+                return Err(Fault::new(MODEL_ONLY, message).at(statement.span));
+            }
+            StatementKind::Break if self.scope.loops == 0 => {
+                return Err(Fault::new(MISPLACED, "`break` outside of a loop").at(statement.span));
+            }
+            StatementKind::Break => return Ok(Flow::Break),
+            StatementKind::Return => return Ok(Flow::Return),
+        }
+        Ok(Flow::Next)
+    }
+
+    /// `(a, , b) := f(x)` (MLS §11.2.1.1)
+    fn assign_outputs(
+        &mut self,
+        targets: &[Option<ComponentReference>],
+        call: &Expression,
+    ) -> Result<(), Diagnostic> {
+        if !matches!(call.kind, ExpressionKind::Call { .. }) {
+            let message = "only the outputs of a function call can be assigned to a list";
+            return Err(Fault::new(WRONG_OUTPUTS, message).at(call.span));
+        }
+        let outputs = self.outputs(call)?;
+        if outputs.len() < targets.len() {
+            let fault = fault!(
+                WRONG_OUTPUTS,
+                "{} results are wanted, but the function has {}",
+                targets.len(),
+                count(outputs.len())
+            );
+            return Err(fault.at(call.span));
+        }
+        for (target, value) in targets.iter().zip(outputs) {
+            if let Some(target) = target {
+                self.assign(target, value, target.span)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn if_statement(
+        &mut self,
+        branches: &[(Expression, Vec<Statement>)],
+        otherwise: &[Statement],
+    ) -> Result<Flow, Diagnostic> {
+        for (condition, statements) in branches {
+            if self.condition(condition)? {
+                return self.statements(statements);
+            }
+        }
+        self.statements(otherwise)
+    }
+
+    fn for_statement(
+        &mut self,
+        indices: &[ForIndex],
+        body: &[Statement],
+    ) -> Result<Flow, Diagnostic> {
+        let Some((index, inner)) = indices.split_first() else { return self.statements(body) };
+        let range = self.iterated(index, Body::Statements(body))?;
+        let watched = self.is_outermost_of_script();
+        let depth = self.scope.iterators.len();
+        self.scope.loops += 1;
+        let result = self.turns(range.count(), watched, index.name.span, |evaluator, turn| {
+            evaluator.scope.iterators.truncate(depth);
+            evaluator.scope.iterators.push((index.name.node, range.get(turn)));
+            match inner {
+                [] => evaluator.statements(body),
+                inner => evaluator.for_statement(inner, body),
+            }
+        });
+        self.scope.iterators.truncate(depth);
+        self.scope.loops -= 1;
+        result
+    }
+
+    fn turns(
+        &mut self,
+        count: usize,
+        watched: bool,
+        span: Span,
+        mut body: impl FnMut(&mut Self, usize) -> Result<Flow, Diagnostic>,
+    ) -> Result<Flow, Diagnostic> {
+        for turn in 0..count {
+            self.check_interrupted(span)?;
+            if watched {
+                self.host.loop_turn(turn, Some(count));
+            }
+            match body(self, turn)? {
+                Flow::Next => {}
+                Flow::Break => return Ok(Flow::Next),
+                Flow::Return => return Ok(Flow::Return),
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    fn while_statement(
+        &mut self,
+        condition: &Expression,
+        body: &[Statement],
+    ) -> Result<Flow, Diagnostic> {
+        let watched = self.is_outermost_of_script();
+        self.scope.loops += 1;
+        let result = self.while_turns(condition, body, watched);
+        self.scope.loops -= 1;
+        result
+    }
+
+    fn while_turns(
+        &mut self,
+        condition: &Expression,
+        body: &[Statement],
+        watched: bool,
+    ) -> Result<Flow, Diagnostic> {
+        let mut turn = 0;
+        while self.condition(condition)? {
+            self.check_interrupted(condition.span)?;
+            if watched {
+                self.host.loop_turn(turn, None);
+            }
+            turn += 1;
+            match self.statements(body)? {
+                Flow::Next => {}
+                Flow::Break => return Ok(Flow::Next),
+                Flow::Return => return Ok(Flow::Return),
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    fn is_outermost_of_script(&self) -> bool {
+        self.scope.is_script() && self.scope.loops == 0
+    }
+}
+
+fn count(outputs: usize) -> String {
+    match outputs {
+        0 => "no output".into(),
+        1 => "one output".into(),
+        n => format!("{n} outputs"),
+    }
+}

@@ -1,0 +1,167 @@
+//! Derivatives by the rules of the operators and of the function table.
+//!
+//! Relations and logic have derivative zero, if-expressions are differentiated branch by branch:
+//! the result holds wherever the expression is differentiable.
+
+use super::function::FunctionId;
+use super::node::{Arguments, Expr, Node, RelationOperator, VarId};
+use super::pool::Pool;
+use rustc_hash::FxHashMap;
+
+/// ∂/∂`variable`.
+pub fn derivative(pool: &mut Pool, expr: Expr, variable: VarId) -> Expr {
+    let one = pool.constant(1.0);
+    differentiate(pool, expr, &|candidate| (candidate == variable).then_some(one))
+}
+
+/// The total derivative Σ ∂/∂v · v′ where `seed` gives v′, `None` for zero. With v′ = dv/dt it is
+/// d/dt.
+pub fn differentiate(pool: &mut Pool, expr: Expr, seed: &dyn Fn(VarId) -> Option<Expr>) -> Expr {
+    let mut slopes = Slopes { pool, of: FxHashMap::default() };
+    for node in slopes.pool.reachable(&[expr]) {
+        if let Some(slope) = slopes.slope(node, seed) {
+            slopes.of.insert(node, slope);
+        }
+    }
+    match slopes.of.get(&expr) {
+        Some(slope) => *slope,
+        None => pool.constant(0.0),
+    }
+}
+
+/// Derivatives of the nodes done so far; those that are zero are not kept.
+struct Slopes<'a> {
+    pool: &'a mut Pool,
+    of: FxHashMap<Expr, Expr>,
+}
+
+impl Slopes<'_> {
+    fn slope(&mut self, expr: Expr, seed: &dyn Fn(VarId) -> Option<Expr>) -> Option<Expr> {
+        let slope = match self.pool.node(expr).clone() {
+            Node::Constant(_)
+            | Node::Relation(..)
+            | Node::And(..)
+            | Node::Or(..)
+            | Node::Not(_) => None,
+            Node::Variable(variable) => seed(variable),
+            Node::Neg(a) => self.get(a).map(|da| self.pool.neg(da)),
+            Node::Add(a, b) => self.sum(a, b),
+            Node::Sub(a, b) => self.difference(a, b),
+            Node::Mul(a, b) => self.product(a, b),
+            Node::Div(a, b) => self.quotient(expr, a, b),
+            Node::Pow(a, b) => self.power(expr, a, b),
+            Node::Apply(id, arguments) => self.application(id, arguments),
+            Node::If(condition, a, b) => self.branches(condition, a, b),
+            Node::Call { function, output, arguments } => {
+                self.call(function, output, &[], &arguments)
+            }
+            Node::CallDerivative { function, output, inputs, arguments } => {
+                self.call(function, output, &inputs, &arguments)
+            }
+        };
+        slope.filter(|slope| self.pool.as_constant(*slope) != Some(0.0))
+    }
+
+    fn get(&self, expr: Expr) -> Option<Expr> {
+        self.of.get(&expr).copied()
+    }
+
+    fn sum(&mut self, a: Expr, b: Expr) -> Option<Expr> {
+        match (self.get(a), self.get(b)) {
+            (Some(da), Some(db)) => Some(self.pool.add(da, db)),
+            (da, db) => da.or(db),
+        }
+    }
+
+    fn difference(&mut self, a: Expr, b: Expr) -> Option<Expr> {
+        match (self.get(a), self.get(b)) {
+            (Some(da), Some(db)) => Some(self.pool.sub(da, db)),
+            (da, None) => da,
+            (None, Some(db)) => Some(self.pool.neg(db)),
+        }
+    }
+
+    fn product(&mut self, a: Expr, b: Expr) -> Option<Expr> {
+        let left = self.get(a).map(|da| self.pool.mul(da, b));
+        let right = self.get(b).map(|db| self.pool.mul(a, db));
+        self.total(left, right)
+    }
+
+    fn total(&mut self, left: Option<Expr>, right: Option<Expr>) -> Option<Expr> {
+        match (left, right) {
+            (Some(left), Some(right)) => Some(self.pool.add(left, right)),
+            (left, right) => left.or(right),
+        }
+    }
+
+    /// (a/b)′ = (a′ − (a/b) b′) / b
+    fn quotient(&mut self, quotient: Expr, a: Expr, b: Expr) -> Option<Expr> {
+        let from_divisor = self.get(b).map(|db| self.pool.mul(quotient, db));
+        let numerator = match (self.get(a), from_divisor) {
+            (Some(da), Some(other)) => self.pool.sub(da, other),
+            (Some(da), None) => da,
+            (None, Some(other)) => self.pool.neg(other),
+            (None, None) => return None,
+        };
+        Some(self.pool.div(numerator, b))
+    }
+
+    /// (a^b)′ = b a^(b−1) a′ + a^b log(a) b′, the second term 0 where a is 0.
+    fn power(&mut self, power: Expr, a: Expr, b: Expr) -> Option<Expr> {
+        let from_base = self.get(a).map(|da| {
+            let one = self.pool.constant(1.0);
+            let exponent = self.pool.sub(b, one);
+            let lower = self.pool.pow(a, exponent);
+            let slope = self.pool.mul(b, lower);
+            self.pool.mul(slope, da)
+        });
+        let from_exponent = self.get(b).map(|db| {
+            let logarithm = self.pool.function("log", &[a]);
+            let slope = self.pool.mul(power, logarithm);
+            let zero = self.pool.constant(0.0);
+            let at_zero = self.pool.relation(RelationOperator::Equal, a, zero);
+            let slope = self.pool.if_then_else(at_zero, zero, slope);
+            self.pool.mul(slope, db)
+        });
+        self.total(from_base, from_exponent)
+    }
+
+    fn application(&mut self, id: FunctionId, arguments: Arguments) -> Option<Expr> {
+        let list: Vec<Expr> = arguments.iter().collect();
+        let mut sum = None;
+        for (which, argument) in list.iter().enumerate() {
+            let Some(inner) = self.get(*argument) else { continue };
+            let outer = (id.get().derivative)(self.pool, &list, which);
+            let term = self.pool.mul(outer, inner);
+            sum = self.total(sum, Some(term));
+        }
+        sum
+    }
+
+    fn branches(&mut self, condition: Expr, a: Expr, b: Expr) -> Option<Expr> {
+        let (da, db) = (self.get(a), self.get(b));
+        if da.is_none() && db.is_none() {
+            return None;
+        }
+        let zero = self.pool.constant(0.0);
+        Some(self.pool.if_then_else(condition, da.unwrap_or(zero), db.unwrap_or(zero)))
+    }
+
+    fn call(
+        &mut self,
+        function: u32,
+        output: u32,
+        inputs: &[u32],
+        arguments: &[Expr],
+    ) -> Option<Expr> {
+        let mut sum = None;
+        for (input, argument) in (0u32..).zip(arguments) {
+            let Some(inner) = self.get(*argument) else { continue };
+            let inputs: Vec<u32> = inputs.iter().copied().chain([input]).collect();
+            let outer = self.pool.call_derivative(function, output, &inputs, arguments);
+            let term = self.pool.mul(outer, inner);
+            sum = self.total(sum, Some(term));
+        }
+        sum
+    }
+}

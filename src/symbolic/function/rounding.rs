@@ -1,0 +1,64 @@
+//! Division with remainder and rounding: functions that jump (MLS §3.7.2).
+
+use super::{Domain, Function, ResultType, Value, real, zero};
+use crate::symbolic::node::Expr;
+use crate::symbolic::pool::Pool;
+
+const NONZERO_DIVISOR: Option<Domain> =
+    Some(Domain { contains: |x| x[1] != 0.0, words: "the second argument must not be zero" });
+
+pub(super) const FUNCTIONS: &[Function] = &[
+    Function {
+        domain: NONZERO_DIVISOR,
+        ..jumping("div", Value::Binary(|x, y| (x / y).trunc()), ResultType::AsArguments, zero)
+    },
+    Function {
+        domain: NONZERO_DIVISOR,
+        ..jumping(
+            "mod",
+            Value::Binary(|x, y| x - (x / y).floor() * y),
+            ResultType::AsArguments,
+            |pool, x, which| remainder_slope(pool, "floor", x, which),
+        )
+    },
+    Function {
+        domain: NONZERO_DIVISOR,
+        ..jumping(
+            "rem",
+            Value::Binary(|x, y| x - (x / y).trunc() * y),
+            ResultType::AsArguments,
+            |pool, x, which| remainder_slope(pool, "div", x, which),
+        )
+    },
+    jumping("ceil", Value::Unary(f64::ceil), ResultType::Real, zero),
+    jumping("floor", Value::Unary(f64::floor), ResultType::Real, zero),
+    jumping("integer", Value::Unary(f64::floor), ResultType::Integer, zero),
+];
+
+const fn jumping(
+    name: &'static str,
+    value: Value,
+    result: ResultType,
+    derivative: fn(&mut Pool, &[Expr], usize) -> Expr,
+) -> Function {
+    Function {
+        result,
+        event_generating: true,
+        section: "MLS §3.7.2",
+        ..real(name, value, derivative)
+    }
+}
+
+/// Of x − q y between the jumps of q, which is `floor(x / y)` or `div(x, y)`.
+fn remainder_slope(pool: &mut Pool, quotient: &str, x: &[Expr], which: usize) -> Expr {
+    if which == 0 {
+        return pool.constant(1.0);
+    }
+    let quotient = if quotient == "div" {
+        pool.function("div", &[x[0], x[1]])
+    } else {
+        let ratio = pool.div(x[0], x[1]);
+        pool.function(quotient, &[ratio])
+    };
+    pool.neg(quotient)
+}

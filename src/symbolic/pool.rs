@@ -1,0 +1,122 @@
+//! Keeps every node once.
+
+use super::function::{self, FunctionId};
+use super::node::{Expr, Node, Number, VarId};
+use indexmap::IndexSet;
+use rustc_hash::{FxBuildHasher, FxHashSet};
+
+/// All nodes of all expressions of a model. The constructors ([`Pool::add`] …) simplify locally.
+#[derive(Debug, Clone, Default)]
+pub struct Pool {
+    nodes: IndexSet<Node, FxBuildHasher>,
+}
+
+impl Pool {
+    /// An empty pool.
+    pub fn new() -> Pool {
+        Pool::default()
+    }
+
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Whether there are no nodes.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// The node of an expression of this pool.
+    pub fn node(&self, expr: Expr) -> &Node {
+        &self.nodes[expr.index()]
+    }
+
+    /// The number, if the expression is one.
+    pub fn as_constant(&self, expr: Expr) -> Option<f64> {
+        match self.node(expr) {
+            Node::Constant(number) => Some(number.0),
+            _ => None,
+        }
+    }
+
+    /// The variable, if the expression is one.
+    pub fn as_variable(&self, expr: Expr) -> Option<VarId> {
+        match self.node(expr) {
+            Node::Variable(variable) => Some(*variable),
+            _ => None,
+        }
+    }
+
+    /// A number.
+    pub fn constant(&mut self, value: f64) -> Expr {
+        self.intern(Node::Constant(Number(value)))
+    }
+
+    /// The numbers 1 and 0.
+    pub fn boolean(&mut self, value: bool) -> Expr {
+        self.constant(f64::from(u8::from(value)))
+    }
+
+    /// A variable.
+    pub fn variable(&mut self, variable: VarId) -> Expr {
+        self.intern(Node::Variable(variable))
+    }
+
+    /// A function of the table by its name.
+    ///
+    /// # Panics
+    /// If the table has no such name, or another number of arguments: for names written in this
+    /// program; names that users write go through [`function::find`].
+    pub fn function(&mut self, name: &str, arguments: &[Expr]) -> Expr {
+        let id: FunctionId = function::find(name).expect("the name stands in the function table");
+        self.apply(id, arguments)
+    }
+
+    /// The id of a node that is taken as it is.
+    pub(super) fn intern(&mut self, node: Node) -> Expr {
+        let (index, _) = self.nodes.insert_full(node);
+        Expr(u32::try_from(index).expect("a pool holds fewer than 2^32 nodes"))
+    }
+
+    /// The id of a node of a commutative operator: operands swapped if that node exists already.
+    pub(super) fn intern_commutative(
+        &mut self,
+        make: fn(Expr, Expr) -> Node,
+        a: Expr,
+        b: Expr,
+    ) -> Expr {
+        match self.nodes.get_index_of(&make(b, a)) {
+            Some(index) => Expr(index as u32),
+            None => self.intern(make(a, b)),
+        }
+    }
+
+    /// All nodes that the roots are made of, each once, operands before their nodes.
+    pub fn reachable(&self, roots: &[Expr]) -> Vec<Expr> {
+        let mut seen: FxHashSet<Expr> = FxHashSet::default();
+        let mut found = Vec::new();
+        let mut stack = roots.to_vec();
+        while let Some(expr) = stack.pop() {
+            if seen.insert(expr) {
+                found.push(expr);
+                self.node(expr).for_each_operand(|operand| stack.push(operand));
+            }
+        }
+        found.sort_unstable();
+        found
+    }
+
+    /// The variables that an expression is made of, ascending.
+    pub fn variables(&self, expr: Expr) -> Vec<VarId> {
+        let mut variables: Vec<VarId> =
+            self.reachable(&[expr]).into_iter().filter_map(|e| self.as_variable(e)).collect();
+        variables.sort_unstable();
+        variables
+    }
+
+    /// Whether an expression contains a variable.
+    pub fn depends_on(&self, expr: Expr, variable: VarId) -> bool {
+        self.reachable(&[expr]).into_iter().any(|e| self.as_variable(e) == Some(variable))
+    }
+}

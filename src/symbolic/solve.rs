@@ -1,0 +1,174 @@
+//! Solves one equation for one variable.
+
+use super::function;
+use super::node::{Expr, Node, VarId};
+use super::pool::Pool;
+use rustc_hash::FxHashMap;
+
+/// `coefficient * v + rest` with neither containing v.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Linear {
+    /// The factor of the variable.
+    pub coefficient: Expr,
+    /// What is left with the variable at zero.
+    pub rest: Expr,
+}
+
+/// The solution of an equation for a variable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Solution {
+    /// What the variable is equal to; does not contain it.
+    pub value: Expr,
+    /// What the solution divides by: it holds where this is not zero.
+    pub divisor: Expr,
+}
+
+/// Takes an expression apart that is linear in `variable`; `None` if it is not, or not visibly.
+pub fn linear_in(pool: &mut Pool, expr: Expr, variable: VarId) -> Option<Linear> {
+    let (zero, one) = (pool.constant(0.0), pool.constant(1.0));
+    let mut parts: FxHashMap<Expr, Option<Linear>> = FxHashMap::default();
+    for node in pool.reachable(&[expr]) {
+        let of = |operand: &Expr| {
+            parts
+                .get(operand)
+                .copied()
+                .unwrap_or(Some(Linear { coefficient: zero, rest: *operand }))
+        };
+        let part = match pool.node(node).clone() {
+            Node::Variable(v) if v == variable => Some(Linear { coefficient: one, rest: zero }),
+            other => {
+                let mut contains = false;
+                other.for_each_operand(|operand| contains |= parts.contains_key(&operand));
+                if !contains {
+                    continue;
+                }
+                linear_node(pool, &other, of)
+            }
+        };
+        parts.insert(node, part);
+    }
+    parts.remove(&expr).unwrap_or(Some(Linear { coefficient: zero, rest: expr }))
+}
+
+/// The parts of a node from the parts of its operands.
+fn linear_node(
+    pool: &mut Pool,
+    node: &Node,
+    of: impl Fn(&Expr) -> Option<Linear>,
+) -> Option<Linear> {
+    let constant = |pool: &Pool, part: Linear| pool.as_constant(part.coefficient) == Some(0.0);
+    match node {
+        Node::Neg(a) => {
+            let a = of(a)?;
+            Some(Linear { coefficient: pool.neg(a.coefficient), rest: pool.neg(a.rest) })
+        }
+        Node::Add(a, b) => {
+            let (a, b) = (of(a)?, of(b)?);
+            let coefficient = pool.add(a.coefficient, b.coefficient);
+            Some(Linear { coefficient, rest: pool.add(a.rest, b.rest) })
+        }
+        Node::Sub(a, b) => {
+            let (a, b) = (of(a)?, of(b)?);
+            let coefficient = pool.sub(a.coefficient, b.coefficient);
+            Some(Linear { coefficient, rest: pool.sub(a.rest, b.rest) })
+        }
+        Node::Mul(a, b) => {
+            let (a, b) = (of(a)?, of(b)?);
+            let (factor, other) = if constant(pool, a) {
+                (a.rest, b)
+            } else if constant(pool, b) {
+                (b.rest, a)
+            } else {
+                return None;
+            };
+            let coefficient = pool.mul(factor, other.coefficient);
+            Some(Linear { coefficient, rest: pool.mul(factor, other.rest) })
+        }
+        Node::Div(a, b) => {
+            let (a, b) = (of(a)?, of(b)?);
+            if !constant(pool, b) {
+                return None;
+            }
+            let coefficient = pool.div(a.coefficient, b.rest);
+            Some(Linear { coefficient, rest: pool.div(a.rest, b.rest) })
+        }
+        Node::If(condition, a, b) => {
+            let (c, a, b) = (of(condition)?, of(a)?, of(b)?);
+            if !constant(pool, c) {
+                return None;
+            }
+            let coefficient = pool.if_then_else(c.rest, a.coefficient, b.coefficient);
+            Some(Linear { coefficient, rest: pool.if_then_else(c.rest, a.rest, b.rest) })
+        }
+        _ => None,
+    }
+}
+
+/// Solves `left = right` for `variable` if it occurs linearly, or if inverting sums, products,
+/// quotients, `exp` and `log` from the outside in isolates it. `None` otherwise: nothing is solved
+/// that could have a second solution or lose one.
+pub fn solve(pool: &mut Pool, left: Expr, right: Expr, variable: VarId) -> Option<Solution> {
+    let one = pool.constant(1.0);
+    let (left_has, right_has) = (pool.depends_on(left, variable), pool.depends_on(right, variable));
+    let (mut side, mut other, mut divisor) = match (left_has, right_has) {
+        (false, false) => return None,
+        (true, false) => (left, right, one),
+        (false, true) => (right, left, one),
+        (true, true) => (pool.sub(left, right), pool.constant(0.0), one),
+    };
+    loop {
+        if let Some(linear) = linear_in(pool, side, variable) {
+            if pool.as_constant(linear.coefficient) == Some(0.0) {
+                return None;
+            }
+            let difference = pool.sub(other, linear.rest);
+            let value = pool.div(difference, linear.coefficient);
+            return Some(Solution { value, divisor: pool.mul(divisor, linear.coefficient) });
+        }
+        (side, other, divisor) = peel(pool, side, other, divisor, variable)?;
+    }
+}
+
+/// Moves the outermost operation of `side` to the other side.
+fn peel(
+    pool: &mut Pool,
+    side: Expr,
+    other: Expr,
+    divisor: Expr,
+    variable: VarId,
+) -> Option<(Expr, Expr, Expr)> {
+    match *pool.node(side) {
+        Node::Neg(a) => Some((a, pool.neg(other), divisor)),
+        Node::Add(a, b) => match (pool.depends_on(a, variable), pool.depends_on(b, variable)) {
+            (true, false) => Some((a, pool.sub(other, b), divisor)),
+            (false, true) => Some((b, pool.sub(other, a), divisor)),
+            _ => None,
+        },
+        Node::Sub(a, b) => match (pool.depends_on(a, variable), pool.depends_on(b, variable)) {
+            (true, false) => Some((a, pool.add(other, b), divisor)),
+            (false, true) => Some((b, pool.sub(a, other), divisor)),
+            _ => None,
+        },
+        Node::Mul(a, b) => {
+            let (inner, factor) = match (pool.depends_on(a, variable), pool.depends_on(b, variable))
+            {
+                (true, false) => (a, b),
+                (false, true) => (b, a),
+                _ => return None,
+            };
+            Some((inner, pool.div(other, factor), pool.mul(divisor, factor)))
+        }
+        Node::Div(a, b) => match (pool.depends_on(a, variable), pool.depends_on(b, variable)) {
+            (true, false) => Some((a, pool.mul(other, b), divisor)),
+            (false, true) => Some((b, pool.div(a, other), pool.mul(divisor, other))),
+            _ => None,
+        },
+        Node::Apply(id, arguments) if Some(id) == function::find("exp") => {
+            Some((arguments.first(), pool.function("log", &[other]), divisor))
+        }
+        Node::Apply(id, arguments) if Some(id) == function::find("log") => {
+            Some((arguments.first(), pool.function("exp", &[other]), divisor))
+        }
+        _ => None,
+    }
+}

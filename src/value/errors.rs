@@ -1,0 +1,27 @@
+//! Codes of operations on values.
+
+use crate::codes;
+
+codes! {
+    /// An operand or argument of a type that does not fit.
+    TYPE_MISMATCH = "type-mismatch":
+        "## What it means\n\nAn operator, a function or a variable was given a value of a type that it does not take. Only Integer becomes Real by itself; nothing becomes String, Integer or Boolean.\n\n## Example\n\n`\"run\" + 3` adds a String and an Integer.\n\n## What to do\n\nConvert explicitly: `String(3)`, `integer(x)`, `Integer(e)`; for operators between a scalar and an array use the element-wise forms `.+`, `.-`, `./`, `.^`.",
+    /// A subscript that names no element.
+    INDEX_OUT_OF_RANGE = "index-out-of-range":
+        "## What it means\n\nA subscript lies outside the dimension it is used for. The first element has the subscript 1, the last one `size(a, d)`.\n\n## Example\n\n`v[4]` where `v` has 3 elements.\n\n## What to do\n\nCompare the subscript with `size(v, 1)`; inside the brackets `end` is the last one.",
+    /// Arrays whose sizes do not go together.
+    SIZE_MISMATCH = "size-mismatch":
+        "## What it means\n\nThe sizes of two arrays, or of an array and the variable it is assigned to, do not go together.\n\n## Example\n\n`{1, 2} + {1, 2, 3}`\n\n## What to do\n\nLook at `size(a)` of both; `transpose`, `vector`, `matrix` and slices change shapes.",
+    /// An Integer result outside 64 bits.
+    INTEGER_OVERFLOW = "integer-overflow":
+        "## What it means\n\nThe exact result of an Integer operation does not fit in 64 bits. It is never wrapped around or rounded.\n\n## Example\n\n`9223372036854775807 + 1`\n\n## What to do\n\nCompute with Reals (write `1.0` for `1`) where the magnitude matters more than the last digit.",
+    /// A zero divisor.
+    DIVISION_BY_ZERO = "division-by-zero":
+        "## What it means\n\nThe divisor of `/`, `./`, `div`, `mod` or `rem` is zero, or zero is raised to a negative power. The result is not replaced by infinity.\n\n## Example\n\n`1 / (x - x)`\n\n## What to do\n\nGuard the division: `if abs(d) > eps then n / d else …`.",
+    /// An argument outside the domain of a function.
+    DOMAIN_ERROR = "domain-error":
+        "## What it means\n\nA function has no real value for its argument, such as the logarithm of a negative number.\n\n## Example\n\n`sqrt(-1)`\n\n## What to do\n\nCheck the argument, or limit it: `log(max(x, 1e-9))`.",
+    /// An array that would not fit in memory.
+    ARRAY_TOO_LARGE = "array-too-large":
+        "## What it means\n\nAn array with more than 134 217 728 (2^27) elements was asked for.\n\n## Example\n\n`zeros(100000, 100000)`\n\n## What to do\n\nCheck the sizes; a `for` loop over a long range does not build an array.",
+}

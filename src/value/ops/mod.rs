@@ -1,0 +1,38 @@
+//! Operators (MLS §3.4–3.6, §10.6). Integer operands give Integer results where the operator
+//! allows it, `/` and `^` always give Reals, and nothing wraps around or becomes infinite by a
+//! zero divisor: that is a [`Fault`].
+
+mod arithmetic;
+mod elementwise;
+mod matrix;
+mod relation;
+
+pub use arithmetic::{add, divide, multiply, negate, plus, power, subtract};
+pub use arithmetic::{real_divide, real_power};
+pub use elementwise::{
+    elementwise_add, elementwise_divide, elementwise_multiply, elementwise_power,
+    elementwise_subtract,
+};
+pub use relation::{
+    and, equal, greater, greater_equal, less, less_equal, not, not_equal, or, order,
+};
+
+use super::Value;
+use super::errors::TYPE_MISMATCH;
+use crate::diag::Fault;
+use crate::fault;
+
+fn unsuitable(symbol: &str, left: &Value, right: &Value) -> Fault {
+    let fault = fault!(
+        TYPE_MISMATCH,
+        "`{symbol}` is not defined for {} and {}",
+        left.type_name(),
+        right.type_name()
+    );
+    match (left.is_text(), right.is_text(), symbol) {
+        (true, false, "+") | (false, true, "+") => {
+            fault.help("`String(x)` turns a number into text".to_owned())
+        }
+        _ => fault,
+    }
+}
