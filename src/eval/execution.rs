@@ -1,6 +1,7 @@
 //! Executing a function: its components, its algorithm, its outputs (MLS §12.4).
 
 use super::errors::EXTERNAL_FUNCTION;
+use super::variable::Variable;
 use super::{Evaluator, Function, FunctionBody, Scope, ValueType, depth};
 use crate::diag::{At, Diagnostic};
 use crate::fault;
@@ -21,9 +22,7 @@ impl Evaluator<'_> {
         self.check_interrupted(span)?;
         let mut scope = Scope::of_function(function.clone(), given, span);
         let mut inner = Evaluator { scope: &mut scope, host: self.host };
-        inner
-            .body(function)
-            .map_err(|error| error.called_from(span, format!("function `{}`", function.name)))
+        inner.body(function).map_err(|error| traced(error, function, span))
     }
 
     /// Values for all inputs of a header, its defaults evaluated.
@@ -90,7 +89,7 @@ impl Evaluator<'_> {
                     && let Some(binding) = &component.binding
                 {
                     let value = self.expression(binding)?;
-                    self.scope.variables.insert(*name, super::scope::Variable::undeclared(value));
+                    self.scope.variables.insert(*name, Variable::undeclared(value));
                 }
                 let value = self.scope.get(*name).cloned();
                 let missing = || self.scope.unknown(*name).at(component.span);
@@ -101,4 +100,17 @@ impl Evaluator<'_> {
         }
         Ok(records)
     }
+}
+
+/// The most calls that a trace shows.
+const MAX_FRAMES: usize = 30;
+
+/// Adds the call to the trace; a function calling itself from the same place is shown once.
+fn traced(error: Diagnostic, function: &Function, span: Span) -> Diagnostic {
+    let what = format!("function `{}`", function.name);
+    let is_repeated = error.trace.last().is_some_and(|f| f.span == span && f.what == what);
+    if is_repeated || error.trace.len() >= MAX_FRAMES {
+        return error;
+    }
+    error.called_from(span, what)
 }
