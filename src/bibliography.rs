@@ -63,6 +63,15 @@
 //! - **cellier-kofman-2006** — F. E. Cellier, E. Kofman: Continuous system simulation. Springer,
 //!   2006.
 //!
+//! <a id="pantelides-1988"></a>
+//! - **pantelides-1988** — C. C. Pantelides: The consistent initialization of
+//!   differential-algebraic systems. SIAM Journal on Scientific and Statistical Computing 9(2),
+//!   1988, 213–231.
+//!
+//! <a id="deuflhard-2011"></a>
+//! - **deuflhard-2011** — P. Deuflhard: Newton methods for nonlinear problems. Affine invariance
+//!   and adaptive algorithms. Springer, 2011.
+//!
 //! <a id="goldberg-1989"></a>
 //! - **goldberg-1989** — D. E. Goldberg: Genetic algorithms in search, optimization and machine
 //!   learning. Addison-Wesley, 1989.

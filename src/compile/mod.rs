@@ -1,1 +1,15 @@
-//! (being written)
+//! Compilation: a sorted system becomes a [`Program`] of instruction tapes, and every thread runs
+//! its own [`System`] of it.
+//!
+//! Not handled yet: user functions in equations (refused with `not-supported`).
+
+pub mod errors;
+mod jacobian;
+mod lower;
+mod newton;
+mod program;
+mod system;
+mod tape;
+
+pub use program::{Access, ParameterInfo, Program, VariableInfo};
+pub use system::System;

@@ -16,6 +16,7 @@
 mod bipartite;
 mod dulmage_mendelsohn;
 mod matching;
+mod pantelides;
 mod strongly_connected;
 mod tearing;
 #[cfg(test)]
@@ -24,5 +25,6 @@ mod tests;
 pub use bipartite::Bipartite;
 pub use dulmage_mendelsohn::{DulmageMendelsohn, dulmage_mendelsohn};
 pub use matching::{Matching, match_equations};
+pub use pantelides::{Differentiated, differentiate_equations};
 pub use strongly_connected::{blocks, strongly_connected};
 pub use tearing::{Tearing, tear};

@@ -10,6 +10,42 @@
 //!     at an event: let the system handle it, record again, restart the integrator
 //! ```
 //!
+//! ```
+//! use gapilib::sim::{DaeSystem, Failure, Pattern, Settings, simulate};
+//!
+//! /// x' = −x, x(0) = 1
+//! struct Decay(Pattern);
+//!
+//! impl DaeSystem for Decay {
+//!     fn n_differential(&self) -> usize { 1 }
+//!     fn n_algebraic(&self) -> usize { 0 }
+//!     fn nominal(&self, out: &mut [f64]) { out[0] = 1.0; }
+//!     fn rhs(&mut self, _: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+//!         out[0] = -y[0];
+//!         Ok(())
+//!     }
+//!     fn pattern(&self) -> &Pattern { &self.0 }
+//!     fn jacobian(&mut self, _: f64, _: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+//!         out[0] = -1.0;
+//!         Ok(())
+//!     }
+//!     fn initialize(&mut self, _: f64, y: &mut [f64]) -> Result<(), Failure> {
+//!         y[0] = 1.0;
+//!         Ok(())
+//!     }
+//!     fn n_observed(&self) -> usize { 1 }
+//!     fn observe(&mut self, _: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+//!         out[0] = y[0];
+//!         Ok(())
+//!     }
+//! }
+//!
+//! let pattern = Pattern { n: 1, column_starts: vec![0, 1], rows: vec![0] };
+//! let (trajectory, _) = simulate(&mut Decay(pattern), &Settings::default())?;
+//! assert!((trajectory.at(0, 1.0).unwrap() - (-1f64).exp()).abs() < 1e-4);
+//! # Ok::<(), gapilib::sim::SimError>(())
+//! ```
+//!
 //! The systems are those of [`DaeSystem`]: semi-explicit, index 1. Not handled here: index reduction
 //! and the choice of states (done before), delays, sliding along a discontinuity (reported as
 //! chattering).
@@ -21,6 +57,7 @@ mod error;
 mod event;
 mod integrators;
 mod linear;
+mod newton;
 mod norm;
 #[cfg(test)]
 mod problems;
@@ -35,6 +72,7 @@ mod trajectory;
 pub use error::{Failure, SimError, SimErrorKind};
 pub use integrators::{INTEGRATORS, Integrator, Problem, find_integrator};
 pub use linear::{DenseLu, Factorization, SingularMatrix};
+pub use newton::{Equations, Newton, NewtonFailure};
 pub use settings::{OutputGrid, Settings};
 pub use simulator::{Simulator, simulate};
 pub use statistics::Statistics;

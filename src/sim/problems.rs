@@ -345,26 +345,6 @@ impl DaeSystem for HeatRod {
         Ok(())
     }
 
-    fn n_crossings(&self) -> usize {
-        0
-    }
-
-    fn crossings(&mut self, _: f64, _: &[f64], _: &mut [f64]) -> Result<(), Failure> {
-        Ok(())
-    }
-
-    fn next_time_event(&self, _: f64) -> Option<f64> {
-        None
-    }
-
-    fn handle_event(&mut self, _: f64, _: &mut [f64]) -> Result<EventOutcome, Failure> {
-        Ok(EventOutcome::Continue { y_changed: false })
-    }
-
-    fn check(&mut self, _: f64, _: &[f64]) -> Result<(), Failure> {
-        Ok(())
-    }
-
     fn n_observed(&self) -> usize {
         self.n
     }

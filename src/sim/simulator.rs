@@ -84,7 +84,8 @@ impl Simulator {
             observed: &mut self.observed,
             out,
             t: settings.start,
-            next_output: 0,
+            output_number: 0,
+            next_output: settings.output.point(settings.start, settings.stop, 0),
             has_unknowns: n > 0,
             last_event: f64::NEG_INFINITY,
             events_at_once: 0,
@@ -150,8 +151,9 @@ struct Run<'a> {
     observed: &'a mut [f64],
     out: &'a mut Trajectory,
     t: f64,
-    /// Number of the next output point.
-    next_output: usize,
+    /// The next output point and its number.
+    next_output: Option<f64>,
+    output_number: usize,
     has_unknowns: bool,
     last_event: f64,
     events_at_once: u32,
@@ -177,9 +179,9 @@ impl Run<'_> {
             return Err(SimErrorKind::NotFinite);
         }
         system.check(self.t, self.y).map_err(SimErrorKind::Evaluation)?;
-        if self.output_point() == Some(self.t) {
+        if self.next_output == Some(self.t) {
             self.record()?;
-            self.next_output += 1;
+            self.to_next_output();
         }
         self.restart()
     }
@@ -196,10 +198,11 @@ impl Run<'_> {
     /// Makes a step; whether it ended at a time event.
     fn step(&mut self) -> Result<bool, SimErrorKind> {
         let stop = self.problem.settings.stop;
-        let event = self.problem.system.next_time_event(self.t).filter(|event| *event <= stop);
+        let event = self.problem.system.next_time_event(self.t);
+        let event = event.filter(|event| *event > self.t && *event <= stop);
         let mut limit = event.unwrap_or(stop);
         if !self.has_unknowns {
-            limit = self.output_point().map_or(limit, |point| limit.min(point));
+            limit = self.next_output.map_or(limit, |point| limit.min(point));
         }
         self.integrator.step(&mut self.problem, limit)?;
         Ok(event == Some(self.integrator.time()))
@@ -229,9 +232,9 @@ impl Run<'_> {
                     self.t = end;
                     self.y.copy_from_slice(self.integrator.state());
                     self.check()?;
-                    if self.output_point() == Some(end) {
+                    if self.next_output == Some(end) {
                         self.record()?;
-                        self.next_output += 1;
+                        self.to_next_output();
                     }
                     return Ok(After::Resume);
                 }
@@ -249,11 +252,11 @@ impl Run<'_> {
     /// Records the output points before `end`; y is y(`end`) afterwards as before.
     fn record_before(&mut self, end: f64) -> Result<(), SimErrorKind> {
         let mut moved = false;
-        while let Some(point) = self.output_point().filter(|point| *point < end) {
+        while let Some(point) = self.next_output.filter(|point| *point < end) {
             self.integrator.interpolate(point, self.y);
             self.t = point;
             self.record()?;
-            self.next_output += 1;
+            self.to_next_output();
             moved = true;
         }
         if moved {
@@ -274,8 +277,8 @@ impl Run<'_> {
         }
         self.check()?;
         self.record()?;
-        while self.output_point().is_some_and(|point| point <= t) {
-            self.next_output += 1;
+        while self.next_output.is_some_and(|point| point <= t) {
+            self.to_next_output();
         }
         match outcome {
             EventOutcome::Terminate => return Ok(After::Terminated),
@@ -303,9 +306,10 @@ impl Run<'_> {
         self.problem.system.check(self.t, self.y).map_err(SimErrorKind::Evaluation)
     }
 
-    fn output_point(&self) -> Option<f64> {
+    fn to_next_output(&mut self) {
         let settings = self.problem.settings;
-        settings.output.point(settings.start, settings.stop, self.next_output)
+        self.output_number += 1;
+        self.next_output = settings.output.point(settings.start, settings.stop, self.output_number);
     }
 
     fn record(&mut self) -> Result<(), SimErrorKind> {

@@ -12,7 +12,8 @@ use super::Failure;
 /// with y = (x, v), zero crossings, and observed variables. Methods take `&mut self` because a
 /// system owns its workspace; one compiled program gives any number of independent systems.
 /// Discrete state (frozen relations, `pre` values) lives in the system and changes only in
-/// [`DaeSystem::initialize`] and [`DaeSystem::handle_event`].
+/// [`DaeSystem::initialize`] and [`DaeSystem::handle_event`]. Systems without events and assertions
+/// leave the methods for these as they are.
 pub trait DaeSystem {
     /// Number of differential variables x; they come first in y.
     fn n_differential(&self) -> usize;
@@ -29,17 +30,27 @@ pub trait DaeSystem {
     /// Writes consistent initial values of y at `t` (MLS §8.6).
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure>;
     /// Number of zero-crossing functions.
-    fn n_crossings(&self) -> usize;
+    fn n_crossings(&self) -> usize {
+        0
+    }
     /// Writes the zero-crossing functions; an event is a change of sign, where negative, zero and
     /// positive are three signs.
-    fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure>;
+    fn crossings(&mut self, _t: f64, _y: &[f64], _out: &mut [f64]) -> Result<(), Failure> {
+        Ok(())
+    }
     /// The next time event after `t`, if any is known.
-    fn next_time_event(&self, t: f64) -> Option<f64>;
+    fn next_time_event(&self, _t: f64) -> Option<f64> {
+        None
+    }
     /// Event iteration at (t, y) (MLS §8.5): updates the discrete state, may change x, and leaves v
     /// consistent with x (an interpolated v fulfils 0 = g only within the tolerance).
-    fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure>;
+    fn handle_event(&mut self, _t: f64, _y: &mut [f64]) -> Result<EventOutcome, Failure> {
+        Ok(EventOutcome::Continue { y_changed: false })
+    }
     /// Checks at an accepted step what must hold there (assertions).
-    fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure>;
+    fn check(&mut self, _t: f64, _y: &[f64]) -> Result<(), Failure> {
+        Ok(())
+    }
     /// Number of observed variables.
     fn n_observed(&self) -> usize;
     /// Writes the observed variables at (t, y).

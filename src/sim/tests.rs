@@ -383,5 +383,5 @@ fn cost(problem: &mut TestProblem, stop: f64) -> String {
 fn costs_are_known() {
     insta::assert_snapshot!(cost(&mut problems::decay(), 5.0), @"60 steps, 0 + 0 rejected, 97 right-hand sides, 1 Jacobians, 12 factorizations");
     insta::assert_snapshot!(cost(&mut problems::robertson(), 40.0), @"206 steps, 4 + 0 rejected, 436 right-hand sides, 4 Jacobians, 40 factorizations");
-    insta::assert_snapshot!(cost(&mut problems::pendulum(), 5.0), @"383 steps, 5 + 0 rejected, 894 right-hand sides, 17 Jacobians, 40 factorizations");
+    insta::assert_snapshot!(cost(&mut problems::pendulum(), 5.0), @"383 steps, 5 + 0 rejected, 893 right-hand sides, 17 Jacobians, 41 factorizations");
 }

@@ -2,7 +2,11 @@
 
 mod architecture;
 mod diagnostics;
+mod flat_class;
 mod grammar;
 mod mat;
 mod results;
+mod simulation;
+mod structure;
+mod syntax_properties;
 mod transcripts;

@@ -222,6 +222,19 @@ impl Bdf {
         self.rescale(h_new);
     }
 
+    /// Shortens the step to one or two equal ones to the limit if it comes near; whether the next
+    /// one reaches it.
+    fn approach(&mut self, limit: f64) -> bool {
+        let remaining = limit - self.t;
+        let reaches_limit = self.h * (1.0 + 1e-9) >= remaining;
+        if reaches_limit && self.h != remaining {
+            self.rescale(remaining);
+        } else if !reaches_limit && 2.0 * self.h > remaining * (1.0 + 1e-9) {
+            self.rescale(0.5 * remaining);
+        }
+        reaches_limit
+    }
+
     /// Computes predictor and ψ.
     fn predict(&mut self) {
         self.predicted.copy_from_slice(&self.differences[0]);
@@ -386,10 +399,7 @@ impl Integrator for Bdf {
         self.adapt(problem);
         loop {
             problem.may_continue()?;
-            let reaches_limit = self.t + self.h * (1.0 + 1e-9) >= limit;
-            if reaches_limit && self.h != limit - self.t {
-                self.rescale(limit - self.t);
-            }
+            let reaches_limit = self.approach(limit);
             let t_new = if reaches_limit { limit } else { self.t + self.h };
             self.predict();
             let (failure, factor) = match self.correct(problem, t_new) {

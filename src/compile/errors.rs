@@ -1,0 +1,39 @@
+//! Codes of this stage.
+
+crate::codes! {
+    /// A value outside a function's domain.
+    DOMAIN_ERROR = "domain-error":
+        "## What it means\nDuring the simulation an operation had no finite value: a logarithm of a number that is not positive, a division by zero, an overflow.\n\n\
+         ## Example\n`y = log(1 - x)` once `x` has reached 1.\n\n\
+         ## What to do\nLook at the equation named. Keep its argument inside the domain: correct the parameters, or guard it with an if-expression or an `assert`.",
+    /// An assert that does not hold.
+    ASSERTION_FAILED = "assertion-failed":
+        "## What it means\nAn `assert` of the model does not hold; the simulation cannot go on.\n\n\
+         ## Example\n`assert(i < Ilim, \"the current exceeds its limit\");`\n\n\
+         ## What to do\nThe text is the model author's; check parameters and inputs.",
+    /// A simulation that could not be finished.
+    SIMULATION_FAILED = "simulation-failed":
+        "## What it means\nThe simulation could not be finished: the step became too small, a loop did not converge, or a budget is used up.\n\n\
+         ## Example\nA pole of the solution at the time named.\n\n\
+         ## What to do\nLook at the time and the equations named; loosen the tolerance, give start values, or check the parameters.",
+    /// Initial values that could not be found.
+    INITIALIZATION_FAILED = "initialization-failed":
+        "## What it means\nNo consistent values could be found for the start of the simulation.\n\n\
+         ## Example\nA nonlinear equation whose variables have no good start values.\n\n\
+         ## What to do\nGive the variables named `start` values near the solution.",
+    /// A variable that the model does not have.
+    UNKNOWN_VARIABLE = "unknown-variable":
+        "## What it means\nThe model has no variable of this name.\n\n\
+         ## Example\nAsking for `Cell.v` where the model declares `cell.v`.\n\n\
+         ## What to do\nUse a name that the model declares; capital letters count.",
+    /// A parameter that the model does not have.
+    UNKNOWN_PARAMETER = "unknown-parameter":
+        "## What it means\nThe model has no parameter of this name.\n\n\
+         ## Example\nSetting `r` where the model declares `R`.\n\n\
+         ## What to do\nUse a name that the model declares; capital letters count.",
+    /// A parameter that cannot be set without compiling again.
+    STRUCTURAL_PARAMETER = "structural-parameter":
+        "## What it means\nThe parameter shaped the compiled model (an array size, a chosen branch) or is final, so it has no slot to write to.\n\n\
+         ## Example\nIdentifying the number of control volumes `n`.\n\n\
+         ## What to do\nChange it with a modification when translating the model.",
+}

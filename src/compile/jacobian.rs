@@ -1,0 +1,73 @@
+//! Exact derivatives through a sequence of assignments: forward accumulation, column by column,
+//! on symbolic expressions.
+
+use crate::dae::Assignment;
+use crate::symbolic::{Expr, Pool, VarId, derivative};
+use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
+
+/// Assignments of derivatives and where each entry is found.
+pub(super) struct Differentiated {
+    /// Every assignment of the sequence, followed by those of its derivatives.
+    pub(super) sequence: Vec<(VarId, Expr, usize)>,
+    /// ∂output/∂column by output, columns ascending; zeros left out.
+    pub(super) rows: Vec<BTreeMap<usize, Expr>>,
+}
+
+/// Differentiates `outputs` for `columns` through a sequence; `next` numbers new variables.
+pub(super) fn differentiate_sequence(
+    pool: &mut Pool,
+    sequence: &[Assignment],
+    outputs: &[Expr],
+    columns: &[VarId],
+    next: &mut u32,
+) -> Differentiated {
+    let one = pool.constant(1.0);
+    let mut slopes: FxHashMap<VarId, BTreeMap<usize, Expr>> = FxHashMap::default();
+    for (column, variable) in columns.iter().enumerate() {
+        slopes.insert(*variable, BTreeMap::from([(column, one)]));
+    }
+    let mut extended = Vec::new();
+    for assignment in sequence {
+        extended.push((assignment.variable, assignment.value, assignment.equation));
+        let mut row = chain(pool, assignment.value, &slopes);
+        for slope in row.values_mut() {
+            let simple =
+                pool.as_constant(*slope).is_some() || pool.as_variable(*slope).is_some();
+            if !simple {
+                let variable = VarId(*next);
+                *next += 1;
+                extended.push((variable, *slope, assignment.equation));
+                *slope = pool.variable(variable);
+            }
+        }
+        slopes.insert(assignment.variable, row);
+    }
+    let rows = outputs.iter().map(|output| chain(pool, *output, &slopes)).collect();
+    Differentiated { sequence: extended, rows }
+}
+
+/// Σ ∂e/∂w · ∂w/∂column over the variables w of e.
+fn chain(
+    pool: &mut Pool,
+    e: Expr,
+    slopes: &FxHashMap<VarId, BTreeMap<usize, Expr>>,
+) -> BTreeMap<usize, Expr> {
+    let mut row: BTreeMap<usize, Expr> = BTreeMap::new();
+    for variable in pool.variables(e) {
+        let Some(inner) = slopes.get(&variable).filter(|inner| !inner.is_empty()) else {
+            continue;
+        };
+        let partial = derivative(pool, e, variable);
+        for (column, slope) in inner {
+            let product = pool.mul(partial, *slope);
+            let sum = match row.get(column) {
+                Some(before) => pool.add(*before, product),
+                None => product,
+            };
+            row.insert(*column, sum);
+        }
+    }
+    row.retain(|_, slope| pool.as_constant(*slope) != Some(0.0));
+    row
+}

@@ -1,0 +1,186 @@
+//! Symbolic expressions become instructions, common subexpressions computed once.
+
+use super::tape::{Instruction, Register, Tape};
+use crate::symbolic::{Expr, Node, Pool, VarId};
+use crate::symbolic::function::Value;
+use rustc_hash::FxHashMap;
+
+/// The registers of a program: one for every variable, then constants and temporaries.
+#[derive(Debug, Clone)]
+pub(super) struct Registers {
+    next: Register,
+    constants: FxHashMap<u64, Register>,
+    /// Registers with their values.
+    pub(super) values: Vec<(Register, f64)>,
+}
+
+impl Registers {
+    pub(super) fn new(n_variables: usize) -> Registers {
+        let next = n_variables as Register;
+        Registers { next, constants: FxHashMap::default(), values: Vec::new() }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.next as usize
+    }
+
+    fn fresh(&mut self) -> Register {
+        self.next += 1;
+        self.next - 1
+    }
+
+    fn constant(&mut self, value: f64) -> Register {
+        if let Some(known) = self.constants.get(&value.to_bits()) {
+            return *known;
+        }
+        let register = self.fresh();
+        self.constants.insert(value.to_bits(), register);
+        self.values.push((register, value));
+        register
+    }
+}
+
+/// Writes one tape.
+pub(super) struct TapeBuilder<'a> {
+    pool: &'a Pool,
+    registers: &'a mut Registers,
+    tape: Tape,
+    known: FxHashMap<Expr, Register>,
+    /// Keys of `known` in the order they came, to forget what a branch computed.
+    log: Vec<Expr>,
+    /// Registers of variables that are not in their own.
+    moved: FxHashMap<VarId, Register>,
+}
+
+impl<'a> TapeBuilder<'a> {
+    pub(super) fn new(pool: &'a Pool, registers: &'a mut Registers) -> TapeBuilder<'a> {
+        TapeBuilder {
+            pool,
+            registers,
+            tape: Tape::default(),
+            known: FxHashMap::default(),
+            log: Vec::new(),
+            moved: FxHashMap::default(),
+        }
+    }
+
+    pub(super) fn finish(self) -> Tape {
+        self.tape
+    }
+
+    /// What follows comes from this equation.
+    pub(super) fn origin(&mut self, origin: u32) {
+        self.tape.origins.push((self.tape.code.len() as u32, origin));
+    }
+
+    /// `variable := value`, kept in whatever register holds the value.
+    pub(super) fn define(&mut self, variable: VarId, value: Expr) {
+        let register = self.emit(value);
+        self.moved.insert(variable, register);
+    }
+
+    /// `variable := value`, written to the variable's own register.
+    pub(super) fn store(&mut self, variable: VarId, value: Expr) {
+        let a = self.emit(value);
+        self.tape.code.push(Instruction::Move { d: variable.0, a });
+    }
+
+    /// Computes an expression; returns where its value is.
+    pub(super) fn emit(&mut self, root: Expr) -> Register {
+        let mut stack = vec![(root, false)];
+        while let Some((expr, ready)) = stack.pop() {
+            if self.known.contains_key(&expr) {
+                continue;
+            }
+            if !ready {
+                stack.push((expr, true));
+                match self.pool.node(expr) {
+                    // Its branches are computed only where they are needed.
+                    Node::If(condition, ..) => stack.push((*condition, false)),
+                    node => node.for_each_operand(|operand| stack.push((operand, false))),
+                }
+                continue;
+            }
+            let register = self.instruction(expr);
+            self.known.insert(expr, register);
+            self.log.push(expr);
+        }
+        self.known[&root]
+    }
+
+    fn instruction(&mut self, expr: Expr) -> Register {
+        let of = |a: &Expr| self.known[a];
+        let node = self.pool.node(expr);
+        match node {
+            Node::Constant(number) => return self.registers.constant(number.0),
+            Node::Variable(v) => return self.moved.get(v).copied().unwrap_or(v.0),
+            Node::If(condition, a, b) => {
+                let condition = of(condition);
+                return self.branches(condition, *a, *b);
+            }
+            _ => {}
+        }
+        let d = self.registers.fresh();
+        let instruction = match node {
+            Node::Neg(a) => Instruction::Neg { d, a: of(a) },
+            Node::Not(a) => Instruction::Not { d, a: of(a) },
+            Node::Add(a, b) => Instruction::Add { d, a: of(a), b: of(b) },
+            Node::Sub(a, b) => Instruction::Sub { d, a: of(a), b: of(b) },
+            Node::Mul(a, b) => Instruction::Mul { d, a: of(a), b: of(b) },
+            Node::Div(a, b) => Instruction::Div { d, a: of(a), b: of(b) },
+            Node::Pow(a, b) if self.pool.as_constant(*b) == Some(2.0) => {
+                Instruction::Mul { d, a: of(a), b: of(a) }
+            }
+            Node::Pow(a, b) => Instruction::Pow { d, a: of(a), b: of(b) },
+            Node::And(a, b) => Instruction::And { d, a: of(a), b: of(b) },
+            Node::Or(a, b) => Instruction::Or { d, a: of(a), b: of(b) },
+            Node::Relation(operator, a, b) => {
+                Instruction::Relation { operator: *operator, d, a: of(a), b: of(b) }
+            }
+            Node::Apply(id, arguments) => {
+                let a = of(&arguments.first());
+                match (id.get().value, arguments.second()) {
+                    (Value::Unary(function), _) => Instruction::Unary { id: *id, d, a, function },
+                    (Value::Binary(function), Some(b)) => {
+                        Instruction::Binary { id: *id, d, a, b: of(&b), function }
+                    }
+                    (Value::Binary(_), None) => {
+                        unreachable!("a pool checks the number of arguments")
+                    }
+                }
+            }
+            Node::Constant(_) | Node::Variable(_) | Node::If(..) => {
+                unreachable!("returned above")
+            }
+            Node::Call { .. } | Node::CallDerivative { .. } => {
+                unreachable!("calls are refused before they are compiled")
+            }
+        };
+        self.tape.code.push(instruction);
+        d
+    }
+
+    fn branches(&mut self, condition: Register, a: Expr, b: Expr) -> Register {
+        let d = self.registers.fresh();
+        let skip = self.tape.code.len();
+        self.tape.code.push(Instruction::JumpUnless { a: condition, target: 0 });
+        self.branch(d, a);
+        let end = self.tape.code.len();
+        self.tape.code.push(Instruction::Jump { target: 0 });
+        self.tape.code[skip] =
+            Instruction::JumpUnless { a: condition, target: self.tape.code.len() as u32 };
+        self.branch(d, b);
+        self.tape.code[end] = Instruction::Jump { target: self.tape.code.len() as u32 };
+        d
+    }
+
+    /// What a branch computes is not known behind it.
+    fn branch(&mut self, d: Register, value: Expr) {
+        let before = self.log.len();
+        let a = self.emit(value);
+        self.tape.code.push(Instruction::Move { d, a });
+        for expr in self.log.drain(before..) {
+            self.known.remove(&expr);
+        }
+    }
+}

@@ -1,0 +1,746 @@
+//! A compiled model: immutable, shared by any number of [`System`](super::System)s.
+
+use super::errors::*;
+use super::jacobian::differentiate_sequence;
+use super::lower::{Registers, TapeBuilder};
+use super::system::System;
+use super::tape::{Register, Tape};
+use crate::dae::{Assignment, Block, Kind, SortedDae, Variable};
+use crate::diag::{Diagnostic, Fault, suggest};
+use crate::fault;
+use crate::flatten::{BaseType, Experiment, Variability};
+use crate::sim::{Failure, Pattern, SimError, SimErrorKind};
+use crate::source::Span;
+use crate::symbolic::{Expr, Pool, VarId, function, linear_in};
+use crate::syntax::ast::CausalityPrefix;
+use rustc_hash::FxHashSet;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// A parameter that can be set between simulations.
+#[derive(Debug, Clone)]
+pub struct ParameterInfo {
+    /// Its full name.
+    pub name: Arc<str>,
+    /// Unit, empty if none.
+    pub unit: Arc<str>,
+    /// The string behind its declaration.
+    pub description: Arc<str>,
+    /// Predefined type; values are numbers (Boolean 0 or 1, enumerations by ordinal).
+    pub base: BaseType,
+    /// Attribute `min`; `-∞` without.
+    pub min: f64,
+    /// Attribute `max`; `∞` without.
+    pub max: f64,
+    /// Its value if nobody sets it; NaN if it cannot be computed.
+    pub default: f64,
+    /// Whether it stands directly in the class.
+    pub top_level: bool,
+    pub(super) variable: VarId,
+}
+
+/// A scalar variable of the model, aliases, parameters and constants included.
+#[derive(Debug, Clone)]
+pub struct VariableInfo {
+    /// Its full name.
+    pub name: Arc<str>,
+    /// Unit, empty if none.
+    pub unit: Arc<str>,
+    /// Unit for people, empty if none.
+    pub display_unit: Arc<str>,
+    /// The string behind its declaration.
+    pub description: Arc<str>,
+    /// Predefined type.
+    pub base: BaseType,
+    /// When it may change.
+    pub variability: Variability,
+    /// `input` or `output`.
+    pub causality: Option<CausalityPrefix>,
+    /// Whether it stands directly in the class.
+    pub top_level: bool,
+    /// Whether it is protected.
+    pub protected: bool,
+    /// Where its value is found.
+    pub access: Access,
+    pub(super) variable: VarId,
+}
+
+/// Where the value of a variable is found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Access {
+    /// It is the simulated time.
+    Time,
+    /// A number.
+    Constant(f64),
+    /// A parameter: ask [`System::value`].
+    Parameter,
+    /// A column of the observed variables (when all are observed), with its sign.
+    Observed {
+        /// Which column.
+        column: usize,
+        /// Whether the variable has the opposite sign.
+        negated: bool,
+    },
+}
+
+/// A step of solving for all variables, the states (or nothing, at the start) given.
+#[derive(Debug, Clone)]
+pub(super) enum Step {
+    Run(Tape),
+    Solve(Newton),
+}
+
+/// A torn loop with its Jacobian.
+#[derive(Debug, Clone)]
+pub(super) struct Newton {
+    pub(super) tape: Tape,
+    pub(super) unknowns: Vec<Register>,
+    pub(super) residuals: Vec<Register>,
+    /// Row-major.
+    pub(super) jacobian: Vec<Register>,
+    pub(super) block: u32,
+}
+
+/// A frozen relation, compiled.
+#[derive(Debug, Clone)]
+pub(super) struct CompiledRelation {
+    pub(super) register: Register,
+    pub(super) operator: crate::symbolic::RelationOperator,
+    /// For a relation on time alone: registers of the factor of time and of the rest.
+    pub(super) time: Option<(f64, Register)>,
+}
+
+/// Code with the registers of its results.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Outputs {
+    pub(super) tape: Tape,
+    pub(super) outputs: Vec<Register>,
+}
+
+/// A compiled model.
+#[derive(Debug)]
+pub struct Program {
+    pub(super) sorted: SortedDae,
+    pub(super) registers: Registers,
+    pub(super) sequence: Vec<Assignment>,
+    pub(super) iteration: Vec<VarId>,
+    parameters: Vec<ParameterInfo>,
+    variables: Vec<VariableInfo>,
+    pub(super) observed: Vec<VarId>,
+    /// Every parameter's own tape, in order.
+    pub(super) parameter_tapes: Vec<(VarId, Tape)>,
+    /// Start value of every unknown that has one.
+    pub(super) starts: Vec<(VarId, Tape)>,
+    pub(super) nominals: Vec<(VarId, Tape, Register)>,
+    pub(super) initial_steps: Vec<Step>,
+    pub(super) steps: Vec<Step>,
+    pub(super) relations: Vec<CompiledRelation>,
+    /// Both sides of every relation, from the registers of the variables.
+    pub(super) relation_sides: Vec<Outputs>,
+    /// The part of [`CompiledRelation::time`] that parameters make.
+    pub(super) time_rests: Tape,
+    pub(super) rhs: Outputs,
+    pub(super) jacobian: Outputs,
+    pub(super) pattern: Pattern,
+    pub(super) crossings: Outputs,
+    pub(super) observe: Outputs,
+    pub(super) assertions: Vec<(usize, Outputs)>,
+}
+
+impl Program {
+    /// Compiles a sorted system.
+    pub fn compile(mut sorted: SortedDae) -> Result<Arc<Program>, Diagnostic> {
+        if let Some(instance) = sorted.dae.functions.first() {
+            return Err(fault!(crate::dae::errors::NOT_SUPPORTED,
+                "the user function `{}` in an equation is not supported yet",
+                instance.function.name; help: "write its formula as equations")
+            .at(instance.function.span));
+        }
+        let n = sorted.dae.variables.len();
+        let sequence: Vec<Assignment> =
+            sorted.blocks.iter().flat_map(|block| block.assignments()).copied().collect();
+        let loops = sorted.blocks.iter().filter_map(|block| match block {
+            Block::Loop(torn) => Some(torn),
+            Block::Assignment(_) => None,
+        });
+        let mut iteration = Vec::new();
+        let mut residuals = Vec::new();
+        for torn in loops {
+            iteration.extend(&torn.iteration);
+            residuals.extend(torn.residuals.iter().map(|(residual, _)| *residual));
+        }
+        let mut registers = Registers::new(n);
+        let observed: Vec<VarId> = (0..n as u32)
+            .map(VarId)
+            .filter(|v| sorted.dae.is_unknown(*v) && sorted.aliases[v.0 as usize].is_none())
+            .collect();
+        let mut next = n as u32;
+        let mut pool = std::mem::take(&mut sorted.dae.pool);
+        let steps = compile_steps(&mut pool, &mut registers, &sorted.blocks, &mut next);
+        let initial_steps =
+            compile_steps(&mut pool, &mut registers, &sorted.initial_blocks, &mut next);
+
+        let mut outputs: Vec<Expr> = Vec::new();
+        for state in &sorted.states {
+            let derivative = (0..n as u32)
+                .map(VarId)
+                .find(|v| sorted.dae.variable(*v).kind == Kind::Derivative(*state));
+            let derivative = derivative.expect("a state is a variable with a derivative");
+            outputs.push(resolved(&mut pool, &sorted, derivative));
+        }
+        outputs.extend(&residuals);
+        let rhs = compile_outputs(&pool, &mut registers, &sequence, &outputs);
+
+        let columns: Vec<VarId> = sorted.states.iter().chain(&iteration).copied().collect();
+        let needed = slice(&pool, &sequence, &outputs);
+        let slopes = differentiate_sequence(&mut pool, &needed, &outputs, &columns, &mut next);
+        let (pattern, entries) = by_columns(&slopes.rows, columns.len());
+        let extended: Vec<Assignment> = slopes
+            .sequence
+            .iter()
+            .map(|(variable, value, equation)| Assignment {
+                variable: *variable,
+                value: *value,
+                equation: *equation,
+            })
+            .collect();
+        let jacobian = compile_outputs(&pool, &mut registers, &extended, &entries);
+
+        let mut relations = Vec::new();
+        let mut relation_sides = Vec::new();
+        let mut differences = Vec::new();
+        let mut rests = Vec::new();
+        for relation in &sorted.dae.relations {
+            let difference = pool.sub(relation.left, relation.right);
+            let time = time_relation(&mut pool, &sorted, difference);
+            match time {
+                None => differences.push(difference),
+                Some((_, rest)) => rests.push((relations.len(), rest)),
+            }
+            relations.push(CompiledRelation {
+                register: relation.variable.0,
+                operator: relation.operator,
+                time: time.map(|(factor, _)| (factor, 0)),
+            });
+            let sides = [relation.left, relation.right];
+            relation_sides.push(compile_outputs(&pool, &mut registers, &[], &sides));
+        }
+        let rest_expressions: Vec<Expr> = rests.iter().map(|(_, rest)| *rest).collect();
+        let time_rests = compile_outputs(&pool, &mut registers, &[], &rest_expressions);
+        for ((at, _), register) in rests.iter().zip(&time_rests.outputs) {
+            if let Some(time) = &mut relations[*at].time {
+                time.1 = *register;
+            }
+        }
+        let crossings = compile_outputs(&pool, &mut registers, &sequence, &differences);
+
+        let observed_expressions: Vec<Expr> = observed.iter().map(|v| pool.variable(*v)).collect();
+        let observe = compile_outputs(&pool, &mut registers, &sequence, &observed_expressions);
+        let assertions = sorted
+            .dae
+            .assertions
+            .iter()
+            .enumerate()
+            .filter(|(_, assertion)| assertion.is_error)
+            .map(|(at, assertion)| {
+                (at, compile_outputs(&pool, &mut registers, &sequence, &[assertion.condition]))
+            })
+            .collect();
+
+        let base = sorted.dae.equations.len() + sorted.dae.initial_equations.len();
+        let mut parameter_tapes = Vec::new();
+        for parameter in &sorted.parameters {
+            if let Some(binding) = sorted.dae.variable(*parameter).binding {
+                let mut builder = TapeBuilder::new(&pool, &mut registers);
+                builder.origin((base + parameter.0 as usize) as u32);
+                builder.store(*parameter, binding);
+                parameter_tapes.push((*parameter, builder.finish()));
+            }
+        }
+        let mut starts = Vec::new();
+        let mut nominals = Vec::new();
+        for position in 0..n as u32 {
+            let variable = sorted.dae.variable(VarId(position));
+            if !sorted.dae.is_unknown(VarId(position)) {
+                continue;
+            }
+            if let Some(start) = variable.start {
+                let mut builder = TapeBuilder::new(&pool, &mut registers);
+                builder.origin((base + position as usize) as u32);
+                builder.store(VarId(position), start);
+                starts.push((VarId(position), builder.finish()));
+            }
+            if let Some(nominal) = variable.nominal {
+                let mut builder = TapeBuilder::new(&pool, &mut registers);
+                let register = builder.emit(nominal);
+                nominals.push((VarId(position), builder.finish(), register));
+            }
+        }
+        sorted.dae.pool = pool;
+        let variables = variables(&sorted, &observed);
+        let parameters = parameters(&sorted);
+        let mut program = Program {
+            sorted,
+            registers,
+            sequence,
+            iteration,
+            parameters,
+            variables,
+            observed,
+            parameter_tapes,
+            starts,
+            nominals,
+            initial_steps,
+            steps,
+            relations,
+            relation_sides,
+            time_rests: time_rests.tape,
+            rhs,
+            jacobian,
+            pattern,
+            crossings,
+            observe,
+            assertions,
+        };
+        program.fill_defaults();
+        Ok(Arc::new(program))
+    }
+
+    /// Default values and bounds, computed with the default parameters.
+    fn fill_defaults(&mut self) {
+        let values = super::system::default_values(self);
+        let dae = &self.sorted.dae;
+        let number = |e: Option<Expr>, otherwise: f64| match e {
+            None => otherwise,
+            Some(e) => crate::symbolic::evaluate(&dae.pool, e, &values[..]),
+        };
+        for parameter in &mut self.parameters {
+            let variable = dae.variable(parameter.variable);
+            parameter.default = values[parameter.variable.0 as usize];
+            parameter.min = number(variable.min, f64::NEG_INFINITY);
+            parameter.max = number(variable.max, f64::INFINITY);
+        }
+    }
+
+    /// An independent system, one for every thread.
+    pub fn system(self: &Arc<Program>) -> System {
+        System::new(self.clone())
+    }
+
+    /// Name of the class.
+    pub fn name(&self) -> &str {
+        &self.sorted.dae.name
+    }
+
+    /// The sorted system it was made of.
+    pub fn sorted(&self) -> &SortedDae {
+        &self.sorted
+    }
+
+    /// Parameters that can be set, in order of declaration.
+    pub fn parameters(&self) -> &[ParameterInfo] {
+        &self.parameters
+    }
+
+    /// All scalar variables, time first, then in order of declaration, then derivatives.
+    pub fn variables(&self) -> &[VariableInfo] {
+        &self.variables
+    }
+
+    /// The `experiment` annotation.
+    pub fn experiment(&self) -> Experiment {
+        self.sorted.dae.experiment
+    }
+
+    /// What deserves a warning.
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.sorted.dae.warnings
+    }
+
+    /// Position of a variable in [`Program::variables`].
+    pub fn find_variable(&self, name: &str) -> Result<usize, Fault> {
+        self.variables.iter().position(|v| &*v.name == name).ok_or_else(|| {
+            let known = self.variables.iter().map(|v| &*v.name);
+            fault!(UNKNOWN_VARIABLE, "`{}` has no variable `{name}`", self.name())
+                .help_if(suggest::did_you_mean(name, known))
+        })
+    }
+
+    /// Position of a parameter in [`Program::parameters`].
+    pub fn find_parameter(&self, name: &str) -> Result<usize, Fault> {
+        if let Some(found) = self.parameters.iter().position(|p| &*p.name == name) {
+            return Ok(found);
+        }
+        let exists = self.variables.iter().find(|v| &*v.name == name);
+        if exists.is_some_and(|v| v.variability <= Variability::Parameter) {
+            return Err(fault!(STRUCTURAL_PARAMETER,
+                "`{name}` cannot be set: it is constant, final, or shaped the compiled model";
+                help: "change it with a modification when translating the model"));
+        }
+        let known = self.parameters.iter().map(|p| &*p.name);
+        Err(fault!(UNKNOWN_PARAMETER, "`{}` has no parameter `{name}`", self.name())
+            .help_if(suggest::did_you_mean(name, known)))
+    }
+
+    /// A failed simulation in the model's words.
+    pub fn explain(&self, error: &SimError) -> Diagnostic {
+        let when = format!("at t = {}", error.time);
+        match error.kind {
+            SimErrorKind::Evaluation(failure) => self.explain_failure(failure, &when),
+            SimErrorKind::Initialization(Failure::Newton { .. })
+            | SimErrorKind::Initialization(Failure::Singular { .. }) => {
+                fault!(INITIALIZATION_FAILED, "no initial values of `{}` could be found {when}",
+                    self.name(); help: "give start values near the solution")
+                .at(self.first_span())
+            }
+            SimErrorKind::Initialization(failure) => self.explain_failure(failure, &when),
+            other => {
+                let reason = match other {
+                    SimErrorKind::StepSize => "the step became too small",
+                    SimErrorKind::StepBudget => "the number of steps is used up",
+                    SimErrorKind::TimeBudget => "the time allowed is used up",
+                    SimErrorKind::Singular => "the Jacobian is singular",
+                    SimErrorKind::Chattering => "events follow each other without end",
+                    _ => "a value is not finite",
+                };
+                fault!(SIMULATION_FAILED, "the simulation of `{}` stopped {when}: {reason}",
+                    self.name())
+                .at(self.first_span())
+            }
+        }
+    }
+
+    fn first_span(&self) -> Span {
+        self.sorted.dae.equations.first().map_or(Span::NONE, |equation| equation.span)
+    }
+
+    fn explain_failure(&self, failure: Failure, when: &str) -> Diagnostic {
+        match failure {
+            Failure::Domain { place } => {
+                let what = match (place & 0xff) as usize {
+                    0 => "a division by zero or an overflow of a division".to_owned(),
+                    1 => "a power without a finite value".to_owned(),
+                    code => match function::functions().nth(code - 2) {
+                        Some((_, function)) => format!("`{}` has no value: {}", function.name,
+                            function.domain.map_or("the result is not finite", |d| d.words)),
+                        None => "an operation without a finite value".to_owned(),
+                    },
+                };
+                fault!(DOMAIN_ERROR, "{what} {when}").at(self.place(place >> 8))
+            }
+            Failure::Assertion { assertion } => {
+                let assertions = &self.sorted.dae.assertions;
+                match assertions.get(assertion as usize) {
+                    Some(failed) => fault!(ASSERTION_FAILED, "{} ({when})", failed.message)
+                        .at(failed.span),
+                    None => fault!(ASSERTION_FAILED, "an assertion fails {when}")
+                        .at(self.first_span()),
+                }
+            }
+            Failure::Newton { block } | Failure::Singular { block } => {
+                self.explain_block(block, when, SIMULATION_FAILED)
+            }
+            Failure::Initialization { block } => {
+                self.explain_block(block, when, INITIALIZATION_FAILED)
+            }
+            Failure::EventIteration => {
+                fault!(SIMULATION_FAILED, "event iteration of `{}` does not end {when}",
+                    self.name())
+                .at(self.first_span())
+            }
+        }
+    }
+
+    fn explain_block(&self, block: u32, when: &str, code: crate::diag::Code) -> Diagnostic {
+        let blocks = match code == INITIALIZATION_FAILED {
+            true => &self.sorted.initial_blocks,
+            false => &self.sorted.blocks,
+        };
+        let Some(Block::Loop(torn)) = blocks.get(block as usize) else {
+            return fault!(code, "an algebraic loop of `{}` did not converge {when}", self.name())
+                .at(self.first_span());
+        };
+        let names: Vec<String> = torn
+            .iteration
+            .iter()
+            .map(|v| format!("`{}`", self.sorted.dae.variable(*v).name))
+            .collect();
+        let equation = torn.residuals.first().map_or(u32::MAX, |(_, equation)| *equation as u32);
+        fault!(code, "the algebraic loop of {} did not converge {when}", names.join(", ");
+            help: "give these variables start values near the solution")
+        .at(self.place(equation))
+    }
+
+    /// Where an origin is written: equations, initial equations, then variables.
+    fn place(&self, origin: u32) -> Span {
+        let dae = &self.sorted.dae;
+        let mut spans = dae.equations.iter().chain(&dae.initial_equations).map(|e| e.span);
+        let declared = || {
+            let base = dae.equations.len() + dae.initial_equations.len();
+            let position = (origin as usize).checked_sub(base)?;
+            dae.variables.get(position).map(|v| v.span)
+        };
+        spans.nth(origin as usize).or_else(declared).unwrap_or(Span::NONE)
+    }
+
+    /// The expression of a variable of [`Program::variables`], aliases resolved, with its sign.
+    pub(super) fn resolve(&self, variable: VarId) -> (VarId, bool) {
+        match self.sorted.aliases[variable.0 as usize] {
+            Some(alias) => (alias.of, alias.negated),
+            None => (variable, false),
+        }
+    }
+
+    /// Everything that variables of [`Program::variables`] are computed from.
+    fn dependencies(&self, variables: &[usize]) -> FxHashSet<VarId> {
+        let pool = &self.sorted.dae.pool;
+        let wanted: FxHashSet<VarId> = variables
+            .iter()
+            .filter_map(|at| self.variables.get(*at))
+            .map(|info| self.resolve(info.variable).0)
+            .collect();
+        close(pool, &self.sequence, wanted)
+    }
+
+    /// Whether states or iteration variables are needed to compute these variables: if not, they
+    /// are functions of time and parameters alone.
+    pub fn needs_states(&self, variables: &[usize]) -> bool {
+        let needed = self.dependencies(variables);
+        self.sorted.states.iter().chain(&self.iteration).any(|v| needed.contains(v))
+    }
+
+    /// Whether a variable is computed from one of these parameters, other parameters between them
+    /// included. States and iteration variables count as depending on every parameter.
+    pub fn depends_on_parameters(&self, variable: usize, parameters: &[usize]) -> bool {
+        if parameters.is_empty() {
+            return false;
+        }
+        if self.needs_states(&[variable]) {
+            return true;
+        }
+        let mut needed = self.dependencies(&[variable]);
+        for parameter in self.sorted.parameters.iter().rev() {
+            if needed.contains(parameter)
+                && let Some(binding) = self.sorted.dae.variable(*parameter).binding
+            {
+                needed.extend(self.sorted.dae.pool.variables(binding));
+            }
+        }
+        let of = |at: &usize| self.parameters.get(*at).map(|p| p.variable);
+        // A frozen relation may hide a parameter in its sides.
+        let frozen = self.sorted.dae.relations.iter().filter(|r| needed.contains(&r.variable));
+        let hidden: FxHashSet<VarId> = frozen
+            .flat_map(|r| {
+                let mut all = self.sorted.dae.pool.variables(r.left);
+                all.extend(self.sorted.dae.pool.variables(r.right));
+                all
+            })
+            .collect();
+        let hidden = close(&self.sorted.dae.pool, &self.sequence, hidden);
+        parameters.iter().filter_map(of).any(|p| needed.contains(&p) || hidden.contains(&p))
+    }
+}
+
+/// A set of variables with all that they are computed from.
+fn close(
+    pool: &Pool,
+    sequence: &[Assignment],
+    mut wanted: FxHashSet<VarId>,
+) -> FxHashSet<VarId> {
+    for assignment in sequence.iter().rev() {
+        if wanted.contains(&assignment.variable) {
+            wanted.extend(pool.variables(assignment.value));
+        }
+    }
+    wanted
+}
+
+/// The assignments that outputs need, in order.
+pub(super) fn slice(pool: &Pool, sequence: &[Assignment], outputs: &[Expr]) -> Vec<Assignment> {
+    let wanted = outputs.iter().flat_map(|output| pool.variables(*output)).collect();
+    let wanted = close(pool, sequence, wanted);
+    sequence.iter().filter(|a| wanted.contains(&a.variable)).copied().collect()
+}
+
+/// Code that computes outputs, and only what they need.
+pub(super) fn compile_outputs(
+    pool: &Pool,
+    registers: &mut Registers,
+    sequence: &[Assignment],
+    outputs: &[Expr],
+) -> Outputs {
+    let needed = slice(pool, sequence, outputs);
+    let mut builder = TapeBuilder::new(pool, registers);
+    for assignment in &needed {
+        builder.origin(assignment.equation as u32);
+        builder.define(assignment.variable, assignment.value);
+    }
+    let registers = outputs.iter().map(|output| builder.emit(*output)).collect();
+    Outputs { tape: builder.finish(), outputs: registers }
+}
+
+/// The steps of solving blocks one after another.
+fn compile_steps(
+    pool: &mut Pool,
+    registers: &mut Registers,
+    blocks: &[Block],
+    next: &mut u32,
+) -> Vec<Step> {
+    let mut steps = Vec::new();
+    let mut run: Vec<Assignment> = Vec::new();
+    for (number, block) in blocks.iter().enumerate() {
+        let torn = match block {
+            Block::Assignment(assignment) => {
+                run.push(*assignment);
+                continue;
+            }
+            Block::Loop(torn) => torn,
+        };
+        steps.extend(compile_run(pool, registers, &mut run));
+        let residuals: Vec<Expr> = torn.residuals.iter().map(|(residual, _)| *residual).collect();
+        let slopes =
+            differentiate_sequence(pool, &torn.assignments, &residuals, &torn.iteration, next);
+        let zero = pool.constant(0.0);
+        let mut builder = TapeBuilder::new(pool, registers);
+        let inner: FxHashSet<VarId> = torn.assignments.iter().map(|a| a.variable).collect();
+        for (variable, value, equation) in &slopes.sequence {
+            builder.origin(*equation as u32);
+            match inner.contains(variable) {
+                true => builder.store(*variable, *value),
+                false => builder.define(*variable, *value),
+            }
+        }
+        let n = torn.iteration.len();
+        let mut results = Vec::new();
+        let mut jacobian = Vec::new();
+        for (row, (residual, equation)) in torn.residuals.iter().enumerate() {
+            builder.origin(*equation as u32);
+            results.push(builder.emit(*residual));
+            for column in 0..n {
+                let entry = slopes.rows[row].get(&column).copied().unwrap_or(zero);
+                jacobian.push(builder.emit(entry));
+            }
+        }
+        steps.push(Step::Solve(Newton {
+            tape: builder.finish(),
+            unknowns: torn.iteration.iter().map(|v| v.0).collect(),
+            residuals: results,
+            jacobian,
+            block: number as u32,
+        }));
+    }
+    steps.extend(compile_run(pool, registers, &mut run));
+    steps
+}
+
+fn compile_run(
+    pool: &Pool,
+    registers: &mut Registers,
+    run: &mut Vec<Assignment>,
+) -> Option<Step> {
+    if run.is_empty() {
+        return None;
+    }
+    let mut builder = TapeBuilder::new(pool, registers);
+    for assignment in run.drain(..) {
+        builder.origin(assignment.equation as u32);
+        builder.store(assignment.variable, assignment.value);
+    }
+    Some(Step::Run(builder.finish()))
+}
+
+/// A variable's representative, with its sign.
+pub(super) fn resolved(pool: &mut Pool, sorted: &SortedDae, variable: VarId) -> Expr {
+    match sorted.aliases[variable.0 as usize] {
+        None => pool.variable(variable),
+        Some(alias) => {
+            let of = pool.variable(alias.of);
+            if alias.negated { pool.neg(of) } else { of }
+        }
+    }
+}
+
+/// `factor * time + rest` with a known factor and a rest of parameters.
+fn time_relation(pool: &mut Pool, sorted: &SortedDae, difference: Expr) -> Option<(f64, Expr)> {
+    let parametric = |v: &VarId| {
+        *v == VarId(0) || matches!(sorted.dae.variable(*v).kind, Kind::Parameter { .. })
+    };
+    if !pool.variables(difference).iter().all(parametric) {
+        return None;
+    }
+    let linear = linear_in(pool, difference, VarId(0))?;
+    let factor = pool.as_constant(linear.coefficient)?;
+    (factor != 0.0).then_some((factor, linear.rest))
+}
+
+/// Entries of a Jacobian by columns.
+fn by_columns(rows: &[BTreeMap<usize, Expr>], n: usize) -> (Pattern, Vec<Expr>) {
+    let mut columns: Vec<Vec<(usize, Expr)>> = vec![Vec::new(); n];
+    for (row, entries) in rows.iter().enumerate() {
+        for (column, entry) in entries {
+            columns[*column].push((row, *entry));
+        }
+    }
+    let mut pattern = Pattern { n, column_starts: vec![0], rows: Vec::new() };
+    let mut values = Vec::new();
+    for column in columns {
+        for (row, entry) in column {
+            pattern.rows.push(row);
+            values.push(entry);
+        }
+        pattern.column_starts.push(pattern.rows.len());
+    }
+    (pattern, values)
+}
+
+fn parameters(sorted: &SortedDae) -> Vec<ParameterInfo> {
+    let tunable = |(_, v): &(usize, &Variable)| v.kind == Kind::Parameter { tunable: true };
+    let info = |(at, v): (usize, &Variable)| ParameterInfo {
+        name: v.name.clone(),
+        unit: v.unit.clone(),
+        description: v.description.clone(),
+        base: v.base.clone(),
+        min: f64::NEG_INFINITY,
+        max: f64::INFINITY,
+        default: f64::NAN,
+        top_level: v.top_level,
+        variable: VarId(at as u32),
+    };
+    sorted.dae.variables.iter().enumerate().filter(tunable).map(info).collect()
+}
+
+fn variables(sorted: &SortedDae, observed: &[VarId]) -> Vec<VariableInfo> {
+    let mut infos = Vec::new();
+    for (at, v) in sorted.dae.variables.iter().enumerate() {
+        let id = VarId(at as u32);
+        let alias = sorted.aliases[at];
+        let access = match v.kind {
+            Kind::Time => Access::Time,
+            Kind::Constant(value) => Access::Constant(value),
+            Kind::Parameter { .. } => Access::Parameter,
+            Kind::Frozen | Kind::Text => continue,
+            Kind::Unknown | Kind::Derivative(_) => {
+                let of = alias.map_or(id, |alias| alias.of);
+                let column = observed.binary_search(&of);
+                Access::Observed {
+                    column: column.expect("every representative is observed"),
+                    negated: alias.is_some_and(|alias| alias.negated),
+                }
+            }
+        };
+        infos.push(VariableInfo {
+            name: v.name.clone(),
+            unit: v.unit.clone(),
+            display_unit: v.display_unit.clone(),
+            description: v.description.clone(),
+            base: v.base.clone(),
+            variability: v.variability,
+            causality: v.causality,
+            top_level: v.top_level,
+            protected: v.protected,
+            access,
+            variable: id,
+        });
+    }
+    infos
+}

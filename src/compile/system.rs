@@ -1,0 +1,389 @@
+//! One running instance of a program: its registers, parameter values and frozen relations.
+
+use super::lower::Registers;
+use super::newton::solve_loop;
+use super::program::{Access, Outputs, Program, Step, compile_outputs, resolved};
+use super::tape::{Instruction, Tape};
+use crate::diag::Fault;
+use crate::fault;
+use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern};
+use crate::symbolic::{Expr, VarId, function};
+use std::sync::Arc;
+
+/// Most rounds of an event iteration.
+const MAX_ROUNDS: usize = 100;
+
+/// A system that one thread simulates.
+#[derive(Debug, Clone)]
+pub struct System {
+    program: Arc<Program>,
+    registers: Vec<f64>,
+    /// Values set from outside, by number of the parameter.
+    set: Vec<Option<f64>>,
+    observed: Option<Outputs>,
+    /// Times at which relations on time switch.
+    switches: Vec<Option<f64>>,
+    nominal: Vec<f64>,
+}
+
+impl System {
+    pub(super) fn new(program: Arc<Program>) -> System {
+        let registers = blank(&program.registers);
+        let n = program.sorted.states.len() + program.iteration.len();
+        let mut system = System {
+            registers,
+            set: vec![None; program.parameters().len()],
+            observed: None,
+            switches: vec![None; program.relations.len()],
+            nominal: vec![1.0; n],
+            program,
+        };
+        system.evaluate_nominals();
+        system
+    }
+
+    /// The program it runs.
+    pub fn program(&self) -> &Arc<Program> {
+        &self.program
+    }
+
+    /// Sets a parameter by its position in [`Program::parameters`]; it takes effect at the next
+    /// initialization. Bounds are the caller's to check.
+    pub fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), Fault> {
+        let name = &self.program.parameters().get(index).map(|p| p.name.clone());
+        match (self.set.get_mut(index), name) {
+            (Some(_), Some(name)) if value.is_nan() => {
+                Err(fault!(super::errors::UNKNOWN_PARAMETER, "the value of `{name}` is not a number"))
+            }
+            (Some(slot), _) => {
+                *slot = Some(value);
+                Ok(())
+            }
+            (None, _) => {
+                Err(fault!(super::errors::UNKNOWN_PARAMETER, "there is no parameter number {index}"))
+            }
+        }
+    }
+
+    /// Takes back all values set.
+    pub fn reset_parameters(&mut self) {
+        self.set.fill(None);
+    }
+
+    /// Restricts [`DaeSystem::observe`] to these variables (positions in [`Program::variables`]),
+    /// one column each in this order, and computes nothing that they do not need.
+    pub fn observe_only(&mut self, variables: &[usize]) {
+        let program = self.program.clone();
+        let mut pool = program.sorted.dae.pool.clone();
+        let outputs: Vec<Expr> = variables
+            .iter()
+            .map(|at| match program.variables()[*at].access {
+                Access::Constant(value) => pool.constant(value),
+                _ => resolved(&mut pool, &program.sorted, program.variables()[*at].variable),
+            })
+            .collect();
+        let mut registers = program.registers.clone();
+        let observed = compile_outputs(&pool, &mut registers, &program.sequence, &outputs);
+        self.registers.resize(registers.len(), 0.0);
+        for (register, value) in &registers.values {
+            self.registers[*register as usize] = *value;
+        }
+        self.observed = Some(observed);
+    }
+
+    /// The value of a parameter or constant (position in [`Program::variables`]) after
+    /// initialization; `None` for other variables.
+    pub fn value(&self, variable: usize) -> Option<f64> {
+        let info = self.program.variables().get(variable)?;
+        match info.access {
+            Access::Constant(value) => Some(value),
+            Access::Parameter => Some(self.registers[info.variable.0 as usize]),
+            _ => None,
+        }
+    }
+
+    fn load(&mut self, t: f64, y: &[f64]) {
+        self.registers[0] = t;
+        let states = self.program.sorted.states.iter();
+        for (variable, value) in states.chain(&self.program.iteration).zip(y) {
+            self.registers[variable.0 as usize] = *value;
+        }
+    }
+
+    fn unload(&self, y: &mut [f64]) {
+        let states = self.program.sorted.states.iter();
+        for (variable, value) in states.chain(&self.program.iteration).zip(y) {
+            *value = self.registers[variable.0 as usize];
+        }
+    }
+
+    /// A domain failure where an assertion does not hold is the assertion's.
+    fn refine(&mut self, failure: Failure) -> Failure {
+        match failure {
+            Failure::Domain { .. } => self.violated().unwrap_or(failure),
+            other => other,
+        }
+    }
+
+    /// The first assertion that does not hold.
+    fn violated(&mut self) -> Option<Failure> {
+        for (number, condition) in &self.program.assertions {
+            let done = condition.tape.run(&mut self.registers);
+            if done.is_ok() && self.registers[condition.outputs[0] as usize] == 0.0 {
+                return Some(Failure::Assertion { assertion: *number as u32 });
+            }
+        }
+        None
+    }
+
+    fn evaluate_parameters(&mut self) -> Result<(), Failure> {
+        let program = self.program.clone();
+        let mut tunable = 0;
+        // Slots of set values first: tapes run in order of dependence, not of declaration.
+        let mut given: Vec<(VarId, f64)> = Vec::new();
+        for (info, set) in program.parameters().iter().zip(&self.set) {
+            if let Some(value) = set {
+                given.push((info.variable, *value));
+                tunable += 1;
+            }
+        }
+        for (parameter, tape) in &program.parameter_tapes {
+            let set = match tunable {
+                0 => None,
+                _ => given.iter().find(|(v, _)| v == parameter),
+            };
+            match set {
+                Some((_, value)) => self.registers[parameter.0 as usize] = *value,
+                None => run(tape, &mut self.registers)?,
+            }
+        }
+        run(&program.time_rests, &mut self.registers)?;
+        for (switch, relation) in self.switches.iter_mut().zip(&program.relations) {
+            *switch = relation
+                .time
+                .map(|(factor, rest)| -self.registers[rest as usize] / factor)
+                .filter(|time| time.is_finite());
+        }
+        Ok(())
+    }
+
+    /// With the default parameters, so that no run depends on those before it: the attribute
+    /// `nominal`, else the start value, else 1.
+    fn evaluate_nominals(&mut self) {
+        let program = self.program.clone();
+        let tapes = program.parameter_tapes.iter().chain(&program.starts);
+        for (variable, tape) in tapes {
+            if tape.run(&mut self.registers).is_err() {
+                self.registers[variable.0 as usize] = 1.0;
+            }
+        }
+        let states = program.sorted.states.iter();
+        for (at, variable) in states.chain(&program.iteration).enumerate() {
+            let given = program.nominals.iter().find(|(v, ..)| v == variable);
+            let value = match given {
+                Some((_, tape, register)) => match tape.run(&mut self.registers) {
+                    Ok(()) => self.registers[*register as usize],
+                    Err(_) => 1.0,
+                },
+                None => self.registers[variable.0 as usize],
+            };
+            let usable = value.is_finite() && value != 0.0;
+            self.nominal[at] = if usable { value.abs() } else { 1.0 };
+        }
+    }
+
+    /// Evaluates every relation at the values of the variables; whether one changed.
+    fn update_relations(&mut self, t: f64) -> bool {
+        let program = self.program.clone();
+        let mut changed = false;
+        let sides = program.relation_sides.iter().zip(&self.switches);
+        for (relation, (sides, switch)) in program.relations.iter().zip(sides) {
+            let holds = match (relation.time, switch) {
+                (Some((factor, _)), Some(switch)) => {
+                    let near = (t - switch).abs() <= 1e-12 * t.abs().max(switch.abs());
+                    // At the instant itself the value is that behind it.
+                    let difference = if near { factor } else { factor * (t - switch) };
+                    relation.operator.holds(difference, 0.0)
+                }
+                _ => match sides.tape.run(&mut self.registers) {
+                    Ok(()) => {
+                        let [a, b] = [sides.outputs[0], sides.outputs[1]];
+                        let (a, b) = (self.registers[a as usize], self.registers[b as usize]);
+                        relation.operator.holds(a, b)
+                    }
+                    Err(_) => self.registers[relation.register as usize] != 0.0,
+                },
+            };
+            let value = f64::from(u8::from(holds));
+            let slot = &mut self.registers[relation.register as usize];
+            changed |= *slot != value;
+            *slot = value;
+        }
+        changed
+    }
+
+    fn solve(&mut self, initial: bool) -> Result<(), Failure> {
+        let program = self.program.clone();
+        let steps = if initial { &program.initial_steps } else { &program.steps };
+        for step in steps {
+            match step {
+                Step::Run(tape) => run(tape, &mut self.registers)?,
+                Step::Solve(newton) => solve_loop(newton, &mut self.registers).map_err(|f| {
+                    match (f, initial) {
+                        (Failure::Newton { block } | Failure::Singular { block }, true) => {
+                            Failure::Initialization { block }
+                        }
+                        _ => f,
+                    }
+                })?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves and updates relations until they stay as they are (MLS §8.6).
+    fn iterate(&mut self, t: f64, initial: bool) -> Result<bool, Failure> {
+        let mut any = false;
+        for round in 0..MAX_ROUNDS {
+            if let Err(failure) = self.solve(initial) {
+                let failure = self.refine(failure);
+                return Err(failure);
+            }
+            let changed = self.update_relations(t);
+            any |= changed;
+            if !changed && (round > 0 || !any) {
+                return Ok(any);
+            }
+        }
+        Err(Failure::EventIteration)
+    }
+}
+
+impl DaeSystem for System {
+    fn n_differential(&self) -> usize {
+        self.program.sorted.states.len()
+    }
+
+    fn n_algebraic(&self) -> usize {
+        self.program.iteration.len()
+    }
+
+    fn nominal(&self, out: &mut [f64]) {
+        out.copy_from_slice(&self.nominal);
+    }
+
+    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.load(t, y);
+        read(&self.program.rhs, &mut self.registers, out).map_err(|f| self.refine(f))
+    }
+
+    fn pattern(&self) -> &Pattern {
+        &self.program.pattern
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        self.load(t, y);
+        read(&self.program.jacobian, &mut self.registers, values)
+    }
+
+    fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        let program = self.program.clone();
+        self.registers[0] = t;
+        for variable in &program.observed {
+            self.registers[variable.0 as usize] = 0.0;
+        }
+        for relation in &program.relations {
+            self.registers[relation.register as usize] = 0.0;
+        }
+        self.evaluate_parameters()?;
+        for (_, tape) in &program.starts {
+            run(tape, &mut self.registers)?;
+        }
+        self.update_relations(t);
+        self.iterate(t, true)?;
+        self.unload(y);
+        self.violated().map_or(Ok(()), Err)
+    }
+
+    fn n_crossings(&self) -> usize {
+        self.program.crossings.outputs.len()
+    }
+
+    fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.load(t, y);
+        read(&self.program.crossings, &mut self.registers, out)
+    }
+
+    fn next_time_event(&self, t: f64) -> Option<f64> {
+        let later = |time: &f64| *time > t && (time - t) > 1e-12 * t.abs().max(time.abs());
+        self.switches.iter().flatten().copied().filter(later).min_by(f64::total_cmp)
+    }
+
+    fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
+        self.load(t, y);
+        let changed = self.iterate(t, false)?;
+        self.unload(y);
+        Ok(EventOutcome::Continue { y_changed: changed })
+    }
+
+    fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        if self.program.assertions.is_empty() {
+            return Ok(());
+        }
+        self.load(t, y);
+        self.violated().map_or(Ok(()), Err)
+    }
+
+    fn n_observed(&self) -> usize {
+        self.observed.as_ref().unwrap_or(&self.program.observe).outputs.len()
+    }
+
+    fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.load(t, y);
+        let observed = self.observed.as_ref().unwrap_or(&self.program.observe);
+        read(observed, &mut self.registers, out).map_err(|f| self.refine(f))
+    }
+}
+
+/// Runs code and copies its results.
+fn read(code: &Outputs, registers: &mut [f64], out: &mut [f64]) -> Result<(), Failure> {
+    run(&code.tape, registers)?;
+    for (value, register) in out.iter_mut().zip(&code.outputs) {
+        *value = registers[*register as usize];
+    }
+    Ok(())
+}
+
+/// Runs a tape; a failure says which operation of which equation.
+pub(super) fn run(tape: &Tape, registers: &mut [f64]) -> Result<(), Failure> {
+    tape.run(registers).map_err(|at| {
+        let code = match tape.code[at as usize] {
+            Instruction::Unary { id, .. } | Instruction::Binary { id, .. } => {
+                function::functions().position(|(known, _)| known == id).map_or(0xff, |n| n + 2)
+            }
+            Instruction::Pow { .. } => 1,
+            _ => 0,
+        };
+        let origin = tape.origin(at).min(u32::MAX >> 8);
+        Failure::Domain { place: (origin << 8) | code.min(0xff) as u32 }
+    })
+}
+
+fn blank(registers: &Registers) -> Vec<f64> {
+    let mut values = vec![0.0; registers.len()];
+    for (register, value) in &registers.values {
+        values[*register as usize] = *value;
+    }
+    values
+}
+
+/// Values of all variables that parameters have by default; NaN where none can be computed.
+pub(super) fn default_values(program: &Program) -> Vec<f64> {
+    let mut registers = blank(&program.registers);
+    for (parameter, tape) in &program.parameter_tapes {
+        if tape.run(&mut registers).is_err() {
+            registers[parameter.0 as usize] = f64::NAN;
+        }
+    }
+    registers
+}

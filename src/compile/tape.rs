@@ -1,0 +1,126 @@
+//! Instructions on registers. A jump skips what is not needed, so that a branch that is not taken
+//! is never evaluated.
+
+use crate::symbolic::RelationOperator;
+use crate::symbolic::function::FunctionId;
+
+/// A register.
+pub(super) type Register = u32;
+
+/// One instruction; `d` is the register written.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Instruction {
+    Move { d: Register, a: Register },
+    Neg { d: Register, a: Register },
+    Not { d: Register, a: Register },
+    Add { d: Register, a: Register, b: Register },
+    Sub { d: Register, a: Register, b: Register },
+    Mul { d: Register, a: Register, b: Register },
+    Div { d: Register, a: Register, b: Register },
+    Pow { d: Register, a: Register, b: Register },
+    And { d: Register, a: Register, b: Register },
+    Or { d: Register, a: Register, b: Register },
+    Relation { operator: RelationOperator, d: Register, a: Register, b: Register },
+    Unary { id: FunctionId, d: Register, a: Register, function: fn(f64) -> f64 },
+    Binary {
+        id: FunctionId,
+        d: Register,
+        a: Register,
+        b: Register,
+        function: fn(f64, f64) -> f64,
+    },
+    JumpUnless { a: Register, target: u32 },
+    Jump { target: u32 },
+}
+
+/// A sequence of instructions.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Tape {
+    pub(super) code: Vec<Instruction>,
+    /// First instruction of every origin, ascending.
+    pub(super) origins: Vec<(u32, u32)>,
+}
+
+impl Tape {
+    /// Runs it; on failure the number of the instruction without a finite value.
+    pub(super) fn run(&self, r: &mut [f64]) -> Result<(), u32> {
+        let mut at = 0usize;
+        while let Some(instruction) = self.code.get(at) {
+            at += 1;
+            match *instruction {
+                Instruction::Move { d, a } => r[d as usize] = r[a as usize],
+                Instruction::Neg { d, a } => r[d as usize] = -r[a as usize],
+                Instruction::Not { d, a } => {
+                    r[d as usize] = f64::from(u8::from(r[a as usize] == 0.0));
+                }
+                Instruction::Add { d, a, b } => r[d as usize] = r[a as usize] + r[b as usize],
+                Instruction::Sub { d, a, b } => r[d as usize] = r[a as usize] - r[b as usize],
+                Instruction::Mul { d, a, b } => r[d as usize] = r[a as usize] * r[b as usize],
+                Instruction::Div { d, a, b } => {
+                    finite(r, d, r_of(a, b, |x, y| x / y), at)?;
+                }
+                Instruction::Pow { d, a, b } => finite(r, d, r_of(a, b, f64::powf), at)?,
+                Instruction::And { d, a, b } => {
+                    let both = r[a as usize] != 0.0 && r[b as usize] != 0.0;
+                    r[d as usize] = f64::from(u8::from(both));
+                }
+                Instruction::Or { d, a, b } => {
+                    let any = r[a as usize] != 0.0 || r[b as usize] != 0.0;
+                    r[d as usize] = f64::from(u8::from(any));
+                }
+                Instruction::Relation { operator, d, a, b } => {
+                    let holds = operator.holds(r[a as usize], r[b as usize]);
+                    r[d as usize] = f64::from(u8::from(holds));
+                }
+                Instruction::Unary { d, a, function, .. } => {
+                    let value = function(r[a as usize]);
+                    if !value.is_finite() {
+                        return Err(at as u32 - 1);
+                    }
+                    r[d as usize] = value;
+                }
+                Instruction::Binary { d, a, b, function, .. } => {
+                    finite(r, d, r_of(a, b, function), at)?;
+                }
+                Instruction::JumpUnless { a, target } => {
+                    if r[a as usize] == 0.0 {
+                        at = target as usize;
+                    }
+                }
+                Instruction::Jump { target } => at = target as usize,
+            }
+        }
+        Ok(())
+    }
+
+    /// The origin of an instruction.
+    pub(super) fn origin(&self, at: u32) -> u32 {
+        let position = self.origins.partition_point(|(first, _)| *first <= at);
+        position.checked_sub(1).map_or(u32::MAX, |position| self.origins[position].1)
+    }
+}
+
+/// An operation on two registers.
+fn r_of(
+    a: Register,
+    b: Register,
+    operation: impl Fn(f64, f64) -> f64,
+) -> impl Fn(&[f64]) -> f64 {
+    move |r| operation(r[a as usize], r[b as usize])
+}
+
+/// Writes a value that must be finite.
+#[inline(always)]
+fn finite(
+    r: &mut [f64],
+    d: Register,
+    value: impl Fn(&[f64]) -> f64,
+    at: usize,
+) -> Result<(), u32> {
+    let value = value(r);
+    if !value.is_finite() {
+        return Err(at as u32 - 1);
+    }
+    r[d as usize] = value;
+    Ok(())
+}

@@ -1,0 +1,202 @@
+//! Newton's method with damping for small nonlinear systems F(x) = 0.
+//!
+//! ```text
+//! Δ = −J(x)⁻¹ F(x)
+//! λ = 1, halved until ‖J(x)⁻¹ F(x + λ Δ)‖ ≤ (1 − λ/2) ‖Δ‖
+//! x += λ Δ
+//! ```
+//!
+//! The test compares steps, not residuals: it does not depend on how the equations are scaled. Norms
+//! are relative to max(|x|, nominal).
+//!
+//! Reference: [Deuflhard 2011](crate::bibliography#deuflhard-2011).
+
+use super::norm::{set_weights, weighted_rms};
+use super::{DenseLu, Failure};
+
+/// The system that Newton's method solves.
+pub trait Equations {
+    /// Writes F(x).
+    fn residual(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), Failure>;
+    /// Writes ∂F/∂x by columns.
+    fn jacobian(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), Failure>;
+}
+
+/// Why there is no solution.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum NewtonFailure {
+    /// An evaluation failed where no shorter step could avoid it.
+    Evaluation(Failure),
+    /// The Jacobian is singular.
+    Singular,
+    /// No step, however short, came nearer to a solution, or there were too many.
+    NoProgress,
+}
+
+/// Iterations until the attempt is given up.
+const MAX_ITERATIONS: usize = 100;
+/// Shortest part of a step.
+const SMALLEST_DAMPING: f64 = 1e-4;
+/// A step shorter than this, relative to x, is the last; the error after it is about its square.
+const LAST_STEP: f64 = 1e-9;
+
+/// The workspace for systems of one size.
+#[derive(Debug, Clone)]
+pub struct Newton {
+    lu: DenseLu,
+    delta: Vec<f64>,
+    residual: Vec<f64>,
+    next_delta: Vec<f64>,
+    trial: Vec<f64>,
+    weights: Vec<f64>,
+}
+
+impl Newton {
+    /// For n equations.
+    pub fn new(n: usize) -> Newton {
+        let zeros = vec![0.0; n];
+        Newton {
+            lu: DenseLu::new(n),
+            delta: zeros.clone(),
+            residual: zeros.clone(),
+            next_delta: zeros.clone(),
+            trial: zeros.clone(),
+            weights: zeros,
+        }
+    }
+
+    /// Improves x until it solves the system; `nominal` holds typical magnitudes of x, positive.
+    /// On failure x is the last iterate.
+    pub fn solve(
+        &mut self,
+        equations: &mut dyn Equations,
+        x: &mut [f64],
+        nominal: &[f64],
+    ) -> Result<(), NewtonFailure> {
+        evaluate(equations, x, &mut self.delta)?;
+        for _ in 0..MAX_ITERATIONS {
+            equations.jacobian(x, self.lu.matrix()).map_err(NewtonFailure::Evaluation)?;
+            self.lu.factorize().map_err(|_| NewtonFailure::Singular)?;
+            self.lu.solve(&mut self.delta);
+            set_weights(1.0, x, nominal, &mut self.weights);
+            let length = weighted_rms(&self.delta, &self.weights);
+            if !length.is_finite() {
+                return Err(NewtonFailure::NoProgress);
+            }
+            if length <= LAST_STEP {
+                x.iter_mut().zip(&self.delta).for_each(|(x, delta)| *x -= delta);
+                return Ok(());
+            }
+            self.advance(equations, x, length)?;
+        }
+        Err(NewtonFailure::NoProgress)
+    }
+
+    /// Makes a step as long as it helps; `delta` holds the residual at the new x afterwards.
+    fn advance(
+        &mut self,
+        equations: &mut dyn Equations,
+        x: &mut [f64],
+        length: f64,
+    ) -> Result<(), NewtonFailure> {
+        let mut damping = 1.0;
+        loop {
+            for ((trial, x), delta) in self.trial.iter_mut().zip(x.iter()).zip(&self.delta) {
+                *trial = x - damping * delta;
+            }
+            let failure = match evaluate(equations, &self.trial, &mut self.residual) {
+                Ok(()) => {
+                    self.next_delta.copy_from_slice(&self.residual);
+                    self.lu.solve(&mut self.next_delta);
+                    let next = weighted_rms(&self.next_delta, &self.weights);
+                    if next <= (1.0 - 0.5 * damping) * length {
+                        x.copy_from_slice(&self.trial);
+                        self.delta.copy_from_slice(&self.residual);
+                        return Ok(());
+                    }
+                    NewtonFailure::NoProgress
+                }
+                Err(failure) => failure,
+            };
+            damping *= 0.5;
+            if damping < SMALLEST_DAMPING {
+                return Err(failure);
+            }
+        }
+    }
+}
+
+/// The residual, which must be finite.
+fn evaluate(
+    equations: &mut dyn Equations,
+    x: &[f64],
+    out: &mut [f64],
+) -> Result<(), NewtonFailure> {
+    equations.residual(x, out).map_err(NewtonFailure::Evaluation)?;
+    let finite = out.iter().all(|value| value.is_finite());
+    if finite { Ok(()) } else { Err(NewtonFailure::NoProgress) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Equations and their Jacobian as functions.
+    struct Given(fn(&[f64], &mut [f64]), fn(&[f64], &mut [f64]));
+
+    impl Equations for Given {
+        fn residual(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+            self.0(x, out);
+            Ok(())
+        }
+
+        fn jacobian(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+            self.1(x, out);
+            Ok(())
+        }
+    }
+
+    fn solved(mut given: Given, start: &[f64]) -> Result<Vec<f64>, NewtonFailure> {
+        let mut x = start.to_vec();
+        let nominal = vec![1.0; x.len()];
+        Newton::new(x.len()).solve(&mut given, &mut x, &nominal).map(|()| x)
+    }
+
+    #[test]
+    fn steps_are_damped_where_full_ones_diverge() {
+        let arctangent = Given(|x, f| f[0] = x[0].atan(), |x, j| j[0] = 1.0 / (1.0 + x[0] * x[0]));
+        let x = solved(arctangent, &[10.0]).unwrap();
+        assert!(x[0].abs() < 1e-12, "{x:?}");
+        // A full first step would leave the domain of the logarithm.
+        let logarithm = Given(|x, f| f[0] = x[0].ln(), |x, j| j[0] = 1.0 / x[0]);
+        let x = solved(logarithm, &[20.0]).unwrap();
+        assert!((x[0] - 1.0).abs() < 1e-12, "{x:?}");
+    }
+
+    #[test]
+    fn badly_scaled_equations_are_solved() {
+        // x² + y² = 4 times 1e12, x y = 1 times 1e-12.
+        let given = Given(
+            |x, f| {
+                f[0] = 1e12 * (x[0] * x[0] + x[1] * x[1] - 4.0);
+                f[1] = 1e-12 * (x[0] * x[1] - 1.0);
+            },
+            |x, j| {
+                j.copy_from_slice(&[2e12 * x[0], 1e-12 * x[1], 2e12 * x[1], 1e-12 * x[0]]);
+            },
+        );
+        let x = solved(given, &[3.0, 0.1]).unwrap();
+        let expected = [(2.0 + 3f64.sqrt()).sqrt(), (2.0 - 3f64.sqrt()).sqrt()];
+        assert!(x.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-12), "{x:?}");
+    }
+
+    #[test]
+    fn what_has_no_solution_says_so() {
+        let parabola = Given(|x, f| f[0] = x[0] * x[0] + 1.0, |x, j| j[0] = 2.0 * x[0]);
+        assert!(solved(parabola, &[1.3]).is_err());
+        let constant = Given(|_, f| f[0] = 1.0, |_, j| j[0] = 0.0);
+        assert_eq!(solved(constant, &[0.0]), Err(NewtonFailure::Singular));
+        let undefined = Given(|_, f| f[0] = f64::NAN, |_, j| j[0] = 1.0);
+        assert_eq!(solved(undefined, &[0.0]), Err(NewtonFailure::NoProgress));
+    }
+}
