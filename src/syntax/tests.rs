@@ -97,6 +97,10 @@ fn hostile_nesting_is_an_error() {
     for text in ["(".repeat(100_000), "{".repeat(300), "-".repeat(100_000), "1+".repeat(100_000)] {
         assert!(parse_expression(SourceId::NONE, &format!("{text}1")).is_err());
     }
+    let sums = format!("{}1{}", "(".repeat(150), format!("{})", "+1".repeat(300)).repeat(150));
+    assert!(parse_expression(SourceId::NONE, &sums).is_err());
+    let list = format!("{{{}1}}", "a + (b * c), if x then y else z, ".repeat(2_000));
+    assert!(parse_expression(SourceId::NONE, &list).is_ok());
     let conditions = "if a then b else ".repeat(10_000);
     assert!(parse_expression(SourceId::NONE, &format!("{conditions}c")).is_err());
     let loops = "for i in 1:2 loop ".repeat(10_000);
