@@ -147,3 +147,16 @@ fn problems_of_simulate_model_are_read() {
     assert!(parse_class_with_modification(SourceId::NONE, "M(p = 2").is_err());
     assert!(parse_class_with_modification(SourceId::NONE, "").is_err());
 }
+
+#[test]
+fn moderate_nesting_is_read() {
+    let brackets = format!("{}x{}", "{(f(".repeat(60), "))}".repeat(60));
+    let sum = format!("x{}", " + x".repeat(490));
+    let conditions = format!("{}c", "if a then b else ".repeat(150));
+    for text in [brackets, sum, conditions] {
+        let tree =
+            parse_expression(SourceId::NONE, &text).unwrap_or_else(|error| panic!("{error}"));
+        let again = parse_expression(SourceId::NONE, &print::expression(&tree));
+        assert!(again.is_ok(), "{text}");
+    }
+}
