@@ -97,6 +97,10 @@ fn hostile_nesting_is_an_error() {
     for text in ["(".repeat(100_000), "{".repeat(300), "-".repeat(100_000), "1+".repeat(100_000)] {
         assert!(parse_expression(SourceId::NONE, &format!("{text}1")).is_err());
     }
+    let sums = format!("{}1{}", "(".repeat(150), format!("{})", "+1".repeat(300)).repeat(150));
+    assert!(parse_expression(SourceId::NONE, &sums).is_err());
+    let list = format!("{{{}1}}", "a + (b * c), if x then y else z, ".repeat(2_000));
+    assert!(parse_expression(SourceId::NONE, &list).is_ok());
     let conditions = "if a then b else ".repeat(10_000);
     assert!(parse_expression(SourceId::NONE, &format!("{conditions}c")).is_err());
     let loops = "for i in 1:2 loop ".repeat(10_000);
@@ -142,4 +146,17 @@ fn problems_of_simulate_model_are_read() {
     assert_eq!((name.to_string().as_str(), arguments.len()), ("M", 0));
     assert!(parse_class_with_modification(SourceId::NONE, "M(p = 2").is_err());
     assert!(parse_class_with_modification(SourceId::NONE, "").is_err());
+}
+
+#[test]
+fn moderate_nesting_is_read() {
+    let brackets = format!("{}x{}", "{(f(".repeat(60), "))}".repeat(60));
+    let sum = format!("x{}", " + x".repeat(490));
+    let conditions = format!("{}c", "if a then b else ".repeat(150));
+    for text in [brackets, sum, conditions] {
+        let tree =
+            parse_expression(SourceId::NONE, &text).unwrap_or_else(|error| panic!("{error}"));
+        let again = parse_expression(SourceId::NONE, &print::expression(&tree));
+        assert!(again.is_ok(), "{text}");
+    }
 }
