@@ -59,6 +59,13 @@ impl Evaluator<'_> {
                 let given = self.bound(&function, arguments, &[], span)?;
                 self.call_bound(&function, given, span)
             }
+            Target::Builtin(header) if header.is_variadic() => {
+                self.expressions(&arguments.positional)?;
+                for argument in &arguments.named {
+                    self.expression(&argument.value)?;
+                }
+                self.call_builtin(&header, Vec::new(), span)
+            }
             Target::Builtin(header) => {
                 let given = self.bound(&header, arguments, &[], span)?;
                 self.call_builtin(&header, given, span)
@@ -228,7 +235,7 @@ impl Evaluator<'_> {
             }
         }
         let values = self.complete(header, given, span)?;
-        self.host.call_builtin(header, values, span)
+        self.host.call_builtin_among(header, values, span, self.scope)
     }
 }
 

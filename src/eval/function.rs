@@ -33,6 +33,19 @@ pub struct Function {
     pub span: Span,
 }
 
+impl Function {
+    /// Whether a call may give any arguments, which are evaluated and not passed on: a built-in
+    /// marked `annotation(variadic = true)`.
+    pub(super) fn is_variadic(&self) -> bool {
+        self.annotation.iter().any(|argument| match argument {
+            ast::Argument::Element(element) => {
+                element.name.node.last().is_some_and(|name| name == "variadic")
+            }
+            ast::Argument::Redeclaration(_) => false,
+        })
+    }
+}
+
 /// What a function does.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FunctionBody {

@@ -1,6 +1,6 @@
 //! Who answers what an expression cannot answer by itself.
 
-use super::Function;
+use super::{Function, Scope};
 use crate::diag::{Diagnostic, Fault};
 use crate::name::Name;
 use crate::source::Span;
@@ -34,6 +34,19 @@ pub trait Host {
         arguments: Vec<Value>,
         span: Span,
     ) -> Result<Vec<Value>, Diagnostic>;
+
+    /// As [`Host::call_builtin`], for hosts whose builtins execute statements among the variables of
+    /// the caller.
+    fn call_builtin_among(
+        &mut self,
+        header: &Arc<Function>,
+        arguments: Vec<Value>,
+        span: Span,
+        scope: &mut Scope,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        let _ = scope;
+        self.call_builtin(header, arguments, span)
+    }
 
     /// The value of a global variable, package constant or enumeration literal; `None` if there is
     /// none.

@@ -83,7 +83,8 @@ impl Scope {
         Scope { owner: Owner::Record(components), call_span, ..Scope::default() }
     }
 
-    pub(super) fn is_script(&self) -> bool {
+    /// Whether it is the scope of a script, not of a function.
+    pub fn is_script(&self) -> bool {
         matches!(self.owner, Owner::Script)
     }
 

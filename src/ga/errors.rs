@@ -19,6 +19,6 @@ codes! {
     BAD_CROSS_POINT = "bad-cross-point":
         "## What it means\n\nCrossover exchanges the genes behind each crossing point, so a crossing point lies from 1 to the number of genes less one (0 and the number of genes itself are accepted; they exchange all or nothing).\n\n## Example\n\n`Cross(70, 1, Pop, {9})` for genomes of 6 genes.\n\n## What to do\n\nDraw the crossing points between 1 and `N_Parameters - 1`.",
     /// Arguments of a genetic operator whose sizes do not fit together.
-    SIZE_MISMATCH = "size-mismatch":
+    SIZE_MISMATCH = "population-size-mismatch":
         "## What it means\n\nTwo arrays that describe the same individuals, genes or points have different sizes.\n\n## Example\n\nA population of 6 genes with search ranges for 5.\n\n## What to do\n\nMake the sizes agree; the message names both arrays with their sizes.",
 }

@@ -17,7 +17,7 @@ impl Genomes {
     ///
     /// # Errors
     ///
-    /// `size-mismatch` when the values do not fill rows of `n_genes` (which is at least 1).
+    /// `population-size-mismatch` when the values do not fill rows of `n_genes` (which is at least 1).
     pub fn new(n_genes: usize, values: Vec<f64>) -> Result<Genomes, Fault> {
         if n_genes == 0 || !values.len().is_multiple_of(n_genes) {
             bail!(SIZE_MISMATCH, "{} values do not fill rows of {n_genes} genes", values.len());
@@ -90,7 +90,7 @@ pub fn order(fitness: &[f64]) -> Vec<usize> {
 ///
 /// # Errors
 ///
-/// `size-mismatch` when there is not one fitness for each individual.
+/// `population-size-mismatch` when there is not one fitness for each individual.
 pub fn sort_by_fitness(genomes: &Genomes, fitness: &[f64]) -> Result<(Genomes, Vec<f64>), Fault> {
     if genomes.len() != fitness.len() {
         bail!(

@@ -1,1 +1,29 @@
-//! (being written)
+//! The script language: sessions that run `.mos` scripts statement by statement, and the commands
+//! that scripts find.
+//!
+//! ```text
+//!   text ──syntax::parse_script──▶ statements ──Session──▶ values, files, Transcript, RunStatus
+//!                                       │
+//!            eval (expressions, flow)  builtins (commands)  simulation (models)
+//! ```
+
+pub mod builtins;
+mod callees;
+mod classes;
+pub mod codes;
+mod echo;
+pub mod errors;
+mod files;
+mod follow_up;
+mod host;
+mod messages;
+mod scripts;
+mod session;
+mod statements;
+mod transcript;
+mod variables;
+pub mod world;
+
+pub use messages::Messages;
+pub use session::{Dialect, Echo, Options, RunStatus, Session, Strictness};
+pub use transcript::{Exchange, Transcript};

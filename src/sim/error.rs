@@ -56,6 +56,12 @@ pub enum SimErrorKind {
     StepBudget,
     /// More wall-clock time than the budget allows.
     TimeBudget,
+    /// [`Settings::cancel`](super::Settings::cancel) was set.
+    Cancelled,
+    /// Start or stop time is not finite, or the tolerance is not between 1e-14 and 1.
+    Settings,
+    /// The method is explicit and the system has algebraic unknowns.
+    ExplicitMethod,
     /// The iteration matrix is singular at the smallest step.
     Singular,
     /// More events than make sense in this interval.

@@ -18,7 +18,7 @@ pub trait DaeSystem {
     fn n_differential(&self) -> usize;
     /// Number of algebraic variables v.
     fn n_algebraic(&self) -> usize;
-    /// Typical magnitude of every y, positive.
+    /// Typical magnitude of every y; what is not positive and finite counts as 1.
     fn nominal(&self, out: &mut [f64]);
     /// Writes (f, g) at (t, y).
     fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure>;
@@ -30,11 +30,13 @@ pub trait DaeSystem {
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure>;
     /// Number of zero-crossing functions.
     fn n_crossings(&self) -> usize;
-    /// Writes the zero-crossing functions; an event is a change of sign.
+    /// Writes the zero-crossing functions; an event is a change of sign, where negative, zero and
+    /// positive are three signs.
     fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure>;
     /// The next time event after `t`, if any is known.
     fn next_time_event(&self, t: f64) -> Option<f64>;
-    /// Event iteration at (t, y) (MLS §8.5): updates the discrete state, may change y.
+    /// Event iteration at (t, y) (MLS §8.5): updates the discrete state, may change x, and leaves v
+    /// consistent with x (an interpolated v fulfils 0 = g only within the tolerance).
     fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure>;
     /// Checks at an accepted step what must hold there (assertions).
     fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure>;
@@ -65,4 +67,11 @@ pub struct Pattern {
     pub column_starts: Vec<usize>,
     /// Row of every nonzero, ascending within a column.
     pub rows: Vec<usize>,
+}
+
+impl Pattern {
+    /// The nonzeros of a column: positions in `rows` and in the values.
+    pub fn column(&self, column: usize) -> std::ops::Range<usize> {
+        self.column_starts[column]..self.column_starts[column + 1]
+    }
 }

@@ -182,8 +182,8 @@ impl Pool {
     /// `a and b`
     pub fn and(&mut self, a: Expr, b: Expr) -> Expr {
         match (self.as_constant(a), self.as_constant(b)) {
-            (Some(zero), _) if zero == 0.0 => a,
-            (_, Some(zero)) if zero == 0.0 => b,
+            (Some(0.0), _) => a,
+            (_, Some(0.0)) => b,
             (Some(_), _) => b,
             (_, Some(_)) => a,
             _ if a == b => a,
@@ -194,8 +194,8 @@ impl Pool {
     /// `a or b`
     pub fn or(&mut self, a: Expr, b: Expr) -> Expr {
         match (self.as_constant(a), self.as_constant(b)) {
-            (Some(zero), _) if zero == 0.0 => b,
-            (_, Some(zero)) if zero == 0.0 => a,
+            (Some(0.0), _) => b,
+            (_, Some(0.0)) => a,
             (Some(_), _) => a,
             (_, Some(_)) => b,
             _ if a == b => a,

@@ -1,0 +1,190 @@
+//! Block lower triangular form: which equation determines which unknown, in solving order.
+
+use super::errors::{NOT_SUPPORTED, SINGULAR_SYSTEM, UNBALANCED_MODEL};
+use super::model::{Dae, Equation, Kind};
+use super::sorted::{Assignment, Block, Loop};
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::graph::{Bipartite, Matching, blocks, dulmage_mendelsohn, match_equations, tear};
+use crate::symbolic::{Expr, VarId, solve};
+use rustc_hash::FxHashMap;
+
+/// Sorts equations for unknowns.
+pub(super) fn sort_blocks(
+    dae: &mut Dae,
+    equations: &[Equation],
+    unknowns: &[VarId],
+) -> Result<Vec<Block>, Diagnostic> {
+    let graph = incidence(dae, equations, unknowns);
+    let matching = match_equations(&graph);
+    if equations.len() != unknowns.len() || !matching.is_perfect() {
+        return Err(report(dae, equations, unknowns, &graph, &matching));
+    }
+    let mut sorted = Vec::new();
+    for block in blocks(&graph, &matching) {
+        let members: Vec<VarId> = block
+            .iter()
+            .filter_map(|equation| matching.equation_to_unknown[*equation])
+            .map(|unknown| unknowns[unknown])
+            .collect();
+        sorted.push(solve_block(dae, equations, &block, &members)?);
+    }
+    Ok(sorted)
+}
+
+/// Which unknowns every equation contains.
+pub(super) fn incidence(dae: &Dae, equations: &[Equation], unknowns: &[VarId]) -> Bipartite {
+    let column: FxHashMap<VarId, usize> =
+        unknowns.iter().enumerate().map(|(at, v)| (*v, at)).collect();
+    let rows = equations.iter().map(|equation| {
+        let mut row: Vec<usize> = [equation.left, equation.right]
+            .iter()
+            .flat_map(|side| dae.pool.variables(*side))
+            .filter_map(|v| column.get(&v).copied())
+            .collect();
+        row.sort_unstable();
+        row.dedup();
+        row
+    });
+    Bipartite::new(unknowns.len(), rows.collect::<Vec<_>>())
+}
+
+fn solve_block(
+    dae: &mut Dae,
+    equations: &[Equation],
+    block: &[usize],
+    members: &[VarId],
+) -> Result<Block, Diagnostic> {
+    if let (&[equation], &[variable]) = (block, members)
+        && let Some(value) = explicit(dae, equations[equation], variable)
+    {
+        return Ok(Block::Assignment(Assignment { variable, value, equation }));
+    }
+    if let Some(discrete) = members.iter().find(|v| {
+        let variable = dae.variable(**v);
+        variable.variability == crate::flatten::Variability::Discrete
+            || variable.base != crate::flatten::BaseType::Real
+    }) {
+        return Err(fault!(
+            NOT_SUPPORTED,
+            "`{}` is discrete and stands in an algebraic loop",
+            dae.variable(*discrete).name
+        )
+        .at(equations[block[0]].span));
+    }
+    let local: Vec<Equation> = block.iter().map(|equation| equations[*equation]).collect();
+    let graph = incidence(dae, &local, members);
+    let mut solutions: FxHashMap<(usize, usize), Expr> = FxHashMap::default();
+    for (row, equation) in local.iter().enumerate() {
+        for unknown in graph.unknowns(row) {
+            if let Some(value) = explicit(dae, *equation, members[*unknown]) {
+                solutions.insert((row, *unknown), value);
+            }
+        }
+    }
+    let torn = tear(&graph, |row, unknown| solutions.contains_key(&(row, unknown)));
+    let assignments = torn
+        .assignments
+        .iter()
+        .map(|(row, unknown)| Assignment {
+            variable: members[*unknown],
+            value: solutions[&(*row, *unknown)],
+            equation: block[*row],
+        })
+        .collect();
+    let residuals = torn
+        .residual_equations
+        .iter()
+        .map(|row| (dae.pool.sub(local[*row].left, local[*row].right), block[*row]))
+        .collect();
+    let iteration = torn.iteration_unknowns.iter().map(|u| members[*u]).collect();
+    Ok(Block::Loop(Loop { iteration, assignments, residuals }))
+}
+
+/// The value of a variable by one equation, if it can be had without dividing by what may be zero.
+fn explicit(dae: &mut Dae, equation: Equation, variable: VarId) -> Option<Expr> {
+    let pool = &mut dae.pool;
+    if pool.as_variable(equation.left) == Some(variable)
+        && !pool.depends_on(equation.right, variable)
+    {
+        return Some(equation.right);
+    }
+    if pool.as_variable(equation.right) == Some(variable)
+        && !pool.depends_on(equation.left, variable)
+    {
+        return Some(equation.left);
+    }
+    let solution = solve(pool, equation.left, equation.right, variable)?;
+    is_safe(dae, solution.divisor).then_some(solution.value)
+}
+
+/// Whether a divisor is a number that is not zero, or made of parameters: where those make it
+/// zero, the division fails with a message rather than giving a wrong value.
+fn is_safe(dae: &Dae, divisor: Expr) -> bool {
+    match dae.pool.as_constant(divisor) {
+        Some(value) => value != 0.0,
+        None => dae
+            .pool
+            .variables(divisor)
+            .iter()
+            .all(|v| matches!(dae.variable(*v).kind, Kind::Parameter { .. })),
+    }
+}
+
+/// Names the variables and equations that do not fit.
+fn report(
+    dae: &Dae,
+    equations: &[Equation],
+    unknowns: &[VarId],
+    graph: &Bipartite,
+    matching: &Matching,
+) -> Diagnostic {
+    let parts = dulmage_mendelsohn(graph, matching);
+    let names = |list: &[usize]| -> String {
+        let shown: Vec<String> =
+            list.iter().take(6).map(|u| format!("`{}`", dae.variable(unknowns[*u]).name)).collect();
+        let more = if list.len() > 6 { ", …" } else { "" };
+        format!("{}{more}", shown.join(", "))
+    };
+    let balanced = equations.len() == unknowns.len();
+    let mut fault = match balanced {
+        true => fault!(
+            SINGULAR_SYSTEM,
+            "the equations of `{}` do not determine its variables",
+            dae.name
+        ),
+        false => fault!(
+            UNBALANCED_MODEL,
+            "`{}` has {} unknowns but {} equations",
+            dae.name,
+            unknowns.len(),
+            equations.len()
+        ),
+    };
+    if !parts.under_unknowns.is_empty() {
+        fault =
+            fault.help(format!("add an equation that determines {}", names(&parts.under_unknowns)));
+    }
+    if !parts.over_equations.is_empty() {
+        fault = fault.help(match parts.over_unknowns.is_empty() {
+            true => "remove one of the equations marked: it contains no unknown".to_owned(),
+            false => format!(
+                "remove one of the equations marked: they determine {} more than once",
+                names(&parts.over_unknowns)
+            ),
+        });
+    }
+    let place = parts.under_unknowns.first().map(|u| dae.variable(unknowns[*u]).span);
+    let mut spans: Vec<_> = parts.over_equations.iter().map(|e| equations[*e].span).collect();
+    spans.dedup();
+    let mut spans = spans.into_iter();
+    let (first, text) = match (place, &parts.under_unknowns) {
+        (Some(place), _) => (place, "no equation determines this"),
+        (None, _) => (spans.next().unwrap_or(crate::source::Span::NONE), "one equation too many"),
+    };
+    let mut diagnostic = fault.labelled(first, text);
+    for span in spans.take(6) {
+        diagnostic = diagnostic.related(span, "one of too many equations");
+    }
+    diagnostic
+}

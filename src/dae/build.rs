@@ -1,0 +1,569 @@
+//! A flat model becomes a [`Dae`]: every variable a scalar, every equation a pair of scalars.
+
+use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, PARAMETER_CYCLE, UNRESOLVED_REFERENCE};
+use super::lowering::{Array, Lowered, Lowering, size_fault};
+use super::model::{Assertion, Dae, Equation, FunctionInstance, Kind, Variable};
+use crate::diag::{Diagnostic, suggest};
+use crate::fault;
+use crate::flatten::{self, BaseType, FlatModel, Variability};
+use crate::source::Span;
+use crate::symbolic::{Expr, Pool, VarId};
+use crate::syntax::ast::{self, EquationKind, Expression, ExpressionKind, StatementKind};
+use rustc_hash::FxHashMap;
+use std::sync::Arc;
+
+/// Largest number of scalar equations.
+const MAX_EQUATIONS: usize = 2_000_000;
+
+/// What is known about a flat variable so far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Folding {
+    Unvisited,
+    InProgress,
+    Done,
+}
+
+/// Builds a [`Dae`].
+pub(super) struct Builder<'a> {
+    pub(super) flat: &'a FlatModel,
+    pub(super) dae: Dae,
+    /// First scalar of every flat variable.
+    pub(super) first: Vec<VarId>,
+    pub(super) folding: Vec<Folding>,
+    pub(super) derivatives: FxHashMap<VarId, VarId>,
+    pub(super) relations: FxHashMap<(crate::symbolic::RelationOperator, Expr, Expr), VarId>,
+    /// Whether initial equations are being read.
+    pub(super) initial: bool,
+}
+
+/// The scalar system of a flat model.
+pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
+    let mut builder = Builder {
+        flat,
+        dae: Dae {
+            name: flat.name.clone(),
+            pool: Pool::new(),
+            experiment: flat.experiment,
+            ..Dae::default()
+        },
+        first: Vec::new(),
+        folding: vec![Folding::Unvisited; flat.variables.len()],
+        derivatives: FxHashMap::default(),
+        relations: FxHashMap::default(),
+        initial: false,
+    };
+    builder.declare();
+    builder.fold_constants()?;
+    builder.bindings()?;
+    for equation in &flat.equations {
+        builder.equation(equation, &mut Vec::new())?;
+    }
+    builder.initial = true;
+    for equation in &flat.initial_equations {
+        builder.equation(equation, &mut Vec::new())?;
+    }
+    builder.refuse_algorithms()?;
+    Ok(builder.dae)
+}
+
+impl<'a> Builder<'a> {
+    /// All scalars, time first.
+    fn declare(&mut self) {
+        let mut time = scalar_of_nothing("time", Kind::Time, Span::NONE);
+        time.unit = "s".into();
+        time.description = "simulated time".into();
+        self.dae.variables.push(time);
+        for variable in self.flat.variables.values() {
+            self.first.push(VarId(self.dae.variables.len() as u32));
+            for position in 0..variable.len() {
+                self.dae.variables.push(declared(variable, position));
+            }
+        }
+    }
+
+    fn refuse_algorithms(&self) -> Result<(), Diagnostic> {
+        let sections = self.flat.algorithms.iter().chain(&self.flat.initial_algorithms);
+        match sections.flatten().next() {
+            None => Ok(()),
+            Some(statement) => {
+                let what = match statement.kind {
+                    StatementKind::When { .. } => "a when-statement",
+                    _ => "an algorithm section",
+                };
+                Err(fault!(NOT_SUPPORTED, "{what} in a model is not supported yet";
+                    help: "write equations, or move the statements into a function")
+                .at(statement.span))
+            }
+        }
+    }
+
+    /// Values of constants and of parameters that cannot be set.
+    fn fold_constants(&mut self) -> Result<(), Diagnostic> {
+        (0..self.flat.variables.len()).try_for_each(|position| self.fold(position))
+    }
+
+    /// Replaces a constant or fixed parameter by its value if its binding has one.
+    pub(super) fn fold(&mut self, position: usize) -> Result<(), Diagnostic> {
+        let variable = &self.flat.variables[position];
+        let fixed = variable.variability <= Variability::Parameter && !variable.is_tunable();
+        match (self.folding[position], &variable.binding) {
+            (Folding::Done, _) => return Ok(()),
+            (Folding::InProgress, _) => {
+                return Err(fault!(PARAMETER_CYCLE, "`{}` depends on itself", variable.name)
+                    .at(variable.span));
+            }
+            (Folding::Unvisited, Some(binding)) if fixed && variable.base != BaseType::String => {
+                self.folding[position] = Folding::InProgress;
+                let array = self.sized(binding, &variable.dims)?;
+                for (at, element) in array.elements.iter().enumerate() {
+                    if let Some(value) = self.dae.pool.as_constant(*element) {
+                        let id = self.first[position].0 as usize + at;
+                        self.dae.variables[id].kind = Kind::Constant(value);
+                    }
+                }
+            }
+            _ => {}
+        }
+        self.folding[position] = Folding::Done;
+        Ok(())
+    }
+
+    /// Bindings of parameters, binding equations of variables, attributes.
+    fn bindings(&mut self) -> Result<(), Diagnostic> {
+        for (position, variable) in self.flat.variables.values().enumerate() {
+            if variable.base == BaseType::String {
+                continue;
+            }
+            let first = self.first[position].0 as usize;
+            let is_parameter = variable.variability <= Variability::Parameter;
+            if let Some(binding) = &variable.binding {
+                let array = self.sized(binding, &variable.dims)?;
+                for (at, element) in array.elements.into_iter().enumerate() {
+                    if is_parameter {
+                        self.dae.variables[first + at].binding = Some(element);
+                    } else {
+                        let left = self.dae.pool.variable(VarId((first + at) as u32));
+                        let equation = Equation { left, right: element, span: binding.span };
+                        self.dae.equations.push(equation);
+                    }
+                }
+            }
+            self.attributes(variable, first)?;
+        }
+        Ok(())
+    }
+
+    fn attributes(&mut self, variable: &flatten::Variable, first: usize) -> Result<(), Diagnostic> {
+        for (name, attribute) in &variable.attributes {
+            let e = &attribute.value;
+            match *name {
+                "start" | "min" | "max" | "nominal" | "fixed" => {}
+                "unit" | "displayUnit" => {
+                    if let ExpressionKind::String(text) = &e.kind {
+                        for scalar in &mut self.dae.variables[first..first + variable.len()] {
+                            match *name {
+                                "unit" => scalar.unit = text.clone(),
+                                _ => scalar.display_unit = text.clone(),
+                            }
+                        }
+                    }
+                    continue;
+                }
+                _ => continue,
+            }
+            let array = Lowering::new(self).array(e)?;
+            if !array.dims.is_empty() && array.dims != variable.dims {
+                return Err(size_fault(&variable.dims, &array.dims).at(e.span));
+            }
+            for at in 0..variable.len() {
+                let element = array.elements[if array.dims.is_empty() { 0 } else { at }];
+                let known = self.dae.pool.as_constant(element);
+                let scalar = &mut self.dae.variables[first + at];
+                match *name {
+                    "start" => scalar.start = Some(element),
+                    "min" => scalar.min = Some(element),
+                    "max" => scalar.max = Some(element),
+                    "nominal" => scalar.nominal = Some(element),
+                    _ => match known {
+                        Some(value) => scalar.fixed = value != 0.0,
+                        None => {
+                            return Err(fault!(NOT_SUPPORTED, "`fixed` must be known").at(e.span));
+                        }
+                    },
+                }
+            }
+            if *name == "fixed" && variable.variability == Variability::Parameter {
+                let free = (first..first + variable.len()).any(|i| !self.dae.variables[i].fixed);
+                if free {
+                    return Err(fault!(
+                        NOT_SUPPORTED,
+                        "parameter `{}` with `fixed = false` is not supported yet",
+                        variable.name
+                    )
+                    .at(e.span));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// A value that must have these sizes; a scalar is repeated.
+    fn sized(&mut self, e: &Expression, dims: &[usize]) -> Result<Array<Expr>, Diagnostic> {
+        let array = Lowering::new(self).array(e)?;
+        if array.dims == dims {
+            return Ok(array);
+        }
+        if array.dims.is_empty() {
+            let count = dims.iter().product();
+            return Ok(Array { dims: dims.to_vec(), elements: vec![array.elements[0]; count] });
+        }
+        Err(size_fault(dims, &array.dims).at(e.span))
+    }
+
+    fn equation(
+        &mut self,
+        equation: &ast::Equation,
+        loops: &mut Vec<(crate::name::Ident, Expr)>,
+    ) -> Result<(), Diagnostic> {
+        if self.dae.equations.len() > MAX_EQUATIONS {
+            return Err(
+                fault!(NOT_SUPPORTED, "more than {MAX_EQUATIONS} equations").at(equation.span)
+            );
+        }
+        match &equation.kind {
+            EquationKind::Equal { left, right } => {
+                for pair in self.equal(left, right, equation.span, loops)? {
+                    self.push(pair);
+                }
+                Ok(())
+            }
+            EquationKind::For { indices, body } => self.for_equation(indices, body, loops),
+            EquationKind::If { branches, otherwise } => {
+                for pair in self.if_equation(branches, otherwise, equation.span, loops)? {
+                    self.push(pair);
+                }
+                Ok(())
+            }
+            EquationKind::Call(call) => self.call_equation(call, loops),
+            EquationKind::When { .. } => {
+                Err(fault!(NOT_SUPPORTED, "when-equations are not supported yet").at(equation.span))
+            }
+            EquationKind::Connect { .. } => {
+                Err(fault!(NOT_SUPPORTED, "a connection is left in the flat model")
+                    .at(equation.span))
+            }
+        }
+    }
+
+    fn push(&mut self, equation: Equation) {
+        match self.initial {
+            true => self.dae.initial_equations.push(equation),
+            false => self.dae.equations.push(equation),
+        }
+    }
+
+    /// The scalar equations of `left = right`.
+    fn equal(
+        &mut self,
+        left: &Expression,
+        right: &Expression,
+        span: Span,
+        loops: &[(crate::name::Ident, Expr)],
+    ) -> Result<Vec<Equation>, Diagnostic> {
+        if let ExpressionKind::Tuple(targets) = &left.kind {
+            return self.tuple_equal(targets, right, span, loops);
+        }
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.to_vec();
+        let (a, b) = (lowering.lower(left)?, lowering.lower(right)?);
+        pairs(&a, &b, span)
+    }
+
+    /// `(a, , b) = f(x)`
+    fn tuple_equal(
+        &mut self,
+        targets: &[Option<Expression>],
+        right: &Expression,
+        span: Span,
+        loops: &[(crate::name::Ident, Expr)],
+    ) -> Result<Vec<Equation>, Diagnostic> {
+        let ExpressionKind::Call { function, arguments } = &right.kind else {
+            return Err(fault!(ARRAY_MISMATCH, "an output list needs a function call").at(span));
+        };
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.to_vec();
+        let name = function.name();
+        let user = super::lowering::Target::function(lowering.target, &name).ok_or_else(|| {
+            fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`").at(function.span)
+        })?;
+        let outputs = lowering.user_call(&user, arguments, right.span)?;
+        let mut equations = Vec::new();
+        for (position, target) in targets.iter().enumerate() {
+            let Some(target) = target else { continue };
+            let Some(output) = outputs.get(position) else {
+                return Err(fault!(ARRAY_MISMATCH, "`{name}` has {} outputs", outputs.len())
+                    .at(target.span));
+            };
+            let value = lowering.lower(target)?;
+            equations.extend(pairs(&value, output, span)?);
+        }
+        Ok(equations)
+    }
+
+    fn for_equation(
+        &mut self,
+        indices: &[ast::ForIndex],
+        body: &[ast::Equation],
+        loops: &mut Vec<(crate::name::Ident, Expr)>,
+    ) -> Result<(), Diagnostic> {
+        let Some((index, inner)) = indices.split_first() else {
+            return body.iter().try_for_each(|equation| self.equation(equation, loops));
+        };
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.clone();
+        for value in lowering.loop_values(index)? {
+            loops.push((index.name.node, value));
+            let result = self.for_equation(inner, body, loops);
+            loops.pop();
+            result?;
+        }
+        Ok(())
+    }
+
+    /// Equations of all branches, pairwise: `0 = if c then left₁ - right₁ else left₂ - right₂`,
+    /// with common left sides kept.
+    fn if_equation(
+        &mut self,
+        branches: &[(Expression, Vec<ast::Equation>)],
+        otherwise: &[ast::Equation],
+        span: Span,
+        loops: &mut Vec<(crate::name::Ident, Expr)>,
+    ) -> Result<Vec<Equation>, Diagnostic> {
+        let Some(((condition, body), rest)) = branches.split_first() else {
+            return self.collect(otherwise, loops);
+        };
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.clone();
+        let condition = lowering.scalar(condition)?;
+        if let Some(known) = self.dae.pool.as_constant(condition) {
+            return match known != 0.0 {
+                true => self.collect(body, loops),
+                false => self.if_equation(rest, otherwise, span, loops),
+            };
+        }
+        let asserted = self.dae.assertions.len();
+        let first = self.collect(body, loops)?;
+        self.guard_assertions(asserted, condition);
+        let asserted = self.dae.assertions.len();
+        let second = self.if_equation(rest, otherwise, span, loops)?;
+        let not = self.dae.pool.not(condition);
+        self.guard_assertions(asserted, not);
+        if first.len() != second.len() {
+            return Err(fault!(
+                super::errors::UNBALANCED_MODEL,
+                "the branches of this if-equation have {} and {} equations",
+                first.len(),
+                second.len()
+            )
+            .at(span));
+        }
+        let pool = &mut self.dae.pool;
+        let merged = first.into_iter().zip(second).map(|(a, b)| {
+            if a.left == b.left {
+                let right = pool.if_then_else(condition, a.right, b.right);
+                return Equation { left: a.left, right, span: a.span };
+            }
+            let (x, y) = (pool.sub(a.left, a.right), pool.sub(b.left, b.right));
+            let left = pool.constant(0.0);
+            Equation { left, right: pool.if_then_else(condition, x, y), span: a.span }
+        });
+        Ok(merged.collect())
+    }
+
+    /// Assertions in a branch hold only where it is taken.
+    fn guard_assertions(&mut self, from: usize, condition: Expr) {
+        let not = self.dae.pool.not(condition);
+        for assertion in &mut self.dae.assertions[from..] {
+            assertion.condition = self.dae.pool.or(not, assertion.condition);
+        }
+    }
+
+    /// The equations of a branch, not yet part of the system.
+    fn collect(
+        &mut self,
+        body: &[ast::Equation],
+        loops: &mut Vec<(crate::name::Ident, Expr)>,
+    ) -> Result<Vec<Equation>, Diagnostic> {
+        let list = |builder: &mut Self| match builder.initial {
+            true => std::mem::take(&mut builder.dae.initial_equations),
+            false => std::mem::take(&mut builder.dae.equations),
+        };
+        let before = list(self);
+        let result = body.iter().try_for_each(|equation| self.equation(equation, loops));
+        let collected = list(self);
+        match self.initial {
+            true => self.dae.initial_equations = before,
+            false => self.dae.equations = before,
+        }
+        result.map(|()| collected)
+    }
+
+    fn call_equation(
+        &mut self,
+        call: &Expression,
+        loops: &[(crate::name::Ident, Expr)],
+    ) -> Result<(), Diagnostic> {
+        let ExpressionKind::Call { function, arguments } = &call.kind else {
+            return Err(fault!(NOT_SUPPORTED, "this is no equation").at(call.span));
+        };
+        let name = function.name().to_string();
+        match name.as_str() {
+            "assert" => self.assertion(arguments, call.span, loops),
+            _ if name.starts_with("Connections.") => Ok(()),
+            _ => Err(fault!(NOT_SUPPORTED, "`{name}(…)` as an equation is not supported yet")
+                .at(call.span)),
+        }
+    }
+
+    fn assertion(
+        &mut self,
+        arguments: &ast::Arguments,
+        span: Span,
+        loops: &[(crate::name::Ident, Expr)],
+    ) -> Result<(), Diagnostic> {
+        let find = |position: usize, name: &str| {
+            let named = arguments.named.iter().find(|a| a.name.node == name).map(|a| &a.value);
+            arguments.positional.get(position).or(named)
+        };
+        let Some(condition) = find(0, "condition") else {
+            return Err(fault!(ARRAY_MISMATCH, "`assert` needs a condition").at(span));
+        };
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.to_vec();
+        lowering.live = true;
+        let condition = lowering.scalar(condition)?;
+        let is_error = match find(2, "level") {
+            Some(level) => lowering.known(level)? != 1.0,
+            None => true,
+        };
+        let message = find(1, "message").map_or(String::new(), message_text);
+        self.dae.assertions.push(Assertion { condition, message: message.into(), is_error, span });
+        Ok(())
+    }
+}
+
+/// The literal parts of a message; what is computed shows as `…`.
+fn message_text(e: &Expression) -> String {
+    match &e.kind {
+        ExpressionKind::String(text) => text.to_string(),
+        ExpressionKind::Binary { operator: ast::BinaryOperator::Add, left, right } => {
+            message_text(left) + &message_text(right)
+        }
+        _ => "…".into(),
+    }
+}
+
+/// Scalar equations of two values of one shape.
+fn pairs(a: &Lowered<Expr>, b: &Lowered<Expr>, span: Span) -> Result<Vec<Equation>, Diagnostic> {
+    let (Some(x), Some(y)) = (a.shape(), b.shape()) else {
+        return Err(fault!(NOT_SUPPORTED, "equations of texts are not supported").at(span));
+    };
+    if x.len() != y.len() || std::mem::discriminant(&x) != std::mem::discriminant(&y) {
+        return Err(fault!(
+            ARRAY_MISMATCH,
+            "the sides of this equation have {} and {} elements",
+            x.len(),
+            y.len()
+        )
+        .at(span));
+    }
+    if let (Lowered::Array(x), Lowered::Array(y)) = (a, b)
+        && x.dims != y.dims
+    {
+        return Err(size_fault(&x.dims, &y.dims).at(span));
+    }
+    let (mut left, mut right) = (Vec::new(), Vec::new());
+    a.append_scalars(&mut left);
+    b.append_scalars(&mut right);
+    let equation = |(left, right)| Equation { left, right, span };
+    Ok(left.into_iter().zip(right).map(equation).collect())
+}
+
+/// The scalar at a position of a flat variable.
+fn declared(variable: &flatten::Variable, position: usize) -> Variable {
+    let name: Arc<str> = match variable.dims.is_empty() {
+        true => variable.name.clone(),
+        false => format!("{}[{}]", variable.name, subscripts(&variable.dims, position)).into(),
+    };
+    let kind = match (&variable.base, variable.variability) {
+        (BaseType::String, _) => Kind::Text,
+        (_, Variability::Constant | Variability::Parameter) => {
+            Kind::Parameter { tunable: variable.is_tunable() }
+        }
+        _ => Kind::Unknown,
+    };
+    Variable {
+        name,
+        kind,
+        base: variable.base.clone(),
+        variability: variable.variability,
+        causality: variable.causality,
+        top_level: variable.top_level,
+        protected: variable.protected,
+        description: variable.description.clone().unwrap_or_default(),
+        ..scalar_of_nothing("", kind, variable.span)
+    }
+}
+
+/// `2,3` for a row-major position.
+fn subscripts(dims: &[usize], position: usize) -> String {
+    let mut rest = position;
+    let mut texts = vec![String::new(); dims.len()];
+    for (text, size) in texts.iter_mut().zip(dims).rev() {
+        *text = (rest % size + 1).to_string();
+        rest /= size;
+    }
+    texts.join(",")
+}
+
+/// A Real without attributes.
+pub(super) fn scalar_of_nothing(name: &str, kind: Kind, span: Span) -> Variable {
+    Variable {
+        name: name.into(),
+        kind,
+        base: BaseType::Real,
+        variability: Variability::Continuous,
+        causality: None,
+        top_level: false,
+        protected: false,
+        unit: "".into(),
+        display_unit: "".into(),
+        description: "".into(),
+        binding: None,
+        start: None,
+        fixed: false,
+        min: None,
+        max: None,
+        nominal: None,
+        span,
+    }
+}
+
+impl Builder<'_> {
+    /// The number of a function for these arguments.
+    pub(super) fn instance(&mut self, instance: FunctionInstance) -> u32 {
+        let functions = &mut self.dae.functions;
+        let found = functions.iter().position(|known| *known == instance);
+        found.unwrap_or_else(|| {
+            functions.push(instance);
+            functions.len() - 1
+        }) as u32
+    }
+
+    /// The fault of a name that nothing declares.
+    pub(super) fn unresolved(&self, path: &str, span: Span) -> Diagnostic {
+        fault!(UNRESOLVED_REFERENCE, "there is no variable `{path}` in `{}`", self.flat.name)
+            .help_if(suggest::did_you_mean(path, self.flat.variables.keys().map(|n| &**n)))
+            .at(span)
+    }
+}

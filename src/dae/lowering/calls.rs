@@ -1,0 +1,402 @@
+//! Calls: operators with a meaning in time, functions of arrays (MLS §10.3), functions of the
+//! table (MLS §3.7), user functions.
+
+use super::arrays::concatenate;
+use super::{Array, Binary, Lowered, Lowering, Operator, Target};
+use crate::dae::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
+use crate::diag::{Diagnostic, suggest};
+use crate::eval::FunctionBody;
+use crate::fault;
+use crate::source::Span;
+use crate::symbolic::function;
+use crate::syntax::ast::{Arguments, ComponentReference, Expression};
+
+impl<T: Target> Lowering<'_, T> {
+    pub(super) fn call(
+        &mut self,
+        callee: &ComponentReference,
+        arguments: &Arguments,
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let name = callee.name();
+        if let Some(user) = self.target.function(&name) {
+            let mut outputs = self.user_call(&user, arguments, span)?;
+            if outputs.is_empty() {
+                return Err(fault!(ARRAY_MISMATCH, "`{name}` has no output").at(span));
+            }
+            return Ok(outputs.swap_remove(0));
+        }
+        let text = name.to_string();
+        let short = text.strip_prefix('.').unwrap_or(&text);
+        let plain = &arguments.positional;
+        if let Some(operator) = self.target.operator(short, plain, span) {
+            return self.time_operator(short, operator?, plain, span);
+        }
+        if let Some(array) = self.array_function(short, arguments, span)? {
+            return Ok(Lowered::Array(array));
+        }
+        self.table_function(short, plain, span)
+    }
+
+    /// A user function with its arguments in order, all outputs.
+    pub(crate) fn user_call(
+        &mut self,
+        user: &std::sync::Arc<crate::eval::Function>,
+        arguments: &Arguments,
+        span: Span,
+    ) -> Result<Vec<Lowered<T::Scalar>>, Diagnostic> {
+        let name = &user.name;
+        if !arguments.iterators.is_empty() || arguments.positional.len() > user.inputs.len() {
+            return Err(
+                fault!(ARRAY_MISMATCH, "`{name}` takes {} arguments", user.inputs.len()).at(span)
+            );
+        }
+        if let Some(unknown) =
+            arguments.named.iter().find(|a| user.inputs.iter().all(|i| i.name != a.name.node))
+        {
+            return Err(fault!(
+                UNRESOLVED_REFERENCE,
+                "`{name}` has no input `{}`",
+                unknown.name.node
+            )
+            .help_if(suggest::did_you_mean(
+                unknown.name.node.as_str(),
+                user.inputs.iter().map(|i| i.name.as_str()),
+            ))
+            .at(unknown.name.span));
+        }
+        let mut values = Vec::with_capacity(user.inputs.len());
+        for (position, input) in user.inputs.iter().enumerate() {
+            let named = arguments.named.iter().find(|a| a.name.node == input.name);
+            let given = arguments.positional.get(position).or(named.map(|a| &a.value));
+            let value = match (given, &input.binding) {
+                (Some(given), _) => self.lower(given)?,
+                (None, Some(default)) => self.lower(default)?,
+                (None, None) => {
+                    return Err(fault!(
+                        UNRESOLVED_REFERENCE,
+                        "the input `{}` of `{name}` has no value",
+                        input.name
+                    )
+                    .at(span));
+                }
+            };
+            values.push(value);
+        }
+        if matches!(user.body, FunctionBody::RecordConstructor) {
+            let fields = user.inputs.iter().map(|i| i.name).zip(values).collect();
+            return Ok(vec![Lowered::Record(fields)]);
+        }
+        self.target.call(user, values, span)
+    }
+
+    fn time_operator(
+        &mut self,
+        name: &str,
+        operator: Operator,
+        arguments: &[Expression],
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let argument = |position: usize| {
+            arguments
+                .get(position)
+                .ok_or_else(|| fault!(ARRAY_MISMATCH, "`{name}` needs another argument").at(span))
+        };
+        match operator {
+            Operator::Constant(value) => Ok(Lowered::scalar(self.target.constant(value))),
+            Operator::Argument(position) => self.lower(argument(position)?),
+            Operator::Live(position) => {
+                let before = std::mem::replace(&mut self.live, true);
+                let value = self.lower(argument(position)?);
+                self.live = before;
+                value
+            }
+            Operator::Derivative => {
+                let mut array = self.array(argument(0)?)?;
+                for element in &mut array.elements {
+                    *element = self.target.derivative(*element, span)?;
+                }
+                Ok(Lowered::Array(array))
+            }
+        }
+    }
+
+    fn array_function(
+        &mut self,
+        name: &str,
+        arguments: &Arguments,
+        span: Span,
+    ) -> Result<Option<Array<T::Scalar>>, Diagnostic> {
+        let plain = arguments.positional.as_slice();
+        let one = |lowering: &mut Self| match plain {
+            [a] => lowering.array(a),
+            _ => Err(fault!(ARRAY_MISMATCH, "`{name}` takes one argument").at(span)),
+        };
+        let array = match name {
+            "sum" | "product" | "min" | "max"
+                if !arguments.iterators.is_empty() || plain.len() == 1 =>
+            {
+                Array::scalar(self.reduction(name, arguments, span)?)
+            }
+            "size" => return self.size(plain, span).map(Some),
+            "ndims" => {
+                let rank = one(self)?.dims.len();
+                Array::scalar(self.target.constant(rank as f64))
+            }
+            "zeros" => self.filled(0.0, plain, span)?,
+            "ones" => self.filled(1.0, plain, span)?,
+            "fill" => match plain.split_first() {
+                Some((value, sizes)) => {
+                    let value = self.array(value)?;
+                    self.repeated(value, sizes, span)?
+                }
+                None => return Err(fault!(ARRAY_MISMATCH, "`fill` needs a value").at(span)),
+            },
+            "identity" => match plain {
+                [n] => {
+                    let n = self.known_size(n)?;
+                    let diagonal = vec![self.target.constant(1.0); n];
+                    self.diagonal(&diagonal)
+                }
+                _ => return Err(fault!(ARRAY_MISMATCH, "`identity` takes one argument").at(span)),
+            },
+            "diagonal" => {
+                let diagonal = one(self)?;
+                self.diagonal(&diagonal.elements)
+            }
+            "linspace" => self.linspace(plain, span)?,
+            "scalar" => {
+                let a = one(self)?;
+                match a.elements.as_slice() {
+                    [only] => Array::scalar(*only),
+                    _ => {
+                        return Err(fault!(
+                            ARRAY_MISMATCH,
+                            "`scalar` of an array with {} elements",
+                            a.elements.len()
+                        )
+                        .at(span));
+                    }
+                }
+            }
+            "vector" => Array::vector(one(self)?.elements),
+            "matrix" => {
+                let mut a = one(self)?;
+                if a.dims.len() > 2 && a.dims[2..].iter().any(|n| *n != 1) {
+                    return Err(
+                        fault!(ARRAY_MISMATCH, "`matrix` of more than two dimensions").at(span)
+                    );
+                }
+                a.dims.truncate(2);
+                a.dims.resize(2, 1);
+                a
+            }
+            "transpose" => transposed(one(self)?, span)?,
+            "cat" => match plain.split_first() {
+                Some((dimension, parts)) => {
+                    let dimension = self.known_size(dimension)?;
+                    let parts =
+                        parts.iter().map(|p| self.array(p)).collect::<Result<Vec<_>, _>>()?;
+                    concatenate(dimension.wrapping_sub(1), parts, span)?
+                }
+                None => return Err(fault!(ARRAY_MISMATCH, "`cat` needs arguments").at(span)),
+            },
+            "cross" => match plain {
+                [a, b] => {
+                    let (a, b) = (self.array(a)?, self.array(b)?);
+                    self.cross(&a, &b, span)?
+                }
+                _ => return Err(fault!(ARRAY_MISMATCH, "`cross` takes two vectors").at(span)),
+            },
+            "Real" | "Integer" | "Boolean" if plain.len() == 1 => one(self)?,
+            _ => return Ok(None),
+        };
+        Ok(Some(array))
+    }
+
+    fn reduction(
+        &mut self,
+        name: &str,
+        arguments: &Arguments,
+        span: Span,
+    ) -> Result<T::Scalar, Diagnostic> {
+        let [element] = arguments.positional.as_slice() else {
+            return Err(fault!(ARRAY_MISMATCH, "`{name}` takes one array").at(span));
+        };
+        let elements = match arguments.iterators.is_empty() {
+            true => self.array(element)?.elements,
+            false => self.reduction_elements(element, &arguments.iterators)?,
+        };
+        match name {
+            "sum" => return Ok(self.fold(Binary::Add, 0.0, &elements)),
+            "product" => return Ok(self.fold(Binary::Mul, 1.0, &elements)),
+            _ => {}
+        }
+        let (Some((first, rest)), Some(id)) = (elements.split_first(), function::find(name)) else {
+            return Err(fault!(ARRAY_MISMATCH, "`{name}` of an empty array").at(span));
+        };
+        let mut result = *first;
+        for element in rest {
+            result = self.target.apply(id, &[result, *element], self.live, span)?;
+        }
+        Ok(result)
+    }
+
+    fn size(
+        &mut self,
+        arguments: &[Expression],
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        match arguments {
+            [a] => {
+                let dims = self.array(a)?.dims;
+                let sizes = dims.iter().map(|n| self.target.constant(*n as f64)).collect();
+                Ok(Array::vector(sizes))
+            }
+            [a, dimension] => {
+                let dims = self.array(a)?.dims;
+                let dimension = self.known_size(dimension)?;
+                match dims.get(dimension.wrapping_sub(1)) {
+                    Some(size) => Ok(Array::scalar(self.target.constant(*size as f64))),
+                    None => {
+                        Err(fault!(ARRAY_MISMATCH, "there is no dimension {dimension}").at(span))
+                    }
+                }
+            }
+            _ => Err(fault!(ARRAY_MISMATCH, "`size` takes an array and a dimension").at(span)),
+        }
+    }
+
+    fn filled(
+        &mut self,
+        value: f64,
+        sizes: &[Expression],
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        let value = Array::scalar(self.target.constant(value));
+        self.repeated(value, sizes, span)
+    }
+
+    fn repeated(
+        &mut self,
+        value: Array<T::Scalar>,
+        sizes: &[Expression],
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        let mut dims = sizes.iter().map(|n| self.known_size(n)).collect::<Result<Vec<_>, _>>()?;
+        let count = dims.iter().try_fold(1usize, |product, n| product.checked_mul(*n));
+        match count.and_then(|count| count.checked_mul(value.elements.len().max(1))) {
+            Some(total) if total <= super::MAX_SCALARS => {}
+            _ => return Err(fault!(ARRAY_MISMATCH, "an array of too many elements").at(span)),
+        }
+        let elements = value.elements.repeat(count.unwrap_or(0));
+        dims.extend(&value.dims);
+        Ok(Array { dims, elements })
+    }
+
+    fn diagonal(&mut self, diagonal: &[T::Scalar]) -> Array<T::Scalar> {
+        let n = diagonal.len();
+        let mut elements = vec![self.target.constant(0.0); n * n];
+        for (position, value) in diagonal.iter().enumerate() {
+            elements[position * n + position] = *value;
+        }
+        Array { dims: vec![n, n], elements }
+    }
+
+    fn linspace(
+        &mut self,
+        arguments: &[Expression],
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        let [first, last, n] = arguments else {
+            return Err(fault!(ARRAY_MISMATCH, "`linspace` takes three arguments").at(span));
+        };
+        let (first, last, n) = (self.scalar(first)?, self.scalar(last)?, self.known_size(n)?);
+        if n < 2 {
+            return Err(fault!(ARRAY_MISMATCH, "`linspace` needs at least two points").at(span));
+        }
+        let width = self.target.binary(Binary::Sub, last, first);
+        let elements = (0..n)
+            .map(|i| {
+                let share = self.target.constant(i as f64 / (n - 1) as f64);
+                let part = self.target.binary(Binary::Mul, width, share);
+                self.target.binary(Binary::Add, first, part)
+            })
+            .collect();
+        Ok(Array::vector(elements))
+    }
+
+    fn cross(
+        &mut self,
+        a: &Array<T::Scalar>,
+        b: &Array<T::Scalar>,
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        if a.dims != [3] || b.dims != [3] {
+            return Err(
+                fault!(ARRAY_MISMATCH, "`cross` takes two vectors of three elements").at(span)
+            );
+        }
+        let elements = (0..3)
+            .map(|i| {
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                let plus = self.target.binary(Binary::Mul, a.elements[j], b.elements[k]);
+                let minus = self.target.binary(Binary::Mul, a.elements[k], b.elements[j]);
+                self.target.binary(Binary::Sub, plus, minus)
+            })
+            .collect();
+        Ok(Array::vector(elements))
+    }
+
+    /// A function of the table, element by element (MLS §12.4.6).
+    fn table_function(
+        &mut self,
+        name: &str,
+        arguments: &[Expression],
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let bare = name.strip_prefix("Modelica.Math.").unwrap_or(name);
+        let Some(id) = function::find(bare) else {
+            let known = function::functions().map(|(_, f)| f.name);
+            return Err(fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`")
+                .help_if(suggest::did_you_mean(name, known))
+                .at(span));
+        };
+        if arguments.len() != id.get().arity() {
+            return Err(fault!(
+                ARRAY_MISMATCH,
+                "`{name}` takes {} arguments, not {}",
+                id.get().arity(),
+                arguments.len()
+            )
+            .at(span));
+        }
+        let values = arguments.iter().map(|a| self.array(a)).collect::<Result<Vec<_>, _>>()?;
+        let dims = values.iter().map(|v| &v.dims).max_by_key(|d| d.len()).cloned();
+        let dims = dims.unwrap_or_default();
+        if let Some(other) = values.iter().find(|v| !v.dims.is_empty() && v.dims != dims) {
+            return Err(super::size_fault(&dims, &other.dims).at(span));
+        }
+        let mut elements = Vec::new();
+        for position in 0..dims.iter().product() {
+            let scalars: Vec<T::Scalar> = values
+                .iter()
+                .map(|v| v.elements[if v.dims.is_empty() { 0 } else { position }])
+                .collect();
+            elements.push(self.target.apply(id, &scalars, self.live, span)?);
+        }
+        if elements.len() > super::MAX_SCALARS {
+            return Err(fault!(NOT_SUPPORTED, "an array of too many elements").at(span));
+        }
+        Ok(Lowered::Array(Array { dims, elements }))
+    }
+}
+
+fn transposed<S: Copy>(a: Array<S>, span: Span) -> Result<Array<S>, Diagnostic> {
+    let &[rows, columns] = a.dims.as_slice() else {
+        return Err(fault!(ARRAY_MISMATCH, "`transpose` takes a matrix").at(span));
+    };
+    let position = |at: usize| (at % rows.max(1)) * columns + at / rows.max(1);
+    let elements = (0..a.elements.len()).map(|at| a.elements[position(at)]).collect();
+    Ok(Array { dims: vec![columns, rows], elements })
+}

@@ -1,0 +1,203 @@
+//! Operators on scalars, vectors and matrices (MLS §10.6).
+
+use super::{Array, Binary, Lowered, Lowering, Target, Unary, size_fault};
+use crate::dae::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::source::Span;
+use crate::symbolic::RelationOperator;
+use crate::syntax::ast::{BinaryOperator, Expression};
+
+impl<T: Target> Lowering<'_, T> {
+    pub(super) fn map_unary(&mut self, op: Unary, mut a: Array<T::Scalar>) -> Array<T::Scalar> {
+        for element in &mut a.elements {
+            *element = self.target.unary(op, *element);
+        }
+        a
+    }
+
+    pub(super) fn binary(
+        &mut self,
+        operator: BinaryOperator,
+        left: &Expression,
+        right: &Expression,
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        if operator == BinaryOperator::Add
+            && let (Some(a), Some(b)) = (self.text(left)?, self.text(right)?)
+        {
+            return Ok(Lowered::Text(format!("{a}{b}").into()));
+        }
+        let (a, b) = (self.array(left)?, self.array(right)?);
+        let array = match operator {
+            BinaryOperator::Add => self.same_size(Binary::Add, a, b, span)?,
+            BinaryOperator::Subtract => self.same_size(Binary::Sub, a, b, span)?,
+            BinaryOperator::ElementwiseAdd => self.elementwise(Binary::Add, a, b, span)?,
+            BinaryOperator::ElementwiseSubtract => self.elementwise(Binary::Sub, a, b, span)?,
+            BinaryOperator::ElementwiseMultiply => self.elementwise(Binary::Mul, a, b, span)?,
+            BinaryOperator::ElementwiseDivide => self.elementwise(Binary::Div, a, b, span)?,
+            BinaryOperator::ElementwisePower => self.elementwise(Binary::Pow, a, b, span)?,
+            BinaryOperator::Multiply => self.product(a, b, span)?,
+            BinaryOperator::Divide if b.dims.is_empty() => {
+                self.elementwise(Binary::Div, a, b, span)?
+            }
+            BinaryOperator::Divide => {
+                return Err(fault!(ARRAY_MISMATCH, "the divisor is an array";
+                    help: "write `./` to divide element by element")
+                .at(span));
+            }
+            BinaryOperator::Power => self.power(a, b, span)?,
+            BinaryOperator::And => self.same_size(Binary::And, a, b, span)?,
+            BinaryOperator::Or => self.same_size(Binary::Or, a, b, span)?,
+            BinaryOperator::Less => self.compare(RelationOperator::Less, a, b, span)?,
+            BinaryOperator::LessEqual => self.compare(RelationOperator::LessEqual, a, b, span)?,
+            BinaryOperator::Greater => self.compare(RelationOperator::Greater, a, b, span)?,
+            BinaryOperator::GreaterEqual => {
+                self.compare(RelationOperator::GreaterEqual, a, b, span)?
+            }
+            BinaryOperator::Equal => self.compare(RelationOperator::Equal, a, b, span)?,
+            BinaryOperator::NotEqual => self.compare(RelationOperator::NotEqual, a, b, span)?,
+        };
+        Ok(Lowered::Array(array))
+    }
+
+    /// The text of an expression made of string literals, `None` for numbers.
+    fn text(&mut self, e: &Expression) -> Result<Option<String>, Diagnostic> {
+        use crate::syntax::ast::ExpressionKind;
+        Ok(match &e.kind {
+            ExpressionKind::String(text) => Some(text.to_string()),
+            ExpressionKind::Binary { operator: BinaryOperator::Add, left, right } => {
+                match (self.text(left)?, self.text(right)?) {
+                    (Some(a), Some(b)) => Some(a + &b),
+                    _ => None,
+                }
+            }
+            _ => None,
+        })
+    }
+
+    fn compare(
+        &mut self,
+        operator: RelationOperator,
+        a: Array<T::Scalar>,
+        b: Array<T::Scalar>,
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        match (a.dims.as_slice(), b.dims.as_slice(), a.elements.as_slice(), b.elements.as_slice()) {
+            ([], [], [a], [b]) => {
+                Ok(Array::scalar(self.target.relation(operator, *a, *b, self.live, span)))
+            }
+            _ => Err(fault!(ARRAY_MISMATCH, "relations compare scalars").at(span)),
+        }
+    }
+
+    fn same_size(
+        &mut self,
+        op: Binary,
+        a: Array<T::Scalar>,
+        b: Array<T::Scalar>,
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        if a.dims != b.dims {
+            return Err(size_fault(&a.dims, &b.dims).at(span));
+        }
+        self.elementwise(op, a, b, span)
+    }
+
+    /// Element by element; a scalar goes with every element.
+    pub(super) fn elementwise(
+        &mut self,
+        op: Binary,
+        a: Array<T::Scalar>,
+        b: Array<T::Scalar>,
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        let (dims, elements) = if a.dims == b.dims {
+            let pairs = a.elements.iter().zip(&b.elements);
+            (a.dims, pairs.map(|(x, y)| self.target.binary(op, *x, *y)).collect())
+        } else if b.dims.is_empty() {
+            let y = b.elements[0];
+            (a.dims, a.elements.iter().map(|x| self.target.binary(op, *x, y)).collect())
+        } else if a.dims.is_empty() {
+            let x = a.elements[0];
+            (b.dims, b.elements.iter().map(|y| self.target.binary(op, x, *y)).collect())
+        } else {
+            return Err(size_fault(&a.dims, &b.dims).at(span));
+        };
+        Ok(Array { dims, elements })
+    }
+
+    /// `*`: scaling, inner product, matrix products (MLS §10.6.5).
+    fn product(
+        &mut self,
+        a: Array<T::Scalar>,
+        b: Array<T::Scalar>,
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        let (rows, inner, columns, dims) = match (a.dims.as_slice(), b.dims.as_slice()) {
+            ([], _) | (_, []) => return self.elementwise(Binary::Mul, a, b, span),
+            (&[n], &[m]) if n == m => (1, n, 1, vec![]),
+            (&[r, n], &[m]) if n == m => (r, n, 1, vec![r]),
+            (&[n], &[m, c]) if n == m => (1, n, c, vec![c]),
+            (&[r, n], &[m, c]) if n == m => (r, n, c, vec![r, c]),
+            _ => return Err(size_fault(&a.dims, &b.dims).at(span)),
+        };
+        let mut elements = Vec::with_capacity(rows * columns);
+        for row in 0..rows {
+            for column in 0..columns {
+                let products: Vec<T::Scalar> = (0..inner)
+                    .map(|k| {
+                        let (x, y) =
+                            (a.elements[row * inner + k], b.elements[k * columns + column]);
+                        self.target.binary(Binary::Mul, x, y)
+                    })
+                    .collect();
+                elements.push(self.fold(Binary::Add, 0.0, &products));
+            }
+        }
+        Ok(Array { dims, elements })
+    }
+
+    fn power(
+        &mut self,
+        a: Array<T::Scalar>,
+        b: Array<T::Scalar>,
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        if a.dims.is_empty() && b.dims.is_empty() {
+            return self.elementwise(Binary::Pow, a, b, span);
+        }
+        let exponent = match (b.dims.as_slice(), b.elements.as_slice()) {
+            ([], [b]) => self.target.as_constant(*b),
+            _ => None,
+        };
+        let (&[n, m], Some(exponent)) = (a.dims.as_slice(), exponent) else {
+            return Err(fault!(NOT_SUPPORTED,
+                "`^` needs scalars, or a square matrix and a known whole number";
+                help: "write `.^` for element by element")
+            .at(span));
+        };
+        if n != m || exponent < 1.0 || exponent.fract() != 0.0 || exponent > 64.0 {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "the power of a matrix needs a square matrix and a whole number from 1 to 64"
+            )
+            .at(span));
+        }
+        let mut result = a.clone();
+        for _ in 1..exponent as usize {
+            result = self.product(result, a.clone(), span)?;
+        }
+        Ok(result)
+    }
+
+    /// `a op b op …`; `empty` without elements.
+    pub(super) fn fold(&mut self, op: Binary, empty: f64, elements: &[T::Scalar]) -> T::Scalar {
+        match elements.split_first() {
+            None => self.target.constant(empty),
+            Some((first, rest)) => {
+                rest.iter().fold(*first, |sum, element| self.target.binary(op, sum, *element))
+            }
+        }
+    }
+}

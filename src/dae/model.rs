@@ -1,0 +1,195 @@
+//! The system of equations: scalar, first order (MLS appendix B). Data only.
+
+use crate::diag::Diagnostic;
+use crate::eval::Function;
+use crate::flatten::{BaseType, Experiment, Variability};
+use crate::source::Span;
+use crate::symbolic::{Expr, Pool, RelationOperator, VarId};
+use crate::syntax::ast::CausalityPrefix;
+use std::sync::Arc;
+
+/// A scalar system: variables are numbered by their position.
+#[derive(Debug, Clone, Default)]
+pub struct Dae {
+    /// Name of the class.
+    pub name: String,
+    /// All expressions.
+    pub pool: Pool,
+    /// All variables; [`VarId`] is the position. The first is time.
+    pub variables: Vec<Variable>,
+    /// Equations of the simulation.
+    pub equations: Vec<Equation>,
+    /// Equations of the initial system alone.
+    pub initial_equations: Vec<Equation>,
+    /// What must hold.
+    pub assertions: Vec<Assertion>,
+    /// Relations that switch at events only.
+    pub relations: Vec<Relation>,
+    /// User functions called, each for the sizes of its arguments.
+    pub functions: Vec<FunctionInstance>,
+    /// The `experiment` annotation.
+    pub experiment: Experiment,
+    /// What deserves a warning.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// A scalar variable.
+#[derive(Debug, Clone)]
+pub struct Variable {
+    /// Its name with subscripts, such as `pack.cell[2].V`.
+    pub name: Arc<str>,
+    /// Its part in the system.
+    pub kind: Kind,
+    /// Predefined type.
+    pub base: BaseType,
+    /// When it may change.
+    pub variability: Variability,
+    /// `input` or `output`.
+    pub causality: Option<CausalityPrefix>,
+    /// Whether it stands directly in the class.
+    pub top_level: bool,
+    /// Whether it is protected.
+    pub protected: bool,
+    /// Unit, empty if none.
+    pub unit: Arc<str>,
+    /// Unit for people, empty if none.
+    pub display_unit: Arc<str>,
+    /// The string behind the declaration.
+    pub description: Arc<str>,
+    /// Value of a parameter; `None` for unknowns.
+    pub binding: Option<Expr>,
+    /// Attribute `start`.
+    pub start: Option<Expr>,
+    /// Attribute `fixed`.
+    pub fixed: bool,
+    /// Attribute `min`.
+    pub min: Option<Expr>,
+    /// Attribute `max`.
+    pub max: Option<Expr>,
+    /// Attribute `nominal`.
+    pub nominal: Option<Expr>,
+    /// Where it is declared.
+    pub span: Span,
+}
+
+/// What part a variable plays.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// `time`
+    Time,
+    /// Known when compiling.
+    Constant(f64),
+    /// Known before the simulation; `tunable` if a user may set it.
+    Parameter {
+        /// Whether a user may set it without compiling again.
+        tunable: bool,
+    },
+    /// To be solved for.
+    Unknown,
+    /// The derivative of another variable.
+    Derivative(VarId),
+    /// The value of a relation, which changes at events only.
+    Frozen,
+    /// A `String`, which equations cannot use.
+    Text,
+}
+
+/// `left = right`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Equation {
+    /// Left side.
+    pub left: Expr,
+    /// Right side.
+    pub right: Expr,
+    /// Where it is written.
+    pub span: Span,
+}
+
+/// `assert(condition, message)` of level error.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Assertion {
+    /// Must hold; its relations are evaluated as they are.
+    pub condition: Expr,
+    /// The text for people.
+    pub message: Arc<str>,
+    /// Whether a violation ends the simulation.
+    pub is_error: bool,
+    /// Where it is written.
+    pub span: Span,
+}
+
+/// A relation whose value changes at events only (MLS §8.5).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Relation {
+    /// The variable that holds its value.
+    pub variable: VarId,
+    /// How the sides compare.
+    pub operator: RelationOperator,
+    /// Left side.
+    pub left: Expr,
+    /// Right side.
+    pub right: Expr,
+    /// Where it is written.
+    pub span: Span,
+}
+
+/// A user function for arguments of certain sizes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FunctionInstance {
+    /// The function.
+    pub function: Arc<Function>,
+    /// Shape of every input.
+    pub inputs: Vec<Shape>,
+    /// Shape of every output.
+    pub outputs: Vec<Shape>,
+    /// Values of scalar Integer inputs that are known when compiling (they may be sizes).
+    pub known: Vec<Option<f64>>,
+}
+
+/// Sizes of an argument.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Shape {
+    /// A scalar (no sizes) or an array.
+    Array(Vec<usize>),
+    /// A record: name and shape of its components.
+    Record(Vec<(crate::name::Ident, Shape)>),
+}
+
+impl Shape {
+    /// Number of scalars.
+    pub fn len(&self) -> usize {
+        match self {
+            Shape::Array(dims) => dims.iter().product(),
+            Shape::Record(fields) => fields.iter().map(|(_, shape)| shape.len()).sum(),
+        }
+    }
+
+    /// Whether there are no scalars.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+impl FunctionInstance {
+    /// Number of scalars of all inputs.
+    pub fn n_inputs(&self) -> usize {
+        self.inputs.iter().map(Shape::len).sum()
+    }
+
+    /// Number of scalars of all outputs.
+    pub fn n_outputs(&self) -> usize {
+        self.outputs.iter().map(Shape::len).sum()
+    }
+}
+
+impl Dae {
+    /// The variable of this number.
+    pub fn variable(&self, id: VarId) -> &Variable {
+        &self.variables[id.0 as usize]
+    }
+
+    /// Whether its value is found by the equations.
+    pub fn is_unknown(&self, id: VarId) -> bool {
+        matches!(self.variable(id).kind, Kind::Unknown | Kind::Derivative(_))
+    }
+}

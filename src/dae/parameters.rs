@@ -1,0 +1,81 @@
+//! The order in which parameters are computed.
+
+use super::errors::{PARAMETER_CYCLE, PARAMETER_WITHOUT_VALUE};
+use super::model::{Dae, Kind};
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::symbolic::VarId;
+
+/// Parameters, each after those its binding depends on. One without a binding takes its start
+/// value; one without either, but used, is refused.
+pub(super) fn order_parameters(dae: &mut Dae) -> Result<Vec<VarId>, Diagnostic> {
+    let parameters: Vec<VarId> = (0..dae.variables.len() as u32)
+        .map(VarId)
+        .filter(|v| matches!(dae.variable(*v).kind, Kind::Parameter { .. }))
+        .collect();
+    for parameter in &parameters {
+        let variable = dae.variable(*parameter);
+        if variable.binding.is_none() {
+            let Some(start) = variable.start else {
+                return Err(fault!(PARAMETER_WITHOUT_VALUE, "the parameter `{}` has no value",
+                    variable.name; help: "give it a value in its declaration or in a modification")
+                .at(variable.span));
+            };
+            dae.warnings.push(
+                fault!(
+                    PARAMETER_WITHOUT_VALUE,
+                    "the parameter `{}` has no value; its start value is taken",
+                    variable.name
+                )
+                .at(variable.span)
+                .warning(),
+            );
+            dae.variables[parameter.0 as usize].binding = Some(start);
+        }
+    }
+    let mut order = Order { dae, state: vec![0; dae.variables.len()], sorted: Vec::new() };
+    for parameter in parameters {
+        order.visit(parameter)?;
+    }
+    Ok(order.sorted)
+}
+
+/// Depth first, with its own stack: chains of parameters may be long.
+struct Order<'a> {
+    dae: &'a Dae,
+    state: Vec<u8>,
+    sorted: Vec<VarId>,
+}
+
+impl Order<'_> {
+    fn visit(&mut self, root: VarId) -> Result<(), Diagnostic> {
+        let mut stack = vec![(root, false)];
+        while let Some((v, finished)) = stack.pop() {
+            let position = v.0 as usize;
+            if finished {
+                self.state[position] = 2;
+                self.sorted.push(v);
+                continue;
+            }
+            match self.state[position] {
+                2 => continue,
+                1 => {
+                    let variable = self.dae.variable(v);
+                    return Err(fault!(PARAMETER_CYCLE, "`{}` depends on itself", variable.name)
+                        .at(variable.span));
+                }
+                _ => {}
+            }
+            self.state[position] = 1;
+            stack.push((v, true));
+            let binding = self.dae.variable(v).binding;
+            for other in binding.map(|b| self.dae.pool.variables(b)).unwrap_or_default() {
+                let kind = self.dae.variable(other).kind;
+                if matches!(kind, Kind::Parameter { .. }) && self.state[other.0 as usize] != 2 {
+                    stack.push((other, false));
+                }
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,71 @@
+//! The sorted system as text, for `--dump` and snapshots.
+
+use super::model::Kind;
+use super::sorted::{Assignment, Block, SortedDae};
+use crate::symbolic::{Expr, VarId, print};
+use std::fmt::Write;
+
+/// Counts, aliases and blocks.
+pub fn report(sorted: &SortedDae) -> String {
+    let mut out = String::new();
+    // Writing to a string cannot fail.
+    let _ = write_report(sorted, &mut out);
+    out
+}
+
+fn write_report(sorted: &SortedDae, out: &mut String) -> std::fmt::Result {
+    let dae = &sorted.dae;
+    let count = |test: &dyn Fn(Kind) -> bool| dae.variables.iter().filter(|v| test(v.kind)).count();
+    let loops = sorted.blocks.iter().filter(|b| matches!(b, Block::Loop(_))).count();
+    writeln!(out, "{}", dae.name)?;
+    writeln!(out, "  states {}", sorted.states.len())?;
+    writeln!(out, "  equations {}", dae.equations.len())?;
+    writeln!(out, "  aliases {}", sorted.aliases.iter().flatten().count())?;
+    writeln!(out, "  parameters {}", count(&|k| matches!(k, Kind::Parameter { .. })))?;
+    writeln!(out, "  constants {}", count(&|k| matches!(k, Kind::Constant(_))))?;
+    writeln!(out, "  relations {}", dae.relations.len())?;
+    writeln!(out, "  blocks {}, of these loops {loops}", sorted.blocks.len())?;
+    for (position, alias) in sorted.aliases.iter().enumerate() {
+        if let Some(alias) = alias {
+            let sign = if alias.negated { "-" } else { "" };
+            let name = &dae.variables[position].name;
+            writeln!(out, "alias {name} = {sign}{}", dae.variable(alias.of).name)?;
+        }
+    }
+    for relation in &dae.relations {
+        let (left, right) = (text(sorted, relation.left), text(sorted, relation.right));
+        let name = &dae.variable(relation.variable).name;
+        writeln!(out, "event {name} = {left} {} {right}", relation.operator.symbol())?;
+    }
+    sorted.blocks.iter().try_for_each(|block| write_block(sorted, block, out))?;
+    if !dae.initial_equations.is_empty() {
+        writeln!(out, "initially")?;
+        sorted.initial_blocks.iter().try_for_each(|block| write_block(sorted, block, out))?;
+    }
+    Ok(())
+}
+
+fn write_block(sorted: &SortedDae, block: &Block, out: &mut String) -> std::fmt::Result {
+    let assign = |a: &Assignment| {
+        format!("{} := {}", sorted.dae.variable(a.variable).name, text(sorted, a.value))
+    };
+    match block {
+        Block::Assignment(assignment) => writeln!(out, "{}", assign(assignment)),
+        Block::Loop(torn) => {
+            let names: Vec<&str> =
+                torn.iteration.iter().map(|v| &*sorted.dae.variable(*v).name).collect();
+            writeln!(
+                out,
+                "loop of {} over {}",
+                torn.assignments.len() + names.len(),
+                names.join(", ")
+            )?;
+            torn.assignments.iter().try_for_each(|a| writeln!(out, "  {}", assign(a)))?;
+            torn.residuals.iter().try_for_each(|(r, _)| writeln!(out, "  0 = {}", text(sorted, *r)))
+        }
+    }
+}
+
+fn text(sorted: &SortedDae, e: Expr) -> String {
+    print(&sorted.dae.pool, e, &|v: VarId| sorted.dae.variable(v).name.to_string())
+}

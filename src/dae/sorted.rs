@@ -1,0 +1,71 @@
+//! The sorted system: what is computed from what, in order. Data only.
+
+use super::model::Dae;
+use crate::symbolic::{Expr, VarId};
+
+/// A system in solving order.
+#[derive(Debug, Clone)]
+pub struct SortedDae {
+    /// Variables, assertions, relations; equations as they were read.
+    pub dae: Dae,
+    /// For every variable, the one that it is equal to, with the opposite sign if negated.
+    pub aliases: Vec<Option<Alias>>,
+    /// The states, in order of declaration.
+    pub states: Vec<VarId>,
+    /// Solves for derivatives and algebraic variables, the states given.
+    pub blocks: Vec<Block>,
+    /// Solves for everything at the start.
+    pub initial_blocks: Vec<Block>,
+    /// Parameters with bindings, each after those it depends on.
+    pub parameters: Vec<VarId>,
+}
+
+/// Another name for a variable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Alias {
+    /// The variable whose value it is.
+    pub of: VarId,
+    /// Whether it has the opposite sign.
+    pub negated: bool,
+}
+
+/// A part of the system that is solved at once.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Block {
+    /// A variable and its value.
+    Assignment(Assignment),
+    /// An algebraic loop, torn.
+    Loop(Loop),
+}
+
+/// `variable := value`, from the equation of this number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Assignment {
+    /// The variable.
+    pub variable: VarId,
+    /// Its value.
+    pub value: Expr,
+    /// Number of the equation in the list that was sorted.
+    pub equation: usize,
+}
+
+/// A torn algebraic loop.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loop {
+    /// The iteration variables.
+    pub iteration: Vec<VarId>,
+    /// What follows from them, in order.
+    pub assignments: Vec<Assignment>,
+    /// What must be zero, with the number of the equation.
+    pub residuals: Vec<(Expr, usize)>,
+}
+
+impl Block {
+    /// Its assignments: inner ones for a loop.
+    pub fn assignments(&self) -> &[Assignment] {
+        match self {
+            Block::Assignment(assignment) => std::slice::from_ref(assignment),
+            Block::Loop(torn) => &torn.assignments,
+        }
+    }
+}

@@ -1,0 +1,345 @@
+//! Lowering into the symbolic expressions of a [`Dae`](super::model::Dae).
+
+use super::build::{Builder, scalar_of_nothing};
+use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
+use super::function_shape::shapes;
+use super::lowering::{Array, Binary, Branch, Lowered, Operator, Target, Unary};
+use super::model::{FunctionInstance, Kind, Relation};
+use crate::diag::Diagnostic;
+use crate::eval::{Function, FunctionBody, ValueType};
+use crate::fault;
+use crate::flatten::{BaseType, Variability};
+use crate::name::{Ident, Name};
+use crate::source::Span;
+use crate::symbolic::function::FunctionId;
+use crate::symbolic::{Expr, RelationOperator, VarId};
+use crate::syntax::ast::{ComponentReference, Expression};
+use std::sync::Arc;
+
+impl Target for Builder<'_> {
+    type Scalar = Expr;
+
+    fn constant(&mut self, value: f64) -> Expr {
+        self.dae.pool.constant(value)
+    }
+
+    fn as_constant(&self, scalar: Expr) -> Option<f64> {
+        self.dae.pool.as_constant(scalar)
+    }
+
+    fn unary(&mut self, operation: Unary, a: Expr) -> Expr {
+        match operation {
+            Unary::Neg => self.dae.pool.neg(a),
+            Unary::Not => self.dae.pool.not(a),
+        }
+    }
+
+    fn binary(&mut self, operation: Binary, a: Expr, b: Expr) -> Expr {
+        let pool = &mut self.dae.pool;
+        match operation {
+            Binary::Add => pool.add(a, b),
+            Binary::Sub => pool.sub(a, b),
+            Binary::Mul => pool.mul(a, b),
+            Binary::Div => pool.div(a, b),
+            Binary::Pow => pool.pow(a, b),
+            Binary::And => pool.and(a, b),
+            Binary::Or => pool.or(a, b),
+        }
+    }
+
+    fn relation(
+        &mut self,
+        operator: RelationOperator,
+        a: Expr,
+        b: Expr,
+        live: bool,
+        span: Span,
+    ) -> Expr {
+        let relation = self.dae.pool.relation(operator, a, b);
+        let equality = matches!(operator, RelationOperator::Equal | RelationOperator::NotEqual);
+        // `a == b` of Integers and Booleans has no zero crossing of its own: it changes when they do.
+        if live || equality || self.as_constant(relation).is_some() {
+            return relation;
+        }
+        let key = (operator, a, b);
+        let variable = match self.relations.get(&key) {
+            Some(variable) => *variable,
+            None => {
+                let variable = VarId(self.dae.variables.len() as u32);
+                let name = format!("$relation[{}]", self.dae.relations.len() + 1);
+                let mut frozen = scalar_of_nothing(&name, Kind::Frozen, span);
+                frozen.base = BaseType::Boolean;
+                frozen.variability = Variability::Discrete;
+                self.dae.variables.push(frozen);
+                self.dae.relations.push(Relation { variable, operator, left: a, right: b, span });
+                self.relations.insert(key, variable);
+                variable
+            }
+        };
+        self.dae.pool.variable(variable)
+    }
+
+    fn apply(
+        &mut self,
+        function: FunctionId,
+        arguments: &[Expr],
+        live: bool,
+        span: Span,
+    ) -> Result<Expr, Diagnostic> {
+        let value = self.dae.pool.apply(function, arguments);
+        let known = arguments.iter().all(|a| self.is_parametric(*a));
+        if function.get().event_generating && !live && !known {
+            return Err(fault!(NOT_SUPPORTED,
+                "`{}` of a variable causes events, which is not supported yet",
+                function.get().name; help: "write `noEvent({}(…))`", function.get().name)
+            .at(span));
+        }
+        Ok(value)
+    }
+
+    fn begin_if(&mut self, condition: Expr) -> Branch<Expr> {
+        Branch { condition, values: Vec::new(), jumps: [0; 2] }
+    }
+
+    fn begin_else(&mut self, branch: &mut Branch<Expr>, values: &[Expr]) {
+        branch.values = values.to_vec();
+    }
+
+    fn end_if(&mut self, branch: Branch<Expr>, values: &[Expr]) -> Vec<Expr> {
+        let pairs = branch.values.iter().zip(values);
+        pairs.map(|(a, b)| self.dae.pool.if_then_else(branch.condition, *a, *b)).collect()
+    }
+
+    fn element(&mut self, _: &[Expr], _: Expr, span: Span) -> Result<Expr, Diagnostic> {
+        Err(fault!(NO_CONSTANT_VALUE, "this subscript must be known when the model is compiled";
+            help: "use a constant, or a parameter that is `final` or has `annotation(Evaluate = true)`")
+        .at(span))
+    }
+
+    fn reference(
+        &mut self,
+        path: &str,
+        reference: &ComponentReference,
+    ) -> Result<Lowered<Expr>, Diagnostic> {
+        if path == "time" {
+            return Ok(Lowered::scalar(self.dae.pool.variable(VarId(0))));
+        }
+        let flat = self.flat;
+        let Some((position, _, variable)) = flat.variables.get_full(path) else {
+            return self.record(path).ok_or_else(|| self.unresolved(path, reference.span));
+        };
+        if variable.base == BaseType::String {
+            return Ok(Lowered::Text("…".into()));
+        }
+        if variable.variability <= Variability::Parameter {
+            self.fold(position)?;
+        }
+        let first = self.first[position].0;
+        let elements = (first..first + variable.len() as u32)
+            .map(|id| match self.dae.variables[id as usize].kind {
+                Kind::Constant(value) => self.dae.pool.constant(value),
+                _ => self.dae.pool.variable(VarId(id)),
+            })
+            .collect();
+        Ok(Lowered::Array(Array { dims: variable.dims.clone(), elements }))
+    }
+
+    fn function(&self, name: &Name) -> Option<Arc<Function>> {
+        let bare = Name { global: false, parts: name.parts.clone() };
+        self.flat.functions.get(&bare).or_else(|| self.flat.functions.get(name)).cloned()
+    }
+
+    fn call(
+        &mut self,
+        function: &Arc<Function>,
+        arguments: Vec<Lowered<Expr>>,
+        span: Span,
+    ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+        refuse_impure(function, span)?;
+        let mut scalars = Vec::new();
+        let mut inputs = Vec::new();
+        let mut known = Vec::new();
+        for (input, argument) in function.inputs.iter().zip(&arguments) {
+            let Some(shape) = argument.shape() else {
+                return Err(fault!(
+                    NOT_SUPPORTED,
+                    "the text argument `{}` of `{}` is not supported",
+                    input.name,
+                    function.name
+                )
+                .at(span));
+            };
+            let before = scalars.len();
+            argument.append_scalars(&mut scalars);
+            let integer = input.value_type == ValueType::Integer && shape.len() == 1;
+            known.push(match integer {
+                true => self.dae.pool.as_constant(scalars[before]),
+                false => None,
+            });
+            inputs.push(shape);
+        }
+        let functions = &self.flat.functions;
+        let outputs = shapes(function, &inputs, &known, functions, span)?;
+        let instance = FunctionInstance {
+            function: function.clone(),
+            inputs,
+            outputs: outputs.clone(),
+            known,
+        };
+        let id = self.instance(instance);
+        let mut next = 0;
+        let mut results = Vec::new();
+        for shape in &outputs {
+            let calls: Vec<Expr> = (next..next + shape.len() as u32)
+                .map(|output| self.dae.pool.call(id, output, &scalars))
+                .collect();
+            next += shape.len() as u32;
+            results.push(Lowered::from_scalars(shape, &mut calls.into_iter()));
+        }
+        Ok(results)
+    }
+
+    fn operator(
+        &mut self,
+        name: &str,
+        _: &[Expression],
+        span: Span,
+    ) -> Option<Result<Operator, Diagnostic>> {
+        Some(Ok(match name {
+            "der" => Operator::Derivative,
+            "noEvent" => Operator::Live(0),
+            "smooth" => Operator::Live(1),
+            "homotopy" => Operator::Argument(0),
+            "initial" if !self.initial => {
+                return Some(Err(fault!(NOT_SUPPORTED,
+                    "`initial()` in an equation is not supported yet";
+                    help: "use an initial equation")
+                .at(span)));
+            }
+            "initial" => Operator::Constant(1.0),
+            "pre"
+            | "edge"
+            | "change"
+            | "sample"
+            | "delay"
+            | "reinit"
+            | "terminal"
+            | "terminate"
+            | "semiLinear"
+            | "spatialDistribution"
+            | "cardinality"
+            | "inStream"
+            | "actualStream"
+            | "getInstanceName"
+            | "String"
+            | "previous"
+            | "hold" => {
+                return Some(Err(fault!(NOT_SUPPORTED, "`{name}` is not supported yet").at(span)));
+            }
+            _ => return None,
+        }))
+    }
+
+    fn derivative(&mut self, a: Expr, span: Span) -> Result<Expr, Diagnostic> {
+        if self.is_parametric(a) {
+            return Ok(self.dae.pool.constant(0.0));
+        }
+        let Some(variable) = self.dae.pool.as_variable(a) else {
+            return self.chain_rule(a, span);
+        };
+        let derivative = self.derivative_variable(variable, span)?;
+        Ok(self.dae.pool.variable(derivative))
+    }
+}
+
+impl Builder<'_> {
+    /// Whether an expression is made of parameters and numbers alone.
+    pub(super) fn is_parametric(&self, a: Expr) -> bool {
+        let fixed = |v: &VarId| matches!(self.dae.variable(*v).kind, Kind::Parameter { .. });
+        self.dae.pool.variables(a).iter().all(fixed)
+    }
+
+    /// `der` of an expression: the sum of partial derivatives times derivatives.
+    fn chain_rule(&mut self, a: Expr, span: Span) -> Result<Expr, Diagnostic> {
+        let mut slopes = rustc_hash::FxHashMap::default();
+        for variable in self.dae.pool.variables(a) {
+            let slope = match self.dae.variable(variable).kind {
+                Kind::Time => self.dae.pool.constant(1.0),
+                Kind::Unknown => {
+                    let derivative = self.derivative_variable(variable, span)?;
+                    self.dae.pool.variable(derivative)
+                }
+                Kind::Derivative(_) => {
+                    return Err(fault!(NOT_SUPPORTED, "second derivatives need a variable";
+                        help: "give the first derivative a name: `v = der(x)`, then `der(v)`")
+                    .at(span));
+                }
+                _ => continue,
+            };
+            slopes.insert(variable, slope);
+        }
+        let pool = &mut self.dae.pool;
+        Ok(crate::symbolic::differentiate(pool, a, &|v| slopes.get(&v).copied()))
+    }
+
+    fn derivative_variable(&mut self, of: VarId, span: Span) -> Result<VarId, Diagnostic> {
+        if let Some(known) = self.derivatives.get(&of) {
+            return Ok(*known);
+        }
+        let source = self.dae.variable(of);
+        if source.kind != Kind::Unknown || source.base != BaseType::Real {
+            return Err(fault!(NOT_SUPPORTED, "`{}` has no derivative", source.name).at(span));
+        }
+        let name = format!("der({})", source.name);
+        let unit = source.unit.clone();
+        let mut variable = scalar_of_nothing(&name, Kind::Derivative(of), source.span);
+        variable.unit = if unit.is_empty() { unit } else { format!("{unit}/s").into() };
+        let id = VarId(self.dae.variables.len() as u32);
+        self.dae.variables.push(variable);
+        self.derivatives.insert(of, id);
+        Ok(id)
+    }
+
+    /// All variables below a path, as a record.
+    fn record(&mut self, path: &str) -> Option<Lowered<Expr>> {
+        let prefix = format!("{path}.");
+        let flat = self.flat;
+        let mut names: Vec<&str> = Vec::new();
+        for name in flat.variables.keys() {
+            if let Some(rest) = name.strip_prefix(&prefix) {
+                let field = rest.split('.').next().unwrap_or(rest);
+                if field.contains('[') {
+                    return None;
+                }
+                if !names.contains(&field) {
+                    names.push(field);
+                }
+            }
+        }
+        if names.is_empty() {
+            return None;
+        }
+        let mut fields = Vec::new();
+        for name in names {
+            let full = format!("{prefix}{name}");
+            let reference = ComponentReference::from_name(&Name::parse(&full), Span::NONE);
+            fields.push((Ident::new(name), self.reference(&full, &reference).ok()?));
+        }
+        Some(Lowered::Record(fields))
+    }
+}
+
+/// Functions with effects, and those written in other languages, are refused by name.
+pub(crate) fn refuse_impure(function: &Function, span: Span) -> Result<(), Diagnostic> {
+    let reason = match (&function.body, function.impure) {
+        (FunctionBody::External(_), _) => "is external",
+        (_, true) => "is impure",
+        _ => return Ok(()),
+    };
+    Err(fault!(
+        NOT_SUPPORTED,
+        "the function `{}` {reason} and cannot be used in equations",
+        function.name
+    )
+    .at(span))
+}

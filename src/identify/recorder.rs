@@ -1,0 +1,367 @@
+//! Follows a run of scripts, whatever they are called and whatever their variables: the functions
+//! of GAPILib tell it what they are given and what they answer, and it puts generations, the best
+//! individual and the counts together.
+//!
+//! A generation ends with `Fit_Order`, which gets a population and its fitness; in scripts that
+//! sort by themselves it ends when the next simulation follows a `Fit` for all individuals. So a
+//! script may evaluate its population in one call or one by one, with its own fitness function or
+//! its own sorting. When it has both of its own, nobody tells the recorder the fitness, and it
+//! compares by the sum of squares.
+
+use super::fitness::sum_of_squares;
+use crate::ga::{FAILED_FITNESS, Genomes, History, has_failed};
+use indexmap::IndexMap;
+use std::sync::Arc;
+
+/// No more different failure messages than this are kept apart.
+const MAX_CAUSES: usize = 50;
+/// The cause under which all further messages are counted.
+const OTHER_CAUSES: &str = "other causes";
+
+/// What is simulated: the model, what varies, what is compared.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Study {
+    /// The model, with its modification.
+    pub model: String,
+    /// The identified parameters in the order of the genes.
+    pub parameters: Vec<Quantity>,
+    /// What the measured points are given over.
+    pub x: Quantity,
+    /// What was measured.
+    pub y: Quantity,
+}
+
+/// A name and a unit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Quantity {
+    /// Its name in the model.
+    pub name: String,
+    /// Its unit; empty where the model gives none.
+    pub unit: String,
+}
+
+/// Where the measured data come from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measurement {
+    /// The file as the script names it.
+    pub file: String,
+    /// Measured X.
+    pub x: Vec<f64>,
+    /// Measured Y.
+    pub y: Vec<f64>,
+}
+
+/// Which fitness decided what is best.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FitnessSource {
+    /// `Fit` of GAPILib.
+    SumOfSquares,
+    /// A function of the script, seen by `Fit_Order`.
+    Script,
+    /// Nobody told: the sum of squares was taken to compare.
+    Assumed,
+}
+
+/// The best individual of the run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Best {
+    /// What was simulated.
+    pub study: Arc<Study>,
+    /// Its genes.
+    pub genome: Vec<f64>,
+    /// Its fitness.
+    pub fitness: f64,
+    /// Its simulated Y at the measured points.
+    pub simulated: Vec<f64>,
+    /// The measured X of those points.
+    pub x: Vec<f64>,
+}
+
+/// What was observed of a run.
+#[derive(Debug, Clone, Default)]
+pub struct Recorder {
+    /// One record for each generation.
+    pub history: History,
+    /// The best individual so far.
+    pub best: Option<Best>,
+    /// The measured data read last.
+    pub measurement: Option<Measurement>,
+    /// The first seed.
+    pub seed: Option<[f64; 6]>,
+    /// The search ranges used last: minima and maxima.
+    pub ranges: Option<(Vec<f64>, Vec<f64>)>,
+    /// Number of simulations.
+    pub evaluations: u64,
+    /// Number of failed simulations.
+    pub failures: u64,
+    /// Why simulations failed, and how often.
+    pub causes: IndexMap<String, u64>,
+    /// What `Yexp` was compared with last.
+    measured_y: Option<Vec<f64>>,
+    sorted_by_fit_order: bool,
+    fitness_by_fit: bool,
+    pending: Pending,
+}
+
+/// Individuals simulated since the last generation ended.
+#[derive(Debug, Clone, Default)]
+struct Pending {
+    study: Option<Arc<Study>>,
+    x: Vec<f64>,
+    genomes: Vec<Vec<f64>>,
+    simulated: Vec<Vec<f64>>,
+    fitness: Vec<f64>,
+}
+
+impl Recorder {
+    /// `Exp_Adq_SISO` has read data.
+    pub fn measured(&mut self, measurement: Measurement) {
+        self.measured_y = Some(measurement.y.clone());
+        self.measurement = Some(measurement);
+    }
+
+    /// `Ram_Gen_ARENA` was called with this seed.
+    pub fn seeded(&mut self, seed: [f64; 6]) {
+        self.seed.get_or_insert(seed);
+    }
+
+    /// `Mutation` was called with these search ranges.
+    pub fn searched(&mut self, minima: &[f64], maxima: &[f64]) {
+        self.ranges = Some((minima.to_vec(), maxima.to_vec()));
+    }
+
+    /// `Eval` has simulated `genomes`; `simulated` holds one row for each, `messages` is empty
+    /// where the simulation succeeded.
+    pub fn evaluated(
+        &mut self,
+        study: &Arc<Study>,
+        x: &[f64],
+        genomes: &Genomes,
+        simulated: &[f64],
+        messages: &[String],
+    ) {
+        if !self.sorted_by_fit_order && self.pending.is_rated() {
+            self.end_pending_generation();
+        }
+        self.evaluations += genomes.len() as u64;
+        for message in messages.iter().filter(|message| !message.is_empty()) {
+            self.count_failure(message);
+        }
+        let pending = &mut self.pending;
+        if pending.x != x || pending.study.as_ref() != Some(study) {
+            *pending = Pending { study: Some(study.clone()), x: x.to_vec(), ..Pending::default() };
+        }
+        pending.genomes.extend(genomes.rows().map(<[f64]>::to_vec));
+        pending.simulated.extend(simulated.chunks(x.len().max(1)).map(<[f64]>::to_vec));
+    }
+
+    /// `Fit` has rated the simulations of the last individuals.
+    pub fn rated(&mut self, fitness: &[f64], measured_y: &[f64]) {
+        self.fitness_by_fit = true;
+        self.measured_y = Some(measured_y.to_vec());
+        let pending = &mut self.pending;
+        if pending.fitness.len() + fitness.len() > pending.genomes.len() {
+            pending.fitness.clear();
+        }
+        pending.fitness.extend_from_slice(fitness);
+    }
+
+    /// `Fit_Order` got a population with its fitness: a generation ends.
+    pub fn ordered(&mut self, population: &Genomes, fitness: &[f64]) {
+        let first = !std::mem::replace(&mut self.sorted_by_fit_order, true);
+        if first && self.evaluations == population.len() as u64 {
+            // Evaluated one by one, the individuals of this generation were taken for generations.
+            self.history = History::default();
+        }
+        if self.pending.genomes.is_empty() || population.len() != fitness.len() {
+            return;
+        }
+        self.history.record(fitness);
+        let best = crate::ga::best(population, fitness);
+        if let Some(best) = best
+            && let Some(k) = self.pending.genomes.iter().position(|known| *known == best.genome)
+        {
+            self.keep_if_better(k, best.fitness);
+        }
+        self.pending.clear();
+    }
+
+    /// The run has ended or was interrupted: ends the generation that is complete.
+    pub fn finish(&mut self) {
+        let nobody_told = self.history.generations.is_empty() && !self.fitness_by_fit;
+        if nobody_told && let Some(measured) = &self.measured_y {
+            let rate = |row: &Vec<f64>| match row.len() == measured.len() {
+                true => sum_of_squares(row, measured),
+                false => FAILED_FITNESS,
+            };
+            self.pending.fitness = self.pending.simulated.iter().map(rate).collect();
+        }
+        if self.pending.is_rated() {
+            self.end_pending_generation();
+        }
+    }
+
+    /// Which fitness decided.
+    pub fn fitness_source(&self) -> FitnessSource {
+        match (self.fitness_by_fit, self.sorted_by_fit_order) {
+            (true, _) => FitnessSource::SumOfSquares,
+            (false, true) => FitnessSource::Script,
+            (false, false) => FitnessSource::Assumed,
+        }
+    }
+
+    /// The measured Y of the best individual's points, if they belong together.
+    pub fn measured_y(&self) -> Option<&[f64]> {
+        let points = self.best.as_ref()?.x.len();
+        self.measured_y.as_deref().filter(|y| y.len() == points)
+    }
+
+    fn count_failure(&mut self, message: &str) {
+        self.failures += 1;
+        let room = self.causes.len() < MAX_CAUSES || self.causes.contains_key(message);
+        let cause = if room { message } else { OTHER_CAUSES };
+        *self.causes.entry(cause.to_owned()).or_insert(0) += 1;
+    }
+
+    fn end_pending_generation(&mut self) {
+        self.history.record(&self.pending.fitness);
+        if let Some(&k) = crate::ga::order(&self.pending.fitness).first() {
+            self.keep_if_better(k, self.pending.fitness[k]);
+        }
+        self.pending.clear();
+    }
+
+    /// Keeps pending individual `k` when it is better than the best so far.
+    fn keep_if_better(&mut self, k: usize, fitness: f64) {
+        let better = self.best.as_ref().is_none_or(|best| fitness < best.fitness);
+        if !better || has_failed(fitness) {
+            return;
+        }
+        let Some(study) = self.pending.study.clone() else { return };
+        self.best = Some(Best {
+            study,
+            genome: self.pending.genomes[k].clone(),
+            fitness,
+            simulated: self.pending.simulated[k].clone(),
+            x: self.pending.x.clone(),
+        });
+    }
+}
+
+impl Pending {
+    /// Whether there are individuals and all have a fitness.
+    fn is_rated(&self) -> bool {
+        !self.genomes.is_empty() && self.fitness.len() == self.genomes.len()
+    }
+
+    fn clear(&mut self) {
+        self.genomes.clear();
+        self.simulated.clear();
+        self.fitness.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn study() -> Arc<Study> {
+        let quantity = |name: &str| Quantity { name: name.to_owned(), unit: String::new() };
+        Arc::new(Study {
+            model: "M".to_owned(),
+            parameters: vec![quantity("p")],
+            x: quantity("time"),
+            y: quantity("y"),
+        })
+    }
+
+    fn genomes(values: &[f64]) -> Genomes {
+        Genomes::new(1, values.to_vec()).unwrap()
+    }
+
+    fn messages(texts: &[&str]) -> Vec<String> {
+        texts.iter().map(|&text| text.to_owned()).collect()
+    }
+
+    #[test]
+    fn fit_order_ends_a_generation() {
+        let mut recorder = Recorder::default();
+        let population = genomes(&[3.0, 1.0, 9.0]);
+        let simulated = [3.0, 1.0, f64::NAN];
+        let failed = messages(&["", "", "log of -1"]);
+        for _ in 0..2 {
+            recorder.evaluated(&study(), &[0.0], &population, &simulated, &failed);
+            recorder.rated(&[9.0, 1.0, 1e60], &[0.0]);
+            recorder.ordered(&population, &[9.0, 1.0, 1e60]);
+        }
+        recorder.finish();
+        assert_eq!(recorder.history.generations.len(), 2);
+        assert_eq!(recorder.history.generations[1].failures, 1);
+        assert_eq!((recorder.evaluations, recorder.failures), (6, 2));
+        assert_eq!(recorder.causes["log of -1"], 2);
+        let best = recorder.best.as_ref().unwrap();
+        assert_eq!((best.genome[0], best.fitness, best.simulated[0]), (1.0, 1.0, 1.0));
+        assert_eq!(recorder.fitness_source(), FitnessSource::SumOfSquares);
+        assert_eq!(recorder.measured_y(), Some(&[0.0][..]));
+    }
+
+    #[test]
+    fn individuals_evaluated_one_by_one_make_one_generation() {
+        let mut recorder = Recorder::default();
+        for generation in 0..2 {
+            for k in 0..3 {
+                let value = [f64::from(3 - k - generation)];
+                recorder.evaluated(&study(), &[0.0], &genomes(&value), &value, &messages(&[""]));
+                recorder.rated(&value, &[0.0]);
+            }
+            let population = genomes(&[3, 2, 1].map(|value| f64::from(value - generation)));
+            recorder.ordered(&population, population.values());
+        }
+        assert_eq!(recorder.history.generations.len(), 2);
+        assert_eq!(recorder.best.unwrap().fitness, 0.0);
+    }
+
+    #[test]
+    fn own_sorting_ends_a_generation_with_the_next_simulation() {
+        let mut recorder = Recorder::default();
+        for value in [3.0, 2.0] {
+            recorder.evaluated(&study(), &[0.0], &genomes(&[value]), &[value], &messages(&[""]));
+            recorder.rated(&[value], &[0.0]);
+        }
+        assert_eq!(recorder.history.generations.len(), 1);
+        recorder.finish();
+        assert_eq!(recorder.history.generations.len(), 2);
+        assert_eq!(recorder.best.unwrap().genome, [2.0]);
+    }
+
+    #[test]
+    fn own_fitness_is_taken_from_fit_order() {
+        let mut recorder = Recorder::default();
+        recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &[7.0], &messages(&[""]));
+        recorder.ordered(&genomes(&[5.0]), &[42.0]);
+        recorder.finish();
+        assert_eq!(recorder.best.as_ref().unwrap().fitness, 42.0);
+        assert_eq!(recorder.fitness_source(), FitnessSource::Script);
+    }
+
+    #[test]
+    fn with_own_fitness_and_own_sorting_the_sum_of_squares_is_assumed() {
+        let mut recorder = Recorder::default();
+        recorder.measured(Measurement { file: "d.mat".into(), x: vec![0.0], y: vec![1.0] });
+        recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &[3.0], &messages(&[""]));
+        recorder.finish();
+        assert_eq!(recorder.best.as_ref().unwrap().fitness, 4.0);
+        assert_eq!(recorder.fitness_source(), FitnessSource::Assumed);
+    }
+
+    #[test]
+    fn an_interrupted_generation_without_fitness_does_not_count() {
+        let mut recorder = Recorder::default();
+        recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &[3.0], &messages(&[""]));
+        recorder.ordered(&genomes(&[5.0]), &[9.0]);
+        recorder.evaluated(&study(), &[0.0], &genomes(&[4.0]), &[3.0], &messages(&[""]));
+        recorder.finish();
+        assert_eq!(recorder.history.generations.len(), 1);
+        assert_eq!(recorder.evaluations, 2);
+    }
+}

@@ -1,0 +1,159 @@
+//! Results in memory.
+
+use super::errors::{BAD_RESULT_TABLE, OUTSIDE_RESULTS, UNKNOWN_RESULT_VARIABLE};
+use crate::bail;
+use crate::diag::{Fault, suggest};
+use crate::fault;
+use std::collections::HashSet;
+
+/// The results of one simulation. Time does not decrease; an event is two points with equal time,
+/// the values before and after it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResultTable {
+    /// The name of time: `time`, or `Time` as some programs write it.
+    pub time_name: String,
+    /// Points in time, seconds.
+    pub time: Vec<f64>,
+    /// The variables; their names differ from each other and from `time_name`.
+    pub series: Vec<Series>,
+}
+
+/// One variable.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Its name, such as `cell.v`.
+    pub name: String,
+    /// Its unit, empty if none.
+    pub unit: String,
+    /// Its description, empty if none.
+    pub description: String,
+    /// Its values.
+    pub values: Values,
+}
+
+/// The values of a variable.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Values {
+    /// The same at every point in time: parameters and constants.
+    Constant(f64),
+    /// One value per point in time.
+    Trajectory(Vec<f64>),
+    /// The values of another series, which is no alias itself.
+    Alias {
+        /// Its place in [`ResultTable::series`].
+        of: usize,
+        /// Whether the sign differs.
+        negated: bool,
+    },
+}
+
+impl Series {
+    /// A variable without unit and description.
+    pub fn new(name: impl Into<String>, values: Values) -> Series {
+        Series { name: name.into(), unit: String::new(), description: String::new(), values }
+    }
+}
+
+impl ResultTable {
+    /// Results without variables; the name of time is `time`.
+    pub fn new(time: Vec<f64>) -> ResultTable {
+        ResultTable { time_name: "time".to_owned(), time, series: Vec::new() }
+    }
+
+    /// All names, time first.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        std::iter::once(&*self.time_name).chain(self.series.iter().map(|series| &*series.name))
+    }
+
+    /// The values of a variable, one per point in time. `time` and `Time` both name time.
+    pub fn column(&self, name: &str) -> Result<Vec<f64>, Fault> {
+        if let Some(index) = self.series.iter().position(|series| series.name == name) {
+            return Ok(self.expand(index));
+        }
+        if name == self.time_name || name == "time" || name == "Time" {
+            return Ok(self.time.clone());
+        }
+        Err(fault!(UNKNOWN_RESULT_VARIABLE, "the results hold no variable `{name}`")
+            .help_if(suggest::did_you_mean(name, self.names())))
+    }
+
+    /// The values of the variable at this place, one per point in time.
+    pub(super) fn expand(&self, index: usize) -> Vec<f64> {
+        let (target, sign) = self.resolve(index);
+        match &self.series[target].values {
+            Values::Constant(value) => vec![sign * value; self.time.len()],
+            Values::Trajectory(values) => values.iter().map(|value| sign * value).collect(),
+            Values::Alias { .. } => unreachable!("`resolve` ends at a series that is no alias"),
+        }
+    }
+
+    /// The series that holds the values, and the sign they take; the index itself unless an alias.
+    /// Panics if an alias leads to an alias, which [`ResultTable::check`] refuses.
+    pub(super) fn resolve(&self, index: usize) -> (usize, f64) {
+        match self.series[index].values {
+            Values::Alias { of, negated } => {
+                let is_alias = matches!(self.series[of].values, Values::Alias { .. });
+                assert!(!is_alias, "an alias refers to a series with values");
+                (of, if negated { -1.0 } else { 1.0 })
+            }
+            _ => (index, 1.0),
+        }
+    }
+
+    /// The values of a variable at these times, interpolated linearly; at an event the value after
+    /// it. A time outside the results is a fault.
+    pub fn interpolate(&self, name: &str, times: &[f64]) -> Result<Vec<f64>, Fault> {
+        let values = self.column(name)?;
+        times.iter().map(|time| self.interpolate_at(name, &values, *time)).collect()
+    }
+
+    fn interpolate_at(&self, name: &str, values: &[f64], time: f64) -> Result<f64, Fault> {
+        let after = self.time.partition_point(|t| *t <= time);
+        match (after.checked_sub(1), self.time.get(after)) {
+            (Some(before), _) if self.time[before] == time => Ok(values[before]),
+            (Some(before), Some(next)) => {
+                let share = (time - self.time[before]) / (next - self.time[before]);
+                Ok(values[before] + share * (values[after] - values[before]))
+            }
+            _ => {
+                let (first, last) = (self.time.first(), self.time.last());
+                let range = first.zip(last).map_or("are empty".to_owned(), |(first, last)| {
+                    format!("go from {first} to {last}")
+                });
+                bail!(OUTSIDE_RESULTS, "`{name}` at time {time}: the results {range}")
+            }
+        }
+    }
+
+    /// A fault unless the table is what its documentation promises.
+    pub fn check(&self) -> Result<(), Fault> {
+        let points = self.time.len();
+        if self.time.windows(2).any(|pair| !(pair[0] <= pair[1])) {
+            bail!(BAD_RESULT_TABLE, "time decreases or is not a number");
+        }
+        let mut names = HashSet::from([&*self.time_name]);
+        for series in &self.series {
+            let name = &*series.name;
+            if !names.insert(name) {
+                bail!(BAD_RESULT_TABLE, "two variables are named `{name}`");
+            }
+            match &series.values {
+                Values::Trajectory(values) if values.len() != points => {
+                    let found = values.len();
+                    bail!(
+                        BAD_RESULT_TABLE,
+                        "`{name}` has {found} values at {points} points in time"
+                    );
+                }
+                Values::Alias { of, .. } => match self.series.get(*of) {
+                    Some(Series { values: Values::Alias { .. }, .. }) | None => {
+                        bail!(BAD_RESULT_TABLE, "`{name}` is an alias of no values")
+                    }
+                    Some(_) => {}
+                },
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,78 @@
+//! What went wrong, as scripts can ask for it.
+
+use super::strings::text;
+use super::{Args, Builtin, Failure, Family};
+use crate::script::Session;
+use crate::value::Value;
+
+/// The commands of this file.
+pub(super) const FAMILY: Family = Family {
+    packages: &[],
+    dialect: None,
+    builtins: &[
+        Builtin { header: GET_ERROR_STRING, run: get_error_string },
+        Builtin { header: GET_MESSAGES_STRING, run: get_error_string },
+        Builtin { header: GET_LAST_ERROR, run: get_last_error },
+        Builtin { header: COUNT_MESSAGES, run: count_messages },
+        Builtin { header: CLEAR_MESSAGES, run: clear_messages },
+        Builtin { header: CLEARLOG, run: clear_messages },
+    ],
+};
+
+const GET_ERROR_STRING: &str = r#"
+function getErrorString "The messages since the last call, one a line; forgets them."
+  input Boolean warningsAsErrors = false;
+  output String errorString;
+end getErrorString;
+"#;
+
+const GET_MESSAGES_STRING: &str = r#"
+function getMessagesString "The messages since the last call, one a line; forgets them."
+  output String messagesString;
+end getMessagesString;
+"#;
+
+fn get_error_string(session: &mut Session, _: Args) -> Result<Value, Failure> {
+    Ok(text(session.messages.take_text(&session.sources)))
+}
+
+const GET_LAST_ERROR: &str = r#"
+function getLastError "The message of the last error, empty after success; forgets the messages."
+  output String errorMessage;
+end getLastError;
+"#;
+
+fn get_last_error(session: &mut Session, _: Args) -> Result<Value, Failure> {
+    Ok(text(session.messages.take_last_error()))
+}
+
+const COUNT_MESSAGES: &str = r#"
+function countMessages "Numbers of messages that getErrorString would give."
+  output Integer numMessages;
+  output Integer numErrors;
+  output Integer numWarnings;
+end countMessages;
+"#;
+
+fn count_messages(session: &mut Session, _: Args) -> Result<Value, Failure> {
+    let [notes, warnings, errors] = session.messages.counts();
+    let all = [notes + warnings + errors, errors, warnings];
+    Ok(Value::Tuple(all.map(|count| Value::Integer(count as i64)).to_vec()))
+}
+
+const CLEAR_MESSAGES: &str = r#"
+function clearMessages "Forgets the messages."
+  output Boolean ok;
+end clearMessages;
+"#;
+
+const CLEARLOG: &str = r#"
+function clearlog "Forgets the messages."
+  output Boolean ok;
+end clearlog;
+"#;
+
+fn clear_messages(session: &mut Session, _: Args) -> Result<Value, Failure> {
+    session.messages.clear();
+    Ok(Value::Boolean(true))
+}

@@ -1,0 +1,49 @@
+//! Scripts that run scripts.
+
+use super::{Args, Builtin, Failure, Family};
+use crate::script::{Dialect, Session};
+use crate::value::Value;
+
+/// Dymola's `RunScript`.
+pub(super) const FAMILY: Family = Family {
+    packages: &["DymolaCommands.System"],
+    dialect: Some(Dialect::Dymola),
+    builtins: &[Builtin { header: RUN_SCRIPT, run: run_script }],
+};
+
+/// OpenModelica's `runScript`.
+pub(super) const OPENMODELICA: Family = Family {
+    packages: &["OpenModelica.Scripting"],
+    dialect: Some(Dialect::OpenModelica),
+    builtins: &[Builtin { header: RUN_SCRIPT_OPENMODELICA, run: run_script_openmodelica }],
+};
+
+const RUN_SCRIPT: &str = r#"
+function RunScript "Executes a script among the variables of the calling one."
+  input String script "path from the folder of the calling script, else from the working directory; the ending .mos may be left out";
+  input Boolean silent = false "true: its statements show no answers";
+  output Boolean ok;
+end RunScript;
+"#;
+
+fn run_script(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let script: String = args.take("script")?;
+    let silent: bool = args.take("silent")?;
+    session.silent += usize::from(silent);
+    let done = session.run_nested(&script);
+    session.silent -= usize::from(silent);
+    done.map(|()| true.into())
+}
+
+const RUN_SCRIPT_OPENMODELICA: &str = r#"
+function runScript "Executes a script among the variables of the calling one."
+  input String fileName;
+  output String result "empty";
+end runScript;
+"#;
+
+fn run_script_openmodelica(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let script: String = args.take("fileName")?;
+    session.run_nested(&script)?;
+    Ok("".into())
+}

@@ -1,0 +1,142 @@
+//! Settings of the session, and its variables.
+
+use super::{Args, Builtin, Failure, Family};
+use crate::script::{Dialect, Session};
+use crate::value::Value;
+
+/// The commands of this file.
+pub(super) const FAMILY: Family = Family {
+    packages: &[],
+    dialect: None,
+    builtins: &[
+        Builtin { header: CLEAR, run: clear },
+        Builtin { header: CLEAR_VARIABLES, run: clear_variables },
+        Builtin { header: ECHO, run: echo },
+        Builtin { header: VARIABLES, run: variables },
+        Builtin { header: SET_COMMAND_LINE_OPTIONS, run: accepted },
+        Builtin { header: GET_VERSION, run: get_version },
+        Builtin { header: HELP, run: help },
+    ],
+};
+
+/// Dymola's `list`, which is about variables.
+pub(super) const LIST_FAMILY: Family = Family {
+    packages: &["DymolaCommands.SimulatorAPI"],
+    dialect: Some(Dialect::Dymola),
+    builtins: &[Builtin { header: LIST, run: variables }],
+};
+
+const CLEAR: &str = r#"
+function clear "Forgets variables, flags, imports and classes."
+  output Boolean ok;
+end clear;
+"#;
+
+fn clear(session: &mut Session, _: Args) -> Result<Value, Failure> {
+    session.clear();
+    Ok(true.into())
+}
+
+const CLEAR_VARIABLES: &str = r#"
+function clearVariables "Forgets the variables."
+  output Boolean ok;
+end clearVariables;
+"#;
+
+fn clear_variables(session: &mut Session, _: Args) -> Result<Value, Failure> {
+    session.scope.clear();
+    Ok(true.into())
+}
+
+const ECHO: &str = r#"
+function echo "Whether answers are shown from now on."
+  input Boolean setEcho;
+  output Boolean newEcho;
+end echo;
+"#;
+
+fn echo(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let wanted: bool = args.take("setEcho")?;
+    session.muted = !wanted;
+    Ok(wanted.into())
+}
+
+const LIST: &str = r#"
+function list "Prints the variables with their types and values, in alphabetic order."
+  input String filename = "" "where to write them; empty: the terminal";
+  input String variables[:] = {"*"} "patterns; * stands for any characters, ? for one";
+  output Boolean ok;
+end list;
+"#;
+
+const VARIABLES: &str = r#"
+function variables "Prints the variables with their types and values, in alphabetic order."
+  input String filename = "" "where to write them; empty: the terminal";
+  input String variables[:] = {"*"} "patterns; * stands for any characters, ? for one";
+  output Boolean ok;
+end variables;
+"#;
+
+fn variables(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let file: String = args.take("filename")?;
+    let patterns: Vec<String> = args.take("variables")?;
+    let listing: String = patterns.iter().map(|pattern| session.listing(pattern)).collect();
+    if file.is_empty() {
+        session.print(&listing);
+        return Ok(true.into());
+    }
+    let written = session.write_file(file.as_ref(), listing.as_bytes());
+    Ok(session.succeeded(written))
+}
+
+const SET_COMMAND_LINE_OPTIONS: &str = r#"
+function setCommandLineOptions "Accepts options of the OpenModelica compiler; they have no effect."
+  input String options;
+  output Boolean ok;
+end setCommandLineOptions;
+"#;
+
+fn accepted(session: &mut Session, args: Args) -> Result<Value, Failure> {
+    session.no_effect(args.command());
+    Ok(true.into())
+}
+
+const GET_VERSION: &str = r#"
+function getVersion "The version of this program."
+  output String version;
+end getVersion;
+"#;
+
+fn get_version(_: &mut Session, _: Args) -> Result<Value, Failure> {
+    Ok(concat!("gapilib ", env!("CARGO_PKG_VERSION")).into())
+}
+
+const HELP: &str = r#"
+function help "Prints the declaration of a command, or the names of all."
+  input String name = "";
+  output Boolean ok;
+end help;
+"#;
+
+fn help(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let name: String = args.take("name")?;
+    if name.is_empty() {
+        let names: String = super::names().iter().map(|name| format!("{name}\n")).collect();
+        session.print(&names);
+        return Ok(true.into());
+    }
+    match super::find(&crate::name::Name::parse(&name), session.dialect()) {
+        Some(id) => {
+            session.print(id.header().trim_start());
+            Ok(true.into())
+        }
+        None => {
+            let known = super::names();
+            let fault =
+                crate::fault!(crate::script::errors::BAD_ARGUMENT, "there is no command `{name}`");
+            let hint = crate::diag::suggest::did_you_mean(&name, known.iter().copied());
+            session.report_fault(fault.help_if(hint));
+            Ok(false.into())
+        }
+    }
+}

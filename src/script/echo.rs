@@ -1,0 +1,88 @@
+//! What is shown without being asked for, as each dialect shows it.
+
+use super::{Dialect, Echo, Session, builtins};
+use crate::name::Ident;
+use crate::source::Span;
+use crate::syntax::ast::{Expression, ExpressionKind};
+use crate::value::Value;
+use crate::value::show::{Style, show};
+
+impl Session {
+    fn may_echo(&self) -> bool {
+        self.silent == 0 && !self.muted && self.options.echo != Echo::Nothing
+    }
+
+    /// The statement itself, which Dymola repeats in its log.
+    pub(super) fn echo_input(&mut self, span: Span) {
+        let wanted = self.options.echo == Echo::Everything && self.dialect == Dialect::Dymola;
+        if wanted && self.may_echo() {
+            let line = format!("{}\n", self.sources.text(span));
+            self.world.print(&line);
+        }
+    }
+
+    /// The value of an expression that is a statement.
+    pub(super) fn echo_value(&mut self, expression: &Expression, value: &Value) {
+        if self.silent > 0 || self.muted || matches!(value, Value::Tuple(v) if v.is_empty()) {
+            return;
+        }
+        if self.options.echo != Echo::Everything && self.is_plain_success(expression, value) {
+            return;
+        }
+        self.answer(value);
+    }
+
+    /// A first assignment, which Dymola announces; the value, which OpenModelica shows.
+    pub(super) fn echo_assignment(&mut self, name: Ident, is_new: bool) {
+        let Some(value) = self.scope.get(name).filter(|_| self.may_echo()) else { return };
+        match (self.dialect, self.options.echo) {
+            (Dialect::OpenModelica, _) => {
+                let value = value.clone();
+                self.answer(&value);
+            }
+            (Dialect::Dymola, Echo::Everything) if is_new => {
+                let sizes: Vec<String> = value.dims().iter().map(usize::to_string).collect();
+                let dims = match sizes.is_empty() {
+                    true => String::new(),
+                    false => format!(" [{}]", sizes.join(", ")),
+                };
+                let type_name = value.type_name();
+                let base = type_name.split('[').next().unwrap_or_default();
+                let line = format!("Declaring variable: {base} {name}{dims} ;\n");
+                self.print(&line);
+            }
+            _ => {}
+        }
+    }
+
+    /// The empty line that OpenModelica prints for a statement without a value.
+    pub(super) fn echo_nothing(&mut self) {
+        if self.dialect == Dialect::OpenModelica && self.may_echo() {
+            self.print("\n");
+        }
+    }
+
+    fn answer(&mut self, value: &Value) {
+        let (style, lead) = match self.dialect {
+            Dialect::Dymola => (Style::Dymola, " = "),
+            Dialect::OpenModelica => (Style::OpenModelica, ""),
+        };
+        if self.options.echo != Echo::Nothing {
+            let line = format!("{lead}{}\n", show(value, style));
+            self.world.print(&line);
+        }
+        let style = if style == Style::Dymola { Style::Transcript } else { style };
+        if let Some(transcript) = &mut self.transcript {
+            transcript.answer(&format!("{lead}{}\n", show(value, style)));
+        }
+    }
+
+    /// Whether a command only says that it succeeded: `true` from an output named `ok`.
+    fn is_plain_success(&mut self, expression: &Expression, value: &Value) -> bool {
+        let ExpressionKind::Call { function, .. } = &expression.kind else { return false };
+        self.dialect == Dialect::Dymola
+            && *value == Value::Boolean(true)
+            && builtins::find(&function.name(), self.dialect)
+                .is_some_and(|id| id.function().outputs.iter().any(|output| output.name == "ok"))
+    }
+}

@@ -1,0 +1,115 @@
+//! Files as commands see them: found, read and written with errors that say what to do.
+
+use super::Session;
+use super::errors::FILE_ERROR;
+use crate::diag::Fault;
+use crate::syntax;
+use crate::value::Value;
+use std::io;
+use std::path::{Path, PathBuf};
+
+impl Session {
+    /// The file or directory that a script means: relative to the working directory, else to the
+    /// folders of the scripts being run, innermost first. `None` if it is nowhere.
+    pub fn find_file(&self, path: &Path) -> Option<PathBuf> {
+        let path = self.expanded(path);
+        let folders = self.frames.iter().rev().map(|frame| frame.folder.join(&path));
+        std::iter::once(self.world.absolute(&path))
+            .chain(folders.map(|candidate| super::world::normalized(&candidate)))
+            .find(|candidate| self.world.exists(candidate))
+    }
+
+    /// The bytes of a file that a script names.
+    pub fn read_bytes(&self, path: &Path) -> Result<Vec<u8>, Fault> {
+        let Some(found) = self.find_file(path) else {
+            return Err(self.missing_file(path));
+        };
+        self.world.read(&found).map_err(|error| cannot("read", path, &error))
+    }
+
+    /// The text of a file that a script names, UTF-8 or else Latin-1.
+    pub fn read_text(&self, path: &Path) -> Result<String, Fault> {
+        Ok(syntax::decode(&self.read_bytes(path)?).0)
+    }
+
+    /// Writes a file anew, with the directories it lies in.
+    pub fn write_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
+        self.make_parents(path)?;
+        self.world.write(path, bytes).map_err(|error| cannot("write", path, &error))
+    }
+
+    /// Writes behind the end of a file.
+    pub fn append_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
+        self.make_parents(path)?;
+        self.world.append(path, bytes).map_err(|error| cannot("write", path, &error))
+    }
+
+    fn make_parents(&mut self, path: &Path) -> Result<(), Fault> {
+        match path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() && !self.world.exists(folder) => {
+                self.world.create_dirs(folder).map_err(|e| cannot("make", folder, &e))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The fault of a file that is nowhere.
+    pub fn missing_file(&self, path: &Path) -> Fault {
+        let fault = Fault::new(FILE_ERROR, format!("there is no file `{}`", path.display()));
+        fault.help_if(self.similar_file(path)).help(format!(
+            "relative paths start from the working directory `{}` or the script's folder",
+            self.world.current_dir().display()
+        ))
+    }
+
+    fn similar_file(&self, path: &Path) -> Option<String> {
+        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let entries = self.world.list_dir(&self.find_file(folder)?).ok()?;
+        let name = path.file_name()?.to_string_lossy().into_owned();
+        crate::diag::suggest::did_you_mean(&name, entries.iter().map(String::as_str))
+    }
+
+    /// Windows' separators, `modelica://` and `file://` in a path.
+    pub(super) fn expanded(&self, path: &Path) -> PathBuf {
+        let text = path.to_string_lossy();
+        let text = text.strip_prefix("file://").unwrap_or(&text);
+        match text.contains('\\') {
+            true => PathBuf::from(text.replace('\\', "/")),
+            false => PathBuf::from(text),
+        }
+    }
+}
+
+/// The fault of a file that the system does not let us use.
+pub(super) fn cannot(verb: &str, path: &Path, error: &io::Error) -> Fault {
+    let reason = match error.kind() {
+        io::ErrorKind::NotFound => "it does not exist".to_owned(),
+        io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+        io::ErrorKind::IsADirectory => "it is a directory".to_owned(),
+        io::ErrorKind::NotADirectory => "a part of its path is no directory".to_owned(),
+        _ => error.to_string().to_lowercase(),
+    };
+    Fault::new(FILE_ERROR, format!("cannot {verb} `{}`: {reason}", path.display()))
+}
+
+impl Session {
+    /// Removes a file or an empty directory.
+    pub(super) fn remove_file(&mut self, path: &Path) -> Result<(), Fault> {
+        self.world.remove(path).map_err(|error| cannot("remove", path, &error))
+    }
+
+    /// Makes a directory and the ones it lies in.
+    pub(super) fn create_directory(&mut self, path: &Path) -> Result<(), Fault> {
+        self.world.create_dirs(path).map_err(|error| cannot("make", path, &error))
+    }
+
+    /// A negative answer: `true`, or `false` and the fault reported.
+    pub fn succeeded(&mut self, result: Result<(), Fault>) -> Value {
+        Value::Boolean(self.or_report(result).is_some())
+    }
+
+    /// The value, or `None` and the fault reported.
+    pub fn or_report<T>(&mut self, result: Result<T, Fault>) -> Option<T> {
+        result.map_err(|fault| self.report_fault(fault)).ok()
+    }
+}

@@ -1,0 +1,147 @@
+//! The session as the host of evaluation: it answers calls, dotted names and questions.
+
+use super::builtins::{self, BuiltinId, Failure};
+use super::errors::INTERRUPTED;
+use super::{Session, classes};
+use crate::diag::{At, Diagnostic, Fault};
+use crate::eval::{Callee, Function, Host, Scope};
+use crate::name::Name;
+use crate::source::Span;
+use crate::syntax::ast::ComponentReference;
+use crate::value::Value;
+use std::sync::Arc;
+
+impl Host for Session {
+    /// A function of a script or a loaded library first, then a command.
+    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Fault> {
+        let revision = self.classes.revision();
+        if let Some(known) = self.callees.get(name, revision, self.dialect) {
+            return Ok(known);
+        }
+        let callee = self.look_up_callee(name)?;
+        self.callees.put(name, callee.as_ref());
+        Ok(callee)
+    }
+
+    fn call_builtin(
+        &mut self,
+        header: &Arc<Function>,
+        arguments: Vec<Value>,
+        span: Span,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        let Some(id) = BuiltinId::of(header) else {
+            unreachable!("`callee` gives out headers of the table only")
+        };
+        let outer = std::mem::replace(&mut self.call, span);
+        let result = id.run(self, arguments);
+        self.call = outer;
+        match result {
+            Ok(Value::Tuple(values)) => Ok(values),
+            Ok(value) => Ok(vec![value]),
+            Err(Failure::Here(fault)) => Err(fault.at(span)),
+            Err(Failure::Elsewhere(mut diagnostics)) => {
+                let last = diagnostics.pop();
+                diagnostics.into_iter().for_each(|diagnostic| self.report(diagnostic));
+                Err(last
+                    .unwrap_or_else(|| Fault::new(super::errors::SCRIPT_ERROR, "failed").at(span)))
+            }
+        }
+    }
+
+    /// Commands that run scripts work among the variables of the caller.
+    fn call_builtin_among(
+        &mut self,
+        header: &Arc<Function>,
+        arguments: Vec<Value>,
+        span: Span,
+        scope: &mut Scope,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        if !scope.is_script() {
+            return self.call_builtin(header, arguments, span);
+        }
+        std::mem::swap(&mut self.scope, scope);
+        self.silent += 1;
+        let result = self.call_builtin(header, arguments, span);
+        self.silent -= 1;
+        std::mem::swap(&mut self.scope, scope);
+        result
+    }
+
+    fn variable(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
+        if let Some(value) = self.flag(reference) {
+            return Ok(Some(value));
+        }
+        if let Some(value) = self.constant(&reference.name()).at(reference.span)? {
+            return Ok(Some(value));
+        }
+        let first = reference.parts[0].name;
+        match self.follow_up(first, reference.span) {
+            Some(note) => Err(note),
+            None => self.model_value(reference),
+        }
+    }
+
+    fn assign(
+        &mut self,
+        target: &ComponentReference,
+        value: Value,
+        span: Span,
+    ) -> Result<bool, Diagnostic> {
+        if let Some(note) = self.follow_up(target.parts[0].name, target.span)
+            && target.parts.len() == 1
+        {
+            return Err(note);
+        }
+        self.assign_dotted(target, value, span)
+    }
+
+    fn warn(&mut self, warning: Diagnostic) {
+        self.report(warning);
+    }
+
+    fn function_names(&mut self) -> Vec<String> {
+        let mut names: Vec<String> = builtins::names().into_iter().map(str::to_owned).collect();
+        names.extend(self.classes.function_names());
+        names
+    }
+
+    fn loop_turn(&mut self, turn: usize, turns: Option<usize>) {
+        self.loop_turn = Some((turn, turns));
+    }
+
+    fn interrupted(&mut self) -> Option<Fault> {
+        match self.is_interrupted() || self.stop.is_some() {
+            true => Some(Fault::new(INTERRUPTED, "interrupted")),
+            false => None,
+        }
+    }
+}
+
+impl Session {
+    fn look_up_callee(&mut self, name: &Name) -> Result<Option<Callee>, Fault> {
+        if let Some(function) = self.loaded_function(name)? {
+            return Ok(Some(Callee::Function(function)));
+        }
+        for candidate in self.candidates(name) {
+            if let Some(id) = builtins::find(&candidate, self.dialect) {
+                return Ok(Some(Callee::Builtin(id.function())));
+            }
+        }
+        classes::autoload(self, name)?;
+        Ok(self.loaded_function(name)?.map(Callee::Function))
+    }
+
+    /// What a name may stand for: itself, and what the imports of the scripts make of it.
+    pub(super) fn candidates(&self, name: &Name) -> Vec<Name> {
+        let mut all = vec![name.clone()];
+        let Some(first) = name.first().filter(|_| !name.global) else { return all };
+        if let Some(target) = self.imports.get(&first) {
+            let parts = target.parts.iter().chain(&name.parts[1..]);
+            all.push(Name::new(parts.copied()));
+        }
+        for package in &self.open_packages {
+            all.push(Name::new(package.parts.iter().chain(&name.parts).copied()));
+        }
+        all
+    }
+}

@@ -1,0 +1,73 @@
+//! The buffer behind `getErrorString()` and `getLastError()`.
+
+use crate::diag::{Diagnostic, Severity};
+use crate::source::SourceMap;
+
+/// Diagnostics since the script asked last.
+#[derive(Debug, Clone, Default)]
+pub struct Messages {
+    unread: Vec<Diagnostic>,
+    last_error: Option<String>,
+}
+
+impl Messages {
+    /// Adds a diagnostic.
+    pub fn push(&mut self, diagnostic: Diagnostic) {
+        if diagnostic.is_error() {
+            self.last_error = Some(diagnostic.message.clone());
+        }
+        self.unread.push(diagnostic);
+    }
+
+    /// Number of errors that the script has not asked for.
+    pub fn unread_errors(&self) -> usize {
+        self.unread.iter().filter(|diagnostic| diagnostic.is_error()).count()
+    }
+
+    /// Numbers of unread notes, warnings and errors.
+    pub fn counts(&self) -> [usize; 3] {
+        let count = |severity| self.unread.iter().filter(|d| d.severity == severity).count();
+        [count(Severity::Note), count(Severity::Warning), count(Severity::Error)]
+    }
+
+    /// The unread messages, one a line, as OpenModelica's scripts expect them
+    /// (`[file:l:c-l:c:writable] Error: …`); the buffer is empty afterwards.
+    pub fn take_text(&mut self, sources: &SourceMap) -> String {
+        let text = self.unread.iter().map(|diagnostic| line(diagnostic, sources)).collect();
+        self.clear();
+        text
+    }
+
+    /// The last error's message since the last call, empty after success.
+    pub fn take_last_error(&mut self) -> String {
+        let last = self.last_error.take().unwrap_or_default();
+        self.clear();
+        last
+    }
+
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        self.unread.clear();
+        self.last_error = None;
+    }
+}
+
+fn line(diagnostic: &Diagnostic, sources: &SourceMap) -> String {
+    let severity = match diagnostic.severity {
+        Severity::Note => "Notification",
+        Severity::Warning => "Warning",
+        Severity::Error => "Error",
+    };
+    let span = diagnostic.span();
+    match sources.get(span.source) {
+        Some(source) => {
+            let (from, to) =
+                (source.line_column(span.start as usize), source.line_column(span.end as usize));
+            format!(
+                "[{}:{}:{}-{}:{}:writable] {severity}: {}\n",
+                source.name, from.line, from.column, to.line, to.column, diagnostic.message
+            )
+        }
+        None => format!("{severity}: {}\n", diagnostic.message),
+    }
+}

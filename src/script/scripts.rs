@@ -1,0 +1,284 @@
+//! Scripts that run scripts: finding them, reading each once, and the trace through them.
+
+use super::errors::{INTERRUPTED, SCRIPT_NOT_FOUND, SCRIPTS_TOO_DEEP};
+use super::files::cannot;
+use super::session::Stop;
+use super::world::{Stamp, normalized};
+use super::{Dialect, RunStatus, Session};
+use crate::bail;
+use crate::diag::{Diagnostic, Fault, suggest};
+use crate::script::builtins::Failure;
+use crate::source::{SourceId, Span};
+use crate::syntax::ast::{Expression, ExpressionKind, InteractiveKind, Script, StatementKind};
+use crate::syntax::{self, ast};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Scripts may call each other this deep.
+const MAX_DEPTH: usize = 64;
+
+/// A script being run.
+#[derive(Debug, Clone)]
+pub(super) struct Frame {
+    /// The folder it lies in.
+    pub(super) folder: PathBuf,
+}
+
+/// Scripts read before, by path, each valid as long as the file's stamp stays; and the paths that
+/// names led to.
+#[derive(Default)]
+pub(super) struct ParsedScripts {
+    by_path: HashMap<PathBuf, (Option<Stamp>, Arc<Script>)>,
+    found: HashMap<(PathBuf, PathBuf, String), PathBuf>,
+}
+
+impl Session {
+    /// Runs a script from the command line as the outermost one.
+    pub fn run_file(&mut self, path: &Path) -> RunStatus {
+        let name = path.to_string_lossy().into_owned();
+        if let Err(diagnostics) = self.run_named(&name) {
+            diagnostics.into_iter().for_each(|diagnostic| self.report(diagnostic));
+        }
+        self.finish()
+    }
+
+    /// Runs a text as the outermost script; `name` stands in diagnostics.
+    pub fn run_text(&mut self, name: &str, text: &str) -> RunStatus {
+        let source = self.sources.add(name, text);
+        match syntax::parse_script(source, text) {
+            Ok(script) => {
+                let folder = self.world.current_dir();
+                let frame = Frame { folder };
+                let done = self.run_script_statements(&Arc::new(script), frame);
+                debug_assert!(done.is_ok(), "the outermost script reports its own errors");
+            }
+            Err(diagnostic) => self.report(diagnostic),
+        }
+        self.finish()
+    }
+
+    /// Runs a script that another one names; its errors end it and come back with a trace.
+    pub(super) fn run_nested(&mut self, name: &str) -> Result<(), Failure> {
+        if self.frames.len() >= MAX_DEPTH {
+            bail!(
+                SCRIPTS_TOO_DEEP,
+                "scripts call each other {MAX_DEPTH} levels deep, the last one `{name}`";
+                help: "end the recursion with a condition"
+            );
+        }
+        let call = self.call;
+        let frame_name = format!("script `{name}`");
+        let traced = |diagnostics: Vec<Diagnostic>| {
+            // A script that calls itself is one line of the trace, however often it does.
+            let frame = |diagnostic: Diagnostic| match diagnostic.trace.last() {
+                Some(last) if last.span == call && last.what == frame_name => diagnostic,
+                _ => diagnostic.called_from(call, &*frame_name),
+            };
+            diagnostics.into_iter().map(frame).collect::<Vec<_>>()
+        };
+        if let Err(fault) = self.find_script(name) {
+            return Err(fault.into());
+        }
+        self.run_named(name).map_err(|diagnostics| Failure::Elsewhere(traced(diagnostics)))
+    }
+
+    fn run_named(&mut self, name: &str) -> Result<(), Vec<Diagnostic>> {
+        let at = |fault: Fault| vec![fault.at(Span::NONE)];
+        let path = self.find_script(name).map_err(at)?;
+        let script = self.parsed_script(&path)?;
+        let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
+        let frame = Frame { folder };
+        self.run_script_statements(&script, frame).map_err(|diagnostic| vec![diagnostic])
+    }
+
+    /// Executes the statements of a script. Errors of the outermost one are reported where they
+    /// happen; in a nested one the first ends it.
+    fn run_script_statements(
+        &mut self,
+        script: &Arc<Script>,
+        frame: Frame,
+    ) -> Result<(), Diagnostic> {
+        let outermost = self.frames.is_empty();
+        if outermost && self.options.dialect.is_none() {
+            self.dialect = recognised(script);
+        }
+        self.frames.push(frame);
+        let result = self.statements(&script.statements, outermost);
+        self.frames.pop();
+        result
+    }
+
+    fn statements(
+        &mut self,
+        statements: &[ast::InteractiveStatement],
+        outermost: bool,
+    ) -> Result<(), Diagnostic> {
+        for (at, statement) in statements.iter().enumerate() {
+            if self.stop.is_some() {
+                return Ok(());
+            }
+            if self.world.interrupted() {
+                self.interrupt(statement.span);
+                return Ok(());
+            }
+            let Err(diagnostic) = self.top_level(statement, outermost) else { continue };
+            if diagnostic.code == INTERRUPTED {
+                self.interrupt(statement.span);
+                return Ok(());
+            }
+            let remaining = if outermost { &statements[at..=at] } else { &statements[at..] };
+            self.follow_ups.not_done(remaining);
+            if !outermost {
+                return Err(diagnostic);
+            }
+            self.report_failed(diagnostic);
+            self.echo_nothing();
+        }
+        Ok(())
+    }
+
+    fn report_failed(&mut self, diagnostic: Diagnostic) {
+        if diagnostic.code == super::errors::FOLLOW_UP && !self.follow_ups.is_first() {
+            return;
+        }
+        self.report(diagnostic);
+    }
+
+    fn interrupt(&mut self, span: Span) {
+        if self.stop != Some(Stop::Interrupt) {
+            self.stop = Some(Stop::Interrupt);
+            let message = "interrupted; what has been found until now is kept";
+            self.report(Fault::new(INTERRUPTED, message).at(span).warning());
+        }
+    }
+
+    /// The script of this name: in the folder of the calling script, then in the working
+    /// directory; with and without the ending; at last with other letter cases.
+    fn find_script(&mut self, name: &str) -> Result<PathBuf, Fault> {
+        let folder = self.frames.last().map(|frame| frame.folder.clone()).unwrap_or_default();
+        let key = (folder, self.world.current_dir(), name.to_owned());
+        if let Some(path) = self.parsed.found.get(&key)
+            && self.world.exists(path)
+        {
+            return Ok(path.clone());
+        }
+        let path = self.search_script(&key.0, name)?;
+        self.parsed.found.insert(key, path.clone());
+        Ok(path)
+    }
+
+    fn search_script(&mut self, folder: &Path, name: &str) -> Result<PathBuf, Fault> {
+        let plain = self.expanded(Path::new(name));
+        let mut with_ending = plain.clone().into_os_string();
+        with_ending.push(".mos");
+        let with_ending = PathBuf::from(with_ending);
+        let folders = [folder.to_path_buf(), self.world.current_dir()];
+        let candidates = || {
+            folders.iter().flat_map(|folder| [&plain, &with_ending].map(|name| folder.join(name)))
+        };
+        let is_file = |path: &PathBuf| self.world.exists(path) && !self.world.is_dir(path);
+        let exact = candidates().map(|path| normalized(&self.world.absolute(&path))).find(is_file);
+        if let Some(path) = exact {
+            return Ok(path);
+        }
+        let other_case = candidates().find_map(|path| self.other_case(&path));
+        if let Some(path) = other_case {
+            let found = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into());
+            let message = format!("`{name}` is taken to be `{found}`: letter case differs");
+            self.note(SCRIPT_NOT_FOUND, message);
+            return Ok(path);
+        }
+        let fault = Fault::new(SCRIPT_NOT_FOUND, format!("there is no script `{name}`"));
+        Err(fault.help_if(self.similar_script(&folders[0].join(&plain))).help(format!(
+            "searched in `{}` and in the working directory `{}`",
+            folders[0].display(),
+            folders[1].display()
+        )))
+    }
+
+    fn similar_script(&self, path: &Path) -> Option<String> {
+        let nearby = self.world.list_dir(path.parent()?).ok()?;
+        let scripts: Vec<&str> = nearby.iter().filter_map(|e| e.strip_suffix(".mos")).collect();
+        suggest::did_you_mean(&path.file_stem()?.to_string_lossy(), scripts)
+    }
+
+    /// The file of this path, letter case not counted in any of its parts.
+    fn other_case(&self, path: &Path) -> Option<PathBuf> {
+        let mut found = PathBuf::new();
+        for component in normalized(&self.world.absolute(path)).components() {
+            let exact = found.join(component);
+            if self.world.exists(&exact) {
+                found = exact;
+                continue;
+            }
+            let wanted = component.as_os_str().to_string_lossy().into_owned();
+            let entries = self.world.list_dir(&found).ok()?;
+            found.push(entries.iter().find(|entry| entry.eq_ignore_ascii_case(&wanted))?);
+        }
+        (!self.world.is_dir(&found)).then_some(found)
+    }
+
+    fn parsed_script(&mut self, path: &Path) -> Result<Arc<Script>, Vec<Diagnostic>> {
+        let stamp = self.world.stamp(path);
+        if let Some((known, script)) = self.parsed.by_path.get(path)
+            && *known == stamp
+            && stamp.is_some()
+        {
+            return Ok(script.clone());
+        }
+        let (source, text) = self.add_file(path).map_err(|fault| vec![fault.at(Span::NONE)])?;
+        let script = Arc::new(syntax::parse_script(source, &text).map_err(|error| vec![error])?);
+        self.parsed.by_path.insert(path.to_path_buf(), (stamp, script.clone()));
+        Ok(script)
+    }
+
+    /// Reads a text file among the sources, under its path relative to the working directory.
+    pub(super) fn add_file(&mut self, path: &Path) -> Result<(SourceId, Arc<str>), Fault> {
+        let bytes = self.world.read(path).map_err(|error| cannot("read", path, &error))?;
+        let (text, warning) = syntax::decode(&bytes);
+        let current = self.world.current_dir();
+        let shown = path.strip_prefix(&current).unwrap_or(path).display().to_string();
+        let text: Arc<str> = text.into();
+        let source = self.sources.add(shown, text.clone());
+        if let Some(warning) = warning {
+            self.report(warning.at(Span::new(source, 0, 0)).warning());
+        }
+        Ok((source, text))
+    }
+}
+
+/// The dialect of a script: that of the first call or `=` that only one of them has.
+fn recognised(script: &Script) -> Dialect {
+    script.statements.iter().find_map(|s| dialect_of(&s.kind)).unwrap_or_default()
+}
+
+fn dialect_of(kind: &InteractiveKind) -> Option<Dialect> {
+    let call = match kind {
+        InteractiveKind::Expression(expression) => expression,
+        InteractiveKind::Statement(statement) => match &statement.kind {
+            StatementKind::Assign { value, .. } | StatementKind::Call(value) => value,
+            _ => return None,
+        },
+        _ => return None,
+    };
+    let Expression { kind: ExpressionKind::Call { function, arguments }, .. } = call else {
+        return None;
+    };
+    let has_class = arguments
+        .positional
+        .first()
+        .is_some_and(|first| matches!(&first.kind, ExpressionKind::Reference(_)));
+    match function.as_ident()?.as_str() {
+        "loadModel"
+        | "getErrorString"
+        | "loadString"
+        | "buildModel"
+        | "setCommandLineOptions"
+        | "instantiateModel"
+        | "loadFile" => Some(Dialect::OpenModelica),
+        "simulate" | "checkModel" if has_class => Some(Dialect::OpenModelica),
+        "simulateModel" | "translateModel" | "RunScript" | "openModel" => Some(Dialect::Dymola),
+        _ => None,
+    }
+}

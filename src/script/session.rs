@@ -1,0 +1,268 @@
+//! The session: everything that lasts from one statement to the next.
+
+use super::callees::Callees;
+use super::classes::Classes;
+use super::follow_up::FollowUps;
+use super::scripts::{Frame, ParsedScripts};
+use super::world::World;
+use super::{Messages, Transcript};
+use crate::diag::{Code, Diagnostic, Fault, render};
+use crate::eval::Scope;
+use crate::name::{Ident, Name};
+use crate::source::{SourceMap, Span};
+use crate::value::Value;
+use indexmap::IndexMap;
+use std::any::{Any, TypeId};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// Whose habits a script follows where the two tools differ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Dialect {
+    /// Dymola's.
+    #[default]
+    Dymola,
+    /// OpenModelica's.
+    OpenModelica,
+}
+
+/// What is shown without being asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Echo {
+    /// In Dymola's dialect the values of expressions alone; in OpenModelica's everything.
+    #[default]
+    Usual,
+    /// Statements and values, as the dialect's tool shows them.
+    Everything,
+    /// Nothing.
+    Nothing,
+}
+
+/// What an error does to a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Strictness {
+    /// The script goes on; the run ends with exit code 1 if nobody read the error.
+    #[default]
+    Usual,
+    /// The first error ends the run.
+    Strict,
+    /// The script goes on and the run ends with exit code 0.
+    Lenient,
+}
+
+/// How a session behaves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Options {
+    /// The dialect; `None` to recognise it from the script.
+    pub dialect: Option<Dialect>,
+    /// What is shown.
+    pub echo: Echo,
+    /// What an error does.
+    pub strictness: Strictness,
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct RunStatus {
+    /// Errors that happened and that the script did not ask for.
+    pub errors: usize,
+    /// Whether Ctrl-C ended it.
+    pub interrupted: bool,
+    /// The argument of `exit`, if it was called.
+    pub exit: Option<i32>,
+    /// The exit code of the process: what `exit` said, 130 when interrupted, 1 with unread
+    /// errors, else 0.
+    pub code: u8,
+}
+
+/// Why statements are no longer executed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stop {
+    /// `exit` was called.
+    Exit(i32),
+    /// Ctrl-C.
+    Interrupt,
+    /// An error with [`Strictness::Strict`].
+    Error,
+}
+
+/// A session. It owns its world; nothing else reaches the outside.
+pub struct Session {
+    /// The outside.
+    pub world: Box<dyn World>,
+    /// All texts read so far.
+    pub sources: SourceMap,
+    /// What `getErrorString()` and `getLastError()` will tell.
+    pub messages: Messages,
+    /// What was said and answered, if it is recorded.
+    pub transcript: Option<Transcript>,
+    /// How the session behaves.
+    pub options: Options,
+    /// The variables of the scripts.
+    pub(super) scope: Scope,
+    /// Flags such as `Advanced.StoreProtectedVariables`.
+    pub(super) flags: BTreeMap<String, Value>,
+    /// What imports in scripts made visible: a name and what it stands for.
+    pub(super) imports: IndexMap<Ident, Name>,
+    /// Packages whose content an import `P.*` made visible.
+    pub(super) open_packages: Vec<Name>,
+    /// The dialect that was asked for or recognised.
+    pub(super) dialect: Dialect,
+    /// The scripts that are being run, outermost first.
+    pub(super) frames: Vec<Frame>,
+    pub(super) parsed: ParsedScripts,
+    pub(super) follow_ups: FollowUps,
+    pub(super) stop: Option<Stop>,
+    /// Where the command that is being run was called.
+    pub(super) call: Span,
+    /// Commands that said that they have no window.
+    pub(super) windowless: BTreeSet<&'static str>,
+    /// How deep the statement being executed lies in loops, branches and nested scripts: answers
+    /// are echoed at depth 0.
+    pub(super) silent: usize,
+    /// `echo(false)` was called.
+    pub(super) muted: bool,
+    pub(super) classes: Classes,
+    pub(super) callees: Callees,
+    /// The turn of the outermost loop being run, and how many there are.
+    pub(super) loop_turn: Option<(usize, Option<usize>)>,
+    extensions: HashMap<TypeId, Box<dyn Any>>,
+    at_end: Vec<fn(&mut Session) -> Result<(), Diagnostic>>,
+}
+
+impl Session {
+    /// A session in a world, without variables or classes.
+    pub fn new(world: Box<dyn World>) -> Session {
+        Session {
+            world,
+            sources: SourceMap::default(),
+            messages: Messages::default(),
+            transcript: None,
+            options: Options::default(),
+            scope: Scope::script(),
+            flags: BTreeMap::new(),
+            imports: IndexMap::new(),
+            open_packages: Vec::new(),
+            dialect: Dialect::default(),
+            frames: Vec::new(),
+            parsed: ParsedScripts::default(),
+            follow_ups: FollowUps::default(),
+            stop: None,
+            call: Span::NONE,
+            windowless: BTreeSet::new(),
+            silent: 0,
+            muted: false,
+            classes: Classes::default(),
+            callees: Callees::default(),
+            loop_turn: None,
+            extensions: HashMap::new(),
+            at_end: Vec::new(),
+        }
+    }
+
+    /// The same with these options.
+    #[must_use]
+    pub fn with_options(mut self, options: Options) -> Session {
+        self.dialect = options.dialect.unwrap_or_default();
+        self.options = options;
+        self
+    }
+
+    /// Data that a family of commands keeps in the session, made when first asked for.
+    pub fn extension<T: Default + 'static>(&mut self) -> &mut T {
+        let boxed = self.extensions.entry(TypeId::of::<T>()).or_insert_with(|| Box::<T>::default());
+        match boxed.downcast_mut() {
+            Some(data) => data,
+            None => unreachable!("the key is the type of the data"),
+        }
+    }
+
+    /// Runs `work` once when the outermost script ends, whether it came to its end, was stopped or
+    /// interrupted. The same function is noted once.
+    pub fn at_end(&mut self, work: fn(&mut Session) -> Result<(), Diagnostic>) {
+        if !self.at_end.iter().any(|known| std::ptr::fn_addr_eq(*known, work)) {
+            self.at_end.push(work);
+        }
+    }
+
+    /// Whether the user asked to stop; sticky.
+    pub fn is_interrupted(&self) -> bool {
+        self.stop == Some(Stop::Interrupt) || self.world.interrupted()
+    }
+
+    /// The value of a script's variable.
+    pub fn variable(&self, name: &str) -> Option<&Value> {
+        self.scope.get(Ident::new(name))
+    }
+
+    /// The turn, from 0, of the outermost loop that is being run, and the number of turns if it is
+    /// known: what a progress bar shows.
+    pub fn loop_turn(&self) -> Option<(usize, Option<usize>)> {
+        self.loop_turn
+    }
+
+    /// The dialect in force.
+    pub fn dialect(&self) -> Dialect {
+        self.dialect
+    }
+
+    /// Text for standard output and the transcript.
+    pub fn print(&mut self, text: &str) {
+        self.world.print(text);
+        if let Some(transcript) = &mut self.transcript {
+            transcript.answer(text);
+        }
+    }
+
+    /// The one place where a diagnostic is told to the user without ending a statement: it goes to
+    /// standard error, to the transcript, and to the messages that the script can ask for.
+    pub fn report(&mut self, diagnostic: Diagnostic) {
+        let plain = render::render(&diagnostic, &self.sources, false);
+        match self.world.colour() {
+            true => self.world.eprint(&render::render(&diagnostic, &self.sources, true)),
+            false => self.world.eprint(&plain),
+        }
+        if let Some(transcript) = &mut self.transcript {
+            transcript.answer(&plain);
+        }
+        if diagnostic.is_error() && self.options.strictness == Strictness::Strict {
+            self.stop.get_or_insert(Stop::Error);
+        }
+        self.messages.push(diagnostic);
+    }
+
+    /// Reports the negative answer of a command: an error with the place of the call.
+    pub fn report_fault(&mut self, fault: Fault) {
+        let diagnostic = fault.at(self.call);
+        self.report(diagnostic);
+    }
+
+    /// Says something once that is no error, with the place of the call.
+    pub fn note(&mut self, code: Code, message: String) {
+        let diagnostic = Fault::new(code, message).at(self.call).note();
+        self.report(diagnostic);
+    }
+
+    /// What remains to be done when the outermost script ends, and how it ended.
+    pub(super) fn finish(&mut self) -> RunStatus {
+        for work in std::mem::take(&mut self.at_end) {
+            if let Err(diagnostic) = work(self) {
+                self.report(diagnostic);
+            }
+        }
+        let errors = self.messages.unread_errors();
+        let stop = self.stop.take();
+        let interrupted = stop == Some(Stop::Interrupt);
+        let exit = match stop {
+            Some(Stop::Exit(status)) => Some(status),
+            _ => None,
+        };
+        let code = match (stop, self.options.strictness) {
+            (Some(Stop::Interrupt), _) => 130,
+            (_, Strictness::Lenient) => 0,
+            (Some(Stop::Exit(status)), _) if status != 0 => status.clamp(1, 255) as u8,
+            (Some(Stop::Error), _) => 1,
+            _ => u8::from(errors > 0),
+        };
+        RunStatus { errors, interrupted, exit, code }
+    }
+}

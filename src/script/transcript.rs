@@ -1,0 +1,68 @@
+//! Transcripts: each statement and what it answered, interleaved, so that one reads alone.
+
+use std::fmt;
+
+/// One statement and its answer.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Exchange {
+    /// The statement as written; empty for what was printed before the first one.
+    pub input: String,
+    /// What it printed, its value and its diagnostics, in the order they came.
+    pub answer: String,
+}
+
+/// What a script said and what was answered, at its top level.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Transcript {
+    /// The exchanges, in order.
+    pub exchanges: Vec<Exchange>,
+}
+
+impl Transcript {
+    /// Begins the exchange of a statement.
+    pub fn begin(&mut self, input: &str) {
+        self.exchanges.push(Exchange { input: input.to_owned(), answer: String::new() });
+    }
+
+    /// Adds to the answer of the current statement.
+    pub fn answer(&mut self, text: &str) {
+        if self.exchanges.is_empty() {
+            self.exchanges.push(Exchange::default());
+        }
+        if let Some(exchange) = self.exchanges.last_mut() {
+            exchange.answer.push_str(text);
+        }
+    }
+}
+
+impl fmt::Display for Transcript {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for exchange in &self.exchanges {
+            for (at, line) in exchange.input.lines().enumerate() {
+                let prompt = if at == 0 { ">>> " } else { "... " };
+                writeln!(f, "{}", format!("{prompt}{line}").trim_end())?;
+            }
+            f.write_str(&exchange.answer)?;
+            if !exchange.answer.is_empty() && !exchange.answer.ends_with('\n') {
+                writeln!(f)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_transcript_shows_statements_and_answers_in_turn() {
+        let mut transcript = Transcript::default();
+        transcript.begin("1 + 2");
+        transcript.answer("3\n");
+        transcript.begin("for i in 1:2 loop\n  print(\"x\");\nend for");
+        transcript.answer("x");
+        let expected = ">>> 1 + 2\n3\n>>> for i in 1:2 loop\n...   print(\"x\");\n... end for\nx\n";
+        assert_eq!(transcript.to_string(), expected);
+    }
+}

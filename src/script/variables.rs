@@ -1,0 +1,97 @@
+//! Variables, flags and dotted names of a session.
+
+use super::Session;
+use super::errors::NO_WINDOW;
+use crate::syntax::ast::ComponentReference;
+use crate::value::Value;
+use crate::value::show::{Style, show};
+
+/// First identifiers of dotted names that are flags rather than parts of a model.
+const FLAG_ROOTS: &[&str] = &["Advanced", "Hidden", "Evaluate", "Design", "Check", "Dymola"];
+
+impl Session {
+    /// The value of a flag, if the reference names one that was set.
+    pub(super) fn flag(&self, reference: &ComponentReference) -> Option<Value> {
+        if self.flags.is_empty() || reference.parts.len() < 2 {
+            return None;
+        }
+        self.flags.get(&reference.name().to_string()).cloned()
+    }
+
+    /// Sets a flag; `false` if the name is not one of a flag.
+    pub(super) fn set_flag(&mut self, target: &ComponentReference, value: &Value) -> bool {
+        let is_flag = target.parts.len() > 1 && FLAG_ROOTS.contains(&target.parts[0].name.as_str());
+        if is_flag {
+            self.flags.insert(target.name().to_string(), value.clone());
+        }
+        is_flag
+    }
+
+    /// The variables whose names match a pattern, with types and values, in alphabetic order.
+    pub(super) fn listing(&self, pattern: &str) -> String {
+        let matching = |name: &str| matches(pattern.as_bytes(), name.as_bytes());
+        let mut variables: Vec<(&str, &Value)> = self
+            .scope
+            .iter()
+            .map(|(name, value)| (name.as_str(), value))
+            .filter(|(name, _)| matching(name))
+            .collect();
+        variables.sort_by_key(|(name, _)| *name);
+        let line = |(name, value): (&str, &Value)| {
+            format!("{} {name} = {};\n", value.type_name(), show(value, Style::Dymola))
+        };
+        variables.into_iter().map(line).collect()
+    }
+
+    /// Says once that a command has no effect because there is no window.
+    pub(super) fn no_effect(&mut self, command: &'static str) {
+        if self.windowless.insert(command) {
+            self.note(NO_WINDOW, format!("`{command}` has no effect here"));
+        }
+    }
+}
+
+/// Whether a name matches a pattern in which `*` stands for any characters and `?` for one.
+fn matches(pattern: &[u8], name: &[u8]) -> bool {
+    let (mut p, mut n, mut star) = (0, 0, None);
+    while n < name.len() {
+        match pattern.get(p) {
+            Some(b'*') => {
+                star = Some((p, n));
+                p += 1;
+            }
+            Some(c) if *c == b'?' || *c == name[n] => {
+                p += 1;
+                n += 1;
+            }
+            _ => match star {
+                Some((at, from)) => {
+                    star = Some((at, from + 1));
+                    p = at + 1;
+                    n = from + 1;
+                }
+                None => return false,
+            },
+        }
+    }
+    pattern[p..].iter().all(|c| *c == b'*')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::matches;
+
+    #[test]
+    fn patterns_match_as_in_file_names() {
+        for (pattern, name, expected) in [
+            ("*", "", true),
+            ("N_*", "N_Cycle", true),
+            ("*e?", "Besten", true),
+            ("*e?", "Beste", false),
+            ("a*b*c", "aXbYbc", true),
+            ("a", "ab", false),
+        ] {
+            assert_eq!(matches(pattern.as_bytes(), name.as_bytes()), expected, "{pattern} {name}");
+        }
+    }
+}

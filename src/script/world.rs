@@ -1,0 +1,341 @@
+//! The only door to the outside: files, texts on the terminal, clocks, the interrupt key.
+//!
+//! Nothing below `cli/` touches the system in any other way, so a script runs in a [`MemoryWorld`]
+//! exactly as it runs on a disk.
+
+use std::cell::Cell;
+use std::collections::{BTreeMap, BTreeSet};
+use std::io;
+use std::path::{Component, Path, PathBuf};
+use std::sync::{Arc, Mutex};
+
+/// How far a long piece of work is: data for whoever draws it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Progress {
+    /// What is being done, such as `generation`.
+    pub label: String,
+    /// Units done.
+    pub done: u64,
+    /// Units in all; 0 where not known.
+    pub total: u64,
+    /// The best value so far, smaller is better.
+    pub best: Option<f64>,
+    /// What failed so far.
+    pub failures: u64,
+}
+
+/// A stamp of a file's state: another stamp means that the content may have changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stamp(pub u64, pub u64);
+
+/// Everything that a script can do to the world and learn from it. Paths may be relative to
+/// [`World::current_dir`].
+pub trait World {
+    /// The bytes of a file.
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
+    /// Writes a file anew.
+    fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()>;
+    /// Writes behind the end of a file, which is made if there is none.
+    fn append(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()>;
+    /// Removes a file or an empty directory.
+    fn remove(&mut self, path: &Path) -> io::Result<()>;
+    /// Whether a file or directory of this path exists.
+    fn exists(&self, path: &Path) -> bool;
+    /// Whether it is a directory.
+    fn is_dir(&self, path: &Path) -> bool;
+    /// A stamp of a file, `None` if there is none.
+    fn stamp(&self, path: &Path) -> Option<Stamp>;
+    /// Names of the entries of a directory, sorted.
+    fn list_dir(&self, path: &Path) -> io::Result<Vec<String>>;
+    /// Makes a directory and the ones it lies in.
+    fn create_dirs(&mut self, path: &Path) -> io::Result<()>;
+    /// The working directory, absolute.
+    fn current_dir(&self) -> PathBuf;
+    /// Changes the working directory.
+    fn set_current_dir(&mut self, path: &Path) -> io::Result<()>;
+    /// An environment variable that scripts may see.
+    fn env(&self, name: &str) -> Option<String>;
+    /// Text for standard output; no line end is added.
+    fn print(&mut self, text: &str);
+    /// Text for standard error (diagnostics); no line end is added.
+    fn eprint(&mut self, text: &str);
+    /// Seconds since an arbitrary moment, never decreasing.
+    fn monotonic_seconds(&self) -> f64;
+    /// Seconds since 1970-01-01 00:00 UTC. Nothing that must be reproducible may depend on it.
+    fn unix_seconds(&self) -> u64;
+    /// Whether the user asked to stop.
+    fn interrupted(&self) -> bool;
+    /// Number of threads to use, at least 1.
+    fn threads(&self) -> usize;
+    /// Where plots and reports go.
+    fn output_dir(&self) -> PathBuf;
+    /// Shows how far a long piece of work is.
+    fn progress(&mut self, progress: &Progress);
+    /// Whether diagnostics may be coloured.
+    fn colour(&self) -> bool {
+        false
+    }
+
+    /// Copies a file over another.
+    fn copy(&mut self, from: &Path, to: &Path) -> io::Result<()> {
+        let bytes = self.read(from)?;
+        self.write(to, &bytes)
+    }
+
+    /// The absolute form of a path: joined to the working directory, `.` and `..` resolved in the
+    /// text.
+    fn absolute(&self, path: &Path) -> PathBuf {
+        normalized(&self.current_dir().join(path))
+    }
+}
+
+/// A path with `.` and `..` resolved in the text.
+pub fn normalized(path: &Path) -> PathBuf {
+    let mut out = PathBuf::new();
+    for component in path.components() {
+        match component {
+            Component::CurDir => {}
+            Component::ParentDir => match out.components().next_back() {
+                Some(Component::Normal(_)) => {
+                    out.pop();
+                }
+                Some(Component::RootDir | Component::Prefix(_)) => {}
+                _ => out.push(component),
+            },
+            _ => out.push(component),
+        }
+    }
+    out
+}
+
+/// What was written to the two streams of a [`MemoryWorld`], readable while a session owns the
+/// world.
+#[derive(Debug, Clone, Default)]
+pub struct Streams(Arc<Mutex<(String, String)>>);
+
+impl Streams {
+    fn with<T>(&self, work: impl FnOnce(&mut (String, String)) -> T) -> T {
+        match self.0.lock() {
+            Ok(mut guard) => work(&mut guard),
+            Err(poisoned) => work(&mut poisoned.into_inner()),
+        }
+    }
+
+    /// Standard output so far.
+    pub fn output(&self) -> String {
+        self.with(|streams| streams.0.clone())
+    }
+
+    /// Standard error so far.
+    pub fn errors(&self) -> String {
+        self.with(|streams| streams.1.clone())
+    }
+}
+
+/// A world in memory: files in a map, a clock that stands still, one thread.
+#[derive(Debug, Clone)]
+pub struct MemoryWorld {
+    files: BTreeMap<PathBuf, Vec<u8>>,
+    dirs: BTreeSet<PathBuf>,
+    current: PathBuf,
+    changes: u64,
+    stamps: BTreeMap<PathBuf, u64>,
+    streams: Streams,
+    /// How many more times the answer is that nobody asked to stop.
+    patience: Cell<u64>,
+}
+
+impl Default for MemoryWorld {
+    fn default() -> MemoryWorld {
+        MemoryWorld {
+            files: BTreeMap::new(),
+            dirs: [PathBuf::from("/"), PathBuf::from("/work")].into(),
+            current: PathBuf::from("/work"),
+            changes: 0,
+            stamps: BTreeMap::new(),
+            streams: Streams::default(),
+            patience: Cell::new(u64::MAX),
+        }
+    }
+}
+
+impl MemoryWorld {
+    /// An empty world with the working directory `/work`.
+    pub fn new() -> MemoryWorld {
+        MemoryWorld::default()
+    }
+
+    /// The same with one more file.
+    #[must_use]
+    pub fn with_file(mut self, path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> MemoryWorld {
+        self.store(path.as_ref(), bytes.as_ref().to_vec());
+        self
+    }
+
+    /// The same where the user asks to stop after `questions` questions whether he did.
+    #[must_use]
+    pub fn interrupted_after(mut self, questions: u64) -> MemoryWorld {
+        self.patience = Cell::new(questions);
+        self
+    }
+
+    /// What is printed to it.
+    pub fn streams(&self) -> Streams {
+        self.streams.clone()
+    }
+
+    fn store(&mut self, path: &Path, bytes: Vec<u8>) {
+        let path = self.absolute(path);
+        self.changes += 1;
+        self.dirs.extend(path.ancestors().skip(1).map(Path::to_path_buf));
+        self.stamps.insert(path.clone(), self.changes);
+        self.files.insert(path, bytes);
+    }
+}
+
+fn missing(path: &Path) -> io::Error {
+    io::Error::new(io::ErrorKind::NotFound, format!("no such file: {}", path.display()))
+}
+
+impl World for MemoryWorld {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        self.files.get(&self.absolute(path)).cloned().ok_or_else(|| missing(path))
+    }
+
+    fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        if self.is_dir(path) {
+            return Err(io::Error::new(io::ErrorKind::IsADirectory, "is a directory"));
+        }
+        self.store(path, bytes.to_vec());
+        Ok(())
+    }
+
+    fn append(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        let mut all = self.read(path).unwrap_or_default();
+        all.extend_from_slice(bytes);
+        self.write(path, &all)
+    }
+
+    fn remove(&mut self, path: &Path) -> io::Result<()> {
+        let path = self.absolute(path);
+        if self.files.remove(&path).is_some() || self.dirs.remove(&path) {
+            self.stamps.remove(&path);
+            return Ok(());
+        }
+        Err(missing(&path))
+    }
+
+    fn exists(&self, path: &Path) -> bool {
+        let path = self.absolute(path);
+        self.files.contains_key(&path) || self.dirs.contains(&path)
+    }
+
+    fn is_dir(&self, path: &Path) -> bool {
+        self.dirs.contains(&self.absolute(path))
+    }
+
+    fn stamp(&self, path: &Path) -> Option<Stamp> {
+        self.stamps.get(&self.absolute(path)).map(|change| Stamp(*change, 0))
+    }
+
+    fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
+        let dir = self.absolute(path);
+        if !self.dirs.contains(&dir) {
+            return Err(missing(path));
+        }
+        let entries: BTreeSet<String> = self
+            .files
+            .keys()
+            .chain(&self.dirs)
+            .filter(|entry| entry.parent() == Some(&dir))
+            .filter_map(|entry| entry.file_name())
+            .map(|name| name.to_string_lossy().into_owned())
+            .collect();
+        Ok(entries.into_iter().collect())
+    }
+
+    fn create_dirs(&mut self, path: &Path) -> io::Result<()> {
+        let path = self.absolute(path);
+        self.dirs.extend(path.ancestors().map(Path::to_path_buf));
+        Ok(())
+    }
+
+    fn current_dir(&self) -> PathBuf {
+        self.current.clone()
+    }
+
+    fn set_current_dir(&mut self, path: &Path) -> io::Result<()> {
+        let path = self.absolute(path);
+        if !self.dirs.contains(&path) {
+            return Err(missing(&path));
+        }
+        self.current = path;
+        Ok(())
+    }
+
+    fn env(&self, _name: &str) -> Option<String> {
+        None
+    }
+
+    fn print(&mut self, text: &str) {
+        self.streams.with(|streams| streams.0.push_str(text));
+    }
+
+    fn eprint(&mut self, text: &str) {
+        self.streams.with(|streams| streams.1.push_str(text));
+    }
+
+    fn monotonic_seconds(&self) -> f64 {
+        0.0
+    }
+
+    fn unix_seconds(&self) -> u64 {
+        0
+    }
+
+    fn interrupted(&self) -> bool {
+        let left = self.patience.get();
+        self.patience.set(left.saturating_sub(1));
+        left == 0
+    }
+
+    fn threads(&self) -> usize {
+        1
+    }
+
+    fn output_dir(&self) -> PathBuf {
+        PathBuf::from("/work/results")
+    }
+
+    fn progress(&mut self, _progress: &Progress) {}
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn relative_paths_follow_the_working_directory() {
+        let mut world = MemoryWorld::new().with_file("a/b.txt", "1");
+        assert_eq!(world.read(Path::new("/work/a/b.txt")).ok(), Some(b"1".to_vec()));
+        assert!(world.set_current_dir(Path::new("a")).is_ok());
+        assert!(world.exists(Path::new("../a/./b.txt")));
+        assert!(world.set_current_dir(Path::new("missing")).is_err());
+        assert_eq!(world.list_dir(Path::new("..")).ok(), Some(vec!["a".to_owned()]));
+    }
+
+    #[test]
+    fn a_stamp_changes_with_the_content() {
+        let mut world = MemoryWorld::new().with_file("x", "1");
+        let before = world.stamp(Path::new("x"));
+        assert!(world.append(Path::new("x"), b"2").is_ok());
+        assert_ne!(before, world.stamp(Path::new("x")));
+        assert_eq!(world.stamp(Path::new("y")), None);
+    }
+
+    #[test]
+    fn dots_above_the_root_stay() {
+        assert_eq!(normalized(Path::new("a/../../b")), PathBuf::from("../b"));
+        assert_eq!(normalized(Path::new("/a/./b/../c")), PathBuf::from("/a/c"));
+    }
+}

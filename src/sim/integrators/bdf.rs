@@ -1,0 +1,439 @@
+//! Backward differentiation formulas of orders 1 to 5 with variable step, for x' = f, 0 = g.
+//!
+//! Numerical differentiation formulas in backward differences with quasi-constant step: with
+//! D⁰ = y, Dᵏ⁺¹ = Dᵏ(tₙ) − Dᵏ(tₙ₋₁), γₖ = Σ 1/j and αₖ = (1 − κₖ) γₖ,
+//!
+//! ```text
+//! predictor   p = Σ_{j=0..k} Dʲ        ψ = Σ_{j=1..k} γⱼ Dʲ / αₖ        c = h / αₖ
+//! corrector   y = p + d,   c f(t, y) − ψ − d = 0 for x,   g(t, y) = 0 for v
+//! error       (κₖ γₖ + 1/(k+1)) d
+//! ```
+//!
+//! The corrector is solved by Newton's method with the matrix I − c ∂f/∂y over −∂g/∂y, whose
+//! columns are scaled by the nominal values. The Jacobian is kept until the corrector converges
+//! slowly: at once if it fails, with the next change of c if it needed more than two iterations. Between steps the interpolating polynomial of the differences gives y. The first step
+//! after a restart has order 1; v has no slope there and takes no part in its error test.
+//!
+//! This is what `dassl` and its relatives name here: our own method of the same family, not
+//! anybody's code.
+//!
+//! References: [Shampine & Reichelt 1997](crate::bibliography#shampine-reichelt-1997);
+//! [Brenan, Campbell & Petzold 1996](crate::bibliography#brenan-campbell-petzold-1996).
+
+use super::{Integrator, Problem};
+use crate::registry::Entry;
+use crate::sim::linear::Factorization;
+use crate::sim::norm::{set_weights, weighted_rms};
+use crate::sim::{Pattern, SimErrorKind};
+
+pub(in crate::sim) const ENTRY: Entry<dyn Integrator> = Entry {
+    name: "dassl",
+    aliases: &["bdf", "ida", "cvode", "lsodar"],
+    summary: "variable-order, variable-step BDF, orders 1 to 5 (gapilib's own; not the code DASSL)",
+    reference: "shampine-reichelt-1997",
+    make: |_| Ok(Box::new(Bdf::default())),
+};
+
+const MAX_ORDER: usize = 5;
+const KAPPA: [f64; 6] = [0.0, -0.1850, -1.0 / 9.0, -0.0823, -0.0415, 0.0];
+const GAMMA: [f64; 6] = [0.0, 1.0, 1.5, 11.0 / 6.0, 25.0 / 12.0, 137.0 / 60.0];
+const MAX_ITERATIONS: usize = 4;
+/// The local error is kept below this part of the tolerance, so that the global one meets it.
+const SAFETY: f64 = 0.25;
+/// The corrector's error relative to the local error allowed.
+const NEWTON_TOLERANCE: f64 = 0.03;
+
+fn alpha(order: usize) -> f64 {
+    (1.0 - KAPPA[order]) * GAMMA[order]
+}
+
+fn error_constant(order: usize) -> f64 {
+    KAPPA[order] * GAMMA[order] + 1.0 / (order as f64 + 1.0)
+}
+
+/// The method with its workspace.
+#[derive(Default)]
+struct Bdf {
+    n: usize,
+    n_differential: usize,
+    t: f64,
+    /// Step length and order of the differences, also of the last step until the next begins.
+    h: f64,
+    order: usize,
+    /// Steps made with this length and order.
+    equal_steps: usize,
+    /// Whether no step has been made since the restart.
+    fresh: bool,
+    /// Relative error of the last step and the safety factor of its iterations.
+    error: f64,
+    safety: f64,
+    /// Backward differences D⁰ … of n numbers each.
+    differences: Vec<Vec<f64>>,
+    predicted: Vec<f64>,
+    psi: Vec<f64>,
+    y: Vec<f64>,
+    correction: Vec<f64>,
+    rhs: Vec<f64>,
+    delta: Vec<f64>,
+    weights: Vec<f64>,
+    iteration: IterationMatrix,
+    /// How fast the corrector converged lately, and after how many iterations.
+    rate: f64,
+    iterations: usize,
+}
+
+/// The matrix of the corrector.
+#[derive(Default)]
+struct IterationMatrix {
+    pattern: Pattern,
+    factors: Option<Factorization>,
+    jacobian: Vec<f64>,
+    values: Vec<f64>,
+    /// Whether the Jacobian was evaluated in this step.
+    is_current: bool,
+    /// Whether there is a Jacobian.
+    is_evaluated: bool,
+    /// The c that the factors belong to.
+    factorized_for: Option<f64>,
+}
+
+impl IterationMatrix {
+    fn prepare(&mut self, pattern: &Pattern) {
+        if self.factors.is_none() || self.pattern != *pattern {
+            self.pattern = pattern.clone();
+            self.factors = Some(Factorization::new(pattern));
+            self.jacobian.resize(pattern.rows.len(), 0.0);
+            self.values.resize(pattern.rows.len(), 0.0);
+        }
+        (self.is_current, self.is_evaluated, self.factorized_for) = (false, false, None);
+    }
+
+    fn evaluate(&mut self, problem: &mut Problem, t: f64, y: &[f64]) -> Result<(), SimErrorKind> {
+        (self.is_evaluated, self.factorized_for) = (false, None);
+        problem.jacobian(t, y, &mut self.jacobian)?;
+        (self.is_evaluated, self.is_current) = (true, true);
+        Ok(())
+    }
+
+    fn factorize(
+        &mut self,
+        problem: &mut Problem,
+        c: f64,
+        n_differential: usize,
+    ) -> Result<(), SimErrorKind> {
+        if self.factorized_for == Some(c) {
+            return Ok(());
+        }
+        self.factorized_for = None;
+        for column in 0..self.pattern.n {
+            let scale = problem.nominal[column];
+            for k in self.pattern.column(column) {
+                let row = self.pattern.rows[k];
+                let identity = f64::from(u8::from(row == column));
+                self.values[k] = if row < n_differential {
+                    scale * (identity - c * self.jacobian[k])
+                } else {
+                    -scale * self.jacobian[k]
+                };
+            }
+        }
+        problem.statistics.factorizations += 1;
+        let factors = self.factors.as_mut().expect("prepared at the restart");
+        factors.factorize(&self.values).map_err(|_| SimErrorKind::Singular)?;
+        self.factorized_for = Some(c);
+        Ok(())
+    }
+
+    fn solve(&mut self, nominal: &[f64], b: &mut [f64]) {
+        self.factors.as_mut().expect("prepared at the restart").solve(b);
+        b.iter_mut().zip(nominal).for_each(|(b, nominal)| *b *= nominal);
+    }
+}
+
+/// How an attempt to solve the corrector ended.
+enum Corrected {
+    /// After so many iterations.
+    Converged(usize),
+    /// Too slowly or not at all.
+    Slow,
+}
+
+impl Bdf {
+    fn resize(&mut self, n: usize) {
+        self.n = n;
+        self.differences.resize_with(MAX_ORDER + 3, Vec::new);
+        let workspaces = [
+            &mut self.predicted,
+            &mut self.psi,
+            &mut self.y,
+            &mut self.correction,
+            &mut self.rhs,
+            &mut self.delta,
+            &mut self.weights,
+        ];
+        for vector in workspaces.into_iter().chain(&mut self.differences) {
+            vector.resize(n, 0.0);
+        }
+    }
+
+    /// Changes the step length: the differences are those of the same polynomial at the new
+    /// distance.
+    fn rescale(&mut self, h_new: f64) {
+        let transformation = rescaling(self.order, h_new / self.h);
+        let mut old = [0.0; MAX_ORDER + 1];
+        for i in 0..self.n {
+            for (old, difference) in old.iter_mut().zip(&self.differences[..=self.order]) {
+                *old = difference[i];
+            }
+            for j in 1..=self.order {
+                let column = transformation.iter().map(|row| row[j]);
+                self.differences[j][i] =
+                    column.zip(&old).take(self.order + 1).skip(1).map(|(r, d)| r * d).sum();
+            }
+        }
+        self.h = h_new;
+        self.equal_steps = 0;
+    }
+
+    /// Chooses order and length of the next step when the differences tell enough.
+    fn adapt(&mut self, problem: &Problem) {
+        if self.equal_steps < self.order + 1 {
+            return;
+        }
+        let order = self.order;
+        let gain = |error: f64, order: usize| error.powf(-1.0 / (order as f64 + 1.0));
+        let norm = |difference: usize| weighted_rms(&self.differences[difference], &self.weights);
+        let mut best = (gain(self.error, order), order);
+        if order > 1 {
+            let lower = gain(error_constant(order - 1) * norm(order), order - 1);
+            best = if lower > best.0 { (lower, order - 1) } else { best };
+        }
+        if order < MAX_ORDER {
+            let higher = gain(error_constant(order + 1).abs() * norm(order + 2), order + 1);
+            best = if higher > best.0 { (higher, order + 1) } else { best };
+        }
+        let factor = (self.safety * best.0).min(10.0);
+        let h_new = (self.h * factor).min(problem.settings.max_step);
+        let ratio = h_new / self.h;
+        if best.1 == order && (0.8..1.2).contains(&ratio) {
+            return;
+        }
+        self.order = best.1;
+        self.rescale(h_new);
+    }
+
+    /// Computes predictor and ψ.
+    fn predict(&mut self) {
+        self.predicted.copy_from_slice(&self.differences[0]);
+        self.psi.fill(0.0);
+        for (j, difference) in self.differences.iter().enumerate().take(self.order + 1).skip(1) {
+            let factor = GAMMA[j] / alpha(self.order);
+            let targets = self.predicted.iter_mut().zip(&mut self.psi);
+            for ((predicted, psi), d) in targets.zip(difference) {
+                *predicted += d;
+                *psi += factor * d;
+            }
+        }
+    }
+
+    /// Newton's method for y at `t_new`.
+    fn iterate(
+        &mut self,
+        problem: &mut Problem,
+        t_new: f64,
+        c: f64,
+    ) -> Result<Corrected, SimErrorKind> {
+        self.y.copy_from_slice(&self.predicted);
+        self.correction.fill(0.0);
+        let mut last = f64::INFINITY;
+        for iteration in 1..=MAX_ITERATIONS {
+            problem.rhs(t_new, &self.y, &mut self.rhs)?;
+            for i in 0..self.n {
+                self.delta[i] = if i < self.n_differential {
+                    c * self.rhs[i] - self.psi[i] - self.correction[i]
+                } else {
+                    self.rhs[i]
+                };
+            }
+            self.iteration.solve(problem.nominal, &mut self.delta);
+            let norm = weighted_rms(&self.delta, &self.weights);
+            if !norm.is_finite() || norm > 2.0 * last {
+                return Ok(Corrected::Slow);
+            }
+            if iteration > 1 {
+                self.rate = (norm / last).max(0.3 * self.rate);
+            }
+            for i in 0..self.n {
+                self.y[i] += self.delta[i];
+                self.correction[i] += self.delta[i];
+            }
+            if norm * self.rate.min(1.0) <= NEWTON_TOLERANCE {
+                return Ok(Corrected::Converged(iteration));
+            }
+            last = norm;
+        }
+        Ok(Corrected::Slow)
+    }
+
+    /// Solves the corrector, if need be with a new Jacobian. Returns the number of iterations.
+    fn correct(&mut self, problem: &mut Problem, t_new: f64) -> Result<usize, SimErrorKind> {
+        let c = self.h / alpha(self.order);
+        if self.iterations > 2 && self.iteration.factorized_for != Some(c) {
+            self.iteration.is_evaluated = false;
+        }
+        loop {
+            if !self.iteration.is_evaluated {
+                self.iteration.evaluate(problem, t_new, &self.predicted)?;
+            }
+            if self.iteration.factorized_for != Some(c) {
+                self.iteration.factorize(problem, c, self.n_differential)?;
+                self.rate = 1.0;
+            }
+            match self.iterate(problem, t_new, c)? {
+                Corrected::Converged(iterations) => {
+                    self.iterations = iterations;
+                    return Ok(iterations);
+                }
+                Corrected::Slow if self.iteration.is_current => {
+                    return Err(SimErrorKind::StepSize);
+                }
+                Corrected::Slow => self.iteration.is_evaluated = false,
+            }
+        }
+    }
+
+    /// The error of the attempt relative to the tolerance.
+    fn error_of_attempt(&self) -> f64 {
+        let tested = if self.fresh { self.n_differential } else { self.n };
+        let norm = weighted_rms(&self.correction[..tested], &self.weights[..tested]);
+        error_constant(self.order) * norm
+    }
+
+    fn accept(&mut self, t_new: f64) {
+        let order = self.order;
+        for i in 0..self.n {
+            let d = self.correction[i];
+            self.differences[order + 2][i] = d - self.differences[order + 1][i];
+            self.differences[order + 1][i] = d;
+            for j in (0..=order).rev() {
+                self.differences[j][i] += self.differences[j + 1][i];
+            }
+        }
+        if self.fresh {
+            for difference in &mut self.differences[2..4] {
+                difference[self.n_differential..].fill(0.0);
+            }
+        }
+        self.fresh = false;
+        self.t = t_new;
+        self.equal_steps += 1;
+        self.iteration.is_current = false;
+    }
+}
+
+/// The matrix that takes differences at distance h to differences at distance `factor` · h.
+fn rescaling(order: usize, factor: f64) -> [[f64; MAX_ORDER + 1]; MAX_ORDER + 1] {
+    let (new, old) = (binomials(order, factor), binomials(order, 1.0));
+    let mut product = [[0.0; MAX_ORDER + 1]; MAX_ORDER + 1];
+    for i in 0..=order {
+        for j in 0..=order {
+            product[i][j] = (0..=order).map(|k| new[i][k] * old[k][j]).sum();
+        }
+    }
+    product
+}
+
+/// Entry (i, j) is Π_{m=1..i} (m − 1 − factor · j) / m.
+fn binomials(order: usize, factor: f64) -> [[f64; MAX_ORDER + 1]; MAX_ORDER + 1] {
+    let mut matrix = [[0.0; MAX_ORDER + 1]; MAX_ORDER + 1];
+    matrix[0] = [1.0; MAX_ORDER + 1];
+    for i in 1..=order {
+        let m = i as f64;
+        matrix[i] = std::array::from_fn(|j| matrix[i - 1][j] * (m - 1.0 - factor * j as f64) / m);
+    }
+    matrix
+}
+
+impl Integrator for Bdf {
+    fn is_explicit(&self) -> bool {
+        false
+    }
+
+    fn restart(&mut self, problem: &mut Problem, t: f64, y: &[f64]) -> Result<(), SimErrorKind> {
+        self.resize(y.len());
+        self.n_differential = problem.system.n_differential();
+        self.iteration.prepare(problem.system.pattern());
+        self.t = t;
+        problem.rhs(t, y, &mut self.rhs)?;
+        self.h = problem.first_step(t, y, &self.rhs);
+        self.order = 1;
+        self.equal_steps = 0;
+        self.fresh = true;
+        self.rate = 1.0;
+        self.iterations = 0;
+        self.differences.iter_mut().for_each(|difference| difference.fill(0.0));
+        self.differences[0].copy_from_slice(y);
+        for i in 0..self.n_differential {
+            self.differences[1][i] = self.h * self.rhs[i];
+        }
+        Ok(())
+    }
+
+    fn step(&mut self, problem: &mut Problem, limit: f64) -> Result<(), SimErrorKind> {
+        let smallest = problem.smallest_step(self.t);
+        let tolerance = SAFETY * problem.settings.tolerance;
+        set_weights(tolerance, &self.differences[0], problem.nominal, &mut self.weights);
+        self.adapt(problem);
+        loop {
+            problem.may_continue()?;
+            let reaches_limit = self.t + self.h * (1.0 + 1e-9) >= limit;
+            if reaches_limit && self.h != limit - self.t {
+                self.rescale(limit - self.t);
+            }
+            let t_new = if reaches_limit { limit } else { self.t + self.h };
+            self.predict();
+            let (failure, factor) = match self.correct(problem, t_new) {
+                Ok(iterations) => {
+                    let budget = 2.0 * MAX_ITERATIONS as f64 + 1.0;
+                    self.safety = 0.9 * budget / (budget - 1.0 + iterations as f64);
+                    self.error = self.error_of_attempt();
+                    if self.error <= 1.0 {
+                        self.accept(t_new);
+                        problem.statistics.steps += 1;
+                        return Ok(());
+                    }
+                    problem.statistics.error_failures += 1;
+                    let gain = self.error.powf(-1.0 / (self.order as f64 + 1.0));
+                    (SimErrorKind::StepSize, (self.safety * gain).max(0.2))
+                }
+                Err(failure) => {
+                    problem.statistics.newton_failures += 1;
+                    (failure, 0.25)
+                }
+            };
+            if self.h * factor < smallest {
+                return Err(failure);
+            }
+            self.rescale(self.h * factor);
+        }
+    }
+
+    fn time(&self) -> f64 {
+        self.t
+    }
+
+    fn state(&self) -> &[f64] {
+        &self.differences[0]
+    }
+
+    fn interpolate(&self, t: f64, y: &mut [f64]) {
+        y.copy_from_slice(&self.differences[0]);
+        let mut factor = 1.0;
+        for (j, difference) in self.differences.iter().enumerate().take(self.order + 1).skip(1) {
+            factor *= (t - self.t + self.h * (j as f64 - 1.0)) / (self.h * j as f64);
+            for (y, d) in y.iter_mut().zip(difference) {
+                *y += factor * d;
+            }
+        }
+    }
+}

@@ -1,0 +1,222 @@
+//! Explicit Runge-Kutta methods from their tableaus, with fixed or variable step.
+//!
+//! ```text
+//! kᵢ = f(t + cᵢ h, x + h Σⱼ aᵢⱼ kⱼ);  x₁ = x + h Σ bᵢ kᵢ
+//! ```
+//!
+//! Between steps: cubic Hermite interpolation, with the term of order 4 where the tableau has one.
+//! For systems without algebraic unknowns.
+
+use super::{Integrator, Problem};
+use crate::sim::SimErrorKind;
+use crate::sim::norm::{set_weights, weighted_rms};
+
+/// The coefficients of a method.
+pub(super) struct Tableau {
+    /// cᵢ
+    pub(super) nodes: &'static [f64],
+    /// aᵢⱼ, j < i
+    pub(super) stages: &'static [&'static [f64]],
+    /// bᵢ
+    pub(super) weights: &'static [f64],
+    /// For variable steps.
+    pub(super) embedded: Option<Embedded>,
+}
+
+/// What a method with variable step knows besides. The last of the seven slopes is the one at the
+/// end of the step.
+pub(super) struct Embedded {
+    /// Order of the method the error is measured against.
+    pub(super) order: i32,
+    /// Error = h Σ eᵢ kᵢ
+    pub(super) error: [f64; 7],
+    /// Term of order 4 of the interpolation = h Σ dᵢ kᵢ
+    pub(super) dense: [f64; 7],
+}
+
+/// An explicit method with its workspace.
+pub(super) struct ExplicitRungeKutta {
+    tableau: &'static Tableau,
+    t: f64,
+    t_old: f64,
+    h: f64,
+    y: Vec<f64>,
+    y_old: Vec<f64>,
+    stage: Vec<f64>,
+    weights: Vec<f64>,
+    /// Slopes of the stages, the first at the start of the step.
+    slopes: Vec<Vec<f64>>,
+    /// Slope at the end of the step.
+    slope_end: Vec<f64>,
+    /// Error estimate, then term of order 4 of the interpolation.
+    combined: Vec<f64>,
+}
+
+impl ExplicitRungeKutta {
+    pub(super) fn new(tableau: &'static Tableau) -> ExplicitRungeKutta {
+        ExplicitRungeKutta {
+            tableau,
+            t: 0.0,
+            t_old: 0.0,
+            h: 0.0,
+            y: Vec::new(),
+            y_old: Vec::new(),
+            stage: Vec::new(),
+            weights: Vec::new(),
+            slopes: vec![Vec::new(); tableau.nodes.len()],
+            slope_end: Vec::new(),
+            combined: Vec::new(),
+        }
+    }
+
+    fn resize(&mut self, n: usize) {
+        let workspaces = [
+            &mut self.y,
+            &mut self.y_old,
+            &mut self.stage,
+            &mut self.weights,
+            &mut self.slope_end,
+            &mut self.combined,
+        ];
+        for vector in workspaces.into_iter().chain(&mut self.slopes) {
+            vector.resize(n, 0.0);
+        }
+    }
+
+    /// Computes y and its slope at t + h from y_old.
+    fn advance(&mut self, problem: &mut Problem, t_new: f64) -> Result<(), SimErrorKind> {
+        let h = t_new - self.t_old;
+        for i in 1..self.tableau.nodes.len() {
+            combine(&self.y_old, h, self.tableau.stages[i], &self.slopes, &mut self.stage);
+            let t = self.t_old + h * self.tableau.nodes[i];
+            problem.rhs(t, &self.stage, &mut self.slopes[i])?;
+        }
+        combine(&self.y_old, h, self.tableau.weights, &self.slopes, &mut self.y);
+        problem.rhs(t_new, &self.y, &mut self.slope_end)
+    }
+
+    /// Writes h Σ cᵢ kᵢ over all slopes and the one at the end.
+    fn combine_all(&mut self, h: f64, coefficients: &[f64; 7]) {
+        for (i, combined) in self.combined.iter_mut().enumerate() {
+            let slopes = self.slopes.iter().chain([&self.slope_end]);
+            let sum: f64 = coefficients.iter().zip(slopes).map(|(c, slope)| c * slope[i]).sum();
+            *combined = h * sum;
+        }
+    }
+
+    /// The error of the attempt relative to the tolerance, and the exponent by which it depends on
+    /// h; `None` for fixed steps.
+    fn error(&mut self, problem: &Problem, h: f64) -> Option<(f64, f64)> {
+        let embedded = self.tableau.embedded.as_ref()?;
+        self.combine_all(h, &embedded.error);
+        set_weights(problem.settings.tolerance, &self.y_old, problem.nominal, &mut self.weights);
+        let norm = weighted_rms(&self.combined, &self.weights);
+        Some((norm, -1.0 / f64::from(embedded.order + 1)))
+    }
+
+    fn accept(&mut self, problem: &mut Problem, t_new: f64) {
+        if let Some(embedded) = &self.tableau.embedded {
+            self.combine_all(t_new - self.t_old, &embedded.dense);
+        } else {
+            self.combined.fill(0.0);
+        }
+        self.t = t_new;
+        problem.statistics.steps += 1;
+    }
+}
+
+/// out = y + h Σ cᵢ kᵢ
+fn combine(y: &[f64], h: f64, coefficients: &[f64], slopes: &[Vec<f64>], out: &mut [f64]) {
+    out.copy_from_slice(y);
+    for (coefficient, slope) in coefficients.iter().zip(slopes) {
+        for (out, slope) in out.iter_mut().zip(slope) {
+            *out += h * coefficient * slope;
+        }
+    }
+}
+
+impl Integrator for ExplicitRungeKutta {
+    fn is_explicit(&self) -> bool {
+        true
+    }
+
+    fn restart(&mut self, problem: &mut Problem, t: f64, y: &[f64]) -> Result<(), SimErrorKind> {
+        self.resize(y.len());
+        self.y.copy_from_slice(y);
+        (self.t, self.t_old) = (t, t);
+        problem.rhs(t, &self.y, &mut self.slope_end)?;
+        self.h = match self.tableau.embedded {
+            None => problem.settings.fixed_step(),
+            Some(_) => problem.first_step(t, &self.y, &self.slope_end),
+        };
+        Ok(())
+    }
+
+    fn step(&mut self, problem: &mut Problem, limit: f64) -> Result<(), SimErrorKind> {
+        self.t_old = self.t;
+        self.y_old.copy_from_slice(&self.y);
+        self.slopes[0].copy_from_slice(&self.slope_end);
+        let (smallest, fixed) = (problem.smallest_step(self.t), self.tableau.embedded.is_none());
+        loop {
+            problem.may_continue()?;
+            let truncated = self.t_old + self.h * (1.0 + 1e-9) >= limit;
+            let t_new = if truncated { limit } else { self.t_old + self.h };
+            let h = t_new - self.t_old;
+            let failure = match self.advance(problem, t_new) {
+                Ok(()) => match self.error(problem, h) {
+                    None => {
+                        return {
+                            self.accept(problem, t_new);
+                            Ok(())
+                        };
+                    }
+                    Some((error, exponent)) if error <= 1.0 => {
+                        let factor = (0.9 * error.powf(exponent)).clamp(0.2, 5.0);
+                        if !truncated || factor < 1.0 {
+                            self.h = (h * factor).min(problem.settings.max_step);
+                        }
+                        self.accept(problem, t_new);
+                        return Ok(());
+                    }
+                    Some((error, exponent)) => {
+                        problem.statistics.error_failures += 1;
+                        self.h = h * (0.9 * error.powf(exponent)).max(0.2);
+                        SimErrorKind::StepSize
+                    }
+                },
+                Err(failure) => {
+                    problem.statistics.newton_failures += 1;
+                    self.h = 0.25 * h;
+                    failure
+                }
+            };
+            if fixed || self.h.is_nan() || self.h < smallest {
+                return Err(failure);
+            }
+        }
+    }
+
+    fn time(&self) -> f64 {
+        self.t
+    }
+
+    fn state(&self) -> &[f64] {
+        &self.y
+    }
+
+    fn interpolate(&self, t: f64, y: &mut [f64]) {
+        let h = self.t - self.t_old;
+        if h == 0.0 {
+            return y.copy_from_slice(&self.y);
+        }
+        let theta = (t - self.t_old) / h;
+        let rest = 1.0 - theta;
+        for (i, y) in y.iter_mut().enumerate() {
+            let difference = self.y[i] - self.y_old[i];
+            let start = h * self.slopes[0][i] - difference;
+            let end = difference - h * self.slope_end[i] - start;
+            let inner = start + theta * (end + rest * self.combined[i]);
+            *y = self.y_old[i] + theta * (difference + rest * inner);
+        }
+    }
+}

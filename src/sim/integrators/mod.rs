@@ -1,0 +1,119 @@
+//! Integrators: methods that advance x and v by one step.
+
+pub(super) mod bdf;
+mod dopri5;
+mod euler;
+mod explicit;
+mod rungekutta;
+mod without_unknowns;
+
+use super::{DaeSystem, Settings, SimErrorKind, Statistics};
+use crate::diag::Fault;
+use crate::registry::{self, Entry};
+use std::sync::atomic::Ordering;
+pub(super) use without_unknowns::WithoutUnknowns;
+
+/// The methods a script may ask for.
+pub const INTEGRATORS: &[&Entry<dyn Integrator>] =
+    &[&bdf::ENTRY, &dopri5::ENTRY, &euler::ENTRY, &rungekutta::ENTRY];
+
+/// The method of this name or alias.
+///
+/// # Errors
+/// `unknown-choice` with the names there are.
+pub fn find_integrator(name: &str) -> Result<&'static Entry<dyn Integrator>, Fault> {
+    registry::find("integration method", INTEGRATORS, name)
+}
+
+/// A method with its workspace. [`Integrator::restart`] comes first, then any number of steps.
+pub trait Integrator: Send {
+    /// Whether systems with algebraic unknowns are out of reach.
+    fn is_explicit(&self) -> bool;
+
+    /// Forgets the past and starts at (t, y).
+    ///
+    /// # Errors
+    /// What an evaluation at (t, y) reports.
+    fn restart(&mut self, problem: &mut Problem, t: f64, y: &[f64]) -> Result<(), SimErrorKind>;
+
+    /// Makes one step, at most to `limit`, which is exactly reached if the step would come near it.
+    ///
+    /// # Errors
+    /// Why no step could be made, however small; then only a restart helps.
+    fn step(&mut self, problem: &mut Problem, limit: f64) -> Result<(), SimErrorKind>;
+
+    /// The end of the last step.
+    fn time(&self) -> f64;
+
+    /// y at the end of the last step.
+    fn state(&self) -> &[f64];
+
+    /// Writes y at a time within the last step.
+    fn interpolate(&self, t: f64, y: &mut [f64]);
+}
+
+/// What an integrator works on.
+pub struct Problem<'a> {
+    /// The system.
+    pub system: &'a mut dyn DaeSystem,
+    /// Typical magnitude of every y, positive and finite.
+    pub nominal: &'a [f64],
+    /// What is asked for.
+    pub settings: &'a Settings,
+    /// What it cost so far.
+    pub statistics: &'a mut Statistics,
+}
+
+impl Problem<'_> {
+    /// Evaluates the right-hand side; an error also if a value is not finite.
+    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), SimErrorKind> {
+        self.statistics.rhs_evaluations += 1;
+        self.system.rhs(t, y, out).map_err(SimErrorKind::Evaluation)?;
+        if out.iter().all(|value| value.is_finite()) {
+            Ok(())
+        } else {
+            Err(SimErrorKind::NotFinite)
+        }
+    }
+
+    /// Evaluates the nonzeros of the Jacobian; an error also if one is not finite.
+    fn jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), SimErrorKind> {
+        self.statistics.jacobian_evaluations += 1;
+        self.system.jacobian(t, y, values).map_err(SimErrorKind::Evaluation)?;
+        if values.iter().all(|value| value.is_finite()) {
+            Ok(())
+        } else {
+            Err(SimErrorKind::NotFinite)
+        }
+    }
+
+    /// Asks before every attempt of a step whether to go on.
+    fn may_continue(&self) -> Result<(), SimErrorKind> {
+        let statistics = &self.statistics;
+        let attempts = statistics.steps + statistics.error_failures + statistics.newton_failures;
+        if attempts >= self.settings.max_steps {
+            return Err(SimErrorKind::StepBudget);
+        }
+        let cancelled =
+            self.settings.cancel.as_ref().is_some_and(|cancel| cancel.load(Ordering::Relaxed));
+        if cancelled { Err(SimErrorKind::Cancelled) } else { Ok(()) }
+    }
+
+    /// The smallest step that changes t noticeably.
+    fn smallest_step(&self, t: f64) -> f64 {
+        let span = (self.settings.stop - self.settings.start).abs();
+        16.0 * f64::EPSILON * t.abs().max(1e-3 * span)
+    }
+
+    /// A first step over which x changes little, from the relative speed of x at (t, y).
+    fn first_step(&self, t: f64, y: &[f64], rhs: &[f64]) -> f64 {
+        let settings = self.settings;
+        let n = self.system.n_differential();
+        let speed = |i: usize| rhs[i].abs() / y[i].abs().max(self.nominal[i]);
+        let fastest = (0..n).map(speed).fold(0.0, f64::max);
+        let remaining = settings.stop - t;
+        let by_speed = 0.5 * settings.tolerance.sqrt() / fastest;
+        let first = settings.initial_step.unwrap_or(by_speed.min(1e-2 * remaining));
+        first.min(settings.max_step).max(self.smallest_step(t))
+    }
+}

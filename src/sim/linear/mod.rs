@@ -1,0 +1,79 @@
+//! Linear systems of a pattern that stays: analysed once, factorised and solved often.
+
+mod dense;
+mod sparse;
+#[cfg(test)]
+mod tests;
+
+use super::Pattern;
+pub use dense::DenseLu;
+use sparse::SparseLu;
+
+/// A matrix that has no usable factors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SingularMatrix;
+
+/// A factorised matrix; dense where the pattern is small or full.
+#[derive(Debug, Clone)]
+pub enum Factorization {
+    /// All entries.
+    Dense(DenseMatrix),
+    /// The nonzeros.
+    Sparse(Box<SparseLu>),
+}
+
+/// Up to this size a dense factorization is faster.
+const SMALL: usize = 12;
+
+impl Factorization {
+    /// Prepares for matrices of a pattern.
+    pub fn new(pattern: &Pattern) -> Factorization {
+        let n = pattern.n;
+        if n <= SMALL || 3 * pattern.rows.len() > n * n {
+            Factorization::Dense(DenseMatrix::new(pattern))
+        } else {
+            Factorization::Sparse(Box::new(SparseLu::new(pattern)))
+        }
+    }
+
+    /// Factorises the matrix with these nonzeros, in the order of the pattern.
+    pub fn factorize(&mut self, values: &[f64]) -> Result<(), SingularMatrix> {
+        match self {
+            Factorization::Dense(matrix) => matrix.factorize(values),
+            Factorization::Sparse(lu) => lu.factorize(values),
+        }
+    }
+
+    /// Replaces the right-hand side by the solution.
+    pub fn solve(&mut self, b: &mut [f64]) {
+        match self {
+            Factorization::Dense(matrix) => matrix.lu.solve(b),
+            Factorization::Sparse(lu) => lu.solve(b),
+        }
+    }
+}
+
+/// A sparse matrix factorised as a dense one.
+#[derive(Debug, Clone)]
+pub struct DenseMatrix {
+    /// Position in the dense matrix of every nonzero.
+    positions: Vec<usize>,
+    lu: DenseLu,
+}
+
+impl DenseMatrix {
+    fn new(pattern: &Pattern) -> DenseMatrix {
+        let n = pattern.n;
+        let of_column = |j: usize| pattern.rows[pattern.column(j)].iter().map(move |i| i + j * n);
+        DenseMatrix { positions: (0..n).flat_map(of_column).collect(), lu: DenseLu::new(n) }
+    }
+
+    fn factorize(&mut self, values: &[f64]) -> Result<(), SingularMatrix> {
+        let matrix = self.lu.matrix();
+        matrix.fill(0.0);
+        for (position, value) in self.positions.iter().zip(values) {
+            matrix[*position] = *value;
+        }
+        self.lu.factorize()
+    }
+}

@@ -1,0 +1,376 @@
+//! Systems with known solutions.
+
+use super::{DaeSystem, EventOutcome, Failure, Pattern};
+
+/// A system given by closures over (t, y), all of y observed; Jacobian by differences.
+pub(super) struct TestProblem {
+    pub(super) initial: Vec<f64>,
+    pub(super) n_differential: usize,
+    pub(super) nominal: Vec<f64>,
+    pub(super) rhs: fn(f64, &[f64], &[f64], &mut [f64]),
+    /// Crossing functions of (t, y, discrete).
+    pub(super) crossings: fn(f64, &[f64], &[f64], &mut [f64]),
+    pub(super) n_crossings: usize,
+    pub(super) time_events: Vec<f64>,
+    pub(super) event: fn(f64, &mut [f64], &mut [f64]) -> EventOutcome,
+    pub(super) discrete: Vec<f64>,
+    pub(super) assertion: fn(&[f64]) -> bool,
+    /// All of y unless set.
+    pub(super) observed: Option<fn(f64, &[f64]) -> f64>,
+    pattern: Pattern,
+    start_discrete: Vec<f64>,
+}
+
+impl TestProblem {
+    pub(super) fn new(
+        initial: &[f64],
+        n_differential: usize,
+        rhs: fn(f64, &[f64], &[f64], &mut [f64]),
+    ) -> TestProblem {
+        let n = initial.len();
+        TestProblem {
+            initial: initial.to_vec(),
+            n_differential,
+            nominal: vec![1.0; n],
+            rhs,
+            crossings: |_, _, _, _| {},
+            n_crossings: 0,
+            time_events: Vec::new(),
+            event: |_, _, _| EventOutcome::Continue { y_changed: false },
+            discrete: Vec::new(),
+            assertion: |_| true,
+            observed: None,
+            pattern: Pattern {
+                n,
+                column_starts: (0..=n).map(|j| j * n).collect(),
+                rows: (0..n).flat_map(|_| 0..n).collect(),
+            },
+            start_discrete: Vec::new(),
+        }
+    }
+
+    fn difference_scale(&self, j: usize) -> f64 {
+        let nominal = self.nominal[j];
+        if nominal > 0.0 && nominal.is_finite() { nominal } else { 1.0 }
+    }
+
+    pub(super) fn with_discrete(mut self, discrete: &[f64]) -> TestProblem {
+        self.discrete = discrete.to_vec();
+        self.start_discrete = discrete.to_vec();
+        self
+    }
+
+    pub(super) fn with_crossings(
+        mut self,
+        n: usize,
+        crossings: fn(f64, &[f64], &[f64], &mut [f64]),
+        event: fn(f64, &mut [f64], &mut [f64]) -> EventOutcome,
+    ) -> TestProblem {
+        self.n_crossings = n;
+        self.crossings = crossings;
+        self.event = event;
+        self
+    }
+}
+
+impl DaeSystem for TestProblem {
+    fn n_differential(&self) -> usize {
+        self.n_differential
+    }
+
+    fn n_algebraic(&self) -> usize {
+        self.initial.len() - self.n_differential
+    }
+
+    fn nominal(&self, out: &mut [f64]) {
+        out.copy_from_slice(&self.nominal);
+    }
+
+    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        (self.rhs)(t, y, &self.discrete, out);
+        Ok(())
+    }
+
+    fn pattern(&self) -> &Pattern {
+        &self.pattern
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        let n = y.len();
+        let mut moved = y.to_vec();
+        let (mut plus, mut minus) = (vec![0.0; n], vec![0.0; n]);
+        for j in 0..n {
+            let h = 1e-6 * y[j].abs().max(self.difference_scale(j));
+            moved[j] = y[j] + h;
+            (self.rhs)(t, &moved, &self.discrete, &mut plus);
+            moved[j] = y[j] - h;
+            (self.rhs)(t, &moved, &self.discrete, &mut minus);
+            moved[j] = y[j];
+            for i in 0..n {
+                values[j * n + i] = (plus[i] - minus[i]) / (2.0 * h);
+            }
+        }
+        Ok(())
+    }
+
+    fn initialize(&mut self, _: f64, y: &mut [f64]) -> Result<(), Failure> {
+        y.copy_from_slice(&self.initial);
+        self.discrete.copy_from_slice(&self.start_discrete);
+        Ok(())
+    }
+
+    fn n_crossings(&self) -> usize {
+        self.n_crossings
+    }
+
+    fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        (self.crossings)(t, y, &self.discrete, out);
+        Ok(())
+    }
+
+    fn next_time_event(&self, t: f64) -> Option<f64> {
+        self.time_events.iter().copied().find(|event| *event > t)
+    }
+
+    fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
+        Ok((self.event)(t, y, &mut self.discrete))
+    }
+
+    fn check(&mut self, _: f64, y: &[f64]) -> Result<(), Failure> {
+        if (self.assertion)(y) { Ok(()) } else { Err(Failure::Assertion { assertion: 0 }) }
+    }
+
+    fn n_observed(&self) -> usize {
+        if self.observed.is_some() { 1 } else { self.initial.len() }
+    }
+
+    fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        match self.observed {
+            Some(observed) => out[0] = observed(t, y),
+            None => out.copy_from_slice(y),
+        }
+        Ok(())
+    }
+}
+
+/// x' = −x, x(0) = 1: x = exp(−t).
+pub(super) fn decay() -> TestProblem {
+    TestProblem::new(&[1.0], 1, |_, y, _, out| out[0] = -y[0])
+}
+
+/// x'' = −x: (cos t, −sin t).
+pub(super) fn oscillator() -> TestProblem {
+    TestProblem::new(&[1.0, 0.0], 2, |_, y, _, out| {
+        out[0] = y[1];
+        out[1] = -y[0];
+    })
+}
+
+/// x' = −1e4 (x − cos t) − sin t, x(0) = 1: x = cos t (Prothero & Robinson).
+pub(super) fn stiff_linear() -> TestProblem {
+    TestProblem::new(&[1.0], 1, |t, y, _, out| out[0] = -1e4 * (y[0] - t.cos()) - t.sin())
+}
+
+/// Robertson's reaction with the sum of concentrations as algebraic equation. At t = 40:
+/// y = (0.7158270687, 0.9185534764e-5, 0.2841637457), computed by the authors of LSODE, table in
+/// Hairer & Wanner and in the documentation of SUNDIALS.
+pub(super) fn robertson() -> TestProblem {
+    let mut problem = TestProblem::new(&[1.0, 0.0, 0.0], 2, |_, y, _, out| {
+        out[0] = -0.04 * y[0] + 1e4 * y[1] * y[2];
+        out[1] = 0.04 * y[0] - 1e4 * y[1] * y[2] - 3e7 * y[1] * y[1];
+        out[2] = y[0] + y[1] + y[2] - 1.0;
+    });
+    problem.nominal = vec![1.0, 1e-5, 1.0];
+    problem
+}
+
+/// Van der Pol's equation with ε = 1e-6, x(0) = (2, −0.66); at t = 2:
+/// (0.1706167732170469e1, −0.8928097010248125) (test set of Bari).
+pub(super) fn van_der_pol() -> TestProblem {
+    TestProblem::new(&[2.0, -0.66], 2, |_, y, _, out| {
+        out[0] = y[1];
+        out[1] = ((1.0 - y[0] * y[0]) * y[1] - y[0]) / 1e-6;
+    })
+}
+
+/// A pendulum of length 1, g = 9.81, in index-1 form: (φ, ω) differential, Cartesian (x, y) and the
+/// force λ of the rod algebraic. Starts horizontally at rest.
+pub(super) fn pendulum() -> TestProblem {
+    TestProblem::new(&[std::f64::consts::FRAC_PI_2, 0.0, 1.0, 0.0, 0.0], 2, |_, y, _, out| {
+        let &[angle, speed, px, py, force] = y else { panic!("five unknowns") };
+        out[0] = speed;
+        out[1] = -9.81 * px;
+        out[2] = px - angle.sin();
+        out[3] = py + angle.cos();
+        out[4] = force - speed * speed + 9.81 * py;
+    })
+}
+
+/// x' = v, 0 = v + x − 2 exp(−t), x(0) = 0: x = 2 t exp(−t), v = 2 (1 − t) exp(−t).
+pub(super) fn algebraic() -> TestProblem {
+    TestProblem::new(&[0.0, 2.0], 1, |t, y, _, out| {
+        out[0] = y[1];
+        out[1] = y[1] + y[0] - 2.0 * (-t).exp();
+    })
+}
+
+/// A ball from height 1 with restitution 0.7 and g = 9.81.
+pub(super) fn bouncing_ball() -> TestProblem {
+    TestProblem::new(&[1.0, 0.0], 2, |_, y, _, out| {
+        out[0] = y[1];
+        out[1] = -9.81;
+    })
+    .with_crossings(
+        1,
+        |_, y, _, out| out[0] = y[0],
+        |_, y, _| {
+            let bounces = y[0] <= 0.0 && y[1] < 0.0;
+            if bounces {
+                y[1] *= -0.7;
+            }
+            EventOutcome::Continue { y_changed: bounces }
+        },
+    )
+}
+
+/// x' = u − x with u = 1 before t = 0.5 and −1 after, a time event.
+pub(super) fn switched_input() -> TestProblem {
+    let mut problem =
+        TestProblem::new(&[0.0], 1, |_, y, discrete, out| out[0] = discrete[0] - y[0])
+            .with_discrete(&[1.0]);
+    problem.time_events = vec![0.5];
+    problem.event = |_, _, discrete| {
+        discrete[0] = -1.0;
+        EventOutcome::Continue { y_changed: true }
+    };
+    problem
+}
+
+/// x' = 1 if x < 0.5, otherwise −1, without any hysteresis: nothing but events from t = 0.5 on.
+pub(super) fn chattering() -> TestProblem {
+    TestProblem::new(&[0.0], 1, |_, _, discrete, out| out[0] = discrete[0])
+        .with_discrete(&[1.0])
+        .with_crossings(
+            1,
+            |_, y, _, out| out[0] = y[0] - 0.5,
+            |_, y, discrete| {
+                discrete[0] = if y[0] < 0.5 { 1.0 } else { -1.0 };
+                EventOutcome::Continue { y_changed: true }
+            },
+        )
+}
+
+/// x' = x², x(0) = 1: x = 1 / (1 − t), which ends at t = 1.
+pub(super) fn blow_up() -> TestProblem {
+    TestProblem::new(&[1.0], 1, |_, y, _, out| out[0] = y[0] * y[0])
+}
+
+/// x' = −1 − √x, x(0) = 1: √x − log(1 + √x) = (1 − log 2) − t/2, which reaches 0, where the root
+/// ends, at t = 2 (1 − log 2).
+pub(super) fn end_of_domain() -> TestProblem {
+    TestProblem::new(&[1.0], 1, |_, y, _, out| out[0] = -1.0 - y[0].sqrt())
+}
+
+/// Heat conduction: x'_i = k (x_{i−1} − 2 x_i + x_{i+1}) with zero at both ends, started in its
+/// slowest mode, which decays by exp(−rate t) as a whole.
+pub(super) struct HeatRod {
+    pattern: Pattern,
+    n: usize,
+}
+
+impl HeatRod {
+    pub(super) fn new(n: usize) -> HeatRod {
+        let mut pattern = Pattern { n, column_starts: vec![0], rows: Vec::new() };
+        for j in 0..n {
+            pattern.rows.extend(j.saturating_sub(1)..(j + 2).min(n));
+            pattern.column_starts.push(pattern.rows.len());
+        }
+        HeatRod { pattern, n }
+    }
+
+    fn angle(&self) -> f64 {
+        std::f64::consts::PI / (self.n as f64 + 1.0)
+    }
+
+    fn conductance(&self) -> f64 {
+        0.1 * (self.n as f64 + 1.0).powi(2)
+    }
+
+    pub(super) fn rate(&self) -> f64 {
+        self.conductance() * (2.0 - 2.0 * self.angle().cos())
+    }
+
+    pub(super) fn start(&self, i: usize) -> f64 {
+        ((i as f64 + 1.0) * self.angle()).sin()
+    }
+}
+
+impl DaeSystem for HeatRod {
+    fn n_differential(&self) -> usize {
+        self.n
+    }
+
+    fn n_algebraic(&self) -> usize {
+        0
+    }
+
+    fn nominal(&self, out: &mut [f64]) {
+        out.fill(1.0);
+    }
+
+    fn rhs(&mut self, _: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        let k = self.conductance();
+        let at = |i: Option<usize>| i.and_then(|i| y.get(i)).copied().unwrap_or(0.0);
+        for (i, out) in out.iter_mut().enumerate() {
+            *out = k * (at(i.checked_sub(1)) - 2.0 * y[i] + at(Some(i + 1)));
+        }
+        Ok(())
+    }
+
+    fn pattern(&self) -> &Pattern {
+        &self.pattern
+    }
+
+    fn jacobian(&mut self, _: f64, _: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        let k = self.conductance();
+        let columns = (0..self.n).flat_map(|j| self.pattern.column(j).map(move |_| j));
+        for ((value, row), column) in values.iter_mut().zip(&self.pattern.rows).zip(columns) {
+            *value = if *row == column { -2.0 * k } else { k };
+        }
+        Ok(())
+    }
+
+    fn initialize(&mut self, _: f64, y: &mut [f64]) -> Result<(), Failure> {
+        (0..self.n).for_each(|i| y[i] = self.start(i));
+        Ok(())
+    }
+
+    fn n_crossings(&self) -> usize {
+        0
+    }
+
+    fn crossings(&mut self, _: f64, _: &[f64], _: &mut [f64]) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    fn next_time_event(&self, _: f64) -> Option<f64> {
+        None
+    }
+
+    fn handle_event(&mut self, _: f64, _: &mut [f64]) -> Result<EventOutcome, Failure> {
+        Ok(EventOutcome::Continue { y_changed: false })
+    }
+
+    fn check(&mut self, _: f64, _: &[f64]) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    fn n_observed(&self) -> usize {
+        self.n
+    }
+
+    fn observe(&mut self, _: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        out.copy_from_slice(y);
+        Ok(())
+    }
+}

@@ -1,0 +1,105 @@
+//! What is asked of a simulation.
+
+use super::integrators::{Integrator, bdf};
+use crate::registry::Entry;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// What is asked of a simulation.
+#[derive(Clone)]
+pub struct Settings {
+    /// First time, seconds.
+    pub start: f64,
+    /// Last time, seconds; not before `start`.
+    pub stop: f64,
+    /// When to record; events are recorded besides.
+    pub output: OutputGrid,
+    /// Relative tolerance of the local error, between 1e-14 and 1; the absolute one of a variable
+    /// is the tolerance times its nominal value.
+    pub tolerance: f64,
+    /// The integration method, from [`find_integrator`](super::find_integrator).
+    pub method: &'static Entry<dyn Integrator>,
+    /// Step of the methods with fixed step, seconds; `None` for the distance of the output points.
+    pub step: Option<f64>,
+    /// First step of the methods with variable step, seconds; `None` lets the method choose.
+    pub initial_step: Option<f64>,
+    /// Largest step, seconds.
+    pub max_step: f64,
+    /// Steps, rejected ones included, after which the simulation is given up.
+    pub max_steps: u64,
+    /// Looked at before every step: whoever sets it to true ends the simulation.
+    pub cancel: Option<Arc<AtomicBool>>,
+}
+
+/// When to record.
+#[derive(Debug, Clone, PartialEq)]
+pub enum OutputGrid {
+    /// The interval is divided into so many parts (at least one).
+    Intervals(usize),
+    /// At these times, ascending; those outside the simulated interval are left out. The first and
+    /// the last time are recorded only if listed.
+    At(Vec<f64>),
+}
+
+impl Default for Settings {
+    /// 0 to 1 s, 500 intervals, tolerance 1e-4, variable-order BDF, a million steps.
+    fn default() -> Settings {
+        Settings {
+            start: 0.0,
+            stop: 1.0,
+            output: OutputGrid::Intervals(500),
+            tolerance: 1e-4,
+            method: &bdf::ENTRY,
+            step: None,
+            initial_step: None,
+            max_step: f64::INFINITY,
+            max_steps: 1_000_000,
+            cancel: None,
+        }
+    }
+}
+
+impl Settings {
+    /// The step of methods with fixed step.
+    pub(super) fn fixed_step(&self) -> f64 {
+        let intervals = match self.output {
+            OutputGrid::Intervals(intervals) => intervals.max(1),
+            OutputGrid::At(_) => 500,
+        };
+        let step = self.step.unwrap_or((self.stop - self.start) / intervals as f64);
+        step.min(self.max_step)
+    }
+}
+
+impl OutputGrid {
+    /// The output point of this number, if there is one within the simulated interval.
+    pub(super) fn point(&self, start: f64, stop: f64, number: usize) -> Option<f64> {
+        match self {
+            OutputGrid::Intervals(intervals) => {
+                let intervals = (*intervals).max(1);
+                let fraction = number as f64 / intervals as f64;
+                match number.cmp(&intervals) {
+                    std::cmp::Ordering::Less => Some(start + (stop - start) * fraction),
+                    std::cmp::Ordering::Equal => Some(stop),
+                    std::cmp::Ordering::Greater => None,
+                }
+            }
+            OutputGrid::At(times) => {
+                let first = times.partition_point(|t| *t < start);
+                times.get(first + number).copied().filter(|t| *t <= stop)
+            }
+        }
+    }
+}
+
+impl std::fmt::Debug for Settings {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Settings")
+            .field("start", &self.start)
+            .field("stop", &self.stop)
+            .field("output", &self.output)
+            .field("tolerance", &self.tolerance)
+            .field("method", &self.method.name)
+            .finish_non_exhaustive()
+    }
+}

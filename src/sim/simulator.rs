@@ -1,0 +1,317 @@
+//! The loop of a simulation.
+
+use super::event::CrossingSearch;
+use super::integrators::{Integrator, Problem, WithoutUnknowns};
+use super::{
+    DaeSystem, EventOutcome, Failure, Settings, SimError, SimErrorKind, Statistics, Trajectory,
+};
+use crate::registry::Options;
+
+/// So many events in a row within the time below are chattering.
+const MOST_EVENTS_AT_ONCE: u32 = 200;
+/// Distance of events that count as one place in time, relative to the simulated interval.
+const AT_ONCE: f64 = 1e-10;
+
+/// Simulates systems one after the other with one workspace: nothing is allocated when a system has
+/// the sizes of the one before.
+#[derive(Default)]
+pub struct Simulator {
+    /// The integrator of the last run, by the name of its method.
+    integrator: Option<(&'static str, Box<dyn Integrator>)>,
+    without_unknowns: WithoutUnknowns,
+    crossings: CrossingSearch,
+    nominal: Vec<f64>,
+    y: Vec<f64>,
+    observed: Vec<f64>,
+}
+
+/// Simulates a system with a workspace of its own.
+///
+/// # Errors
+/// When and why the simulation failed.
+pub fn simulate(
+    system: &mut dyn DaeSystem,
+    settings: &Settings,
+) -> Result<(Trajectory, Statistics), SimError> {
+    let mut trajectory = Trajectory::default();
+    let statistics = Simulator::new().run(system, settings, &mut trajectory)?;
+    Ok((trajectory, statistics))
+}
+
+impl Simulator {
+    /// A simulator without workspace yet.
+    pub fn new() -> Simulator {
+        Simulator::default()
+    }
+
+    /// Simulates a system. The observed variables at the output points and at both sides of every
+    /// event become the rows of `out`, which keeps what was computed until a failure.
+    ///
+    /// # Errors
+    /// When and why the simulation failed.
+    pub fn run(
+        &mut self,
+        system: &mut dyn DaeSystem,
+        settings: &Settings,
+        out: &mut Trajectory,
+    ) -> Result<Statistics, SimError> {
+        let n = system.n_differential() + system.n_algebraic();
+        self.resize(system, n);
+        system.nominal(&mut self.nominal);
+        for nominal in self.nominal.iter_mut().filter(|n| !n.is_finite() || **n <= 0.0) {
+            *nominal = 1.0;
+        }
+        out.reset(system.n_observed());
+        let integrator: &mut dyn Integrator = if n == 0 {
+            &mut self.without_unknowns
+        } else {
+            integrator(&mut self.integrator, settings)
+        };
+        let mut statistics = Statistics::default();
+        if let Some(kind) = refused(settings, integrator, system) {
+            return Err(SimError { time: settings.start, kind });
+        }
+        let mut run = Run {
+            problem: Problem {
+                system,
+                nominal: &self.nominal,
+                settings,
+                statistics: &mut statistics,
+            },
+            integrator,
+            crossings: &mut self.crossings,
+            y: &mut self.y,
+            observed: &mut self.observed,
+            out,
+            t: settings.start,
+            next_output: 0,
+            has_unknowns: n > 0,
+            last_event: f64::NEG_INFINITY,
+            events_at_once: 0,
+        };
+        let ended = run.run();
+        let time = run.t;
+        ended.map_err(|kind| SimError { time, kind })?;
+        Ok(statistics)
+    }
+
+    fn resize(&mut self, system: &dyn DaeSystem, n: usize) {
+        self.nominal.resize(n, 1.0);
+        self.y.resize(n, 0.0);
+        self.observed.resize(system.n_observed(), 0.0);
+        self.crossings.resize(system.n_crossings());
+    }
+}
+
+/// Why there is nothing to begin with.
+fn refused(
+    settings: &Settings,
+    integrator: &dyn Integrator,
+    system: &dyn DaeSystem,
+) -> Option<SimErrorKind> {
+    let finite = settings.start.is_finite() && settings.stop.is_finite();
+    if !finite || !(1e-14..=1.0).contains(&settings.tolerance) {
+        return Some(SimErrorKind::Settings);
+    }
+    (integrator.is_explicit() && system.n_algebraic() > 0).then_some(SimErrorKind::ExplicitMethod)
+}
+
+/// The integrator asked for, made anew if it is not the one at hand.
+fn integrator<'a>(
+    slot: &'a mut Option<(&'static str, Box<dyn Integrator>)>,
+    settings: &Settings,
+) -> &'a mut dyn Integrator {
+    let name = settings.method.name;
+    if slot.as_ref().is_none_or(|(made, _)| *made != name) {
+        let made = (settings.method.make)(&mut Options::default());
+        *slot = Some((name, made.expect("every integrator can be made without options")));
+    }
+    let (_, integrator) = slot.as_mut().expect("just filled");
+    integrator.as_mut()
+}
+
+/// Whether the simulation goes on after an event.
+#[derive(PartialEq)]
+enum After {
+    /// The step still holds.
+    Resume,
+    /// The integrator was restarted.
+    Restarted,
+    /// The model ended the simulation.
+    Terminated,
+}
+
+/// A simulation in progress; `t` and `y` are how far it has come.
+struct Run<'a> {
+    problem: Problem<'a>,
+    integrator: &'a mut dyn Integrator,
+    crossings: &'a mut CrossingSearch,
+    y: &'a mut [f64],
+    observed: &'a mut [f64],
+    out: &'a mut Trajectory,
+    t: f64,
+    /// Number of the next output point.
+    next_output: usize,
+    has_unknowns: bool,
+    last_event: f64,
+    events_at_once: u32,
+}
+
+impl Run<'_> {
+    fn run(&mut self) -> Result<(), SimErrorKind> {
+        self.initialize()?;
+        while self.t < self.problem.settings.stop {
+            let time_event = self.step()?;
+            let after = self.advance_to_end_of_step(time_event)?;
+            if after == After::Terminated {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    fn initialize(&mut self) -> Result<(), SimErrorKind> {
+        let system = &mut *self.problem.system;
+        system.initialize(self.t, self.y).map_err(SimErrorKind::Initialization)?;
+        if !self.y.iter().all(|y| y.is_finite()) {
+            return Err(SimErrorKind::NotFinite);
+        }
+        system.check(self.t, self.y).map_err(SimErrorKind::Evaluation)?;
+        if self.output_point() == Some(self.t) {
+            self.record()?;
+            self.next_output += 1;
+        }
+        self.restart()
+    }
+
+    fn restart(&mut self) -> Result<(), SimErrorKind> {
+        self.start_crossings()?;
+        self.integrator.restart(&mut self.problem, self.t, self.y)
+    }
+
+    fn start_crossings(&mut self) -> Result<(), SimErrorKind> {
+        self.crossings.start(&mut self.problem, self.t, self.y).map_err(SimErrorKind::Evaluation)
+    }
+
+    /// Makes a step; whether it ended at a time event.
+    fn step(&mut self) -> Result<bool, SimErrorKind> {
+        let stop = self.problem.settings.stop;
+        let event = self.problem.system.next_time_event(self.t).filter(|event| *event <= stop);
+        let mut limit = event.unwrap_or(stop);
+        if !self.has_unknowns {
+            limit = self.output_point().map_or(limit, |point| limit.min(point));
+        }
+        self.integrator.step(&mut self.problem, limit)?;
+        Ok(event == Some(self.integrator.time()))
+    }
+
+    /// Goes to the end of the step, or to the event that made the rest of it void.
+    fn advance_to_end_of_step(&mut self, time_event: bool) -> Result<After, SimErrorKind> {
+        let end = self.integrator.time();
+        loop {
+            self.y.copy_from_slice(self.integrator.state());
+            match self.first_event(end)? {
+                Some(event) => {
+                    self.record_before(event)?;
+                    self.problem.statistics.state_events += 1;
+                    let after = self.handle_event(event)?;
+                    if after != After::Resume || event >= end {
+                        return Ok(after);
+                    }
+                }
+                None if time_event => {
+                    self.record_before(end)?;
+                    self.problem.statistics.time_events += 1;
+                    return self.handle_event(end);
+                }
+                None => {
+                    self.record_before(end)?;
+                    self.t = end;
+                    self.y.copy_from_slice(self.integrator.state());
+                    self.check()?;
+                    if self.output_point() == Some(end) {
+                        self.record()?;
+                        self.next_output += 1;
+                    }
+                    return Ok(After::Resume);
+                }
+            }
+        }
+    }
+
+    /// The first state event up to `end`, with y there.
+    fn first_event(&mut self, end: f64) -> Result<Option<f64>, SimErrorKind> {
+        self.crossings
+            .first_event(&mut self.problem, self.integrator, (self.t, end), self.y)
+            .map_err(SimErrorKind::Evaluation)
+    }
+
+    /// Records the output points before `end`; y is y(`end`) afterwards as before.
+    fn record_before(&mut self, end: f64) -> Result<(), SimErrorKind> {
+        let mut moved = false;
+        while let Some(point) = self.output_point().filter(|point| *point < end) {
+            self.integrator.interpolate(point, self.y);
+            self.t = point;
+            self.record()?;
+            self.next_output += 1;
+            moved = true;
+        }
+        if moved {
+            self.integrator.interpolate(end, self.y);
+        }
+        Ok(())
+    }
+
+    /// Handles the event at `t`, where y is; records both sides of it.
+    fn handle_event(&mut self, t: f64) -> Result<After, SimErrorKind> {
+        self.t = t;
+        self.watch_for_chattering()?;
+        self.record()?;
+        let outcome = self.problem.system.handle_event(t, self.y);
+        let outcome = outcome.map_err(SimErrorKind::Evaluation)?;
+        if !self.y.iter().all(|y| y.is_finite()) {
+            return Err(SimErrorKind::NotFinite);
+        }
+        self.check()?;
+        self.record()?;
+        while self.output_point().is_some_and(|point| point <= t) {
+            self.next_output += 1;
+        }
+        match outcome {
+            EventOutcome::Terminate => return Ok(After::Terminated),
+            EventOutcome::Continue { y_changed: true } => self.restart()?,
+            EventOutcome::Continue { y_changed: false } => {
+                self.start_crossings()?;
+                return Ok(After::Resume);
+            }
+        }
+        Ok(After::Restarted)
+    }
+
+    fn watch_for_chattering(&mut self) -> Result<(), SimErrorKind> {
+        let settings = self.problem.settings;
+        let near = self.t - self.last_event <= AT_ONCE * (settings.stop - settings.start);
+        self.events_at_once = if near { self.events_at_once + 1 } else { 0 };
+        self.last_event = self.t;
+        if self.events_at_once > MOST_EVENTS_AT_ONCE {
+            return Err(SimErrorKind::Chattering);
+        }
+        Ok(())
+    }
+
+    fn check(&mut self) -> Result<(), SimErrorKind> {
+        self.problem.system.check(self.t, self.y).map_err(SimErrorKind::Evaluation)
+    }
+
+    fn output_point(&self) -> Option<f64> {
+        let settings = self.problem.settings;
+        settings.output.point(settings.start, settings.stop, self.next_output)
+    }
+
+    fn record(&mut self) -> Result<(), SimErrorKind> {
+        let observed = self.problem.system.observe(self.t, self.y, self.observed);
+        observed.map_err(|failure: Failure| SimErrorKind::Evaluation(failure))?;
+        self.out.push(self.t, self.observed);
+        Ok(())
+    }
+}

@@ -1,0 +1,22 @@
+//! What a simulation cost.
+
+/// What a simulation cost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Statistics {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Steps rejected by the error test.
+    pub error_failures: u64,
+    /// Steps rejected because the corrector did not converge or an evaluation failed.
+    pub newton_failures: u64,
+    /// Evaluations of the right-hand side.
+    pub rhs_evaluations: u64,
+    /// Evaluations of the Jacobian.
+    pub jacobian_evaluations: u64,
+    /// Numeric factorizations.
+    pub factorizations: u64,
+    /// State events.
+    pub state_events: u64,
+    /// Time events.
+    pub time_events: u64,
+}

@@ -1,0 +1,21 @@
+% Writes the files octave_*.mat.
+A = [1.5 -2 3.25; 4 5 -6.5];
+x = (0:0.25:1)';
+scalar = 42;
+text = "hello";
+names = ["one  "; "three"];
+flag = A > 0;
+i2 = int16(A);
+f4 = single(A);
+r = 1:4;
+save("-v4", "octave_v4.mat", "A", "x", "scalar", "text", "names", "r");
+s.a = A;
+s.b.c = 7;
+s.t = "inner";
+c = {A, "x"};
+z = A + i;
+sp = sparse(A);
+save("-v6", "octave_v6.mat", "A", "x", "scalar", "text", "names", "flag", "i2", "f4", "r", "s", "c", "z", "sp");
+save("-v7", "octave_v7.mat", "A", "x", "scalar", "text", "names", "flag", "i2", "f4", "r", "s", "c", "z", "sp");
+save("-hdf5", "octave_hdf5.mat", "A");
+save("-text", "octave_text.mat", "A");
