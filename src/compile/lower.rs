@@ -1,8 +1,8 @@
 //! Symbolic expressions become instructions, common subexpressions computed once.
 
 use super::tape::{Instruction, Register, Tape};
-use crate::symbolic::{Expr, Node, Pool, VarId};
 use crate::symbolic::function::Value;
+use crate::symbolic::{Expr, Node, Pool, VarId};
 use rustc_hash::FxHashMap;
 
 /// The registers of a program: one for every variable, then constants and temporaries.
@@ -153,7 +153,7 @@ impl<'a> TapeBuilder<'a> {
                 unreachable!("returned above")
             }
             Node::Call { .. } | Node::CallDerivative { .. } => {
-                unreachable!("calls are refused before they are compiled")
+                unreachable!("user functions are inlined when the equations are read")
             }
         };
         self.tape.code.push(instruction);

@@ -65,8 +65,11 @@ fn solve_block(
         variable.variability == crate::flatten::Variability::Discrete
             || variable.base != crate::flatten::BaseType::Real
     }) {
-        return Err(fault!(NOT_SUPPORTED,
-            "`{}` is discrete and stands in an algebraic loop", dae.variable(*discrete).name)
+        return Err(fault!(
+            NOT_SUPPORTED,
+            "`{}` is discrete and stands in an algebraic loop",
+            dae.variable(*discrete).name
+        )
         .at(equations[block[0]].span));
     }
     let local: Vec<Equation> = block.iter().map(|equation| equations[*equation]).collect();
@@ -145,20 +148,30 @@ fn report(
     };
     let balanced = equations.len() == unknowns.len();
     let mut fault = match balanced {
-        true => fault!(SINGULAR_SYSTEM, "the equations of `{}` do not determine its variables",
-            dae.name),
-        false => fault!(UNBALANCED_MODEL, "`{}` has {} unknowns but {} equations", dae.name,
-            unknowns.len(), equations.len()),
+        true => fault!(
+            SINGULAR_SYSTEM,
+            "the equations of `{}` do not determine its variables",
+            dae.name
+        ),
+        false => fault!(
+            UNBALANCED_MODEL,
+            "`{}` has {} unknowns but {} equations",
+            dae.name,
+            unknowns.len(),
+            equations.len()
+        ),
     };
     if !parts.under_unknowns.is_empty() {
-        fault = fault.help(format!("add an equation that determines {}",
-            names(&parts.under_unknowns)));
+        fault =
+            fault.help(format!("add an equation that determines {}", names(&parts.under_unknowns)));
     }
     if !parts.over_equations.is_empty() {
         fault = fault.help(match parts.over_unknowns.is_empty() {
             true => "remove one of the equations marked: it contains no unknown".to_owned(),
-            false => format!("remove one of the equations marked: they determine {} more than once",
-                names(&parts.over_unknowns)),
+            false => format!(
+                "remove one of the equations marked: they determine {} more than once",
+                names(&parts.over_unknowns)
+            ),
         });
     }
     let place = parts.under_unknowns.first().map(|u| dae.variable(unknowns[*u]).span);
@@ -167,9 +180,7 @@ fn report(
     let mut spans = spans.into_iter();
     let (first, text) = match (place, &parts.under_unknowns) {
         (Some(place), _) => (place, "no equation determines this"),
-        (None, _) => {
-            (spans.next().unwrap_or(crate::source::Span::NONE), "one equation too many")
-        }
+        (None, _) => (spans.next().unwrap_or(crate::source::Span::NONE), "one equation too many"),
     };
     let mut diagnostic = fault.labelled(first, text);
     for span in spans.take(6) {

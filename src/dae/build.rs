@@ -2,7 +2,7 @@
 
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, PARAMETER_CYCLE, UNRESOLVED_REFERENCE};
 use super::lowering::{Array, Lowered, Lowering, size_fault};
-use super::model::{Assertion, Dae, Equation, FunctionInstance, Kind, Variable};
+use super::model::{Assertion, Dae, Equation, Kind, Variable};
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::flatten::{self, BaseType, FlatModel, Variability};
@@ -32,6 +32,9 @@ pub(super) struct Builder<'a> {
     pub(super) folding: Vec<Folding>,
     pub(super) derivatives: FxHashMap<VarId, VarId>,
     pub(super) relations: FxHashMap<(crate::symbolic::RelationOperator, Expr, Expr), VarId>,
+    /// How deep calls of user functions are nested, and how many statements they may still run.
+    pub(super) calls: usize,
+    pub(super) statements: usize,
     /// Whether initial equations are being read.
     pub(super) initial: bool,
 }
@@ -50,6 +53,8 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         folding: vec![Folding::Unvisited; flat.variables.len()],
         derivatives: FxHashMap::default(),
         relations: FxHashMap::default(),
+        calls: 0,
+        statements: super::inline::MAX_STATEMENTS,
         initial: false,
     };
     builder.declare();
@@ -112,9 +117,7 @@ impl<'a> Builder<'a> {
                 return Err(fault!(PARAMETER_CYCLE, "`{}` depends on itself", variable.name)
                     .at(variable.span));
             }
-            (Folding::Unvisited, Some(binding))
-                if fixed && variable.base != BaseType::String =>
-            {
+            (Folding::Unvisited, Some(binding)) if fixed && variable.base != BaseType::String => {
                 self.folding[position] = Folding::InProgress;
                 let array = self.sized(binding, &variable.dims)?;
                 for (at, element) in array.elements.iter().enumerate() {
@@ -197,8 +200,11 @@ impl<'a> Builder<'a> {
             if *name == "fixed" && variable.variability == Variability::Parameter {
                 let free = (first..first + variable.len()).any(|i| !self.dae.variables[i].fixed);
                 if free {
-                    return Err(fault!(NOT_SUPPORTED,
-                        "parameter `{}` with `fixed = false` is not supported yet", variable.name)
+                    return Err(fault!(
+                        NOT_SUPPORTED,
+                        "parameter `{}` with `fixed = false` is not supported yet",
+                        variable.name
+                    )
                     .at(e.span));
                 }
             }
@@ -225,8 +231,9 @@ impl<'a> Builder<'a> {
         loops: &mut Vec<(crate::name::Ident, Expr)>,
     ) -> Result<(), Diagnostic> {
         if self.dae.equations.len() > MAX_EQUATIONS {
-            return Err(fault!(NOT_SUPPORTED, "more than {MAX_EQUATIONS} equations")
-                .at(equation.span));
+            return Err(
+                fault!(NOT_SUPPORTED, "more than {MAX_EQUATIONS} equations").at(equation.span)
+            );
         }
         match &equation.kind {
             EquationKind::Equal { left, right } => {
@@ -357,9 +364,12 @@ impl<'a> Builder<'a> {
         let not = self.dae.pool.not(condition);
         self.guard_assertions(asserted, not);
         if first.len() != second.len() {
-            return Err(fault!(super::errors::UNBALANCED_MODEL,
+            return Err(fault!(
+                super::errors::UNBALANCED_MODEL,
                 "the branches of this if-equation have {} and {} equations",
-                first.len(), second.len())
+                first.len(),
+                second.len()
+            )
             .at(span));
         }
         let pool = &mut self.dae.pool;
@@ -415,10 +425,8 @@ impl<'a> Builder<'a> {
         match name.as_str() {
             "assert" => self.assertion(arguments, call.span, loops),
             _ if name.starts_with("Connections.") => Ok(()),
-            _ => {
-                Err(fault!(NOT_SUPPORTED, "`{name}(…)` as an equation is not supported yet")
-                    .at(call.span))
-            }
+            _ => Err(fault!(NOT_SUPPORTED, "`{name}(…)` as an equation is not supported yet")
+                .at(call.span)),
         }
     }
 
@@ -450,7 +458,7 @@ impl<'a> Builder<'a> {
 }
 
 /// The literal parts of a message; what is computed shows as `…`.
-fn message_text(e: &Expression) -> String {
+pub(super) fn message_text(e: &Expression) -> String {
     match &e.kind {
         ExpressionKind::String(text) => text.to_string(),
         ExpressionKind::Binary { operator: ast::BinaryOperator::Add, left, right } => {
@@ -466,8 +474,12 @@ fn pairs(a: &Lowered<Expr>, b: &Lowered<Expr>, span: Span) -> Result<Vec<Equatio
         return Err(fault!(NOT_SUPPORTED, "equations of texts are not supported").at(span));
     };
     if x.len() != y.len() || std::mem::discriminant(&x) != std::mem::discriminant(&y) {
-        return Err(fault!(ARRAY_MISMATCH, "the sides of this equation have {} and {} elements",
-            x.len(), y.len())
+        return Err(fault!(
+            ARRAY_MISMATCH,
+            "the sides of this equation have {} and {} elements",
+            x.len(),
+            y.len()
+        )
         .at(span));
     }
     if let (Lowered::Array(x), Lowered::Array(y)) = (a, b)
@@ -543,16 +555,6 @@ pub(super) fn scalar_of_nothing(name: &str, kind: Kind, span: Span) -> Variable 
 }
 
 impl Builder<'_> {
-    /// The number of a function for these arguments.
-    pub(super) fn instance(&mut self, instance: FunctionInstance) -> u32 {
-        let functions = &mut self.dae.functions;
-        let found = functions.iter().position(|known| *known == instance);
-        found.unwrap_or_else(|| {
-            functions.push(instance);
-            functions.len() - 1
-        }) as u32
-    }
-
     /// The fault of a name that nothing declares.
     pub(super) fn unresolved(&self, path: &str, span: Span) -> Diagnostic {
         fault!(UNRESOLVED_REFERENCE, "there is no variable `{path}` in `{}`", self.flat.name)

@@ -22,8 +22,11 @@ pub(super) fn order_parameters(dae: &mut Dae) -> Result<Vec<VarId>, Diagnostic> 
                 .at(variable.span));
             };
             dae.warnings.push(
-                fault!(PARAMETER_WITHOUT_VALUE,
-                    "the parameter `{}` has no value; its start value is taken", variable.name)
+                fault!(
+                    PARAMETER_WITHOUT_VALUE,
+                    "the parameter `{}` has no value; its start value is taken",
+                    variable.name
+                )
                 .at(variable.span)
                 .warning(),
             );

@@ -54,8 +54,12 @@ fn write_block(sorted: &SortedDae, block: &Block, out: &mut String) -> std::fmt:
         Block::Loop(torn) => {
             let names: Vec<&str> =
                 torn.iteration.iter().map(|v| &*sorted.dae.variable(*v).name).collect();
-            writeln!(out, "loop of {} over {}", torn.assignments.len() + names.len(),
-                names.join(", "))?;
+            writeln!(
+                out,
+                "loop of {} over {}",
+                torn.assignments.len() + names.len(),
+                names.join(", ")
+            )?;
             torn.assignments.iter().try_for_each(|a| writeln!(out, "  {}", assign(a)))?;
             torn.residuals.iter().try_for_each(|(r, _)| writeln!(out, "  0 = {}", text(sorted, *r)))
         }

@@ -50,7 +50,8 @@ fn near(value: f64, expected: f64, tolerance: f64) {
     assert!(error <= tolerance, "{value} instead of {expected}");
 }
 
-const DECAY: &str = "model Decay parameter Real k = 2; Real x(start = 3); equation der(x) = -k*x; end Decay;";
+const DECAY: &str =
+    "model Decay parameter Real k = 2; Real x(start = 3); equation der(x) = -k*x; end Decay;";
 
 #[test]
 fn decay_is_an_exponential() {
@@ -113,17 +114,16 @@ fn linear_and_nonlinear_loops_are_solved() {
     let program = compiled(nonlinear);
     let mut system = program.system();
     let trajectory = run(&mut system, 1.0);
-    let (x, y) = (
-        last(&program, &system, &trajectory, "x"),
-        last(&program, &system, &trajectory, "y"),
-    );
+    let (x, y) =
+        (last(&program, &system, &trajectory, "x"), last(&program, &system, &trajectory, "y"));
     near(x * x + y * y, 2.0, 1e-6);
     near(x, y.exp() - 1.0, 1e-9);
 }
 
 #[test]
 fn arrays_and_loops_are_scalars() {
-    let text = "model A Real x[3](start = {1, 2, 3}); Real s; parameter Real M[3,3] = diagonal({1, 2, 3});
+    let text =
+        "model A Real x[3](start = {1, 2, 3}); Real s; parameter Real M[3,3] = diagonal({1, 2, 3});
         equation der(x) = -M*x; s = sum(x[i]*i for i in 1:3) + max(x[2:end]); end A;";
     let e = |k: f64| k * (-k).exp();
     let (a, b, c) = (e(1.0), e(2.0), e(3.0));
@@ -174,11 +174,20 @@ fn failures_are_told_in_the_models_words() {
 fn what_is_not_handled_is_refused() {
     assert_eq!(refused("model M Real x; Real y; equation x = 1; end M;"), "unbalanced-model");
     assert_eq!(refused("model M Real x; Real y; equation x = 1; x = 2; end M;"), "singular-system");
-    assert_eq!(refused("model M Real x; equation when time > 1 then x = 2; end when; end M;"), "not-supported");
-    assert_eq!(refused("model M parameter Real a = b; parameter Real b = a; Real x = a; end M;"), "parameter-cycle");
+    assert_eq!(
+        refused("model M Real x; equation when time > 1 then x = 2; end when; end M;"),
+        "not-supported"
+    );
+    assert_eq!(
+        refused("model M parameter Real a = b; parameter Real b = a; Real x = a; end M;"),
+        "parameter-cycle"
+    );
     assert_eq!(refused("model M parameter Real a; Real x = a; end M;"), "parameter-without-value");
     assert_eq!(refused("model M Real x[2] = {1, 2, 3}; end M;"), "array-mismatch");
-    assert_eq!(refused("model P Real x; Real y; equation der(x) = y; x = time; end P;"), "not-supported");
+    assert_eq!(
+        refused("model P Real x; Real y; equation der(x) = y; x = time; end P;"),
+        "not-supported"
+    );
 }
 
 const POLARIZATION: &str = "model P parameter Real Eoc = 1.2; parameter Real R = 0.73; parameter Real In = 1.4e-3;
@@ -190,6 +199,11 @@ const POLARIZATION: &str = "model P parameter Real Eoc = 1.2; parameter Real R =
 fn the_jacobian_agrees_with_differences() {
     let text = "model J Real x(start = 0.3); Real y(start = 0.7); Real z(start = 0.2); Real w; equation w = x*exp(y) + sin(z);
         der(x) = -w*x + z; der(y) = w^2 - y*z; der(z) = if x > 0.1 then w/(1 + x^2) else x; end J;";
+    jacobian_agrees(text);
+}
+
+/// Compares the Jacobian of a system of three states with differences.
+fn jacobian_agrees(text: &str) {
     let program = compiled(text);
     let mut system = program.system();
     let mut y = vec![0.0; 3];
@@ -206,7 +220,8 @@ fn the_jacobian_agrees_with_differences() {
         system.rhs(0.0, &b, &mut down).unwrap();
         for row in 0..3 {
             let entries = pattern.column_starts[column]..pattern.column_starts[column + 1];
-            let entry = entries.clone().find(|e| pattern.rows[*e] == row).map_or(0.0, |e| values[e]);
+            let entry =
+                entries.clone().find(|e| pattern.rows[*e] == row).map_or(0.0, |e| values[e]);
             near(entry, (up[row] - down[row]) / 2e-6, 1e-7);
         }
     }
@@ -230,4 +245,36 @@ fn the_polarization_curve_needs_no_states() {
     let expected = 1.2 - 0.73 * j - 0.039 * (j / 1.5856e-6).ln() + 0.0918 * (1.0 - j / 0.2265).ln();
     near(out[0], 0.11, 1e-15);
     near(out[1], expected, 1e-14);
+}
+
+const FUNCTIONS: &str = "
+    function horner input Real c[:]; input Real x; output Real y; algorithm
+        y := 0; for i in size(c, 1):-1:1 loop y := y*x + c[i]; end for; end horner;
+    function both input Real a; input Real b[2]; output Real s; output Real v[2]; Real t; algorithm
+        t := a*b[1]; if t > 0 then s := t^2; else s := -t; end if;
+        for k in 1:2 loop v[k] := b[k]*s; end for; end both;
+    function unassigned input Real a; output Real y; algorithm if a > 0 then y := 1; end if; end unassigned;
+    function outside input Real a; output Real y; external \"C\"; end outside;
+    function endless input Real a; output Real y; algorithm y := endless(a + 1); end endless;";
+
+#[test]
+fn functions_in_equations_are_carried_out() {
+    let model = |rest: &str| format!("model F {FUNCTIONS} {rest} end F;");
+    let text = model("Real y; equation y = horner({1, 2, 3}, time);");
+    near(simulated(&text, 2.0, "y"), 1.0 + 4.0 + 12.0, 1e-14);
+    let text = model("Real s; Real v[2]; equation (s, v) = both(time, {-3, 2});");
+    near(simulated(&text, 1.0, "v[2]"), 6.0, 1e-14);
+    for name in ["unassigned", "outside", "endless"] {
+        let text = model(&format!("Real y = {name}(time);"));
+        assert_eq!(refused(&text), "not-supported", "{name}");
+    }
+}
+
+#[test]
+fn functions_are_differentiated() {
+    let text = format!("model F {FUNCTIONS} Real x(start = 0.4); Real y(start = 0.5); Real z(start = 0.6);
+        equation der(x) = horner({{x, y, z}}, y); (der(y), {{der(z), w}}) = both(x, {{y, z}}); Real w; end F;");
+    let text =
+        text.replace(" Real w; end F;", " end F;").replace("Real z(start", "Real w; Real z(start");
+    jacobian_agrees(&text);
 }

@@ -40,8 +40,12 @@ impl<T: Target> Lowering<'_, T> {
         span: Span,
     ) -> Result<Vec<Choice<T::Scalar>>, Diagnostic> {
         if subscripts.len() > dims.len() {
-            return Err(fault!(ARRAY_MISMATCH, "{} subscripts for {} dimensions",
-                subscripts.len(), dims.len())
+            return Err(fault!(
+                ARRAY_MISMATCH,
+                "{} subscripts for {} dimensions",
+                subscripts.len(),
+                dims.len()
+            )
             .at(span));
         }
         let mut choices = Vec::with_capacity(subscripts.len());
@@ -78,9 +82,12 @@ impl<T: Target> Lowering<'_, T> {
                         .at(index.span));
                 }
                 None if !keeps => return Ok(Choice::Computed(*value)),
-                None => return Err(self.known(index).err().unwrap_or_else(|| {
-                    fault!(ARRAY_MISMATCH, "a vector of subscripts must be known").at(index.span)
-                })),
+                None => {
+                    return Err(self.known(index).err().unwrap_or_else(|| {
+                        fault!(ARRAY_MISMATCH, "a vector of subscripts must be known")
+                            .at(index.span)
+                    }));
+                }
             }
         }
         Ok(Choice::Known { positions, keeps })
@@ -148,8 +155,9 @@ impl<T: Target> Lowering<'_, T> {
 /// A scalar or vector as a matrix of one column.
 fn as_matrix<S: Copy>(mut a: Array<S>, span: Span) -> Result<Array<S>, Diagnostic> {
     if a.dims.len() > 2 {
-        return Err(fault!(ARRAY_MISMATCH, "an element of a matrix has more than two dimensions")
-            .at(span));
+        return Err(
+            fault!(ARRAY_MISMATCH, "an element of a matrix has more than two dimensions").at(span)
+        );
     }
     while a.dims.len() < 2 {
         a.dims.push(1);

@@ -47,18 +47,23 @@ impl<T: Target> Lowering<'_, T> {
     ) -> Result<Vec<Lowered<T::Scalar>>, Diagnostic> {
         let name = &user.name;
         if !arguments.iterators.is_empty() || arguments.positional.len() > user.inputs.len() {
-            return Err(fault!(ARRAY_MISMATCH, "`{name}` takes {} arguments", user.inputs.len())
-                .at(span));
+            return Err(
+                fault!(ARRAY_MISMATCH, "`{name}` takes {} arguments", user.inputs.len()).at(span)
+            );
         }
         if let Some(unknown) =
             arguments.named.iter().find(|a| user.inputs.iter().all(|i| i.name != a.name.node))
         {
-            return Err(fault!(UNRESOLVED_REFERENCE, "`{name}` has no input `{}`", unknown.name.node)
-                .help_if(suggest::did_you_mean(
-                    unknown.name.node.as_str(),
-                    user.inputs.iter().map(|i| i.name.as_str()),
-                ))
-                .at(unknown.name.span));
+            return Err(fault!(
+                UNRESOLVED_REFERENCE,
+                "`{name}` has no input `{}`",
+                unknown.name.node
+            )
+            .help_if(suggest::did_you_mean(
+                unknown.name.node.as_str(),
+                user.inputs.iter().map(|i| i.name.as_str()),
+            ))
+            .at(unknown.name.span));
         }
         let mut values = Vec::with_capacity(user.inputs.len());
         for (position, input) in user.inputs.iter().enumerate() {
@@ -68,8 +73,11 @@ impl<T: Target> Lowering<'_, T> {
                 (Some(given), _) => self.lower(given)?,
                 (None, Some(default)) => self.lower(default)?,
                 (None, None) => {
-                    return Err(fault!(UNRESOLVED_REFERENCE,
-                        "the input `{}` of `{name}` has no value", input.name)
+                    return Err(fault!(
+                        UNRESOLVED_REFERENCE,
+                        "the input `{}` of `{name}` has no value",
+                        input.name
+                    )
                     .at(span));
                 }
             };
@@ -90,9 +98,9 @@ impl<T: Target> Lowering<'_, T> {
         span: Span,
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
         let argument = |position: usize| {
-            arguments.get(position).ok_or_else(|| {
-                fault!(ARRAY_MISMATCH, "`{name}` needs another argument").at(span)
-            })
+            arguments
+                .get(position)
+                .ok_or_else(|| fault!(ARRAY_MISMATCH, "`{name}` needs another argument").at(span))
         };
         match operator {
             Operator::Constant(value) => Ok(Lowered::scalar(self.target.constant(value))),
@@ -161,16 +169,23 @@ impl<T: Target> Lowering<'_, T> {
                 let a = one(self)?;
                 match a.elements.as_slice() {
                     [only] => Array::scalar(*only),
-                    _ => return Err(fault!(ARRAY_MISMATCH, "`scalar` of an array with {} elements",
-                        a.elements.len()).at(span)),
+                    _ => {
+                        return Err(fault!(
+                            ARRAY_MISMATCH,
+                            "`scalar` of an array with {} elements",
+                            a.elements.len()
+                        )
+                        .at(span));
+                    }
                 }
             }
             "vector" => Array::vector(one(self)?.elements),
             "matrix" => {
                 let mut a = one(self)?;
                 if a.dims.len() > 2 && a.dims[2..].iter().any(|n| *n != 1) {
-                    return Err(fault!(ARRAY_MISMATCH, "`matrix` of more than two dimensions")
-                        .at(span));
+                    return Err(
+                        fault!(ARRAY_MISMATCH, "`matrix` of more than two dimensions").at(span)
+                    );
                 }
                 a.dims.truncate(2);
                 a.dims.resize(2, 1);
@@ -243,7 +258,9 @@ impl<T: Target> Lowering<'_, T> {
                 let dimension = self.known_size(dimension)?;
                 match dims.get(dimension.wrapping_sub(1)) {
                     Some(size) => Ok(Array::scalar(self.target.constant(*size as f64))),
-                    None => Err(fault!(ARRAY_MISMATCH, "there is no dimension {dimension}").at(span)),
+                    None => {
+                        Err(fault!(ARRAY_MISMATCH, "there is no dimension {dimension}").at(span))
+                    }
                 }
             }
             _ => Err(fault!(ARRAY_MISMATCH, "`size` takes an array and a dimension").at(span)),
@@ -316,8 +333,9 @@ impl<T: Target> Lowering<'_, T> {
         span: Span,
     ) -> Result<Array<T::Scalar>, Diagnostic> {
         if a.dims != [3] || b.dims != [3] {
-            return Err(fault!(ARRAY_MISMATCH, "`cross` takes two vectors of three elements")
-                .at(span));
+            return Err(
+                fault!(ARRAY_MISMATCH, "`cross` takes two vectors of three elements").at(span)
+            );
         }
         let elements = (0..3)
             .map(|i| {
@@ -345,8 +363,12 @@ impl<T: Target> Lowering<'_, T> {
                 .at(span));
         };
         if arguments.len() != id.get().arity() {
-            return Err(fault!(ARRAY_MISMATCH, "`{name}` takes {} arguments, not {}",
-                id.get().arity(), arguments.len())
+            return Err(fault!(
+                ARRAY_MISMATCH,
+                "`{name}` takes {} arguments, not {}",
+                id.get().arity(),
+                arguments.len()
+            )
             .at(span));
         }
         let values = arguments.iter().map(|a| self.array(a)).collect::<Result<Vec<_>, _>>()?;

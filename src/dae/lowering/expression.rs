@@ -13,8 +13,9 @@ impl<T: Target> Lowering<'_, T> {
     /// Any expression.
     pub(crate) fn lower(&mut self, e: &Expression) -> Result<Lowered<T::Scalar>, Diagnostic> {
         if self.depth >= MAX_DEPTH {
-            return Err(fault!(NOT_SUPPORTED, "expressions nested deeper than {MAX_DEPTH}")
-                .at(e.span));
+            return Err(
+                fault!(NOT_SUPPORTED, "expressions nested deeper than {MAX_DEPTH}").at(e.span)
+            );
         }
         self.depth += 1;
         let result = self.lower_kind(e);
@@ -81,8 +82,10 @@ impl<T: Target> Lowering<'_, T> {
                 }
             },
             ExpressionKind::PartialApplication { function, .. } => {
-                return Err(fault!(NOT_SUPPORTED,
-                    "the function `{function}` as an argument is not supported in models")
+                return Err(fault!(
+                    NOT_SUPPORTED,
+                    "the function `{function}` as an argument is not supported in models"
+                )
                 .at(e.span));
             }
         };
@@ -128,8 +131,9 @@ impl<T: Target> Lowering<'_, T> {
                 match subscript {
                     Subscript::Index(index) => texts.push(self.known_size(index)?.to_string()),
                     Subscript::All(span) => {
-                        return Err(fault!(NOT_SUPPORTED, "a slice of an array of components")
-                            .at(*span));
+                        return Err(
+                            fault!(NOT_SUPPORTED, "a slice of an array of components").at(*span)
+                        );
                     }
                 }
             }
@@ -186,8 +190,11 @@ impl<T: Target> Lowering<'_, T> {
         let stop = self.known(stop)?;
         let count = ((stop - start) / step * (1.0 + f64::EPSILON)).floor() + 1.0;
         if step == 0.0 || !count.is_finite() || count > MAX_SCALARS as f64 {
-            return Err(fault!(ARRAY_MISMATCH, "the range {start}:{step}:{stop} has no end that can be reached")
-                .at(span));
+            return Err(fault!(
+                ARRAY_MISMATCH,
+                "the range {start}:{step}:{stop} has no end that can be reached"
+            )
+            .at(span));
         }
         Ok((0..count.max(0.0) as usize).map(|i| start + i as f64 * step).collect())
     }

@@ -147,7 +147,8 @@ impl<T: Target> Lowering<'_, T> {
             for column in 0..columns {
                 let products: Vec<T::Scalar> = (0..inner)
                     .map(|k| {
-                        let (x, y) = (a.elements[row * inner + k], b.elements[k * columns + column]);
+                        let (x, y) =
+                            (a.elements[row * inner + k], b.elements[k * columns + column]);
                         self.target.binary(Binary::Mul, x, y)
                     })
                     .collect();
@@ -177,8 +178,10 @@ impl<T: Target> Lowering<'_, T> {
             .at(span));
         };
         if n != m || exponent < 1.0 || exponent.fract() != 0.0 || exponent > 64.0 {
-            return Err(fault!(NOT_SUPPORTED,
-                "the power of a matrix needs a square matrix and a whole number from 1 to 64")
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "the power of a matrix needs a square matrix and a whole number from 1 to 64"
+            )
             .at(span));
         }
         let mut result = a.clone();
