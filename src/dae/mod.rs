@@ -9,15 +9,15 @@
 //! ```
 //!
 //! Not handled yet, and refused with `not-supported`: when-clauses, `pre`, `sample`, `delay`,
-//! algorithm sections, systems of an index above one, parameters with `fixed = false`.
+//! algorithm sections, functions whose loops or returns depend on variables, systems of an index above one, parameters with `fixed = false`.
 
 mod alias_elimination;
 mod blt;
 mod build;
 pub mod errors;
-pub(crate) mod function_shape;
 mod initial;
-pub(crate) mod lowering;
+mod inline;
+mod lowering;
 mod model;
 mod parameters;
 mod report;
@@ -27,7 +27,6 @@ mod symbolic_target;
 pub use model::*;
 pub use report::report;
 pub use sorted::*;
-pub(crate) use symbolic_target::refuse_impure;
 
 use crate::diag::Diagnostic;
 use crate::fault;
