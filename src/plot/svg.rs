@@ -111,7 +111,7 @@ fn raised(text: &str) -> String {
     out + rest
 }
 
-/// About how wide text is, in pixels.
+/// About how wide text is, in pixels, in the widest of the faces asked for.
 pub(super) fn text_width(text: &str, size: f64) -> f64 {
     let em = |letter: char| match letter {
         'i' | 'j' | 'l' | '.' | ',' | '\'' | '|' | ':' | ';' | ' ' | 'f' | 't' | 'I' => 0.29,
@@ -121,5 +121,5 @@ pub(super) fn text_width(text: &str, size: f64) -> f64 {
         '^' | '{' | '}' => 0.0,
         _ => 0.56,
     };
-    text.chars().map(em).sum::<f64>() * size
+    1.15 * text.chars().map(em).sum::<f64>() * size
 }
