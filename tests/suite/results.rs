@@ -134,6 +134,7 @@ fn files_that_hold_no_results_are_refused() {
 
 /// Python with scipy and DyMat, if present, reads our file as an independent witness.
 #[test]
+#[allow(clippy::print_stderr, reason = "a skipped check must be visible")]
 fn python_reads_our_results() {
     const CHECK: &str = "
 import sys, DyMat
