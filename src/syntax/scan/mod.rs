@@ -1,0 +1,321 @@
+//! What is done to a text before the grammar reads it.
+//!
+//! One pass over the characters blanks comments (so that the grammar has none and a place never
+//! includes one), replaces the line ends that close a statement of a script by [`LINE_END`],
+//! matches brackets and `end`s, and bounds the nesting, because the grammar is read by recursion.
+//! Every replacement keeps the number of bytes: a place in the scanned text is a place in the
+//! original.
+
+mod blocks;
+mod tokens;
+
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::source::{SourceId, Span};
+use crate::syntax::errors::{NESTING_TOO_DEEP, NOT_A_SCRIPT, TEXT_TOO_LARGE, UNCLOSED_BRACKET};
+use blocks::Blocks;
+use tokens::{CommandPlace, Token, TokenKind, Tokens};
+
+/// Stands for a line end that closes a statement of a script.
+pub(super) const LINE_END: u8 = 0x1e;
+
+/// Brackets, blocks and conditional expressions inside each other that are still read.
+const MAX_NESTING: usize = 200;
+
+/// Whether line ends count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Dialect {
+    /// Classes: they do not.
+    Modelica,
+    /// Scripts: they do, outside classes.
+    Script,
+    /// A piece of Modelica that is no statement: `if` is a conditional expression.
+    Fragment,
+}
+
+/// A text made ready for the grammar.
+#[derive(Debug)]
+pub(super) struct Scanned {
+    /// As long as the original.
+    pub(super) text: String,
+    /// A bracket or `end` without its partner: an error wherever the grammar stops.
+    pub(super) problem: Option<Problem>,
+}
+
+/// A structural error. If the grammar stops before `from`, that is another error, and the first.
+#[derive(Debug)]
+pub(super) struct Problem {
+    pub(super) from: usize,
+    pub(super) diagnostic: Diagnostic,
+}
+
+/// Makes a text ready for the grammar; an error where the grammar would have nothing to read.
+pub(super) fn scan(source: SourceId, text: &str, dialect: Dialect) -> Result<Scanned, Diagnostic> {
+    if text.len() >= u32::MAX as usize {
+        return Err(fault!(TEXT_TOO_LARGE, "the text has {} bytes", text.len())
+            .help("check the file name, or split the text")
+            .at(Span::new(source, 0, 0)));
+    }
+    if dialect == Dialect::Script {
+        refuse_table(source, text)?;
+    }
+    Scanner::new(source, text, dialect).run()
+}
+
+/// Refuses table data that carries the ending `.mos`.
+fn refuse_table(source: SourceId, text: &str) -> Result<(), Diagnostic> {
+    let start = text.len() - text.trim_start_matches(['\u{feff}', ' ', '\t', '\r', '\n']).len();
+    let line = text[start..].lines().next().unwrap_or("");
+    if line.starts_with('#') || is_table_header(line) {
+        return Err(fault!(NOT_A_SCRIPT, "this is table data, not a script")
+            .help("read it as data, for instance with `readMatrix`, and run another file")
+            .at(Span::new(source, start, start + line.trim_end().len())));
+    }
+    Ok(())
+}
+
+/// Whether the line reads `double name(rows,columns)`.
+fn is_table_header(line: &str) -> bool {
+    let Some(rest) = ["double ", "float ", "char "].iter().find_map(|word| line.strip_prefix(word))
+    else {
+        return false;
+    };
+    let Some((_, rest)) = rest.split_once('(') else { return false };
+    let Some((sizes, _)) = rest.split_once(')') else { return false };
+    sizes.chars().all(|c| c.is_ascii_digit() || c == ',' || c == ' ') && sizes.contains(',')
+}
+
+struct Bracket {
+    at: usize,
+    open: u8,
+    /// Conditional expressions open outside it.
+    conditions_outside: usize,
+}
+
+struct Scanner<'t> {
+    source: SourceId,
+    dialect: Dialect,
+    tokens: Tokens<'t>,
+    out: Vec<u8>,
+    brackets: Vec<Bracket>,
+    blocks: Blocks<'t>,
+    /// `if` of conditional expressions, since the last separator, that deepen the tree.
+    conditions: usize,
+    /// `if` of conditional expressions at bracket depth zero whose `else` is to come.
+    awaiting_else: usize,
+    /// The same for their `then`.
+    awaiting_then: usize,
+    previous: Option<Token<'t>>,
+    problem: Option<Problem>,
+}
+
+impl<'t> Scanner<'t> {
+    fn new(source: SourceId, text: &'t str, dialect: Dialect) -> Scanner<'t> {
+        Scanner {
+            source,
+            dialect,
+            tokens: Tokens::new(source, text),
+            out: text.as_bytes().to_vec(),
+            brackets: Vec::new(),
+            blocks: Blocks::new(source, dialect != Dialect::Fragment),
+            conditions: 0,
+            awaiting_else: 0,
+            awaiting_then: 0,
+            previous: None,
+            problem: None,
+        }
+    }
+
+    fn run(mut self) -> Result<Scanned, Diagnostic> {
+        while let Some(token) = self.next_token()? {
+            self.step(token)?;
+        }
+        self.finish();
+        let text = String::from_utf8(self.out)
+            .unwrap_or_else(|_| unreachable!("only whole characters are replaced, by ASCII"));
+        Ok(Scanned { text, problem: self.problem })
+    }
+
+    fn next_token(&mut self) -> Result<Option<Token<'t>>, Diagnostic> {
+        self.tokens.next(self.command_place(), &mut self.out)
+    }
+
+    fn command_place(&self) -> CommandPlace {
+        if self.dialect == Dialect::Modelica || !self.brackets.is_empty() || !self.blocks.is_empty()
+        {
+            CommandPlace::Nowhere
+        } else if self.blocks.at_start() {
+            CommandPlace::Here
+        } else if self.previous.is_some_and(|previous| previous.can_end_statement()) {
+            CommandPlace::AfterLineEnd
+        } else {
+            CommandPlace::Nowhere
+        }
+    }
+
+    fn step(&mut self, token: Token<'t>) -> Result<(), Diagnostic> {
+        if self.brackets.is_empty() {
+            self.blocks.name_class(&token);
+            if self.ends_line(&token) {
+                self.out[token.line_end.unwrap_or(token.start)] = LINE_END;
+                self.end_statement();
+            }
+        }
+        match token.kind {
+            TokenKind::Open => self.open(&token),
+            TokenKind::Close => self.close(&token),
+            TokenKind::Separator if token.text == ";" => self.semicolon(&token),
+            TokenKind::Separator => self.conditions = 0,
+            TokenKind::Word | TokenKind::Quoted => self.word(&token),
+            _ => self.blocks.leave_start(),
+        }
+        self.previous = Some(token);
+        self.check_depth(&token)
+    }
+
+    /// Whether a line end before the token closes a statement.
+    fn ends_line(&self, token: &Token<'t>) -> bool {
+        self.dialect == Dialect::Script
+            && token.line_end.is_some()
+            && !self.blocks.in_class()
+            && !self.blocks.in_header()
+            && !(self.awaiting_else > 0 && matches!(token.text, "else" | "elseif"))
+            && token.can_begin_statement()
+            && self.previous.is_some_and(|previous| previous.can_end_statement())
+    }
+
+    fn end_statement(&mut self) {
+        self.blocks.end_statement();
+        self.awaiting_else = 0;
+        self.awaiting_then = 0;
+        self.conditions = 0;
+    }
+
+    fn word(&mut self, token: &Token<'t>) {
+        if !self.brackets.is_empty() {
+            self.conditions += usize::from(token.text == "if");
+            return;
+        }
+        if self.in_condition(token) {
+            return;
+        }
+        let after_end = self.after_end();
+        if let Err(problem) = self.blocks.word(token, after_end) {
+            self.report(problem.from, problem.diagnostic);
+        }
+    }
+
+    /// Whether the word belongs to a conditional expression, which is then followed.
+    fn in_condition(&mut self, token: &Token<'t>) -> bool {
+        match token.text {
+            "if" if !self.blocks.at_start() && !self.after_end() => {
+                self.conditions += 1;
+                self.awaiting_else += 1;
+                self.awaiting_then += 1;
+            }
+            "elseif" if self.awaiting_else > 0 => self.awaiting_then += 1,
+            "then" if self.awaiting_then > 0 => self.awaiting_then -= 1,
+            "else" if self.awaiting_else > 0 => self.awaiting_else -= 1,
+            _ => return false,
+        }
+        true
+    }
+
+    fn after_end(&self) -> bool {
+        self.previous.is_some_and(|previous| previous.text == "end")
+    }
+
+    fn open(&mut self, token: &Token<'t>) {
+        self.blocks.leave_start();
+        self.brackets.push(Bracket {
+            at: token.start,
+            open: token.text.as_bytes()[0],
+            conditions_outside: self.conditions,
+        });
+    }
+
+    fn close(&mut self, token: &Token<'t>) {
+        self.blocks.leave_start();
+        let Some(bracket) = self.brackets.pop() else {
+            let message =
+                fault!(UNCLOSED_BRACKET, "`{}` closes a bracket that was never opened", token.text)
+                    .help(format!("take `{}` away, or open it before", token.text));
+            return self.report(
+                token.start,
+                message.labelled(self.span(token.start, token.end), "nothing is open here"),
+            );
+        };
+        self.conditions = bracket.conditions_outside;
+        if closing(bracket.open) != token.text {
+            self.unclosed(
+                &bracket,
+                token.start,
+                token.end,
+                &format!("`{}` found here", token.text),
+            );
+        }
+    }
+
+    fn semicolon(&mut self, token: &Token<'t>) {
+        match self.brackets.last() {
+            Some(bracket) if bracket.open == b'[' => self.conditions = 0,
+            Some(_) => {
+                if let Some(bracket) = self.brackets.pop() {
+                    self.unclosed(&bracket, token.start, token.end, "the statement ends here");
+                }
+                self.brackets.clear();
+                self.end_statement();
+            }
+            None => self.end_statement(),
+        }
+    }
+
+    fn unclosed(&mut self, bracket: &Bracket, start: usize, end: usize, here: &str) {
+        let open = char::from(bracket.open);
+        let diagnostic = fault!(UNCLOSED_BRACKET, "`{open}` is not closed")
+            .help(format!("write `{}` where the bracket should end", closing(bracket.open)))
+            .labelled(self.span(bracket.at, bracket.at + 1), "opened here")
+            .related(self.span(start, end), here);
+        self.report(bracket.at, diagnostic);
+    }
+
+    fn finish(&mut self) {
+        if let Some(bracket) = self.brackets.pop() {
+            let end = self.out.len();
+            self.unclosed(&bracket, end, end, "the text ends here");
+        }
+        if let Some(problem) = self.blocks.unclosed(self.out.len()) {
+            self.report(problem.from, problem.diagnostic);
+        }
+    }
+
+    fn report(&mut self, from: usize, diagnostic: Diagnostic) {
+        self.problem.get_or_insert(Problem { from, diagnostic });
+    }
+
+    fn check_depth(&self, token: &Token<'t>) -> Result<(), Diagnostic> {
+        if self.brackets.len() + self.conditions + self.blocks.len() <= MAX_NESTING {
+            return Ok(());
+        }
+        Err(too_deep(self.span(token.start, token.end)))
+    }
+
+    fn span(&self, start: usize, end: usize) -> Span {
+        Span::new(self.source, start, end)
+    }
+}
+
+/// The error of a text nested too deeply.
+pub(super) fn too_deep(span: Span) -> Diagnostic {
+    fault!(NESTING_TOO_DEEP, "this is nested too deeply")
+        .help("split it: give parts of the expression a name")
+        .at(span)
+}
+
+fn closing(open: u8) -> &'static str {
+    match open {
+        b'(' => ")",
+        b'[' => "]",
+        _ => "}",
+    }
+}

@@ -1,0 +1,29 @@
+//! Walks over trees: [`Visit`] reads, [`Rewrite`] changes in place.
+//!
+//! A method's default goes on into the parts through the function `walk_…` or `rewrite_…` of the
+//! same name; an implementation that overrides it calls that function where it wants to go on.
+
+mod read;
+mod rewrite;
+
+pub use read::{
+    Visit, walk_arguments, walk_equation, walk_expression, walk_modification, walk_reference,
+    walk_statement,
+};
+pub use rewrite::{
+    Rewrite, rewrite_arguments, rewrite_class, rewrite_equation, rewrite_expression,
+    rewrite_modification, rewrite_reference, rewrite_script, rewrite_statement,
+    rewrite_stored_definition,
+};
+
+use crate::source::Span;
+
+/// Replaces every place by [`Span::NONE`], so that trees compare by what they say.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct WithoutSpans;
+
+impl Rewrite for WithoutSpans {
+    fn span(&mut self, span: &mut Span) {
+        *span = Span::NONE;
+    }
+}

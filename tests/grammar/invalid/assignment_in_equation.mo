@@ -1,0 +1,5 @@
+model Cell
+  Real v;
+equation
+  v := 2 * time;
+end Cell;

@@ -1,0 +1,3 @@
+model Cell
+  parameter constant Real v = 1;
+end Cell;

@@ -1,0 +1,6 @@
+function f
+  input Real x;
+  output Real y;
+algorithm
+  y = 2 * x;
+end f;

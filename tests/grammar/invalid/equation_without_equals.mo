@@ -1,0 +1,5 @@
+model Cell
+  Real v;
+equation
+  2 * v;
+end Cell;

@@ -1,0 +1,4 @@
+model Cell
+  Real v;
+equation
+  v = 1;

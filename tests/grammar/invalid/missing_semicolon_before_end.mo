@@ -1,0 +1,5 @@
+model Cell
+  Real v;
+equation
+  v = sin(time)
+end Cell;

@@ -1,0 +1,6 @@
+model Cell
+  Real v, i;
+equation
+  v = 2 * i
+  i = time;
+end Cell;

@@ -1,0 +1,9 @@
+model Cell
+  Real v;
+equation
+  if time > 1
+    v = 1;
+  else
+    v = 2;
+  end if;
+end Cell;

@@ -1,0 +1,3 @@
+model Cell
+  Real v = ;
+end Cell;

@@ -1,0 +1,3 @@
+model Cell
+  paramter Real v = 1;
+end Cell;

@@ -1,0 +1,3 @@
+modle Cell
+  Real v;
+end Cell;

@@ -1,0 +1,3 @@
+model Cell
+  Real m[2] = {1, 2);
+end Cell;

@@ -1,0 +1,21 @@
+within A.B;
+model M "a model"
+end M;
+partial block B end B;
+encapsulated package P "a" + " b" end P;
+record R end R;
+operator record C end C;
+connector K end K;
+expandable connector E end E;
+type T = Real[3](each unit = "V", min = 0) "a type" annotation(a = 1);
+class X end X;
+function f end f;
+pure function g end g;
+impure function h end h;
+operator function o end o;
+operator '+' end '+';
+final model 'a b.c\'' end 'a b.c\'';
+connector In = input Real;
+type Day = enumeration(mon "first", tue annotation(x = 1), wed) "days";
+type Any = enumeration(:);
+function fx = der(f, x, y) "derivative";
