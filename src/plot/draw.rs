@@ -95,7 +95,7 @@ fn draw_legend(svg: &mut Svg, entries: &[&Series], left: f64, y: f64) {
     for series in entries {
         let middle = (x + 13.0, y);
         match series.mark {
-            Mark::Line | Mark::Dashes => {
+            Mark::Line | Mark::Thin => {
                 svg.polyline(&[(x, y), (x + 26.0, y)], &stroke(series));
             }
             Mark::Points => svg.circle(middle, 3.4, &open_circle(series)),
@@ -112,9 +112,11 @@ fn colour(series: &Series) -> &'static str {
 }
 
 fn stroke(series: &Series) -> String {
-    let dashes = if series.mark == Mark::Dashes { " stroke-dasharray=\"6 3\"" } else { "" };
-    let colour = colour(series);
-    format!("stroke=\"{colour}\" stroke-width=\"1.8\" stroke-linejoin=\"round\"{dashes}")
+    let pen = match series.mark {
+        Mark::Thin => "stroke-width=\"0.8\" stroke-opacity=\"0.7\"",
+        _ => "stroke-width=\"1.8\"",
+    };
+    format!("stroke=\"{}\" {pen} stroke-linejoin=\"round\"", colour(series))
 }
 
 fn open_circle(series: &Series) -> String {
@@ -127,11 +129,11 @@ fn dot(series: &Series) -> String {
 
 fn axis_title(axis: &Axis, exponent: i32) -> String {
     let power = if exponent == 0 { String::new() } else { power_of_ten(exponent) };
-    match (&*power, &*axis.unit) {
+    match (&*power, &*shown_unit(&axis.unit)) {
         ("", "") => axis.label.clone(),
         (power, "") => format!("{} [{power}]", axis.label),
         ("", unit) => format!("{} [{unit}]", axis.label),
-        (power, unit) => format!("{} [{power} {unit}]", axis.label),
+        (power, unit) => format!("{} [{power}\u{a0}{unit}]", axis.label),
     }
 }
 
@@ -209,10 +211,10 @@ impl Area<'_> {
             places.map(|(x, y)| self.x_of(*x).zip(self.y_of(*y))).collect();
         let shown = || places.iter().copied().flatten();
         match series.mark {
-            Mark::Line | Mark::Dashes => {
+            Mark::Line | Mark::Thin => {
                 for part in places.split(Option::is_none) {
                     let points: Vec<(f64, f64)> = part.iter().copied().flatten().collect();
-                    self.draw_line(svg, &without_middles(&points), series);
+                    self.draw_line(svg, &thinned(&points), series);
                 }
             }
             Mark::Points => shown().for_each(|at| svg.circle(at, 3.4, &open_circle(series))),
@@ -236,13 +238,55 @@ impl Area<'_> {
     }
 }
 
-/// The points without those between two of the same height, which a level line passes anyway.
-fn without_middles(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    let is_middle = |i: usize| {
-        i > 0
-            && i + 1 < points.len()
-            && points[i - 1].1 == points[i].1
-            && points[i].1 == points[i + 1].1
-    };
-    (0..points.len()).filter(|i| !is_middle(*i)).map(|i| points[i]).collect()
+/// The points that can be told apart: of those within half a pixel the first, the lowest, the
+/// highest and the last.
+fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let mut kept = Vec::new();
+    for group in points.chunk_by(|a, b| (2.0 * a.0).floor() == (2.0 * b.0).floor()) {
+        let places = 0..group.len();
+        let low = places.clone().min_by(|i, j| group[*i].1.total_cmp(&group[*j].1));
+        let high = places.max_by(|i, j| group[*i].1.total_cmp(&group[*j].1));
+        let mut chosen = vec![0, group.len() - 1];
+        chosen.extend(low.into_iter().chain(high));
+        chosen.sort_unstable();
+        chosen.dedup();
+        kept.extend(chosen.into_iter().map(|i| group[i]));
+    }
+    kept
+}
+
+/// A unit of Modelica (MLS chapter 19) with its exponents raised and its products as dots.
+fn shown_unit(unit: &str) -> String {
+    let mut out = String::new();
+    let is_exponent = |c: char| c.is_ascii_digit() || c == '-' || c == '+';
+    let mut rest = unit;
+    while let Some(letter) = rest.chars().next() {
+        rest = &rest[letter.len_utf8()..];
+        out.push(if letter == '.' { '\u{b7}' } else { letter });
+        let end = rest.find(|c| !is_exponent(c)).unwrap_or(rest.len());
+        if letter.is_alphabetic() && end > 0 {
+            out += &format!("^{{{}}}", rest[..end].replace('-', "\u{2212}"));
+            rest = &rest[end..];
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_show_exponents_and_products() {
+        assert_eq!(shown_unit("A/cm2"), "A/cm^{2}");
+        assert_eq!(shown_unit("kg.m.s-2"), "kg·m·s^{−2}");
+        assert_eq!(shown_unit("1"), "1");
+    }
+
+    #[test]
+    fn thinning_keeps_the_extremes() {
+        let points = [(0.1, 1.0), (0.2, 5.0), (0.3, -2.0), (0.4, 3.0), (0.4, 2.0), (0.6, 0.0)];
+        let kept = [(0.1, 1.0), (0.2, 5.0), (0.3, -2.0), (0.4, 2.0), (0.6, 0.0)];
+        assert_eq!(thinned(&points), kept);
+    }
 }

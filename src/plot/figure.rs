@@ -29,7 +29,7 @@ pub struct Panel {
 pub struct Axis {
     /// The quantity.
     pub label: String,
-    /// Its unit, empty if none.
+    /// Its unit as in Modelica (`A/cm2`, `m.s-2`), empty if none; exponents are raised.
     pub unit: String,
     /// How values become lengths.
     pub scale: Scale,
@@ -65,8 +65,8 @@ pub struct Series {
 pub enum Mark {
     /// A line from point to point.
     Line,
-    /// A dashed line from point to point.
-    Dashes,
+    /// A thin, faint line from point to point, for what scatters.
+    Thin,
     /// An open circle at each point.
     Points,
     /// A vertical line from zero to each point, with a dot at its end.

@@ -3,7 +3,7 @@
 //!
 //! Text is laid out without font files: widths are estimates for a sans-serif face, used only to
 //! keep labels apart. Colours are the palette of Okabe and Ito, which readers with any kind of
-//! colour vision can tell apart; series also differ in dashes and marks.
+//! colour vision can tell apart; series also differ in weight and marks.
 
 mod draw;
 mod figure;

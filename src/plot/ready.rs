@@ -21,6 +21,9 @@ pub struct Comparison<'a> {
     pub measured: &'a [f64],
     /// Simulated values.
     pub simulated: &'a [f64],
+    /// The simulated curve between them, by ascending x: places and values. If empty, the curve
+    /// goes straight from one of the simulated values to the next.
+    pub curve: (&'a [f64], &'a [f64]),
 }
 
 /// Measured points and the simulated curve, and below them the residuals, measured less simulated.
@@ -30,14 +33,13 @@ pub fn fit(data: &Comparison) -> Figure {
     let sorted = |values: &[f64]| order.iter().map(|i| values[*i]).collect::<Vec<f64>>();
     let (x, measured, simulated) = (sorted(data.x), sorted(data.measured), sorted(data.simulated));
     let residuals = measured.iter().zip(&simulated).map(|(m, s)| m - s).collect();
-    let x_axis = Axis::linear(data.x_label.0, data.x_label.1);
-    let series = |name: &str, y: Vec<f64>, mark, colour| Series {
-        name: name.to_owned(),
-        x: x.clone(),
-        y,
-        mark,
-        colour,
+    let curve = match data.curve {
+        ([], _) => (x.clone(), simulated),
+        (x, y) => (x.to_vec(), y.to_vec()),
     };
+    let x_axis = Axis::linear(data.x_label.0, data.x_label.1);
+    let series =
+        |name: &str, (x, y), mark, colour| Series { name: name.to_owned(), x, y, mark, colour };
     Figure {
         title: data.title.to_owned(),
         panels: vec![
@@ -47,8 +49,8 @@ pub fn fit(data: &Comparison) -> Figure {
                 height: 270.0,
                 zero_line: false,
                 series: vec![
-                    series("simulated", simulated, Mark::Line, 1),
-                    series("measured", measured, Mark::Points, 0),
+                    series("simulated", curve, Mark::Line, 1),
+                    series("measured", (x.clone(), measured), Mark::Points, 0),
                 ],
             },
             Panel {
@@ -56,7 +58,7 @@ pub fn fit(data: &Comparison) -> Figure {
                 y: Axis::linear("residual", data.y_label.1),
                 height: 110.0,
                 zero_line: true,
-                series: vec![series("", residuals, Mark::Stems, 0)],
+                series: vec![series("", (x, residuals), Mark::Stems, 0)],
             },
         ],
     }
@@ -80,7 +82,7 @@ pub fn convergence(title: &str, best: &[f64], mean: &[f64]) -> Figure {
             height: 330.0,
             zero_line: false,
             series: vec![
-                series("mean of the generation", mean, Mark::Dashes, 2),
+                series("mean of the generation", mean, Mark::Thin, 2),
                 series("best individual", best, Mark::Line, 1),
             ],
         }],

@@ -93,25 +93,20 @@ fn escape(text: &str) -> String {
 }
 
 fn raised(text: &str) -> String {
-    let mut out = String::new();
-    let mut rest = text;
-    while let Some((before, (exponent, after))) =
-        rest.split_once("^{").and_then(|(before, rest)| Some((before, rest.split_once('}')?)))
-    {
-        out.push_str(before);
-        let _ = write!(out, "<tspan dy=\"-4.5\" font-size=\"75%\">{exponent}</tspan>");
-        // A tspan of its own brings the rest of the text back to the line.
-        let _ = write!(
-            out,
-            "<tspan dy=\"4.5\">{}</tspan>",
-            if after.is_empty() { "\u{200b}" } else { "" }
-        );
-        rest = after;
+    let mut parts = text.split("^{");
+    let mut out = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (exponent, after) = part.split_once('}').unwrap_or((part, ""));
+        out += &format!("<tspan dy=\"-4.5\" font-size=\"75%\">{exponent}</tspan>");
+        // Lowering works on text alone: an empty element would leave what follows raised.
+        if !after.is_empty() {
+            out += &format!("<tspan dy=\"4.5\">{after}</tspan>");
+        }
     }
-    out + rest
+    out
 }
 
-/// About how wide text is, in pixels.
+/// About how wide text is, in pixels, in the widest of the faces asked for.
 pub(super) fn text_width(text: &str, size: f64) -> f64 {
     let em = |letter: char| match letter {
         'i' | 'j' | 'l' | '.' | ',' | '\'' | '|' | ':' | ';' | ' ' | 'f' | 't' | 'I' => 0.29,
@@ -121,5 +116,5 @@ pub(super) fn text_width(text: &str, size: f64) -> f64 {
         '^' | '{' | '}' => 0.0,
         _ => 0.56,
     };
-    text.chars().map(em).sum::<f64>() * size
+    1.15 * text.chars().map(em).sum::<f64>() * size
 }

@@ -25,7 +25,10 @@ impl Ticks {
             Some((low.min(value), high.max(value)))
         });
         match scale {
-            Scale::Linear => linear(range.unwrap_or((0.0, 1.0)), count),
+            Scale::Linear => (count..)
+                .map(|count| linear(range.unwrap_or((0.0, 1.0)), count))
+                .find(|ticks| ticks.major.len() > 2)
+                .expect("more steps give more ticks"),
             Scale::Logarithmic => logarithmic(range.unwrap_or((1.0, 10.0)), count),
         }
     }

@@ -5,10 +5,10 @@ use proptest::prelude::*;
 
 fn polarization() -> Figure {
     let x: Vec<f64> = (0..18).map(|i| 0.002 + 0.085 * f64::from(i)).collect();
-    let simulated: Vec<f64> = x
-        .iter()
-        .map(|i| 0.86 - 0.02 * (i / 0.002).ln() - 0.12 * i + 0.05 * (1.0 - i / 1.6).ln())
-        .collect();
+    let voltage = |i: &f64| 0.86 - 0.02 * (i / 0.002).ln() - 0.12 * i + 0.05 * (1.0 - i / 1.6).ln();
+    let simulated: Vec<f64> = x.iter().map(voltage).collect();
+    let fine_x: Vec<f64> = (0..200).map(|k| 0.002 + 1.445 * f64::from(k) / 199.0).collect();
+    let fine_y: Vec<f64> = fine_x.iter().map(voltage).collect();
     let noise = |(k, v): (usize, &f64)| v + 0.003 * ((7 * k) as f64).sin();
     let measured: Vec<f64> = simulated.iter().enumerate().map(noise).collect();
     plot::fit(&Comparison {
@@ -18,6 +18,7 @@ fn polarization() -> Figure {
         x: &x,
         measured: &measured,
         simulated: &simulated,
+        curve: (&fine_x, &fine_y),
     })
 }
 
@@ -52,7 +53,7 @@ fn fit_has_a_circle_per_measurement_and_a_stem_per_residual() {
     let svg = polarization().svg();
     assert_eq!(svg.matches("fill=\"#ffffff\" stroke=\"#000000\"").count(), 18 + 1);
     assert_eq!(svg.matches("r=\"2.6\"").count(), 18);
-    assert!(svg.contains("cell voltage [V]") && svg.contains("current density [A/cm2]"));
+    assert!(svg.contains("cell voltage [V]") && svg.contains("current density [A/cm<tspan"));
     assert!(svg.contains("20 °C &amp; 50 % humidity"));
 }
 
@@ -65,6 +66,7 @@ fn residuals_are_measured_less_simulated_in_the_order_of_x() {
         x: &[2.0, 1.0],
         measured: &[5.0, 3.0],
         simulated: &[4.0, 3.5],
+        curve: (&[], &[]),
     });
     assert_eq!(figure.panels[1].series[0].x, [1.0, 2.0]);
     assert_eq!(figure.panels[1].series[0].y, [-0.5, 1.0]);
@@ -90,7 +92,7 @@ proptest! {
         title in "[ -M<>&\"é]{0,12}",
     ) {
         let axis = |log| if log { Axis::logarithmic("a", "b") } else { Axis::linear("a", "b") };
-        let series = [Mark::Line, Mark::Dashes, Mark::Points, Mark::Stems].map(|mark| Series {
+        let series = [Mark::Line, Mark::Thin, Mark::Points, Mark::Stems].map(|mark| Series {
             name: title.clone(), x: x.clone(), y: y[..x.len()].to_vec(), mark, colour: 9,
         });
         let panel = Panel { x: axis(log_x), y: axis(log_y), height: 100.0, zero_line: true, series: series.to_vec() };
