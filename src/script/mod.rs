@@ -28,3 +28,5 @@ pub mod world;
 pub use messages::Messages;
 pub use session::{Dialect, Echo, Options, RunStatus, Session, Strictness};
 pub use transcript::{Exchange, Transcript};
+
+pub use crate::eval::with_stack;
