@@ -3,6 +3,7 @@
 mod architecture;
 mod diagnostics;
 mod flat_class;
+mod flattening;
 mod grammar;
 mod mat;
 mod results;
