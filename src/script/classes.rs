@@ -1,24 +1,28 @@
 //! The classes of a session: those of its scripts, of loaded files and of libraries.
 
 use super::Session;
+use super::errors::BAD_PARAMETER_VALUE;
 use super::world::normalized;
-use crate::diag::{At, Diagnostic, Fault};
-use crate::eval::{Function, ValueType};
-use crate::flatten::{Library, Loader};
+use crate::diag::{At, Diagnostic, Fault, suggest};
+use crate::eval::{self, Function, ValueType};
+use crate::fault;
+use crate::flatten::Library;
+use crate::flatten::errors::UNKNOWN_CLASS;
 use crate::name::{Ident, Name};
-use crate::source::{Span, Spanned};
-use crate::syntax::ast::{ClassDefinition, StoredDefinition};
+use crate::source::{SourceId, Span, Spanned};
 use crate::syntax;
+use crate::syntax::ast::{
+    ClassDefinition, ComponentReference, Expression, ExpressionKind, StoredDefinition,
+};
 use crate::value::Value;
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 
 /// The loaded classes and where more can be found.
+#[derive(Default)]
 pub(super) struct Classes {
     pub(super) library: Library,
-    /// Top-level classes that were looked for and are not loaded.
-    wanted: Wanted,
     /// Those that are nowhere.
     nowhere: HashSet<Ident>,
     /// Counts what changes what a name can stand for.
@@ -29,44 +33,6 @@ pub(super) struct Classes {
     files: BTreeMap<Name, PathBuf>,
 }
 
-/// Notes which classes the library asks for: the session has the files, the library has not.
-#[derive(Clone, Default)]
-struct Wanted(Arc<Mutex<Vec<Ident>>>);
-
-impl Wanted {
-    fn take(&self) -> Vec<Ident> {
-        match self.0.lock() {
-            Ok(mut names) => std::mem::take(&mut *names),
-            Err(poisoned) => std::mem::take(&mut *poisoned.into_inner()),
-        }
-    }
-}
-
-impl Loader for Wanted {
-    fn load(&mut self, name: Ident) -> Option<Result<Vec<StoredDefinition>, Vec<Diagnostic>>> {
-        if let Ok(mut names) = self.0.lock() {
-            names.push(name);
-        }
-        None
-    }
-}
-
-impl Default for Classes {
-    fn default() -> Classes {
-        let wanted = Wanted::default();
-        let mut library = Library::new();
-        library.set_loader(wanted.clone());
-        Classes {
-            library,
-            wanted,
-            nowhere: HashSet::new(),
-            revision: 0,
-            directories: Vec::new(),
-            files: BTreeMap::new(),
-        }
-    }
-}
-
 impl Classes {
     /// A number that changes with the classes.
     pub(super) fn revision(&self) -> u64 {
@@ -75,7 +41,7 @@ impl Classes {
 
     /// Full names of the loaded functions and of everything else that could be called.
     pub(super) fn function_names(&self) -> Vec<String> {
-        self.library.all_names().iter().map(Name::to_string).collect()
+        self.library.all().iter().map(Name::to_string).collect()
     }
 
     fn changed(&mut self) {
@@ -142,7 +108,7 @@ impl Session {
             if let Some(package) = file.within.as_ref().and_then(|within| within.node.first()) {
                 self.autoload_class(package)?;
             }
-            names.extend(self.classes.library.load(file).map_err(|error| vec![error])?);
+            names.extend(self.classes.library.load(&file).map_err(|error| vec![error])?);
         }
         Ok(names)
     }
@@ -245,7 +211,7 @@ impl Session {
     /// then what failed is worth another attempt.
     pub(super) fn load_wanted(&mut self) -> Result<bool, Vec<Diagnostic>> {
         let mut loaded = false;
-        for name in self.classes.wanted.take() {
+        for name in self.classes.library.take_missing() {
             loaded |= self.autoload_class(name)?;
         }
         Ok(loaded)
@@ -293,9 +259,9 @@ impl Session {
     }
 
     /// A class that a script defines; it replaces one of the same name.
-    pub(super) fn define_class(&mut self, class: &Arc<ClassDefinition>) {
+    pub(super) fn define_class(&mut self, class: &Arc<ClassDefinition>) -> Result<(), Diagnostic> {
         self.classes.changed();
-        self.classes.library.define(class.clone());
+        self.classes.library.define(class).map(|_| ())
     }
 
     /// Removes a class; whether there was one.
@@ -307,7 +273,7 @@ impl Session {
     /// Removes all classes.
     pub(super) fn forget_classes(&mut self) {
         self.classes.changed();
-        self.classes.library.clear();
+        self.classes.library = Library::new();
         self.classes.files.clear();
         self.models.forget();
     }
@@ -318,31 +284,87 @@ impl Session {
         let record = function.and_then(|constructor| constructor.outputs.first().cloned());
         match record {
             Some(record) => Ok(record.value_type),
-            None => Err(first_fault(self.classes.library.unknown_class(name, Span::NONE))),
+            None => Err(self.unknown_class(name)),
         }
+    }
+
+    /// The fault of a class that is not loaded and cannot be found.
+    pub(super) fn unknown_class(&self, name: &Name) -> Fault {
+        let wanted = name.to_string();
+        let known: Vec<String> = self.classes.library.all().iter().map(Name::to_string).collect();
+        let last = known.iter().map(|full| full.rsplit('.').next().unwrap_or(full));
+        let hint = suggest::did_you_mean(&wanted, known.iter().map(String::as_str))
+            .or_else(|| suggest::did_you_mean(&wanted, last));
+        fault!(UNKNOWN_CLASS, "there is no class `{wanted}`").help_if(hint).help(
+            "load the file that defines it first, with `openModel` or `loadFile`, or name its folder with `--library`",
+        )
     }
 
     /// A function of the loaded classes, looked up from the top level.
     pub(super) fn loaded_function(&mut self, name: &Name) -> Result<Option<Arc<Function>>, Fault> {
-        let candidates = self.candidates(name);
-        for candidate in candidates {
-            if self.classes.library.find(&Name::from(match candidate.first() {
-                Some(first) => first,
-                None => continue,
-            })).is_none() {
-                continue;
-            }
-            let found = self.classes.library.function(&candidate, &Name::default());
-            if let Some(function) = found.map_err(first_fault)? {
+        for candidate in self.candidates(name) {
+            if let Some(function) = self.function_named(&candidate).map_err(first_fault)? {
                 return Ok(Some(function));
             }
         }
         Ok(None)
     }
 
-    /// A constant of a package.
+    fn function_named(&mut self, name: &Name) -> Result<Option<Arc<Function>>, Diagnostic> {
+        loop {
+            match self.classes.library.function(name) {
+                Ok(functions) => {
+                    return Ok(functions.and_then(|all| all.into_values().next()));
+                }
+                Err(error) => {
+                    let loaded = self.load_wanted();
+                    if !loaded.map_err(|mut errors| errors.remove(0))? {
+                        return Err(error);
+                    }
+                }
+            }
+        }
+    }
+
+    /// A constant of a package, by its full name.
     pub(super) fn constant(&mut self, name: &Name) -> Result<Option<Value>, Fault> {
-        Ok(super::builtins::constant(name))
+        if let Some(value) = super::builtins::constant(name) {
+            return Ok(Some(value));
+        }
+        for candidate in self.candidates(name) {
+            if candidate.parts.len() < 2 || !self.class_exists(&candidate.parent()) {
+                continue;
+            }
+            if let Some(value) = self.package_constant(&candidate)? {
+                return Ok(Some(value));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Asks the library through a function whose output is the constant: it knows the scopes of
+    /// packages. `None` if the name does not stand for a constant of a predefined type.
+    fn package_constant(&mut self, name: &Name) -> Result<Option<Value>, Fault> {
+        const ASKING: &str = "'a constant'";
+        let name = Name::new(name.parts.iter().copied());
+        for type_name in ["Real", "Integer", "Boolean", "String"] {
+            let text = format!(
+                "function {ASKING} output {type_name} y; algorithm y := .{name}; end {ASKING};"
+            );
+            let Ok(asking) = syntax::parse_stored_definition(SourceId::NONE, &text) else {
+                return Ok(None);
+            };
+            let loaded = self.classes.library.load(&asking);
+            let asked = Name::parse(ASKING);
+            let function = loaded.ok().and_then(|_| self.function_named(&asked).ok().flatten());
+            self.classes.library.remove(Ident::new(ASKING));
+            let Some(function) = function else { continue };
+            let values = eval::call_function(&function, Vec::new().into(), Span::NONE, self);
+            if let Some(value) = values.ok().and_then(|mut values| values.pop()) {
+                return Ok(Some(value));
+            }
+        }
+        Ok(None)
     }
 
     /// The file that a path or a `modelica://Package/…` URI names.
@@ -360,10 +382,58 @@ impl Session {
         self.find_file(path).ok_or_else(|| self.missing_file(path))
     }
 
+    /// The value that a parameter of the model translated last has.
+    pub(super) fn model_value(
+        &mut self,
+        reference: &ComponentReference,
+    ) -> Result<Option<Value>, Diagnostic> {
+        let value = self.parameter_value(&print_reference(reference));
+        Ok(value.map(Value::Real))
+    }
+
+    /// Sets a flag, or a parameter of the model translated last.
+    pub(super) fn assign_dotted(
+        &mut self,
+        target: &ComponentReference,
+        value: Value,
+        span: Span,
+    ) -> Result<bool, Diagnostic> {
+        if self.set_flag(target, &value) {
+            return Ok(true);
+        }
+        if self.models.last().is_none() {
+            return Err(self.nothing_translated(target).at(target.span));
+        }
+        let name = print_reference(target);
+        let number = match value {
+            Value::Boolean(value) => f64::from(value),
+            Value::Enumeration(value) => value.ordinal as f64,
+            other => match other.as_real() {
+                Some(number) => number,
+                None => {
+                    return Err(fault!(
+                        BAD_PARAMETER_VALUE,
+                        "`{name}` cannot be {}", other.type_name();
+                        help: "assign a number, or the elements of an array one by one"
+                    )
+                    .at(span));
+                }
+            },
+        };
+        self.set_parameter(&name, number).at(span)?;
+        Ok(true)
+    }
+
     /// The file a class was loaded from, if it was loaded from one.
     pub(super) fn source_file(&self, name: &Name) -> Option<PathBuf> {
         self.classes.files.get(&Name::new(name.first())).cloned()
     }
+}
+
+/// A reference as variables of flat models are named: `pack.cell[2].V`.
+fn print_reference(reference: &ComponentReference) -> String {
+    let kind = ExpressionKind::Reference(reference.clone());
+    syntax::print_expression(&Expression::new(kind, reference.span))
 }
 
 /// The message of a diagnostic, for places where only that of the caller is known.

@@ -19,6 +19,7 @@ mod host;
 mod messages;
 mod scripts;
 mod session;
+pub mod simulation;
 mod statements;
 mod transcript;
 mod variables;

@@ -4,6 +4,7 @@ use super::callees::Callees;
 use super::classes::Classes;
 use super::follow_up::FollowUps;
 use super::scripts::{Frame, ParsedScripts};
+use super::simulation::Models;
 use super::world::World;
 use super::{Messages, Transcript};
 use crate::diag::{Code, Diagnostic, Fault, render};
@@ -122,6 +123,7 @@ pub struct Session {
     /// `echo(false)` was called.
     pub(super) muted: bool,
     pub(super) classes: Classes,
+    pub(super) models: Models,
     pub(super) callees: Callees,
     /// The turn of the outermost loop being run, and how many there are.
     pub(super) loop_turn: Option<(usize, Option<usize>)>,
@@ -152,6 +154,7 @@ impl Session {
             silent: 0,
             muted: false,
             classes: Classes::default(),
+            models: Models::default(),
             callees: Callees::default(),
             loop_turn: None,
             extensions: HashMap::new(),

@@ -125,12 +125,15 @@ pub fn translated(
 /// Everything that is wrong with it.
 pub fn flat_model(session: &mut Session, problem: &str) -> Result<FlatModel, Vec<Diagnostic>> {
     let source = session.sources.add("problem", problem);
-    let (name, modification) = syntax::parse_class_with_modification(source, problem)
-        .map_err(|error| vec![error])?;
+    let (name, modification) =
+        syntax::parse_class_with_modification(source, problem).map_err(|error| vec![error])?;
     session.autoload(&name)?;
     loop {
         match flatten::flatten(session.library(), &name, &modification) {
-            Ok(flat) => return Ok(flat),
+            Ok(flattened) => {
+                flattened.warnings.into_iter().for_each(|warning| session.report(warning));
+                return Ok(flattened.model);
+            }
             Err(errors) => {
                 if !session.load_wanted()? {
                     return Err(errors);
@@ -294,9 +297,7 @@ fn not_tunable(model: &Translated, name: &str) -> Fault {
             let reason = match () {
                 () if variable.variability == Variability::Constant => "it is a constant",
                 () if variable.is_final => "it is final",
-                () if variable.structural || variable.evaluate => {
-                    "its value shaped the equations"
-                }
+                () if variable.structural || variable.evaluate => "its value shaped the equations",
                 () => "it is an array or no number",
             };
             fault!(BAD_PARAMETER_VALUE, "`{name}` of `{problem}` cannot be set: {reason}";

@@ -50,7 +50,8 @@ fn near(value: f64, expected: f64, tolerance: f64) {
     assert!(error <= tolerance, "{value} instead of {expected}");
 }
 
-const DECAY: &str = "model Decay parameter Real k = 2; Real x(start = 3); equation der(x) = -k*x; end Decay;";
+const DECAY: &str =
+    "model Decay parameter Real k = 2; Real x(start = 3); equation der(x) = -k*x; end Decay;";
 
 #[test]
 fn decay_is_an_exponential() {
@@ -113,17 +114,16 @@ fn linear_and_nonlinear_loops_are_solved() {
     let program = compiled(nonlinear);
     let mut system = program.system();
     let trajectory = run(&mut system, 1.0);
-    let (x, y) = (
-        last(&program, &system, &trajectory, "x"),
-        last(&program, &system, &trajectory, "y"),
-    );
+    let (x, y) =
+        (last(&program, &system, &trajectory, "x"), last(&program, &system, &trajectory, "y"));
     near(x * x + y * y, 2.0, 1e-6);
     near(x, y.exp() - 1.0, 1e-9);
 }
 
 #[test]
 fn arrays_and_loops_are_scalars() {
-    let text = "model A Real x[3](start = {1, 2, 3}); Real s; parameter Real M[3,3] = diagonal({1, 2, 3});
+    let text =
+        "model A Real x[3](start = {1, 2, 3}); Real s; parameter Real M[3,3] = diagonal({1, 2, 3});
         equation der(x) = -M*x; s = sum(x[i]*i for i in 1:3) + max(x[2:end]); end A;";
     let e = |k: f64| k * (-k).exp();
     let (a, b, c) = (e(1.0), e(2.0), e(3.0));
@@ -174,11 +174,20 @@ fn failures_are_told_in_the_models_words() {
 fn what_is_not_handled_is_refused() {
     assert_eq!(refused("model M Real x; Real y; equation x = 1; end M;"), "unbalanced-model");
     assert_eq!(refused("model M Real x; Real y; equation x = 1; x = 2; end M;"), "singular-system");
-    assert_eq!(refused("model M Real x; equation when time > 1 then x = 2; end when; end M;"), "not-supported");
-    assert_eq!(refused("model M parameter Real a = b; parameter Real b = a; Real x = a; end M;"), "parameter-cycle");
+    assert_eq!(
+        refused("model M Real x; equation when time > 1 then x = 2; end when; end M;"),
+        "not-supported"
+    );
+    assert_eq!(
+        refused("model M parameter Real a = b; parameter Real b = a; Real x = a; end M;"),
+        "parameter-cycle"
+    );
     assert_eq!(refused("model M parameter Real a; Real x = a; end M;"), "parameter-without-value");
     assert_eq!(refused("model M Real x[2] = {1, 2, 3}; end M;"), "array-mismatch");
-    assert_eq!(refused("model P Real x; Real y; equation der(x) = y; x = time; end P;"), "not-supported");
+    assert_eq!(
+        refused("model P Real x; Real y; equation der(x) = y; x = time; end P;"),
+        "not-supported"
+    );
 }
 
 const POLARIZATION: &str = "model P parameter Real Eoc = 1.2; parameter Real R = 0.73; parameter Real In = 1.4e-3;
@@ -206,7 +215,8 @@ fn the_jacobian_agrees_with_differences() {
         system.rhs(0.0, &b, &mut down).unwrap();
         for row in 0..3 {
             let entries = pattern.column_starts[column]..pattern.column_starts[column + 1];
-            let entry = entries.clone().find(|e| pattern.rows[*e] == row).map_or(0.0, |e| values[e]);
+            let entry =
+                entries.clone().find(|e| pattern.rows[*e] == row).map_or(0.0, |e| values[e]);
             near(entry, (up[row] - down[row]) / 2e-6, 1e-7);
         }
     }

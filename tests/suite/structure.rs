@@ -10,8 +10,12 @@ fn sorted_systems() {
         let shown = match sort(&flat(&text)) {
             Ok(sorted) => report(&sorted),
             Err(diagnostic) => {
-                format!("error[{}]: {}\n{}", diagnostic.code.slug, diagnostic.message,
-                    diagnostic.helps.join("\n"))
+                format!(
+                    "error[{}]: {}\n{}",
+                    diagnostic.code.slug,
+                    diagnostic.message,
+                    diagnostic.helps.join("\n")
+                )
             }
         };
         let name = path.file_stem().expect("a file has a name").to_string_lossy().into_owned();
