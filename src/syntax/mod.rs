@@ -25,6 +25,17 @@ use parser::Rule;
 use scan::Dialect;
 
 /// Reads a `.mo` file (MLS §A.2.1).
+///
+/// ```
+/// use gapilib::{source::SourceId, syntax};
+///
+/// let text = "model Decay Real x(start=1); equation der(x) = -x; end Decay;";
+/// let file = syntax::parse_stored_definition(SourceId::NONE, text)?;
+/// assert_eq!(file.classes[0].name.node, "Decay");
+/// let error = syntax::parse_stored_definition(SourceId::NONE, "model M Real x end M;");
+/// assert_eq!(error.unwrap_err().code.slug, "missing-semicolon");
+/// # Ok::<(), gapilib::diag::Diagnostic>(())
+/// ```
 pub fn parse_stored_definition(
     source: SourceId,
     text: &str,
@@ -34,11 +45,37 @@ pub fn parse_stored_definition(
 }
 
 /// Reads a `.mos` file: interactive statements, closed by `;` or line ends.
+///
+/// ```
+/// use gapilib::{source::SourceMap, syntax};
+///
+/// let text = "cd ..\nfor i in 1:3 loop\n  x = i\nend for\nf(x) // shown\n";
+/// let source = SourceMap::default().add("example.mos", text);
+/// let script = syntax::parse_script(source, text)?;
+/// assert_eq!(script.statements.len(), 3);
+/// assert_eq!(
+///     syntax::print::script(&script),
+///     "cd ..\nfor i in 1:3 loop\n  x := i;\nend for\nf(x)\n"
+/// );
+/// # Ok::<(), gapilib::diag::Diagnostic>(())
+/// ```
 pub fn parse_script(source: SourceId, text: &str) -> Result<Script, Diagnostic> {
     parser::parse(source, text, Rule::script, Dialect::Script, lower::script)
 }
 
-/// Reads an expression that is the whole text, such as the value of a command-line option.
+/// Reads an expression.
+///
+/// ```
+/// use gapilib::{source::SourceId, syntax};
+///
+/// let tree = syntax::parse_expression(SourceId::NONE, "-(a+b)*{1,2.0}[1]");
+/// assert!(tree.is_err());
+/// let tree = syntax::parse_expression(SourceId::NONE, "-(a+b)*({1,2.0})[1]")?;
+/// assert_eq!(syntax::print::expression(&tree), "-(a + b) * ({1, 2.0})[1]");
+/// # Ok::<(), gapilib::diag::Diagnostic>(())
+/// ```
+///
+/// It is the whole text, such as the value of a command-line option.
 pub fn parse_expression(source: SourceId, text: &str) -> Result<Expression, Diagnostic> {
     let rule = Rule::lone_expression;
     parser::parse(source, text, rule, Dialect::Fragment, lower::lone_expression)

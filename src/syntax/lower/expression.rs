@@ -10,10 +10,6 @@ use crate::syntax::ast::{
 };
 use crate::syntax::errors::SYNTAX_ERROR;
 use crate::syntax::parser::{Node, Nodes, Rule};
-use crate::syntax::scan::too_deep;
-
-/// Operators that one expression without parentheses may have: each makes the tree one deeper.
-const MAX_OPERATORS: usize = 500;
 
 /// Precedence of the operators (MLS §3.2), loosest first. `:` is read by [`range`].
 const OR: u8 = 1;
@@ -30,8 +26,7 @@ pub(super) fn expression(nodes: &mut Nodes<'_>) -> Lowered<Expression> {
     if let Some(branches) = parts.try_enter(Rule::if_expression) {
         return conditional(branches);
     }
-    let mut operators = 0;
-    let whole = range(&mut parts, &mut operators)?;
+    let whole = range(&mut parts)?;
     match parts.next() {
         None => Ok(whole),
         Some(extra) => Err(unassociated(&parts, &extra)),
@@ -76,14 +71,14 @@ fn conditional(mut parts: Nodes<'_>) -> Lowered<Expression> {
 }
 
 /// `a`, `a:b` or `a:step:b`.
-fn range(parts: &mut Nodes<'_>, operators: &mut usize) -> Lowered<Expression> {
-    let start = binary(parts, OR, operators)?;
+fn range(parts: &mut Nodes<'_>) -> Lowered<Expression> {
+    let start = binary(parts, OR)?;
     if !parts.skip(Rule::range_operator) {
         return Ok(start);
     }
-    let second = binary(parts, OR, operators)?;
+    let second = binary(parts, OR)?;
     let (step, stop) = if parts.skip(Rule::range_operator) {
-        (Some(Box::new(second)), binary(parts, OR, operators)?)
+        (Some(Box::new(second)), binary(parts, OR)?)
     } else {
         (None, second)
     };
@@ -93,17 +88,16 @@ fn range(parts: &mut Nodes<'_>, operators: &mut usize) -> Lowered<Expression> {
 }
 
 /// Operands joined by operators of at least this precedence.
-fn binary(parts: &mut Nodes<'_>, least: u8, operators: &mut usize) -> Lowered<Expression> {
-    let mut left = operand(parts, least, operators)?;
+fn binary(parts: &mut Nodes<'_>, least: u8) -> Lowered<Expression> {
+    let mut left = operand(parts, least)?;
     let mut ceiling = POWER;
     while let Some(operator) = peek_operator(parts) {
         let precedence = precedence(operator);
         if precedence < least || precedence > ceiling {
             break;
         }
-        let node = parts.expect(Rule::binary_operator);
-        count(parts, &node, operators)?;
-        let right = binary(parts, precedence + 1, operators)?;
+        parts.expect(Rule::binary_operator);
+        let right = binary(parts, precedence + 1)?;
         let span = left.span.to(right.span);
         let kind =
             ExpressionKind::Binary { operator, left: Box::new(left), right: Box::new(right) };
@@ -114,17 +108,8 @@ fn binary(parts: &mut Nodes<'_>, least: u8, operators: &mut usize) -> Lowered<Ex
     Ok(left)
 }
 
-fn count<'i>(parts: &Nodes<'i>, node: &Node<'i>, operators: &mut usize) -> Lowered<()> {
-    *operators += 1;
-    if *operators > MAX_OPERATORS {
-        return Err(too_deep(parts.span(node)));
-    }
-    Ok(())
-}
-
-fn operand(parts: &mut Nodes<'_>, least: u8, operators: &mut usize) -> Lowered<Expression> {
+fn operand(parts: &mut Nodes<'_>, least: u8) -> Lowered<Expression> {
     let Some(node) = parts.take(Rule::unary_operator) else { return primary(parts) };
-    count(parts, &node, operators)?;
     let start = parts.span(&node);
     let (operator, precedence) = match node.as_str() {
         "-" => (UnaryOperator::Minus, MULTIPLICATION),
@@ -134,7 +119,7 @@ fn operand(parts: &mut Nodes<'_>, least: u8, operators: &mut usize) -> Lowered<E
         _ => (UnaryOperator::Not, NOT + 1),
     };
     // Behind another operator (`a / -b * c`, beyond the MLS) a sign binds to its factor alone.
-    let operand = binary(parts, precedence.max(least), operators)?;
+    let operand = binary(parts, precedence.max(least))?;
     let span = start.to(operand.span);
     Ok(Expression::new(ExpressionKind::Unary { operator, operand: Box::new(operand) }, span))
 }

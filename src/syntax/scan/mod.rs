@@ -7,6 +7,7 @@
 //! original.
 
 mod blocks;
+mod depth;
 mod tokens;
 
 use crate::diag::Diagnostic;
@@ -14,12 +15,13 @@ use crate::fault;
 use crate::source::{SourceId, Span};
 use crate::syntax::errors::{NESTING_TOO_DEEP, NOT_A_SCRIPT, TEXT_TOO_LARGE, UNCLOSED_BRACKET};
 use blocks::Blocks;
+use depth::Depth;
 use tokens::{CommandPlace, Token, TokenKind, Tokens};
 
 /// Stands for a line end that closes a statement of a script.
 pub(super) const LINE_END: u8 = 0x1e;
 
-/// Brackets, blocks and conditional expressions inside each other that are still read.
+/// Brackets and blocks inside each other that are still read.
 const MAX_NESTING: usize = 200;
 
 /// Whether line ends count.
@@ -88,8 +90,6 @@ fn is_table_header(line: &str) -> bool {
 struct Bracket {
     at: usize,
     open: u8,
-    /// Conditional expressions open outside it.
-    conditions_outside: usize,
 }
 
 struct Scanner<'t> {
@@ -99,8 +99,7 @@ struct Scanner<'t> {
     out: Vec<u8>,
     brackets: Vec<Bracket>,
     blocks: Blocks<'t>,
-    /// `if` of conditional expressions, since the last separator, that deepen the tree.
-    conditions: usize,
+    depth: Depth,
     /// `if` of conditional expressions at bracket depth zero whose `else` is to come.
     awaiting_else: usize,
     /// The same for their `then`.
@@ -118,7 +117,7 @@ impl<'t> Scanner<'t> {
             out: text.as_bytes().to_vec(),
             brackets: Vec::new(),
             blocks: Blocks::new(source, dialect != Dialect::Fragment),
-            conditions: 0,
+            depth: Depth::new(),
             awaiting_else: 0,
             awaiting_then: 0,
             previous: None,
@@ -165,7 +164,6 @@ impl<'t> Scanner<'t> {
             TokenKind::Open => self.open(&token),
             TokenKind::Close => self.close(&token),
             TokenKind::Separator if token.text == ";" => self.semicolon(&token),
-            TokenKind::Separator => self.conditions = 0,
             TokenKind::Word | TokenKind::Quoted => self.word(&token),
             _ => self.blocks.leave_start(),
         }
@@ -188,12 +186,11 @@ impl<'t> Scanner<'t> {
         self.blocks.end_statement();
         self.awaiting_else = 0;
         self.awaiting_then = 0;
-        self.conditions = 0;
+        self.depth.end_statement();
     }
 
     fn word(&mut self, token: &Token<'t>) {
         if !self.brackets.is_empty() {
-            self.conditions += usize::from(token.text == "if");
             return;
         }
         if self.in_condition(token) {
@@ -209,7 +206,6 @@ impl<'t> Scanner<'t> {
     fn in_condition(&mut self, token: &Token<'t>) -> bool {
         match token.text {
             "if" if !self.blocks.at_start() && !self.after_end() => {
-                self.conditions += 1;
                 self.awaiting_else += 1;
                 self.awaiting_then += 1;
             }
@@ -227,11 +223,7 @@ impl<'t> Scanner<'t> {
 
     fn open(&mut self, token: &Token<'t>) {
         self.blocks.leave_start();
-        self.brackets.push(Bracket {
-            at: token.start,
-            open: token.text.as_bytes()[0],
-            conditions_outside: self.conditions,
-        });
+        self.brackets.push(Bracket { at: token.start, open: token.text.as_bytes()[0] });
     }
 
     fn close(&mut self, token: &Token<'t>) {
@@ -245,7 +237,6 @@ impl<'t> Scanner<'t> {
                 message.labelled(self.span(token.start, token.end), "nothing is open here"),
             );
         };
-        self.conditions = bracket.conditions_outside;
         if closing(bracket.open) != token.text {
             self.unclosed(
                 &bracket,
@@ -258,7 +249,7 @@ impl<'t> Scanner<'t> {
 
     fn semicolon(&mut self, token: &Token<'t>) {
         match self.brackets.last() {
-            Some(bracket) if bracket.open == b'[' => self.conditions = 0,
+            Some(bracket) if bracket.open == b'[' => {}
             Some(_) => {
                 if let Some(bracket) = self.brackets.pop() {
                     self.unclosed(&bracket, token.start, token.end, "the statement ends here");
@@ -293,8 +284,9 @@ impl<'t> Scanner<'t> {
         self.problem.get_or_insert(Problem { from, diagnostic });
     }
 
-    fn check_depth(&self, token: &Token<'t>) -> Result<(), Diagnostic> {
-        if self.brackets.len() + self.conditions + self.blocks.len() <= MAX_NESTING {
+    fn check_depth(&mut self, token: &Token<'t>) -> Result<(), Diagnostic> {
+        let shallow = self.depth.take(token);
+        if shallow && self.brackets.len() + self.blocks.len() <= MAX_NESTING {
             return Ok(());
         }
         Err(too_deep(self.span(token.start, token.end)))
@@ -306,7 +298,7 @@ impl<'t> Scanner<'t> {
 }
 
 /// The error of a text nested too deeply.
-pub(super) fn too_deep(span: Span) -> Diagnostic {
+fn too_deep(span: Span) -> Diagnostic {
     fault!(NESTING_TOO_DEEP, "this is nested too deeply")
         .help("split it: give parts of the expression a name")
         .at(span)
