@@ -10,7 +10,7 @@ use crate::source::Span;
 use crate::syntax::ast::{Expression, ExpressionKind, ForIndex, Statement};
 use crate::value::construct::{self, Range};
 use crate::value::errors::{DOMAIN_ERROR, TYPE_MISMATCH};
-use crate::value::{Value, ops};
+use crate::value::{Value, element_count, ops};
 
 /// What a deduced range is looked for in.
 #[derive(Clone, Copy)]
@@ -95,7 +95,11 @@ impl Evaluator<'_> {
         let range = self.iterated(outer, Body::Expression(element))?;
         let mut values = Vec::with_capacity(range.count().min(1 << 16));
         self.with_each(outer, &range, |evaluator| {
-            values.push(evaluator.comprehension(element, inner, span)?);
+            let value = evaluator.comprehension(element, inner, span)?;
+            if values.is_empty() {
+                element_count(&[&[range.count()], value.dims()].concat()).at(span)?;
+            }
+            values.push(value);
             Ok(())
         })?;
         construct::array(values).at(span)

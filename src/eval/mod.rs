@@ -45,6 +45,42 @@ use std::sync::Arc;
 
 /// The value of an expression. A call of a function with no output or with several gives a
 /// [`Value::Tuple`].
+///
+/// ```
+/// use gapilib::diag::{Diagnostic, Fault};
+/// use gapilib::eval::{Callee, Function, Host, Scope, evaluate};
+/// use gapilib::name::{Ident, Name};
+/// use gapilib::source::{SourceId, Span};
+/// use gapilib::syntax::{ast::ComponentReference, parse_expression};
+/// use gapilib::value::Value;
+/// use std::sync::Arc;
+///
+/// /// Knows nothing beyond what evaluation knows by itself.
+/// struct Alone;
+///
+/// impl Host for Alone {
+///     fn callee(&mut self, _: &Name) -> Result<Option<Callee>, Fault> {
+///         Ok(None)
+///     }
+///     fn call_builtin(
+///         &mut self,
+///         _: &Arc<Function>,
+///         arguments: Vec<Value>,
+///         _: Span,
+///     ) -> Result<Vec<Value>, Diagnostic> {
+///         Ok(arguments)
+///     }
+///     fn variable(&mut self, _: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
+///         Ok(None)
+///     }
+/// }
+///
+/// let mut scope = Scope::script();
+/// scope.set(Ident::new("v"), Value::reals(vec![3.0, 4.0]))?;
+/// let norm = parse_expression(SourceId::NONE, "sqrt(v*v)")?;
+/// assert_eq!(evaluate(&norm, &mut scope, &mut Alone)?, Value::Real(5.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn evaluate(
     expression: &ast::Expression,
     scope: &mut Scope,

@@ -7,7 +7,7 @@ use crate::{bail, fault};
 use std::sync::Arc;
 
 /// The most elements that an array may have.
-pub const MAX_ELEMENTS: usize = 1 << 27;
+pub const MAX_ELEMENTS: usize = 1 << 24;
 
 /// An array of rank one or more.
 #[derive(Debug, Clone, PartialEq)]

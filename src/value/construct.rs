@@ -236,7 +236,7 @@ impl Range {
         let quotient = (stop - start) / step;
         let rounding = 4.0 * f64::EPSILON * ((start.abs() + stop.abs()) / step.abs() + 1.0);
         let last = (quotient + rounding.min(0.5)).floor();
-        let count = if last < 0.0 { 0 } else { last as usize + 1 };
+        let count = if last < 0.0 { 0 } else { (last as usize).saturating_add(1) };
         Ok(Range::Real { start, step, stop, count })
     }
 

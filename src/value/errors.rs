@@ -23,5 +23,5 @@ codes! {
         "## What it means\n\nA function has no real value for its argument, such as the logarithm of a negative number.\n\n## Example\n\n`sqrt(-1)`\n\n## What to do\n\nCheck the argument, or limit it: `log(max(x, 1e-9))`.",
     /// An array that would not fit in memory.
     ARRAY_TOO_LARGE = "array-too-large":
-        "## What it means\n\nAn array with more than 134 217 728 (2^27) elements was asked for.\n\n## Example\n\n`zeros(100000, 100000)`\n\n## What to do\n\nCheck the sizes; a `for` loop over a long range does not build an array.",
+        "## What it means\n\nAn array with more than 16 777 216 (2^24) elements was asked for.\n\n## Example\n\n`zeros(100000, 100000)`\n\n## What to do\n\nCheck the sizes; a `for` loop over a long range does not build an array.",
 }

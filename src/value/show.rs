@@ -16,6 +16,14 @@ pub enum Style {
 }
 
 /// The value as text.
+///
+/// ```
+/// use gapilib::value::{ArrayValue, Value, show::{Style, show}};
+///
+/// let matrix = Value::Array(ArrayValue::matrix(2, 2, vec![1.0, 0.1, 1e-7, -2.0]));
+/// assert_eq!(show(&matrix, Style::Dymola), "[1.0, 0.1;\n1e-7, -2.0]");
+/// assert_eq!(show(&matrix, Style::OpenModelica), "{{1.0, 0.1}, {1e-7, -2.0}}");
+/// ```
 pub fn show(value: &Value, style: Style) -> String {
     let mut writer = Writer { text: String::new(), style };
     writer.value(value);

@@ -4,6 +4,8 @@ mod expressions;
 mod functions;
 mod host;
 mod intrinsics;
+mod robustness;
+mod shipped;
 mod statements;
 
 use super::{Flow, Scope, evaluate, execute};
