@@ -68,7 +68,8 @@ impl Format for Mat {
         if data[1].columns == 0 {
             bail!(BAD_RESULT_FILE, "`data_2` holds no time");
         }
-        Reading { info, data, by_source: HashMap::new() }.table(&names, &descriptions)
+        Reading { info, data, by_source: HashMap::new(), interpolated: 0 }
+            .table(&names, &descriptions)
     }
 }
 
@@ -189,7 +190,12 @@ struct Reading {
     data: [Matrix; 2],
     /// Which series holds the values of a matrix and column, and whether with the other sign.
     by_source: HashMap<(usize, usize), (usize, bool)>,
+    /// Values made by interpolation so far.
+    interpolated: usize,
 }
+
+/// Values that interpolation may make of two in `data_1`: the file pays for neither.
+const MAX_INTERPOLATED: usize = 1 << 26;
 
 impl Reading {
     fn table(mut self, names: &[String], descriptions: &[String]) -> Result<ResultTable, Fault> {
@@ -200,7 +206,7 @@ impl Reading {
                 table.time_name.clone_from(name);
                 continue;
             }
-            let values = self.values(&table, matrix, column, negated);
+            let values = self.values(&table, matrix, column, negated)?;
             let (description, unit) = split_description(description);
             table.series.push(Series { name: name.clone(), unit, description, values });
         }
@@ -232,22 +238,25 @@ impl Reading {
         matrix: usize,
         column: usize,
         negated: bool,
-    ) -> Values {
-        let place = table.series.len();
+    ) -> Result<Values, Fault> {
         if let Some((of, sign)) = self.by_source.get(&(matrix, column)) {
-            return Values::Alias { of: *of, negated: negated != *sign };
+            return Ok(Values::Alias { of: *of, negated: negated != *sign });
         }
-        self.by_source.insert((matrix, column), (place, negated));
+        self.by_source.insert((matrix, column), (table.series.len(), negated));
         let sign = if negated { -1.0 } else { 1.0 };
         let stored = self.data[matrix - 1].column(column);
-        match stored {
+        Ok(match stored {
             _ if matrix == 2 => Values::Trajectory(stored.iter().map(|v| sign * v).collect()),
             [first, .., last] if first != last && !(first.is_nan() && last.is_nan()) => {
+                self.interpolated += table.time.len();
+                if self.interpolated > MAX_INTERPOLATED {
+                    bail!(BAD_RESULT_FILE, "`data_1` holds too many values that change");
+                }
                 Values::Trajectory(line(&table.time, sign * first, sign * last))
             }
             [first, ..] => Values::Constant(sign * first),
-            [] => Values::Constant(f64::NAN),
-        }
+            [] => bail!(BAD_RESULT_FILE, "`data_1` holds no values"),
+        })
     }
 }
 

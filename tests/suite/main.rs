@@ -6,6 +6,7 @@ mod flat_class;
 mod flattening;
 mod grammar;
 mod mat;
+mod plot;
 mod results;
 mod simulation;
 mod structure;

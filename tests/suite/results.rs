@@ -85,6 +85,24 @@ fn mat_has_the_layout_that_other_programs_expect() {
 }
 
 #[test]
+fn a_constant_that_changes_is_the_line_between_its_values() {
+    let text = |lines: &[&str]| mat::Matrix::from_text(lines);
+    let rows = |rows: &[[f64; 2]]| {
+        mat::Matrix::from_rows(&rows.iter().map(|row| row.to_vec()).collect::<Vec<_>>())
+    };
+    let bytes = mat::write_v4([
+        ("Aclass", &text(&["Atrajectory", "1.1", "", "binNormal"])),
+        ("name", &text(&["time", "p"])),
+        ("description", &text(&["", ""])),
+        ("dataInfo", &rows(&[[0.0, 1.0], [1.0, -2.0]])),
+        ("data_1", &rows(&[[0.0, 1.0], [4.0, 3.0]])),
+        ("data_2", &mat::Matrix::column_vector(vec![0.0, 1.0, 4.0])),
+    ]);
+    let table = results::format("mat").unwrap().read(&bytes.unwrap()).unwrap();
+    assert_eq!(table.column("p").unwrap(), [-1.0, -1.5, -3.0]);
+}
+
+#[test]
 fn interpolation_is_linear_and_takes_the_value_after_an_event() {
     let table = example();
     let found = table.interpolate("minus_x", &[0.0, 0.25, 0.5, 0.75, 1.0]).unwrap();
@@ -134,6 +152,7 @@ fn files_that_hold_no_results_are_refused() {
 
 /// Python with scipy and DyMat, if present, reads our file as an independent witness.
 #[test]
+#[allow(clippy::print_stderr, reason = "a skipped check must be visible")]
 fn python_reads_our_results() {
     const CHECK: &str = "
 import sys, DyMat
