@@ -12,7 +12,7 @@ use crate::name::{Ident, Name};
 use crate::source::{SourceId, Span, Spanned};
 use crate::syntax;
 use crate::syntax::ast::{
-    ClassDefinition, ComponentReference, Expression, ExpressionKind, StoredDefinition,
+    ClassDefinition, ComponentReference, Expression, ExpressionKind, StoredDefinition, Subscript,
 };
 use crate::value::Value;
 use std::collections::{BTreeMap, HashSet};
@@ -387,7 +387,7 @@ impl Session {
         &mut self,
         reference: &ComponentReference,
     ) -> Result<Option<Value>, Diagnostic> {
-        let value = self.parameter_value(&print_reference(reference));
+        let value = flat_name(reference).and_then(|name| self.parameter_value(&name));
         Ok(value.map(Value::Real))
     }
 
@@ -404,7 +404,10 @@ impl Session {
         if self.models.last().is_none() {
             return Err(self.nothing_translated(target).at(target.span));
         }
-        let name = print_reference(target);
+        let Some(name) = flat_name(target) else {
+            let message = "a part of a model is named with Integers as subscripts";
+            return Err(Fault::new(BAD_PARAMETER_VALUE, message).at(target.span));
+        };
         let number = match value {
             Value::Boolean(value) => f64::from(value),
             Value::Enumeration(value) => value.ordinal as f64,
@@ -430,10 +433,31 @@ impl Session {
     }
 }
 
-/// A reference as variables of flat models are named: `pack.cell[2].V`.
-fn print_reference(reference: &ComponentReference) -> String {
-    let kind = ExpressionKind::Reference(reference.clone());
-    syntax::print_expression(&Expression::new(kind, reference.span))
+/// A reference as variables of flat models are named: `pack.cell[2].V`; `None` if a subscript is
+/// not an Integer.
+fn flat_name(reference: &ComponentReference) -> Option<String> {
+    let mut name = String::new();
+    for part in &reference.parts {
+        if !name.is_empty() {
+            name.push('.');
+        }
+        name.push_str(part.name.as_str());
+        let subscripts: Option<Vec<String>> = part
+            .subscripts
+            .iter()
+            .map(|subscript| match subscript {
+                Subscript::Index(Expression { kind: ExpressionKind::Integer(at), .. }) => {
+                    Some(at.to_string())
+                }
+                _ => None,
+            })
+            .collect();
+        match subscripts?.join(",") {
+            none if none.is_empty() => {}
+            subscripts => name.push_str(&format!("[{subscripts}]")),
+        }
+    }
+    Some(name)
 }
 
 /// The message of a diagnostic, for places where only that of the caller is known.

@@ -5,12 +5,14 @@ mod args;
 mod conversion;
 mod files;
 mod header;
+mod loading;
 mod matrices;
 mod messages;
 mod results;
 mod scanning;
 mod scripts;
 mod settings;
+mod simulation;
 mod streams;
 mod strings;
 mod system;
@@ -83,6 +85,8 @@ pub static FAMILIES: &[&Family] = &[
     &conversion::FAMILY,
     &files::FAMILY,
     &files::OPENMODELICA,
+    &loading::FAMILY,
+    &loading::OPENMODELICA,
     &matrices::FAMILY,
     &messages::FAMILY,
     &results::FAMILY,
@@ -91,6 +95,7 @@ pub static FAMILIES: &[&Family] = &[
     &scripts::OPENMODELICA,
     &settings::FAMILY,
     &settings::LIST_FAMILY,
+    &simulation::FAMILY,
     &streams::FAMILY,
     &streams::BARE_PRINT,
     &system::FAMILY,
