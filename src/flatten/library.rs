@@ -9,7 +9,8 @@ use crate::syntax::ast::{
     Visibility,
 };
 use indexmap::IndexMap;
-use std::sync::Arc;
+use std::collections::BTreeSet;
+use std::sync::{Arc, Mutex};
 
 /// A class of a [`Library`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
@@ -21,6 +22,8 @@ pub struct ClassId(u32);
 pub struct Library {
     classes: Vec<Class>,
     roots: IndexMap<Ident, ClassId>,
+    /// Top-level names that were looked for and are not loaded.
+    missing: Arc<Mutex<BTreeSet<Ident>>>,
 }
 
 /// A class with what its text says directly, before inheritance.
@@ -192,8 +195,21 @@ impl Library {
         names
     }
 
+    /// The top-level names that were looked for in vain since the last call, sorted: who has the
+    /// files can load them and try again.
+    pub fn take_missing(&self) -> BTreeSet<Ident> {
+        match self.missing.lock() {
+            Ok(mut missing) => std::mem::take(&mut *missing),
+            Err(poisoned) => std::mem::take(&mut *poisoned.into_inner()),
+        }
+    }
+
     pub(super) fn root(&self, name: Ident) -> Option<ClassId> {
-        self.roots.get(&name).copied()
+        let found = self.roots.get(&name).copied();
+        if let (None, Ok(mut missing)) = (found, self.missing.lock()) {
+            missing.insert(name);
+        }
+        found
     }
 
     pub(super) fn class(&self, id: ClassId) -> &Class {

@@ -1,68 +1,478 @@
 //! The classes of a session: those of its scripts, of loaded files and of libraries.
 
 use super::Session;
-use crate::diag::{Diagnostic, Fault};
-use crate::eval::{Function, ValueType};
+use super::errors::BAD_PARAMETER_VALUE;
+use super::world::normalized;
+use crate::diag::{At, Diagnostic, Fault, suggest};
+use crate::eval::{self, Function, ValueType};
 use crate::fault;
-use crate::name::Name;
-use crate::source::Span;
-use crate::syntax::ast::{ClassDefinition, ComponentReference};
+use crate::flatten::Library;
+use crate::flatten::errors::UNKNOWN_CLASS;
+use crate::name::{Ident, Name};
+use crate::source::{SourceId, Span, Spanned};
+use crate::syntax;
+use crate::syntax::ast::{
+    ClassDefinition, ComponentReference, Expression, ExpressionKind, StoredDefinition, Subscript,
+};
 use crate::value::Value;
-use std::path::PathBuf;
+use std::collections::{BTreeMap, HashSet};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// The loaded classes and where more can be found.
 #[derive(Default)]
 pub(super) struct Classes {
+    pub(super) library: Library,
+    /// Those that are nowhere.
+    nowhere: HashSet<Ident>,
+    /// Counts what changes what a name can stand for.
     revision: u64,
+    /// Folders whose packages are loaded when somebody names them.
+    directories: Vec<PathBuf>,
+    /// The file of each top-level class that came from one.
+    files: BTreeMap<Name, PathBuf>,
 }
+
 impl Classes {
+    /// A number that changes with the classes.
     pub(super) fn revision(&self) -> u64 {
         self.revision
     }
+
+    /// Full names of the loaded functions and of everything else that could be called.
     pub(super) fn function_names(&self) -> Vec<String> {
-        Vec::new()
+        self.library.all().iter().map(Name::to_string).collect()
+    }
+
+    fn changed(&mut self) {
+        self.revision += 1;
+        self.nowhere.clear();
     }
 }
-pub(super) fn autoload(_: &mut Session, _: &Name) -> Result<(), Fault> {
-    Ok(())
-}
+
 impl Session {
-    pub(super) fn class_exists(&mut self, _: &Name) -> bool {
-        false
+    /// Makes the packages in a folder loadable by name.
+    pub fn add_library_dir(&mut self, path: &Path) {
+        let path = self.world.absolute(path);
+        self.classes.directories.push(path);
+        self.classes.nowhere.clear();
     }
+
+    /// The loaded classes.
+    pub fn library(&mut self) -> &mut Library {
+        &mut self.classes.library
+    }
+
+    /// A number that changes whenever a class is loaded, defined or removed.
+    pub fn library_revision(&self) -> u64 {
+        self.classes.revision
+    }
+
+    /// Loads a `.mo` file, or a package from its folder or its `package.mo`. Returns the names of
+    /// the classes.
+    pub fn load_path(&mut self, path: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {
+        let Some(mut found) = self.find_file(path) else {
+            return Err(vec![self.missing_file(path).at(self.call)]);
+        };
+        if found.file_name().is_some_and(|name| name == "package.mo") {
+            found.pop();
+        }
+        let mut files = Vec::new();
+        if self.world.is_dir(&found) && !self.world.exists(&found.join("package.mo")) {
+            self.collect_folder(&found, &mut files)?;
+        } else {
+            self.collect(&found, None, &mut files)?;
+        }
+        let names = self.load_definitions(files)?;
+        for name in names.iter().filter(|name| name.is_simple()) {
+            self.classes.files.insert(name.clone(), found.clone());
+        }
+        Ok(names)
+    }
+
+    /// Loads classes from a text; `name` stands in diagnostics.
+    pub fn load_text(&mut self, name: &str, text: &str) -> Result<Vec<Name>, Vec<Diagnostic>> {
+        let source = self.sources.add(name, text);
+        let definition =
+            syntax::parse_stored_definition(source, text).map_err(|error| vec![error])?;
+        self.load_definitions(vec![definition])
+    }
+
+    fn load_definitions(
+        &mut self,
+        files: Vec<StoredDefinition>,
+    ) -> Result<Vec<Name>, Vec<Diagnostic>> {
+        self.classes.changed();
+        let mut names = Vec::new();
+        for file in files {
+            if let Some(package) = file.within.as_ref().and_then(|within| within.node.first()) {
+                self.autoload_class(package)?;
+            }
+            names.extend(self.classes.library.load(&file).map_err(|error| vec![error])?);
+        }
+        Ok(names)
+    }
+
+    /// All packages and files of a folder that is no package.
+    fn collect_folder(
+        &mut self,
+        folder: &Path,
+        files: &mut Vec<StoredDefinition>,
+    ) -> Result<(), Vec<Diagnostic>> {
+        for entry in self.world.list_dir(folder).unwrap_or_default() {
+            let path = folder.join(&entry);
+            let is_package = self.world.exists(&path.join("package.mo"));
+            if is_package || entry.ends_with(".mo") {
+                self.collect(&path, None, files)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Parses a file, or a package folder in the order of its `package.order` (MLS §13.4). What
+    /// does not say where it belongs belongs into `within`.
+    fn collect(
+        &mut self,
+        path: &Path,
+        within: Option<&Name>,
+        files: &mut Vec<StoredDefinition>,
+    ) -> Result<(), Vec<Diagnostic>> {
+        if !self.world.is_dir(path) {
+            return self.collect_file(path, within, files);
+        }
+        self.collect_file(&path.join("package.mo"), within, files)?;
+        let package = files.last().and_then(|file| Some(full_name(file, file.classes.first()?)));
+        for entry in self.ordered_entries(path) {
+            self.collect(&path.join(entry), package.as_ref(), files)?;
+        }
+        Ok(())
+    }
+
+    fn collect_file(
+        &mut self,
+        path: &Path,
+        within: Option<&Name>,
+        files: &mut Vec<StoredDefinition>,
+    ) -> Result<(), Vec<Diagnostic>> {
+        let (source, text) = self.add_file(path).at(self.call).map_err(|error| vec![error])?;
+        let mut file =
+            syntax::parse_stored_definition(source, &text).map_err(|error| vec![error])?;
+        if let (None, Some(within)) = (&file.within, within) {
+            file.within = Some(Spanned { node: within.clone(), span: Span::new(source, 0, 0) });
+        }
+        files.push(file);
+        Ok(())
+    }
+
+    /// The files and folders of a package: first those that `package.order` names.
+    fn ordered_entries(&self, folder: &Path) -> Vec<String> {
+        let entries = self.world.list_dir(folder).unwrap_or_default();
+        let order = self.world.read(&folder.join("package.order")).unwrap_or_default();
+        let order = String::from_utf8_lossy(&order).into_owned();
+        let place = |entry: &String| {
+            let name = entry.strip_suffix(".mo").unwrap_or(entry);
+            order.lines().position(|line| line.trim() == name).unwrap_or(usize::MAX)
+        };
+        let mut wanted: Vec<String> = entries
+            .into_iter()
+            .filter(|entry| {
+                let is_package = self.world.exists(&folder.join(entry).join("package.mo"));
+                is_package || entry.ends_with(".mo") && entry != "package.mo"
+            })
+            .collect();
+        wanted.sort_by_key(place);
+        wanted
+    }
+
+    /// Loads the top-level class that a name begins with, if it is not loaded and can be found.
+    /// Returns whether something was loaded.
+    pub(super) fn autoload(&mut self, name: &Name) -> Result<bool, Vec<Diagnostic>> {
+        match name.first() {
+            Some(first) => self.autoload_class(first),
+            None => Ok(false),
+        }
+    }
+
+    fn autoload_class(&mut self, name: Ident) -> Result<bool, Vec<Diagnostic>> {
+        let known = self.classes.library.find(&Name::from(name)).is_some();
+        if known || self.classes.nowhere.contains(&name) {
+            return Ok(false);
+        }
+        match self.search_class(name.as_str()) {
+            Some(path) => self.load_path(&path).map(|_| true),
+            None => {
+                self.classes.nowhere.insert(name);
+                Ok(false)
+            }
+        }
+    }
+
+    /// Loads what the library asked for and did not have. Returns whether something was loaded:
+    /// then what failed is worth another attempt.
+    pub(super) fn load_wanted(&mut self) -> Result<bool, Vec<Diagnostic>> {
+        let mut loaded = false;
+        for name in self.classes.library.take_missing() {
+            loaded |= self.autoload_class(name)?;
+        }
+        Ok(loaded)
+    }
+
+    /// Where the top-level class of this name is: in the library folders, the working directory,
+    /// or a folder `models` beside the scripts being run or above them.
+    fn search_class(&self, name: &str) -> Option<PathBuf> {
+        let current = self.world.current_dir();
+        let beside = self
+            .frames
+            .iter()
+            .rev()
+            .flat_map(|frame| frame.folder.ancestors())
+            .chain(current.ancestors());
+        let models = beside.map(|folder| folder.join("models"));
+        let folders =
+            self.classes.directories.iter().cloned().chain([current.clone()]).chain(models);
+        folders.map(|folder| normalized(&folder)).find_map(|folder| self.class_in(&folder, name))
+    }
+
+    fn class_in(&self, folder: &Path, name: &str) -> Option<PathBuf> {
+        let package = folder.join(name);
+        if self.world.exists(&package.join("package.mo")) {
+            return Some(package);
+        }
+        let file = folder.join(format!("{name}.mo"));
+        if self.world.exists(&file) {
+            return Some(file);
+        }
+        let prefix = format!("{name} ");
+        let entries = self.world.list_dir(folder).ok()?;
+        let versions = entries.iter().filter(|entry| entry.starts_with(&prefix));
+        let newest = versions.max_by_key(|entry| version(&entry[prefix.len()..]))?;
+        Some(folder.join(newest))
+    }
+
+    /// Whether a class of this name is loaded or can be.
+    pub(super) fn class_exists(&mut self, name: &Name) -> bool {
+        let loaded = self.autoload(name);
+        if let Err(diagnostics) = loaded {
+            diagnostics.into_iter().for_each(|diagnostic| self.report(diagnostic));
+        }
+        self.classes.library.find(name).is_some()
+    }
+
+    /// A class that a script defines; it replaces one of the same name.
     pub(super) fn define_class(&mut self, class: &Arc<ClassDefinition>) -> Result<(), Diagnostic> {
-        Err(fault!(super::errors::REFUSED, "classes are not supported yet").at(class.span))
+        self.classes.changed();
+        self.classes.library.define(class).map(|_| ())
     }
+
+    /// Removes a class; whether there was one.
+    pub(super) fn remove_class(&mut self, name: &Name) -> bool {
+        self.classes.changed();
+        name.is_simple() && name.first().is_some_and(|name| self.classes.library.remove(name))
+    }
+
+    /// Removes all classes.
     pub(super) fn forget_classes(&mut self) {
-        self.callees.clear();
+        self.classes.changed();
+        self.classes.library = Library::new();
+        self.classes.files.clear();
+        self.models.forget();
     }
+
+    /// The type of a declaration in a script that is not a predefined one: a record.
     pub(super) fn class_type(&mut self, name: &Name) -> Result<ValueType, Fault> {
-        Err(fault!(super::errors::REFUSED, "no type `{name}`"))
+        let function = self.loaded_function(name)?;
+        let record = function.and_then(|constructor| constructor.outputs.first().cloned());
+        match record {
+            Some(record) => Ok(record.value_type),
+            None => Err(self.unknown_class(name)),
+        }
     }
-    pub(super) fn loaded_function(&mut self, _: &Name) -> Result<Option<Arc<Function>>, Fault> {
+
+    /// The fault of a class that is not loaded and cannot be found.
+    pub(super) fn unknown_class(&self, name: &Name) -> Fault {
+        let wanted = name.to_string();
+        let known: Vec<String> = self.classes.library.all().iter().map(Name::to_string).collect();
+        let last = known.iter().map(|full| full.rsplit('.').next().unwrap_or(full));
+        let hint = suggest::did_you_mean(&wanted, known.iter().map(String::as_str))
+            .or_else(|| suggest::did_you_mean(&wanted, last));
+        fault!(UNKNOWN_CLASS, "there is no class `{wanted}`").help_if(hint).help(
+            "load the file that defines it first, with `openModel` or `loadFile`, or name its folder with `--library`",
+        )
+    }
+
+    /// A function of the loaded classes, looked up from the top level.
+    pub(super) fn loaded_function(&mut self, name: &Name) -> Result<Option<Arc<Function>>, Fault> {
+        for candidate in self.candidates(name) {
+            if let Some(function) = self.function_named(&candidate).map_err(first_fault)? {
+                return Ok(Some(function));
+            }
+        }
         Ok(None)
     }
-    pub(super) fn constant(&mut self, name: &Name) -> Result<Option<Value>, Fault> {
-        Ok(super::builtins::constant(name))
+
+    fn function_named(&mut self, name: &Name) -> Result<Option<Arc<Function>>, Diagnostic> {
+        loop {
+            match self.classes.library.function(name) {
+                Ok(functions) => {
+                    return Ok(functions.and_then(|all| all.into_values().next()));
+                }
+                Err(error) => {
+                    let loaded = self.load_wanted();
+                    if !loaded.map_err(|mut errors| errors.remove(0))? {
+                        return Err(error);
+                    }
+                }
+            }
+        }
     }
+
+    /// A constant of a package, by its full name.
+    pub(super) fn constant(&mut self, name: &Name) -> Result<Option<Value>, Fault> {
+        if let Some(value) = super::builtins::constant(name) {
+            return Ok(Some(value));
+        }
+        for candidate in self.candidates(name) {
+            if candidate.parts.len() < 2 || !self.class_exists(&candidate.parent()) {
+                continue;
+            }
+            if let Some(value) = self.package_constant(&candidate)? {
+                return Ok(Some(value));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Asks the library through a function whose output is the constant: it knows the scopes of
+    /// packages. `None` if the name does not stand for a constant of a predefined type.
+    fn package_constant(&mut self, name: &Name) -> Result<Option<Value>, Fault> {
+        const ASKING: &str = "'a constant'";
+        let name = Name::new(name.parts.iter().copied());
+        for type_name in ["Real", "Integer", "Boolean", "String"] {
+            let text = format!(
+                "function {ASKING} output {type_name} y; algorithm y := .{name}; end {ASKING};"
+            );
+            let Ok(asking) = syntax::parse_stored_definition(SourceId::NONE, &text) else {
+                return Ok(None);
+            };
+            let loaded = self.classes.library.load(&asking);
+            let asked = Name::parse(ASKING);
+            let function = loaded.ok().and_then(|_| self.function_named(&asked).ok().flatten());
+            self.classes.library.remove(Ident::new(ASKING));
+            let Some(function) = function else { continue };
+            let values = eval::call_function(&function, Vec::new().into(), Span::NONE, self);
+            if let Some(value) = values.ok().and_then(|mut values| values.pop()) {
+                return Ok(Some(value));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The file that a path or a `modelica://Package/…` URI names.
+    pub(super) fn resource(&mut self, uri: &str) -> Result<PathBuf, Fault> {
+        if let Some(rest) = uri.strip_prefix("modelica://") {
+            let (package, file) = rest.split_once('/').unwrap_or((rest, ""));
+            let package = Name::parse(package);
+            let top = Name::new(package.first());
+            if let (true, Some(folder)) = (self.class_exists(&top), self.classes.files.get(&top)) {
+                let inner = package.parts[1..].iter().map(|part| part.as_str());
+                return Ok(folder.join(inner.collect::<PathBuf>()).join(file));
+            }
+        }
+        let path = Path::new(uri);
+        self.find_file(path).ok_or_else(|| self.missing_file(path))
+    }
+
+    /// The value that a parameter of the model translated last has.
     pub(super) fn model_value(
         &mut self,
-        _: &ComponentReference,
+        reference: &ComponentReference,
     ) -> Result<Option<Value>, Diagnostic> {
-        Ok(None)
+        let value = flat_name(reference).and_then(|name| self.parameter_value(&name));
+        Ok(value.map(Value::Real))
     }
+
+    /// Sets a flag, or a parameter of the model translated last.
     pub(super) fn assign_dotted(
         &mut self,
         target: &ComponentReference,
         value: Value,
-        _: Span,
+        span: Span,
     ) -> Result<bool, Diagnostic> {
         if self.set_flag(target, &value) {
             return Ok(true);
         }
-        Err(self.nothing_translated(target).at(target.span))
+        if self.models.last().is_none() {
+            return Err(self.nothing_translated(target).at(target.span));
+        }
+        let Some(name) = flat_name(target) else {
+            let message = "a part of a model is named with Integers as subscripts";
+            return Err(Fault::new(BAD_PARAMETER_VALUE, message).at(target.span));
+        };
+        let number = match value {
+            Value::Boolean(value) => f64::from(value),
+            Value::Enumeration(value) => value.ordinal as f64,
+            other => match other.as_real() {
+                Some(number) => number,
+                None => {
+                    return Err(fault!(
+                        BAD_PARAMETER_VALUE,
+                        "`{name}` cannot be {}", other.type_name();
+                        help: "assign a number, or the elements of an array one by one"
+                    )
+                    .at(span));
+                }
+            },
+        };
+        self.set_parameter(&name, number).at(span)?;
+        Ok(true)
     }
-    pub(super) fn resource(&mut self, uri: &str) -> Result<PathBuf, Fault> {
-        self.find_file(uri.as_ref()).ok_or_else(|| self.missing_file(uri.as_ref()))
+
+    /// The file a class was loaded from, if it was loaded from one.
+    pub(super) fn source_file(&self, name: &Name) -> Option<PathBuf> {
+        self.classes.files.get(&Name::new(name.first())).cloned()
     }
+}
+
+/// A reference as variables of flat models are named: `pack.cell[2].V`; `None` if a subscript is
+/// not an Integer.
+fn flat_name(reference: &ComponentReference) -> Option<String> {
+    let mut name = String::new();
+    for part in &reference.parts {
+        if !name.is_empty() {
+            name.push('.');
+        }
+        name.push_str(part.name.as_str());
+        let subscripts: Option<Vec<String>> = part
+            .subscripts
+            .iter()
+            .map(|subscript| match subscript {
+                Subscript::Index(Expression { kind: ExpressionKind::Integer(at), .. }) => {
+                    Some(at.to_string())
+                }
+                _ => None,
+            })
+            .collect();
+        match subscripts?.join(",") {
+            none if none.is_empty() => {}
+            subscripts => name.push_str(&format!("[{subscripts}]")),
+        }
+    }
+    Some(name)
+}
+
+/// The message of a diagnostic, for places where only that of the caller is known.
+fn first_fault(diagnostic: Diagnostic) -> Fault {
+    let mut fault = Fault::new(diagnostic.code, diagnostic.message.clone());
+    fault.helps.clone_from(&diagnostic.helps);
+    fault
+}
+
+fn full_name(file: &StoredDefinition, class: &ClassDefinition) -> Name {
+    let within = file.within.as_ref().map(|within| within.node.clone()).unwrap_or_default();
+    within.child(class.name.node)
+}
+
+/// The numbers of a version, for comparison.
+fn version(text: &str) -> Vec<u64> {
+    text.split(|c: char| !c.is_ascii_digit()).filter_map(|part| part.parse().ok()).collect()
 }

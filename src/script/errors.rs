@@ -39,9 +39,6 @@ codes! {
     /// A script raised an error by itself.
     SCRIPT_ERROR = "script-error":
         "## What it means\n\nThe script or a function called `Modelica.Utilities.Streams.error` (or `error`).\n\n## Example\n\n`Modelica.Utilities.Streams.error(\"no data\")`\n\n## What to do\n\nThe message is the author's; it says what is wrong.",
-    /// A simulation did not reach its stop time.
-    SIMULATION_FAILED = "simulation-failed":
-        "## What it means\n\nThe model was compiled, but its simulation stopped before the stop time.\n\n## Example\n\nA model whose equation takes the logarithm of a negative number at t = 0.3\n\n## What to do\n\nThe message names the time, the equation or variable, and the reason. Check the parameters and start values; a smaller tolerance may help where the step size became too small.",
     /// An import that names nothing.
     BAD_IMPORT = "bad-import":
         "## What it means\n\nAn import clause of a script names a package or class that is not loaded and is no package of built-in commands.\n\n## Example\n\n`import Modelica.Utilties.Streams;`\n\n## What to do\n\nCorrect the name, or load the library first.",

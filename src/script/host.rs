@@ -1,8 +1,8 @@
 //! The session as the host of evaluation: it answers calls, dotted names and questions.
 
+use super::Session;
 use super::builtins::{self, BuiltinId, Failure};
 use super::errors::INTERRUPTED;
-use super::{Session, classes};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::eval::{Callee, Function, Host, Scope};
 use crate::name::Name;
@@ -127,8 +127,12 @@ impl Session {
                 return Ok(Some(Callee::Builtin(id.function())));
             }
         }
-        classes::autoload(self, name)?;
-        Ok(self.loaded_function(name)?.map(Callee::Function))
+        for candidate in self.candidates(name) {
+            if candidate.parts.len() > 1 && self.class_exists(&candidate.parent()) {
+                return Ok(self.loaded_function(name)?.map(Callee::Function));
+            }
+        }
+        Ok(None)
     }
 
     /// What a name may stand for: itself, and what the imports of the scripts make of it.

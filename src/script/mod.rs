@@ -20,6 +20,7 @@ mod identification;
 mod messages;
 mod scripts;
 mod session;
+pub mod simulation;
 mod statements;
 mod transcript;
 mod variables;

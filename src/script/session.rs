@@ -4,6 +4,7 @@ use super::callees::Callees;
 use super::classes::Classes;
 use super::follow_up::FollowUps;
 use super::scripts::{Frame, ParsedScripts};
+use super::simulation::{Models, Translated};
 use super::world::World;
 use super::{Messages, Transcript};
 use crate::diag::{Code, Diagnostic, Fault, render};
@@ -14,6 +15,7 @@ use crate::value::Value;
 use indexmap::IndexMap;
 use std::any::{Any, TypeId};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::sync::Arc;
 
 /// Whose habits a script follows where the two tools differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -122,6 +124,7 @@ pub struct Session {
     /// `echo(false)` was called.
     pub(super) muted: bool,
     pub(super) classes: Classes,
+    pub(super) models: Models,
     pub(super) callees: Callees,
     /// The turn of the outermost loop being run, and how many there are.
     pub(super) loop_turn: Option<(usize, Option<usize>)>,
@@ -152,6 +155,7 @@ impl Session {
             silent: 0,
             muted: false,
             classes: Classes::default(),
+            models: Models::default(),
             callees: Callees::default(),
             loop_turn: None,
             extensions: HashMap::new(),
@@ -198,6 +202,16 @@ impl Session {
     /// known: what a progress bar shows.
     pub fn loop_turn(&self) -> Option<(usize, Option<usize>)> {
         self.loop_turn
+    }
+
+    /// Where the command that is being run was called.
+    pub fn call_site(&self) -> Span {
+        self.call
+    }
+
+    /// The model translated last.
+    pub fn last_model(&self) -> Option<Arc<Translated>> {
+        self.models.last().cloned()
     }
 
     /// The dialect in force.

@@ -129,6 +129,7 @@ impl Session {
     }
 
     fn import(&mut self, import: &Import) -> Result<(), Diagnostic> {
+        self.callees.clear();
         match &import.kind {
             ImportKind::Qualified(name) => self.import_as(name.last(), name.clone(), import.span),
             ImportKind::Renaming(alias, name) => {
@@ -199,6 +200,7 @@ impl Session {
         self.flags.clear();
         self.imports.clear();
         self.open_packages.clear();
+        self.callees.clear();
         self.forget_classes();
     }
 

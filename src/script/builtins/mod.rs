@@ -6,12 +6,14 @@ mod conversion;
 mod files;
 mod gapilib;
 mod header;
+mod loading;
 mod matrices;
 mod messages;
 mod results;
 mod scanning;
 mod scripts;
 mod settings;
+mod simulation;
 mod streams;
 mod strings;
 mod system;
@@ -85,6 +87,8 @@ pub static FAMILIES: &[&Family] = &[
     &files::FAMILY,
     &files::OPENMODELICA,
     &gapilib::FAMILY,
+    &loading::FAMILY,
+    &loading::OPENMODELICA,
     &matrices::FAMILY,
     &messages::FAMILY,
     &results::FAMILY,
@@ -93,6 +97,7 @@ pub static FAMILIES: &[&Family] = &[
     &scripts::OPENMODELICA,
     &settings::FAMILY,
     &settings::LIST_FAMILY,
+    &simulation::FAMILY,
     &streams::FAMILY,
     &streams::BARE_PRINT,
     &system::FAMILY,

@@ -1,0 +1,245 @@
+//! Translating and simulating models.
+
+use super::{Args, Builtin, Failure, Family};
+use crate::bail;
+use crate::diag::{At, Diagnostic, Fault};
+use crate::results;
+use crate::script::errors::{BAD_ARGUMENT, NO_TRANSLATED_MODEL};
+use crate::script::simulation::{self, Simulated, Translated, Wishes};
+use crate::script::{Dialect, Session};
+use crate::value::Value;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Dymola's commands.
+pub(super) const FAMILY: Family = Family {
+    packages: &["DymolaCommands.SimulatorAPI"],
+    dialect: Some(Dialect::Dymola),
+    builtins: &[
+        Builtin { header: SIMULATE_MODEL, run: simulate_model },
+        Builtin { header: SIMULATE_EXTENDED_MODEL, run: simulate_extended_model },
+        Builtin { header: SIMULATE, run: simulate },
+        Builtin { header: TRANSLATE_MODEL, run: translate_model },
+        Builtin { header: CHECK_MODEL, run: check_model },
+        Builtin { header: EXPERIMENT, run: experiment },
+    ],
+};
+
+/// What `experiment` set for the simulations that say nothing else.
+#[derive(Default)]
+struct Experiment(Wishes);
+
+const SIMULATE_MODEL: &str = r#"
+function simulateModel "Simulates a model; it is translated if it has not been. What is not given comes from the model's experiment annotation."
+  input String problem = "" "Class or Class(modification); empty: the model used last";
+  input Real startTime = 0.0 "s" annotation(optional = true);
+  input Real stopTime = 1.0 "s" annotation(optional = true);
+  input Integer numberOfIntervals = 500 annotation(optional = true);
+  input Real outputInterval = 0.0 "s; counts if numberOfIntervals is 0 or not given" annotation(optional = true);
+  input String method = "Dassl" annotation(optional = true);
+  input Real tolerance = 0.0001 "relative" annotation(optional = true);
+  input Real fixedstepsize = 0.0 "s, for methods with a fixed step" annotation(optional = true);
+  input String resultFile = "dsres" "without an ending, .mat is added";
+  output Boolean ok;
+end simulateModel;
+"#;
+
+fn simulate_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let wishes = wishes(session, &mut args)?;
+    let problem: String = args.take("problem")?;
+    let file: String = args.take("resultFile")?;
+    let done = run(session, &problem, &wishes, &file);
+    Ok(session.or_report_all(done).is_some().into())
+}
+
+const SIMULATE_EXTENDED_MODEL: &str = r#"
+function simulateExtendedModel "Simulates a model with given parameter values and returns values at the end."
+  input String problem = "" "Class or Class(modification); empty: the model used last";
+  input Real startTime = 0.0 "s" annotation(optional = true);
+  input Real stopTime = 1.0 "s" annotation(optional = true);
+  input Integer numberOfIntervals = 500 annotation(optional = true);
+  input Real outputInterval = 0.0 "s; counts if numberOfIntervals is 0 or not given" annotation(optional = true);
+  input String method = "Dassl" annotation(optional = true);
+  input Real tolerance = 0.0001 "relative" annotation(optional = true);
+  input Real fixedstepsize = 0.0 "s, for methods with a fixed step" annotation(optional = true);
+  input String resultFile = "dsres" "without an ending, .mat is added";
+  input String initialNames[:] = fill("", 0) "parameters to set";
+  input Real initialValues[:] = fill(0.0, 0) "their values";
+  input String finalNames[:] = fill("", 0) "variables whose last values are returned";
+  input Boolean autoLoad = true "has no effect: nothing is plotted";
+  output Boolean ok;
+  output Real finalValues[size(finalNames, 1)];
+end simulateExtendedModel;
+"#;
+
+fn simulate_extended_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let wishes = wishes(session, &mut args)?;
+    let problem: String = args.take("problem")?;
+    let file: String = args.take("resultFile")?;
+    let names: Vec<String> = args.take("initialNames")?;
+    let values: Vec<f64> = args.take("initialValues")?;
+    let finals: Vec<String> = args.take("finalNames")?;
+    if names.len() != values.len() {
+        bail!(BAD_ARGUMENT, "{} names and {} values are given", names.len(), values.len());
+    }
+    let model = match model(session, &problem) {
+        Ok(model) => model,
+        Err(errors) => {
+            session.or_report_all::<()>(Err(errors));
+            return Ok(Value::Tuple(vec![false.into(), vec![f64::NAN; finals.len()].into()]));
+        }
+    };
+    for (name, value) in names.iter().zip(&values) {
+        session.set_parameter(name, *value)?;
+    }
+    let done = run_model(session, &model, &wishes, &file);
+    let Some(simulated) = session.or_report_all(done) else {
+        return Ok(Value::Tuple(vec![false.into(), vec![f64::NAN; finals.len()].into()]));
+    };
+    let last = |name: &String| {
+        let column = simulated.table.column(name)?;
+        Ok(column.last().copied().unwrap_or(f64::NAN))
+    };
+    let values = finals.iter().map(last).collect::<Result<Vec<f64>, Fault>>()?;
+    Ok(Value::Tuple(vec![true.into(), values.into()]))
+}
+
+const SIMULATE: &str = r#"
+function simulate "Simulates the model used last."
+  output Boolean ok;
+end simulate;
+"#;
+
+fn simulate(session: &mut Session, _: Args) -> Result<Value, Failure> {
+    let wishes = session.extension::<Experiment>().0.clone();
+    let done = run(session, "", &wishes, "dsres");
+    Ok(session.or_report_all(done).is_some().into())
+}
+
+const TRANSLATE_MODEL: &str = r#"
+function translateModel "Translates a model; dotted names of scripts mean its parameters from now on."
+  input String problem = "" "Class or Class(modification); empty: the model used last";
+  output Boolean ok;
+end translateModel;
+"#;
+
+fn translate_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let problem: String = args.take("problem")?;
+    let done = model(session, &problem);
+    Ok(session.or_report_all(done).is_some().into())
+}
+
+const CHECK_MODEL: &str = r#"
+function checkModel "Whether a model can be translated."
+  input String problem "Class or Class(modification)";
+  input Boolean simulate = false "whether it is simulated too";
+  output Boolean ok;
+end checkModel;
+"#;
+
+fn check_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let problem: String = args.take("problem")?;
+    let mut done = simulation::translated(session, &problem);
+    if args.take("simulate")?
+        && let Ok(model) = done
+    {
+        let simulated = simulation::simulate(session, &model, &Wishes::default());
+        done = simulated.map(|_| model).map_err(|error| vec![error]);
+    }
+    Ok(session.or_report_all(done).is_some().into())
+}
+
+const EXPERIMENT: &str = r#"
+function experiment "What the next simulations take where they say nothing."
+  input Real StartTime = 0.0 "s" annotation(optional = true);
+  input Real StopTime = 1.0 "s" annotation(optional = true);
+  input Integer NumberOfIntervals = 0 annotation(optional = true);
+  input Real OutputInterval = 0.0 "s" annotation(optional = true);
+  input String Algorithm = "" annotation(optional = true);
+  input Real Tolerance = 0.0001 "relative" annotation(optional = true);
+  input Real FixedStepSize = 0.0 "s" annotation(optional = true);
+  output Boolean ok;
+end experiment;
+"#;
+
+fn experiment(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let wishes = Wishes {
+        start: args.optional("StartTime")?,
+        stop: args.optional("StopTime")?,
+        intervals: positive(args.optional("NumberOfIntervals")?),
+        interval: args.optional("OutputInterval")?.filter(|interval| *interval > 0.0),
+        method: args.optional("Algorithm")?.filter(|method: &String| !method.is_empty()),
+        tolerance: args.optional("Tolerance")?,
+        fixed_step: args.optional("FixedStepSize")?,
+    };
+    *session.extension::<Experiment>() = Experiment(wishes);
+    Ok(true.into())
+}
+
+/// The arguments that all simulations share; what they leave open `experiment` may have said.
+fn wishes(session: &mut Session, args: &mut Args) -> Result<Wishes, Fault> {
+    let set = session.extension::<Experiment>().0.clone();
+    let method: Option<String> = args.optional("method")?;
+    Ok(Wishes {
+        start: args.optional("startTime")?.or(set.start),
+        stop: args.optional("stopTime")?.or(set.stop),
+        intervals: positive(args.optional("numberOfIntervals")?).or(set.intervals),
+        interval: args.optional("outputInterval")?.filter(|i| *i > 0.0).or(set.interval),
+        method: method.filter(|method| !method.is_empty()).or(set.method),
+        tolerance: args.optional("tolerance")?.or(set.tolerance),
+        fixed_step: args.optional("fixedstepsize")?.or(set.fixed_step),
+    })
+}
+
+fn positive(count: Option<i64>) -> Option<usize> {
+    count.and_then(|count| usize::try_from(count).ok()).filter(|count| *count > 0)
+}
+
+/// The model of a problem, translated if need be.
+fn model(session: &mut Session, problem: &str) -> Result<Arc<Translated>, Vec<Diagnostic>> {
+    if !problem.trim().is_empty() {
+        return simulation::translate(session, problem.trim());
+    }
+    session.last_model().ok_or_else(|| {
+        let fault = Fault::new(NO_TRANSLATED_MODEL, "no model has been translated yet")
+            .help("name the model: `simulateModel(\"Package.Model\")`");
+        vec![fault.at(session.call_site())]
+    })
+}
+
+fn run(
+    session: &mut Session,
+    problem: &str,
+    wishes: &Wishes,
+    file: &str,
+) -> Result<Simulated, Vec<Diagnostic>> {
+    let model = model(session, problem)?;
+    run_model(session, &model, wishes, file)
+}
+
+/// Simulates and writes the result file.
+fn run_model(
+    session: &mut Session,
+    model: &Translated,
+    wishes: &Wishes,
+    file: &str,
+) -> Result<Simulated, Vec<Diagnostic>> {
+    let simulated = simulation::simulate(session, model, wishes).map_err(|error| vec![error])?;
+    let written = write(session, &simulated, file).at(session.call_site());
+    written.map_err(|error| vec![error])?;
+    Ok(simulated)
+}
+
+/// Writes a result file; without an ending that names a format, `.mat` is added.
+fn write(session: &mut Session, simulated: &Simulated, file: &str) -> Result<(), Fault> {
+    let path = match results::format_of_file(file) {
+        Ok(_) if file.contains('.') => PathBuf::from(file),
+        _ => PathBuf::from(format!("{file}.mat")),
+    };
+    let format = results::format_of_file(&path.to_string_lossy())?;
+    let mut table = simulated.table.clone();
+    // The name that Dymola's result files have.
+    table.time_name = "Time".to_owned();
+    let bytes = format.write(&table)?;
+    session.write_file(&path, &bytes)
+}

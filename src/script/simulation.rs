@@ -1,0 +1,314 @@
+//! Models of a session: translated once, simulated many times with other parameters.
+
+use super::Session;
+use super::errors::{BAD_PARAMETER_VALUE, UNKNOWN_PARAMETER};
+use crate::compile::{Access, Program, System};
+use crate::diag::{At, Diagnostic, Fault, suggest};
+use crate::flatten::{self, Experiment, FlatModel, Variability};
+use crate::results::{ResultTable, Series, Values};
+use crate::sim::{self, OutputGrid, Settings, Simulator, Statistics, Trajectory};
+use crate::{bail, dae, fault, syntax};
+use indexmap::IndexMap;
+use rustc_hash::FxHashMap;
+use std::sync::Arc;
+
+/// A model ready to be simulated.
+#[derive(Debug)]
+pub struct Translated {
+    /// The class with its modification, as it was asked for.
+    pub problem: String,
+    /// The flat model.
+    pub flat: FlatModel,
+    /// The compiled model.
+    pub program: Arc<Program>,
+}
+
+/// The translated models of a session.
+#[derive(Default)]
+pub(super) struct Models {
+    known: FxHashMap<String, (u64, Arc<Translated>)>,
+    last: Option<Current>,
+}
+
+/// The model translated last, with the values that scripts gave to its parameters.
+struct Current {
+    model: Arc<Translated>,
+    overrides: IndexMap<usize, f64>,
+}
+
+/// What a simulation is asked for; `None` where the model's experiment annotation, or else the
+/// default, decides.
+#[derive(Debug, Clone, Default)]
+pub struct Wishes {
+    /// Start time, seconds (0).
+    pub start: Option<f64>,
+    /// Stop time, seconds (1).
+    pub stop: Option<f64>,
+    /// Number of output intervals (500).
+    pub intervals: Option<usize>,
+    /// Length of an output interval, seconds; counts where `intervals` is not given.
+    pub interval: Option<f64>,
+    /// Relative tolerance (1e-4).
+    pub tolerance: Option<f64>,
+    /// Name of the integrator (`dassl`).
+    pub method: Option<String>,
+    /// Step of a fixed-step integrator, seconds.
+    pub fixed_step: Option<f64>,
+}
+
+/// A simulation that reached its end, or what was computed until it failed.
+#[derive(Debug)]
+pub struct Simulated {
+    /// All variables.
+    pub table: ResultTable,
+    /// What it cost.
+    pub statistics: Statistics,
+}
+
+impl Models {
+    /// Forgets all models.
+    pub(super) fn forget(&mut self) {
+        self.known.clear();
+        self.last = None;
+    }
+
+    /// The model translated last.
+    pub(super) fn last(&self) -> Option<&Arc<Translated>> {
+        self.last.as_ref().map(|current| &current.model)
+    }
+}
+
+/// Translates a model, `Class` or `Class(modification)`: at most once as long as no class changes.
+/// It becomes the model that dotted names of scripts refer to.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn translate(session: &mut Session, problem: &str) -> Result<Arc<Translated>, Vec<Diagnostic>> {
+    let model = translated(session, problem)?;
+    let is_last = session.models.last().is_some_and(|last| Arc::ptr_eq(last, &model));
+    if !is_last {
+        session.models.last = Some(Current { model: model.clone(), overrides: IndexMap::new() });
+    }
+    Ok(model)
+}
+
+/// As [`translate`], without changing which model dotted names refer to.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn translated(
+    session: &mut Session,
+    problem: &str,
+) -> Result<Arc<Translated>, Vec<Diagnostic>> {
+    let revision = session.library_revision();
+    if let Some((then, model)) = session.models.known.get(problem)
+        && *then == revision
+    {
+        return Ok(model.clone());
+    }
+    let flat = flat_model(session, problem)?;
+    let sorted = dae::sort(&flat).map_err(|error| vec![error])?;
+    let program = Program::compile(sorted).map_err(|error| vec![error])?;
+    for warning in program.warnings() {
+        session.report(warning.clone());
+    }
+    let model = Arc::new(Translated { problem: problem.to_owned(), flat, program });
+    // Flattening may have loaded packages, which is what the revision counts.
+    let revision = session.library_revision();
+    session.models.known.insert(problem.to_owned(), (revision, model.clone()));
+    Ok(model)
+}
+
+/// Flattens a model, `Class` or `Class(modification)`; packages that it needs are loaded.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn flat_model(session: &mut Session, problem: &str) -> Result<FlatModel, Vec<Diagnostic>> {
+    let source = session.sources.add("problem", problem);
+    let (name, modification) =
+        syntax::parse_class_with_modification(source, problem).map_err(|error| vec![error])?;
+    session.autoload(&name)?;
+    loop {
+        match flatten::flatten(session.library(), &name, &modification) {
+            Ok(flattened) => {
+                flattened.warnings.into_iter().for_each(|warning| session.report(warning));
+                return Ok(flattened.model);
+            }
+            Err(errors) => {
+                if !session.load_wanted()? {
+                    return Err(errors);
+                }
+            }
+        }
+    }
+}
+
+/// The settings that wishes, the experiment annotation and the defaults make together.
+///
+/// # Errors
+/// An unknown method, or a number outside its domain.
+pub fn settings(experiment: &Experiment, wishes: &Wishes) -> Result<Settings, Fault> {
+    let defaults = Settings::default();
+    let start = wishes.start.or(experiment.start_time).unwrap_or(defaults.start);
+    let stop = wishes.stop.or(experiment.stop_time).unwrap_or(start + defaults.stop);
+    if !(start.is_finite() && stop.is_finite() && start <= stop) {
+        bail!(crate::registry::BAD_OPTION, "the simulation from {start} to {stop} has no length");
+    }
+    let of_interval = |interval: f64| ((stop - start) / interval).round().max(1.0) as usize;
+    let intervals = match (wishes.intervals, wishes.interval.or(experiment.interval)) {
+        (Some(intervals), _) => Some(intervals),
+        (None, Some(interval)) if interval > 0.0 => Some(of_interval(interval)),
+        _ => None,
+    };
+    let tolerance = wishes.tolerance.or(experiment.tolerance).unwrap_or(defaults.tolerance);
+    if !(1e-14..=0.1).contains(&tolerance) {
+        bail!(crate::registry::BAD_OPTION, "`tolerance` is {tolerance}, outside 1e-14 to 0.1");
+    }
+    let method = match &wishes.method {
+        Some(name) => sim::find_integrator(name)?,
+        None => defaults.method,
+    };
+    Ok(Settings {
+        start,
+        stop,
+        output: intervals.map_or(defaults.output, OutputGrid::Intervals),
+        tolerance,
+        method,
+        step: wishes.fixed_step.filter(|step| *step > 0.0),
+        ..Settings::default()
+    })
+}
+
+/// Simulates a model with the parameter values that scripts gave to it.
+///
+/// # Errors
+/// A wish that cannot be fulfilled, or the failure in the model's words.
+pub fn simulate(
+    session: &mut Session,
+    model: &Translated,
+    wishes: &Wishes,
+) -> Result<Simulated, Diagnostic> {
+    let call = session.call;
+    let settings = settings(&model.program.experiment(), wishes).at(call)?;
+    let mut system = model.program.system();
+    if let Some(current) = &session.models.last
+        && std::ptr::eq(&*current.model, model)
+    {
+        for (parameter, value) in &current.overrides {
+            system.set_parameter(*parameter, *value).at(call)?;
+        }
+    }
+    let mut trajectory = Trajectory::default();
+    match Simulator::new().run(&mut system, &settings, &mut trajectory) {
+        Ok(statistics) => {
+            Ok(Simulated { table: result_table(model, &system, &trajectory), statistics })
+        }
+        Err(error) => Err(model.program.explain(&error)),
+    }
+}
+
+/// All variables of a simulation.
+fn result_table(model: &Translated, system: &System, trajectory: &Trajectory) -> ResultTable {
+    let mut table = ResultTable::new(trajectory.time().to_vec());
+    let mut series_of_column: FxHashMap<usize, (usize, bool)> = FxHashMap::default();
+    for (index, variable) in model.program.variables().iter().enumerate() {
+        let values = match variable.access {
+            Access::Time => continue,
+            Access::Constant(value) => Values::Constant(value),
+            Access::Parameter => match system.value(index) {
+                Some(value) => Values::Constant(value),
+                None => continue,
+            },
+            Access::Observed { column, negated } => match series_of_column.get(&column) {
+                Some((of, sign)) => Values::Alias { of: *of, negated: *sign != negated },
+                None => {
+                    series_of_column.insert(column, (table.series.len(), negated));
+                    let sign = if negated { -1.0 } else { 1.0 };
+                    let values = trajectory.column(column).iter();
+                    Values::Trajectory(values.map(|value| sign * value).collect())
+                }
+            },
+        };
+        table.series.push(Series {
+            name: variable.name.to_string(),
+            unit: variable.unit.to_string(),
+            description: variable.description.to_string(),
+            values,
+        });
+    }
+    table
+}
+
+impl Session {
+    /// Gives a parameter of the model translated last a value, by its full name.
+    ///
+    /// # Errors
+    /// A name that is no parameter, or one that cannot be set without translating again.
+    pub fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), Fault> {
+        let Some(current) = &mut self.models.last else {
+            bail!(
+                super::errors::NO_TRANSLATED_MODEL,
+                "`{name}` names a part of a model, but no model is translated";
+                help: "call `translateModel(\"Package.Model\")` first"
+            )
+        };
+        match current.model.program.find_parameter(name) {
+            Ok(index) => {
+                check_value(&current.model, index, value)?;
+                current.overrides.insert(index, value);
+                Ok(())
+            }
+            Err(_) => Err(not_tunable(&current.model, name)),
+        }
+    }
+
+    /// The value that a parameter of the model translated last has, or `None` if the model has no
+    /// such parameter.
+    pub(super) fn parameter_value(&self, name: &str) -> Option<f64> {
+        let current = self.models.last.as_ref()?;
+        let index = current.model.program.find_parameter(name).ok()?;
+        let default = current.model.program.parameters()[index].default;
+        Some(current.overrides.get(&index).copied().unwrap_or(default))
+    }
+}
+
+fn check_value(model: &Translated, index: usize, value: f64) -> Result<(), Fault> {
+    let parameter = &model.program.parameters()[index];
+    let name = &parameter.name;
+    if value.is_nan() {
+        bail!(BAD_PARAMETER_VALUE, "`{name}` cannot be NaN");
+    }
+    if value < parameter.min || value > parameter.max {
+        bail!(
+            BAD_PARAMETER_VALUE,
+            "`{name}` is {value}, outside the range {} to {} that the model declares",
+            parameter.min, parameter.max;
+            help: "choose a value in the range, or change `min` and `max` in the model"
+        );
+    }
+    Ok(())
+}
+
+/// Why a name cannot be assigned in the model.
+fn not_tunable(model: &Translated, name: &str) -> Fault {
+    let problem = &model.problem;
+    match model.flat.variables.get(name) {
+        Some(variable) if variable.variability <= Variability::Parameter => {
+            let reason = match () {
+                () if variable.variability == Variability::Constant => "it is a constant",
+                () if variable.is_final => "it is final",
+                () if variable.structural || variable.evaluate => "its value shaped the equations",
+                () => "it is an array or no number",
+            };
+            fault!(BAD_PARAMETER_VALUE, "`{name}` of `{problem}` cannot be set: {reason}";
+                help: "give it as a modification, `{problem}({name} = …)`")
+        }
+        Some(_) => fault!(UNKNOWN_PARAMETER, "`{name}` of `{problem}` is no parameter";
+            help: "its value comes from the equations; assign the parameters it depends on"),
+        None => {
+            let names = model.program.parameters().iter().map(|parameter| &*parameter.name);
+            fault!(UNKNOWN_PARAMETER, "`{problem}` has no parameter `{name}`")
+                .help_if(suggest::did_you_mean(name, names))
+        }
+    }
+}

@@ -1,0 +1,3 @@
+package Lib "A package in several files"
+  constant Real gain = 2.5;
+end Lib;
