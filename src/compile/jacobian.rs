@@ -32,8 +32,7 @@ pub(super) fn differentiate_sequence(
         extended.push((assignment.variable, assignment.value, assignment.equation));
         let mut row = chain(pool, assignment.value, &slopes);
         for slope in row.values_mut() {
-            let simple =
-                pool.as_constant(*slope).is_some() || pool.as_variable(*slope).is_some();
+            let simple = pool.as_constant(*slope).is_some() || pool.as_variable(*slope).is_some();
             if !simple {
                 let variable = VarId(*next);
                 *next += 1;

@@ -1,8 +1,8 @@
 //! Symbolic expressions become instructions, common subexpressions computed once.
 
 use super::tape::{Instruction, Register, Tape};
-use crate::symbolic::{Expr, Node, Pool, VarId};
 use crate::symbolic::function::Value;
+use crate::symbolic::{Expr, Node, Pool, VarId};
 use rustc_hash::FxHashMap;
 
 /// The registers of a program: one for every variable, then constants and temporaries.

@@ -65,6 +65,18 @@ pub struct VariableInfo {
     pub(super) variable: VarId,
 }
 
+impl VariableInfo {
+    /// Whether its value does not change during a simulation.
+    pub fn is_known(&self) -> bool {
+        self.variability <= Variability::Parameter
+    }
+
+    /// Whether it is an output of the model itself.
+    pub fn is_output(&self) -> bool {
+        self.top_level && self.causality == Some(CausalityPrefix::Output)
+    }
+}
+
 /// Where the value of a variable is found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Access {
@@ -403,8 +415,11 @@ impl Program {
                     SimErrorKind::Chattering => "events follow each other without end",
                     _ => "a value is not finite",
                 };
-                fault!(SIMULATION_FAILED, "the simulation of `{}` stopped {when}: {reason}",
-                    self.name())
+                fault!(
+                    SIMULATION_FAILED,
+                    "the simulation of `{}` stopped {when}: {reason}",
+                    self.name()
+                )
                 .at(self.first_span())
             }
         }
@@ -421,8 +436,11 @@ impl Program {
                     0 => "a division by zero or an overflow of a division".to_owned(),
                     1 => "a power without a finite value".to_owned(),
                     code => match function::functions().nth(code - 2) {
-                        Some((_, function)) => format!("`{}` has no value: {}", function.name,
-                            function.domain.map_or("the result is not finite", |d| d.words)),
+                        Some((_, function)) => format!(
+                            "`{}` has no value: {}",
+                            function.name,
+                            function.domain.map_or("the result is not finite", |d| d.words)
+                        ),
                         None => "an operation without a finite value".to_owned(),
                     },
                 };
@@ -431,10 +449,12 @@ impl Program {
             Failure::Assertion { assertion } => {
                 let assertions = &self.sorted.dae.assertions;
                 match assertions.get(assertion as usize) {
-                    Some(failed) => fault!(ASSERTION_FAILED, "{} ({when})", failed.message)
-                        .at(failed.span),
-                    None => fault!(ASSERTION_FAILED, "an assertion fails {when}")
-                        .at(self.first_span()),
+                    Some(failed) => {
+                        fault!(ASSERTION_FAILED, "{} ({when})", failed.message).at(failed.span)
+                    }
+                    None => {
+                        fault!(ASSERTION_FAILED, "an assertion fails {when}").at(self.first_span())
+                    }
                 }
             }
             Failure::Newton { block } | Failure::Singular { block } => {
@@ -443,11 +463,12 @@ impl Program {
             Failure::Initialization { block } => {
                 self.explain_block(block, when, INITIALIZATION_FAILED)
             }
-            Failure::EventIteration => {
-                fault!(SIMULATION_FAILED, "event iteration of `{}` does not end {when}",
-                    self.name())
-                .at(self.first_span())
-            }
+            Failure::EventIteration => fault!(
+                SIMULATION_FAILED,
+                "event iteration of `{}` does not end {when}",
+                self.name()
+            )
+            .at(self.first_span()),
         }
     }
 
@@ -542,11 +563,7 @@ impl Program {
 }
 
 /// A set of variables with all that they are computed from.
-fn close(
-    pool: &Pool,
-    sequence: &[Assignment],
-    mut wanted: FxHashSet<VarId>,
-) -> FxHashSet<VarId> {
+fn close(pool: &Pool, sequence: &[Assignment], mut wanted: FxHashSet<VarId>) -> FxHashSet<VarId> {
     for assignment in sequence.iter().rev() {
         if wanted.contains(&assignment.variable) {
             wanted.extend(pool.variables(assignment.value));
@@ -633,11 +650,7 @@ fn compile_steps(
     steps
 }
 
-fn compile_run(
-    pool: &Pool,
-    registers: &mut Registers,
-    run: &mut Vec<Assignment>,
-) -> Option<Step> {
+fn compile_run(pool: &Pool, registers: &mut Registers, run: &mut Vec<Assignment>) -> Option<Step> {
     if run.is_empty() {
         return None;
     }

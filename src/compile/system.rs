@@ -50,16 +50,18 @@ impl System {
     pub fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), Fault> {
         let name = &self.program.parameters().get(index).map(|p| p.name.clone());
         match (self.set.get_mut(index), name) {
-            (Some(_), Some(name)) if value.is_nan() => {
-                Err(fault!(super::errors::UNKNOWN_PARAMETER, "the value of `{name}` is not a number"))
-            }
+            (Some(_), Some(name)) if value.is_nan() => Err(fault!(
+                super::errors::UNKNOWN_PARAMETER,
+                "the value of `{name}` is not a number"
+            )),
             (Some(slot), _) => {
                 *slot = Some(value);
                 Ok(())
             }
-            (None, _) => {
-                Err(fault!(super::errors::UNKNOWN_PARAMETER, "there is no parameter number {index}"))
-            }
+            (None, _) => Err(fault!(
+                super::errors::UNKNOWN_PARAMETER,
+                "there is no parameter number {index}"
+            )),
         }
     }
 
@@ -218,14 +220,14 @@ impl System {
         for step in steps {
             match step {
                 Step::Run(tape) => run(tape, &mut self.registers)?,
-                Step::Solve(newton) => solve_loop(newton, &mut self.registers).map_err(|f| {
-                    match (f, initial) {
+                Step::Solve(newton) => {
+                    solve_loop(newton, &mut self.registers).map_err(|f| match (f, initial) {
                         (Failure::Newton { block } | Failure::Singular { block }, true) => {
                             Failure::Initialization { block }
                         }
                         _ => f,
-                    }
-                })?,
+                    })?
+                }
             }
         }
         Ok(())

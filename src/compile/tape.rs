@@ -22,13 +22,7 @@ pub(super) enum Instruction {
     Or { d: Register, a: Register, b: Register },
     Relation { operator: RelationOperator, d: Register, a: Register, b: Register },
     Unary { id: FunctionId, d: Register, a: Register, function: fn(f64) -> f64 },
-    Binary {
-        id: FunctionId,
-        d: Register,
-        a: Register,
-        b: Register,
-        function: fn(f64, f64) -> f64,
-    },
+    Binary { id: FunctionId, d: Register, a: Register, b: Register, function: fn(f64, f64) -> f64 },
     JumpUnless { a: Register, target: u32 },
     Jump { target: u32 },
 }
@@ -101,22 +95,13 @@ impl Tape {
 }
 
 /// An operation on two registers.
-fn r_of(
-    a: Register,
-    b: Register,
-    operation: impl Fn(f64, f64) -> f64,
-) -> impl Fn(&[f64]) -> f64 {
+fn r_of(a: Register, b: Register, operation: impl Fn(f64, f64) -> f64) -> impl Fn(&[f64]) -> f64 {
     move |r| operation(r[a as usize], r[b as usize])
 }
 
 /// Writes a value that must be finite.
 #[inline(always)]
-fn finite(
-    r: &mut [f64],
-    d: Register,
-    value: impl Fn(&[f64]) -> f64,
-    at: usize,
-) -> Result<(), u32> {
+fn finite(r: &mut [f64], d: Register, value: impl Fn(&[f64]) -> f64, at: usize) -> Result<(), u32> {
     let value = value(r);
     if !value.is_finite() {
         return Err(at as u32 - 1);

@@ -46,8 +46,34 @@ pub struct Evaluator {
 pub struct Simulated {
     /// Y at the measured points, one row for each individual; NaN where the simulation failed.
     pub rows: Vec<f64>,
-    /// Why it failed; empty where it did not.
-    pub messages: Vec<String>,
+    /// Why it failed; `None` where it did not.
+    pub failures: Vec<Option<FailedSimulation>>,
+}
+
+/// Why and when a simulation failed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FailedSimulation {
+    /// Why, in one sentence.
+    pub cause: String,
+    /// When, in simulated time; `None` where the whole simulation is of no use.
+    pub time: Option<f64>,
+}
+
+impl std::fmt::Display for FailedSimulation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.time {
+            Some(time) => write!(f, "{} (at {time} s)", self.cause),
+            None => f.write_str(&self.cause),
+        }
+    }
+}
+
+impl Simulated {
+    /// Why each simulation failed, as text; empty where it did not.
+    pub fn messages(&self) -> Vec<String> {
+        let text = |failed: &FailedSimulation| failed.to_string();
+        self.failures.iter().map(|failure| failure.as_ref().map_or(String::new(), text)).collect()
+    }
 }
 
 /// How the measured points are found on a trajectory.
@@ -68,7 +94,7 @@ struct Worker {
 /// The answer for one individual.
 struct Answer {
     individual: usize,
-    row: Result<Vec<f64>, String>,
+    row: Result<Vec<f64>, FailedSimulation>,
 }
 
 impl Evaluator {
@@ -206,10 +232,14 @@ impl Worker {
         settings: &Settings,
         x: &[f64],
         x_name: &str,
-    ) -> Result<Vec<f64>, String> {
-        self.instance.set(genome);
+    ) -> Result<Vec<f64>, FailedSimulation> {
+        let useless = |cause: String| FailedSimulation { cause, time: None };
+        self.instance.set(genome).map_err(|fault| useless(fault.message))?;
         let run = self.simulator.run(self.instance.system(), settings, &mut self.trajectory);
-        run.map_err(|error| self.instance.explain(&error))?;
+        run.map_err(|error| FailedSimulation {
+            cause: self.instance.explain(&error),
+            time: Some(error.time),
+        })?;
         let y = self.trajectory.column(0);
         let mut row = vec![f64::NAN; x.len()];
         match plan {
@@ -217,31 +247,31 @@ impl Worker {
                 for (value, &time) in row.iter_mut().zip(times) {
                     let found = self.trajectory.at(0, time);
                     *value =
-                        found.ok_or_else(|| format!("the simulation ended before {time} s"))?;
+                        found.ok_or_else(|| useless("the simulation ended early".to_owned()))?;
                 }
             }
             Plan::InX => {
                 let path = Path { times: self.trajectory.time(), x: self.trajectory.column(1) };
-                path.interpolate(x_name, y, x, &mut row).map_err(|fault| fault.message)?;
+                path.interpolate(x_name, y, x, &mut row).map_err(|fault| useless(fault.message))?;
             }
         }
         match row.iter().all(|value| value.is_finite()) {
             true => Ok(row),
-            false => Err("a simulated value is not finite".to_owned()),
+            false => Err(useless("a simulated value is not finite".to_owned())),
         }
     }
 }
 
 fn collect(answers: Vec<Vec<Answer>>, individuals: usize, points: usize) -> Simulated {
     let mut rows = vec![f64::NAN; individuals * points];
-    let mut messages = vec![String::new(); individuals];
+    let mut failures = vec![None; individuals];
     for Answer { individual, row } in answers.into_iter().flatten() {
         match row {
             Ok(row) => rows[individual * points..(individual + 1) * points].copy_from_slice(&row),
-            Err(message) => messages[individual] = message,
+            Err(failure) => failures[individual] = Some(failure),
         }
     }
-    Simulated { rows, messages }
+    Simulated { rows, failures }
 }
 
 fn check_points(x: &[f64]) -> Result<(), Fault> {
