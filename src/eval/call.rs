@@ -8,6 +8,7 @@ use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{self, ComponentReference, Expression, ExpressionKind};
+use crate::syntax::print;
 use crate::value::{ArrayValue, Elements, FunctionValue, Value};
 use std::sync::Arc;
 
@@ -306,18 +307,11 @@ impl Evaluator<'_> {
     /// else.
     fn written(&mut self, argument: &Expression) -> Result<Arc<str>, Diagnostic> {
         match &argument.kind {
-            ExpressionKind::Reference(reference) if reference.as_name().is_some() => {
-                Ok(reference.name().to_string().into())
-            }
-            ExpressionKind::Call { function, arguments }
+            ExpressionKind::Reference(_) => Ok(print::expression(argument).into()),
+            ExpressionKind::Call { function, .. }
                 if function.as_ident().is_some_and(|name| name == "der") =>
             {
-                let [state] = arguments.positional.as_slice() else {
-                    return Err(
-                        Fault::new(WRONG_ARGUMENTS, "`der` takes one name").at(argument.span)
-                    );
-                };
-                Ok(format!("der({})", self.written(state)?).into())
+                Ok(print::expression(argument).into())
             }
             _ => match self.expression(argument)? {
                 Value::String(text) | Value::VariableName(text) => Ok(text),

@@ -21,9 +21,7 @@ impl Evaluator<'_> {
         self.check_interrupted(span)?;
         let mut scope = Scope::of_function(function.clone(), given, span);
         let mut inner = Evaluator { scope: &mut scope, host: self.host };
-        inner
-            .body(function)
-            .map_err(|error| error.called_from(span, format!("function `{}`", function.name)))
+        inner.body(function).map_err(|error| traced(error, function, span))
     }
 
     /// Values for all inputs of a header, its defaults evaluated.
@@ -101,4 +99,17 @@ impl Evaluator<'_> {
         }
         Ok(records)
     }
+}
+
+/// The most calls that a trace shows.
+const MAX_FRAMES: usize = 30;
+
+/// Adds the call to the trace; a function calling itself from the same place is shown once.
+fn traced(error: Diagnostic, function: &Function, span: Span) -> Diagnostic {
+    let what = format!("function `{}`", function.name);
+    let is_repeated = error.trace.last().is_some_and(|f| f.span == span && f.what == what);
+    if is_repeated || error.trace.len() >= MAX_FRAMES {
+        return error;
+    }
+    error.called_from(span, what)
 }

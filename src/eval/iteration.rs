@@ -54,9 +54,11 @@ impl Evaluator<'_> {
         let uses = deduction::subscript_uses(name, body);
         let mut sizes = Vec::new();
         for found in &uses {
-            if let Ok(array) = self.reference(&found.array)
-                && let Some(size) = array.dims().get(found.dimension)
-            {
+            let dims = match self.sizes_of(&found.array)? {
+                Some(dims) => dims,
+                None => self.reference(&found.array)?.dims().to_vec(),
+            };
+            if let Some(size) = dims.get(found.dimension) {
                 sizes.push((*size, found.array.span));
             }
         }

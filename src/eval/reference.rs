@@ -4,7 +4,7 @@
 use super::Evaluator;
 use super::errors::UNKNOWN_VARIABLE;
 use super::scope::{Variable, named};
-use crate::diag::{At, Diagnostic, Fault};
+use crate::diag::{At, Diagnostic};
 use crate::fault;
 use crate::name::Ident;
 use crate::source::Span;
@@ -19,26 +19,40 @@ impl Evaluator<'_> {
         &mut self,
         reference: &ComponentReference,
     ) -> Result<Value, Diagnostic> {
-        let Some(first) = self.local(reference)? else { return self.global(reference) };
-        if let ([part], [subscripts @ ..]) =
-            (reference.parts.as_slice(), first.subscripts.as_slice())
-        {
-            if subscripts.is_empty() {
-                return self.whole(part.name, reference.span);
-            }
-            if let Some(element) = self.element(part, reference.span)? {
-                return Ok(element);
+        if let ([part], false) = (reference.parts.as_slice(), reference.global) {
+            let found = match part.subscripts.as_slice() {
+                [] => self.scope.get(part.name).cloned(),
+                _ => self.element(part, reference.span)?,
+            };
+            if let Some(value) = found {
+                return Ok(value);
             }
         }
+        let Some(first) = self.local(reference)? else { return self.global(reference) };
         let path = self.path(first.name, &reference.parts)?;
-        let value = self.variable_value(first.name)?;
-        let value = value.part(&path).map_err(|fault| at_path(fault, reference))?;
+        let value = self.variable_value(first.name)?.part(&path);
+        let value = value.map_err(|fault| named(first.name, fault).at(reference.span))?;
         if let Some(variable) = self.scope.variables.get(&first.name)
             && !self.is_iterator(first.name)
         {
             variable.check_assigned(first.name, &path).at(reference.span)?;
         }
         Ok(value)
+    }
+
+    /// The sizes of a variable or a part of one, which need not have a value yet; `None` for a
+    /// global name.
+    pub(super) fn sizes_of(
+        &mut self,
+        reference: &ComponentReference,
+    ) -> Result<Option<Vec<usize>>, Diagnostic> {
+        let Some(first) = self.local(reference)? else { return Ok(None) };
+        if reference.as_ident().is_some() {
+            return Ok(Some(self.variable_value(first.name)?.dims().to_vec()));
+        }
+        let path = self.path(first.name, &reference.parts)?;
+        let part = self.variable_value(first.name)?.part(&path).at(reference.span)?;
+        Ok(Some(part.dims().to_vec()))
     }
 
     /// Assigns to a variable or a part of one.
@@ -64,7 +78,7 @@ impl Evaluator<'_> {
         let variable = self.variable_mut(first.name, target.span)?;
         variable
             .set_part(first.name, &path, value)
-            .map_err(|fault| at_path(named(first.name, fault), target))
+            .map_err(|fault| named(first.name, fault).at(target.span))
     }
 
     /// Whether assigning to a name nobody knows makes a variable.
@@ -137,23 +151,6 @@ impl Evaluator<'_> {
         match self.scope.variables.get_mut(&name) {
             Some(variable) => Ok(variable),
             None => Err(fault!(UNKNOWN_VARIABLE, "there is no variable `{name}` here").at(span)),
-        }
-    }
-
-    fn whole(&self, name: Ident, span: Span) -> Result<Value, Diagnostic> {
-        for (iterator, value) in self.scope.iterators.iter().rev() {
-            if *iterator == name {
-                return Ok(value.clone());
-            }
-        }
-        match self.scope.variables.get(&name) {
-            Some(variable) => {
-                if variable.unassigned.is_some() {
-                    variable.check_assigned(name, &[]).at(span)?;
-                }
-                Ok(variable.value.clone())
-            }
-            None => Err(self.scope.unknown(name).at(span)),
         }
     }
 
@@ -307,8 +304,4 @@ impl Positions {
     fn as_slice(&self) -> &[i64] {
         &self.values[..self.count]
     }
-}
-
-fn at_path(fault: Fault, reference: &ComponentReference) -> Diagnostic {
-    fault.at(reference.span)
 }

@@ -138,12 +138,9 @@ impl Evaluator<'_> {
     /// The sizes of an expression; a variable is not copied for that, and need not have a value.
     fn dims(&mut self, expression: &Expression) -> Result<Vec<usize>, Diagnostic> {
         if let ExpressionKind::Reference(reference) = &expression.kind
-            && let Some(name) = reference.as_ident()
+            && let Some(sizes) = self.sizes_of(reference)?
         {
-            self.prepare(name)?;
-            if let Ok(value) = self.variable_value(name) {
-                return Ok(value.dims().to_vec());
-            }
+            return Ok(sizes);
         }
         self.expression(expression).map(|value| value.dims().to_vec())
     }

@@ -1,5 +1,173 @@
 //! Instantiation and flattening: a class of the library becomes a flat model (MLS §5.6).
+//!
+//! The steps in order: find the class, instantiate it and all its components (§5.6.1), resolve
+//! bindings and attributes, then the equations (§5.6.2), and compare the number of equations with
+//! that of unknowns (§4.8).
+//!
+//! Not translated yet, each refused with `unsupported-language`: connectors and connections
+//! (ch. 9), inner and outer (§5.4), redeclarations (§7.3), `break` in extends clauses (§7.4),
+//! stream connectors (ch. 15), overloaded operators (ch. 14), loops over implicit ranges in
+//! equations (§11.2.2.1).
 
+mod balance;
+mod constants;
+mod declarations;
+mod equations;
+pub mod errors;
 mod flat_model;
+mod functions;
+mod instance;
+mod instantiation;
+mod library;
+mod lookup;
+mod modification;
+mod print;
+mod resolve;
+mod variables;
 
 pub use flat_model::*;
+pub use library::{ClassId, Library};
+
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::name::Name;
+use crate::source::Span;
+use crate::syntax::ast::{
+    self, Annotation, Argument, Binding, ClassDefinition, ClassSpecifier, ExpressionKind,
+    Restriction, Section, TypeSpecifier, UnaryOperator,
+};
+use errors::NOT_A_MODEL;
+use instance::{Context, Inherited, NodeId};
+use instantiation::Instantiation;
+use modification::Modifier;
+
+/// A flat model and what is worth knowing about how it came about.
+#[derive(Debug, Clone)]
+pub struct Flattened {
+    /// The model.
+    pub model: FlatModel,
+    /// Warnings.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Flattens a class under a modification, such as that of `M(p = 2)`. The errors are independent
+/// of each other as far as one can tell.
+pub fn flatten(
+    library: &Library,
+    class: &Name,
+    modification: &[Argument],
+) -> Result<Flattened, Vec<Diagnostic>> {
+    let specifier = TypeSpecifier { name: class.clone(), span: Span::NONE };
+    let one = |error: Diagnostic| vec![error];
+    let lookup::Type::Class(id) = library.lookup_type(None, &specifier).map_err(one)? else {
+        return Err(vec![fault!(NOT_A_MODEL, "`{class}` is a predefined type").at(Span::NONE)]);
+    };
+    let definition = library.class(id).definition.clone();
+    check_restriction(class, &definition).map_err(one)?;
+    let mut tree = Instantiation::new(library);
+    tree.check_complete(id, definition.name.span).map_err(one)?;
+    let outside = Context { node: NodeId(0), class: None };
+    let modifier = Modifier::of_arguments(modification, outside).map_err(one)?;
+    let root = tree.composite(id, String::new(), modifier, Inherited::default()).map_err(one)?;
+    tree.complete(root)?;
+    let mut model = FlatModel {
+        name: library.class(id).name.to_string(),
+        description: described(&definition),
+        experiment: experiment(&definition),
+        span: Some(definition.name.span),
+        ..FlatModel::default()
+    };
+    let mut errors = Vec::new();
+    tree.add_equations(root, &mut model, &mut errors);
+    tree.add_variables(root, &mut model, &mut errors);
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    for (name, function) in tree.functions {
+        model.functions.extend(function.map(|function| (name, function)));
+    }
+    balance::check(&model).map_err(one)?;
+    Ok(Flattened { model, warnings: Vec::new() })
+}
+
+/// Only models, blocks and classes can be simulated (MLS §4.7).
+fn check_restriction(name: &Name, definition: &ClassDefinition) -> Result<(), Diagnostic> {
+    let what = match definition.restriction {
+        Restriction::Model | Restriction::Block | Restriction::Class => return Ok(()),
+        Restriction::Package => "a package",
+        Restriction::Function { .. } => "a function",
+        Restriction::Record | Restriction::OperatorRecord => "a record",
+        Restriction::Connector | Restriction::ExpandableConnector => "a connector",
+        Restriction::Type => "a type",
+        Restriction::Operator => "an operator",
+    };
+    Err(fault!(NOT_A_MODEL, "`{name}` is {what}, not a model").at(definition.name.span))
+}
+
+fn described(definition: &ClassDefinition) -> Option<std::sync::Arc<str>> {
+    match &definition.specifier {
+        ClassSpecifier::Long(long) => long.description.clone(),
+        ClassSpecifier::Short(short) => short.comment.text.clone(),
+        _ => None,
+    }
+}
+
+/// The `experiment` annotation of a class (MLS §18.4).
+fn experiment(definition: &ClassDefinition) -> Experiment {
+    let annotations: Vec<&Annotation> = match &definition.specifier {
+        ClassSpecifier::Long(long) => long
+            .sections
+            .iter()
+            .filter_map(|section| match section {
+                Section::Annotation(annotation) => Some(annotation),
+                _ => None,
+            })
+            .collect(),
+        ClassSpecifier::Short(short) => short.comment.annotation.iter().collect(),
+        _ => Vec::new(),
+    };
+    let mut found = Experiment::default();
+    for argument in annotations.iter().flat_map(|annotation| &annotation.arguments) {
+        let Some((name, modification)) = named(argument) else { continue };
+        if name != "experiment" {
+            continue;
+        }
+        for setting in &modification.arguments {
+            let Some((name, setting)) = named(setting) else { continue };
+            let value = number(setting);
+            match name.as_str() {
+                "StartTime" => found.start_time = value,
+                "StopTime" => found.stop_time = value,
+                "Interval" => found.interval = value,
+                "Tolerance" => found.tolerance = value,
+                _ => {}
+            }
+        }
+    }
+    found
+}
+
+fn named(argument: &Argument) -> Option<(String, &ast::Modification)> {
+    match argument {
+        Argument::Element(element) => {
+            Some((element.name.node.to_string(), element.modification.as_ref()?))
+        }
+        Argument::Redeclaration(_) => None,
+    }
+}
+
+fn number(modification: &ast::Modification) -> Option<f64> {
+    let Some(Binding::Expression(value)) = &modification.binding else { return None };
+    literal_number(value)
+}
+
+fn literal_number(e: &ast::Expression) -> Option<f64> {
+    match &e.kind {
+        ExpressionKind::Real(value) => Some(*value),
+        ExpressionKind::Integer(value) => Some(*value as f64),
+        ExpressionKind::Unary { operator: UnaryOperator::Minus, operand } => {
+            literal_number(operand).map(|value| -value)
+        }
+        _ => None,
+    }
+}

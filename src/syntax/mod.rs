@@ -41,7 +41,7 @@ pub fn parse_script(source: SourceId, text: &str) -> Result<Script, Diagnostic> 
 /// Reads an expression that is the whole text, such as the value of a command-line option.
 pub fn parse_expression(source: SourceId, text: &str) -> Result<Expression, Diagnostic> {
     let rule = Rule::lone_expression;
-    parser::parse(source, text, rule, Dialect::Modelica, lower::lone_expression)
+    parser::parse(source, text, rule, Dialect::Fragment, lower::lone_expression)
 }
 
 /// Reads a class name with an optional modification, `M(redeclare package P = Q, p = 2)`: the
@@ -51,7 +51,7 @@ pub fn parse_class_with_modification(
     text: &str,
 ) -> Result<(Name, Vec<Argument>), Diagnostic> {
     let rule = Rule::class_with_modification;
-    parser::parse(source, text, rule, Dialect::Modelica, lower::class_with_modification)
+    parser::parse(source, text, rule, Dialect::Fragment, lower::class_with_modification)
 }
 
 #[cfg(test)]

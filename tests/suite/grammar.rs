@@ -101,22 +101,28 @@ fn forms(script: &Script) -> String {
     script.statements.iter().map(|one| format!("{}{}\n", form(one), end(one))).collect()
 }
 
-/// Reads a local library named by `GAPILIB_MODELICA_LIBRARY`; says so where it is not set.
-#[test]
-fn local_library_is_read() {
+/// The texts of the local library that `GAPILIB_MODELICA_LIBRARY` names; `None`, and a word about
+/// it, where it is not set.
+#[allow(clippy::print_stderr, reason = "a test that is skipped has to say so")]
+fn local_library() -> Option<Vec<(PathBuf, String)>> {
     let Some(folder) = std::env::var_os("GAPILIB_MODELICA_LIBRARY") else {
         eprintln!("skipped: GAPILIB_MODELICA_LIBRARY names no local library");
-        return;
+        return None;
     };
     let mut files = Vec::new();
     modelica_files(Path::new(&folder), &mut files);
     files.sort();
-    let (mut bytes, mut failures) = (0, Vec::new());
-    let start = std::time::Instant::now();
-    for path in &files {
-        let content = std::fs::read(path).expect("the file is readable");
-        let (text, _) = syntax::decode(&content);
-        bytes += text.len();
+    let read = |path: PathBuf| {
+        let content = std::fs::read(&path).expect("the file is readable");
+        (path, syntax::decode(&content).0)
+    };
+    Some(files.into_iter().map(read).collect())
+}
+
+#[test]
+fn local_library_reads_back() {
+    let mut failures = Vec::new();
+    for (path, text) in local_library().unwrap_or_default() {
         let mut sources = SourceMap::default();
         let source = sources.add(path.display().to_string(), text.as_str());
         match Tree::parse(source, &text, false) {
@@ -126,9 +132,23 @@ fn local_library_is_read() {
             Err(error) => failures.push(render(&error, &sources, false)),
         }
     }
+    assert!(failures.is_empty(), "{} texts:\n{}", failures.len(), failures.join("\n"));
+}
+
+/// Megabytes a second; run with `--release -- --ignored --nocapture`.
+#[test]
+#[ignore = "measures, and asserts nothing but that every text is read"]
+#[allow(clippy::print_stderr, reason = "the measurement is the result")]
+fn local_library_speed() {
+    let texts = local_library().unwrap_or_default();
+    let bytes: usize = texts.iter().map(|(_, text)| text.len()).sum();
+    let start = std::time::Instant::now();
+    let read = texts.iter().filter(|(_, text)| Tree::parse(SourceId::NONE, text, false).is_ok());
+    let read = read.count();
     let seconds = start.elapsed().as_secs_f64();
-    eprintln!("{} files, {:.2} MB, {seconds:.2} s", files.len(), bytes as f64 / 1e6);
-    assert!(failures.is_empty(), "{} of {}:\n{}", failures.len(), files.len(), failures.join("\n"));
+    let megabytes = bytes as f64 / 1e6;
+    eprintln!("{read} files, {megabytes:.2} MB, {seconds:.2} s, {:.1} MB/s", megabytes / seconds);
+    assert_eq!(read, texts.len());
 }
 
 /// The first error of each text in `invalid/`, as the user sees it.

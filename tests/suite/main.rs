@@ -1,6 +1,7 @@
 //! The integration tests; one module per suite.
 
 mod architecture;
+mod flattening;
 mod gapilib;
 mod grammar;
 mod identification;
@@ -9,4 +10,5 @@ mod models;
 mod results;
 mod scripts;
 mod shipped;
+mod syntax_properties;
 mod transcripts;

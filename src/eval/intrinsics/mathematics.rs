@@ -9,19 +9,16 @@ use crate::value::errors::{
 use crate::value::{ArrayValue, Elements, Value, construct, ops, sizes};
 use crate::{bail, fault};
 
-pub(super) const FUNCTIONS: &[Entry] = &[
-    Entry::of_scalars("abs", 1, absolute),
-    Entry::of_scalars("div", 2, |x| whole(x, "div", i64::checked_div)),
-    Entry::of_scalars("mod", 2, |x| whole(x, "mod", modulo)),
-    Entry::of_scalars("rem", 2, |x| whole(x, "rem", i64::checked_rem)),
-    Entry::of_scalars("semiLinear", 3, semi_linear),
-];
+pub(super) const FUNCTIONS: &[Entry] = &[Entry::of_scalars("semiLinear", 3, semi_linear)];
 
 /// A function of the mathematical table, element by element where arguments are arrays.
 pub(super) fn call(function: FunctionId, arguments: &[Value]) -> Result<Value, Fault> {
     let function = function.get();
     match arguments {
         [Value::Real(x)] => real(function, &[*x]).and_then(|y| typed(function, arguments, y)),
+        [Value::Real(x), Value::Real(y)] => {
+            real(function, &[*x, *y]).and_then(|z| typed(function, arguments, z))
+        }
         [Value::Array(ArrayValue { dims, elements: Elements::Real(values) })]
             if function.result != ResultType::Integer =>
         {
@@ -34,6 +31,11 @@ pub(super) fn call(function: FunctionId, arguments: &[Value]) -> Result<Value, F
 }
 
 fn scalar(function: &Function, arguments: &[Value]) -> Result<Value, Fault> {
+    if function.result == ResultType::AsArguments
+        && let Some(value) = of_integers(function.name, arguments)?
+    {
+        return Ok(Value::Integer(value));
+    }
     let mut reals = [0.0; 2];
     let reals = &mut reals[..arguments.len().min(2)];
     for (real, argument) in reals.iter_mut().zip(arguments) {
@@ -113,39 +115,21 @@ pub(super) fn each(
     construct::shaped(dims, values)
 }
 
-/// Exact where Integers exceed what a Real holds.
-fn absolute(arguments: &[Value]) -> Result<Value, Fault> {
-    match &arguments[0] {
-        Value::Integer(value) => match value.checked_abs() {
-            Some(value) => Ok(Value::Integer(value)),
-            None => bail!(INTEGER_OVERFLOW, "`abs({value})` does not fit in an Integer"),
-        },
-        _ => by_table("abs", arguments),
-    }
-}
-
-/// Integer division exactly; everything else by the table.
-fn whole(
-    arguments: &[Value],
-    name: &str,
-    operation: fn(i64, i64) -> Option<i64>,
-) -> Result<Value, Fault> {
-    match arguments {
-        [Value::Integer(_), Value::Integer(0)] => {
+/// Exactly, because Integers may exceed what a Real holds; `None` for other functions and types.
+fn of_integers(name: &str, arguments: &[Value]) -> Result<Option<i64>, Fault> {
+    let value = match (name, arguments) {
+        ("abs", [Value::Integer(x)]) => x.checked_abs(),
+        ("div" | "mod" | "rem", [Value::Integer(_), Value::Integer(0)]) => {
             bail!(DIVISION_BY_ZERO, "`{name}` by zero")
         }
-        [Value::Integer(a), Value::Integer(b)] => match operation(*a, *b) {
-            Some(value) => Ok(Value::Integer(value)),
-            None => bail!(INTEGER_OVERFLOW, "`{name}({a}, {b})` does not fit in an Integer"),
-        },
-        _ => by_table(name, arguments),
-    }
-}
-
-fn by_table(name: &str, arguments: &[Value]) -> Result<Value, Fault> {
-    match crate::symbolic::function::find(name) {
-        Some(function) => scalar(function.get(), arguments),
-        None => bail!(TYPE_MISMATCH, "`{name}` is not defined for these arguments"),
+        ("div", [Value::Integer(x), Value::Integer(y)]) => x.checked_div(*y),
+        ("mod", [Value::Integer(x), Value::Integer(y)]) => modulo(*x, *y),
+        ("rem", [Value::Integer(x), Value::Integer(y)]) => x.checked_rem(*y),
+        _ => return Ok(None),
+    };
+    match value {
+        Some(value) => Ok(Some(value)),
+        None => bail!(INTEGER_OVERFLOW, "the value of `{name}` does not fit in an Integer"),
     }
 }
 

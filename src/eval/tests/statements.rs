@@ -95,3 +95,12 @@ fn what_belongs_to_models_is_refused() {
     assert!(run_fails("when true then x := 1; end when;").starts_with("model-only"));
     assert!(run_fails("if true then break; end if;").starts_with("misplaced"));
 }
+
+#[test]
+fn the_range_of_a_loop_that_fills_an_output_is_deduced() {
+    let script = "
+function squares input Real x[:]; output Real y[size(x, 1)];
+algorithm for i loop y[i] := x[i]*x[i]; end for; end squares;
+";
+    assert_eq!(run(script, "squares({1, 2, 3})"), "{1.0, 4.0, 9.0}");
+}

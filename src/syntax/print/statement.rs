@@ -139,10 +139,12 @@ impl Printer {
         match kind {
             InteractiveKind::Statement(statement) => self.statement(statement),
             InteractiveKind::Expression(expression) => {
-                let signed = begins_with_sign(expression);
-                match signed && !closed {
+                let text = super::expression(expression);
+                let conditional = matches!(expression.kind, ExpressionKind::If { .. });
+                let continues = !closed && text.starts_with(['+', '-', '.']);
+                match conditional || continues || begins_with_command(&text) {
                     true => self.in_parentheses(expression),
-                    false => self.expression(expression),
+                    false => self.word(&text),
                 }
             }
             InteractiveKind::Declaration(clause) => self.component_clause(clause),
@@ -159,8 +161,9 @@ impl Printer {
     }
 }
 
-/// Whether the text of an expression begins with `+`, `-` or `.`.
-fn begins_with_sign(expression: &Expression) -> bool {
-    super::expression(expression).starts_with(['+', '-', '.'])
-        && !matches!(expression.kind, ExpressionKind::Reference(_) | ExpressionKind::Call { .. })
+/// Whether the text would read as a bare command, which is no call and no dotted name.
+fn begins_with_command(text: &str) -> bool {
+    ["clearlog", "clear", "exit", "cd"].iter().any(|command| {
+        text.strip_prefix(command).is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))
+    })
 }

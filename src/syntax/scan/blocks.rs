@@ -49,13 +49,14 @@ pub(super) struct Blocks<'t> {
 }
 
 impl<'t> Blocks<'t> {
-    pub(super) fn new(source: SourceId) -> Blocks<'t> {
+    /// `start`: the text begins with a statement or element.
+    pub(super) fn new(source: SourceId, start: bool) -> Blocks<'t> {
         Blocks {
             source,
             stack: Vec::new(),
             classes: 0,
             head: Head::None,
-            start: true,
+            start,
             header: false,
             after_else: false,
         }

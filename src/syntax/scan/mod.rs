@@ -29,6 +29,8 @@ pub(super) enum Dialect {
     Modelica,
     /// Scripts: they do, outside classes.
     Script,
+    /// A piece of Modelica that is no statement: `if` is a conditional expression.
+    Fragment,
 }
 
 /// A text made ready for the grammar.
@@ -101,6 +103,8 @@ struct Scanner<'t> {
     conditions: usize,
     /// `if` of conditional expressions at bracket depth zero whose `else` is to come.
     awaiting_else: usize,
+    /// The same for their `then`.
+    awaiting_then: usize,
     previous: Option<Token<'t>>,
     problem: Option<Problem>,
 }
@@ -113,9 +117,10 @@ impl<'t> Scanner<'t> {
             tokens: Tokens::new(source, text),
             out: text.as_bytes().to_vec(),
             brackets: Vec::new(),
-            blocks: Blocks::new(source),
+            blocks: Blocks::new(source, dialect != Dialect::Fragment),
             conditions: 0,
             awaiting_else: 0,
+            awaiting_then: 0,
             previous: None,
             problem: None,
         }
@@ -182,6 +187,7 @@ impl<'t> Scanner<'t> {
     fn end_statement(&mut self) {
         self.blocks.end_statement();
         self.awaiting_else = 0;
+        self.awaiting_then = 0;
         self.conditions = 0;
     }
 
@@ -190,16 +196,29 @@ impl<'t> Scanner<'t> {
             self.conditions += usize::from(token.text == "if");
             return;
         }
-        if token.text == "if" && !self.blocks.at_start() && !self.after_end() {
-            self.conditions += 1;
-            self.awaiting_else += 1;
-        } else if token.text == "else" {
-            self.awaiting_else = self.awaiting_else.saturating_sub(1);
+        if self.in_condition(token) {
+            return;
         }
         let after_end = self.after_end();
         if let Err(problem) = self.blocks.word(token, after_end) {
             self.report(problem.from, problem.diagnostic);
         }
+    }
+
+    /// Whether the word belongs to a conditional expression, which is then followed.
+    fn in_condition(&mut self, token: &Token<'t>) -> bool {
+        match token.text {
+            "if" if !self.blocks.at_start() && !self.after_end() => {
+                self.conditions += 1;
+                self.awaiting_else += 1;
+                self.awaiting_then += 1;
+            }
+            "elseif" if self.awaiting_else > 0 => self.awaiting_then += 1,
+            "then" if self.awaiting_then > 0 => self.awaiting_then -= 1,
+            "else" if self.awaiting_else > 0 => self.awaiting_else -= 1,
+            _ => return false,
+        }
+        true
     }
 
     fn after_end(&self) -> bool {

@@ -17,10 +17,13 @@ pub fn add(left: &Value, right: &Value) -> Result<Value, Fault> {
         (Value::Integer(a), Value::Integer(b)) => {
             a.checked_add(*b).map(Value::Integer).ok_or_else(|| overflow("+", *a, *b))
         }
-        _ => {
-            same_rank("+", left, right)?;
-            elementwise_add(left, right)
-        }
+        _ => match scalars(left, right) {
+            Some((a, b)) => Ok(Value::Real(a + b)),
+            None => {
+                same_rank("+", left, right)?;
+                elementwise_add(left, right)
+            }
+        },
     }
 }
 
@@ -31,10 +34,13 @@ pub fn subtract(left: &Value, right: &Value) -> Result<Value, Fault> {
         (Value::Integer(a), Value::Integer(b)) => {
             a.checked_sub(*b).map(Value::Integer).ok_or_else(|| overflow("-", *a, *b))
         }
-        _ => {
-            same_rank("-", left, right)?;
-            elementwise_subtract(left, right)
-        }
+        _ => match scalars(left, right) {
+            Some((a, b)) => Ok(Value::Real(a - b)),
+            None => {
+                same_rank("-", left, right)?;
+                elementwise_subtract(left, right)
+            }
+        },
     }
 }
 
@@ -47,7 +53,10 @@ pub fn multiply(left: &Value, right: &Value) -> Result<Value, Fault> {
             a.checked_mul(*b).map(Value::Integer).ok_or_else(|| overflow("*", *a, *b))
         }
         (Value::Array(a), Value::Array(b)) => matrix::product(a, b),
-        _ => elementwise_multiply(left, right),
+        _ => match scalars(left, right) {
+            Some((a, b)) => Ok(Value::Real(a * b)),
+            None => elementwise_multiply(left, right),
+        },
     }
 }
 
@@ -58,7 +67,10 @@ pub fn divide(left: &Value, right: &Value) -> Result<Value, Fault> {
         (_, Value::Array(_)) => {
             Err(unsuitable("/", left, right).help("`./` divides by each element".to_owned()))
         }
-        _ => elementwise_divide(left, right),
+        _ => match scalars(left, right) {
+            Some((a, b)) => real_divide(a, b).map(Value::Real),
+            None => elementwise_divide(left, right),
+        },
     }
 }
 
@@ -70,9 +82,9 @@ pub fn power(left: &Value, right: &Value) -> Result<Value, Fault> {
         (Value::Array(_), _) | (_, Value::Array(_)) => {
             Err(unsuitable("^", left, right).help("`.^` raises each element to a power".to_owned()))
         }
-        _ => match (left.as_real(), right.as_real()) {
-            (Some(base), Some(exponent)) => real_power(base, exponent).map(Value::Real),
-            _ => Err(unsuitable("^", left, right)),
+        _ => match scalars(left, right) {
+            Some((base, exponent)) => real_power(base, exponent).map(Value::Real),
+            None => Err(unsuitable("^", left, right)),
         },
     }
 }
@@ -119,6 +131,10 @@ pub fn real_power(a: f64, b: f64) -> Result<f64, Fault> {
         bail!(DOMAIN_ERROR, "the negative number {a:?} to the power {b:?} is not real");
     }
     Ok(a.powf(b))
+}
+
+fn scalars(left: &Value, right: &Value) -> Option<(f64, f64)> {
+    Some((left.as_real()?, right.as_real()?))
 }
 
 pub(super) fn overflow(symbol: &str, a: i64, b: i64) -> Fault {

@@ -1,0 +1,318 @@
+//! Equations of the instances: names resolved, loops unrolled, branches on parameters chosen
+//! where they must be (MLS §8.3, §8.6).
+
+use super::FlatModel;
+use super::errors::{NOT_SUPPORTED, TYPE_MISMATCH};
+use super::instance::{Context, MemberState, NodeId, NodeKind};
+use super::instantiation::Instantiation;
+use super::resolve::{Local, literal};
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::name::Ident;
+use crate::syntax::ast::{
+    Equation, EquationKind, Expression, ExpressionKind, ForIndex, ReferencePart, Section,
+};
+use crate::value::{ArrayValue, Elements, Value};
+
+/// The most equations that loops are unrolled to.
+const MAX_EQUATIONS: usize = 2_000_000;
+
+impl Instantiation<'_> {
+    /// Adds the equations and algorithms of a node and of all below it.
+    pub(super) fn add_equations(
+        &mut self,
+        node: NodeId,
+        model: &mut FlatModel,
+        errors: &mut Vec<Diagnostic>,
+    ) {
+        let Some(composite) = self.composite_of(node) else { return };
+        let lineage = composite.lineage.clone();
+        let members: Vec<MemberState> =
+            composite.members.values().map(|member| member.state.clone()).collect();
+        let library = self.library;
+        for state in members {
+            match state {
+                MemberState::Single(one) => self.add_equations(one, model, errors),
+                MemberState::Array(_, nodes) => {
+                    for one in nodes {
+                        self.add_equations(one, model, errors);
+                    }
+                }
+                MemberState::Pending | MemberState::Busy | MemberState::Absent => {}
+            }
+        }
+        for class in lineage {
+            let context = Context { node, class: Some(class) };
+            for section in library.class(class).sections() {
+                if let Err(error) = self.add_section(section, context, model, errors) {
+                    errors.push(error);
+                }
+            }
+        }
+    }
+
+    fn add_section(
+        &mut self,
+        section: &Section,
+        context: Context,
+        model: &mut FlatModel,
+        errors: &mut Vec<Diagnostic>,
+    ) -> Result<(), Diagnostic> {
+        let local = Local::default();
+        match section {
+            Section::Equations { initial, equations, .. } => {
+                for equation in equations {
+                    let mut out = Vec::new();
+                    match self.equation(equation, context, &local, &mut out) {
+                        Ok(()) if *initial => model.initial_equations.append(&mut out),
+                        Ok(()) => model.equations.append(&mut out),
+                        Err(error) => errors.push(error),
+                    }
+                    if model.equations.len() > MAX_EQUATIONS {
+                        return Err(fault!(super::errors::TOO_LARGE, "too many equations")
+                            .at(equation.span));
+                    }
+                }
+            }
+            Section::Algorithm { initial, statements, .. } => {
+                let statements = self.statements(statements, context, &local)?;
+                if *initial {
+                    model.initial_algorithms.push(statements);
+                } else {
+                    model.algorithms.push(statements);
+                }
+            }
+            Section::External(external) => {
+                return Err(
+                    fault!(NOT_SUPPORTED, "only functions can be external").at(external.span)
+                );
+            }
+            Section::Elements { .. } | Section::Annotation(_) => {}
+        }
+        Ok(())
+    }
+
+    fn equation(
+        &mut self,
+        equation: &Equation,
+        context: Context,
+        local: &Local,
+        out: &mut Vec<Equation>,
+    ) -> Result<(), Diagnostic> {
+        let kind = match &equation.kind {
+            EquationKind::Equal { left, right } => {
+                if self.record_equation(left, right, equation, context, local, out)? {
+                    return Ok(());
+                }
+                EquationKind::Equal {
+                    left: self.resolve(left, context, local)?,
+                    right: self.resolve(right, context, local)?,
+                }
+            }
+            EquationKind::For { indices, body } => {
+                return self.unroll(indices, body, context, local, out);
+            }
+            EquationKind::If { branches, otherwise } => {
+                match self.if_equation(branches, otherwise, context, local, out)? {
+                    Some(kind) => kind,
+                    None => return Ok(()),
+                }
+            }
+            EquationKind::When { branches } => {
+                let mut resolved = Vec::with_capacity(branches.len());
+                for (condition, body) in branches {
+                    let condition = self.resolve(condition, context, local)?;
+                    resolved.push((condition, self.equations(body, context, local)?));
+                }
+                EquationKind::When { branches: resolved }
+            }
+            EquationKind::Call(call) => EquationKind::Call(self.resolve(call, context, local)?),
+            EquationKind::Connect { .. } => {
+                return Err(
+                    fault!(NOT_SUPPORTED, "connections are not translated yet").at(equation.span)
+                );
+            }
+        };
+        out.push(Equation { kind, comment: Default::default(), span: equation.span });
+        Ok(())
+    }
+
+    fn equations(
+        &mut self,
+        equations: &[Equation],
+        context: Context,
+        local: &Local,
+    ) -> Result<Vec<Equation>, Diagnostic> {
+        let mut out = Vec::new();
+        for equation in equations {
+            self.equation(equation, context, local, &mut out)?;
+        }
+        Ok(out)
+    }
+
+    /// An equation between records is one for each of their components (MLS §8.3.1).
+    fn record_equation(
+        &mut self,
+        left: &Expression,
+        right: &Expression,
+        equation: &Equation,
+        context: Context,
+        local: &Local,
+        out: &mut Vec<Equation>,
+    ) -> Result<bool, Diagnostic> {
+        let fields = match (self.record_fields(left, context)?, self.record_fields(right, context)?)
+        {
+            (Some(fields), _) | (None, Some(fields)) => fields,
+            (None, None) => return Ok(false),
+        };
+        for name in fields {
+            let part = |e: &Expression| {
+                let kind = ExpressionKind::Field { base: Box::new(e.clone()), name };
+                Expression::new(kind, e.span)
+            };
+            let kind = EquationKind::Equal { left: part(left), right: part(right) };
+            let one = Equation { kind, comment: Default::default(), span: equation.span };
+            self.equation(&one, context, local, out)?;
+        }
+        Ok(true)
+    }
+
+    /// The components of the record that a reference names; `None` if it names anything else.
+    fn record_fields(
+        &mut self,
+        e: &Expression,
+        context: Context,
+    ) -> Result<Option<Vec<Ident>>, Diagnostic> {
+        let ExpressionKind::Reference(reference) = &e.kind else { return Ok(None) };
+        let mut node = context.node;
+        for ReferencePart { name, subscripts } in &reference.parts {
+            let next = match self.member(node, *name)? {
+                Some(MemberState::Single(one)) => one,
+                Some(MemberState::Array(_, nodes)) if !subscripts.is_empty() => match nodes.first()
+                {
+                    Some(first) => *first,
+                    None => return Ok(None),
+                },
+                _ => return Ok(None),
+            };
+            node = next;
+        }
+        Ok(match &self.nodes[node.0].kind {
+            NodeKind::Composite(composite) if composite.record => {
+                Some(composite.members.keys().copied().collect())
+            }
+            _ => None,
+        })
+    }
+
+    fn unroll(
+        &mut self,
+        indices: &[ForIndex],
+        body: &[Equation],
+        context: Context,
+        local: &Local,
+        out: &mut Vec<Equation>,
+    ) -> Result<(), Diagnostic> {
+        let Some((index, inner)) = indices.split_first() else {
+            out.extend(self.equations(body, context, local)?);
+            return Ok(());
+        };
+        let span = index.name.span;
+        let range = index.range.as_ref().ok_or_else(|| {
+            fault!(NOT_SUPPORTED, "loops without a range are not translated yet in equations";
+                help: "write the range: `for {} in 1:n loop`", index.name.node)
+            .at(span)
+        })?;
+        let resolved = self.resolve(range, context, local)?;
+        for value in self.range_values(&resolved)? {
+            let mut turn = local.clone();
+            turn.names.push((index.name.node, Some(literal(&value, span))));
+            self.unroll(inner, body, context, &turn, out)?;
+            if out.len() > MAX_EQUATIONS {
+                return Err(
+                    fault!(super::errors::TOO_LARGE, "the loop has too many equations").at(span)
+                );
+            }
+        }
+        Ok(())
+    }
+
+    fn range_values(&mut self, range: &Expression) -> Result<Vec<Value>, Diagnostic> {
+        match self.flat_value(range)? {
+            Value::Array(ArrayValue { dims, elements }) if dims.len() == 1 => {
+                Ok((0..Elements::len(&elements)).map(|at| elements.get(at)).collect())
+            }
+            other => {
+                let found = other.type_name();
+                Err(fault!(TYPE_MISMATCH, "a loop runs over a vector, not {found}").at(range.span))
+            }
+        }
+    }
+
+    /// Branches of equal size whose conditions are not fixed at translation stay; otherwise the
+    /// branch is chosen now (MLS §8.3.4). `None` if the chosen equations were added already.
+    fn if_equation(
+        &mut self,
+        branches: &[(Expression, Vec<Equation>)],
+        otherwise: &[Equation],
+        context: Context,
+        local: &Local,
+        out: &mut Vec<Equation>,
+    ) -> Result<Option<EquationKind>, Diagnostic> {
+        let chosen = self.chosen_branch(branches, context, local)?;
+        match chosen {
+            Some(Some(at)) => {
+                out.extend(self.equations(&branches[at].1, context, local)?);
+                return Ok(None);
+            }
+            Some(None) => {
+                out.extend(self.equations(otherwise, context, local)?);
+                return Ok(None);
+            }
+            None => {}
+        }
+        let mut resolved = Vec::with_capacity(branches.len());
+        for (condition, body) in branches {
+            let condition = self.resolve(condition, context, local)?;
+            resolved.push((condition, self.equations(body, context, local)?));
+        }
+        let otherwise = self.equations(otherwise, context, local)?;
+        Ok(Some(EquationKind::If { branches: resolved, otherwise }))
+    }
+
+    /// Which branch the conditions choose, if all of them up to that one are constants or
+    /// parameters with values: `Some(None)` means `else`.
+    fn chosen_branch(
+        &mut self,
+        branches: &[(Expression, Vec<Equation>)],
+        context: Context,
+        local: &Local,
+    ) -> Result<Option<Option<usize>>, Diagnostic> {
+        for (at, (condition, _)) in branches.iter().enumerate() {
+            let resolved = self.resolve(condition, context, local)?;
+            if !self.is_fixed(&resolved) {
+                return Ok(None);
+            }
+            match self.flat_value(&resolved)? {
+                Value::Boolean(true) => return Ok(Some(Some(at))),
+                Value::Boolean(false) => {}
+                other => {
+                    let found = other.type_name();
+                    return Err(fault!(TYPE_MISMATCH, "a condition must be Boolean, not {found}")
+                        .at(condition.span));
+                }
+            }
+        }
+        Ok(Some(None))
+    }
+
+    /// Whether an expression has a value at translation: no variable but constants and
+    /// parameters, no operator of time.
+    fn is_fixed(&mut self, resolved: &Expression) -> bool {
+        let nowhere = Context { node: NodeId(1), class: None };
+        let read = std::mem::take(&mut self.read);
+        let fixed = self.known_value(resolved, nowhere).is_ok();
+        self.read = read;
+        fixed
+    }
+}

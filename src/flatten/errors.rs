@@ -1,0 +1,48 @@
+//! Codes of this stage.
+
+use crate::codes;
+
+codes! {
+    /// A class that nothing declares.
+    UNKNOWN_CLASS = "unknown-class":
+        "## What it means\n\nA class was named that is not loaded, or not visible from where it is named (MLS §5.3).\n\n## Example\n\n```modelica\nmodel M\n  Resistr r;\nend M;\n```\n\n## What to do\n\nCorrect the name, or load the file that declares the class: `openModel(\"file.mo\")` in a script, the file on the command line, or `--library DIR`.",
+    /// A name that is neither a component nor a constant nor a function.
+    UNKNOWN_NAME = "unknown-name":
+        "## What it means\n\nAn expression names something that is neither a component of its class nor a constant or function of a package (MLS §5.3).\n\n## Example\n\n```modelica\nmodel M\n  Real x;\nequation\n  der(x) = -k*x;\nend M;\n```\n\n## What to do\n\nDeclare it, or correct its name.",
+    /// A modifier of a component that does not exist.
+    UNKNOWN_ELEMENT = "unknown-element":
+        "## What it means\n\nA modification names an element that the modified class does not have (MLS §7.2).\n\n## Example\n\n`Resistor r(Rr = 2);`\n\n## What to do\n\nCorrect the name; the message suggests the nearest one.",
+    /// Something that is not a model was to be simulated.
+    NOT_A_MODEL = "not-a-model":
+        "## What it means\n\nOnly a model, a block or a class can be simulated; packages, functions, records, types and connectors cannot.\n\n## Example\n\n`simulateModel(\"CaseStudies\")`\n\n## What to do\n\nName a model inside the package.",
+    /// A partial class was to be instantiated.
+    PARTIAL_CLASS = "partial-class":
+        "## What it means\n\nA class declared `partial` is incomplete on purpose and cannot be instantiated (MLS §4.7).\n\n## Example\n\n```modelica\npartial model P\n  Real x;\nend P;\n```\n\n## What to do\n\nUse a class that extends it.",
+    /// A class that extends or contains itself.
+    CYCLIC_CLASS = "cyclic-class":
+        "## What it means\n\nA class extends itself or contains a component of its own class, directly or through others.\n\n## Example\n\n```modelica\nmodel M\n  M m;\nend M;\n```\n\n## What to do\n\nBreak the cycle.",
+    /// A modification of something final.
+    FINAL_OVERRIDE = "final-override":
+        "## What it means\n\nAn element or attribute declared `final` cannot be modified (MLS §7.2.6).\n\n## Example\n\n`type Voltage = Real(final unit = \"V\"); Voltage v(unit = \"mV\");`\n\n## What to do\n\nRemove the modifier.",
+    /// A value of the wrong type.
+    TYPE_MISMATCH = "type-mismatch":
+        "## What it means\n\nA value has a type that does not fit where it stands (MLS §6.7).\n\n## Example\n\n`parameter Integer n = 1.5;`\n\n## What to do\n\nGive a value of the type that the message names.",
+    /// Sizes that differ.
+    SIZE_MISMATCH = "size-mismatch":
+        "## What it means\n\nAn array has another size than its declaration or its equation asks for (MLS §10.1, §10.6).\n\n## Example\n\n`Real x[3] = {1, 2};`\n\n## What to do\n\nMake the sizes agree.",
+    /// Something needed at translation that is not constant.
+    NOT_CONSTANT = "not-constant":
+        "## What it means\n\nAn array size, a loop's range or a constant must be known when the model is translated, and the expression is not.\n\n## Example\n\n`Real x[integer(time)];`\n\n## What to do\n\nUse constants and parameters with values.",
+    /// An element declared twice with different declarations.
+    DUPLICATE_ELEMENT = "duplicate-element":
+        "## What it means\n\nA class has two elements of one name (MLS §7.1).\n\n## Example\n\n`Real x; Real x;`\n\n## What to do\n\nRename or remove one of them.",
+    /// A part of the language that is not built yet.
+    NOT_SUPPORTED = "unsupported-language":
+        "## What it means\n\nThe text is Modelica, and this program does not translate that part of the language yet. The message names it.\n\n## Example\n\n`inStream(port.h_outflow)`\n\n## What to do\n\nWrite the model without it.",
+    /// A number of equations other than that of unknowns.
+    UNBALANCED_MODEL = "unbalanced-model":
+        "## What it means\n\nA model has not as many equations as unknowns (MLS §4.8).\n\n## Example\n\n```modelica\nmodel M\n  Real x;\n  Real y;\nequation\n  x = 1;\nend M;\n```\n\n## What to do\n\nAdd the equations that are missing, or remove those that are too many.",
+    /// A model larger than the program is ready to build.
+    TOO_LARGE = "too-large":
+        "## What it means\n\nThe model has more variables or deeper nesting than the program is ready to build.\n\n## Example\n\n`Real x[100000, 100000];`\n\n## What to do\n\nCheck the array sizes; a missing factor or a wrong unit makes them explode.",
+}

@@ -1,0 +1,382 @@
+//! Functions made ready to be called: inherited elements collected, names resolved (MLS ch. 12).
+
+use super::errors::{NOT_SUPPORTED, TYPE_MISMATCH, UNKNOWN_CLASS};
+use super::instance::{Context, NodeId, Shape};
+use super::instantiation::Instantiation;
+use super::library::{ClassId, Library};
+use super::lookup::{Predefined, Type};
+use super::modification::Modifier;
+use super::resolve::Local;
+use crate::diag::Diagnostic;
+use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
+use crate::fault;
+use crate::name::{Ident, Name};
+use crate::source::Span;
+use crate::syntax::ast::{
+    Argument, CausalityPrefix, ClassSpecifier, ComponentReference, Expression, ExpressionKind,
+    Purity, Restriction, Section, Statement, StatementKind, Subscript,
+};
+use indexmap::IndexMap;
+use std::sync::Arc;
+
+/// Packages of the standard library whose functions the language has under bare names too.
+const INTRINSIC_PACKAGES: &[&str] = &["Modelica.Math"];
+
+impl Library {
+    /// The function that a name means at the top level, with the functions that it calls; `None`
+    /// if the name means nothing here. A record's name means its constructor.
+    pub fn function(
+        &self,
+        name: &Name,
+    ) -> Result<Option<IndexMap<Name, Arc<Function>>>, Diagnostic> {
+        let Some(id) = self.find(name) else { return Ok(None) };
+        let mut instantiation = Instantiation::new(self);
+        let Some(full) = instantiation.function(id)? else { return Ok(None) };
+        let mut functions: IndexMap<Name, Arc<Function>> = IndexMap::new();
+        let own = instantiation.functions.shift_remove(&full).flatten();
+        functions.extend(own.map(|function| (full, function)));
+        for (name, function) in instantiation.functions {
+            functions.extend(function.map(|function| (name, function)));
+        }
+        Ok(Some(functions))
+    }
+
+    fn is_function(&self, id: ClassId) -> bool {
+        matches!(
+            self.class(id).definition.restriction,
+            Restriction::Function { .. } | Restriction::Record | Restriction::OperatorRecord
+        )
+    }
+}
+
+impl Instantiation<'_> {
+    /// The full name of a called function, which is made ready; a name that no class declares is
+    /// left for whoever evaluates (operators and intrinsics).
+    pub(super) fn function_name(
+        &mut self,
+        name: &Name,
+        context: Context,
+        span: Span,
+    ) -> Result<Name, Diagnostic> {
+        match self.library.lookup(context.class, name) {
+            Some(Type::Class(id)) => match self.function(id)? {
+                Some(full) => Ok(full),
+                None => Err(fault!(TYPE_MISMATCH, "`{name}` is not a function").at(span)),
+            },
+            _ => Ok(self.intrinsic_name(name)),
+        }
+    }
+
+    /// `Modelica.Math.sin` is `sin` where no library declares it.
+    fn intrinsic_name(&self, name: &Name) -> Name {
+        let package = Name::new(name.parent().parts).to_string();
+        match name.last() {
+            Some(last) if INTRINSIC_PACKAGES.contains(&package.as_str()) => Name::from(last),
+            _ => name.clone(),
+        }
+    }
+
+    /// Makes a function ready and returns its full name; `None` if the class is no function.
+    pub(super) fn function(&mut self, id: ClassId) -> Result<Option<Name>, Diagnostic> {
+        let library = self.library;
+        let name = library.class(id).name.clone();
+        if self.functions.contains_key(&name) {
+            return Ok(Some(name));
+        }
+        let class = self.long_class(id);
+        if !library.is_function(class) {
+            return Ok(None);
+        }
+        // Known by name before its body is read, which may call the function itself.
+        self.functions.insert(name.clone(), None);
+        let function = match library.class(class).definition.restriction {
+            Restriction::Function { .. } => self.ready(id, class),
+            _ => self.constructor(id, class),
+        };
+        match function {
+            Ok(function) => {
+                self.functions.insert(name.clone(), Some(Arc::new(function)));
+                Ok(Some(name))
+            }
+            Err(error) => {
+                self.functions.shift_remove(&name);
+                Err(error)
+            }
+        }
+    }
+
+    fn long_class(&self, mut id: ClassId) -> ClassId {
+        for _ in 0..100 {
+            match (&self.library.class(id).definition.specifier, self.library.bases(id).first()) {
+                (ClassSpecifier::Short(_), Some(base)) => id = *base,
+                _ => break,
+            }
+        }
+        id
+    }
+
+    /// The name of a record's constructor, made ready.
+    pub(super) fn record_constructor(
+        &mut self,
+        class: ClassId,
+        span: Span,
+    ) -> Result<Name, Diagnostic> {
+        self.function(class)?.ok_or_else(|| {
+            fault!(UNKNOWN_CLASS, "`{}` has no constructor", self.library.class(class).name)
+                .at(span)
+        })
+    }
+
+    fn ready(&mut self, id: ClassId, class: ClassId) -> Result<Function, Diagnostic> {
+        let library = self.library;
+        let components = self.components_of(class)?;
+        let names: Vec<Ident> = components.iter().map(|c| c.component.name).collect();
+        let local = Local::default().with(names);
+        let (mut inputs, mut outputs, mut locals) = (Vec::new(), Vec::new(), Vec::new());
+        for declared in components {
+            let list = match declared.causality {
+                Some(CausalityPrefix::Input) => &mut inputs,
+                Some(CausalityPrefix::Output) => &mut outputs,
+                None => &mut locals,
+            };
+            list.push(declared.component);
+        }
+        let lineage = library.collect(class, NodeId(0), Modifier::default())?.lineage;
+        let definition = &library.class(class).definition;
+        let purity = match definition.restriction {
+            Restriction::Function { purity, .. } => purity,
+            _ => None,
+        };
+        Ok(Function {
+            name: library.class(id).name.clone(),
+            inputs,
+            outputs,
+            locals,
+            body: self.body(&lineage, &local)?,
+            description: description(&definition.specifier),
+            annotation: annotation(library.class(class).sections()),
+            impure: purity == Some(Purity::Impure),
+            span: definition.name.span,
+        })
+    }
+
+    fn constructor(&mut self, id: ClassId, class: ClassId) -> Result<Function, Diagnostic> {
+        let library = self.library;
+        let name = library.class(id).name.clone();
+        let fields: Vec<FunctionComponent> =
+            self.components_of(class)?.into_iter().map(|declared| declared.component).collect();
+        let span = library.class(class).definition.name.span;
+        let table = fields.iter().map(|field| (field.name, field.clone())).collect();
+        let output = FunctionComponent {
+            name: Ident::new("'constructed record'"),
+            value_type: ValueType::Record(name.clone(), Arc::new(table)),
+            dims: Vec::new(),
+            binding: None,
+            description: None,
+            span,
+        };
+        Ok(Function {
+            name,
+            inputs: fields,
+            outputs: vec![output],
+            locals: Vec::new(),
+            body: FunctionBody::RecordConstructor,
+            description: None,
+            annotation: Vec::new(),
+            impure: false,
+            span,
+        })
+    }
+
+    /// The components of a function or record, inherited ones included.
+    fn components_of(&mut self, class: ClassId) -> Result<Vec<Declared>, Diagnostic> {
+        let library = self.library;
+        let collected = library.collect(class, NodeId(0), Modifier::default())?;
+        let names: Vec<Ident> = collected.members.keys().copied().collect();
+        let local = Local::default().with(names);
+        let mut components = Vec::with_capacity(collected.members.len());
+        for member in collected.members.values() {
+            let declared = &member.declaration;
+            let mut dims = Vec::with_capacity(declared.dims.len());
+            for (subscript, context) in &declared.dims {
+                dims.push(match subscript {
+                    Subscript::All(span) => Subscript::All(*span),
+                    Subscript::Index(e) => Subscript::Index(self.resolve(e, *context, &local)?),
+                });
+            }
+            let bound = declared.modifier.binding.as_ref();
+            let binding = match bound.and_then(|b| b.value.as_ref().map(|value| (value, b.context)))
+            {
+                Some((value, written)) => Some(self.resolve(value, written, &local)?),
+                None => None,
+            };
+            let value_type = self.value_type(&declared.shape, declared.span)?;
+            components.push(Declared {
+                causality: declared.causality.filter(|_| !declared.protected),
+                component: FunctionComponent {
+                    name: declared.name,
+                    value_type,
+                    dims,
+                    binding,
+                    description: declared.description.clone(),
+                    span: declared.span,
+                },
+            });
+        }
+        Ok(components)
+    }
+
+    fn value_type(&mut self, shape: &Shape, span: Span) -> Result<ValueType, Diagnostic> {
+        let class = match shape {
+            Shape::Predefined(Predefined::Real) => return Ok(ValueType::Real),
+            Shape::Predefined(Predefined::Integer) => return Ok(ValueType::Integer),
+            Shape::Predefined(Predefined::Boolean) => return Ok(ValueType::Boolean),
+            Shape::Predefined(Predefined::String) => return Ok(ValueType::String),
+            Shape::Enumeration(definition) => {
+                return Ok(ValueType::Enumeration(definition.clone()));
+            }
+            Shape::Class(class) => *class,
+        };
+        let name = self.record_constructor(class, span)?;
+        match self.functions.get(&name) {
+            Some(Some(constructor)) => {
+                let fields = constructor.inputs.iter().map(|f| (f.name, f.clone())).collect();
+                Ok(ValueType::Record(name, Arc::new(fields)))
+            }
+            _ => Err(fault!(NOT_SUPPORTED, "`{name}` contains itself").at(span)),
+        }
+    }
+
+    fn body(&mut self, lineage: &[ClassId], local: &Local) -> Result<FunctionBody, Diagnostic> {
+        let library = self.library;
+        let mut statements = Vec::new();
+        for base in lineage {
+            let context = Context { node: NodeId(0), class: Some(*base) };
+            for section in library.class(*base).sections() {
+                match section {
+                    Section::Algorithm { initial: false, statements: own, .. } => {
+                        statements.extend(self.statements(own, context, local)?);
+                    }
+                    Section::Algorithm { span, .. } | Section::Equations { span, .. } => {
+                        let name = &library.class(*base).name;
+                        return Err(fault!(
+                            TYPE_MISMATCH,
+                            "function `{name}` has equations; a function has one algorithm"
+                        )
+                        .at(*span));
+                    }
+                    Section::External(external) => {
+                        let mut external = external.clone();
+                        for argument in &mut external.arguments {
+                            *argument = self.resolve(argument, context, local)?;
+                        }
+                        return Ok(FunctionBody::External(external));
+                    }
+                    Section::Elements { .. } | Section::Annotation(_) => {}
+                }
+            }
+        }
+        Ok(FunctionBody::Algorithm(statements))
+    }
+
+    /// Statements with their names resolved.
+    pub(super) fn statements(
+        &mut self,
+        statements: &[Statement],
+        context: Context,
+        local: &Local,
+    ) -> Result<Vec<Statement>, Diagnostic> {
+        statements.iter().map(|statement| self.statement(statement, context, local)).collect()
+    }
+
+    fn statement(
+        &mut self,
+        statement: &Statement,
+        context: Context,
+        local: &Local,
+    ) -> Result<Statement, Diagnostic> {
+        let kind = match &statement.kind {
+            StatementKind::Assign { target, value } => StatementKind::Assign {
+                target: self.target(target, context, local)?,
+                value: self.resolve(value, context, local)?,
+            },
+            StatementKind::MultiAssign { targets, value } => StatementKind::MultiAssign {
+                targets: targets
+                    .iter()
+                    .map(|t| t.as_ref().map(|t| self.target(t, context, local)).transpose())
+                    .collect::<Result<_, Diagnostic>>()?,
+                value: self.resolve(value, context, local)?,
+            },
+            StatementKind::Call(call) => StatementKind::Call(self.resolve(call, context, local)?),
+            StatementKind::If { branches, otherwise } => StatementKind::If {
+                branches: self.statement_branches(branches, context, local)?,
+                otherwise: self.statements(otherwise, context, local)?,
+            },
+            StatementKind::For { indices, body } => {
+                let (indices, inner) = self.iterators(indices, context, local)?;
+                StatementKind::For { indices, body: self.statements(body, context, &inner)? }
+            }
+            StatementKind::While { condition, body } => StatementKind::While {
+                condition: self.resolve(condition, context, local)?,
+                body: self.statements(body, context, local)?,
+            },
+            StatementKind::When { branches } => {
+                StatementKind::When { branches: self.statement_branches(branches, context, local)? }
+            }
+            StatementKind::Break => StatementKind::Break,
+            StatementKind::Return => StatementKind::Return,
+        };
+        Ok(Statement { kind, comment: statement.comment.clone(), span: statement.span })
+    }
+
+    fn statement_branches(
+        &mut self,
+        branches: &[(Expression, Vec<Statement>)],
+        context: Context,
+        local: &Local,
+    ) -> Result<Vec<(Expression, Vec<Statement>)>, Diagnostic> {
+        branches
+            .iter()
+            .map(|(condition, body)| {
+                let condition = self.resolve(condition, context, local)?;
+                Ok((condition, self.statements(body, context, local)?))
+            })
+            .collect()
+    }
+
+    fn target(
+        &mut self,
+        target: &ComponentReference,
+        context: Context,
+        local: &Local,
+    ) -> Result<ComponentReference, Diagnostic> {
+        let span = target.span;
+        let e = Expression::new(ExpressionKind::Reference(target.clone()), span);
+        match self.resolve(&e, context, local)?.kind {
+            ExpressionKind::Reference(resolved) => Ok(resolved),
+            _ => Err(fault!(TYPE_MISMATCH, "`{}` cannot be assigned to", target.name()).at(span)),
+        }
+    }
+}
+
+/// A component of a function with what it is.
+struct Declared {
+    causality: Option<CausalityPrefix>,
+    component: FunctionComponent,
+}
+
+fn description(specifier: &ClassSpecifier) -> Option<Arc<str>> {
+    match specifier {
+        ClassSpecifier::Long(long) => long.description.clone(),
+        ClassSpecifier::Short(short) => short.comment.text.clone(),
+        _ => None,
+    }
+}
+
+fn annotation(sections: &[Section]) -> Vec<Argument> {
+    let arguments = sections.iter().filter_map(|section| match section {
+        Section::Annotation(annotation) => Some(annotation.arguments.clone()),
+        _ => None,
+    });
+    arguments.flatten().collect()
+}

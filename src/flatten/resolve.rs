@@ -1,0 +1,677 @@
+//! Resolves the names in expressions: components become their flat paths, constants of packages
+//! their values, functions their full names (MLS §5.3, §5.6.2).
+
+use super::errors::{NOT_CONSTANT, NOT_SUPPORTED, SIZE_MISMATCH, TOO_LARGE, UNKNOWN_NAME};
+use super::instance::{Context, MemberState, NodeId, NodeKind};
+use super::instantiation::Instantiation;
+use crate::diag::{Diagnostic, suggest};
+use crate::fault;
+use crate::name::{Ident, Name};
+use crate::source::Span;
+use crate::syntax::ast::{
+    Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, NamedArgument,
+    ReferencePart, Subscript,
+};
+use crate::value::Value;
+
+/// The deepest nesting of expressions, bindings that lead to one another included.
+const MAX_DEPTH: usize = 400;
+
+/// What the resolution of an expression knows besides its [`Context`].
+#[derive(Clone, Default)]
+pub(super) struct Local {
+    /// Loop variables and variables of a function, innermost last; those of an unrolled loop with
+    /// their value.
+    pub(super) names: Vec<(Ident, Option<Expression>)>,
+    /// Whether variables are replaced by their values, which must be constant.
+    pub(super) values: bool,
+}
+
+impl Local {
+    fn get(&self, name: Ident) -> Option<&Option<Expression>> {
+        self.names.iter().rev().find(|(known, _)| *known == name).map(|(_, value)| value)
+    }
+
+    /// This with more names that stay as they are.
+    pub(super) fn with(&self, names: impl IntoIterator<Item = Ident>) -> Local {
+        let mut local = self.clone();
+        local.names.extend(names.into_iter().map(|name| (name, None)));
+        local
+    }
+}
+
+impl Instantiation<'_> {
+    /// The expression with its names resolved.
+    pub(super) fn resolve(
+        &mut self,
+        e: &Expression,
+        context: Context,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        if self.depth >= MAX_DEPTH {
+            return Err(fault!(TOO_LARGE, "expressions are nested too deeply").at(e.span));
+        }
+        self.depth += 1;
+        let resolved = self.resolve_kind(e, context, local);
+        self.depth -= 1;
+        resolved
+    }
+
+    fn resolve_kind(
+        &mut self,
+        e: &Expression,
+        context: Context,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let sub = |this: &mut Self, inner: &Expression| this.resolve(inner, context, local);
+        let kind = match &e.kind {
+            ExpressionKind::Real(_)
+            | ExpressionKind::Integer(_)
+            | ExpressionKind::Boolean(_)
+            | ExpressionKind::String(_)
+            | ExpressionKind::End => e.kind.clone(),
+            ExpressionKind::Reference(reference) => {
+                return self.reference(reference, context, local);
+            }
+            ExpressionKind::Call { function, arguments } => {
+                return self.call(e.span, function, arguments, context, local);
+            }
+            ExpressionKind::PartialApplication { function, named } => {
+                let function = self.function_name(function, context, e.span)?;
+                let named = self.named_arguments(named, context, local)?;
+                ExpressionKind::PartialApplication { function, named }
+            }
+            ExpressionKind::Unary { operator, operand } => ExpressionKind::Unary {
+                operator: *operator,
+                operand: Box::new(sub(self, operand)?),
+            },
+            ExpressionKind::Binary { operator, left, right } => ExpressionKind::Binary {
+                operator: *operator,
+                left: Box::new(sub(self, left)?),
+                right: Box::new(sub(self, right)?),
+            },
+            ExpressionKind::If { branches, otherwise } => ExpressionKind::If {
+                branches: branches
+                    .iter()
+                    .map(|(condition, value)| Ok((sub(self, condition)?, sub(self, value)?)))
+                    .collect::<Result<_, Diagnostic>>()?,
+                otherwise: Box::new(sub(self, otherwise)?),
+            },
+            ExpressionKind::Range { start, step, stop } => ExpressionKind::Range {
+                start: Box::new(sub(self, start)?),
+                step: step.as_ref().map(|step| sub(self, step).map(Box::new)).transpose()?,
+                stop: Box::new(sub(self, stop)?),
+            },
+            ExpressionKind::Array(elements) => {
+                ExpressionKind::Array(self.all(elements, context, local)?)
+            }
+            ExpressionKind::Comprehension { element, indices } => {
+                let (indices, inner) = self.iterators(indices, context, local)?;
+                let element = Box::new(self.resolve(element, context, &inner)?);
+                ExpressionKind::Comprehension { element, indices }
+            }
+            ExpressionKind::Matrix(rows) => ExpressionKind::Matrix(
+                rows.iter()
+                    .map(|row| self.all(row, context, local))
+                    .collect::<Result<_, Diagnostic>>()?,
+            ),
+            ExpressionKind::Tuple(parts) => ExpressionKind::Tuple(
+                parts
+                    .iter()
+                    .map(|part| part.as_ref().map(|part| sub(self, part)).transpose())
+                    .collect::<Result<_, Diagnostic>>()?,
+            ),
+            ExpressionKind::Subscripted { base, subscripts } => {
+                let base = sub(self, base)?;
+                let subscripts = self.subscripts(subscripts, context, local)?;
+                return Ok(subscripted(base, subscripts, e.span));
+            }
+            ExpressionKind::Field { base, name } => {
+                return self.field_of(base, *name, e.span, context, local);
+            }
+        };
+        Ok(Expression::new(kind, e.span))
+    }
+
+    fn all(
+        &mut self,
+        expressions: &[Expression],
+        context: Context,
+        local: &Local,
+    ) -> Result<Vec<Expression>, Diagnostic> {
+        expressions.iter().map(|e| self.resolve(e, context, local)).collect()
+    }
+
+    fn named_arguments(
+        &mut self,
+        named: &[NamedArgument],
+        context: Context,
+        local: &Local,
+    ) -> Result<Vec<NamedArgument>, Diagnostic> {
+        named
+            .iter()
+            .map(|argument| {
+                let value = self.resolve(&argument.value, context, local)?;
+                Ok(NamedArgument { name: argument.name, value })
+            })
+            .collect()
+    }
+
+    /// The iterators with resolved ranges, and what their body knows.
+    pub(super) fn iterators(
+        &mut self,
+        indices: &[ForIndex],
+        context: Context,
+        local: &Local,
+    ) -> Result<(Vec<ForIndex>, Local), Diagnostic> {
+        let mut inner = local.clone();
+        let mut resolved = Vec::with_capacity(indices.len());
+        for index in indices {
+            let range =
+                index.range.as_ref().map(|r| self.resolve(r, context, &inner)).transpose()?;
+            resolved.push(ForIndex { name: index.name, range });
+            inner.names.push((index.name.node, None));
+        }
+        Ok((resolved, inner))
+    }
+
+    pub(super) fn subscripts(
+        &mut self,
+        subscripts: &[Subscript],
+        context: Context,
+        local: &Local,
+    ) -> Result<Vec<Subscript>, Diagnostic> {
+        subscripts
+            .iter()
+            .map(|subscript| match subscript {
+                Subscript::All(span) => Ok(Subscript::All(*span)),
+                Subscript::Index(e) => Ok(Subscript::Index(self.resolve(e, context, local)?)),
+            })
+            .collect()
+    }
+
+    fn call(
+        &mut self,
+        span: Span,
+        function: &ComponentReference,
+        arguments: &Arguments,
+        context: Context,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let (iterators, inner) = self.iterators(&arguments.iterators, context, local)?;
+        let arguments = Arguments {
+            positional: self.all(&arguments.positional, context, &inner)?,
+            named: self.named_arguments(&arguments.named, context, &inner)?,
+            iterators,
+        };
+        let name = if function.as_ident().is_some_and(|name| local.get(name).is_some()) {
+            function.name()
+        } else {
+            self.function_name(&function.name(), context, function.span)?
+        };
+        let function = ComponentReference::from_name(&name, function.span);
+        let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
+        Ok(Expression::new(kind, span))
+    }
+
+    /// A reference as an expression: `time`, a loop variable, a component or a constant.
+    fn reference(
+        &mut self,
+        reference: &ComponentReference,
+        context: Context,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let first = &reference.parts[0];
+        if !reference.global {
+            if let Some(value) = local.get(first.name) {
+                return match value {
+                    Some(value) if reference.as_ident().is_some() => Ok(value.clone()),
+                    _ => self.local_reference(reference, context, local),
+                };
+            }
+            if self.member(context.node, first.name)?.is_some() {
+                return self.walk(context.node, &reference.parts, reference, context, local);
+            }
+            if reference.as_ident().is_some_and(|name| name == "time") {
+                if local.values {
+                    return Err(fault!(NOT_CONSTANT, "`time` is not known at translation")
+                        .at(reference.span));
+                }
+                return Ok(Expression::new(
+                    ExpressionKind::Reference(reference.clone()),
+                    reference.span,
+                ));
+            }
+        }
+        self.constant(reference, context, local)
+    }
+
+    fn local_reference(
+        &mut self,
+        reference: &ComponentReference,
+        context: Context,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let mut parts = Vec::with_capacity(reference.parts.len());
+        for part in &reference.parts {
+            let subscripts = self.subscripts(&part.subscripts, context, local)?;
+            parts.push(ReferencePart { name: part.name, subscripts });
+        }
+        let resolved = ComponentReference { global: false, parts, span: reference.span };
+        Ok(Expression::new(ExpressionKind::Reference(resolved), reference.span))
+    }
+
+    /// Follows a reference through the components of a node.
+    pub(super) fn walk(
+        &mut self,
+        node: NodeId,
+        parts: &[ReferencePart],
+        whole: &ComponentReference,
+        context: Context,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let Some((part, rest)) = parts.split_first() else {
+            return self.whole_instance(node, whole, context, local);
+        };
+        let state = match self.member(node, part.name)? {
+            Some(state) => state,
+            None => return Err(self.unknown_component(node, part.name, whole.span)),
+        };
+        match state {
+            MemberState::Single(id) => {
+                if let NodeKind::Variable(_) = self.nodes[id.0].kind {
+                    if let Some(next) = rest.first() {
+                        let path = &self.nodes[id.0].path;
+                        return Err(fault!(
+                            UNKNOWN_NAME,
+                            "`{path}` is a variable and has no component `{}`",
+                            next.name
+                        )
+                        .at(whole.span));
+                    }
+                    let subscripts = self.subscripts(&part.subscripts, context, local)?;
+                    return self.variable_reference(id, subscripts, whole.span, local);
+                }
+                if !part.subscripts.is_empty() {
+                    return Err(
+                        fault!(SIZE_MISMATCH, "`{}` is not an array", part.name).at(whole.span)
+                    );
+                }
+                self.walk(id, rest, whole, context, local)
+            }
+            MemberState::Array(dims, nodes) => {
+                let subscripts = self.subscripts(&part.subscripts, context, local)?;
+                let chosen = self.choose(&dims, &subscripts, part.name, whole.span)?;
+                self.walk_array(&chosen, &dims, &nodes, rest, whole, context, local)
+            }
+            MemberState::Absent => Err(fault!(
+                UNKNOWN_NAME,
+                "`{}` does not exist, because its condition is false or it has an error",
+                part.name
+            )
+            .at(whole.span)),
+            MemberState::Pending | MemberState::Busy => {
+                Err(fault!(NOT_CONSTANT, "`{}` depends on itself", part.name).at(whole.span))
+            }
+        }
+    }
+
+    /// The elements of an array of components that subscripts choose: for every dimension the
+    /// indices, and whether the dimension stays.
+    fn choose(
+        &mut self,
+        dims: &[usize],
+        subscripts: &[Subscript],
+        name: Ident,
+        span: Span,
+    ) -> Result<Vec<(Vec<usize>, bool)>, Diagnostic> {
+        if subscripts.len() > dims.len() {
+            return Err(fault!(SIZE_MISMATCH, "`{name}` has {} dimensions", dims.len()).at(span));
+        }
+        let mut chosen = Vec::with_capacity(dims.len());
+        for (at, size) in dims.iter().enumerate() {
+            chosen.push(match subscripts.get(at) {
+                None | Some(Subscript::All(_)) => ((1..=*size).collect(), true),
+                Some(Subscript::Index(e)) => self.indices(e, *size, name)?,
+            });
+        }
+        Ok(chosen)
+    }
+
+    fn indices(
+        &mut self,
+        e: &Expression,
+        size: usize,
+        name: Ident,
+    ) -> Result<(Vec<usize>, bool), Diagnostic> {
+        let e = at_end(e, size);
+        let value = match &e.kind {
+            ExpressionKind::Integer(index) => Value::Integer(*index),
+            // The expression is resolved already: its references are flat paths.
+            _ => self.flat_value(&e)?,
+        };
+        let checked = |index: i64| match usize::try_from(index) {
+            Ok(index) if (1..=size).contains(&index) => Ok(index),
+            _ => Err(fault!(SIZE_MISMATCH, "`{name}` has {size} elements, not one number {index}")
+                .at(e.span)),
+        };
+        match value {
+            Value::Integer(index) => Ok((vec![checked(index)?], false)),
+            Value::Array(array) => {
+                let all: Result<Vec<usize>, Diagnostic> = (0..array.elements.len())
+                    .map(|at| match array.elements.get(at) {
+                        Value::Integer(index) => checked(index),
+                        other => Err(fault!(
+                            SIZE_MISMATCH,
+                            "an index must be Integer, not {}",
+                            other.type_name()
+                        )
+                        .at(e.span)),
+                    })
+                    .collect();
+                Ok((all?, true))
+            }
+            other => {
+                Err(fault!(SIZE_MISMATCH, "an index must be Integer, not {}", other.type_name())
+                    .at(e.span))
+            }
+        }
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "the state of one recursion")]
+    fn walk_array(
+        &mut self,
+        chosen: &[(Vec<usize>, bool)],
+        dims: &[usize],
+        nodes: &[NodeId],
+        rest: &[ReferencePart],
+        whole: &ComponentReference,
+        context: Context,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let Some(((indices, stays), more)) = chosen.split_first() else {
+            return self.walk(nodes[0], rest, whole, context, local);
+        };
+        let stride: usize = dims[1..].iter().product();
+        let mut elements = Vec::with_capacity(indices.len());
+        for index in indices {
+            let part = &nodes[(index - 1) * stride..index * stride];
+            elements.push(self.walk_array(more, &dims[1..], part, rest, whole, context, local)?);
+        }
+        Ok(match (*stays, elements.len()) {
+            (false, 1) => elements.remove(0),
+            _ => Expression::new(ExpressionKind::Array(elements), whole.span),
+        })
+    }
+
+    /// An instance named as a whole: a record becomes a call of its constructor.
+    fn whole_instance(
+        &mut self,
+        node: NodeId,
+        whole: &ComponentReference,
+        context: Context,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let Some(composite) = self.composite_of(node) else {
+            return self.variable_reference(node, Vec::new(), whole.span, local);
+        };
+        let class = composite.class;
+        if !composite.record {
+            let path = &self.nodes[node.0].path;
+            return Err(
+                fault!(NOT_SUPPORTED, "`{path}` is no record and has no value").at(whole.span)
+            );
+        }
+        let names: Vec<Ident> = composite.members.keys().copied().collect();
+        let mut named = Vec::with_capacity(names.len());
+        for name in names {
+            let part = ReferencePart { name, subscripts: Vec::new() };
+            let value = self.walk(node, &[part], whole, context, local)?;
+            let name = crate::source::Spanned { node: name, span: whole.span };
+            named.push(NamedArgument { name, value });
+        }
+        let constructor = self.record_constructor(class, whole.span)?;
+        let arguments = Box::new(Arguments { named, ..Arguments::default() });
+        let function = ComponentReference::from_name(&constructor, whole.span);
+        Ok(Expression::new(ExpressionKind::Call { function, arguments }, whole.span))
+    }
+
+    fn variable_reference(
+        &mut self,
+        node: NodeId,
+        subscripts: Vec<Subscript>,
+        span: Span,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let NodeKind::Variable(leaf) = &self.nodes[node.0].kind else {
+            return Err(fault!(UNKNOWN_NAME, "not a variable").at(span));
+        };
+        let variable = leaf.variable;
+        if local.values || self.in_package(node) {
+            let value = self.value(variable, span)?;
+            return Ok(subscripted(literal(&value, span), subscripts, span));
+        }
+        let mut reference = flat_reference(&self.nodes[node.0].path, span);
+        if let Some(last) = reference.parts.last_mut() {
+            last.subscripts = subscripts;
+        }
+        Ok(Expression::new(ExpressionKind::Reference(reference), span))
+    }
+
+    fn field_of(
+        &mut self,
+        base: &Expression,
+        name: Ident,
+        span: Span,
+        context: Context,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        // A component of a named record is that component; anything else is computed first.
+        if let ExpressionKind::Reference(reference) = &base.kind {
+            let mut longer = reference.clone();
+            longer.parts.push(ReferencePart { name, subscripts: Vec::new() });
+            return self.reference(&longer, context, local);
+        }
+        if let ExpressionKind::Subscripted { base: inner, subscripts } = &base.kind
+            && let ExpressionKind::Reference(reference) = &inner.kind
+            && reference.parts.last().is_some_and(|part| part.subscripts.is_empty())
+        {
+            let mut longer = reference.clone();
+            if let Some(last) = longer.parts.last_mut() {
+                last.subscripts = subscripts.clone();
+            }
+            longer.parts.push(ReferencePart { name, subscripts: Vec::new() });
+            return self.reference(&longer, context, local);
+        }
+        let base = self.resolve(base, context, local)?;
+        Ok(Expression::new(ExpressionKind::Field { base: Box::new(base), name }, span))
+    }
+
+    fn unknown_component(&self, node: NodeId, name: Ident, span: Span) -> Diagnostic {
+        let Some(composite) = self.composite_of(node) else {
+            return fault!(UNKNOWN_NAME, "`{name}` is unknown").at(span);
+        };
+        let class = &self.library.class(composite.class).name;
+        let known = composite.members.keys().map(|known| known.as_str());
+        fault!(UNKNOWN_NAME, "`{class}` has no component `{name}`")
+            .help_if(suggest::did_you_mean(name.as_str(), known))
+            .at(span)
+    }
+
+    /// The diagnostic for a name that is neither a component nor a constant.
+    pub(super) fn unknown_name(
+        &self,
+        reference: &ComponentReference,
+        context: Context,
+    ) -> Diagnostic {
+        let name = reference.name();
+        let known: Vec<Ident> = self
+            .composite_of(context.node)
+            .map_or(Vec::new(), |composite| composite.members.keys().copied().collect());
+        let first = name.first().map_or("", Ident::as_str);
+        fault!(UNKNOWN_NAME, "`{name}` is not declared")
+            .help_if(suggest::did_you_mean(first, known.iter().map(|known| known.as_str())))
+            .at(reference.span)
+    }
+}
+
+/// A flat path as a reference.
+pub(super) fn flat_reference(path: &str, span: Span) -> ComponentReference {
+    let mut parts = Vec::new();
+    let mut rest = path;
+    while !rest.is_empty() {
+        let (text, after) = next_part(rest);
+        rest = after;
+        let (name, indices) = match text.strip_suffix(']').and_then(|t| t.rsplit_once('[')) {
+            Some((name, indices)) => (name, indices),
+            None => (text, ""),
+        };
+        let subscripts = indices
+            .split(',')
+            .filter_map(|index| index.parse().ok())
+            .map(|index| Subscript::Index(Expression::new(ExpressionKind::Integer(index), span)))
+            .collect();
+        parts.push(ReferencePart { name: Ident::new(name), subscripts });
+    }
+    ComponentReference { global: false, parts, span }
+}
+
+/// The path up to the next dot outside quotes, and what follows.
+fn next_part(path: &str) -> (&str, &str) {
+    let mut quoted = false;
+    for (at, character) in path.char_indices() {
+        match character {
+            '\'' => quoted = !quoted,
+            '.' if !quoted => return (&path[..at], &path[at + 1..]),
+            _ => {}
+        }
+    }
+    (path, "")
+}
+
+/// A value written as an expression.
+pub(super) fn literal(value: &Value, span: Span) -> Expression {
+    let kind = match value {
+        Value::Real(number) => ExpressionKind::Real(*number),
+        Value::Integer(number) => ExpressionKind::Integer(*number),
+        Value::Boolean(truth) => ExpressionKind::Boolean(*truth),
+        Value::String(text) => ExpressionKind::String(text.clone()),
+        Value::Enumeration(value) => ExpressionKind::Integer(value.ordinal),
+        Value::Array(array) => return array_literal(&array.dims, 0, array, span),
+        Value::Record(record) => {
+            let named = record.fields.iter().map(|(name, value)| NamedArgument {
+                name: crate::source::Spanned { node: *name, span },
+                value: literal(value, span),
+            });
+            let arguments = Arguments { named: named.collect(), ..Arguments::default() };
+            ExpressionKind::Call {
+                function: ComponentReference::from_name(&record.type_name, span),
+                arguments: Box::new(arguments),
+            }
+        }
+        Value::TypeName(name) => {
+            ExpressionKind::Reference(ComponentReference::from_name(name, span))
+        }
+        Value::VariableName(name) => {
+            ExpressionKind::Reference(ComponentReference::from_name(&Name::parse(name), span))
+        }
+        Value::Function(function) => {
+            ExpressionKind::Reference(ComponentReference::from_name(&function.name, span))
+        }
+        Value::Tuple(values) => {
+            ExpressionKind::Tuple(values.iter().map(|value| Some(literal(value, span))).collect())
+        }
+    };
+    Expression::new(kind, span)
+}
+
+fn array_literal(
+    dims: &[usize],
+    offset: usize,
+    array: &crate::value::ArrayValue,
+    span: Span,
+) -> Expression {
+    let Some((size, inner)) = dims.split_first() else {
+        return literal(&array.elements.get(offset), span);
+    };
+    let stride: usize = inner.iter().product();
+    let elements: Vec<Expression> =
+        (0..*size).map(|at| array_literal(inner, offset + at * stride, array, span)).collect();
+    if elements.is_empty() {
+        // An empty constructor has no size: `zeros` has (MLS §10.3.3).
+        let sizes = dims.iter().map(|n| Expression::new(ExpressionKind::Integer(*n as i64), span));
+        let arguments = Arguments { positional: sizes.collect(), ..Arguments::default() };
+        let function = ComponentReference::from_name(&Name::parse("zeros"), span);
+        let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
+        return Expression::new(kind, span);
+    }
+    Expression::new(ExpressionKind::Array(elements), span)
+}
+
+/// `base[subscripts]`, written shortly where the base allows it.
+fn subscripted(base: Expression, subscripts: Vec<Subscript>, span: Span) -> Expression {
+    if subscripts.is_empty() {
+        return base;
+    }
+    let mut base = base;
+    let literals: Option<Vec<usize>> = subscripts
+        .iter()
+        .map(|subscript| match subscript {
+            Subscript::Index(Expression { kind: ExpressionKind::Integer(n), .. }) => {
+                usize::try_from(*n).ok()
+            }
+            _ => None,
+        })
+        .collect();
+    if let Some(indices) = literals
+        && let Some(element) = element_of(&base, &indices)
+    {
+        return element.clone();
+    }
+    if let ExpressionKind::Reference(reference) = &mut base.kind
+        && let Some(last) = reference.parts.last_mut()
+        && last.subscripts.is_empty()
+    {
+        last.subscripts = subscripts;
+        return base;
+    }
+    Expression::new(ExpressionKind::Subscripted { base: Box::new(base), subscripts }, span)
+}
+
+/// The element of an array constructor.
+fn element_of<'e>(base: &'e Expression, indices: &[usize]) -> Option<&'e Expression> {
+    let Some((first, rest)) = indices.split_first() else { return Some(base) };
+    match &base.kind {
+        ExpressionKind::Array(elements) => element_of(elements.get(first.checked_sub(1)?)?, rest),
+        _ => None,
+    }
+}
+
+/// The expression with `end` replaced by a size, where it is the whole of it.
+fn at_end(e: &Expression, size: usize) -> Expression {
+    let mut e = e.clone();
+    replace_end(&mut e, size);
+    e
+}
+
+fn replace_end(e: &mut Expression, size: usize) {
+    match &mut e.kind {
+        ExpressionKind::End => e.kind = ExpressionKind::Integer(size as i64),
+        ExpressionKind::Unary { operand, .. } => replace_end(operand, size),
+        ExpressionKind::Binary { left, right, .. } => {
+            replace_end(left, size);
+            replace_end(right, size);
+        }
+        ExpressionKind::Range { start, step, stop } => {
+            replace_end(start, size);
+            if let Some(step) = step {
+                replace_end(step, size);
+            }
+            replace_end(stop, size);
+        }
+        ExpressionKind::Array(elements) => {
+            elements.iter_mut().for_each(|element| replace_end(element, size));
+        }
+        _ => {}
+    }
+}

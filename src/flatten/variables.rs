@@ -1,0 +1,169 @@
+//! The variables of the flat model: bindings and attributes with their names resolved, split over
+//! the elements of arrays (MLS §4.4, §4.9, §7.2).
+
+use super::FlatModel;
+use super::errors::{SIZE_MISMATCH, TYPE_MISMATCH};
+use super::instance::{Leaf, MemberState, NodeId, NodeKind};
+use super::instantiation::{ATTRIBUTES, Instantiation, picked};
+use super::modification::Bound;
+use super::resolve::Local;
+use super::{Attribute, BaseType, Variable};
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
+
+impl Instantiation<'_> {
+    /// Adds the variables of a node and of all below it, in order of declaration.
+    pub(super) fn add_variables(
+        &mut self,
+        node: NodeId,
+        model: &mut FlatModel,
+        errors: &mut Vec<Diagnostic>,
+    ) {
+        let mut found = Vec::new();
+        self.collect_variables(node, &mut found, errors);
+        for at in found {
+            let mut variable = self.variables[at].0.clone();
+            variable.structural = self.structural.contains(&at);
+            model.variables.insert(variable.name.clone(), variable);
+        }
+    }
+
+    fn collect_variables(
+        &mut self,
+        node: NodeId,
+        found: &mut Vec<usize>,
+        errors: &mut Vec<Diagnostic>,
+    ) {
+        match &self.nodes[node.0].kind {
+            NodeKind::Variable(leaf) => {
+                let leaf = leaf.clone();
+                match self.finished(&leaf) {
+                    Ok(variable) => {
+                        self.variables[leaf.variable].0 = variable;
+                        found.push(leaf.variable);
+                    }
+                    Err(error) => errors.push(error),
+                }
+            }
+            NodeKind::Composite(composite) => {
+                let states: Vec<MemberState> =
+                    composite.members.values().map(|member| member.state.clone()).collect();
+                for state in states {
+                    let nodes = match state {
+                        MemberState::Single(one) => vec![one],
+                        MemberState::Array(_, nodes) => nodes,
+                        _ => Vec::new(),
+                    };
+                    for one in nodes {
+                        self.collect_variables(one, found, errors);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The variable with its binding and attributes.
+    fn finished(&mut self, leaf: &Leaf) -> Result<Variable, Diagnostic> {
+        let mut variable = self.variables[leaf.variable].0.clone();
+        if let Some(bound) = &leaf.modifier.binding {
+            variable.binding = self.bound(bound)?;
+        }
+        if let Some(binding) = variable.binding.take() {
+            check_literal(&binding, &variable.base, &variable)?;
+            let each = leaf.modifier.binding.as_ref().is_some_and(|bound| bound.each);
+            variable.binding = Some(if each { filled(binding, &variable.dims) } else { binding });
+        }
+        for name in ATTRIBUTES {
+            let modifier = leaf.modifier.elements.iter().find(|(known, _)| **known == name);
+            let Some((_, modifier)) = modifier else { continue };
+            let Some(bound) = &modifier.binding else { continue };
+            if let Some(value) = self.bound(bound)? {
+                let attribute = Attribute { value, is_final: modifier.is_final };
+                variable.attributes.insert(name, attribute);
+            }
+        }
+        Ok(variable)
+    }
+
+    fn bound(&mut self, bound: &Bound) -> Result<Option<Expression>, Diagnostic> {
+        let Some(value) = &bound.value else { return Ok(None) };
+        let value = picked(value.clone(), &bound.indices);
+        self.resolve(&value, bound.context, &Local::default()).map(Some)
+    }
+}
+
+/// A value of one element for every element: `fill(value, 2, 3)`.
+fn filled(value: Expression, dims: &[usize]) -> Expression {
+    if dims.is_empty() {
+        return value;
+    }
+    let span = value.span;
+    let size = |n: &usize| Expression::new(ExpressionKind::Integer(*n as i64), span);
+    let positional = std::iter::once(value).chain(dims.iter().map(size)).collect();
+    let function = ComponentReference::from_name(&crate::name::Name::parse("fill"), span);
+    let arguments = Box::new(Arguments { positional, ..Arguments::default() });
+    Expression::new(ExpressionKind::Call { function, arguments }, span)
+}
+
+/// Refuses a literal of the wrong type or an array constructor of the wrong size; what is computed
+/// is checked where it is computed.
+fn check_literal(e: &Expression, base: &BaseType, variable: &Variable) -> Result<(), Diagnostic> {
+    let found = match &e.kind {
+        ExpressionKind::Real(_) => "Real",
+        ExpressionKind::Integer(_) => "Integer",
+        ExpressionKind::Boolean(_) => "Boolean",
+        ExpressionKind::String(_) => "String",
+        ExpressionKind::Array(elements) => {
+            return check_array(elements, e, base, &variable.dims, variable);
+        }
+        _ => return Ok(()),
+    };
+    let fits = match base {
+        BaseType::Real => matches!(found, "Real" | "Integer"),
+        BaseType::Integer | BaseType::Enumeration(_) => found == "Integer",
+        BaseType::Boolean => found == "Boolean",
+        BaseType::String => found == "String",
+    };
+    if !fits {
+        let wanted = type_name(base);
+        let name = &variable.name;
+        return Err(fault!(TYPE_MISMATCH, "`{name}` is {wanted}, its value is {found}").at(e.span));
+    }
+    Ok(())
+}
+
+fn check_array(
+    elements: &[Expression],
+    e: &Expression,
+    base: &BaseType,
+    dims: &[usize],
+    variable: &Variable,
+) -> Result<(), Diagnostic> {
+    let name = &variable.name;
+    let Some((size, inner)) = dims.split_first() else {
+        return Err(
+            fault!(SIZE_MISMATCH, "the value of `{name}` has more dimensions than it").at(e.span)
+        );
+    };
+    if elements.len() != *size {
+        let count = elements.len();
+        return Err(
+            fault!(SIZE_MISMATCH, "`{name}` needs {size} elements here, not {count}").at(e.span)
+        );
+    }
+    elements.iter().try_for_each(|element| match &element.kind {
+        ExpressionKind::Array(deeper) => check_array(deeper, element, base, inner, variable),
+        _ => check_literal(element, base, variable),
+    })
+}
+
+fn type_name(base: &BaseType) -> String {
+    match base {
+        BaseType::Real => "Real".into(),
+        BaseType::Integer => "Integer".into(),
+        BaseType::Boolean => "Boolean".into(),
+        BaseType::String => "String".into(),
+        BaseType::Enumeration(definition) => definition.name.to_string(),
+    }
+}

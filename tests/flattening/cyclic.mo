@@ -1,0 +1,4 @@
+// A class that contains itself.
+model cyclic
+  cyclic c;
+end cyclic;
