@@ -1,7 +1,8 @@
 //! Components of functions and records: their sizes, bindings and storage (MLS §12.4.4).
 
 use super::errors::MISPLACED;
-use super::scope::{Declared, Owner, Variable, named};
+use super::scope::Owner;
+use super::variable::{Declared, Variable, named, shadow_of};
 use super::{Evaluator, FunctionComponent, Scope, ValueType};
 use crate::diag::{At, Diagnostic};
 use crate::fault;
@@ -68,7 +69,7 @@ impl Evaluator<'_> {
         let declared = Declared { value_type: component.value_type.clone(), dims };
         let (value, span) = match (given, &component.binding) {
             (Some(value), _) => (Some(value), self.scope.call_span),
-            (None, Some(binding)) => (Some(self.expression(binding)?), binding.span),
+            (None, Some(binding)) => (Some(self.argument(component, binding)?), binding.span),
             (None, None) => (None, component.span),
         };
         match value {
@@ -112,7 +113,7 @@ impl Evaluator<'_> {
             if let Some(variable) = inner.scope.variables.get(component) {
                 let shadow = match variable.shadow() {
                     Some(shadow) => shadow.clone(),
-                    None => super::scope::shadow_of(&variable.value, true),
+                    None => shadow_of(&variable.value, true),
                 };
                 values.insert(*component, variable.value.clone());
                 shadows.insert(*component, shadow);

@@ -1,6 +1,7 @@
 //! Executing a function: its components, its algorithm, its outputs (MLS §12.4).
 
 use super::errors::EXTERNAL_FUNCTION;
+use super::variable::Variable;
 use super::{Evaluator, Function, FunctionBody, Scope, ValueType, depth};
 use crate::diag::{At, Diagnostic};
 use crate::fault;
@@ -88,7 +89,7 @@ impl Evaluator<'_> {
                     && let Some(binding) = &component.binding
                 {
                     let value = self.expression(binding)?;
-                    self.scope.variables.insert(*name, super::scope::Variable::undeclared(value));
+                    self.scope.variables.insert(*name, Variable::undeclared(value));
                 }
                 let value = self.scope.get(*name).cloned();
                 let missing = || self.scope.unknown(*name).at(component.span);

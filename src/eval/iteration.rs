@@ -62,6 +62,8 @@ impl Evaluator<'_> {
                 sizes.push((*size, found.array.span));
             }
         }
+        // The references looked at are copies: their addresses may be used again.
+        self.scope.callees.clear();
         let Some((size, _)) = sizes.first().copied() else {
             let fault = fault!(
                 MISPLACED,

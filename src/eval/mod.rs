@@ -5,6 +5,7 @@
 //! The variables are in a [`Scope`]. Elements are read and overwritten in place; a variable, an
 //! element or an output without a value is a fault, never a zero.
 
+mod argument;
 mod call;
 mod component;
 mod deduction;
@@ -22,6 +23,7 @@ mod scope;
 mod special;
 mod statement;
 mod types;
+mod variable;
 mod vectorization;
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 
 use super::Evaluator;
 use super::errors::UNKNOWN_VARIABLE;
-use super::scope::{Variable, named};
+use super::variable::{Variable, named};
 use crate::diag::{At, Diagnostic};
 use crate::fault;
 use crate::name::Ident;

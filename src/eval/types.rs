@@ -2,7 +2,7 @@
 //! is assigned.
 
 use super::ValueType;
-use super::scope::{Declared, shadow_of};
+use super::variable::{Declared, shadow_of};
 use crate::bail;
 use crate::diag::Fault;
 use crate::value::errors::{SIZE_MISMATCH, TYPE_MISMATCH};
@@ -125,7 +125,10 @@ impl ValueType {
             | (ValueType::Real, elements @ Elements::Real(_))
             | (ValueType::Integer, elements @ Elements::Integer(_))
             | (ValueType::Boolean, elements @ Elements::Boolean(_))
-            | (ValueType::String, elements @ Elements::String(_)) => elements,
+            | (ValueType::String, elements @ Elements::String(_))
+            | (ValueType::TypeName | ValueType::VariableName, elements @ Elements::String(_)) => {
+                elements
+            }
             (ValueType::Real, elements @ Elements::Integer(_)) => elements.promoted(),
             (_, elements) if elements.is_empty() => self.no_elements(),
             (ValueType::Enumeration(definition), Elements::Enumeration(values))

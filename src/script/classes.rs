@@ -42,8 +42,8 @@ impl Session {
     pub(super) fn loaded_function(&mut self, _: &Name) -> Result<Option<Arc<Function>>, Fault> {
         Ok(None)
     }
-    pub(super) fn constant(&mut self, _: &Name) -> Result<Option<Value>, Fault> {
-        Ok(None)
+    pub(super) fn constant(&mut self, name: &Name) -> Result<Option<Value>, Fault> {
+        Ok(super::builtins::constant(name))
     }
     pub(super) fn model_value(
         &mut self,

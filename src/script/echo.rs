@@ -71,8 +71,9 @@ impl Session {
             let line = format!("{lead}{}\n", show(value, style));
             self.world.print(&line);
         }
+        let style = if style == Style::Dymola { Style::Transcript } else { style };
         if let Some(transcript) = &mut self.transcript {
-            transcript.answer(&format!("{lead}{}\n", show(value, Style::Transcript)));
+            transcript.answer(&format!("{lead}{}\n", show(value, style)));
         }
     }
 

@@ -42,16 +42,7 @@ codes! {
     /// A simulation did not reach its stop time.
     SIMULATION_FAILED = "simulation-failed":
         "## What it means\n\nThe model was compiled, but its simulation stopped before the stop time.\n\n## Example\n\nA model whose equation takes the logarithm of a negative number at t = 0.3\n\n## What to do\n\nThe message names the time, the equation or variable, and the reason. Check the parameters and start values; a smaller tolerance may help where the step size became too small.",
-    /// A result file does not hold a variable.
-    UNKNOWN_RESULT = "unknown-result":
-        "## What it means\n\nA result file has no variable of the name asked for.\n\n## Example\n\n`readTrajectory(\"dsres.mat\", {\"V2\"}, 10)`\n\n## What to do\n\nUse one of the names that `readTrajectoryNames(file)` lists.",
-    /// A value used where a statement needs another shape.
-    BAD_ASSIGNMENT = "bad-assignment":
-        "## What it means\n\nThe two sides of an assignment do not fit: a call with fewer outputs than variables on the left, several variables for one value, a missing variable behind a subscript, or a value of another type than declared.\n\n## Example\n\n`(a, b) := sin(1)`\n\n## What to do\n\nWrite as many variables as the call has outputs.",
     /// An import that names nothing.
     BAD_IMPORT = "bad-import":
         "## What it means\n\nAn import clause of a script names a package or class that is not loaded and is no package of built-in commands.\n\n## Example\n\n`import Modelica.Utilties.Streams;`\n\n## What to do\n\nCorrect the name, or load the library first.",
-    /// A bare command that does not exist.
-    UNKNOWN_COMMAND = "unknown-command":
-        "## What it means\n\nA line begins with a word that is no command.\n\n## Example\n\n`claer`\n\n## What to do\n\nCommands without parentheses are `clear`, `clearlog`, `cd`, `exit`, `quit`, `list` and `variables`.",
 }

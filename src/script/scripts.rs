@@ -21,8 +21,6 @@ const MAX_DEPTH: usize = 64;
 /// A script being run.
 #[derive(Debug, Clone)]
 pub(super) struct Frame {
-    /// Its file name, for the trace.
-    pub(super) name: String,
     /// The folder it lies in.
     pub(super) folder: PathBuf,
 }
@@ -51,7 +49,7 @@ impl Session {
         match syntax::parse_script(source, text) {
             Ok(script) => {
                 let folder = self.world.current_dir();
-                let frame = Frame { name: name.to_owned(), folder };
+                let frame = Frame { folder };
                 let done = self.run_script_statements(&Arc::new(script), frame);
                 debug_assert!(done.is_ok(), "the outermost script reports its own errors");
             }
@@ -72,7 +70,11 @@ impl Session {
         let call = self.call;
         let frame_name = format!("script `{name}`");
         let traced = |diagnostics: Vec<Diagnostic>| {
-            let frame = |diagnostic: Diagnostic| diagnostic.called_from(call, &*frame_name);
+            // A script that calls itself is one line of the trace, however often it does.
+            let frame = |diagnostic: Diagnostic| match diagnostic.trace.last() {
+                Some(last) if last.span == call && last.what == frame_name => diagnostic,
+                _ => diagnostic.called_from(call, &*frame_name),
+            };
             diagnostics.into_iter().map(frame).collect::<Vec<_>>()
         };
         if let Err(fault) = self.find_script(name) {
@@ -86,8 +88,7 @@ impl Session {
         let path = self.find_script(name).map_err(at)?;
         let script = self.parsed_script(&path)?;
         let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
-        let shown = path.file_name().map_or(name.into(), |name| name.to_string_lossy());
-        let frame = Frame { name: shown.into_owned(), folder };
+        let frame = Frame { folder };
         self.run_script_statements(&script, frame).map_err(|diagnostic| vec![diagnostic])
     }
 
@@ -132,6 +133,7 @@ impl Session {
                 return Err(diagnostic);
             }
             self.report_failed(diagnostic);
+            self.echo_nothing();
         }
         Ok(())
     }
@@ -187,26 +189,34 @@ impl Session {
             self.note(SCRIPT_NOT_FOUND, message);
             return Ok(path);
         }
-        let nearby = self.world.list_dir(&folders[0]).unwrap_or_default();
-        let scripts = nearby.iter().filter(|entry| entry.ends_with(".mos")).map(String::as_str);
         let fault = Fault::new(SCRIPT_NOT_FOUND, format!("there is no script `{name}`"));
-        let wanted = with_ending.to_string_lossy();
-        let hint = suggest::did_you_mean(name, scripts.clone())
-            .or_else(|| suggest::did_you_mean(&wanted, scripts));
-        Err(fault.help_if(hint).help(format!(
+        Err(fault.help_if(self.similar_script(&folders[0].join(&plain))).help(format!(
             "searched in `{}` and in the working directory `{}`",
             folders[0].display(),
             folders[1].display()
         )))
     }
 
+    fn similar_script(&self, path: &Path) -> Option<String> {
+        let nearby = self.world.list_dir(path.parent()?).ok()?;
+        let scripts: Vec<&str> = nearby.iter().filter_map(|e| e.strip_suffix(".mos")).collect();
+        suggest::did_you_mean(&path.file_stem()?.to_string_lossy(), scripts)
+    }
+
+    /// The file of this path, letter case not counted in any of its parts.
     fn other_case(&self, path: &Path) -> Option<PathBuf> {
-        let folder = path.parent()?;
-        let wanted = path.file_name()?.to_string_lossy().into_owned();
-        let entries = self.world.list_dir(folder).ok()?;
-        let found = entries.iter().find(|entry| entry.eq_ignore_ascii_case(&wanted))?;
-        let path = normalized(&self.world.absolute(&folder.join(found)));
-        (!self.world.is_dir(&path)).then_some(path)
+        let mut found = PathBuf::new();
+        for component in normalized(&self.world.absolute(path)).components() {
+            let exact = found.join(component);
+            if self.world.exists(&exact) {
+                found = exact;
+                continue;
+            }
+            let wanted = component.as_os_str().to_string_lossy().into_owned();
+            let entries = self.world.list_dir(&found).ok()?;
+            found.push(entries.iter().find(|entry| entry.eq_ignore_ascii_case(&wanted))?);
+        }
+        (!self.world.is_dir(&found)).then_some(found)
     }
 
     fn parsed_script(&mut self, path: &Path) -> Result<Arc<Script>, Vec<Diagnostic>> {

@@ -1,6 +1,6 @@
 //! Interactive statements, one after another.
 
-use super::errors::{BAD_IMPORT, FOLLOW_UP, NO_TRANSLATED_MODEL, UNKNOWN_COMMAND};
+use super::errors::{BAD_IMPORT, FOLLOW_UP, NO_TRANSLATED_MODEL};
 use super::session::Stop;
 use super::{Session, builtins};
 use crate::diag::{At, Diagnostic, Fault, suggest};
@@ -27,11 +27,7 @@ impl Session {
             self.begin_exchange(statement.span);
         }
         self.echo_input(statement.span);
-        let done = self.interactive(statement);
-        if done.is_err() {
-            self.echo_nothing();
-        }
-        done
+        self.interactive(statement)
     }
 
     fn begin_exchange(&mut self, span: Span) {
@@ -77,7 +73,9 @@ impl Session {
                 self.silent += 1;
                 let done = self.execute(statement);
                 self.silent -= 1;
-                self.echo_nothing();
+                if done.is_ok() {
+                    self.echo_nothing();
+                }
                 done
             }
         }
@@ -182,23 +180,14 @@ impl Session {
         match &*name.node {
             "clear" => self.clear(),
             "clearlog" => self.messages.clear(),
-            "exit" | "quit" => {
+            "exit" => {
                 let status = argument.node.trim_matches(['(', ')', ' ']).parse().unwrap_or(0);
                 self.stop = Some(Stop::Exit(status));
             }
-            "cd" => {
+            // The grammar knows no other command.
+            _ => {
                 let wanted = argument.node.trim().trim_matches('"');
                 self.change_directory(wanted).at(name.span)?;
-            }
-            "list" | "variables" => {
-                let listing = self.listing("*");
-                self.print(&listing);
-            }
-            other => {
-                let commands = ["clear", "clearlog", "cd", "exit", "quit", "list", "variables"];
-                return Err(fault!(UNKNOWN_COMMAND, "there is no command `{other}`")
-                    .help_if(suggest::did_you_mean(other, commands))
-                    .at(name.span));
             }
         }
         Ok(())

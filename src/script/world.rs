@@ -3,6 +3,7 @@
 //! Nothing below `cli/` touches the system in any other way, so a script runs in a [`MemoryWorld`]
 //! exactly as it runs on a disk.
 
+use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::{Component, Path, PathBuf};
@@ -140,6 +141,8 @@ pub struct MemoryWorld {
     changes: u64,
     stamps: BTreeMap<PathBuf, u64>,
     streams: Streams,
+    /// How many more times the answer is that nobody asked to stop.
+    patience: Cell<u64>,
 }
 
 impl Default for MemoryWorld {
@@ -151,6 +154,7 @@ impl Default for MemoryWorld {
             changes: 0,
             stamps: BTreeMap::new(),
             streams: Streams::default(),
+            patience: Cell::new(u64::MAX),
         }
     }
 }
@@ -165,6 +169,13 @@ impl MemoryWorld {
     #[must_use]
     pub fn with_file(mut self, path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> MemoryWorld {
         self.store(path.as_ref(), bytes.as_ref().to_vec());
+        self
+    }
+
+    /// The same where the user asks to stop after `questions` questions whether he did.
+    #[must_use]
+    pub fn interrupted_after(mut self, questions: u64) -> MemoryWorld {
+        self.patience = Cell::new(questions);
         self
     }
 
@@ -283,7 +294,9 @@ impl World for MemoryWorld {
     }
 
     fn interrupted(&self) -> bool {
-        false
+        let left = self.patience.get();
+        self.patience.set(left.saturating_sub(1));
+        left == 0
     }
 
     fn threads(&self) -> usize {

@@ -93,6 +93,10 @@ impl ArrayValue {
     }
 }
 
+fn picked<T: Clone>(values: &[T], offsets: impl Iterator<Item = usize>) -> Vec<T> {
+    offsets.map(|offset| values[offset].clone()).collect()
+}
+
 /// `[2, 3]`: sizes as messages show them.
 pub fn sizes(dims: &[usize]) -> String {
     let sizes: Vec<String> = dims.iter().map(usize::to_string).collect();
@@ -185,6 +189,26 @@ impl Elements {
         Ok(())
     }
 
+    /// Overwrites the elements at these offsets, counted from 0, with as many others.
+    ///
+    /// # Panics
+    /// If there is no such element: callers check subscripts first.
+    pub(super) fn scatter(&mut self, offsets: &[usize], new: Elements) -> Result<(), Fault> {
+        match (self, new) {
+            (Elements::Real(values), Elements::Real(new)) => {
+                for (offset, value) in offsets.iter().zip(new) {
+                    values[*offset] = value;
+                }
+            }
+            (values, new) => {
+                for (from, offset) in offsets.iter().enumerate() {
+                    values.set(*offset, new.get(from))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// `count` times the same scalar or record.
     pub fn repeated(value: &Value, count: usize) -> Result<Elements, Fault> {
         Ok(match value {
@@ -204,7 +228,7 @@ impl Elements {
 
     /// The elements at these offsets, counted from 0, in this order.
     pub fn gathered(&self, offsets: impl Iterator<Item = usize>) -> Elements {
-        map_elements!(self, values => offsets.map(|offset| values[offset].clone()).collect())
+        map_elements!(self, values => picked(values, offsets))
     }
 
     /// The elements `start..start + count`.

@@ -247,10 +247,6 @@ impl Range {
                 let count = array.elements.len();
                 Ok(Range::Values((0..count).map(|at| array.elements.get(at)).collect()))
             }
-            Value::Array(array) => {
-                let dims = array.dims[..1].to_vec();
-                Ok(Range::Values(split(&dims, Value::Array(array))?))
-            }
             other => bail!(
                 TYPE_MISMATCH,
                 "a loop needs a vector to go through, not a value of type {}", other.type_name();

@@ -99,10 +99,7 @@ impl ArrayValue {
                         }
                     );
                 }
-                for (from, to) in selection.offsets.into_iter().enumerate() {
-                    self.elements.set(to, source.elements.get(from))?;
-                }
-                Ok(())
+                self.elements.scatter(&selection.offsets, source.elements)
             }
             scalar if selection.dims.is_empty() => self.elements.set(selection.offsets[0], scalar),
             scalar => bail!(

@@ -1,6 +1,7 @@
 //! The integration tests; one module per suite.
 
 mod architecture;
+mod diagnostics;
 mod flattening;
 mod gapilib;
 mod grammar;

@@ -226,9 +226,12 @@ s := 0; for e in E loop s := s + Integer(e); end for;
 #[test]
 fn builtins_get_names_unevaluated_and_rows_as_vectors() {
     let script = "
-function look input VariableName v; input TypeName t; input Real x[:] = {1}; output Boolean b; external; end look;
-look(a.b, M.N, [1, 2, 3]);
-look(der(x), M);
+function look input VariableName v; input TypeName t = A.B; input Real x[:] = {1}; output Boolean b; external; end look;
+function show input VariableName v[:]; output Boolean b; external; end show;
+look(a.b[2], M.N, [1, 2, 3]);
+look(der(x));
+show({x, y[1]});
+show(x);
 ";
     let mut host = TestHost::default();
     run_in(script, &mut Scope::script(), &mut host).expect("runs");
@@ -237,8 +240,10 @@ look(der(x), M);
     assert_eq!(
         host.builtin_calls,
         [
-            vec![name("a.b"), class("M.N"), Value::reals(vec![1.0, 2.0, 3.0])],
-            vec![name("der(x)"), class("M"), Value::reals(vec![1.0])],
+            vec![name("a.b[2]"), class("M.N"), Value::reals(vec![1.0, 2.0, 3.0])],
+            vec![name("der(x)"), class("A.B"), Value::reals(vec![1.0])],
+            vec![vec!["x".to_owned(), "y[1]".to_owned()].into()],
+            vec![vec!["x".to_owned()].into()],
         ]
     );
 }

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// `Modelica.Utilities.Files`.
 pub(super) const FAMILY: Family = Family {
     packages: &["Modelica.Utilities.Files"],
-    dialect: Some(Dialect::Dymola),
+    dialect: None,
     builtins: &[
         Builtin { header: EXIST, run: exist },
         Builtin { header: LIST_FILES, run: list_files },

@@ -6,7 +6,9 @@ mod conversion;
 mod files;
 mod gapilib;
 mod header;
+mod matrices;
 mod messages;
+mod results;
 mod scanning;
 mod scripts;
 mod settings;
@@ -16,7 +18,7 @@ mod system;
 mod windows;
 
 pub use args::Args;
-pub(in crate::script) use strings::COMPARE_TYPE;
+pub(in crate::script) use strings::constant;
 
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::Function;
@@ -83,7 +85,10 @@ pub static FAMILIES: &[&Family] = &[
     &files::FAMILY,
     &files::OPENMODELICA,
     &gapilib::FAMILY,
+    &matrices::FAMILY,
     &messages::FAMILY,
+    &results::FAMILY,
+    &results::OPENMODELICA,
     &scripts::FAMILY,
     &scripts::OPENMODELICA,
     &settings::FAMILY,

@@ -91,13 +91,20 @@ end compare;
 "#;
 
 /// `Modelica.Utilities.Types.Compare`.
-pub(in crate::script) static COMPARE_TYPE: LazyLock<Arc<EnumerationDefinition>> =
-    LazyLock::new(|| {
-        Arc::new(EnumerationDefinition {
-            name: Name::parse("Modelica.Utilities.Types.Compare"),
-            literals: ["Less", "Equal", "Greater"].map(Ident::new).to_vec(),
-        })
-    });
+static COMPARE_TYPE: LazyLock<Arc<EnumerationDefinition>> = LazyLock::new(|| {
+    Arc::new(EnumerationDefinition {
+        name: Name::parse("Modelica.Utilities.Types.Compare"),
+        literals: ["Less", "Equal", "Greater"].map(Ident::new).to_vec(),
+    })
+});
+
+/// The literal of `Modelica.Utilities.Types.Compare` of this full name.
+pub(in crate::script) fn constant(name: &Name) -> Option<Value> {
+    let definition = COMPARE_TYPE.clone();
+    let literal = name.last().filter(|_| name.parent().parts == definition.name.parts)?;
+    let at = definition.literals.iter().position(|known| *known == literal)?;
+    Some(Value::Enumeration(EnumerationValue { definition, ordinal: at as i64 + 1 }))
+}
 
 fn compare(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let (first, second) = two(&mut args)?;

@@ -1,0 +1,192 @@
+//! Which argument goes to which input (MLS §12.4.1), and how: evaluated, by name, or as a function.
+
+use super::errors::WRONG_ARGUMENTS;
+use super::{Evaluator, Function, FunctionComponent, ValueType};
+use crate::diag::{At, Diagnostic, Fault, suggest};
+use crate::fault;
+use crate::name::{Ident, Name};
+use crate::source::Span;
+use crate::syntax::ast::{self, Expression, ExpressionKind};
+use crate::syntax::print;
+use crate::value::{ArrayValue, Elements, FromValue, Value};
+use std::sync::Arc;
+
+impl Evaluator<'_> {
+    /// Values for the inputs of a function, `None` where nothing is given and a default exists.
+    pub(super) fn bound(
+        &mut self,
+        function: &Arc<Function>,
+        arguments: &ast::Arguments,
+        given: &[(Ident, Value)],
+        span: Span,
+    ) -> Result<Vec<Option<Value>>, Diagnostic> {
+        let mut binding = Binding::new(function);
+        for (name, value) in given {
+            let at = binding.named(*name).at(span)?;
+            binding.values[at] = Some(value.clone());
+        }
+        for argument in &arguments.positional {
+            let at = binding.next_positional().at(argument.span)?;
+            binding.values[at] = Some(self.argument(&function.inputs[at], argument)?);
+        }
+        for argument in &arguments.named {
+            let at = binding.named(argument.name.node).at(argument.name.span)?;
+            binding.values[at] = Some(self.argument(&function.inputs[at], &argument.value)?);
+        }
+        binding.finish().at(span)
+    }
+
+    /// An argument or default as the input wants it: by name, as a function, or evaluated.
+    pub(super) fn argument(
+        &mut self,
+        input: &FunctionComponent,
+        argument: &Expression,
+    ) -> Result<Value, Diagnostic> {
+        match input.value_type {
+            ValueType::TypeName | ValueType::VariableName => self.name_argument(input, argument),
+            ValueType::Function => self.function_argument(argument),
+            _ => self.expression(argument),
+        }
+    }
+
+    /// A name as written, without looking at what it stands for; where a list of names is wanted,
+    /// the vector of their texts.
+    fn name_argument(
+        &mut self,
+        input: &FunctionComponent,
+        argument: &Expression,
+    ) -> Result<Value, Diagnostic> {
+        if !input.dims.is_empty() {
+            return self.names(argument);
+        }
+        if let (ValueType::TypeName, ExpressionKind::Reference(reference)) =
+            (&input.value_type, &argument.kind)
+            && let Some(name) = reference.as_name()
+        {
+            return Ok(Value::TypeName(name));
+        }
+        let text = self.written(argument)?;
+        Ok(match input.value_type {
+            ValueType::TypeName => Value::TypeName(Name::parse(&text)),
+            _ => Value::VariableName(text),
+        })
+    }
+
+    fn names(&mut self, argument: &Expression) -> Result<Value, Diagnostic> {
+        let texts = match &argument.kind {
+            ExpressionKind::Array(names) => {
+                names.iter().map(|name| self.written(name)).collect::<Result<_, _>>()?
+            }
+            ExpressionKind::Reference(_) => vec![self.written(argument)?],
+            _ => match self.expression(argument)? {
+                texts if texts.rank() == 1 => Vec::from_value(texts).at(argument.span)?,
+                text => vec![Arc::from_value(text).at(argument.span)?],
+            },
+        };
+        Ok(Value::Array(ArrayValue::vector(Elements::String(texts))))
+    }
+
+    /// `x`, `a.b[2]`, `der(x)` as written; the text of a String; the name in the value of anything
+    /// else.
+    fn written(&mut self, argument: &Expression) -> Result<Arc<str>, Diagnostic> {
+        match &argument.kind {
+            ExpressionKind::Reference(_) => Ok(print::expression(argument).into()),
+            ExpressionKind::Call { function, .. }
+                if function.as_ident().is_some_and(|name| name == "der") =>
+            {
+                Ok(print::expression(argument).into())
+            }
+            _ => match self.expression(argument)? {
+                Value::String(text) | Value::VariableName(text) => Ok(text),
+                Value::TypeName(name) => Ok(name.to_string().into()),
+                other => Err(fault!(
+                    WRONG_ARGUMENTS,
+                    "expected a name, got a value of type {}",
+                    other.type_name()
+                )
+                .at(argument.span)),
+            },
+        }
+    }
+
+    fn function_argument(&mut self, argument: &Expression) -> Result<Value, Diagnostic> {
+        if let ExpressionKind::Reference(reference) = &argument.kind
+            && let Some(name) = reference.as_name()
+        {
+            return self.partial_application(&name, &[]);
+        }
+        self.expression(argument)
+    }
+}
+
+/// Which value goes to which input.
+pub(super) struct Binding<'f> {
+    function: &'f Function,
+    pub(super) values: Vec<Option<Value>>,
+    taken: Vec<bool>,
+}
+
+impl<'f> Binding<'f> {
+    pub(super) fn new(function: &'f Function) -> Binding<'f> {
+        let count = function.inputs.len();
+        Binding { function, values: vec![None; count], taken: vec![false; count] }
+    }
+
+    /// The input of the next positional argument.
+    pub(super) fn next_positional(&mut self) -> Result<usize, Fault> {
+        match self.taken.iter().position(|taken| !taken) {
+            Some(at) => {
+                self.taken[at] = true;
+                Ok(at)
+            }
+            None => Err(fault!(
+                WRONG_ARGUMENTS,
+                "`{}` takes {} arguments at most", self.function.name, self.taken.len();
+                help: "its inputs are {}", self.inputs()
+            )),
+        }
+    }
+
+    pub(super) fn named(&mut self, name: Ident) -> Result<usize, Fault> {
+        let inputs = &self.function.inputs;
+        let Some(at) = inputs.iter().position(|input| input.name == name) else {
+            let names = inputs.iter().map(|input| input.name.as_str());
+            return Err(fault!(WRONG_ARGUMENTS, "`{}` has no input `{name}`", self.function.name)
+                .help_if(suggest::did_you_mean(name.as_str(), names))
+                .help(format!("its inputs are {}", self.inputs())));
+        };
+        if self.taken[at] {
+            return Err(fault!(
+                WRONG_ARGUMENTS,
+                "the input `{name}` of `{}` is given twice",
+                self.function.name
+            ));
+        }
+        self.taken[at] = true;
+        Ok(at)
+    }
+
+    pub(super) fn finish(self) -> Result<Vec<Option<Value>>, Fault> {
+        let missing = self
+            .function
+            .inputs
+            .iter()
+            .zip(&self.taken)
+            .find(|(input, taken)| !**taken && input.binding.is_none());
+        match missing {
+            None => Ok(self.values),
+            Some((input, _)) => Err(fault!(
+                WRONG_ARGUMENTS,
+                "the input `{}` of `{}` is not given and has no default",
+                input.name, self.function.name;
+                help: "its inputs are {}", self.inputs()
+            )),
+        }
+    }
+
+    fn inputs(&self) -> String {
+        let names: Vec<String> =
+            self.function.inputs.iter().map(|input| format!("`{}`", input.name)).collect();
+        if names.is_empty() { "none".into() } else { names.join(", ") }
+    }
+}

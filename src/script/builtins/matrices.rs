@@ -1,0 +1,155 @@
+//! Matrices in files: MAT of every version, text in the `#1` format, and CSV.
+
+use super::{Args, Builtin, Failure, Family};
+use crate::bail;
+use crate::diag::Fault;
+use crate::mat::{self, MatFile, Matrix};
+use crate::script::Session;
+use crate::script::errors::BAD_ARGUMENT;
+use crate::value::{RealMatrix, Value};
+use std::path::Path;
+
+/// The commands of this file.
+pub(super) const FAMILY: Family = Family {
+    packages: &["DymolaCommands.MatrixIO", "Modelica.Utilities.Streams"],
+    dialect: None,
+    builtins: &[
+        Builtin { header: READ_MATRIX_SIZE, run: read_matrix_size },
+        Builtin { header: READ_MATRIX, run: read_matrix },
+        Builtin { header: WRITE_MATRIX, run: write_matrix },
+        Builtin { header: READ_REAL_MATRIX, run: read_real_matrix },
+        Builtin { header: WRITE_REAL_MATRIX, run: write_real_matrix },
+    ],
+};
+
+/// Reads a data file; what was skipped in it is said as warnings.
+pub(super) fn read_file(session: &mut Session, name: &str) -> Result<MatFile, Fault> {
+    let bytes = session.read_bytes(Path::new(name))?;
+    mat::read_named(name, &bytes)
+}
+
+const READ_MATRIX_SIZE: &str = r#"
+function readMatrixSize "Numbers of rows and columns of a matrix in a file."
+  input String fileName;
+  input String matrixName;
+  output Integer sizes[2];
+end readMatrixSize;
+"#;
+
+fn read_matrix_size(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let (file, name): (String, String) = (args.take("fileName")?, args.take("matrixName")?);
+    let contents = read_file(session, &file)?;
+    let matrix = contents.matrix(&name)?;
+    Ok(vec![matrix.rows as i64, matrix.columns as i64].into())
+}
+
+const READ_MATRIX: &str = r#"
+function readMatrix "A matrix in a file."
+  input String fileName;
+  input String matrixName;
+  input Integer rows "as readMatrixSize gives them";
+  input Integer columns;
+  output Real matrix[rows, columns];
+end readMatrix;
+"#;
+
+const READ_REAL_MATRIX: &str = r#"
+function readRealMatrix "A matrix in a file."
+  input String fileName;
+  input String matrixName;
+  input Integer nrow "as readMatrixSize gives them";
+  input Integer ncol;
+  input Boolean verboseRead = true;
+  output Real matrix[nrow, ncol];
+end readRealMatrix;
+"#;
+
+fn read_matrix(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let sizes = [args.take("rows")?, args.take("columns")?];
+    checked_matrix(session, &mut args, sizes)
+}
+
+fn read_real_matrix(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let sizes = [args.take("nrow")?, args.take("ncol")?];
+    checked_matrix(session, &mut args, sizes)
+}
+
+fn checked_matrix(
+    session: &mut Session,
+    args: &mut Args,
+    [rows, columns]: [i64; 2],
+) -> Result<Value, Failure> {
+    let (file, name): (String, String) = (args.take("fileName")?, args.take("matrixName")?);
+    let contents = read_file(session, &file)?;
+    let matrix = contents.matrix(&name)?;
+    if (matrix.rows as i64, matrix.columns as i64) != (rows, columns) {
+        bail!(
+            BAD_ARGUMENT,
+            "`{name}` in `{file}` has {} rows and {} columns, not {rows} and {columns}",
+            matrix.rows, matrix.columns;
+            help: "`readMatrixSize(\"{file}\", \"{name}\")` gives the sizes"
+        );
+    }
+    let elements = matrix.row_major();
+    Ok(RealMatrix { rows: matrix.rows, columns: matrix.columns, elements }.into())
+}
+
+const WRITE_MATRIX: &str = r#"
+function writeMatrix "Writes a matrix to a MAT file of version 4."
+  input String fileName;
+  input String matrixName;
+  input Real matrix[:, :] "a vector v is written as [v]";
+  input Boolean append = false "false: the file is written anew";
+  output Boolean ok;
+end writeMatrix;
+"#;
+
+const WRITE_REAL_MATRIX: &str = r#"
+function writeRealMatrix "Writes a matrix to a MAT file of version 4."
+  input String fileName;
+  input String matrixName;
+  input Real matrix[:, :];
+  input Boolean append = false "false: the file is written anew";
+  input String format = "4" "only version 4 is written";
+  output Boolean success;
+end writeRealMatrix;
+"#;
+
+fn write_real_matrix(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let format: String = args.take("format")?;
+    if format != "4" {
+        bail!(BAD_ARGUMENT, "`format` of `writeRealMatrix` is \"{format}\": only \"4\" is written");
+    }
+    write_matrix(session, args)
+}
+
+fn write_matrix(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let (file, name): (String, String) = (args.take("fileName")?, args.take("matrixName")?);
+    let matrix: RealMatrix = args.take("matrix")?;
+    let rows: Vec<Vec<f64>> = (0..matrix.rows).map(|row| matrix.row(row).to_vec()).collect();
+    let new = match matrix.rows {
+        0 => Matrix::from_columns(0, matrix.columns, Vec::new()),
+        _ => Matrix::from_rows(&rows),
+    };
+    let append: bool = args.take("append")?;
+    let written = write(session, &file, &name, new, append);
+    Ok(session.succeeded(written))
+}
+
+/// Writes the matrix beside those that the file holds, if it is to be kept.
+fn write(
+    session: &mut Session,
+    file: &str,
+    name: &str,
+    new: Matrix,
+    append: bool,
+) -> Result<(), Fault> {
+    let path = Path::new(file);
+    let mut arrays = match append && session.world.exists(path) {
+        true => mat::read(&session.read_bytes(path)?)?.arrays,
+        false => Default::default(),
+    };
+    arrays.insert(name.to_owned(), new);
+    let bytes = mat::write_v4(arrays.iter().map(|(name, matrix)| (name.as_str(), matrix)))?;
+    session.write_file(path, &bytes)
+}

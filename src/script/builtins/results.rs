@@ -1,0 +1,225 @@
+//! Trajectories in result files.
+
+use super::{Args, Builtin, Failure, Family};
+use crate::bail;
+use crate::diag::Fault;
+use crate::results::{self, ResultTable};
+use crate::script::errors::BAD_ARGUMENT;
+use crate::script::world::Stamp;
+use crate::script::{Dialect, Session};
+use crate::value::{ArrayValue, Elements, RealMatrix, Value};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The commands of Dymola.
+pub(super) const FAMILY: Family = Family {
+    packages: &["DymolaCommands.Trajectories"],
+    dialect: Some(Dialect::Dymola),
+    builtins: &[
+        Builtin { header: READ_TRAJECTORY_SIZE, run: read_trajectory_size },
+        Builtin { header: READ_TRAJECTORY_NAMES, run: read_trajectory_names },
+        Builtin { header: READ_TRAJECTORY, run: read_trajectory },
+        Builtin { header: EXIST_TRAJECTORY_NAMES, run: exist_trajectory_names },
+        Builtin { header: INTERPOLATE_TRAJECTORY, run: interpolate_trajectory },
+    ],
+};
+
+/// The commands of OpenModelica.
+pub(super) const OPENMODELICA: Family = Family {
+    packages: &["OpenModelica.Scripting"],
+    dialect: Some(Dialect::OpenModelica),
+    builtins: &[
+        Builtin { header: READ_SIMULATION_RESULT, run: read_simulation_result },
+        Builtin { header: READ_SIMULATION_RESULT_VARS, run: read_simulation_result_vars },
+        Builtin { header: READ_SIMULATION_RESULT_SIZE, run: read_simulation_result_size },
+        Builtin { header: CLOSE_SIMULATION_RESULT_FILE, run: close_simulation_result_file },
+    ],
+};
+
+/// The result file read last, kept as long as it does not change.
+#[derive(Default)]
+struct LastRead(Option<(PathBuf, Option<Stamp>, Arc<ResultTable>)>);
+
+/// The results in a file; without an ending, `.mat` is meant.
+pub(super) fn table(session: &mut Session, name: &str) -> Result<Arc<ResultTable>, Fault> {
+    let with_ending = format!("{name}.mat");
+    let found = session
+        .find_file(Path::new(name))
+        .or_else(|| session.find_file(Path::new(&with_ending)))
+        .ok_or_else(|| session.missing_file(Path::new(name)))?;
+    let stamp = session.world.stamp(&found);
+    if let Some((path, known, table)) = &session.extension::<LastRead>().0
+        && *path == found
+        && *known == stamp
+    {
+        return Ok(table.clone());
+    }
+    let format = results::format_of_file(&found.to_string_lossy())?;
+    let table = Arc::new(format.read(&session.read_bytes(&found)?)?);
+    session.extension::<LastRead>().0 = Some((found, stamp, table.clone()));
+    Ok(table)
+}
+
+fn columns(table: &ResultTable, names: &[String]) -> Result<RealMatrix, Fault> {
+    let mut elements = Vec::with_capacity(names.len() * table.time.len());
+    for name in names {
+        elements.extend(table.column(name)?);
+    }
+    Ok(RealMatrix { rows: names.len(), columns: table.time.len(), elements })
+}
+
+const READ_TRAJECTORY_SIZE: &str = r#"
+function readTrajectorySize "Number of points in time in a result file."
+  input String fileName;
+  output Integer size;
+end readTrajectorySize;
+"#;
+
+fn read_trajectory_size(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let file: String = args.take("fileName")?;
+    Ok((table(session, &file)?.time.len() as i64).into())
+}
+
+const READ_TRAJECTORY_NAMES: &str = r#"
+function readTrajectoryNames "Names of the variables in a result file, Time first."
+  input String fileName;
+  output String names[:];
+end readTrajectoryNames;
+"#;
+
+fn read_trajectory_names(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let file: String = args.take("fileName")?;
+    let table = table(session, &file)?;
+    let series = table.series.iter().map(|series| series.name.clone());
+    Ok(std::iter::once("Time".to_owned()).chain(series).collect::<Vec<String>>().into())
+}
+
+const READ_TRAJECTORY: &str = r#"
+function readTrajectory "Trajectories from a result file, one row for each signal."
+  input String fileName;
+  input String signals[:];
+  input Integer rows "number of points in time, as readTrajectorySize gives it";
+  output Real trajectories[size(signals, 1), rows];
+end readTrajectory;
+"#;
+
+fn read_trajectory(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let file: String = args.take("fileName")?;
+    let signals: Vec<String> = args.take("signals")?;
+    let rows: i64 = args.take("rows")?;
+    let table = table(session, &file)?;
+    if rows != table.time.len() as i64 {
+        bail!(
+            BAD_ARGUMENT,
+            "`{file}` has {} points in time, not {rows}", table.time.len();
+            help: "`readTrajectorySize(\"{file}\")` gives the number"
+        );
+    }
+    Ok(columns(&table, &signals)?.into())
+}
+
+const EXIST_TRAJECTORY_NAMES: &str = r#"
+function existTrajectoryNames "Whether a result file has these variables."
+  input String fileName;
+  input String names[:];
+  output Boolean result[size(names, 1)];
+end existTrajectoryNames;
+"#;
+
+fn exist_trajectory_names(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let file: String = args.take("fileName")?;
+    let names: Vec<String> = args.take("names")?;
+    let table = table(session, &file)?;
+    let exists = |name: &String| table.column(name).is_ok();
+    Ok(names.iter().map(exists).collect::<Vec<bool>>().into())
+}
+
+const INTERPOLATE_TRAJECTORY: &str = r#"
+function interpolateTrajectory "Values of trajectories at given times, one row for each signal."
+  input String fileName;
+  input String signals[:];
+  input Real times[:];
+  output Real values[size(signals, 1), size(times, 1)];
+end interpolateTrajectory;
+"#;
+
+fn interpolate_trajectory(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let file: String = args.take("fileName")?;
+    let signals: Vec<String> = args.take("signals")?;
+    let times: Vec<f64> = args.take("times")?;
+    let table = table(session, &file)?;
+    let mut elements = Vec::with_capacity(signals.len() * times.len());
+    for signal in &signals {
+        elements.extend(table.interpolate(signal, &times)?);
+    }
+    Ok(RealMatrix { rows: signals.len(), columns: times.len(), elements }.into())
+}
+
+const READ_SIMULATION_RESULT: &str = r#"
+function readSimulationResult "Trajectories from a result file, one row for each variable."
+  input String filename;
+  input VariableNames variables;
+  input Integer size = 0 "number of points in time; 0 for all";
+  output Real result[:, :];
+end readSimulationResult;
+"#;
+
+fn read_simulation_result(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let file: String = args.take("filename")?;
+    let names: Vec<String> = match args.take::<Value>("variables")? {
+        Value::Array(ArrayValue { elements: Elements::String(names), .. }) => {
+            names.iter().map(|name| name.to_string()).collect()
+        }
+        Value::VariableName(name) => vec![name.to_string()],
+        other => bail!(BAD_ARGUMENT, "`variables` must be names, not {}", other.type_name()),
+    };
+    let size: i64 = args.take("size")?;
+    let table = table(session, &file)?;
+    if size != 0 && size != table.time.len() as i64 {
+        bail!(BAD_ARGUMENT, "`{file}` has {} points in time, not {size}", table.time.len());
+    }
+    Ok(columns(&table, &names)?.into())
+}
+
+const READ_SIMULATION_RESULT_VARS: &str = r#"
+function readSimulationResultVars "Names of the variables in a result file, sorted."
+  input String fileName;
+  input Boolean readParameters = true;
+  input Boolean openmodelicaStyle = false;
+  output String vars[:];
+end readSimulationResultVars;
+"#;
+
+fn read_simulation_result_vars(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let file: String = args.take("fileName")?;
+    let with_parameters: bool = args.take("readParameters")?;
+    let table = table(session, &file)?;
+    let is_wanted = |series: &&results::Series| {
+        with_parameters || !matches!(series.values, results::Values::Constant(_))
+    };
+    let series = table.series.iter().filter(is_wanted).map(|series| series.name.clone());
+    let mut names: Vec<String> = std::iter::once("time".to_owned()).chain(series).collect();
+    names.sort();
+    Ok(names.into())
+}
+
+const READ_SIMULATION_RESULT_SIZE: &str = r#"
+function readSimulationResultSize "Number of points in time in a result file."
+  input String fileName;
+  output Integer sz;
+end readSimulationResultSize;
+"#;
+
+fn read_simulation_result_size(session: &mut Session, args: Args) -> Result<Value, Failure> {
+    read_trajectory_size(session, args)
+}
+
+const CLOSE_SIMULATION_RESULT_FILE: &str = r#"
+function closeSimulationResultFile "Closes the result file; every file is closed after reading."
+  output Boolean success;
+end closeSimulationResultFile;
+"#;
+
+fn close_simulation_result_file(_: &mut Session, _: Args) -> Result<Value, Failure> {
+    Ok(true.into())
+}

@@ -1,0 +1,99 @@
+//! Each code has a script `tests/diagnostics/<slug>.mos` that makes it happen; what the user sees
+//! is the snapshot beside it.
+
+use crate::transcripts::world_of;
+use gapilib::script::{Session, Transcript, codes};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+/// Codes that no script shows yet. A code that is listed here and has a script fails, and so does
+/// one that has none and is not listed.
+const WITHOUT_SCRIPT: &[&str] = &[
+    "ambiguous-output",
+    "array-mismatch",
+    "bad-cross-point",
+    "bad-data",
+    "bad-mutation-factor",
+    "bad-option",
+    "bad-parameter-value",
+    "bad-population",
+    "bad-range",
+    "bad-result-table",
+    "bad-seed",
+    "data-sizes-differ",
+    "external-function",
+    "fixed-parameter",
+    "nesting-too-deep",
+    "no-constant-value",
+    "no-parameters",
+    "not-monotone",
+    "not-supported",
+    "parameter-cycle",
+    "parameter-not-found",
+    "parameter-without-value",
+    "points-outside",
+    "population-size-mismatch",
+    "recursion-limit",
+    "simulation-failed",
+    "singular-system",
+    "text-too-large",
+    "unbalanced-model",
+    "unknown-output",
+    "unknown-parameter",
+    "unreadable-matrix",
+    "unresolved-reference",
+];
+
+#[test]
+fn scripts_show_their_codes() {
+    insta::glob!("../diagnostics", "*.mos", |path| {
+        let slug = path.file_stem().expect("a stem").to_string_lossy().into_owned();
+        let mut world = world_of(path.parent().expect("a folder"));
+        if slug == "interrupted" {
+            world = world.interrupted_after(20);
+        }
+        let mut session = Session::new(Box::new(world));
+        session.transcript = Some(Transcript::default());
+        let status = session.run_file(Path::new(path.file_name().expect("a name")));
+        let shown = session.transcript.take().unwrap_or_default().to_string();
+        assert!(shown.contains(&format!("[{slug}]")), "`{slug}` is not shown:\n{shown}");
+        let asked = session.messages.take_text(&session.sources);
+        let text = format!("{shown}[exit code {}]\n\ngetErrorString():\n{asked}", status.code);
+        let mut settings = insta::Settings::clone_current();
+        settings.set_snapshot_path(path.parent().expect("a folder"));
+        settings.set_prepend_module_to_snapshot(false);
+        settings.set_snapshot_suffix("");
+        settings.set_omit_expression(true);
+        settings.remove_input_file();
+        settings.bind(|| insta::assert_snapshot!(slug, text));
+    });
+}
+
+#[test]
+fn every_code_has_a_script_or_is_listed() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/diagnostics");
+    let entries = fs::read_dir(folder).expect("a readable folder");
+    let shown: BTreeSet<String> = entries
+        .map(|entry| entry.expect("a readable entry").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "mos"))
+        .map(|path| path.file_stem().expect("a stem").to_string_lossy().into_owned())
+        .collect();
+    let known: BTreeSet<String> = codes::all().iter().map(|code| code.slug.to_owned()).collect();
+    let listed: BTreeSet<String> = WITHOUT_SCRIPT.iter().map(|slug| (*slug).to_owned()).collect();
+    let strangers: Vec<&String> = shown.difference(&known).collect();
+    assert!(strangers.is_empty(), "scripts for codes that do not exist: {strangers:?}");
+    let missing: BTreeSet<String> = known.difference(&shown).cloned().collect();
+    assert_eq!(missing, listed, "codes without a script");
+}
+
+#[test]
+fn every_explanation_has_its_headings_and_every_slug_is_used_once() {
+    let mut slugs = BTreeSet::new();
+    for code in codes::all() {
+        assert!(slugs.insert(code.slug), "`{}` is declared twice", code.slug);
+        for heading in ["## What it means", "## Example", "## What to do"] {
+            assert!(code.explanation.contains(heading), "`{}` lacks `{heading}`", code.slug);
+        }
+    }
+}
