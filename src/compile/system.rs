@@ -30,14 +30,16 @@ impl System {
     pub(super) fn new(program: Arc<Program>) -> System {
         let registers = blank(&program.registers);
         let n = program.sorted.states.len() + program.iteration.len();
-        System {
+        let mut system = System {
             registers,
             set: vec![None; program.parameters().len()],
             observed: None,
             switches: vec![None; program.relations.len()],
             nominal: vec![1.0; n],
             program,
-        }
+        };
+        system.evaluate_nominals();
+        system
     }
 
     /// The program it runs.
@@ -167,8 +169,16 @@ impl System {
         Ok(())
     }
 
+    /// With the default parameters, so that no run depends on those before it: the attribute
+    /// `nominal`, else the start value, else 1.
     fn evaluate_nominals(&mut self) {
         let program = self.program.clone();
+        let tapes = program.parameter_tapes.iter().chain(&program.starts);
+        for (variable, tape) in tapes {
+            if tape.run(&mut self.registers).is_err() {
+                self.registers[variable.0 as usize] = 1.0;
+            }
+        }
         let states = program.sorted.states.iter();
         for (at, variable) in states.chain(&program.iteration).enumerate() {
             let given = program.nominals.iter().find(|(v, ..)| v == variable);
@@ -294,7 +304,6 @@ impl DaeSystem for System {
         self.update_relations(t);
         self.iterate(t, true)?;
         self.unload(y);
-        self.evaluate_nominals();
         self.violated().map_or(Ok(()), Err)
     }
 

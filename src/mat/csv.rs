@@ -9,6 +9,7 @@ use super::matrix::{MatFile, Matrix, Version};
 use crate::bail;
 use crate::diag::Fault;
 use std::borrow::Cow;
+use std::collections::HashSet;
 
 /// Reads a table of numbers. Faults name line and column: cells that are empty or no numbers,
 /// lines with more or fewer cells than the header, columns without a name or with the same one.
@@ -81,13 +82,14 @@ fn header(reader: &mut csv::Reader<&[u8]>) -> Result<Vec<String>, Fault> {
         bail!(BAD_TABLE, "the file is empty"; help: "name the columns in the first line");
     }
     let mut names: Vec<String> = Vec::with_capacity(header.len());
+    let mut seen = HashSet::new();
     let line = header.position().map_or(1, csv::Position::line);
     for (j, name) in header.iter().enumerate() {
         let column = j + 1;
         if name.is_empty() {
             bail!(BAD_TABLE, "line {line}, column {column}: the column has no name");
         }
-        if names.iter().any(|known| known == name) {
+        if !seen.insert(name) {
             bail!(BAD_TABLE, "line {line}, column {column}: a second column is named `{name}`");
         }
         names.push(name.to_owned());

@@ -1,8 +1,8 @@
 //! What a file holds.
 
-use super::errors::{UNKNOWN_MATRIX, UNREADABLE_MATRIX};
+use super::errors::{BAD_MAT_FILE, UNKNOWN_MATRIX, UNREADABLE_MATRIX};
 use crate::diag::{Fault, suggest};
-use crate::fault;
+use crate::{bail, fault};
 use indexmap::IndexMap;
 
 /// The format a file was read from.
@@ -114,6 +114,16 @@ impl Matrix {
     /// Each column as text, see [`Matrix::text_rows`].
     pub fn text_columns(&self) -> Vec<String> {
         (0..self.columns).map(|j| decode_text(self.column(j).iter().copied())).collect()
+    }
+}
+
+/// Number of values of a matrix that a file claims to hold. An empty matrix with a huge number of
+/// rows or columns is refused: it costs a file nothing and whoever goes over its rows a lot.
+pub(super) fn size(name: &str, rows: usize, columns: usize) -> Result<usize, Fault> {
+    const MAX_EMPTY: usize = 1 << 16;
+    match rows.checked_mul(columns) {
+        Some(size) if size > 0 || rows.max(columns) <= MAX_EMPTY => Ok(size),
+        _ => bail!(BAD_MAT_FILE, "matrix `{name}` claims {rows} rows and {columns} columns"),
     }
 }
 

@@ -3,9 +3,13 @@
 //! a comment. `float` and `int` are read like `double`; of `char` matrices each line is a row.
 
 use super::errors::BAD_TABLE;
-use super::matrix::{Kind, MatFile, Matrix, Version};
+use super::matrix::{self, Kind, MatFile, Matrix, Version};
 use crate::diag::Fault;
 use crate::{bail, fault};
+
+/// Characters of a matrix, with the blanks that fill its rows: one long row beside many short ones
+/// takes far more memory than the file.
+const MAX_CHARACTERS: usize = 1 << 26;
 
 /// Whether the first line is `#1`.
 pub(super) fn looks_like(bytes: &[u8]) -> bool {
@@ -70,9 +74,7 @@ fn read_numbers<'a>(
     lines: &mut impl Iterator<Item = (usize, &'a str)>,
 ) -> Result<Matrix, Fault> {
     let Declaration { name, rows, columns, .. } = *declaration;
-    let Some(size) = rows.checked_mul(columns) else {
-        bail!(BAD_TABLE, "line {declared_at}: `{name}` claims {rows} rows and {columns} columns");
-    };
+    let size = matrix::size(name, rows, columns)?;
     let mut values = Vec::new();
     while values.len() < size {
         let Some((number, line)) = lines.next() else {
@@ -128,6 +130,13 @@ fn read_lines<'a>(
             );
         }
         texts.push(line);
+    }
+    let longest = texts.iter().map(|text| text.len()).max().unwrap_or(0);
+    if longest.saturating_mul(rows) > MAX_CHARACTERS {
+        bail!(
+            BAD_TABLE,
+            "`{name}` has {rows} rows of up to {longest} characters, which is too much"
+        );
     }
     Ok(Matrix::from_text(&texts))
 }

@@ -7,7 +7,7 @@
 //! skipped).
 
 use super::errors::{BAD_MAT_FILE, UNSUPPORTED_MAT_FILE};
-use super::matrix::{Kind, MatFile, Matrix, Version};
+use super::matrix::{self, Kind, MatFile, Matrix, Version};
 use super::number::{ByteOrder, Storage};
 use super::reader::Reader;
 use crate::diag::Fault;
@@ -44,11 +44,9 @@ fn read_record(reader: &mut Reader, file: &mut MatFile) -> Result<(), Fault> {
     let header = read_header(reader)?;
     let name = read_name(reader, header.name_length)?;
     let parts = if header.is_complex { 2 } else { 1 };
-    let size = header.rows.checked_mul(header.columns);
-    let bytes = size.and_then(|size| size.checked_mul(header.storage.size()));
-    let Some((size, bytes)) = size.zip(bytes.and_then(|bytes| bytes.checked_mul(parts))) else {
-        let (rows, columns) = (header.rows, header.columns);
-        bail!(BAD_MAT_FILE, "matrix `{name}` claims {rows} rows and {columns} columns");
+    let size = matrix::size(&name, header.rows, header.columns)?;
+    let Some(bytes) = size.checked_mul(parts * header.storage.size()) else {
+        bail!(BAD_MAT_FILE, "matrix `{name}` claims {size} values");
     };
     let data = reader.take(bytes, &format!("matrix `{name}`"))?;
     match header.kind {

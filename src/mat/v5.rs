@@ -6,7 +6,7 @@
 //! arrays of structures, complex values, arrays of more than two dimensions.
 
 use super::errors::BAD_MAT_FILE;
-use super::matrix::{Kind, MatFile, Matrix, Version};
+use super::matrix::{self, Kind, MatFile, Matrix, Version};
 use super::number::{ByteOrder, Storage};
 use super::reader::Reader;
 use crate::diag::Fault;
@@ -162,9 +162,7 @@ impl File {
         [rows, columns]: [usize; 2],
     ) -> Result<(), Fault> {
         let element = read_element(reader)?;
-        let Some(size) = rows.checked_mul(columns) else {
-            bail!(BAD_MAT_FILE, "matrix `{name}` claims {rows} rows and {columns} columns");
-        };
+        let size = matrix::size(&name, rows, columns)?;
         let values = decode_values(&element, reader.order, size)
             .filter(|values| values.len() == size)
             .ok_or_else(|| {
@@ -323,7 +321,10 @@ fn integers(element: &Element, order: ByteOrder) -> Result<Vec<i32>, Fault> {
 fn decode_values(element: &Element, order: ByteOrder, size: usize) -> Option<Vec<f64>> {
     if element.kind != MI_UTF8 || element.data.len() == size {
         let storage = if element.kind == MI_UTF8 { Storage::U8 } else { storage(element.kind)? };
-        return (element.data.len() % storage.size() == 0)
+        return element
+            .data
+            .len()
+            .is_multiple_of(storage.size())
             .then(|| storage.decode(element.data, order));
     }
     let text = std::str::from_utf8(element.data).ok()?;

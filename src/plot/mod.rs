@@ -1,1 +1,15 @@
-//! (being written)
+//! Figures as SVG: panels with points and lines, linear and logarithmic axes, a legend above the
+//! data. The same figure gives the same bytes.
+//!
+//! Text is laid out without font files: widths are estimates for a sans-serif face, used only to
+//! keep labels apart. Colours are the palette of Okabe and Ito, which readers with any kind of
+//! colour vision can tell apart; series also differ in dashes and marks.
+
+mod draw;
+mod figure;
+mod ready;
+mod svg;
+mod ticks;
+
+pub use figure::{Axis, Figure, Mark, Panel, Scale, Series};
+pub use ready::{Comparison, convergence, fit};

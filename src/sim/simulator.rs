@@ -181,7 +181,7 @@ impl Run<'_> {
         system.check(self.t, self.y).map_err(SimErrorKind::Evaluation)?;
         if self.next_output == Some(self.t) {
             self.record()?;
-            self.to_next_output();
+            self.advance_output();
         }
         self.restart()
     }
@@ -234,7 +234,7 @@ impl Run<'_> {
                     self.check()?;
                     if self.next_output == Some(end) {
                         self.record()?;
-                        self.to_next_output();
+                        self.advance_output();
                     }
                     return Ok(After::Resume);
                 }
@@ -256,7 +256,7 @@ impl Run<'_> {
             self.integrator.interpolate(point, self.y);
             self.t = point;
             self.record()?;
-            self.to_next_output();
+            self.advance_output();
             moved = true;
         }
         if moved {
@@ -278,7 +278,7 @@ impl Run<'_> {
         self.check()?;
         self.record()?;
         while self.next_output.is_some_and(|point| point <= t) {
-            self.to_next_output();
+            self.advance_output();
         }
         match outcome {
             EventOutcome::Terminate => return Ok(After::Terminated),
@@ -306,7 +306,7 @@ impl Run<'_> {
         self.problem.system.check(self.t, self.y).map_err(SimErrorKind::Evaluation)
     }
 
-    fn to_next_output(&mut self) {
+    fn advance_output(&mut self) {
         let settings = self.problem.settings;
         self.output_number += 1;
         self.next_output = settings.output.point(settings.start, settings.stop, self.output_number);

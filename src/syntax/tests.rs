@@ -105,3 +105,41 @@ fn hostile_nesting_is_an_error() {
     let classes: String = (0..10_000).map(|i| format!("model M{i} ")).collect();
     assert!(parse_stored_definition(SourceId::NONE, &classes).is_err());
 }
+
+#[test]
+fn bytes_are_utf8_or_latin1() {
+    assert_eq!(decode("\u{feff}x = \"é\"".as_bytes()), ("x = \"é\"".to_owned(), None));
+    let (text, warning) = decode(b"x\n// 20 \xb0C");
+    assert_eq!(text, "x\n// 20 °C");
+    let message = warning.map(|fault| fault.message).unwrap_or_default();
+    assert!(message.contains("line 2"), "{message}");
+}
+
+#[test]
+fn places_end_with_the_last_token() {
+    let text = "x = a + b // comment\n  \nf (1) ;";
+    let script = parse_script(SourceId(0), text).unwrap_or_else(|error| panic!("{error:?}"));
+    let written = |at: usize| {
+        let span = script.statements[at].span;
+        &text[span.start as usize..span.end as usize]
+    };
+    assert_eq!((written(0), written(1)), ("x = a + b", "f (1)"));
+    let InteractiveKind::Statement(statement) = &script.statements[0].kind else {
+        panic!("an assignment is a statement");
+    };
+    let StatementKind::Assign { value, .. } = &statement.kind else { panic!("it assigns") };
+    assert_eq!(&text[value.span.start as usize..value.span.end as usize], "a + b");
+}
+
+#[test]
+fn problems_of_simulate_model_are_read() {
+    let text = "A.M(redeclare package P = Q, p = 2, c(d = 3))";
+    let (name, arguments) = parse_class_with_modification(SourceId::NONE, text)
+        .unwrap_or_else(|error| panic!("{error:?}"));
+    assert_eq!((name.to_string().as_str(), arguments.len()), ("A.M", 3));
+    let (name, arguments) = parse_class_with_modification(SourceId::NONE, " M ")
+        .unwrap_or_else(|error| panic!("{error:?}"));
+    assert_eq!((name.to_string().as_str(), arguments.len()), ("M", 0));
+    assert!(parse_class_with_modification(SourceId::NONE, "M(p = 2").is_err());
+    assert!(parse_class_with_modification(SourceId::NONE, "").is_err());
+}

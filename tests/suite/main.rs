@@ -2,6 +2,7 @@
 
 mod architecture;
 mod diagnostics;
+mod flat_class;
 mod flattening;
 mod gapilib;
 mod grammar;
@@ -9,8 +10,11 @@ mod identification;
 mod identified_models;
 mod mat;
 mod models;
+mod plot;
 mod results;
 mod scripts;
 mod shipped;
+mod simulation;
+mod structure;
 mod syntax_properties;
 mod transcripts;

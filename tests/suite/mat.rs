@@ -170,8 +170,9 @@ fn a_hostile_size_takes_no_memory() {
     );
     assert_eq!(
         record(i32::MAX as u32, i32::MAX as u32),
-        "matrix `A` claims 2147483647 rows and 2147483647 columns"
+        "matrix `A` claims 4611686014132420609 values"
     );
+    assert_eq!(record(0, 1 << 30), "matrix `A` claims 0 rows and 1073741824 columns");
     assert_eq!(record(u32::MAX, 1), "a matrix claims a negative size");
 }
 

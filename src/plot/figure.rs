@@ -1,0 +1,86 @@
+//! What a figure shows; data only.
+
+/// A picture: panels one below the other, which share the range of their horizontal axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Figure {
+    /// Above the picture; may be empty.
+    pub title: String,
+    /// From top to bottom.
+    pub panels: Vec<Panel>,
+}
+
+/// A pair of axes with data.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Panel {
+    /// Horizontal axis; its label is shown below the last panel.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// Height of the area for data, in pixels of the 640 that a figure is wide.
+    pub height: f64,
+    /// Whether a line marks y = 0.
+    pub zero_line: bool,
+    /// What is drawn, the last on top.
+    pub series: Vec<Series>,
+}
+
+/// An axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// The quantity.
+    pub label: String,
+    /// Its unit, empty if none.
+    pub unit: String,
+    /// How values become lengths.
+    pub scale: Scale,
+}
+
+/// How values become lengths.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// In proportion.
+    Linear,
+    /// By their logarithm; values that are not positive are left out.
+    Logarithmic,
+}
+
+/// Data of one kind. Points with a coordinate that is not finite are left out and interrupt a
+/// line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Its name in the legend; empty to leave it out there.
+    pub name: String,
+    /// Horizontal coordinates.
+    pub x: Vec<f64>,
+    /// Vertical coordinates, as many.
+    pub y: Vec<f64>,
+    /// How it is drawn.
+    pub mark: Mark,
+    /// Place in the palette, 0 is black.
+    pub colour: usize,
+}
+
+/// How data are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mark {
+    /// A line from point to point.
+    Line,
+    /// A dashed line from point to point.
+    Dashes,
+    /// An open circle at each point.
+    Points,
+    /// A vertical line from zero to each point, with a dot at its end.
+    Stems,
+}
+
+impl Axis {
+    /// A linear axis.
+    pub fn linear(label: &str, unit: &str) -> Axis {
+        Axis { label: label.to_owned(), unit: unit.to_owned(), scale: Scale::Linear }
+    }
+
+    /// A logarithmic axis.
+    pub fn logarithmic(label: &str, unit: &str) -> Axis {
+        Axis { scale: Scale::Logarithmic, ..Axis::linear(label, unit) }
+    }
+}

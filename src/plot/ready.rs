@@ -1,0 +1,88 @@
+//! The figures of an identification.
+
+use super::figure::{Axis, Figure, Mark, Panel, Series};
+
+/// Fitness values from here on stand for failed simulations (one alone counts 1e60); they are not
+/// drawn.
+const FAILED: f64 = 1e50;
+
+/// A measured and a simulated quantity at the same places.
+#[derive(Debug, Clone, Copy)]
+pub struct Comparison<'a> {
+    /// Title of the figure; may be empty.
+    pub title: &'a str,
+    /// Quantity and unit of `x`.
+    pub x_label: (&'a str, &'a str),
+    /// Quantity and unit of `measured` and `simulated`.
+    pub y_label: (&'a str, &'a str),
+    /// Where it was measured, in any order.
+    pub x: &'a [f64],
+    /// Measured values.
+    pub measured: &'a [f64],
+    /// Simulated values.
+    pub simulated: &'a [f64],
+}
+
+/// Measured points and the simulated curve, and below them the residuals, measured less simulated.
+pub fn fit(data: &Comparison) -> Figure {
+    let mut order: Vec<usize> = (0..data.x.len()).collect();
+    order.sort_by(|a, b| data.x[*a].total_cmp(&data.x[*b]));
+    let sorted = |values: &[f64]| order.iter().map(|i| values[*i]).collect::<Vec<f64>>();
+    let (x, measured, simulated) = (sorted(data.x), sorted(data.measured), sorted(data.simulated));
+    let residuals = measured.iter().zip(&simulated).map(|(m, s)| m - s).collect();
+    let x_axis = Axis::linear(data.x_label.0, data.x_label.1);
+    let series = |name: &str, y: Vec<f64>, mark, colour| Series {
+        name: name.to_owned(),
+        x: x.clone(),
+        y,
+        mark,
+        colour,
+    };
+    Figure {
+        title: data.title.to_owned(),
+        panels: vec![
+            Panel {
+                x: x_axis.clone(),
+                y: Axis::linear(data.y_label.0, data.y_label.1),
+                height: 270.0,
+                zero_line: false,
+                series: vec![
+                    series("simulated", simulated, Mark::Line, 1),
+                    series("measured", measured, Mark::Points, 0),
+                ],
+            },
+            Panel {
+                x: x_axis,
+                y: Axis::linear("residual", data.y_label.1),
+                height: 110.0,
+                zero_line: true,
+                series: vec![series("", residuals, Mark::Stems, 0)],
+            },
+        ],
+    }
+}
+
+/// Best and mean fitness over the generations, counted from 1, on a logarithmic axis. Means that
+/// contain a failed simulation are left out.
+pub fn convergence(title: &str, best: &[f64], mean: &[f64]) -> Figure {
+    let series = |name: &str, values: &[f64], mark, colour| Series {
+        name: name.to_owned(),
+        x: (1..=values.len()).map(|generation| generation as f64).collect(),
+        y: values.iter().map(|v| if *v < FAILED { *v } else { f64::NAN }).collect(),
+        mark,
+        colour,
+    };
+    Figure {
+        title: title.to_owned(),
+        panels: vec![Panel {
+            x: Axis::linear("generation", ""),
+            y: Axis::logarithmic("fitness (smaller is better)", ""),
+            height: 330.0,
+            zero_line: false,
+            series: vec![
+                series("mean of the generation", mean, Mark::Dashes, 2),
+                series("best individual", best, Mark::Line, 1),
+            ],
+        }],
+    }
+}

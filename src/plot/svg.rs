@@ -1,0 +1,125 @@
+//! The few SVG elements that figures need, with numbers rounded to hundredths of a pixel.
+
+use std::fmt::Write;
+
+/// Where text stands relative to its place.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// A picture under construction.
+pub(super) struct Svg {
+    text: String,
+}
+
+impl Svg {
+    pub(super) fn new(width: f64, height: f64, title: &str) -> Svg {
+        let (width, height, title) = (number(width), number(height), escape(title));
+        Svg {
+            text: format!(
+                "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+                 viewBox=\"0 0 {width} {height}\" role=\"img\" font-family=\"Helvetica, Arial, \
+                 'Liberation Sans', 'DejaVu Sans', sans-serif\">\n<title>{title}</title>\n\
+                 <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n"
+            ),
+        }
+    }
+
+    pub(super) fn finish(mut self) -> String {
+        self.text.push_str("</svg>\n");
+        self.text
+    }
+
+    /// A line through points; `style` are further attributes.
+    pub(super) fn polyline(&mut self, points: &[(f64, f64)], style: &str) {
+        let places: Vec<String> =
+            points.iter().map(|(x, y)| format!("{},{}", number(*x), number(*y))).collect();
+        self.put(format_args!("<polyline points=\"{}\" fill=\"none\" {style}/>", places.join(" ")));
+    }
+
+    pub(super) fn circle(&mut self, (x, y): (f64, f64), radius: f64, style: &str) {
+        let (x, y, r) = (number(x), number(y), number(radius));
+        self.put(format_args!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" {style}/>"));
+    }
+
+    pub(super) fn rectangle(&mut self, [x, y, width, height]: [f64; 4], style: &str) {
+        let [x, y, width, height] = [x, y, width, height].map(number);
+        self.put(format_args!(
+            "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" {style}/>"
+        ));
+    }
+
+    /// Text; `^{…}` in it is raised.
+    pub(super) fn text(&mut self, (x, y): (f64, f64), anchor: Anchor, style: &str, text: &str) {
+        let anchor = match anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        let (x, y, text) = (number(x), number(y), raised(&escape(text)));
+        self.put(format_args!(
+            "<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\" {style}>{text}</text>"
+        ));
+    }
+
+    fn put(&mut self, element: std::fmt::Arguments) {
+        writeln!(self.text, "{element}").expect("writing into a String does not fail");
+    }
+}
+
+/// A coordinate with at most two decimals.
+pub(super) fn number(value: f64) -> String {
+    let text = format!("{value:.2}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+fn escape(text: &str) -> String {
+    let allowed = text.chars().filter(|c| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}'));
+    let mut out = String::with_capacity(text.len());
+    for letter in allowed {
+        match letter {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            _ => out.push(letter),
+        }
+    }
+    out
+}
+
+fn raised(text: &str) -> String {
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some((before, (exponent, after))) =
+        rest.split_once("^{").and_then(|(before, rest)| Some((before, rest.split_once('}')?)))
+    {
+        out.push_str(before);
+        let _ = write!(out, "<tspan dy=\"-4.5\" font-size=\"75%\">{exponent}</tspan>");
+        // A tspan of its own brings the rest of the text back to the line.
+        let _ = write!(
+            out,
+            "<tspan dy=\"4.5\">{}</tspan>",
+            if after.is_empty() { "\u{200b}" } else { "" }
+        );
+        rest = after;
+    }
+    out + rest
+}
+
+/// About how wide text is, in pixels.
+pub(super) fn text_width(text: &str, size: f64) -> f64 {
+    let em = |letter: char| match letter {
+        'i' | 'j' | 'l' | '.' | ',' | '\'' | '|' | ':' | ';' | ' ' | 'f' | 't' | 'I' => 0.29,
+        '(' | ')' | '[' | ']' | '/' | '-' | 'r' => 0.34,
+        'm' | 'w' | 'M' | 'W' | '%' => 0.87,
+        'A'..='Z' => 0.70,
+        '^' | '{' | '}' => 0.0,
+        _ => 0.56,
+    };
+    text.chars().map(em).sum::<f64>() * size
+}
