@@ -65,6 +65,18 @@ pub struct VariableInfo {
     pub(super) variable: VarId,
 }
 
+impl VariableInfo {
+    /// Whether its value does not change during a simulation.
+    pub fn is_known(&self) -> bool {
+        self.variability <= Variability::Parameter
+    }
+
+    /// Whether it is an output of the model itself.
+    pub fn is_output(&self) -> bool {
+        self.top_level && self.causality == Some(CausalityPrefix::Output)
+    }
+}
+
 /// Where the value of a variable is found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Access {

@@ -14,6 +14,9 @@ use crate::{bail, fault};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+/// Slices in which the measured points are looked for on a function of time.
+const SLICES: u32 = 500;
+
 /// X when nothing else is named.
 const TIME: &str = "time";
 
@@ -46,8 +49,34 @@ pub struct Evaluator {
 pub struct Simulated {
     /// Y at the measured points, one row for each individual; NaN where the simulation failed.
     pub rows: Vec<f64>,
-    /// Why it failed; empty where it did not.
-    pub messages: Vec<String>,
+    /// Why it failed; `None` where it did not.
+    pub failures: Vec<Option<FailedSimulation>>,
+}
+
+/// Why and when a simulation failed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FailedSimulation {
+    /// Why, in one sentence.
+    pub cause: String,
+    /// When, in simulated time; `None` where the whole simulation is of no use.
+    pub time: Option<f64>,
+}
+
+impl std::fmt::Display for FailedSimulation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.time {
+            Some(time) => write!(f, "{} (at {time} s)", self.cause),
+            None => f.write_str(&self.cause),
+        }
+    }
+}
+
+impl Simulated {
+    /// Why each simulation failed, as text; empty where it did not.
+    pub fn messages(&self) -> Vec<String> {
+        let text = |failed: &FailedSimulation| failed.to_string();
+        self.failures.iter().map(|failure| failure.as_ref().map_or(String::new(), text)).collect()
+    }
 }
 
 /// How the measured points are found on a trajectory.
@@ -68,7 +97,7 @@ struct Worker {
 /// The answer for one individual.
 struct Answer {
     individual: usize,
-    row: Result<Vec<f64>, String>,
+    row: Result<Vec<f64>, FailedSimulation>,
 }
 
 impl Evaluator {
@@ -206,10 +235,14 @@ impl Worker {
         settings: &Settings,
         x: &[f64],
         x_name: &str,
-    ) -> Result<Vec<f64>, String> {
-        self.instance.set(genome);
+    ) -> Result<Vec<f64>, FailedSimulation> {
+        let useless = |cause: String| FailedSimulation { cause, time: None };
+        self.instance.set(genome).map_err(|fault| useless(fault.message))?;
         let run = self.simulator.run(self.instance.system(), settings, &mut self.trajectory);
-        run.map_err(|error| self.instance.explain(&error))?;
+        run.map_err(|error| FailedSimulation {
+            cause: self.instance.explain(&error),
+            time: Some(error.time),
+        })?;
         let y = self.trajectory.column(0);
         let mut row = vec![f64::NAN; x.len()];
         match plan {
@@ -217,31 +250,31 @@ impl Worker {
                 for (value, &time) in row.iter_mut().zip(times) {
                     let found = self.trajectory.at(0, time);
                     *value =
-                        found.ok_or_else(|| format!("the simulation ended before {time} s"))?;
+                        found.ok_or_else(|| useless("the simulation ended early".to_owned()))?;
                 }
             }
             Plan::InX => {
                 let path = Path { times: self.trajectory.time(), x: self.trajectory.column(1) };
-                path.interpolate(x_name, y, x, &mut row).map_err(|fault| fault.message)?;
+                path.interpolate(x_name, y, x, &mut row).map_err(|fault| useless(fault.message))?;
             }
         }
         match row.iter().all(|value| value.is_finite()) {
             true => Ok(row),
-            false => Err("a simulated value is not finite".to_owned()),
+            false => Err(useless("a simulated value is not finite".to_owned())),
         }
     }
 }
 
 fn collect(answers: Vec<Vec<Answer>>, individuals: usize, points: usize) -> Simulated {
     let mut rows = vec![f64::NAN; individuals * points];
-    let mut messages = vec![String::new(); individuals];
+    let mut failures = vec![None; individuals];
     for Answer { individual, row } in answers.into_iter().flatten() {
         match row {
             Ok(row) => rows[individual * points..(individual + 1) * points].copy_from_slice(&row),
-            Err(message) => messages[individual] = message,
+            Err(failure) => failures[individual] = Some(failure),
         }
     }
-    Simulated { rows, messages }
+    Simulated { rows, failures }
 }
 
 fn check_points(x: &[f64]) -> Result<(), Fault> {
@@ -332,8 +365,10 @@ fn plan(
         let path = [settings.start, settings.stop];
         reachable(&Path { times: &path, x: &path }, x_name, points)?;
         points.to_vec()
-    } else if model.depends_on_time_alone(x_name, varied) {
-        times_of_points(model, varied, x_name, points, settings)?
+    } else if model.depends_on_time_alone(x_name, varied)
+        && let Some(times) = times_of_points(model, varied, x_name, points, settings)?
+    {
+        times
     } else {
         return Ok(Plan::InX);
     };
@@ -350,45 +385,37 @@ fn reachable(path: &Path<'_>, name: &str, points: &[f64]) -> Result<(), Fault> {
     if outside.is_empty() { Ok(()) } else { Err(path.outside(name, &outside)) }
 }
 
-/// The times at which X, a function of time alone, takes the measured values.
+/// The times at which X, a function of time alone, takes the measured values; `None` when X cannot
+/// be evaluated with the model's own parameter values, which need not make sense for this
+/// experiment.
 fn times_of_points(
     model: &dyn Model,
     varied: &[String],
     x_name: &str,
     points: &[f64],
     settings: &Settings,
-) -> Result<Vec<f64>, Fault> {
+) -> Result<Option<Vec<f64>>, Fault> {
     let mut instance = model.instance(varied, &[x_name.to_owned()])?;
-    let intervals = 500;
-    let grid: Vec<f64> = (0..=intervals)
-        .map(|k| {
-            settings.start + (settings.stop - settings.start) * f64::from(k) / f64::from(intervals)
-        })
-        .collect();
-    let mut x_at = |time: f64| value_at(instance.as_mut(), time);
-    let x: Vec<f64> = grid.iter().map(|&time| x_at(time)).collect::<Result<_, Fault>>()?;
-    let path = Path { times: &grid, x: &x };
-    reachable(&path, x_name, points)?;
-    let time = |&point: &f64| {
-        let k = path.slice_of(x_name, point)?;
-        time_of(grid[k], grid[k + 1], point, &mut x_at)
-    };
-    points.iter().map(time).collect()
-}
-
-/// The observed variable, which depends on time alone, at a time.
-fn value_at(instance: &mut dyn Instance, time: f64) -> Result<f64, Fault> {
-    let mut value = [f64::NAN];
     let system = instance.system();
     let mut y = vec![0.0; system.n_differential() + system.n_algebraic()];
-    let observed =
-        system.initialize(time, &mut y).and_then(|()| system.observe(time, &y, &mut value));
-    match observed {
-        Ok(()) => Ok(value[0]),
-        Err(failure) => {
-            let kind = crate::sim::SimErrorKind::Evaluation(failure);
-            let reason = instance.explain(&crate::sim::SimError { time, kind });
-            Err(fault!(UNKNOWN_OUTPUT, "X cannot be evaluated at {time} s: {reason}"))
-        }
+    if system.initialize(settings.start, &mut y).is_err() {
+        return Ok(None);
     }
+    // Not initialized at every time: what must hold for the other variables does not matter here.
+    let mut x_at = |time: f64| {
+        let mut value = [f64::NAN];
+        system.observe(time, &y, &mut value).map(|()| value[0])
+    };
+    let length = settings.stop - settings.start;
+    let grid: Vec<f64> =
+        (0..=SLICES).map(|k| settings.start + length * f64::from(k) / f64::from(SLICES)).collect();
+    let Ok(x) = grid.iter().map(|&time| x_at(time)).collect::<Result<Vec<f64>, _>>() else {
+        return Ok(None);
+    };
+    let path = Path { times: &grid, x: &x };
+    reachable(&path, x_name, points)?;
+    let slices: Vec<usize> =
+        points.iter().map(|&point| path.slice_of(x_name, point)).collect::<Result<_, Fault>>()?;
+    let time = |(&point, k): (&f64, usize)| time_of(grid[k], grid[k + 1], point, &mut x_at);
+    Ok(points.iter().zip(slices).map(time).collect::<Result<Vec<f64>, _>>().ok())
 }

@@ -47,7 +47,7 @@ fn points_over_a_simulated_variable_are_interpolated() {
     assert_close(&found, |k| 3.0 * (-0.7 * time_of(x[k + 1])).exp(), 1e-4);
     let mut evaluator = Evaluator::new(&Decay, question("s", &[9.0]), 1).unwrap();
     let failed = evaluator.evaluate(&genomes(&[0.7, 3.0])).unwrap();
-    assert!(failed.messages[0].contains("`s` = 9"), "{}", failed.messages[0]);
+    assert!(failed.messages()[0].contains("`s` = 9"), "{:?}", failed.failures);
 }
 
 #[test]
@@ -55,8 +55,9 @@ fn a_failed_individual_does_not_disturb_the_others() {
     let mut evaluator = Evaluator::new(&Decay, question("time", &[0.0, 1.0]), 1).unwrap();
     let simulated = evaluator.evaluate(&genomes(&[1.0, 2.0, 11.0, 2.0, 1.0, 4.0])).unwrap();
     assert!(simulated.rows[2].is_nan() && simulated.rows[3].is_nan());
-    assert!(simulated.messages[1].contains("Assertion"));
-    assert_eq!(simulated.messages[0], "");
+    let messages = simulated.messages();
+    assert!(messages[1].contains("Assertion") && messages[1].ends_with("(at 0 s)"));
+    assert_eq!((messages[0].as_str(), messages[2].as_str()), ("", ""));
     assert_eq!(simulated.rows[4], 4.0);
 }
 
@@ -67,7 +68,7 @@ fn threads_do_not_change_a_bit() {
         let mut evaluator = Evaluator::new(&Decay, question("i", &[0.5, 1.5]), threads).unwrap();
         let simulated = evaluator.evaluate(&genomes(&values)).unwrap();
         let bits: Vec<u64> = simulated.rows.iter().map(|value| value.to_bits()).collect();
-        (bits, simulated.messages)
+        (bits, simulated.failures)
     };
     assert_eq!(all(1), all(2));
     assert_eq!(all(1), all(7));

@@ -45,9 +45,9 @@ pub struct Parameter {
 /// A system with settable parameters.
 pub trait Instance: Send {
     /// Sets the varied parameters, in their order; nothing of an earlier simulation remains.
-    fn set(&mut self, genome: &[f64]);
+    fn set(&mut self, genome: &[f64]) -> Result<(), Fault>;
     /// The system to simulate.
     fn system(&mut self) -> &mut dyn DaeSystem;
-    /// Why a simulation failed, in one sentence.
+    /// Why a simulation failed, in one sentence without the time.
     fn explain(&self, error: &SimError) -> String;
 }

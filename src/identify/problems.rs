@@ -49,14 +49,15 @@ impl Model for Decay {
 }
 
 impl Instance for DecaySystem {
-    fn set(&mut self, genome: &[f64]) {
+    fn set(&mut self, genome: &[f64]) -> Result<(), Fault> {
         [self.a, self.b] = [genome[0], genome[1]];
+        Ok(())
     }
     fn system(&mut self) -> &mut dyn DaeSystem {
         self
     }
     fn explain(&self, error: &SimError) -> String {
-        error.to_string()
+        format!("{:?}", error.kind)
     }
 }
 

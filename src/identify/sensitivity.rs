@@ -33,16 +33,16 @@ pub fn deviations(
         }
     }
     let simulated = evaluator.evaluate(&genomes)?;
-    let row = |number: usize| match simulated.messages[number].as_str() {
-        "" => &simulated.rows[number * points..(number + 1) * points],
+    let row = |number: usize| match &simulated.failures[number] {
+        None => &simulated.rows[number * points..(number + 1) * points],
         // One-sided where one side fails.
-        _ => &best.simulated,
+        Some(_) => &best.simulated,
     };
     let column = |(k, [low, high]): (usize, &[f64; 2])| {
         let (below, above) = (row(2 * k), row(2 * k + 1));
         let value = best.genome[k];
-        let from = if simulated.messages[2 * k].is_empty() { *low } else { value };
-        let to = if simulated.messages[2 * k + 1].is_empty() { *high } else { value };
+        let from = if simulated.failures[2 * k].is_none() { *low } else { value };
+        let to = if simulated.failures[2 * k + 1].is_none() { *high } else { value };
         below.iter().zip(above).map(|(below, above)| (above - below) / (to - from)).collect()
     };
     let jacobian: Vec<Vec<f64>> = steps.iter().enumerate().map(column).collect();

@@ -100,13 +100,7 @@ impl Session {
         // Loading the model may have changed the classes.
         let revision = self.classes.revision();
         let identification = self.identification();
-        identification.recorder.evaluated(
-            evaluator.study(),
-            evaluator.x(),
-            genomes,
-            &simulated.rows,
-            &simulated.messages,
-        );
+        identification.recorder.evaluated(evaluator.study(), evaluator.x(), genomes, &simulated);
         identification.prepared = Some((request, revision, evaluator));
         self.show_progress();
         Ok(simulated)

@@ -7,6 +7,7 @@ mod flattening;
 mod gapilib;
 mod grammar;
 mod identification;
+mod identified_models;
 mod mat;
 mod models;
 mod plot;

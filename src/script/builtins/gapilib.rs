@@ -165,8 +165,9 @@ fn eval(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let columns = x.len();
     let question = Question { parameters, x_name, y_name, x };
     let simulated = session.evaluate_population(Request { path, model, question }, &genomes)?;
+    let messages = simulated.messages();
     let rows = RealMatrix { rows: genomes.len(), columns, elements: simulated.rows };
-    Ok(Value::Tuple(vec![rows.into(), simulated.messages.into()]))
+    Ok(Value::Tuple(vec![rows.into(), messages.into()]))
 }
 
 const FIT: &str = r#"
