@@ -133,7 +133,7 @@ fn axis_title(axis: &Axis, exponent: i32) -> String {
         ("", "") => axis.label.clone(),
         (power, "") => format!("{} [{power}]", axis.label),
         ("", unit) => format!("{} [{unit}]", axis.label),
-        (power, unit) => format!("{} [{power} {unit}]", axis.label),
+        (power, unit) => format!("{} [{power}\u{a0}{unit}]", axis.label),
     }
 }
 
