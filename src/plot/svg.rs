@@ -97,7 +97,7 @@ fn raised(text: &str) -> String {
     let mut out = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let (exponent, after) = part.split_once('}').unwrap_or((part, ""));
-        out += &format!("<tspan dy=\"-4.5\" font-size=\"75%\">{exponent}</tspan>");
+        out += &format!("<tspan dy=\"-4.5\" font-size=\"9.5\">{exponent}</tspan>");
         // Lowering works on text alone: an empty element would leave what follows raised.
         if !after.is_empty() {
             out += &format!("<tspan dy=\"4.5\">{after}</tspan>");
