@@ -150,7 +150,7 @@ Examples:
   gapi check models
   gapi check models --model CaseStudies.PolarizationCurve")]
 pub(super) struct CheckArgs {
-    /// Modelica files, scripts, or folders with packages
+    /// Modelica files, or folders with packages
     #[arg(required = true, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
     /// The class to check as a model

@@ -2,9 +2,12 @@
 //! the clock, the environment and the terminal.
 
 mod args;
+mod check;
 mod completions;
 mod explain;
 mod run;
+mod session;
+mod simulate;
 mod terminal;
 mod world;
 
@@ -39,6 +42,8 @@ fn dispatch(cli: &Cli) -> ExitCode {
         Command::Run(arguments) => run::run(arguments, &cli.global),
         Command::Explain(arguments) => explain::explain(arguments),
         Command::Completions(arguments) => completions::completions(arguments),
-        Command::Simulate(_) | Command::Check(_) | Command::Flatten(_) => ExitCode::from(2),
+        Command::Simulate(arguments) => simulate::simulate(arguments, &cli.global),
+        Command::Check(arguments) => check::check(arguments, &cli.global),
+        Command::Flatten(arguments) => check::flatten(arguments, &cli.global),
     }
 }

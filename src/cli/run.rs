@@ -1,6 +1,7 @@
 //! `gapi run SCRIPT`: runs a script.
 
 use super::args::{Global, RunArgs};
+use super::session;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use crate::script::{Echo, Options, Session, Strictness, Transcript};
@@ -19,7 +20,7 @@ pub(super) fn run(arguments: &RunArgs, global: &Global) -> ExitCode {
         }
     };
     world.catch_interrupts();
-    let mut session = Session::new(Box::new(world)).with_options(options(arguments));
+    let mut session = session::open(global, world).with_options(options(arguments));
     if arguments.transcript.is_some() {
         session.transcript = Some(Transcript::default());
     }

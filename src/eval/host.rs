@@ -2,7 +2,7 @@
 
 use super::{Function, Scope};
 use crate::diag::{Diagnostic, Fault};
-use crate::name::Name;
+use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast;
 use crate::value::Value;
@@ -65,6 +65,12 @@ pub trait Host {
     ) -> Result<bool, Diagnostic> {
         let _ = (target, value, span);
         Ok(false)
+    }
+
+    /// Told when a script gives one of its variables a value as a whole.
+    fn assigned(&mut self, name: Ident, value: &Value) -> Result<(), Fault> {
+        let _ = (name, value);
+        Ok(())
     }
 
     /// Takes a warning: an `assert` of level `AssertionLevel.warning` whose condition is false.

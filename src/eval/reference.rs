@@ -66,6 +66,9 @@ impl Evaluator<'_> {
         self.prepare(first.name)?;
         let known = !target.global && self.scope.variables.contains_key(&first.name);
         if let (Some(name), true) = (target.as_ident(), known || self.may_declare(target)) {
+            if self.scope.is_script() {
+                self.host.assigned(name, &value).at(span)?;
+            }
             return self.scope.set(name, value).at(span);
         }
         if !known {

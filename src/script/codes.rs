@@ -1,10 +1,11 @@
 //! The table of all codes of the program, for `gapi explain` and the tests.
 
 use crate::diag::Code;
+use std::collections::BTreeSet;
 
-/// The codes of every stage, in the order of the pipeline.
+/// The codes of every stage, in the order of the pipeline; a code that two stages share once.
 pub fn all() -> Vec<Code> {
-    [
+    let mut codes = [
         crate::registry::CODES,
         crate::syntax::errors::CODES,
         crate::value::errors::CODES,
@@ -18,5 +19,8 @@ pub fn all() -> Vec<Code> {
         crate::identify::errors::CODES,
         super::errors::CODES,
     ]
-    .concat()
+    .concat();
+    let mut seen = BTreeSet::new();
+    codes.retain(|code| seen.insert(code.slug));
+    codes
 }

@@ -24,6 +24,9 @@ codes! {
     /// An argument outside what a command accepts.
     BAD_ARGUMENT = "bad-argument":
         "## What it means\n\nThe value of an argument has the right type but is outside what the command accepts.\n\n## Example\n\n`Modelica.Utilities.Strings.substring(\"abc\", 3, 9)`\n\n## What to do\n\nCorrect the value; the message names the argument and what is accepted.",
+    /// A script variable with the name of a parameter.
+    SHARED_NAME = "shared-name":
+        "## What it means\n\nA script variable was assigned whose name is also that of a parameter at the top level of the model translated last. Both get the value, as in Dymola. Said once for each name.\n\n## Example\n\n`translateModel(\"Decay\"); k = 2;` where `Decay` has a parameter `k`\n\n## What to do\n\nNothing if the parameter was meant; else give the variable another name.",
     /// A command that the program does not carry out.
     REFUSED = "refused-command":
         "## What it means\n\nThe command exists in other tools but is not carried out here, for the reason given in the message.\n\n## Example\n\n`system(\"rm -rf results\")`\n\n## What to do\n\nRemove the call, or do what it did outside of the script.",

@@ -5,7 +5,7 @@ use super::builtins::{self, BuiltinId, Failure};
 use super::errors::INTERRUPTED;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::eval::{Callee, Function, Host, Scope};
-use crate::name::Name;
+use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::ComponentReference;
 use crate::value::Value;
@@ -93,6 +93,11 @@ impl Host for Session {
             return Err(note);
         }
         self.assign_dotted(target, value, span)
+    }
+
+    fn assigned(&mut self, name: Ident, value: &Value) -> Result<(), Fault> {
+        self.follow_ups.found(name);
+        self.share_with_model(name, value)
     }
 
     fn warn(&mut self, warning: Diagnostic) {

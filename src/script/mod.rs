@@ -9,6 +9,7 @@
 
 pub mod builtins;
 mod callees;
+pub mod checking;
 mod classes;
 pub mod codes;
 mod echo;

@@ -116,6 +116,8 @@ pub struct Session {
     pub(super) stop: Option<Stop>,
     /// Where the command that is being run was called.
     pub(super) call: Span,
+    /// Names of script variables that were said to be parameters of the model too.
+    pub(super) shared: BTreeSet<Ident>,
     /// Commands that said that they have no window.
     pub(super) windowless: BTreeSet<&'static str>,
     /// How deep the statement being executed lies in loops, branches and nested scripts: answers
@@ -151,6 +153,7 @@ impl Session {
             follow_ups: FollowUps::default(),
             stop: None,
             call: Span::NONE,
+            shared: BTreeSet::new(),
             windowless: BTreeSet::new(),
             silent: 0,
             muted: false,

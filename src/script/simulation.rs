@@ -1,12 +1,15 @@
 //! Models of a session: translated once, simulated many times with other parameters.
 
 use super::Session;
-use super::errors::{BAD_PARAMETER_VALUE, UNKNOWN_PARAMETER};
+use super::errors::{BAD_PARAMETER_VALUE, SHARED_NAME, UNKNOWN_PARAMETER};
 use crate::compile::{Access, Program, System};
 use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::flatten::{self, Experiment, FlatModel, Variability};
+use crate::name::Ident;
 use crate::results::{ResultTable, Series, Values};
 use crate::sim::{self, OutputGrid, Settings, Simulator, Statistics, Trajectory};
+use crate::source::Span;
+use crate::value::Value;
 use crate::{bail, dae, fault, syntax};
 use indexmap::IndexMap;
 use rustc_hash::FxHashMap;
@@ -136,11 +139,21 @@ pub fn flat_model(session: &mut Session, problem: &str) -> Result<FlatModel, Vec
             }
             Err(errors) => {
                 if !session.load_wanted()? {
-                    return Err(errors);
+                    let call = session.call;
+                    return Err(errors.into_iter().map(|error| placed(error, call)).collect());
                 }
             }
         }
     }
+}
+
+/// The diagnostic at the place of the call, if it has none of its own.
+fn placed(diagnostic: Diagnostic, call: Span) -> Diagnostic {
+    if diagnostic.span().is_known() || !diagnostic.is_error() {
+        return diagnostic;
+    }
+    let fault = Fault::new(diagnostic.code, diagnostic.message.clone());
+    diagnostic.helps.iter().cloned().fold(fault, Fault::help).at(call)
 }
 
 /// The settings that wishes, the experiment annotation and the defaults make together.
@@ -262,6 +275,28 @@ impl Session {
         }
     }
 
+    /// A script variable with the name of a parameter of the model translated last gives the
+    /// parameter its value too; said once for each name.
+    pub(super) fn share_with_model(&mut self, name: Ident, value: &Value) -> Result<(), Fault> {
+        let Some(current) = &self.models.last else { return Ok(()) };
+        let program = &current.model.program;
+        let (Ok(index), Some(number)) = (program.find_parameter(name.as_str()), value.as_real())
+        else {
+            return Ok(());
+        };
+        if !program.parameters()[index].top_level {
+            return Ok(());
+        }
+        let problem = current.model.problem.clone();
+        self.set_parameter(name.as_str(), number)?;
+        if self.shared.insert(name) {
+            let message =
+                format!("`{name}` is a parameter of `{problem}` too: it is set there as well");
+            self.note(SHARED_NAME, message);
+        }
+        Ok(())
+    }
+
     /// The value that a parameter of the model translated last has, or `None` if the model has no
     /// such parameter.
     pub(super) fn parameter_value(&self, name: &str) -> Option<f64> {
@@ -278,15 +313,25 @@ fn check_value(model: &Translated, index: usize, value: f64) -> Result<(), Fault
     if value.is_nan() {
         bail!(BAD_PARAMETER_VALUE, "`{name}` cannot be NaN");
     }
+    let domain = match (parameter.min.is_finite(), parameter.max.is_finite()) {
+        (true, true) => format!("outside {} to {}", parameter.min, parameter.max),
+        (true, false) => format!("less than {}", parameter.min),
+        _ => format!("more than {}", parameter.max),
+    };
     if value < parameter.min || value > parameter.max {
         bail!(
             BAD_PARAMETER_VALUE,
-            "`{name}` is {value}, outside the range {} to {} that the model declares",
-            parameter.min, parameter.max;
-            help: "choose a value in the range, or change `min` and `max` in the model"
+            "`{name}` is {value}, {domain}, which the model excludes";
+            help: "choose another value, or change `min` and `max` in the model"
         );
     }
     Ok(())
+}
+
+/// A modification of an element at some depth: `a(b(c = …))`.
+fn nested_modification(name: &str) -> String {
+    let parts: Vec<&str> = name.split('.').collect();
+    format!("{} = …{}", parts.join("("), ")".repeat(parts.len() - 1))
 }
 
 /// Why a name cannot be assigned in the model.
@@ -301,13 +346,16 @@ fn not_tunable(model: &Translated, name: &str) -> Fault {
                 () => "it is an array or no number",
             };
             fault!(BAD_PARAMETER_VALUE, "`{name}` of `{problem}` cannot be set: {reason}";
-                help: "give it as a modification, `{problem}({name} = …)`")
+                help: "give it as a modification, `{problem}({})`", nested_modification(name))
         }
         Some(_) => fault!(UNKNOWN_PARAMETER, "`{name}` of `{problem}` is no parameter";
             help: "its value comes from the equations; assign the parameters it depends on"),
         None => {
             let names = model.program.parameters().iter().map(|parameter| &*parameter.name);
+            let own = name.strip_prefix(problem.as_str()).and_then(|rest| rest.strip_prefix('.'));
+            let own = own.filter(|own| model.program.find_parameter(own).is_ok());
             fault!(UNKNOWN_PARAMETER, "`{problem}` has no parameter `{name}`")
+                .help_if(own.map(|own| format!("write `{own}`, without the model's name")))
                 .help_if(suggest::did_you_mean(name, names))
         }
     }

@@ -57,18 +57,11 @@ impl Session {
                 let is_new = target.as_ident().is_some_and(|name| !self.scope.contains(name));
                 self.execute(statement)?;
                 if let Some(name) = target.as_ident() {
-                    self.follow_ups.found(name);
                     self.echo_assignment(name, is_new);
                 }
                 Ok(())
             }
-            StatementKind::MultiAssign { targets, .. } => {
-                self.execute(statement)?;
-                for name in targets.iter().flatten().filter_map(ComponentReference::as_ident) {
-                    self.follow_ups.found(name);
-                }
-                Ok(())
-            }
+            StatementKind::MultiAssign { .. } => self.execute(statement),
             _ => {
                 self.silent += 1;
                 let done = self.execute(statement);

@@ -1,6 +1,7 @@
 //! The integration tests; one module per suite.
 
 mod architecture;
+mod compat;
 mod diagnostics;
 mod flat_class;
 mod flattening;
