@@ -24,7 +24,11 @@ impl Gene {
     pub fn new(name: impl Into<String>, min: f64, max: f64) -> Result<Gene, Fault> {
         let name = name.into();
         if !min.is_finite() || !max.is_finite() {
-            bail!(BAD_RANGE, "the search range of {name} is {min} to {max}, which is not finite");
+            bail!(
+                BAD_RANGE,
+                "the search range of {name} is {min} to {max}, which is not finite";
+                help: "give two finite numbers"
+            );
         }
         if min > max {
             bail!(

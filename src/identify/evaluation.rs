@@ -205,7 +205,8 @@ impl Evaluator {
             bail!(
                 SIZE_MISMATCH,
                 "the population has {genes} columns, but {parameters} parameters are identified: {}",
-                names.join(", ")
+                names.join(", ");
+                help: "give one search range and one column for each of them"
             );
         }
         for (individual, genome) in genomes.rows().enumerate() {
@@ -282,7 +283,9 @@ fn check_points(x: &[f64]) -> Result<(), Fault> {
         bail!(BAD_DATA, "there are no measured points"; help: "read them with `Exp_Adq_SISO`");
     }
     match x.iter().position(|value| !value.is_finite()) {
-        Some(k) => bail!(BAD_DATA, "measured X number {} is {}", k + 1, x[k]),
+        Some(k) => {
+            bail!(BAD_DATA, "measured X number {} is {}", k + 1, x[k]; help: "remove this point")
+        }
         None => Ok(()),
     }
 }

@@ -68,7 +68,8 @@ impl Session {
                 names[0],
                 x.len(),
                 names[1],
-                y.len()
+                y.len();
+                help: "name the two matrices of one experiment"
             );
         }
         if x.is_empty() {

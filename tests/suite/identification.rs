@@ -136,6 +136,31 @@ fn the_same_seed_gives_the_same_bytes_and_another_seed_others() {
 }
 
 #[test]
+fn an_interrupted_run_writes_what_it_has_and_says_so() {
+    let script = "RunScript(\"GAPILib_INI.mos\")\nRunScript(\"GAPILib_CYCLE.mos\")\n";
+    let world = shipped::world().with_file("scripts/test.mos", script).interrupted_after(3000);
+    let run = shipped::run_in(world, "scripts/test.mos");
+    assert!(run.status.interrupted && run.status.code == 130);
+    let result = result(&run.session);
+    assert_eq!(result["interrupted"], true);
+    let generations = result["generations"].as_u64().unwrap();
+    assert!((1..5000).contains(&generations), "{generations}");
+    assert_eq!(written(&run.session, "history.csv").lines().count() as u64, generations + 1);
+}
+
+#[test]
+fn two_runs_of_one_session_have_a_report_each() {
+    let script = "RunScript(\"GAPILib_INI.mos\")\nN_Cycle = 2\nRunScript(\"GAPILib_CYCLE.mos\")\n\
+                  RunScript(\"GAPILib_INI.mos\")\nN_Cycle = 3\nRunScript(\"GAPILib_CYCLE.mos\")\n";
+    let run = shipped::run("scripts/test.mos", script);
+    assert_eq!(run.errors, "");
+    assert_eq!(result(&run.session)["generations"], 2);
+    let second = written(&run.session, "run-2/history.csv");
+    assert_eq!(second.lines().count(), 4);
+    assert!(second.starts_with(&written(&run.session, "history.csv")), "from the same seed");
+}
+
+#[test]
 fn other_names_of_variables_do_the_same() {
     let script = "\
         RunScript(\"GAPILib_INI.mos\")\n\

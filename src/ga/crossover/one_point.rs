@@ -43,7 +43,8 @@ pub fn check_points(points: &[i64], n_genes: usize) -> Result<Vec<usize>, Fault>
             Ok(index) if index <= n_genes => checked.push(index),
             _ => bail!(
                 BAD_CROSS_POINT,
-                "the crossing point {point} lies outside a genome of {n_genes} genes"
+                "the crossing point {point} lies outside a genome of {n_genes} genes";
+                help: "draw crossing points from 1 to {}", n_genes.saturating_sub(1).max(1)
             ),
         }
     }

@@ -37,7 +37,11 @@ pub fn check_factor(factor: f64) -> Result<(), Fault> {
     if (0.0..=1.0).contains(&factor) {
         return Ok(());
     }
-    bail!(BAD_MUTATION_FACTOR, "F_Mut is {factor}, a probability lies between 0 and 1")
+    bail!(
+        BAD_MUTATION_FACTOR,
+        "F_Mut is {factor}, a probability lies between 0 and 1";
+        help: "use a number from 0 to 1; the paper uses 0.25 and 0.15"
+    )
 }
 
 /// Changes the individuals behind the first `elites`; `numbers` has one number for each gene of

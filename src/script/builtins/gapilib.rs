@@ -13,10 +13,10 @@ use crate::identify::fitness::sum_of_squares;
 use crate::script::Session;
 use crate::script::identification::Request;
 use crate::value::errors::TYPE_MISMATCH;
-use crate::value::{ArrayValue, Elements, FromValue, RealMatrix, Value};
+use crate::value::{ArrayValue, FromValue, RealMatrix, Value};
 
 /// The functions of the paper.
-pub const FAMILY: Family = Family {
+pub(super) const FAMILY: Family = Family {
     packages: &["GAPILib.Basics"],
     dialect: None,
     builtins: &[
@@ -83,7 +83,11 @@ fn check_size(name: &str, size: usize, expected: usize, of: &str) -> Result<(), 
     if size == expected {
         return Ok(());
     }
-    bail!(SIZE_MISMATCH, "`{name}` has {size} elements, but {of} {expected}")
+    bail!(
+        SIZE_MISMATCH,
+        "`{name}` has {size} elements, but {of} {expected}";
+        help: "make the sizes agree"
+    )
 }
 
 const RAM_GEN_ARENA: &str = r#"
@@ -183,10 +187,10 @@ fn fit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let measured: Vec<f64> = args.take("Yexp")?;
     check_size("Yexp", measured.len(), simulated.columns, "the rows of `DATASim_Int` have")?;
     if let Some(k) = measured.iter().position(|value| !value.is_finite()) {
-        bail!(BAD_DATA, "measured Y number {} is {}", k + 1, measured[k]);
+        bail!(BAD_DATA, "measured Y number {} is {}", k + 1, measured[k]; help: "remove this point");
     }
     if measured.is_empty() {
-        bail!(BAD_DATA, "`Yexp` holds no points");
+        bail!(BAD_DATA, "`Yexp` holds no points"; help: "read them with `Exp_Adq_SISO`");
     }
     let rows = (0..simulated.rows).map(|k| simulated.row(k));
     let fitness: Vec<f64> = rows.map(|row| sum_of_squares(row, &measured)).collect();
@@ -213,7 +217,7 @@ fn fit_order(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     ga::selection::check_sizes(individuals, args.take("Parents")?, args.take("Elitism")?)?;
     if individuals != population.len() as i64 {
         let rows = population.len();
-        bail!(SIZE_MISMATCH, "`Pop` has {rows} rows, but `Population` is {individuals}");
+        bail!(SIZE_MISMATCH, "`Pop` has {rows} rows, but `Population` is {individuals}"; help: "make the sizes agree");
     }
     let (ordered, fitness_ordered) = ga::sort_by_fitness(&population, &fitness)?;
     session.identification().recorder.ordered(&population, &fitness);
