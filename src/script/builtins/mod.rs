@@ -8,6 +8,8 @@ mod header;
 mod loading;
 mod matrices;
 mod messages;
+mod openmodelica;
+mod plotting;
 mod results;
 mod scanning;
 mod scripts;
@@ -89,6 +91,8 @@ pub static FAMILIES: &[&Family] = &[
     &loading::OPENMODELICA,
     &matrices::FAMILY,
     &messages::FAMILY,
+    &openmodelica::FAMILY,
+    &plotting::FAMILY,
     &results::FAMILY,
     &results::OPENMODELICA,
     &scripts::FAMILY,
