@@ -75,3 +75,7 @@
 //! <a id="goldberg-1989"></a>
 //! - **goldberg-1989** — D. E. Goldberg: Genetic algorithms in search, optimization and machine
 //!   learning. Addison-Wesley, 1989.
+//!
+//! <a id="walter-pronzato-1997"></a>
+//! - **walter-pronzato-1997** — É. Walter, L. Pronzato: Identification of parametric models from
+//!   experimental data. Springer, 1997.

@@ -1,6 +1,7 @@
 //! Runs GAPILib scripts: identifies the parameters of Modelica models from measured data with a
 //! genetic algorithm.
 
+pub mod bibliography;
 pub mod diag;
 pub mod name;
 pub mod registry;

@@ -23,7 +23,7 @@ Examples:
 #[derive(Debug, Parser)]
 #[command(name = "gapi", version, styles = STYLES, after_help = EXAMPLES)]
 #[command(propagate_version = true, subcommand_required = true, arg_required_else_help = true)]
-pub struct Cli {
+pub(super) struct Cli {
     /// What to do
     #[command(subcommand)]
     pub command: Command,
@@ -34,7 +34,7 @@ pub struct Cli {
 
 /// Settings of every command.
 #[derive(Debug, Args)]
-pub struct Global {
+pub(super) struct Global {
     /// When to use colours
     #[arg(long, value_enum, default_value_t = Colour::Auto, global = true, value_name = "WHEN")]
     pub color: Colour,
@@ -45,7 +45,7 @@ pub struct Global {
 
 /// When to use colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Colour {
+pub(super) enum Colour {
     /// On a terminal, unless NO_COLOR is set
     Auto,
     /// Always
@@ -56,7 +56,7 @@ pub enum Colour {
 
 /// The commands.
 #[derive(Debug, Subcommand)]
-pub enum Command {
+pub(super) enum Command {
     /// Run a script
     Run(RunArgs),
     /// Simulate a model
@@ -81,7 +81,7 @@ Examples:
 
 Exit code: 0 if all went well, 1 if an error happened that the script did not read,
 2 for a wrong command line, 130 if interrupted.")]
-pub struct RunArgs {
+pub(super) struct RunArgs {
     /// The script (.mos)
     #[arg(value_hint = ValueHint::FilePath)]
     pub script: PathBuf,
@@ -113,7 +113,7 @@ Examples:
   gapi simulate Decay.mo --model Decay --stop-time 5 --intervals 50 --set k=2
 
 What the command line does not say comes from the model's experiment annotation.")]
-pub struct SimulateArgs {
+pub(super) struct SimulateArgs {
     /// Modelica files, or folders with packages
     #[arg(required = true, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
@@ -149,8 +149,8 @@ pub struct SimulateArgs {
 Examples:
   gapi check models
   gapi check models --model CaseStudies.PolarizationCurve")]
-pub struct CheckArgs {
-    /// Modelica files, scripts, or folders with packages
+pub(super) struct CheckArgs {
+    /// Modelica files, or folders with packages
     #[arg(required = true, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
     /// The class to check as a model
@@ -163,7 +163,7 @@ pub struct CheckArgs {
 #[command(after_help = "\
 Example:
   gapi flatten models --model CaseStudies.PolarizationCurve")]
-pub struct FlattenArgs {
+pub(super) struct FlattenArgs {
     /// Modelica files, or folders with packages
     #[arg(required = true, value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
@@ -174,7 +174,7 @@ pub struct FlattenArgs {
 
 /// Arguments of `gapi explain`.
 #[derive(Debug, Args)]
-pub struct ExplainArgs {
+pub(super) struct ExplainArgs {
     /// The code, as it stands in brackets behind `error`; without it, all codes are listed
     pub code: Option<String>,
 }
@@ -184,7 +184,7 @@ pub struct ExplainArgs {
 #[command(after_help = "\
 Example:
   gapi completions bash > ~/.local/share/bash-completion/completions/gapi")]
-pub struct CompletionsArgs {
+pub(super) struct CompletionsArgs {
     /// The shell
     pub shell: clap_complete::Shell,
 }

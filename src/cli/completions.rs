@@ -6,7 +6,7 @@ use clap::CommandFactory;
 use std::process::ExitCode;
 
 /// Prints the completion script of a shell.
-pub fn completions(arguments: &CompletionsArgs) -> ExitCode {
+pub(super) fn completions(arguments: &CompletionsArgs) -> ExitCode {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut Cli::command(), "gapi", &mut script);
     terminal::print(&String::from_utf8_lossy(&script));

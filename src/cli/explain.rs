@@ -7,7 +7,7 @@ use crate::script::codes;
 use std::process::ExitCode;
 
 /// Prints the explanation of one code, or the list of all.
-pub fn explain(arguments: &ExplainArgs) -> ExitCode {
+pub(super) fn explain(arguments: &ExplainArgs) -> ExitCode {
     let Some(wanted) = &arguments.code else {
         let list: String = codes::all().iter().map(|code| format!("{}\n", code.slug)).collect();
         terminal::print(&list);

@@ -1,1 +1,49 @@
-//! (being written)
+//! The command line: arguments in, exit code out. The only module that reads and writes files,
+//! the clock, the environment and the terminal.
+
+mod args;
+mod check;
+mod completions;
+mod explain;
+mod run;
+mod session;
+mod simulate;
+mod terminal;
+mod world;
+
+use crate::script::with_stack;
+use args::{Cli, Command};
+use clap::Parser;
+use std::process::ExitCode;
+
+/// Stack of the thread that works, in bytes: functions written in Modelica may call themselves
+/// a thousand deep.
+const STACK: usize = 256 << 20;
+
+/// Runs the command that the process was started with. Exit code 2 for a wrong command line; what
+/// the other codes mean stands in the help of each command.
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let work = move || with_stack(STACK - (4 << 20), || dispatch(&cli));
+    let worker = std::thread::Builder::new().stack_size(STACK).spawn(work);
+    match worker.map(std::thread::JoinHandle::join) {
+        Ok(Ok(code)) => code,
+        // The panic has said what happened.
+        Ok(Err(_)) => ExitCode::from(101),
+        Err(error) => {
+            terminal::eprint(&format!("error: no thread could be started: {error}\n"));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn dispatch(cli: &Cli) -> ExitCode {
+    match &cli.command {
+        Command::Run(arguments) => run::run(arguments, &cli.global),
+        Command::Explain(arguments) => explain::explain(arguments),
+        Command::Completions(arguments) => completions::completions(arguments),
+        Command::Simulate(arguments) => simulate::simulate(arguments, &cli.global),
+        Command::Check(arguments) => check::check(arguments, &cli.global),
+        Command::Flatten(arguments) => check::flatten(arguments, &cli.global),
+    }
+}

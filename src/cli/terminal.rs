@@ -8,7 +8,7 @@ use std::io::{IsTerminal, Write as _};
 use std::time::Duration;
 
 /// Standard output, standard error and the progress bar between them.
-pub struct Terminal {
+pub(super) struct Terminal {
     colour: bool,
     quiet: bool,
     bar: Option<ProgressBar>,
@@ -16,7 +16,7 @@ pub struct Terminal {
 
 impl Terminal {
     /// A terminal that follows the user's wishes about colours.
-    pub fn new(colour: Colour, quiet: bool) -> Terminal {
+    pub(super) fn new(colour: Colour, quiet: bool) -> Terminal {
         let wanted = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
         let colour = match colour {
             Colour::Always => true,
@@ -27,12 +27,12 @@ impl Terminal {
     }
 
     /// Whether diagnostics are coloured.
-    pub fn colour(&self) -> bool {
+    pub(super) fn colour(&self) -> bool {
         self.colour
     }
 
     /// Writes to standard output. A reader that went away (`| head`) is not an error.
-    pub fn print(&mut self, text: &str) {
+    pub(super) fn print(&mut self, text: &str) {
         if self.quiet {
             return;
         }
@@ -44,14 +44,14 @@ impl Terminal {
     }
 
     /// Writes to standard error.
-    pub fn eprint(&mut self, text: &str) {
+    pub(super) fn eprint(&mut self, text: &str) {
         self.suspended(|| {
             let _ = std::io::stderr().lock().write_all(text.as_bytes());
         });
     }
 
     /// Draws how far the work is; on a terminal only.
-    pub fn progress(&mut self, progress: &Progress) {
+    pub(super) fn progress(&mut self, progress: &Progress) {
         if self.quiet || !std::io::stderr().is_terminal() {
             return;
         }
@@ -68,7 +68,7 @@ impl Terminal {
     }
 
     /// Takes the progress bar away.
-    pub fn finish_progress(&mut self) {
+    pub(super) fn finish_progress(&mut self) {
         if let Some(bar) = self.bar.take() {
             bar.finish_and_clear();
         }
@@ -106,11 +106,11 @@ fn round_up(duration: Duration) -> Duration {
 }
 
 /// Writes to standard output where there is no session.
-pub fn print(text: &str) {
+pub(super) fn print(text: &str) {
     let _ = std::io::stdout().lock().write_all(text.as_bytes());
 }
 
 /// Writes to standard error where there is no session.
-pub fn eprint(text: &str) {
+pub(super) fn eprint(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
 }

@@ -11,7 +11,7 @@ use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 /// The operating system as scripts see it. The working directory is the session's own, so that
 /// `cd` in a script changes nothing outside it.
-pub struct SystemWorld {
+pub(super) struct SystemWorld {
     terminal: Terminal,
     current: PathBuf,
     output: PathBuf,
@@ -22,7 +22,11 @@ pub struct SystemWorld {
 
 impl SystemWorld {
     /// A world that writes its results below `output` and computes with `threads` threads.
-    pub fn new(terminal: Terminal, output: &Path, threads: Option<usize>) -> io::Result<Self> {
+    pub(super) fn new(
+        terminal: Terminal,
+        output: &Path,
+        threads: Option<usize>,
+    ) -> io::Result<Self> {
         let current = std::env::current_dir()?;
         let available = std::thread::available_parallelism().map_or(1, usize::from);
         Ok(SystemWorld {
@@ -36,7 +40,7 @@ impl SystemWorld {
     }
 
     /// Makes Ctrl-C ask the run to stop; a second one ends the process at once.
-    pub fn catch_interrupts(&self) {
+    pub(super) fn catch_interrupts(&self) {
         let flag = Arc::clone(&self.interrupt);
         let caught = ctrlc::set_handler(move || {
             if flag.swap(true, Ordering::SeqCst) {

@@ -153,7 +153,7 @@ impl<'a> TapeBuilder<'a> {
                 unreachable!("returned above")
             }
             Node::Call { .. } | Node::CallDerivative { .. } => {
-                unreachable!("calls are refused before they are compiled")
+                unreachable!("user functions are inlined when the equations are read")
             }
         };
         self.tape.code.push(instruction);

@@ -1,7 +1,5 @@
 //! Compilation: a sorted system becomes a [`Program`] of instruction tapes, and every thread runs
 //! its own [`System`] of it.
-//!
-//! Not handled yet: user functions in equations (refused with `not-supported`).
 
 pub mod errors;
 mod jacobian;

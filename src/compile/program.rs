@@ -65,6 +65,18 @@ pub struct VariableInfo {
     pub(super) variable: VarId,
 }
 
+impl VariableInfo {
+    /// Whether its value does not change during a simulation.
+    pub fn is_known(&self) -> bool {
+        self.variability <= Variability::Parameter
+    }
+
+    /// Whether it is an output of the model itself.
+    pub fn is_output(&self) -> bool {
+        self.top_level && self.causality == Some(CausalityPrefix::Output)
+    }
+}
+
 /// Where the value of a variable is found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Access {
@@ -150,12 +162,6 @@ pub struct Program {
 impl Program {
     /// Compiles a sorted system.
     pub fn compile(mut sorted: SortedDae) -> Result<Arc<Program>, Diagnostic> {
-        if let Some(instance) = sorted.dae.functions.first() {
-            return Err(fault!(crate::dae::errors::NOT_SUPPORTED,
-                "the user function `{}` in an equation is not supported yet",
-                instance.function.name; help: "write its formula as equations")
-            .at(instance.function.span));
-        }
         let n = sorted.dae.variables.len();
         let sequence: Vec<Assignment> =
             sorted.blocks.iter().flat_map(|block| block.assignments()).copied().collect();
@@ -194,7 +200,13 @@ impl Program {
         let columns: Vec<VarId> = sorted.states.iter().chain(&iteration).copied().collect();
         let needed = slice(&pool, &sequence, &outputs);
         let slopes = differentiate_sequence(&mut pool, &needed, &outputs, &columns, &mut next);
-        let (pattern, entries) = by_columns(&slopes.rows, columns.len());
+        let mut rows = slopes.rows;
+        let zero = pool.constant(0.0);
+        // An implicit method subtracts from the diagonal of the states: it belongs to the pattern.
+        for (state, row) in rows.iter_mut().take(sorted.states.len()).enumerate() {
+            row.entry(state).or_insert(zero);
+        }
+        let (pattern, entries) = by_columns(&rows, columns.len());
         let extended: Vec<Assignment> = slopes
             .sequence
             .iter()

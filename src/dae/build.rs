@@ -2,7 +2,7 @@
 
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, PARAMETER_CYCLE, UNRESOLVED_REFERENCE};
 use super::lowering::{Array, Lowered, Lowering, size_fault};
-use super::model::{Assertion, Dae, Equation, FunctionInstance, Kind, Variable};
+use super::model::{Assertion, Dae, Equation, Kind, Variable};
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::flatten::{self, BaseType, FlatModel, Variability};
@@ -32,6 +32,9 @@ pub(super) struct Builder<'a> {
     pub(super) folding: Vec<Folding>,
     pub(super) derivatives: FxHashMap<VarId, VarId>,
     pub(super) relations: FxHashMap<(crate::symbolic::RelationOperator, Expr, Expr), VarId>,
+    /// How deep calls of user functions are nested, and how many statements they may still run.
+    pub(super) calls: usize,
+    pub(super) statements: usize,
     /// Whether initial equations are being read.
     pub(super) initial: bool,
 }
@@ -50,6 +53,8 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         folding: vec![Folding::Unvisited; flat.variables.len()],
         derivatives: FxHashMap::default(),
         relations: FxHashMap::default(),
+        calls: 0,
+        statements: super::inline::MAX_STATEMENTS,
         initial: false,
     };
     builder.declare();
@@ -453,7 +458,7 @@ impl<'a> Builder<'a> {
 }
 
 /// The literal parts of a message; what is computed shows as `…`.
-fn message_text(e: &Expression) -> String {
+pub(super) fn message_text(e: &Expression) -> String {
     match &e.kind {
         ExpressionKind::String(text) => text.to_string(),
         ExpressionKind::Binary { operator: ast::BinaryOperator::Add, left, right } => {
@@ -550,16 +555,6 @@ pub(super) fn scalar_of_nothing(name: &str, kind: Kind, span: Span) -> Variable 
 }
 
 impl Builder<'_> {
-    /// The number of a function for these arguments.
-    pub(super) fn instance(&mut self, instance: FunctionInstance) -> u32 {
-        let functions = &mut self.dae.functions;
-        let found = functions.iter().position(|known| *known == instance);
-        found.unwrap_or_else(|| {
-            functions.push(instance);
-            functions.len() - 1
-        }) as u32
-    }
-
     /// The fault of a name that nothing declares.
     pub(super) fn unresolved(&self, path: &str, span: Span) -> Diagnostic {
         fault!(UNRESOLVED_REFERENCE, "there is no variable `{path}` in `{}`", self.flat.name)

@@ -9,15 +9,15 @@
 //! ```
 //!
 //! Not handled yet, and refused with `not-supported`: when-clauses, `pre`, `sample`, `delay`,
-//! algorithm sections, systems of an index above one, parameters with `fixed = false`.
+//! algorithm sections, functions whose loops or returns depend on variables, systems of an index above one, parameters with `fixed = false`.
 
 mod alias_elimination;
 mod blt;
 mod build;
 pub mod errors;
-pub(crate) mod function_shape;
 mod initial;
-pub(crate) mod lowering;
+mod inline;
+mod lowering;
 mod model;
 mod parameters;
 mod report;
@@ -27,7 +27,6 @@ mod symbolic_target;
 pub use model::*;
 pub use report::report;
 pub use sorted::*;
-pub(crate) use symbolic_target::refuse_impure;
 
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -73,15 +72,13 @@ pub fn sort(flat: &FlatModel) -> Result<SortedDae, Diagnostic> {
 
 /// An input at the top level without a binding has its start value, which is zero by default.
 fn zero_inputs(dae: &mut Dae) {
+    let bound: std::collections::BTreeSet<VarId> =
+        dae.equations.iter().filter_map(|e| dae.pool.as_variable(e.left)).collect();
     for position in 0..dae.variables.len() {
         let variable = &dae.variables[position];
-        let bound = dae
-            .equations
-            .iter()
-            .any(|equation| dae.pool.as_variable(equation.left) == Some(VarId(position as u32)));
         if variable.causality == Some(crate::syntax::ast::CausalityPrefix::Input)
             && variable.kind == Kind::Unknown
-            && !bound
+            && !bound.contains(&VarId(position as u32))
         {
             let zero = dae.pool.constant(0.0);
             let right = variable.start.unwrap_or(zero);

@@ -1,7 +1,6 @@
 //! The system of equations: scalar, first order (MLS appendix B). Data only.
 
 use crate::diag::Diagnostic;
-use crate::eval::Function;
 use crate::flatten::{BaseType, Experiment, Variability};
 use crate::source::Span;
 use crate::symbolic::{Expr, Pool, RelationOperator, VarId};
@@ -25,8 +24,6 @@ pub struct Dae {
     pub assertions: Vec<Assertion>,
     /// Relations that switch at events only.
     pub relations: Vec<Relation>,
-    /// User functions called, each for the sizes of its arguments.
-    pub functions: Vec<FunctionInstance>,
     /// The `experiment` annotation.
     pub experiment: Experiment,
     /// What deserves a warning.
@@ -133,19 +130,6 @@ pub struct Relation {
     pub span: Span,
 }
 
-/// A user function for arguments of certain sizes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FunctionInstance {
-    /// The function.
-    pub function: Arc<Function>,
-    /// Shape of every input.
-    pub inputs: Vec<Shape>,
-    /// Shape of every output.
-    pub outputs: Vec<Shape>,
-    /// Values of scalar Integer inputs that are known when compiling (they may be sizes).
-    pub known: Vec<Option<f64>>,
-}
-
 /// Sizes of an argument.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Shape {
@@ -167,18 +151,6 @@ impl Shape {
     /// Whether there are no scalars.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
-    }
-}
-
-impl FunctionInstance {
-    /// Number of scalars of all inputs.
-    pub fn n_inputs(&self) -> usize {
-        self.inputs.iter().map(Shape::len).sum()
-    }
-
-    /// Number of scalars of all outputs.
-    pub fn n_outputs(&self) -> usize {
-        self.outputs.iter().map(Shape::len).sum()
     }
 }
 

@@ -2,11 +2,10 @@
 
 use super::build::{Builder, scalar_of_nothing};
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
-use super::function_shape::shapes;
 use super::lowering::{Array, Binary, Branch, Lowered, Operator, Target, Unary};
-use super::model::{FunctionInstance, Kind, Relation};
+use super::model::{Kind, Relation};
 use crate::diag::Diagnostic;
-use crate::eval::{Function, FunctionBody, ValueType};
+use crate::eval::Function;
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
 use crate::name::{Ident, Name};
@@ -98,7 +97,7 @@ impl Target for Builder<'_> {
     }
 
     fn begin_if(&mut self, condition: Expr) -> Branch<Expr> {
-        Branch { condition, values: Vec::new(), jumps: [0; 2] }
+        Branch { condition, values: Vec::new() }
     }
 
     fn begin_else(&mut self, branch: &mut Branch<Expr>, values: &[Expr]) {
@@ -155,48 +154,7 @@ impl Target for Builder<'_> {
         arguments: Vec<Lowered<Expr>>,
         span: Span,
     ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
-        refuse_impure(function, span)?;
-        let mut scalars = Vec::new();
-        let mut inputs = Vec::new();
-        let mut known = Vec::new();
-        for (input, argument) in function.inputs.iter().zip(&arguments) {
-            let Some(shape) = argument.shape() else {
-                return Err(fault!(
-                    NOT_SUPPORTED,
-                    "the text argument `{}` of `{}` is not supported",
-                    input.name,
-                    function.name
-                )
-                .at(span));
-            };
-            let before = scalars.len();
-            argument.append_scalars(&mut scalars);
-            let integer = input.value_type == ValueType::Integer && shape.len() == 1;
-            known.push(match integer {
-                true => self.dae.pool.as_constant(scalars[before]),
-                false => None,
-            });
-            inputs.push(shape);
-        }
-        let functions = &self.flat.functions;
-        let outputs = shapes(function, &inputs, &known, functions, span)?;
-        let instance = FunctionInstance {
-            function: function.clone(),
-            inputs,
-            outputs: outputs.clone(),
-            known,
-        };
-        let id = self.instance(instance);
-        let mut next = 0;
-        let mut results = Vec::new();
-        for shape in &outputs {
-            let calls: Vec<Expr> = (next..next + shape.len() as u32)
-                .map(|output| self.dae.pool.call(id, output, &scalars))
-                .collect();
-            next += shape.len() as u32;
-            results.push(Lowered::from_scalars(shape, &mut calls.into_iter()));
-        }
-        Ok(results)
+        super::inline::inline(self, function, arguments, span)
     }
 
     fn operator(
@@ -327,19 +285,4 @@ impl Builder<'_> {
         }
         Some(Lowered::Record(fields))
     }
-}
-
-/// Functions with effects, and those written in other languages, are refused by name.
-pub(crate) fn refuse_impure(function: &Function, span: Span) -> Result<(), Diagnostic> {
-    let reason = match (&function.body, function.impure) {
-        (FunctionBody::External(_), _) => "is external",
-        (_, true) => "is impure",
-        _ => return Ok(()),
-    };
-    Err(fault!(
-        NOT_SUPPORTED,
-        "the function `{}` {reason} and cannot be used in equations",
-        function.name
-    )
-    .at(span))
 }

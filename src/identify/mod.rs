@@ -4,13 +4,25 @@
 pub mod errors;
 pub mod fitness;
 
+mod evaluation;
+#[cfg(test)]
+mod evaluation_tests;
+mod model;
 mod outcome;
 mod points;
+#[cfg(test)]
+mod problems;
+mod program;
 mod recorder;
+mod sensitivity;
 mod table;
 mod uncertainty;
 
+pub use evaluation::{Evaluator, FailedSimulation, Question, Simulated};
+pub use model::{Instance, Model, Parameter};
 pub use outcome::{Correlated, FitPoint, Identified, Outcome};
 pub use points::{Path, time_of};
+pub use program::CompiledModel;
 pub use recorder::{Best, FitnessSource, Measurement, Quantity, Recorder, Study};
+pub use sensitivity::deviations;
 pub use uncertainty::{Uncertainty, uncertainty};

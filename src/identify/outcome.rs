@@ -241,7 +241,7 @@ fn correlated(names: &[String], uncertainty: Option<&Uncertainty>) -> Vec<Correl
 pub(super) mod tests {
     use super::*;
     use crate::ga::Genomes;
-    use crate::identify::{Measurement, Quantity, Study};
+    use crate::identify::{FailedSimulation, Measurement, Quantity, Simulated, Study};
     use std::sync::Arc;
 
     fn quantity(name: &str, unit: &str) -> Quantity {
@@ -258,12 +258,15 @@ pub(super) mod tests {
         let mut recorder = Recorder::default();
         let (x, y) = (vec![0.0, 1.0, 2.0], vec![1.0, 2.0, 3.0]);
         recorder.measured(Measurement { file: "line.mat".into(), x: x.clone(), y: y.clone() });
-        recorder.seeded([12345.0; 6]);
+        recorder.seeded([12345.0; 6], [1.0; 6]);
         recorder.searched(&[0.0, 0.0], &[10.0, 1.0]);
         let genomes = Genomes::new(2, vec![1.0, 1.0, 2.0, 0.5]).unwrap();
-        let simulated = [1.0, 2.0, 3.003, f64::NAN, f64::NAN, f64::NAN];
-        let messages = [String::new(), "assertion `b > 1` failed".to_owned()];
-        recorder.evaluated(&study, &x, &genomes, &simulated, &messages);
+        let cause = "assertion `b > 1` failed".to_owned();
+        let simulated = Simulated {
+            rows: vec![1.0, 2.0, 3.003, f64::NAN, f64::NAN, f64::NAN],
+            failures: vec![None, Some(FailedSimulation { cause, time: None })],
+        };
+        recorder.evaluated(&study, &x, &genomes, &simulated);
         recorder.rated(&[9e-6, 1e60], &y);
         recorder.ordered(&genomes, &[9e-6, 1e60]);
         recorder.finish();

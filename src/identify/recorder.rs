@@ -8,6 +8,7 @@
 //! its own sorting. When it has both of its own, nobody tells the recorder the fitness, and it
 //! compares by the sum of squares.
 
+use super::Simulated;
 use super::fitness::sum_of_squares;
 use crate::ga::{FAILED_FITNESS, Genomes, History, has_failed};
 use indexmap::IndexMap;
@@ -96,11 +97,20 @@ pub struct Recorder {
     pub failures: u64,
     /// Why simulations failed, and how often.
     pub causes: IndexMap<String, u64>,
+    /// The random numbers being drawn: the seed they began with, and the one they go on with.
+    chain: Option<Chain>,
     /// What `Yexp` was compared with last.
     measured_y: Option<Vec<f64>>,
     sorted_by_fit_order: bool,
     fitness_by_fit: bool,
     pending: Pending,
+}
+
+/// Calls of `Ram_Gen_ARENA`, each with the seed that the one before gave.
+#[derive(Debug, Clone, Copy)]
+struct Chain {
+    first: [f64; 6],
+    next: [f64; 6],
 }
 
 /// Individuals simulated since the last generation ended.
@@ -120,9 +130,27 @@ impl Recorder {
         self.measurement = Some(measurement);
     }
 
-    /// `Ram_Gen_ARENA` was called with this seed.
-    pub fn seeded(&mut self, seed: [f64; 6]) {
-        self.seed.get_or_insert(seed);
+    /// `Ram_Gen_ARENA` was called with `seed` and gave `next` to go on with.
+    pub fn seeded(&mut self, seed: [f64; 6], next: [f64; 6]) {
+        let first = match self.chain {
+            Some(chain) if chain.next == seed => chain.first,
+            _ => seed,
+        };
+        self.chain = Some(Chain { first, next });
+        self.seed.get_or_insert(first);
+    }
+
+    /// Begins to record another run and returns the one before, finished. Its random numbers are
+    /// those drawn with the seed that a script set last.
+    pub fn begin_next(&mut self) -> Recorder {
+        let next = Recorder {
+            seed: self.chain.map(|chain| chain.first),
+            chain: self.chain,
+            ..Recorder::default()
+        };
+        let mut before = std::mem::replace(self, next);
+        before.finish();
+        before
     }
 
     /// `Mutation` was called with these search ranges.
@@ -130,29 +158,27 @@ impl Recorder {
         self.ranges = Some((minima.to_vec(), maxima.to_vec()));
     }
 
-    /// `Eval` has simulated `genomes`; `simulated` holds one row for each, `messages` is empty
-    /// where the simulation succeeded.
+    /// `Eval` has simulated `genomes`.
     pub fn evaluated(
         &mut self,
         study: &Arc<Study>,
         x: &[f64],
         genomes: &Genomes,
-        simulated: &[f64],
-        messages: &[String],
+        simulated: &Simulated,
     ) {
         if !self.sorted_by_fit_order && self.pending.is_rated() {
             self.end_pending_generation();
         }
         self.evaluations += genomes.len() as u64;
-        for message in messages.iter().filter(|message| !message.is_empty()) {
-            self.count_failure(message);
+        for failure in simulated.failures.iter().flatten() {
+            self.count_failure(&failure.cause);
         }
         let pending = &mut self.pending;
         if pending.x != x || pending.study.as_ref() != Some(study) {
             *pending = Pending { study: Some(study.clone()), x: x.to_vec(), ..Pending::default() };
         }
         pending.genomes.extend(genomes.rows().map(<[f64]>::to_vec));
-        pending.simulated.extend(simulated.chunks(x.len().max(1)).map(<[f64]>::to_vec));
+        pending.simulated.extend(simulated.rows.chunks(x.len().max(1)).map(<[f64]>::to_vec));
     }
 
     /// `Fit` has rated the simulations of the last individuals.
@@ -216,10 +242,10 @@ impl Recorder {
         self.measured_y.as_deref().filter(|y| y.len() == points)
     }
 
-    fn count_failure(&mut self, message: &str) {
+    fn count_failure(&mut self, cause: &str) {
         self.failures += 1;
-        let room = self.causes.len() < MAX_CAUSES || self.causes.contains_key(message);
-        let cause = if room { message } else { OTHER_CAUSES };
+        let room = self.causes.len() < MAX_CAUSES || self.causes.contains_key(cause);
+        let cause = if room { cause } else { OTHER_CAUSES };
         *self.causes.entry(cause.to_owned()).or_insert(0) += 1;
     }
 
@@ -264,6 +290,7 @@ impl Pending {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::identify::FailedSimulation;
 
     fn study() -> Arc<Study> {
         let quantity = |name: &str| Quantity { name: name.to_owned(), unit: String::new() };
@@ -279,18 +306,20 @@ mod tests {
         Genomes::new(1, values.to_vec()).unwrap()
     }
 
-    fn messages(texts: &[&str]) -> Vec<String> {
-        texts.iter().map(|&text| text.to_owned()).collect()
+    fn simulated(rows: &[f64]) -> Simulated {
+        let failure = |row: &f64| {
+            row.is_nan().then(|| FailedSimulation { cause: "log of -1".into(), time: Some(0.5) })
+        };
+        Simulated { rows: rows.to_vec(), failures: rows.iter().map(failure).collect() }
     }
 
     #[test]
     fn fit_order_ends_a_generation() {
         let mut recorder = Recorder::default();
         let population = genomes(&[3.0, 1.0, 9.0]);
-        let simulated = [3.0, 1.0, f64::NAN];
-        let failed = messages(&["", "", "log of -1"]);
+        let rows = simulated(&[3.0, 1.0, f64::NAN]);
         for _ in 0..2 {
-            recorder.evaluated(&study(), &[0.0], &population, &simulated, &failed);
+            recorder.evaluated(&study(), &[0.0], &population, &rows);
             recorder.rated(&[9.0, 1.0, 1e60], &[0.0]);
             recorder.ordered(&population, &[9.0, 1.0, 1e60]);
         }
@@ -311,7 +340,7 @@ mod tests {
         for generation in 0..2 {
             for k in 0..3 {
                 let value = [f64::from(3 - k - generation)];
-                recorder.evaluated(&study(), &[0.0], &genomes(&value), &value, &messages(&[""]));
+                recorder.evaluated(&study(), &[0.0], &genomes(&value), &simulated(&value));
                 recorder.rated(&value, &[0.0]);
             }
             let population = genomes(&[3, 2, 1].map(|value| f64::from(value - generation)));
@@ -322,10 +351,27 @@ mod tests {
     }
 
     #[test]
+    fn another_run_has_its_own_seed() {
+        let seed = |entry: f64| [entry; 6];
+        let mut recorder = Recorder::default();
+        recorder.seeded(seed(1.0), seed(2.0));
+        recorder.seeded(seed(2.0), seed(3.0));
+        recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &simulated(&[7.0]));
+        recorder.seeded(seed(3.0), seed(4.0));
+        recorder.ordered(&genomes(&[5.0]), &[42.0]);
+        recorder.seeded(seed(7.0), seed(8.0));
+        recorder.seeded(seed(8.0), seed(9.0));
+        let before = recorder.begin_next();
+        assert_eq!((before.seed, before.evaluations), (Some(seed(1.0)), 1));
+        recorder.seeded(seed(9.0), seed(10.0));
+        assert_eq!((recorder.seed, recorder.evaluations), (Some(seed(7.0)), 0));
+    }
+
+    #[test]
     fn own_sorting_ends_a_generation_with_the_next_simulation() {
         let mut recorder = Recorder::default();
         for value in [3.0, 2.0] {
-            recorder.evaluated(&study(), &[0.0], &genomes(&[value]), &[value], &messages(&[""]));
+            recorder.evaluated(&study(), &[0.0], &genomes(&[value]), &simulated(&[value]));
             recorder.rated(&[value], &[0.0]);
         }
         assert_eq!(recorder.history.generations.len(), 1);
@@ -337,7 +383,7 @@ mod tests {
     #[test]
     fn own_fitness_is_taken_from_fit_order() {
         let mut recorder = Recorder::default();
-        recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &[7.0], &messages(&[""]));
+        recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &simulated(&[7.0]));
         recorder.ordered(&genomes(&[5.0]), &[42.0]);
         recorder.finish();
         assert_eq!(recorder.best.as_ref().unwrap().fitness, 42.0);
@@ -348,7 +394,7 @@ mod tests {
     fn with_own_fitness_and_own_sorting_the_sum_of_squares_is_assumed() {
         let mut recorder = Recorder::default();
         recorder.measured(Measurement { file: "d.mat".into(), x: vec![0.0], y: vec![1.0] });
-        recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &[3.0], &messages(&[""]));
+        recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &simulated(&[3.0]));
         recorder.finish();
         assert_eq!(recorder.best.as_ref().unwrap().fitness, 4.0);
         assert_eq!(recorder.fitness_source(), FitnessSource::Assumed);
@@ -357,9 +403,9 @@ mod tests {
     #[test]
     fn an_interrupted_generation_without_fitness_does_not_count() {
         let mut recorder = Recorder::default();
-        recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &[3.0], &messages(&[""]));
+        recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &simulated(&[3.0]));
         recorder.ordered(&genomes(&[5.0]), &[9.0]);
-        recorder.evaluated(&study(), &[0.0], &genomes(&[4.0]), &[3.0], &messages(&[""]));
+        recorder.evaluated(&study(), &[0.0], &genomes(&[4.0]), &simulated(&[3.0]));
         recorder.finish();
         assert_eq!(recorder.history.generations.len(), 1);
         assert_eq!(recorder.evaluations, 2);

@@ -9,6 +9,7 @@
 
 pub mod builtins;
 mod callees;
+pub mod checking;
 mod classes;
 pub mod codes;
 mod echo;
@@ -16,6 +17,7 @@ pub mod errors;
 mod files;
 mod follow_up;
 mod host;
+mod identification;
 mod messages;
 mod scripts;
 mod session;
@@ -28,3 +30,5 @@ pub mod world;
 pub use messages::Messages;
 pub use session::{Dialect, Echo, Options, RunStatus, Session, Strictness};
 pub use transcript::{Exchange, Transcript};
+
+pub use crate::eval::with_stack;

@@ -1,6 +1,8 @@
 //! A class of predefined types only, as a flat model: no lookup, no modification.
 
+use gapilib::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use gapilib::flatten::{Attribute, BaseType, FlatModel, Variability, Variable};
+use gapilib::name::Name;
 use gapilib::source::SourceId;
 use gapilib::syntax::ast::*;
 use gapilib::syntax::parse_stored_definition;
@@ -17,7 +19,8 @@ pub(crate) fn flat(text: &str) -> FlatModel {
                 for element in elements {
                     match element {
                         Element::Component(clause) => components(&mut model, clause),
-                        _ => panic!("only components"),
+                        Element::Class(class) => function(&mut model, &class.class),
+                        _ => panic!("only components and functions"),
                     }
                 }
             }
@@ -91,4 +94,62 @@ fn attribute(variable: &mut Variable, argument: &Argument) {
     let binding = element.modification.as_ref().and_then(|m| m.binding.clone());
     let Some(Binding::Expression(value)) = binding else { panic!("an attribute has a value") };
     variable.attributes.insert(name, Attribute { value, is_final: false });
+}
+
+/// A function of predefined types only.
+fn function(model: &mut FlatModel, class: &ClassDefinition) {
+    let ClassSpecifier::Long(body) = &class.specifier else { panic!("a long class is needed") };
+    let name = Name::from(class.name.node);
+    let mut function = Function {
+        name: name.clone(),
+        inputs: Vec::new(),
+        outputs: Vec::new(),
+        locals: Vec::new(),
+        body: FunctionBody::Algorithm(Vec::new()),
+        description: None,
+        annotation: Vec::new(),
+        impure: false,
+        span: class.span,
+    };
+    for section in &body.sections {
+        match section {
+            Section::Elements { elements, .. } => {
+                for element in elements {
+                    let Element::Component(clause) = element else { panic!("only components") };
+                    let list = match clause.type_prefixes.causality {
+                        Some(CausalityPrefix::Input) => &mut function.inputs,
+                        Some(CausalityPrefix::Output) => &mut function.outputs,
+                        None => &mut function.locals,
+                    };
+                    for component in &clause.components {
+                        let modification = component.modification.as_ref();
+                        let binding = match modification.and_then(|m| m.binding.clone()) {
+                            Some(Binding::Expression(e)) => Some(e),
+                            _ => None,
+                        };
+                        list.push(FunctionComponent {
+                            name: component.name.node,
+                            value_type: match clause.type_specifier.name.to_string().as_str() {
+                                "Integer" => ValueType::Integer,
+                                "Boolean" => ValueType::Boolean,
+                                _ => ValueType::Real,
+                            },
+                            dims: component.subscripts.clone(),
+                            binding,
+                            description: None,
+                            span: component.span,
+                        });
+                    }
+                }
+            }
+            Section::Algorithm { statements, .. } => {
+                function.body = FunctionBody::Algorithm(statements.clone());
+            }
+            Section::External(external) => {
+                function.body = FunctionBody::External(external.clone());
+            }
+            _ => {}
+        }
+    }
+    model.functions.insert(name, std::sync::Arc::new(function));
 }

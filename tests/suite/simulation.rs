@@ -199,6 +199,11 @@ const POLARIZATION: &str = "model P parameter Real Eoc = 1.2; parameter Real R =
 fn the_jacobian_agrees_with_differences() {
     let text = "model J Real x(start = 0.3); Real y(start = 0.7); Real z(start = 0.2); Real w; equation w = x*exp(y) + sin(z);
         der(x) = -w*x + z; der(y) = w^2 - y*z; der(z) = if x > 0.1 then w/(1 + x^2) else x; end J;";
+    jacobian_agrees(text);
+}
+
+/// Compares the Jacobian of a system of three states with differences.
+fn jacobian_agrees(text: &str) {
     let program = compiled(text);
     let mut system = program.system();
     let mut y = vec![0.0; 3];
@@ -240,4 +245,36 @@ fn the_polarization_curve_needs_no_states() {
     let expected = 1.2 - 0.73 * j - 0.039 * (j / 1.5856e-6).ln() + 0.0918 * (1.0 - j / 0.2265).ln();
     near(out[0], 0.11, 1e-15);
     near(out[1], expected, 1e-14);
+}
+
+const FUNCTIONS: &str = "
+    function horner input Real c[:]; input Real x; output Real y; algorithm
+        y := 0; for i in size(c, 1):-1:1 loop y := y*x + c[i]; end for; end horner;
+    function both input Real a; input Real b[2]; output Real s; output Real v[2]; Real t; algorithm
+        t := a*b[1]; if t > 0 then s := t^2; else s := -t; end if;
+        for k in 1:2 loop v[k] := b[k]*s; end for; end both;
+    function unassigned input Real a; output Real y; algorithm if a > 0 then y := 1; end if; end unassigned;
+    function outside input Real a; output Real y; external \"C\"; end outside;
+    function endless input Real a; output Real y; algorithm y := endless(a + 1); end endless;";
+
+#[test]
+fn functions_in_equations_are_carried_out() {
+    let model = |rest: &str| format!("model F {FUNCTIONS} {rest} end F;");
+    let text = model("Real y; equation y = horner({1, 2, 3}, time);");
+    near(simulated(&text, 2.0, "y"), 1.0 + 4.0 + 12.0, 1e-14);
+    let text = model("Real s; Real v[2]; equation (s, v) = both(time, {-3, 2});");
+    near(simulated(&text, 1.0, "v[2]"), 6.0, 1e-14);
+    for name in ["unassigned", "outside", "endless"] {
+        let text = model(&format!("Real y = {name}(time);"));
+        assert_eq!(refused(&text), "not-supported", "{name}");
+    }
+}
+
+#[test]
+fn functions_are_differentiated() {
+    let text = format!("model F {FUNCTIONS} Real x(start = 0.4); Real y(start = 0.5); Real z(start = 0.6);
+        equation der(x) = horner({{x, y, z}}, y); (der(y), {{der(z), w}}) = both(x, {{y, z}}); Real w; end F;");
+    let text =
+        text.replace(" Real w; end F;", " end F;").replace("Real z(start", "Real w; Real z(start");
+    jacobian_agrees(&text);
 }

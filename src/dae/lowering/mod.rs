@@ -1,13 +1,14 @@
 //! Expressions with arrays and records become scalars (MLS ch. 10).
 //!
-//! The rules of arrays are written once, here, for two targets: the symbolic expressions of
-//! equations and the instructions of user functions. What differs is a [`Target`].
+//! The rules of arrays are written once, here, for two targets: the equations of a model, and the
+//! statements of user functions. What differs is a [`Target`].
 
 mod arrays;
 mod calls;
 mod expression;
 mod operators;
 
+pub(crate) use arrays::Choice;
 pub(crate) use expression::field;
 
 use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE};
@@ -117,8 +118,6 @@ pub(crate) struct Branch<S> {
     pub(crate) condition: S,
     /// Values of the first branch.
     pub(crate) values: Vec<S>,
-    /// Positions of jumps to complete.
-    pub(crate) jumps: [usize; 2],
 }
 
 /// Operations of one operand.

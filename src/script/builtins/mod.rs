@@ -4,6 +4,7 @@
 mod args;
 mod conversion;
 mod files;
+mod gapilib;
 mod header;
 mod loading;
 mod matrices;
@@ -87,6 +88,7 @@ pub static FAMILIES: &[&Family] = &[
     &conversion::FAMILY,
     &files::FAMILY,
     &files::OPENMODELICA,
+    &gapilib::FAMILY,
     &loading::FAMILY,
     &loading::OPENMODELICA,
     &matrices::FAMILY,

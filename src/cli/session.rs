@@ -1,0 +1,57 @@
+//! A session for the commands that work on models, and how they tell what is wrong.
+
+use super::args::Global;
+use super::terminal::{self, Terminal};
+use super::world::SystemWorld;
+use crate::diag::Diagnostic;
+use crate::script::Session;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// A session in the system's world with the user's library folders.
+pub(super) fn open(global: &Global, world: SystemWorld) -> Session {
+    let mut session = Session::new(Box::new(world));
+    for folder in library_folders(global) {
+        session.add_library_dir(&folder);
+    }
+    session
+}
+
+/// `--library` first, then `MODELICAPATH`, then the models that are shipped with the program.
+fn library_folders(global: &Global) -> Vec<PathBuf> {
+    let mut folders = global.library.clone();
+    if let Some(path) = std::env::var_os("MODELICAPATH") {
+        folders.extend(std::env::split_paths(&path).filter(|p| !p.as_os_str().is_empty()));
+    }
+    folders.extend(shipped_models());
+    folders
+}
+
+/// The folder `models` beside the program, or beside a folder that holds the program (as in the
+/// source tree).
+fn shipped_models() -> Option<PathBuf> {
+    let program = std::env::current_exe().ok()?;
+    program.ancestors().skip(1).take(4).map(|folder| folder.join("models")).find(|f| f.is_dir())
+}
+
+/// A session in which these files and folders are loaded.
+pub(super) fn with_files(global: &Global, files: &[PathBuf]) -> Result<Session, ExitCode> {
+    let world = SystemWorld::new(Terminal::new(global.color, false), "results".as_ref(), None);
+    let world = world.map_err(|error| {
+        terminal::eprint(&format!("error: the working directory cannot be read: {error}\n"));
+        ExitCode::FAILURE
+    })?;
+    let mut session = open(global, world);
+    for file in files {
+        if let Err(errors) = session.load_path(file) {
+            return Err(failed(&mut session, errors));
+        }
+    }
+    Ok(session)
+}
+
+/// Shows what is wrong.
+pub(super) fn failed(session: &mut Session, errors: Vec<Diagnostic>) -> ExitCode {
+    errors.into_iter().for_each(|error| session.report(error));
+    ExitCode::FAILURE
+}

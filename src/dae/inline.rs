@@ -1,0 +1,559 @@
+//! User functions become expressions: statements are carried out on symbolic values, loops of known
+//! length unrolled, branches merged into if-expressions (MLS ch. 11, §12.4).
+//!
+//! Refused with `not-supported`: external and impure functions; `while`, `break`, `return` and
+//! subscripts that depend on variables; recursion that does not end when compiling.
+
+use super::build::{Builder, message_text};
+use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
+use super::lowering::{
+    Array, Binary, Branch, Choice, Lowered, Lowering, Operator, Target, Unary, field,
+};
+use super::model::{Assertion, Shape};
+use crate::diag::Diagnostic;
+use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
+use crate::fault;
+use crate::name::{Ident, Name};
+use crate::source::Span;
+use crate::symbolic::function::FunctionId;
+use crate::symbolic::{Expr, RelationOperator};
+use crate::syntax::ast::{
+    ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind, Subscript,
+};
+use std::sync::Arc;
+
+/// Most statements that all calls of a model may run.
+pub(super) const MAX_STATEMENTS: usize = 1_000_000;
+/// Deepest nesting of calls.
+const MAX_CALLS: usize = 40;
+
+/// How a sequence of statements ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Flow {
+    Next,
+    Break,
+    Return,
+}
+
+/// The outputs of a call.
+pub(super) fn inline(
+    builder: &mut Builder<'_>,
+    function: &Arc<Function>,
+    arguments: Vec<Lowered<Expr>>,
+    span: Span,
+) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+    let name = &function.name;
+    let refuse =
+        |reason: &str| Err(fault!(NOT_SUPPORTED, "the function `{name}` {reason}").at(span));
+    let FunctionBody::Algorithm(statements) = &function.body else {
+        return refuse("is external and cannot be used in equations");
+    };
+    if function.impure {
+        return refuse("is impure and cannot be used in equations");
+    }
+    if builder.calls >= MAX_CALLS {
+        return refuse("calls itself without an end that is known when compiling");
+    }
+    builder.calls += 1;
+    let mut call = Call { builder, locals: Vec::new(), guards: Vec::new(), unassigned: false };
+    let result = call.run(function, statements, arguments, span);
+    builder.calls -= 1;
+    result
+}
+
+/// A call being carried out.
+struct Call<'a, 'b> {
+    builder: &'a mut Builder<'b>,
+    /// Variables with their values; NaN where nothing was assigned.
+    locals: Vec<(Ident, Lowered<Expr>)>,
+    /// Conditions of the branches around, for assertions.
+    guards: Vec<Expr>,
+    /// Whether a decision depended on a variable without value.
+    unassigned: bool,
+}
+
+type Loops = Vec<(Ident, Expr)>;
+
+impl Call<'_, '_> {
+    fn run(
+        &mut self,
+        function: &Function,
+        statements: &[Statement],
+        arguments: Vec<Lowered<Expr>>,
+        span: Span,
+    ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+        for (input, argument) in function.inputs.iter().zip(arguments) {
+            check_rank(function, input, &argument, span)?;
+            self.locals.push((input.name, argument));
+        }
+        for component in function.outputs.iter().chain(&function.locals) {
+            let shape = component_shape(&mut Lowering::new(self), component)?;
+            let nothing = self.constant(f64::NAN);
+            let mut value = Lowered::from_scalars(&shape, &mut std::iter::repeat(nothing));
+            if let Some(binding) = &component.binding {
+                let bound = Lowering::new(self).lower(binding)?;
+                if bound.shape().as_ref() != Some(&shape) {
+                    return Err(fault!(
+                        ARRAY_MISMATCH,
+                        "the value of `{}` has another size",
+                        component.name
+                    )
+                    .at(binding.span));
+                }
+                value = bound;
+            }
+            self.locals.push((component.name, value));
+        }
+        self.statements(statements, &mut Vec::new())?;
+        let outputs: Vec<Lowered<Expr>> = function
+            .outputs
+            .iter()
+            .filter_map(|o| self.locals.iter().find(|(name, _)| *name == o.name))
+            .map(|(_, value)| value.clone())
+            .collect();
+        let mut scalars = Vec::new();
+        outputs.iter().for_each(|output| output.append_scalars(&mut scalars));
+        let pool = &self.builder.dae.pool;
+        let missing = |e: Expr| pool.as_constant(e).is_some_and(f64::is_nan);
+        if self.unassigned || pool.reachable(&scalars).into_iter().any(missing) {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "the function `{}` uses or returns a variable that it does not always assign",
+                function.name
+            )
+            .at(function.span)
+            .related(span, "called here"));
+        }
+        Ok(outputs)
+    }
+
+    fn statements(&mut self, list: &[Statement], loops: &mut Loops) -> Result<Flow, Diagnostic> {
+        for statement in list {
+            let flow = self.statement(statement, loops)?;
+            if flow != Flow::Next {
+                return Ok(flow);
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    fn lowering(&mut self, loops: &Loops) -> Lowering<'_, Self> {
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.clone();
+        lowering.live = true;
+        lowering
+    }
+
+    fn statement(&mut self, s: &Statement, loops: &mut Loops) -> Result<Flow, Diagnostic> {
+        self.builder.statements = self.builder.statements.saturating_sub(1);
+        if self.builder.statements == 0 {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "functions in equations run more than {MAX_STATEMENTS} statements"
+            )
+            .at(s.span));
+        }
+        match &s.kind {
+            StatementKind::Assign { target, value } => {
+                let value = self.lowering(loops).lower(value)?;
+                self.assign(target, value, loops)?;
+            }
+            StatementKind::MultiAssign { targets, value } => {
+                let ExpressionKind::Call { function, arguments } = &value.kind else {
+                    return Err(fault!(NOT_SUPPORTED, "several variables need a call").at(s.span));
+                };
+                let name = function.name();
+                let Some(user) = self.function(&name) else {
+                    return Err(fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`")
+                        .at(function.span));
+                };
+                let outputs = self.lowering(loops).user_call(&user, arguments, s.span)?;
+                for (target, output) in targets.iter().zip(outputs) {
+                    if let Some(target) = target {
+                        self.assign(target, output, loops)?;
+                    }
+                }
+            }
+            StatementKind::If { branches, otherwise } => {
+                return self.branches(branches, otherwise, s.span, loops);
+            }
+            StatementKind::For { indices, body } => return self.repeat(indices, body, loops),
+            StatementKind::While { condition, body } => {
+                while self.lowering(loops).known(condition)? != 0.0 {
+                    match self.statements(body, loops)? {
+                        Flow::Next => {}
+                        Flow::Break => break,
+                        Flow::Return => return Ok(Flow::Return),
+                    }
+                    self.builder.statements = self.builder.statements.saturating_sub(1);
+                    if self.builder.statements == 0 {
+                        return Err(fault!(NOT_SUPPORTED, "this loop has no end").at(s.span));
+                    }
+                }
+            }
+            StatementKind::Break => return Ok(Flow::Break),
+            StatementKind::Return => return Ok(Flow::Return),
+            StatementKind::Call(call) => self.assertion(call, loops)?,
+            StatementKind::When { .. } => {
+                return Err(fault!(NOT_SUPPORTED, "`when` in a function").at(s.span));
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    fn branches(
+        &mut self,
+        branches: &[(Expression, Vec<Statement>)],
+        otherwise: &[Statement],
+        span: Span,
+        loops: &mut Loops,
+    ) -> Result<Flow, Diagnostic> {
+        let Some(((condition, body), rest)) = branches.split_first() else {
+            return self.statements(otherwise, loops);
+        };
+        let condition = self.lowering(loops).scalar(condition)?;
+        if let Some(known) = self.as_constant(condition) {
+            return match known != 0.0 {
+                true => self.statements(body, loops),
+                false => self.branches(rest, otherwise, span, loops),
+            };
+        }
+        let before = self.locals.clone();
+        self.guards.push(condition);
+        let first = self.statements(body, loops);
+        self.guards.pop();
+        let taken = std::mem::replace(&mut self.locals, before);
+        let not = self.unary(Unary::Not, condition);
+        self.guards.push(not);
+        let second = self.branches(rest, otherwise, span, loops);
+        self.guards.pop();
+        if (first?, second?) != (Flow::Next, Flow::Next) {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "`break` or `return` under a condition that depends on variables"
+            )
+            .at(span));
+        }
+        for ((_, local), (_, taken)) in self.locals.iter_mut().zip(&taken) {
+            merge(self.builder, condition, taken, local);
+        }
+        Ok(Flow::Next)
+    }
+
+    fn repeat(
+        &mut self,
+        indices: &[ForIndex],
+        body: &[Statement],
+        loops: &mut Loops,
+    ) -> Result<Flow, Diagnostic> {
+        let Some((index, inner)) = indices.split_first() else {
+            return self.statements(body, loops);
+        };
+        for value in self.lowering(loops).loop_values(index)? {
+            loops.push((index.name.node, value));
+            let flow = self.repeat(inner, body, loops);
+            loops.pop();
+            match flow? {
+                Flow::Next => {}
+                Flow::Break => break,
+                Flow::Return => return Ok(Flow::Return),
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    fn assertion(&mut self, call: &Expression, loops: &Loops) -> Result<(), Diagnostic> {
+        let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(()) };
+        if function.as_ident().is_none_or(|name| name != "assert") {
+            return Err(fault!(NOT_SUPPORTED, "a call without a value in a function").at(call.span));
+        }
+        let Some(condition) = arguments.positional.first() else {
+            return Err(fault!(ARRAY_MISMATCH, "`assert` needs a condition").at(call.span));
+        };
+        let mut condition = self.lowering(loops).scalar(condition)?;
+        for guard in self.guards.clone() {
+            let not = self.unary(Unary::Not, guard);
+            condition = self.binary(Binary::Or, not, condition);
+        }
+        let message = arguments.positional.get(1).map_or(String::new(), message_text).into();
+        let assertion = Assertion { condition, message, is_error: true, span: call.span };
+        self.builder.dae.assertions.push(assertion);
+        Ok(())
+    }
+
+    fn assign(
+        &mut self,
+        target: &ComponentReference,
+        value: Lowered<Expr>,
+        loops: &Loops,
+    ) -> Result<(), Diagnostic> {
+        let (last, path) = match target.parts.split_last() {
+            Some((last, path)) if path.iter().all(|part| part.subscripts.is_empty()) => {
+                (last, path)
+            }
+            _ => return Err(fault!(NOT_SUPPORTED, "an array of records").at(target.span)),
+        };
+        let names: Vec<Ident> = path.iter().chain([last]).map(|part| part.name).collect();
+        let unknown = || {
+            fault!(UNRESOLVED_REFERENCE, "there is no variable `{}`", target.name()).at(target.span)
+        };
+        let dims = match self.local(&names).ok_or_else(unknown)? {
+            Lowered::Array(array) => array.dims.clone(),
+            _ => Vec::new(),
+        };
+        let positions = self.positions(&dims, &last.subscripts, target.span, loops)?;
+        let place = self.local(&names).ok_or_else(unknown)?;
+        let Some(positions) = positions else {
+            if place.shape() != value.shape() {
+                return Err(fault!(
+                    ARRAY_MISMATCH,
+                    "the value of `{}` has another size",
+                    target.name()
+                )
+                .at(target.span));
+            }
+            *place = value;
+            return Ok(());
+        };
+        let (Lowered::Array(array), Lowered::Array(value)) = (place, value) else {
+            return Err(fault!(NOT_SUPPORTED, "subscripts of a record").at(target.span));
+        };
+        if positions.len() != value.elements.len() {
+            return Err(fault!(
+                ARRAY_MISMATCH,
+                "{} elements are assigned to {}",
+                value.elements.len(),
+                positions.len()
+            )
+            .at(target.span));
+        }
+        for (position, element) in positions.into_iter().zip(value.elements) {
+            array.elements[position] = element;
+        }
+        Ok(())
+    }
+
+    /// Row-major positions that subscripts choose; `None` without subscripts.
+    fn positions(
+        &mut self,
+        dims: &[usize],
+        subscripts: &[Subscript],
+        span: Span,
+        loops: &Loops,
+    ) -> Result<Option<Vec<usize>>, Diagnostic> {
+        if subscripts.is_empty() {
+            return Ok(None);
+        }
+        let mut positions = vec![0];
+        let mut choices = self.lowering(loops).choices(dims, subscripts, span)?.into_iter();
+        for size in dims {
+            let chosen: Vec<usize> = match choices.next() {
+                Some(Choice::Known { positions, .. }) => positions,
+                Some(Choice::Computed(_)) => return Err(subscript_unknown(span)),
+                None => (0..*size).collect(),
+            };
+            let step = |at: &usize| chosen.iter().map(|c| at * size + c).collect::<Vec<_>>();
+            positions = positions.iter().flat_map(step).collect();
+        }
+        Ok(Some(positions))
+    }
+
+    fn local(&mut self, names: &[Ident]) -> Option<&mut Lowered<Expr>> {
+        let (first, rest) = names.split_first()?;
+        let mut place = &mut self.locals.iter_mut().find(|(name, _)| name == first)?.1;
+        for name in rest {
+            let Lowered::Record(fields) = place else { return None };
+            place = &mut fields.iter_mut().find(|(field, _)| field == name)?.1;
+        }
+        Some(place)
+    }
+}
+
+fn subscript_unknown(span: Span) -> Diagnostic {
+    fault!(NOT_SUPPORTED, "a subscript that depends on variables is not supported yet").at(span)
+}
+
+/// `local := if condition then taken else local`
+fn merge(
+    builder: &mut Builder<'_>,
+    condition: Expr,
+    taken: &Lowered<Expr>,
+    local: &mut Lowered<Expr>,
+) {
+    match (taken, local) {
+        (Lowered::Array(a), Lowered::Array(b)) => {
+            for (x, y) in a.elements.iter().zip(&mut b.elements) {
+                *y = builder.dae.pool.if_then_else(condition, *x, *y);
+            }
+        }
+        (Lowered::Record(a), Lowered::Record(b)) => {
+            for ((_, x), (_, y)) in a.iter().zip(b) {
+                merge(builder, condition, x, y);
+            }
+        }
+        _ => {}
+    }
+}
+
+fn check_rank(
+    function: &Function,
+    input: &FunctionComponent,
+    argument: &Lowered<Expr>,
+    span: Span,
+) -> Result<(), Diagnostic> {
+    match argument {
+        Lowered::Array(Array { dims, .. }) if dims.len() != input.dims.len() => Err(fault!(
+            ARRAY_MISMATCH,
+            "the argument `{}` of `{}` has {} dimensions instead of {}",
+            input.name,
+            function.name,
+            dims.len(),
+            input.dims.len()
+        )
+        .at(span)),
+        Lowered::Text(_) => {
+            Err(fault!(NOT_SUPPORTED, "the text argument `{}` of `{}`", input.name, function.name)
+                .at(span))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The shape of an output or local, its sizes given by the components before it.
+fn component_shape<T: Target>(
+    lowering: &mut Lowering<'_, T>,
+    component: &FunctionComponent,
+) -> Result<Shape, Diagnostic> {
+    let mut dims = Vec::new();
+    for subscript in &component.dims {
+        match subscript {
+            Subscript::Index(size) => dims.push(lowering.known_size(size)?),
+            Subscript::All(place) => {
+                return Err(fault!(
+                    NOT_SUPPORTED,
+                    "the size of `{}` is not declared",
+                    component.name
+                )
+                .at(*place));
+            }
+        }
+    }
+    match &component.value_type {
+        ValueType::Record(_, fields) if dims.is_empty() => {
+            let shape = |(name, field): (&Ident, &FunctionComponent)| {
+                Ok((*name, component_shape(lowering, field)?))
+            };
+            Ok(Shape::Record(fields.iter().map(shape).collect::<Result<_, Diagnostic>>()?))
+        }
+        ValueType::Real | ValueType::Integer | ValueType::Boolean | ValueType::Enumeration(_) => {
+            Ok(Shape::Array(dims))
+        }
+        _ => Err(fault!(
+            NOT_SUPPORTED,
+            "`{}` is of a type that functions in equations cannot have",
+            component.name
+        )
+        .at(component.span)),
+    }
+}
+
+impl Target for Call<'_, '_> {
+    type Scalar = Expr;
+
+    fn constant(&mut self, value: f64) -> Expr {
+        self.builder.constant(value)
+    }
+
+    fn as_constant(&self, scalar: Expr) -> Option<f64> {
+        self.builder.as_constant(scalar)
+    }
+
+    fn unary(&mut self, operation: Unary, a: Expr) -> Expr {
+        self.builder.unary(operation, a)
+    }
+
+    fn binary(&mut self, operation: Binary, a: Expr, b: Expr) -> Expr {
+        self.builder.binary(operation, a, b)
+    }
+
+    fn relation(&mut self, op: RelationOperator, a: Expr, b: Expr, _: bool, span: Span) -> Expr {
+        self.unassigned |= [a, b].iter().any(|e| self.as_constant(*e).is_some_and(f64::is_nan));
+        // Relations inside functions cause no events (MLS §12.2).
+        self.builder.relation(op, a, b, true, span)
+    }
+
+    fn apply(
+        &mut self,
+        function: FunctionId,
+        arguments: &[Expr],
+        _: bool,
+        span: Span,
+    ) -> Result<Expr, Diagnostic> {
+        self.builder.apply(function, arguments, true, span)
+    }
+
+    fn begin_if(&mut self, condition: Expr) -> Branch<Expr> {
+        self.builder.begin_if(condition)
+    }
+
+    fn begin_else(&mut self, branch: &mut Branch<Expr>, values: &[Expr]) {
+        self.builder.begin_else(branch, values);
+    }
+
+    fn end_if(&mut self, branch: Branch<Expr>, values: &[Expr]) -> Vec<Expr> {
+        self.builder.end_if(branch, values)
+    }
+
+    fn element(&mut self, _: &[Expr], _: Expr, span: Span) -> Result<Expr, Diagnostic> {
+        Err(subscript_unknown(span))
+    }
+
+    fn reference(
+        &mut self,
+        path: &str,
+        reference: &ComponentReference,
+    ) -> Result<Lowered<Expr>, Diagnostic> {
+        let mut parts = path.split('.');
+        let first = parts.next().unwrap_or(path);
+        let found = self.locals.iter().find(|(name, _)| *name == first);
+        let mut value = found.map(|(_, value)| value.clone()).ok_or_else(|| {
+            fault!(UNRESOLVED_REFERENCE, "there is no variable `{path}` in this function")
+                .at(reference.span)
+        })?;
+        for part in parts {
+            value = field(value, Ident::new(part), reference.span)?;
+        }
+        Ok(value)
+    }
+
+    fn function(&self, name: &Name) -> Option<Arc<Function>> {
+        self.builder.function(name)
+    }
+
+    fn call(
+        &mut self,
+        function: &Arc<Function>,
+        arguments: Vec<Lowered<Expr>>,
+        span: Span,
+    ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+        inline(self.builder, function, arguments, span)
+    }
+
+    fn operator(
+        &mut self,
+        name: &str,
+        arguments: &[Expression],
+        span: Span,
+    ) -> Option<Result<Operator, Diagnostic>> {
+        match name {
+            "der" | "initial" => {
+                Some(Err(fault!(NOT_SUPPORTED, "`{name}` in a function").at(span)))
+            }
+            _ => self.builder.operator(name, arguments, span),
+        }
+    }
+
+    fn derivative(&mut self, _: Expr, span: Span) -> Result<Expr, Diagnostic> {
+        Err(fault!(NOT_SUPPORTED, "`der` in a function").at(span))
+    }
+}

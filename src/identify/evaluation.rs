@@ -1,0 +1,421 @@
+//! Simulates whole populations, spread over all cores; what comes out does not depend on how many.
+
+use super::errors::{
+    AMBIGUOUS_OUTPUT, BAD_DATA, FIXED_PARAMETER, NO_PARAMETERS, PARAMETER_NOT_FOUND, UNKNOWN_OUTPUT,
+};
+use super::model::{Instance, Model, Parameter};
+use super::points::{Path, time_of};
+use super::{Quantity, Study};
+use crate::diag::{Fault, suggest};
+use crate::ga::Genomes;
+use crate::ga::errors::{BAD_RANGE, SIZE_MISMATCH};
+use crate::sim::{OutputGrid, Settings, Simulator, Trajectory};
+use crate::{bail, fault};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Slices in which the measured points are looked for on a function of time.
+const SLICES: u32 = 500;
+
+/// X when nothing else is named.
+const TIME: &str = "time";
+
+/// What is varied and what is compared.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Question {
+    /// The identified parameters, one for each gene; empty for all tunable ones at the top level.
+    pub parameters: Vec<String>,
+    /// The variable that `x` holds values of.
+    pub x_name: String,
+    /// The variable that was measured; empty for the only top-level output.
+    pub y_name: String,
+    /// The measured points.
+    pub x: Vec<f64>,
+}
+
+/// Simulates populations of one model; made once and used for all generations.
+pub struct Evaluator {
+    study: Arc<Study>,
+    parameters: Vec<Parameter>,
+    x: Vec<f64>,
+    plan: Plan,
+    settings: Settings,
+    workers: Vec<Worker>,
+    pool: Option<rayon::ThreadPool>,
+}
+
+/// The simulated values of a population.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Simulated {
+    /// Y at the measured points, one row for each individual; NaN where the simulation failed.
+    pub rows: Vec<f64>,
+    /// Why it failed; `None` where it did not.
+    pub failures: Vec<Option<FailedSimulation>>,
+}
+
+/// Why and when a simulation failed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FailedSimulation {
+    /// Why, in one sentence.
+    pub cause: String,
+    /// When, in simulated time; `None` where the whole simulation is of no use.
+    pub time: Option<f64>,
+}
+
+impl std::fmt::Display for FailedSimulation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.time {
+            Some(time) => write!(f, "{} (at {time} s)", self.cause),
+            None => f.write_str(&self.cause),
+        }
+    }
+}
+
+impl Simulated {
+    /// Why each simulation failed, as text; empty where it did not.
+    pub fn messages(&self) -> Vec<String> {
+        let text = |failed: &FailedSimulation| failed.to_string();
+        self.failures.iter().map(|failure| failure.as_ref().map_or(String::new(), text)).collect()
+    }
+}
+
+/// How the measured points are found on a trajectory.
+enum Plan {
+    /// X depends on time alone: at these times, in the order of the points. Only Y is observed.
+    AtTimes(Vec<f64>),
+    /// X is simulated along with Y: by interpolation in X.
+    InX,
+}
+
+/// What one thread needs.
+struct Worker {
+    instance: Box<dyn Instance>,
+    simulator: Simulator,
+    trajectory: Trajectory,
+}
+
+/// The answer for one individual.
+struct Answer {
+    individual: usize,
+    row: Result<Vec<f64>, FailedSimulation>,
+}
+
+impl Evaluator {
+    /// Prepares to answer `question` with `threads` threads.
+    ///
+    /// # Errors
+    ///
+    /// Parameters and variables that the model does not have, parameters that cannot vary, no
+    /// measured points or points that are not finite, points that the simulation cannot reach.
+    pub fn new(model: &dyn Model, question: Question, threads: usize) -> Result<Evaluator, Fault> {
+        check_points(&question.x)?;
+        let parameters = identified_parameters(model, &question.parameters)?;
+        let varied: Vec<String> =
+            parameters.iter().map(|parameter| parameter.name.clone()).collect();
+        let x = x_quantity(model, &question.x_name)?;
+        let y = y_quantity(model, &question.y_name)?;
+        let mut settings = model.settings();
+        let plan = plan(model, &varied, &x.name, &question.x, &mut settings)?;
+        let observed = match &plan {
+            Plan::AtTimes(_) => vec![y.name.clone()],
+            Plan::InX => vec![y.name.clone(), x.name.clone()],
+        };
+        let worker = || {
+            let instance = model.instance(&varied, &observed)?;
+            let (simulator, trajectory) = (Simulator::new(), Trajectory::default());
+            Ok(Worker { instance, simulator, trajectory })
+        };
+        let quantity = |p: &Parameter| Quantity { name: p.name.clone(), unit: p.unit.clone() };
+        let study = Study {
+            model: model.name().to_owned(),
+            parameters: parameters.iter().map(quantity).collect(),
+            x,
+            y,
+        };
+        let threads = threads.max(1);
+        // Without a pool (one thread, or no more threads to be had) the caller's thread works.
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok();
+        Ok(Evaluator {
+            study: Arc::new(study),
+            parameters,
+            x: question.x,
+            plan,
+            settings,
+            workers: (0..threads).map(|_| worker()).collect::<Result<_, Fault>>()?,
+            pool: pool.filter(|_| threads > 1),
+        })
+    }
+
+    /// What is simulated.
+    pub fn study(&self) -> &Arc<Study> {
+        &self.study
+    }
+
+    /// The measured points.
+    pub fn x(&self) -> &[f64] {
+        &self.x
+    }
+
+    /// The identified parameters, in the order of the genes.
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// The settings of the simulations.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Simulates every individual. One that fails does not end the others.
+    ///
+    /// # Errors
+    ///
+    /// `population-size-mismatch` when there is not one gene for each parameter, `bad-range` when
+    /// a gene lies outside what the model allows for its parameter.
+    pub fn evaluate(&mut self, genomes: &Genomes) -> Result<Simulated, Fault> {
+        self.check_genomes(genomes)?;
+        let Evaluator { plan, settings, x, workers, pool, study, .. } = self;
+        let next = AtomicUsize::new(0);
+        let work = |worker: &mut Worker| {
+            let mut answers = Vec::new();
+            loop {
+                let individual = next.fetch_add(1, Ordering::Relaxed);
+                if individual >= genomes.len() {
+                    return answers;
+                }
+                let row =
+                    worker.simulate(genomes.row(individual), plan, settings, x, &study.x.name);
+                answers.push(Answer { individual, row });
+            }
+        };
+        let answers: Vec<Vec<Answer>> = match pool {
+            Some(pool) => {
+                use rayon::prelude::*;
+                pool.install(|| workers.par_iter_mut().with_max_len(1).map(work).collect())
+            }
+            None => workers.iter_mut().take(1).map(work).collect(),
+        };
+        Ok(collect(answers, genomes.len(), x.len()))
+    }
+
+    fn check_genomes(&self, genomes: &Genomes) -> Result<(), Fault> {
+        let (genes, parameters) = (genomes.n_genes(), self.parameters.len());
+        if genes != parameters {
+            let names: Vec<&str> = self.parameters.iter().map(|p| p.name.as_str()).collect();
+            bail!(
+                SIZE_MISMATCH,
+                "the population has {genes} columns, but {parameters} parameters are identified: {}",
+                names.join(", ")
+            );
+        }
+        for (individual, genome) in genomes.rows().enumerate() {
+            for (value, parameter) in genome.iter().zip(&self.parameters) {
+                let Parameter { name, min, max, .. } = parameter;
+                if !(*min..=*max).contains(value) {
+                    bail!(
+                        BAD_RANGE,
+                        "individual {} has `{name}` = {value}, but `{}` allows {min} to {max}",
+                        individual + 1,
+                        self.study.model;
+                        help: "correct the search range of `{name}`, or its `min` and `max` in the \
+                               model"
+                    );
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Worker {
+    fn simulate(
+        &mut self,
+        genome: &[f64],
+        plan: &Plan,
+        settings: &Settings,
+        x: &[f64],
+        x_name: &str,
+    ) -> Result<Vec<f64>, FailedSimulation> {
+        let useless = |cause: String| FailedSimulation { cause, time: None };
+        self.instance.set(genome).map_err(|fault| useless(fault.message))?;
+        let run = self.simulator.run(self.instance.system(), settings, &mut self.trajectory);
+        run.map_err(|error| FailedSimulation {
+            cause: self.instance.explain(&error),
+            time: Some(error.time),
+        })?;
+        let y = self.trajectory.column(0);
+        let mut row = vec![f64::NAN; x.len()];
+        match plan {
+            Plan::AtTimes(times) => {
+                for (value, &time) in row.iter_mut().zip(times) {
+                    let found = self.trajectory.at(0, time);
+                    *value =
+                        found.ok_or_else(|| useless("the simulation ended early".to_owned()))?;
+                }
+            }
+            Plan::InX => {
+                let path = Path { times: self.trajectory.time(), x: self.trajectory.column(1) };
+                path.interpolate(x_name, y, x, &mut row).map_err(|fault| useless(fault.message))?;
+            }
+        }
+        match row.iter().all(|value| value.is_finite()) {
+            true => Ok(row),
+            false => Err(useless("a simulated value is not finite".to_owned())),
+        }
+    }
+}
+
+fn collect(answers: Vec<Vec<Answer>>, individuals: usize, points: usize) -> Simulated {
+    let mut rows = vec![f64::NAN; individuals * points];
+    let mut failures = vec![None; individuals];
+    for Answer { individual, row } in answers.into_iter().flatten() {
+        match row {
+            Ok(row) => rows[individual * points..(individual + 1) * points].copy_from_slice(&row),
+            Err(failure) => failures[individual] = Some(failure),
+        }
+    }
+    Simulated { rows, failures }
+}
+
+fn check_points(x: &[f64]) -> Result<(), Fault> {
+    if x.is_empty() {
+        bail!(BAD_DATA, "there are no measured points"; help: "read them with `Exp_Adq_SISO`");
+    }
+    match x.iter().position(|value| !value.is_finite()) {
+        Some(k) => bail!(BAD_DATA, "measured X number {} is {}", k + 1, x[k]),
+        None => Ok(()),
+    }
+}
+
+fn identified_parameters(model: &dyn Model, names: &[String]) -> Result<Vec<Parameter>, Fault> {
+    let all = model.parameters();
+    if names.is_empty() {
+        let found: Vec<Parameter> = all.into_iter().filter(|p| p.tunable && p.top_level).collect();
+        if found.is_empty() {
+            bail!(
+                NO_PARAMETERS,
+                "`{}` has no tunable parameters at its top level", model.name();
+                help: "name the parameters to identify with `Parameter_Names`"
+            );
+        }
+        return Ok(found);
+    }
+    let known = || all.iter().filter(|p| p.tunable).map(|parameter| parameter.name.as_str());
+    let find = |name: &String| match all.iter().find(|parameter| parameter.name == *name) {
+        Some(parameter) if parameter.tunable => Ok(parameter.clone()),
+        Some(_) => Err(fault!(
+            FIXED_PARAMETER,
+            "`{name}` is fixed when `{}` is translated, it cannot be identified", model.name();
+            help: "set it by a modification of the model's name, such as `M({name} = 1)`"
+        )),
+        None => Err(fault!(PARAMETER_NOT_FOUND, "`{}` has no parameter `{name}`", model.name())
+            .help_if(suggest::did_you_mean(name, known()))
+            .help(format!("its parameters: {}", known().collect::<Vec<_>>().join(", ")))),
+    };
+    names.iter().map(find).collect()
+}
+
+fn x_quantity(model: &dyn Model, name: &str) -> Result<Quantity, Fault> {
+    if name.is_empty() || name == TIME {
+        return Ok(Quantity { name: TIME.to_owned(), unit: "s".to_owned() });
+    }
+    quantity(model, name)
+}
+
+fn y_quantity(model: &dyn Model, name: &str) -> Result<Quantity, Fault> {
+    if !name.is_empty() {
+        return quantity(model, name);
+    }
+    match model.outputs().as_slice() {
+        [output] => quantity(model, output),
+        [] => bail!(
+            AMBIGUOUS_OUTPUT,
+            "`{}` has no output at its top level", model.name();
+            help: "name the measured variable with `Y_Name`"
+        ),
+        several => bail!(
+            AMBIGUOUS_OUTPUT,
+            "`{}` has several outputs: {}", model.name(), several.join(", ");
+            help: "name the measured one with `Y_Name`"
+        ),
+    }
+}
+
+fn quantity(model: &dyn Model, name: &str) -> Result<Quantity, Fault> {
+    match model.unit(name) {
+        Some(unit) => Ok(Quantity { name: name.to_owned(), unit }),
+        None => {
+            let names = model.names();
+            let hint = suggest::did_you_mean(name, names.iter().map(String::as_str));
+            Err(fault!(UNKNOWN_OUTPUT, "`{}` has no Real variable `{name}`", model.name())
+                .help_if(hint))
+        }
+    }
+}
+
+/// How the points are found; changes `settings` to what that needs.
+fn plan(
+    model: &dyn Model,
+    varied: &[String],
+    x_name: &str,
+    points: &[f64],
+    settings: &mut Settings,
+) -> Result<Plan, Fault> {
+    let times = if x_name == TIME {
+        let path = [settings.start, settings.stop];
+        reachable(&Path { times: &path, x: &path }, x_name, points)?;
+        points.to_vec()
+    } else if model.depends_on_time_alone(x_name, varied)
+        && let Some(times) = times_of_points(model, varied, x_name, points, settings)?
+    {
+        times
+    } else {
+        return Ok(Plan::InX);
+    };
+    let mut ascending = times.clone();
+    ascending.sort_by(f64::total_cmp);
+    ascending.dedup();
+    settings.stop = ascending.last().copied().unwrap_or(settings.stop).max(settings.start);
+    settings.output = OutputGrid::At(ascending);
+    Ok(Plan::AtTimes(times))
+}
+
+fn reachable(path: &Path<'_>, name: &str, points: &[f64]) -> Result<(), Fault> {
+    let outside = path.targets_outside(points);
+    if outside.is_empty() { Ok(()) } else { Err(path.outside(name, &outside)) }
+}
+
+/// The times at which X, a function of time alone, takes the measured values; `None` when X cannot
+/// be evaluated with the model's own parameter values, which need not make sense for this
+/// experiment.
+fn times_of_points(
+    model: &dyn Model,
+    varied: &[String],
+    x_name: &str,
+    points: &[f64],
+    settings: &Settings,
+) -> Result<Option<Vec<f64>>, Fault> {
+    let mut instance = model.instance(varied, &[x_name.to_owned()])?;
+    let system = instance.system();
+    let mut y = vec![0.0; system.n_differential() + system.n_algebraic()];
+    if system.initialize(settings.start, &mut y).is_err() {
+        return Ok(None);
+    }
+    // Not initialized at every time: what must hold for the other variables does not matter here.
+    let mut x_at = |time: f64| {
+        let mut value = [f64::NAN];
+        system.observe(time, &y, &mut value).map(|()| value[0])
+    };
+    let length = settings.stop - settings.start;
+    let grid: Vec<f64> =
+        (0..=SLICES).map(|k| settings.start + length * f64::from(k) / f64::from(SLICES)).collect();
+    let Ok(x) = grid.iter().map(|&time| x_at(time)).collect::<Result<Vec<f64>, _>>() else {
+        return Ok(None);
+    };
+    let path = Path { times: &grid, x: &x };
+    reachable(&path, x_name, points)?;
+    let slices: Vec<usize> =
+        points.iter().map(|&point| path.slice_of(x_name, point)).collect::<Result<_, Fault>>()?;
+    let time = |(&point, k): (&f64, usize)| time_of(grid[k], grid[k + 1], point, &mut x_at);
+    Ok(points.iter().zip(slices).map(time).collect::<Result<Vec<f64>, _>>().ok())
+}

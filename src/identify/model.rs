@@ -1,0 +1,53 @@
+//! What the identification needs of a model: names, and systems to simulate.
+
+use crate::diag::Fault;
+use crate::sim::{DaeSystem, Settings, SimError};
+
+/// A model that can be simulated many times with different parameter values.
+pub trait Model: Send + Sync {
+    /// Its name, with its modification.
+    fn name(&self) -> &str;
+    /// Its parameters in order of declaration.
+    fn parameters(&self) -> Vec<Parameter>;
+    /// Its top-level outputs.
+    fn outputs(&self) -> Vec<String>;
+    /// The names of all its Real variables and parameters, for suggestions.
+    fn names(&self) -> Vec<String>;
+    /// The unit of a Real variable, empty if it has none; `None` if there is no such variable.
+    fn unit(&self, variable: &str) -> Option<String>;
+    /// Whether the variable's value depends on time but on no state and on none of these
+    /// parameters; `false` where that is not certain.
+    fn depends_on_time_alone(&self, variable: &str, varied: &[String]) -> bool;
+    /// How its `experiment` annotation wants it simulated.
+    fn settings(&self) -> Settings;
+    /// A system of its own, which observes these variables in this order and whose parameters
+    /// `varied` can be set.
+    fn instance(&self, varied: &[String], observed: &[String]) -> Result<Box<dyn Instance>, Fault>;
+}
+
+/// A parameter of a model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameter {
+    /// Its name.
+    pub name: String,
+    /// Its unit; empty if it has none.
+    pub unit: String,
+    /// The smallest value that the model allows; −∞ where it does not say.
+    pub min: f64,
+    /// The largest value that the model allows; ∞ where it does not say.
+    pub max: f64,
+    /// Whether it can be set without translating the model again.
+    pub tunable: bool,
+    /// Whether it stands directly in the model.
+    pub top_level: bool,
+}
+
+/// A system with settable parameters.
+pub trait Instance: Send {
+    /// Sets the varied parameters, in their order; nothing of an earlier simulation remains.
+    fn set(&mut self, genome: &[f64]) -> Result<(), Fault>;
+    /// The system to simulate.
+    fn system(&mut self) -> &mut dyn DaeSystem;
+    /// Why a simulation failed, in one sentence without the time.
+    fn explain(&self, error: &SimError) -> String;
+}

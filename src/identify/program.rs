@@ -1,0 +1,138 @@
+//! Compiled programs as models to identify.
+
+use super::{Instance, Model, Parameter};
+use crate::compile::{Program, System, VariableInfo};
+use crate::diag::Fault;
+use crate::sim::{DaeSystem, OutputGrid, Settings, SimError};
+use std::sync::Arc;
+
+/// Output points where the `experiment` annotation gives no interval.
+const INTERVALS: usize = 500;
+/// More output points than this are a mistake of the annotation.
+const MOST_INTERVALS: f64 = 1e6;
+
+/// A compiled model under the name that the script gave it.
+pub struct CompiledModel {
+    name: String,
+    program: Arc<Program>,
+}
+
+impl CompiledModel {
+    /// Names a program; the name carries the modification.
+    pub fn new(name: impl Into<String>, program: Arc<Program>) -> CompiledModel {
+        CompiledModel { name: name.into(), program }
+    }
+
+    fn variable(&self, name: &str) -> Option<&VariableInfo> {
+        self.program.variables().iter().find(|variable| &*variable.name == name)
+    }
+}
+
+impl Model for CompiledModel {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let tunable = self.program.parameters();
+        let settable = tunable.iter().map(|parameter| Parameter {
+            name: parameter.name.to_string(),
+            unit: parameter.unit.to_string(),
+            min: parameter.min,
+            max: parameter.max,
+            tunable: true,
+            top_level: parameter.top_level,
+        });
+        let variables = self.program.variables().iter();
+        let fixed = variables
+            .filter(|variable| variable.is_known())
+            .filter(|variable| !tunable.iter().any(|parameter| parameter.name == variable.name))
+            .map(|variable| Parameter {
+                name: variable.name.to_string(),
+                unit: variable.unit.to_string(),
+                min: f64::NEG_INFINITY,
+                max: f64::INFINITY,
+                tunable: false,
+                top_level: variable.top_level,
+            });
+        settable.chain(fixed).collect()
+    }
+
+    fn outputs(&self) -> Vec<String> {
+        let outputs = self.program.variables().iter().filter(|variable| variable.is_output());
+        outputs.map(|variable| variable.name.to_string()).collect()
+    }
+
+    fn names(&self) -> Vec<String> {
+        self.program.variables().iter().map(|variable| variable.name.to_string()).collect()
+    }
+
+    fn unit(&self, variable: &str) -> Option<String> {
+        self.variable(variable).map(|variable| variable.unit.to_string())
+    }
+
+    fn depends_on_time_alone(&self, variable: &str, varied: &[String]) -> bool {
+        let Ok(variable) = self.program.find_variable(variable) else { return false };
+        let varied: Result<Vec<usize>, Fault> =
+            varied.iter().map(|name| self.program.find_parameter(name)).collect();
+        !self.program.needs_states(&[variable])
+            && varied.is_ok_and(|varied| !self.program.depends_on_parameters(variable, &varied))
+    }
+
+    fn settings(&self) -> Settings {
+        let experiment = self.program.experiment();
+        let default = Settings::default();
+        let start = experiment.start_time.unwrap_or(default.start);
+        let stop = experiment.stop_time.unwrap_or(start + 1.0).max(start);
+        let intervals = experiment.interval.map_or(INTERVALS, |interval| {
+            let intervals = ((stop - start) / interval).round();
+            if (1.0..=MOST_INTERVALS).contains(&intervals) { intervals as usize } else { INTERVALS }
+        });
+        Settings {
+            start,
+            stop,
+            output: OutputGrid::Intervals(intervals),
+            tolerance: experiment.tolerance.unwrap_or(default.tolerance),
+            ..default
+        }
+    }
+
+    fn instance(&self, varied: &[String], observed: &[String]) -> Result<Box<dyn Instance>, Fault> {
+        let positions: Vec<usize> = observed
+            .iter()
+            .map(|name| self.program.find_variable(name))
+            .collect::<Result<_, _>>()?;
+        let slots = varied
+            .iter()
+            .map(|name| self.program.find_parameter(name))
+            .collect::<Result<_, _>>()?;
+        let mut system = self.program.system();
+        system.observe_only(&positions);
+        Ok(Box::new(CompiledInstance { system, slots }))
+    }
+}
+
+struct CompiledInstance {
+    system: System,
+    /// Positions of the varied parameters.
+    slots: Vec<usize>,
+}
+
+impl Instance for CompiledInstance {
+    fn set(&mut self, genome: &[f64]) -> Result<(), Fault> {
+        let mut pairs = self.slots.iter().zip(genome);
+        pairs.try_for_each(|(&slot, &value)| self.system.set_parameter(slot, value))
+    }
+
+    fn system(&mut self) -> &mut dyn DaeSystem {
+        &mut self.system
+    }
+
+    fn explain(&self, error: &SimError) -> String {
+        let message = self.system.program().explain(error).message.clone();
+        // The time is told apart, so that equal causes can be counted.
+        let when = format!("at t = {}", error.time);
+        let shortened = message.replace(&format!(" ({when})"), "").replace(&format!(" {when}"), "");
+        shortened.trim_end().to_owned()
+    }
+}

@@ -1,0 +1,297 @@
+//! The functions of the paper (package `GAPILib.Basics`): random numbers, measured data, and one
+//! generation of the genetic algorithm. The same functions as Modelica code lie in
+//! `models/GAPILib`.
+
+use super::{Args, Builtin, Failure, Family};
+use crate::bail;
+use crate::diag::Fault;
+use crate::ga::errors::{BAD_POPULATION, SIZE_MISMATCH};
+use crate::ga::{self, Gene, Genomes, Mrg32k3a};
+use crate::identify::Question;
+use crate::identify::errors::BAD_DATA;
+use crate::identify::fitness::sum_of_squares;
+use crate::script::Session;
+use crate::script::identification::Request;
+use crate::value::errors::TYPE_MISMATCH;
+use crate::value::{ArrayValue, Elements, FromValue, RealMatrix, Value};
+
+/// The functions of the paper.
+pub const FAMILY: Family = Family {
+    packages: &["GAPILib.Basics"],
+    dialect: None,
+    builtins: &[
+        Builtin { header: RAM_GEN_ARENA, run: ram_gen_arena },
+        Builtin { header: EXP_ADQ_SISO, run: exp_adq_siso },
+        Builtin { header: EVAL, run: eval },
+        Builtin { header: FIT, run: fit },
+        Builtin { header: FIT_ORDER, run: fit_order },
+        Builtin { header: CROSS, run: cross },
+        Builtin { header: MUTATION, run: mutation },
+    ],
+};
+
+/// More numbers than this in one call are a mistake.
+const MOST_NUMBERS: i64 = 100_000_000;
+
+/// A matrix; a vector is one row.
+struct Rows(RealMatrix);
+
+/// Whole numbers: one, or a vector of them, also as Reals.
+struct WholeNumbers(Vec<i64>);
+
+impl FromValue for Rows {
+    fn from_value(value: Value) -> Result<Rows, Fault> {
+        let value = match value {
+            Value::Array(ArrayValue { dims, elements }) if dims.len() == 1 => {
+                Value::Array(ArrayValue { dims: vec![1, dims[0]], elements })
+            }
+            other => other,
+        };
+        RealMatrix::from_value(value).map(Rows)
+    }
+}
+
+impl FromValue for WholeNumbers {
+    fn from_value(value: Value) -> Result<WholeNumbers, Fault> {
+        let numbers = value.as_vector()?;
+        match numbers.iter().find(|number| number.fract() != 0.0 || number.abs() > 1e15) {
+            Some(number) => bail!(TYPE_MISMATCH, "expected whole numbers, got {number}"),
+            None => Ok(WholeNumbers(numbers.into_iter().map(|number| number as i64).collect())),
+        }
+    }
+}
+
+fn row(elements: Vec<f64>) -> Value {
+    RealMatrix { rows: 1, columns: elements.len(), elements }.into()
+}
+
+fn genomes_value(genomes: Genomes) -> Value {
+    let (rows, columns) = (genomes.len(), genomes.n_genes());
+    RealMatrix { rows, columns, elements: genomes.into_values() }.into()
+}
+
+fn take_genomes(args: &mut Args, name: &str) -> Result<Genomes, Fault> {
+    let Rows(matrix) = args.take(name)?;
+    if matrix.columns == 0 {
+        bail!(SIZE_MISMATCH, "`{name}` has no columns, but an individual has genes");
+    }
+    Genomes::new(matrix.columns, matrix.elements)
+}
+
+/// Whether `name` has as many elements as `of` says.
+fn check_size(name: &str, size: usize, expected: usize, of: &str) -> Result<(), Fault> {
+    if size == expected {
+        return Ok(());
+    }
+    bail!(SIZE_MISMATCH, "`{name}` has {size} elements, but {of} {expected}")
+}
+
+const RAM_GEN_ARENA: &str = r#"
+function Ram_Gen_ARENA "Pseudo-random numbers of the generator that Arena uses (MRG32k3a)."
+  input Any Seed "Real[1,6]: seed {x(n-3), x(n-2), x(n-1), y(n-3), y(n-2), y(n-1)}";
+  input Integer N_Ram "number of pseudo-random numbers to generate";
+  output Real Ram_list[:,:] "Real[1,N_Ram]: numbers uniform between 0 and 1, both excluded";
+  output Real Seed_Next[:,:] "Real[1,6]: state after N_Ram draws, to feed to the next call";
+end Ram_Gen_ARENA;
+"#;
+
+fn ram_gen_arena(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let seed: Vec<f64> = args.take("Seed")?;
+    let count: i64 = args.take("N_Ram")?;
+    if !(0..=MOST_NUMBERS).contains(&count) {
+        bail!(SIZE_MISMATCH, "`N_Ram` is {count}, it must lie between 0 and {MOST_NUMBERS}");
+    }
+    let mut rng = Mrg32k3a::new(&seed)?;
+    let first = rng.state();
+    let numbers = (0..count).map(|_| rng.uniform()).collect();
+    session.identification().recorder.seeded(first, rng.state());
+    Ok(Value::Tuple(vec![row(numbers), row(rng.state().to_vec())]))
+}
+
+const EXP_ADQ_SISO: &str = r#"
+function Exp_Adq_SISO "Reads the measured data of one input and one output from a file."
+  input String namefile "name of the .mat file (or .csv file with a heading)";
+  input String Xmatrixname "name of the matrix of X values";
+  input String Ymatrixname "name of the matrix of Y values";
+  output Boolean State_Exp_Adq "true when both matrices were read and their sizes agree";
+  output Integer SizeMatrix[2] "numbers of elements of the X and of the Y matrix";
+  output Real Xexp[:] "array of experimental X data";
+  output Real Yexp[:] "array of experimental Y data";
+end Exp_Adq_SISO;
+"#;
+
+fn exp_adq_siso(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let file: String = args.take("namefile")?;
+    let names: [String; 2] = [args.take("Xmatrixname")?, args.take("Ymatrixname")?];
+    match session.read_measurement(&file, &names) {
+        Ok(measurement) => {
+            let (x, y) = (measurement.x.clone(), measurement.y.clone());
+            session.measured(measurement)?;
+            Ok(acquired(true, x, y))
+        }
+        Err(fault) => {
+            session.report_fault(fault);
+            Ok(acquired(false, Vec::new(), Vec::new()))
+        }
+    }
+}
+
+fn acquired(state: bool, x: Vec<f64>, y: Vec<f64>) -> Value {
+    let sizes = vec![x.len() as i64, y.len() as i64];
+    Value::Tuple(vec![state.into(), sizes.into(), x.into(), y.into()])
+}
+
+const EVAL: &str = r#"
+function Eval "Simulates the model with the genes of every individual, in parallel."
+  input String SimuPath "path of the model's file or package folder; empty when it is loaded already";
+  input String SimuCaseStudyName "name of the model to simulate, with a modification if wanted";
+  input Any Xexp "Real[:]: array of experimental X data";
+  input Any New_Generation "Real[:,:]: complete set of population values, one individual in each row";
+  input String Parameter_Names[:] = fill("", 0) "the identified parameters, one for each column; empty: the model's top-level tunable parameters in order of declaration";
+  input String X_Name = "time" "the variable that Xexp holds values of";
+  input String Y_Name = "" "the variable that was measured; empty: the model's only top-level output";
+  output Real DATASim_Int[:,:] "Y_Name interpolated at Xexp, one individual in each row; NaN where the simulation failed";
+  output String Messages[:] "empty where the simulation succeeded";
+end Eval;
+"#;
+
+fn eval(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let path: String = args.take("SimuPath")?;
+    let model: String = args.take("SimuCaseStudyName")?;
+    let x: Vec<f64> = args.take("Xexp")?;
+    let genomes = take_genomes(&mut args, "New_Generation")?;
+    let parameters: Vec<String> = args.take("Parameter_Names")?;
+    let (x_name, y_name) = (args.take("X_Name")?, args.take("Y_Name")?);
+    let columns = x.len();
+    let question = Question { parameters, x_name, y_name, x };
+    let simulated = session.evaluate_population(Request { path, model, question }, &genomes)?;
+    let messages = simulated.messages();
+    let rows = RealMatrix { rows: genomes.len(), columns, elements: simulated.rows };
+    Ok(Value::Tuple(vec![rows.into(), messages.into()]))
+}
+
+const FIT: &str = r#"
+function Fit "Fitness: sum of the squared differences between experiment and simulation."
+  input Any DATASim_Int "Real[:,:]: interpolated values, one individual in each row";
+  input Any Yexp "Real[:]: array of experimental Y data";
+  output Real Eval_Mod[:] "sum of squared differences; 1e60 for a failed simulation";
+end Fit;
+"#;
+
+fn fit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let Rows(simulated) = args.take("DATASim_Int")?;
+    let measured: Vec<f64> = args.take("Yexp")?;
+    check_size("Yexp", measured.len(), simulated.columns, "the rows of `DATASim_Int` have")?;
+    if let Some(k) = measured.iter().position(|value| !value.is_finite()) {
+        bail!(BAD_DATA, "measured Y number {} is {}", k + 1, measured[k]);
+    }
+    if measured.is_empty() {
+        bail!(BAD_DATA, "`Yexp` holds no points");
+    }
+    let rows = (0..simulated.rows).map(|k| simulated.row(k));
+    let fitness: Vec<f64> = rows.map(|row| sum_of_squares(row, &measured)).collect();
+    session.identification().recorder.rated(&fitness, &measured);
+    Ok(fitness.into())
+}
+
+const FIT_ORDER: &str = r#"
+function Fit_Order "Sorts the individuals by their fitness, best first."
+  input Any Pop "Real[:,:]: population to be ordered";
+  input Any Fit "Real[:]: fitness of all population";
+  input Integer Population "number of population individuals";
+  input Integer Parents "number of population parents";
+  input Integer Elitism "number of elitism individuals";
+  output Real Pop_Ordered[:,:] "population sorted by fitness value; ties keep their order";
+  output Real Fit_Ordered[:] "the fitness in the same order";
+end Fit_Order;
+"#;
+
+fn fit_order(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let population = take_genomes(&mut args, "Pop")?;
+    let fitness: Vec<f64> = args.take("Fit")?;
+    let individuals: i64 = args.take("Population")?;
+    ga::selection::check_sizes(individuals, args.take("Parents")?, args.take("Elitism")?)?;
+    if individuals != population.len() as i64 {
+        let rows = population.len();
+        bail!(SIZE_MISMATCH, "`Pop` has {rows} rows, but `Population` is {individuals}");
+    }
+    let (ordered, fitness_ordered) = ga::sort_by_fitness(&population, &fitness)?;
+    session.identification().recorder.ordered(&population, &fitness);
+    Ok(Value::Tuple(vec![genomes_value(ordered), fitness_ordered.into()]))
+}
+
+const CROSS: &str = r#"
+function Cross "Elites and children: adjacent ranks exchange the genes behind each crossing point."
+  input Integer Parents "number of population parents";
+  input Integer Elitism "number of elitism individuals";
+  input Any OldGeneration "Real[:,:]: old generation of population ordered by fitness";
+  input Integer Cross_Point[:] = {div(size(OldGeneration, 2), 2)} "crossing points" annotation(optional = true);
+  output Real NewGeneration_Cross[:,:] "Elitism + Parents rows: elites first, unaltered, then the children";
+end Cross;
+"#;
+
+fn cross(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let (parents, elites): (i64, i64) = (args.take("Parents")?, args.take("Elitism")?);
+    let old = take_genomes(&mut args, "OldGeneration")?;
+    let n_genes = old.n_genes();
+    let points = match args.optional::<WholeNumbers>("Cross_Point")? {
+        Some(WholeNumbers(points)) => ga::crossover::check_points(&points, n_genes)?,
+        None => vec![n_genes / 2],
+    };
+    ga::selection::check_sizes(old.len() as i64, parents, elites)?;
+    let mut chosen = Genomes::with_capacity(n_genes, parents as usize);
+    old.rows().take(parents as usize).for_each(|genome| chosen.push(genome));
+    let children = ga::crossover::cross_adjacent(&chosen, &points);
+    Ok(genomes_value(ga::survival::elites_first(&old, elites as usize, &children)))
+}
+
+const MUTATION: &str = r#"
+function Mutation "Replaces genes, each with the probability F_Mut, by random values."
+  input Any Nparameters "Real[:,:]: complete population parameters of NewGeneration_Cross";
+  input Real F_Mut "mutation factor, 0 to 1";
+  input Any RamMut "Real[:,:]: pseudo-random numbers, one for each gene, shaped like Nparameters or all in one row";
+  input Real Param_Min[:] = {min(Nparameters[:,j]) for j in 1:size(Nparameters, 2)} "lower ends of the search ranges" annotation(optional = true);
+  input Real Param_Max[:] = {max(Nparameters[:,j]) for j in 1:size(Nparameters, 2)} "upper ends of the search ranges" annotation(optional = true);
+  input Integer Elitism = 0 "rows at the top that stay";
+  output Real NewGeneration_Mut[:,:] "population obtained after elitism, crossover and mutation";
+end Mutation;
+"#;
+
+fn mutation(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let mut genomes = take_genomes(&mut args, "Nparameters")?;
+    let factor: f64 = args.take("F_Mut")?;
+    let Rows(numbers) = args.take("RamMut")?;
+    let minima: Option<Vec<f64>> = args.optional("Param_Min")?;
+    let maxima: Option<Vec<f64>> = args.optional("Param_Max")?;
+    let elites: i64 = args.take("Elitism")?;
+    ga::mutation::check_factor(factor)?;
+    let expected = genomes.len() * genomes.n_genes();
+    check_size("RamMut", numbers.elements.len(), expected, "the genes of `Nparameters` number")?;
+    let Some(elites) = usize::try_from(elites).ok().filter(|&count| count <= genomes.len()) else {
+        let rows = genomes.len();
+        bail!(BAD_POPULATION, "`Elitism` is {elites}, but `Nparameters` has {rows} rows");
+    };
+    let searched = minima.is_some() || maxima.is_some();
+    let minima = minima.unwrap_or_else(|| extremes(&genomes, f64::min));
+    let maxima = maxima.unwrap_or_else(|| extremes(&genomes, f64::max));
+    let genes = genes(&minima, &maxima, genomes.n_genes())?;
+    if searched {
+        session.identification().recorder.searched(&minima, &maxima);
+    }
+    ga::mutation::mutate_uniform(&mut genomes, elites, &genes, factor, &numbers.elements);
+    Ok(genomes_value(genomes))
+}
+
+/// The extreme of every gene over the population.
+fn extremes(genomes: &Genomes, extreme: fn(f64, f64) -> f64) -> Vec<f64> {
+    let mut rows = genomes.rows();
+    let first = rows.next().map(<[f64]>::to_vec).unwrap_or_default();
+    rows.fold(first, |sofar, row| sofar.iter().zip(row).map(|(a, b)| extreme(*a, *b)).collect())
+}
+
+fn genes(minima: &[f64], maxima: &[f64], n_genes: usize) -> Result<Vec<Gene>, Fault> {
+    check_size("Param_Min", minima.len(), n_genes, "the columns of the population number")?;
+    check_size("Param_Max", maxima.len(), n_genes, "the columns of the population number")?;
+    let ranges = minima.iter().zip(maxima).enumerate();
+    ranges.map(|(k, (&min, &max))| Gene::new(format!("parameter {}", k + 1), min, max)).collect()
+}

@@ -1,0 +1,222 @@
+//! Identification as scripts do it: the measured data, the evaluation of populations, and the
+//! report at the end of a run.
+
+use super::Session;
+use super::builtins::Failure;
+use super::world::Progress;
+use crate::bail;
+use crate::diag::{Diagnostic, Fault};
+use crate::ga::Genomes;
+use crate::identify::errors::{BAD_DATA, DATA_SIZES_DIFFER};
+use crate::identify::{
+    Evaluator, Measurement, Outcome, Question, Recorder, Simulated, Uncertainty, deviations,
+};
+use crate::mat::{self, MatFile};
+use crate::source::Span;
+use crate::value::Value;
+use std::path::Path;
+
+/// What a session knows of the identification that its scripts carry out.
+#[derive(Default)]
+pub(super) struct Identification {
+    /// What was observed of the run.
+    pub(super) recorder: Recorder,
+    /// The evaluator of the last request, for the next generation, and the revision of the classes
+    /// that it was made from.
+    prepared: Option<(Request, u64, Evaluator)>,
+    /// When the run began.
+    started: Option<f64>,
+    /// Runs reported so far.
+    reported: usize,
+}
+
+/// The arguments of `Eval` but for the population.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Request {
+    /// Where the model is; empty when it is loaded.
+    pub(super) path: String,
+    /// Its name, with a modification if wanted.
+    pub(super) model: String,
+    /// What varies and what is compared.
+    pub(super) question: Question,
+}
+
+impl Session {
+    /// The identification of this session; its report is made when the outermost script ends.
+    pub(super) fn identification(&mut self) -> &mut Identification {
+        let now = self.world.monotonic_seconds();
+        self.at_end(report);
+        let identification = self.extension::<Identification>();
+        identification.started.get_or_insert(now);
+        identification
+    }
+
+    /// Reads the matrices `names` of X and Y from a file.
+    pub(super) fn read_measurement(
+        &mut self,
+        file: &str,
+        names: &[String; 2],
+    ) -> Result<Measurement, Fault> {
+        let content = mat::read_named(file, &self.read_bytes(Path::new(file))?)?;
+        let [x, y] = [series(&content, &names[0])?, series(&content, &names[1])?];
+        if x.len() != y.len() {
+            bail!(
+                DATA_SIZES_DIFFER,
+                "`{}` of `{file}` has {} elements, but `{}` has {}",
+                names[0],
+                x.len(),
+                names[1],
+                y.len()
+            );
+        }
+        if x.is_empty() {
+            bail!(BAD_DATA, "`{}` of `{file}` has no elements", names[0]);
+        }
+        Ok(Measurement { file: file.to_owned(), x, y })
+    }
+
+    /// Notes measured data. Data read after generations have been evaluated begin another run: the
+    /// one before is reported.
+    pub(super) fn measured(&mut self, measurement: Measurement) -> Result<(), Fault> {
+        if !self.identification().recorder.history.generations.is_empty() {
+            report_run(self)?;
+        }
+        self.identification().recorder.measured(measurement);
+        Ok(())
+    }
+
+    /// Simulates a population; the evaluator is kept for the next one.
+    pub(super) fn evaluate_population(
+        &mut self,
+        request: Request,
+        genomes: &Genomes,
+    ) -> Result<Simulated, Failure> {
+        let revision = self.classes.revision();
+        let mut evaluator = match self.identification().prepared.take() {
+            Some((known, at, evaluator)) if known == request && at == revision => evaluator,
+            _ => self.prepare(&request)?,
+        };
+        let simulated = evaluator.evaluate(genomes)?;
+        // Loading the model may have changed the classes.
+        let revision = self.classes.revision();
+        let identification = self.identification();
+        identification.recorder.evaluated(evaluator.study(), evaluator.x(), genomes, &simulated);
+        identification.prepared = Some((request, revision, evaluator));
+        self.show_progress();
+        Ok(simulated)
+    }
+
+    fn prepare(&mut self, request: &Request) -> Result<Evaluator, Failure> {
+        if !request.path.is_empty() {
+            self.load_once(Path::new(&request.path))?;
+        }
+        let model = self.identified_model(&request.model)?;
+        let threads = self.world.threads();
+        Ok(Evaluator::new(model.as_ref(), request.question.clone(), threads)?)
+    }
+
+    /// How far the run is: the turn of the loop that the script is in, or the generations seen.
+    /// `N_Cycle` is where the paper's scripts say how many there will be.
+    fn show_progress(&mut self) {
+        let cycles = match self.variable("N_Cycle") {
+            Some(Value::Integer(cycles)) => u64::try_from(*cycles).unwrap_or(0),
+            _ => 0,
+        };
+        let recorder = &self.identification().recorder;
+        let progress = Progress {
+            label: "generation".to_owned(),
+            done: recorder.history.generations.len() as u64,
+            total: cycles,
+            best: recorder.best.as_ref().map(|best| best.fitness),
+            failures: recorder.failures,
+        };
+        self.world.progress(&progress);
+    }
+}
+
+/// The elements of a matrix, row by row; usually it is one row or one column.
+fn series(content: &MatFile, name: &str) -> Result<Vec<f64>, Fault> {
+    let values = content.matrix(name)?.row_major();
+    match values.iter().position(|value| !value.is_finite()) {
+        Some(k) => bail!(
+            BAD_DATA,
+            "element {} of `{name}` is {}", k + 1, values[k];
+            help: "remove or correct this point in the file"
+        ),
+        None => Ok(values),
+    }
+}
+
+/// What remains to be done when the outermost script ends.
+fn report(session: &mut Session) -> Result<(), Diagnostic> {
+    report_run(session).map_err(|fault| fault.at(Span::NONE))
+}
+
+/// The report of a run: the table for people, and the files for programs. Nothing when no
+/// individual was simulated successfully.
+fn report_run(session: &mut Session) -> Result<(), Fault> {
+    let seconds = session.world.monotonic_seconds();
+    let interrupted = session.is_interrupted();
+    let identification = session.extension::<Identification>();
+    let started = identification.started.take().unwrap_or(seconds);
+    let recorder = identification.recorder.begin_next();
+    let evaluator = identification.prepared.take().map(|(_, _, evaluator)| evaluator);
+    let (uncertainty, evaluations) = what_the_data_tell(&recorder, evaluator);
+    let Some(mut outcome) = Outcome::of(&recorder, uncertainty.as_ref(), evaluations) else {
+        return Ok(());
+    };
+    outcome.interrupted = interrupted;
+    outcome.wall_seconds = seconds - started;
+    session.print(&outcome.table());
+    write_files(session, &outcome)
+}
+
+fn what_the_data_tell(
+    recorder: &Recorder,
+    evaluator: Option<Evaluator>,
+) -> (Option<Uncertainty>, u64) {
+    let (Some(best), Some(mut evaluator)) = (&recorder.best, evaluator) else { return (None, 0) };
+    match recorder.measured_y() {
+        Some(measured) if *evaluator.study() == best.study => {
+            deviations(&mut evaluator, best, measured).unwrap_or((None, 0))
+        }
+        _ => (None, 0),
+    }
+}
+
+fn write_files(session: &mut Session, outcome: &Outcome) -> Result<(), Fault> {
+    let identification = session.extension::<Identification>();
+    identification.reported += 1;
+    let run = identification.reported;
+    let mut folder = session.world.output_dir();
+    if run > 1 {
+        folder.push(format!("run-{run}"));
+    }
+    let files = [
+        ("result.json", outcome.to_json()),
+        ("history.csv", outcome.history_csv()),
+        ("fit.csv", outcome.fit_csv()),
+    ];
+    for (name, text) in files {
+        session.write_file(&folder.join(name), text.as_bytes())?;
+    }
+    let place = format!("\n  written to {}\n", folder.display());
+    session.print(&place);
+    Ok(())
+}
+
+impl Session {
+    fn load_once(&mut self, path: &Path) -> Result<(), Failure> {
+        match self.find_file(path) {
+            Some(_) => Ok(()),
+            None => Err(self.missing_file(path).into()),
+        }
+    }
+
+    fn identified_model(&mut self, name: &str) -> Result<Box<dyn crate::identify::Model>, Failure> {
+        bail!(
+            super::errors::REFUSED,
+            "`{name}` cannot be simulated: the compiler is not merged yet"
+        )
+    }
+}
