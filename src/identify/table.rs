@@ -1,6 +1,6 @@
 //! The result of an identification as text for people.
 
-use super::{Identified, Outcome};
+use super::{Correlated, Identified, Outcome};
 use std::fmt::Write;
 
 /// How many causes of failure are shown.
@@ -65,12 +65,9 @@ impl Outcome {
                 undetermined.join(", ")
             ));
         }
-        for found in &self.correlated {
-            let [first, second] = &found.pair;
-            notes.push(format!(
-                "{first} and {second} can hardly be told apart: their correlation is {:.3}.",
-                found.correlation
-            ));
+        if !self.correlated.is_empty() {
+            let pairs: Vec<String> = self.correlated.iter().map(Correlated::text).collect();
+            notes.push(format!("Hardly told apart (correlation): {}.", pairs.join(", ")));
         }
         if self.details.iter().any(|parameter| parameter.determined.is_some()) {
             notes.push(
@@ -80,6 +77,13 @@ impl Outcome {
             );
         }
         notes
+    }
+}
+
+impl Correlated {
+    fn text(&self) -> String {
+        let [first, second] = &self.pair;
+        format!("{first} and {second} ({:.3})", self.correlation)
     }
 }
 

@@ -68,6 +68,15 @@ impl Session {
         self.classes.revision
     }
 
+    /// Whether classes of this file or package folder are loaded already.
+    pub(super) fn has_loaded(&self, path: &Path) -> bool {
+        let Some(mut found) = self.find_file(path) else { return false };
+        if found.file_name().is_some_and(|name| name == "package.mo") {
+            found.pop();
+        }
+        self.classes.files.values().any(|file| *file == found)
+    }
+
     /// Loads a `.mo` file, or a package from its folder or its `package.mo`. Returns the names of
     /// the classes.
     pub fn load_path(&mut self, path: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {

@@ -1,17 +1,19 @@
 //! Identification as scripts do it: the measured data, the evaluation of populations, and the
 //! report at the end of a run.
 
-use super::Session;
 use super::builtins::Failure;
 use super::world::Progress;
+use super::{Session, simulation};
 use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::ga::Genomes;
 use crate::identify::errors::{BAD_DATA, DATA_SIZES_DIFFER};
 use crate::identify::{
-    Evaluator, Measurement, Outcome, Question, Recorder, Simulated, Uncertainty, deviations,
+    CompiledModel, Evaluator, FitPoint, Measurement, Outcome, Question, Recorder, Simulated,
+    Uncertainty, deviations,
 };
 use crate::mat::{self, MatFile};
+use crate::plot::{self, Comparison, Figure};
 use crate::source::Span;
 use crate::value::Value;
 use std::path::Path;
@@ -107,12 +109,14 @@ impl Session {
     }
 
     fn prepare(&mut self, request: &Request) -> Result<Evaluator, Failure> {
-        if !request.path.is_empty() {
-            self.load_once(Path::new(&request.path))?;
+        let path = Path::new(&request.path);
+        if !request.path.is_empty() && !self.has_loaded(path) {
+            self.load_path(path)?;
         }
-        let model = self.identified_model(&request.model)?;
+        let translated = simulation::translated(self, &request.model)?;
+        let model = CompiledModel::new(&request.model, translated.program.clone());
         let threads = self.world.threads();
-        Ok(Evaluator::new(model.as_ref(), request.question.clone(), threads)?)
+        Ok(Evaluator::new(&model, request.question.clone(), threads)?)
     }
 
     /// How far the run is: the turn of the loop that the script is in, or the generations seen.
@@ -196,6 +200,8 @@ fn write_files(session: &mut Session, outcome: &Outcome) -> Result<(), Fault> {
         ("result.json", outcome.to_json()),
         ("history.csv", outcome.history_csv()),
         ("fit.csv", outcome.fit_csv()),
+        ("fit.svg", fit_figure(outcome).svg()),
+        ("convergence.svg", convergence_figure(outcome).svg()),
     ];
     for (name, text) in files {
         session.write_file(&folder.join(name), text.as_bytes())?;
@@ -205,18 +211,23 @@ fn write_files(session: &mut Session, outcome: &Outcome) -> Result<(), Fault> {
     Ok(())
 }
 
-impl Session {
-    fn load_once(&mut self, path: &Path) -> Result<(), Failure> {
-        match self.find_file(path) {
-            Some(_) => Ok(()),
-            None => Err(self.missing_file(path).into()),
-        }
-    }
+/// Measured and simulated points, and their residuals.
+fn fit_figure(outcome: &Outcome) -> Figure {
+    let column = |value: fn(&FitPoint) -> f64| outcome.fit.iter().map(value).collect::<Vec<f64>>();
+    let [x, y] = &outcome.axes;
+    plot::fit(&Comparison {
+        title: &outcome.model,
+        x_label: (&x.name, &x.unit),
+        y_label: (&y.name, &y.unit),
+        x: &column(|point| point.x),
+        measured: &column(|point| point.measured),
+        simulated: &column(|point| point.simulated),
+        curve: (&[], &[]),
+    })
+}
 
-    fn identified_model(&mut self, name: &str) -> Result<Box<dyn crate::identify::Model>, Failure> {
-        bail!(
-            super::errors::REFUSED,
-            "`{name}` cannot be simulated: the compiler is not merged yet"
-        )
-    }
+fn convergence_figure(outcome: &Outcome) -> Figure {
+    let best: Vec<f64> = outcome.history.iter().map(|generation| generation.best).collect();
+    let mean: Vec<f64> = outcome.history.iter().map(|generation| generation.mean).collect();
+    plot::convergence(&outcome.model, &best, &mean)
 }

@@ -4,15 +4,18 @@ use crate::shipped;
 use gapilib::script::Session;
 use std::path::Path;
 
-/// A script that runs the shipped ones with few generations; `change` comes behind their INI.
-fn shortened(ini: &str, cycles: usize, change: &str) -> String {
-    format!(
-        "RunScript(\"{ini}\")\nN_Cycle = {cycles}\n{change}\nRunScript(\"GAPILib_CYCLE.mos\")\n"
-    )
+/// Runs the scripts of an entry (a folder of `scripts/`, empty for the main one) with few
+/// generations; `change` comes behind their INI.
+fn shortened(entry: &str, cycles: usize, change: &str) -> shipped::Run {
+    let cycle = if entry.is_empty() { "GAPILib_CYCLE.mos" } else { "../GAPILib_CYCLE.mos" };
+    let script = format!(
+        "RunScript(\"GAPILib_INI.mos\")\nN_Cycle = {cycles}\n{change}\nRunScript(\"{cycle}\")\n"
+    );
+    shipped::run(&format!("scripts/{entry}/test.mos"), &script)
 }
 
-fn run(ini: &str, cycles: usize, change: &str) -> Session {
-    let run = shipped::run("scripts/test.mos", &shortened(ini, cycles, change));
+fn run(entry: &str, cycles: usize, change: &str) -> Session {
+    let run = shortened(entry, cycles, change);
     assert_eq!(run.errors, "");
     run.session
 }
@@ -28,7 +31,7 @@ fn result(session: &Session) -> serde_json::Value {
 
 #[test]
 fn the_main_job_writes_what_it_promises() {
-    let session = run("GAPILib_INI.mos", 4, "");
+    let session = run("", 4, "");
     let result = result(&session);
     assert_eq!(result["generations"], 4);
     assert_eq!(result["evaluations"], 400);
@@ -54,7 +57,7 @@ fn the_main_job_writes_what_it_promises() {
 /// The sum of squares of the best individual, computed here from its parameters and the data.
 #[test]
 fn the_reported_fit_is_that_of_the_reported_parameters() {
-    let session = run("GAPILib_INI.mos", 3, "");
+    let session = run("", 3, "");
     let result = result(&session);
     let value = |name: &str| result["parameters"][name].as_f64().unwrap();
     let [a, i_n, io, b, r, ilim] = ["A", "In", "Io", "B", "R", "Ilim"].map(value);
@@ -79,14 +82,14 @@ fn the_reported_fit_is_that_of_the_reported_parameters() {
 
 #[test]
 fn fifty_generations_fit_the_measured_curve_roughly() {
-    let best = result(&run("GAPILib_INI.mos", 50, ""))["best_fit"].as_f64().unwrap();
+    let best = result(&run("", 50, ""))["best_fit"].as_f64().unwrap();
     // The least-squares optimum is 2.462e-6; nothing can be better.
     assert!((2.46e-6..5e-3).contains(&best), "{best}");
 }
 
 #[test]
 fn the_twin_is_fitted_and_its_resistance_called_not_determined() {
-    let session = run("twin/GAPILib_INI.mos", 50, "");
+    let session = run("twin", 50, "");
     let result = result(&session);
     assert!(result["best_fit"].as_f64().unwrap() < 2e-2);
     assert!(result["failures"].as_u64().unwrap() > 0, "a range that reaches into failures");
@@ -98,7 +101,7 @@ fn the_twin_is_fitted_and_its_resistance_called_not_determined() {
 fn the_noise_free_twin_has_its_optimum_at_the_published_values() {
     let published =
         "New_Generation[1,:] := {0.0390, 1.4e-3, 1.5856e-6, 0.0918, 7.2860e-4, 0.2265};";
-    let best = result(&run("twin/GAPILib_INI.mos", 1, published))["best_fit"].as_f64().unwrap();
+    let best = result(&run("twin", 1, published))["best_fit"].as_f64().unwrap();
     assert!(best < 1e-27, "{best}");
 }
 
@@ -125,7 +128,7 @@ fn own_fitness_and_own_stop_condition_replace_those_of_the_library() {
 fn the_same_seed_gives_the_same_bytes_and_another_seed_others() {
     let files = |seed: &str| {
         let change = format!("Seed = [{seed}, {seed}, {seed}, {seed}, {seed}, {seed}]");
-        let session = run("GAPILib_INI.mos", 3, &change);
+        let session = run("", 3, &change);
         ["history.csv", "fit.csv"].map(|name| written(&session, name))
     };
     assert_eq!(files("777"), files("777"));
@@ -150,7 +153,7 @@ fn other_names_of_variables_do_the_same() {
 
 /// Whether the shipped scripts with a changed INI end with this code.
 fn assert_refused(change: &str, code: &str) {
-    let run = shipped::run("scripts/test.mos", &shortened("GAPILib_INI.mos", 1, change));
+    let run = shortened("", 1, change);
     assert_eq!(run.status.code, 1, "{change}");
     assert!(run.codes().contains(&code), "{change}: {}", run.errors);
 }
