@@ -13,10 +13,10 @@ use crate::identify::fitness::sum_of_squares;
 use crate::script::Session;
 use crate::script::identification::Request;
 use crate::value::errors::TYPE_MISMATCH;
-use crate::value::{ArrayValue, Elements, FromValue, RealMatrix, Value};
+use crate::value::{ArrayValue, FromValue, RealMatrix, Value};
 
 /// The functions of the paper.
-pub const FAMILY: Family = Family {
+pub(super) const FAMILY: Family = Family {
     packages: &["GAPILib.Basics"],
     dialect: None,
     builtins: &[
