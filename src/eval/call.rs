@@ -111,7 +111,9 @@ impl Evaluator<'_> {
     }
 
     fn look_up(&mut self, name: &Name, span: Span) -> Result<Target, Diagnostic> {
-        Ok(match self.host.callee(name).at(span)? {
+        let callee = self.host.callee(name);
+        let callee = callee.map_err(|error| error.called_from(span, format!("function `{name}`")));
+        Ok(match callee? {
             Some(Callee::Function(function)) => Target::Function(function),
             Some(Callee::Builtin(header)) => Target::Builtin(header),
             None => match name.parts.as_slice() {

@@ -23,8 +23,8 @@ pub enum Callee {
 /// Answers calls and names that are not local to the function or script being evaluated.
 pub trait Host {
     /// The function of this name, as seen from where the evaluated text stands; `None` if there is
-    /// none. Functions of MLS §3.7 and §10.3 are answered by `eval` itself after the host declined.
-    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Fault>;
+    /// none, an error if it is malformed. Functions of MLS §3.7 and §10.3 are answered by `eval` itself after the host declined.
+    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic>;
 
     /// Runs a builtin: `arguments` are complete, in the order of the header's inputs, defaults
     /// filled in. Returns its outputs, as many as the header declares.

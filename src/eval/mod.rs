@@ -59,7 +59,7 @@ use std::sync::Arc;
 /// struct Alone;
 ///
 /// impl Host for Alone {
-///     fn callee(&mut self, _: &Name) -> Result<Option<Callee>, Fault> {
+///     fn callee(&mut self, _: &Name) -> Result<Option<Callee>, Diagnostic> {
 ///         Ok(None)
 ///     }
 ///     fn call_builtin(

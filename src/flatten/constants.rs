@@ -259,7 +259,7 @@ fn check_type(value: &Value, base: &BaseType) -> Result<(), Fault> {
 struct Functions<'i, 'a>(&'i mut Instantiation<'a>);
 
 impl Host for Functions<'_, '_> {
-    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Fault> {
+    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
         Ok(self.0.functions.get(name).cloned().flatten().map(Callee::Function))
     }
 

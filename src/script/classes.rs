@@ -289,7 +289,7 @@ impl Session {
 
     /// The type of a declaration in a script that is not a predefined one: a record.
     pub(super) fn class_type(&mut self, name: &Name) -> Result<ValueType, Fault> {
-        let function = self.loaded_function(name)?;
+        let function = self.loaded_function(name).map_err(first_fault)?;
         let record = function.and_then(|constructor| constructor.outputs.first().cloned());
         match record {
             Some(record) => Ok(record.value_type),
@@ -310,9 +310,12 @@ impl Session {
     }
 
     /// A function of the loaded classes, looked up from the top level.
-    pub(super) fn loaded_function(&mut self, name: &Name) -> Result<Option<Arc<Function>>, Fault> {
+    pub(super) fn loaded_function(
+        &mut self,
+        name: &Name,
+    ) -> Result<Option<Arc<Function>>, Diagnostic> {
         for candidate in self.candidates(name) {
-            if let Some(function) = self.function_named(&candidate).map_err(first_fault)? {
+            if let Some(function) = self.function_named(&candidate)? {
                 return Ok(Some(function));
             }
         }

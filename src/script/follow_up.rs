@@ -33,7 +33,20 @@ impl FollowUps {
         !std::mem::replace(&mut self.told, true)
     }
 
-    /// These statements were not executed, or not to their end.
+    /// The statement was executed, but not to its end: the scripts that it runs told themselves
+    /// what they did not do.
+    pub(super) fn failed(&mut self, statement: &InteractiveStatement) {
+        let anything = self.anything;
+        self.not_done(std::slice::from_ref(statement));
+        self.anything = anything;
+    }
+
+    /// A script that was asked for was not run at all.
+    pub(super) fn script_not_run(&mut self) {
+        self.anything = true;
+    }
+
+    /// These statements were not executed.
     pub(super) fn not_done(&mut self, statements: &[InteractiveStatement]) {
         for statement in statements {
             match &statement.kind {

@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 impl Host for Session {
     /// A function of a script or a loaded library first, then a command.
-    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Fault> {
+    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
         let revision = self.classes.revision();
         if let Some(known) = self.callees.get(name, revision, self.dialect) {
             return Ok(known);
@@ -123,7 +123,7 @@ impl Host for Session {
 }
 
 impl Session {
-    fn look_up_callee(&mut self, name: &Name) -> Result<Option<Callee>, Fault> {
+    fn look_up_callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
         if let Some(function) = self.loaded_function(name)? {
             return Ok(Some(Callee::Function(function)));
         }

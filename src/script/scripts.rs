@@ -78,6 +78,7 @@ impl Session {
             diagnostics.into_iter().map(frame).collect::<Vec<_>>()
         };
         if let Err(fault) = self.find_script(name) {
+            self.follow_ups.script_not_run();
             return Err(fault.into());
         }
         self.run_named(name).map_err(|diagnostics| Failure::Elsewhere(traced(diagnostics)))
@@ -86,7 +87,11 @@ impl Session {
     fn run_named(&mut self, name: &str) -> Result<(), Vec<Diagnostic>> {
         let at = |fault: Fault| vec![fault.at(Span::NONE)];
         let path = self.find_script(name).map_err(at)?;
-        let script = self.parsed_script(&path)?;
+        let script = self.parsed_script(&path);
+        if script.is_err() {
+            self.follow_ups.script_not_run();
+        }
+        let script = script?;
         let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
         let frame = Frame { folder };
         self.run_script_statements(&script, frame).map_err(|diagnostic| vec![diagnostic])
@@ -127,9 +132,9 @@ impl Session {
                 self.interrupt(statement.span);
                 return Ok(());
             }
-            let remaining = if outermost { &statements[at..=at] } else { &statements[at..] };
-            self.follow_ups.not_done(remaining);
+            self.follow_ups.failed(statement);
             if !outermost {
+                self.follow_ups.not_done(&statements[at + 1..]);
                 return Err(diagnostic);
             }
             self.report_failed(diagnostic);

@@ -87,6 +87,9 @@ pub(super) enum Stop {
     Error,
 }
 
+/// Work that is done when the outermost script ends.
+type AtEnd = fn(&mut Session) -> Result<(), Diagnostic>;
+
 /// A session. It owns its world; nothing else reaches the outside.
 pub struct Session {
     /// The outside.
@@ -131,7 +134,7 @@ pub struct Session {
     /// The turn of the outermost loop being run, and how many there are.
     pub(super) loop_turn: Option<(usize, Option<usize>)>,
     extensions: HashMap<TypeId, Box<dyn Any>>,
-    at_end: Vec<fn(&mut Session) -> Result<(), Diagnostic>>,
+    at_end: Vec<AtEnd>,
 }
 
 impl Session {
@@ -185,7 +188,7 @@ impl Session {
 
     /// Runs `work` once when the outermost script ends, whether it came to its end, was stopped or
     /// interrupted. The same function is noted once.
-    pub fn at_end(&mut self, work: fn(&mut Session) -> Result<(), Diagnostic>) {
+    pub fn at_end(&mut self, work: AtEnd) {
         if !self.at_end.iter().any(|known| std::ptr::fn_addr_eq(*known, work)) {
             self.at_end.push(work);
         }

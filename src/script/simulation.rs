@@ -147,6 +147,15 @@ pub fn flat_model(session: &mut Session, problem: &str) -> Result<FlatModel, Vec
     }
 }
 
+/// Number of scalar unknowns of a model.
+pub fn unknowns(flat: &FlatModel) -> usize {
+    let is_unknown = |variable: &&flatten::Variable| {
+        variable.variability >= Variability::Discrete
+            && variable.causality != Some(syntax::ast::CausalityPrefix::Input)
+    };
+    flat.variables.values().filter(is_unknown).map(flatten::Variable::len).sum()
+}
+
 /// The diagnostic at the place of the call, if it has none of its own.
 fn placed(diagnostic: Diagnostic, call: Span) -> Diagnostic {
     if diagnostic.span().is_known() || !diagnostic.is_error() {

@@ -185,7 +185,7 @@ fn function(
 }
 
 impl Host for TestHost {
-    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Fault> {
+    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
         let name = name.to_string();
         let builtin = self.builtins.get(&name).cloned().map(Callee::Builtin);
         Ok(self.functions.get(&name).cloned().map(Callee::Function).or(builtin))

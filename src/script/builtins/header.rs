@@ -72,7 +72,7 @@ fn value_type(clause: &ComponentClause) -> ValueType {
         Some("Boolean") => ValueType::Boolean,
         Some("String") => ValueType::String,
         Some("TypeName") => ValueType::TypeName,
-        Some("VariableName" | "VariableNames") => ValueType::VariableName,
+        Some("VariableName") => ValueType::VariableName,
         _ => ValueType::Any,
     }
 }

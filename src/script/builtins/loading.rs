@@ -73,7 +73,7 @@ fn open_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 
 const OPEN_MODEL_FILE: &str = r#"
 function openModelFile "Loads the file or package of a class by its name."
-  input String model;
+  input String modelName;
   input String path = "" "the file, where the name alone does not lead to it";
   input String version = "";
   input Boolean mustRead = false;
@@ -83,7 +83,7 @@ end openModelFile;
 "#;
 
 fn open_model_file(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let (model, path): (String, String) = (args.take("model")?, args.take("path")?);
+    let (model, path): (String, String) = (args.take("modelName")?, args.take("path")?);
     if path.is_empty() {
         return Ok(is_loaded(session, &Name::parse(&model)).into());
     }

@@ -9,6 +9,8 @@ mod header;
 mod loading;
 mod matrices;
 mod messages;
+mod openmodelica;
+mod plotting;
 mod results;
 mod scanning;
 mod scripts;
@@ -91,6 +93,8 @@ pub static FAMILIES: &[&Family] = &[
     &loading::OPENMODELICA,
     &matrices::FAMILY,
     &messages::FAMILY,
+    &openmodelica::FAMILY,
+    &plotting::FAMILY,
     &results::FAMILY,
     &results::OPENMODELICA,
     &scripts::FAMILY,
@@ -200,13 +204,13 @@ pub(super) fn find(name: &Name, dialect: Dialect) -> Option<BuiltinId> {
 
 /// Whether `package` is a package of commands, or holds one.
 pub(super) fn is_package(package: &str) -> bool {
-    let within = |known: &&str| {
+    let within = |known: &str| {
         known.strip_prefix(package).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
     };
     package == "DymolaCommands"
         || package.starts_with("DymolaCommands.")
         || package == "OpenModelica.Scripting"
-        || FAMILIES.iter().flat_map(|family| family.packages).any(|known| within(&known))
+        || FAMILIES.iter().flat_map(|family| family.packages).any(|known| within(known))
 }
 
 /// The bare names of all commands, sorted.

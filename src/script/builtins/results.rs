@@ -158,7 +158,7 @@ fn interpolate_trajectory(session: &mut Session, mut args: Args) -> Result<Value
 const READ_SIMULATION_RESULT: &str = r#"
 function readSimulationResult "Trajectories from a result file, one row for each variable."
   input String filename;
-  input VariableNames variables;
+  input VariableName variables[:];
   input Integer size = 0 "number of points in time; 0 for all";
   output Real result[:, :];
 end readSimulationResult;

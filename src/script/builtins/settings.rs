@@ -127,7 +127,8 @@ fn help(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     }
     match super::find(&crate::name::Name::parse(&name), session.dialect()) {
         Some(id) => {
-            session.print(id.header().trim_start());
+            let shown = id.header().replace(" annotation(optional = true)", "");
+            session.print(shown.trim_start());
             Ok(true.into())
         }
         None => {

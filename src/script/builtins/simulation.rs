@@ -241,5 +241,7 @@ fn write(session: &mut Session, simulated: &Simulated, file: &str) -> Result<(),
     // The name that Dymola's result files have.
     table.time_name = "Time".to_owned();
     let bytes = format.write(&table)?;
-    session.write_file(&path, &bytes)
+    session.write_file(&path, &bytes)?;
+    super::plotting::note_results(session, &path.to_string_lossy());
+    Ok(())
 }

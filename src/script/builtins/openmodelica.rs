@@ -1,0 +1,326 @@
+//! Models as OpenModelica's scripts handle them.
+
+use super::{Args, Builtin, Failure, Family};
+use crate::bail;
+use crate::diag::Diagnostic;
+use crate::name::{Ident, Name};
+use crate::script::errors::BAD_ARGUMENT;
+use crate::script::simulation::{self, Wishes};
+use crate::script::{Dialect, Session};
+use crate::value::{RecordValue, Value};
+use indexmap::IndexMap;
+
+/// The commands of this file.
+pub(super) const FAMILY: Family = Family {
+    packages: &["OpenModelica.Scripting"],
+    dialect: Some(Dialect::OpenModelica),
+    builtins: &[
+        Builtin { header: SIMULATE, run: simulate },
+        Builtin { header: TRANSLATE_MODEL, run: translate_model },
+        Builtin { header: CHECK_MODEL, run: check_model },
+        Builtin { header: INSTANTIATE_MODEL, run: instantiate_model },
+        Builtin { header: VAL, run: val },
+        Builtin { header: GET_PARAMETER_NAMES, run: get_parameter_names },
+        Builtin { header: SET_PARAMETER_VALUE, run: set_parameter_value },
+        Builtin { header: STRING_REPLACE, run: string_replace },
+        Builtin { header: STRTOK, run: strtok },
+        Builtin { header: STRING_TYPE_NAME, run: string_type_name },
+        Builtin { header: STRING_VARIABLE_NAME, run: string_variable_name },
+        Builtin { header: TYPE_NAME_STRINGS, run: type_name_strings },
+        Builtin { header: SET_MODELICA_PATH, run: set_modelica_path },
+    ],
+};
+
+/// The result file of the last simulation, for `val`.
+#[derive(Default)]
+struct LastResults(Option<String>);
+
+const SIMULATE: &str = r#"
+function simulate "Simulates a model. What is not given comes from its experiment annotation."
+  input TypeName className;
+  input Real startTime = 0.0 "s" annotation(optional = true);
+  input Real stopTime = 1.0 "s" annotation(optional = true);
+  input Integer numberOfIntervals = 500 annotation(optional = true);
+  input Real tolerance = 1e-6 "relative" annotation(optional = true);
+  input String method = "dassl" annotation(optional = true);
+  input String fileNamePrefix = "" "empty: the name of the class";
+  input String options = "" "has no effect";
+  input String outputFormat = "mat" "mat or csv";
+  input String variableFilter = ".*" "has no effect: all variables are stored";
+  input String cflags = "" "has no effect";
+  input String simflags = "" "-override=name=value,… sets parameters";
+  output Any simulationResults "resultFile, simulationOptions, messages";
+end simulate;
+"#;
+
+fn simulate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let class: Name = args.take("className")?;
+    let wishes = wishes(&mut args)?;
+    let prefix: String = args.take("fileNamePrefix")?;
+    let format: String = args.take("outputFormat")?;
+    let flags: String = args.take("simflags")?;
+    let prefix = if prefix.is_empty() { class.to_string() } else { prefix };
+    let file = format!("{prefix}_res.{format}");
+    let done = run(session, &class, &wishes, &flags, &file);
+    let messages = match &done {
+        Ok(()) => String::new(),
+        Err(errors) => errors.iter().map(|error| format!("{}\n", error.message)).collect(),
+    };
+    let result_file = match session.or_report_all(done) {
+        Some(()) => session.world.absolute(file.as_ref()).display().to_string(),
+        None => String::new(),
+    };
+    let options = shown(&wishes, &prefix, &format);
+    let fields =
+        [("resultFile", result_file), ("simulationOptions", options), ("messages", messages)];
+    Ok(Value::Record(RecordValue {
+        type_name: Name::parse("SimulationResult"),
+        fields: fields
+            .into_iter()
+            .map(|(name, text)| (Ident::new(name), Value::from(text)))
+            .collect::<IndexMap<Ident, Value>>(),
+    }))
+}
+
+fn wishes(args: &mut Args) -> Result<Wishes, Failure> {
+    let intervals: Option<i64> = args.optional("numberOfIntervals")?;
+    Ok(Wishes {
+        start: args.optional("startTime")?,
+        stop: args.optional("stopTime")?,
+        intervals: intervals.and_then(|count| usize::try_from(count).ok()),
+        tolerance: args.optional("tolerance")?,
+        method: args.optional("method")?,
+        ..Wishes::default()
+    })
+}
+
+fn run(
+    session: &mut Session,
+    class: &Name,
+    wishes: &Wishes,
+    flags: &str,
+    file: &str,
+) -> Result<(), Vec<Diagnostic>> {
+    let model = simulation::translate(session, &class.to_string())?;
+    let one = |session: &Session, fault: crate::diag::Fault| vec![fault.at(session.call_site())];
+    for (name, value) in overrides(flags) {
+        session.set_parameter(name, value).map_err(|fault| one(session, fault))?;
+    }
+    let done = simulation::simulate(session, &model, wishes).map_err(|error| vec![error])?;
+    let bytes = crate::results::format_of_file(file).and_then(|f| f.write(&done.table));
+    let written = bytes.and_then(|bytes| session.write_file(file.as_ref(), &bytes));
+    written.map_err(|fault| one(session, fault))?;
+    session.extension::<LastResults>().0 = Some(file.to_owned());
+    Ok(())
+}
+
+/// The numbers of `-override=a=1,b.c=2` and `-override a=1`.
+fn overrides(flags: &str) -> impl Iterator<Item = (&str, f64)> {
+    let list = flags.split("-override").nth(1).unwrap_or("");
+    let list = list.trim_start_matches(['=', ' ']).split_whitespace().next().unwrap_or("");
+    list.split(',').filter_map(|setting| {
+        let (name, value) = setting.split_once('=')?;
+        Some((name.trim(), value.trim().parse().ok()?))
+    })
+}
+
+fn shown(wishes: &Wishes, prefix: &str, format: &str) -> String {
+    let number = |value: Option<f64>| value.map_or("<default>".to_owned(), |v| format!("{v:?}"));
+    let intervals = wishes.intervals.map_or("<default>".to_owned(), |n| n.to_string());
+    format!(
+        "startTime = {}, stopTime = {}, numberOfIntervals = {intervals}, tolerance = {}, \
+         method = '{}', fileNamePrefix = '{prefix}', outputFormat = '{format}'",
+        number(wishes.start),
+        number(wishes.stop),
+        number(wishes.tolerance),
+        wishes.method.as_deref().unwrap_or("dassl"),
+    )
+}
+
+const TRANSLATE_MODEL: &str = r#"
+function translateModel "Translates a model."
+  input TypeName className;
+  output Boolean success;
+end translateModel;
+"#;
+
+fn translate_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let class: Name = args.take("className")?;
+    let done = simulation::translate(session, &class.to_string());
+    Ok(session.or_report_all(done).is_some().into())
+}
+
+const CHECK_MODEL: &str = r#"
+function checkModel "Whether a model is balanced and can be translated, in words."
+  input TypeName className;
+  output String result "empty if it cannot";
+end checkModel;
+"#;
+
+fn check_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let class: Name = args.take("className")?;
+    let done = simulation::translated(session, &class.to_string());
+    let Some(model) = session.or_report_all(done) else { return Ok("".into()) };
+    let unknowns = simulation::unknowns(&model.flat);
+    Ok(format!(
+        "Check of {class} completed successfully.\n\
+         Class {class} has {unknowns} equation(s) and {unknowns} variable(s)."
+    )
+    .into())
+}
+
+const INSTANTIATE_MODEL: &str = r#"
+function instantiateModel "A model as flat Modelica."
+  input TypeName className;
+  output String result "empty if it cannot be flattened";
+end instantiateModel;
+"#;
+
+fn instantiate_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let class: Name = args.take("className")?;
+    let flat = simulation::flat_model(session, &class.to_string());
+    Ok(session.or_report_all(flat).map_or(String::new(), |flat| flat.to_string()).into())
+}
+
+const VAL: &str = r#"
+function val "The value of a variable at a time of the last simulation."
+  input VariableName var;
+  input Real timePoint = 0.0 "s";
+  input String fileName = "" "empty: the file of the last simulation";
+  output Real valAtTime;
+end val;
+"#;
+
+fn val(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let name: String = args.take("var")?;
+    let time: f64 = args.take("timePoint")?;
+    let file: String = args.take("fileName")?;
+    let file = match (file.as_str(), &session.extension::<LastResults>().0) {
+        ("" | "<default>", Some(last)) => last.clone(),
+        ("" | "<default>", None) => {
+            bail!(BAD_ARGUMENT, "no model has been simulated, so `{name}` has no value")
+        }
+        (named, _) => named.to_owned(),
+    };
+    let table = super::results::table(session, &file)?;
+    Ok(table.interpolate(&name, &[time])?[0].into())
+}
+
+const GET_PARAMETER_NAMES: &str = r#"
+function getParameterNames "Names of the parameters of a model, in order of declaration."
+  input TypeName class_;
+  output String parameters[:];
+end getParameterNames;
+"#;
+
+fn get_parameter_names(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let class: Name = args.take("class_")?;
+    let flat = simulation::flat_model(session, &class.to_string());
+    let Some(flat) = session.or_report_all(flat) else { return Ok(Vec::<String>::new().into()) };
+    let is_parameter = |variable: &&crate::flatten::Variable| {
+        variable.top_level && variable.variability == crate::flatten::Variability::Parameter
+    };
+    let names = flat.variables.values().filter(is_parameter).map(|v| v.name.to_string());
+    Ok(names.collect::<Vec<String>>().into())
+}
+
+const SET_PARAMETER_VALUE: &str = r#"
+function setParameterValue "Gives a parameter of the translated model a value."
+  input TypeName className;
+  input VariableName variableName;
+  input Real value;
+  output Boolean success;
+end setParameterValue;
+"#;
+
+fn set_parameter_value(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let class: Name = args.take("className")?;
+    let name: String = args.take("variableName")?;
+    let value: f64 = args.take("value")?;
+    let translated = simulation::translate(session, &class.to_string());
+    if session.or_report_all(translated).is_none() {
+        return Ok(false.into());
+    }
+    let set = session.set_parameter(&name, value);
+    Ok(session.succeeded(set))
+}
+
+const STRING_REPLACE: &str = r#"
+function stringReplace "A string with another written in place of a third."
+  input String str;
+  input String source;
+  input String target;
+  output String res;
+end stringReplace;
+"#;
+
+fn string_replace(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let (text, source, target): (String, String, String) =
+        (args.take("str")?, args.take("source")?, args.take("target")?);
+    if source.is_empty() {
+        return Ok(text.into());
+    }
+    Ok(text.replace(&source, &target).into())
+}
+
+const STRTOK: &str = r#"
+function strtok "The parts of a string between separators, empty ones left out."
+  input String string;
+  input String token "the characters that separate";
+  output String strings[:];
+end strtok;
+"#;
+
+fn strtok(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let (text, token): (String, String) = (args.take("string")?, args.take("token")?);
+    let parts = text.split(|c| token.contains(c)).filter(|part| !part.is_empty());
+    Ok(parts.map(str::to_owned).collect::<Vec<String>>().into())
+}
+
+const STRING_TYPE_NAME: &str = r#"
+function stringTypeName "A string as the name of a class."
+  input String str;
+  output TypeName cl;
+end stringTypeName;
+"#;
+
+fn string_type_name(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    Ok(Value::TypeName(Name::parse(&args.take::<String>("str")?)))
+}
+
+const STRING_VARIABLE_NAME: &str = r#"
+function stringVariableName "A string as the name of a variable."
+  input String str;
+  output VariableName cl;
+end stringVariableName;
+"#;
+
+fn string_variable_name(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    Ok(Value::VariableName(args.take("str")?))
+}
+
+const TYPE_NAME_STRINGS: &str = r#"
+function typeNameStrings "The parts of a class name."
+  input TypeName cl;
+  output String out[:];
+end typeNameStrings;
+"#;
+
+fn type_name_strings(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let name: Name = args.take("cl")?;
+    Ok(name.parts.iter().map(|part| part.to_string()).collect::<Vec<String>>().into())
+}
+
+const SET_MODELICA_PATH: &str = r#"
+function setModelicaPath "Folders whose packages are loadable by name, separated by colons."
+  input String modelicaPath;
+  output Boolean success;
+end setModelicaPath;
+"#;
+
+fn set_modelica_path(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let path: String = args.take("modelicaPath")?;
+    let folders: Vec<&str> = path.split(':').filter(|folder| !folder.is_empty()).collect();
+    folders.into_iter().for_each(|folder| session.add_library_dir(folder.as_ref()));
+    Ok(true.into())
+}

@@ -1,0 +1,265 @@
+//! Plots: each command draws an SVG file into the output folder.
+
+use super::{Args, Builtin, Failure, Family};
+use crate::bail;
+use crate::diag::Fault;
+use crate::plot::{Axis, Figure, Mark, Panel, Series};
+use crate::script::errors::BAD_ARGUMENT;
+use crate::script::{Dialect, Session};
+use crate::value::Value;
+
+/// The commands of this file.
+pub(super) const FAMILY: Family = Family {
+    packages: &["DymolaCommands.Plot"],
+    dialect: Some(Dialect::Dymola),
+    builtins: &[
+        Builtin { header: PLOT, run: plot },
+        Builtin { header: CREATE_PLOT, run: create_plot },
+        Builtin { header: PLOT_ARRAY, run: plot_array },
+        Builtin { header: PLOT_SCATTER, run: plot_scatter },
+        Builtin { header: REMOVE_PLOTS, run: remove_plots },
+    ],
+};
+
+/// What was plotted so far.
+#[derive(Default)]
+struct Plots {
+    drawn: usize,
+    last_results: Option<String>,
+}
+
+/// Notes the result file that plots take where they name none.
+pub(super) fn note_results(session: &mut Session, file: &str) {
+    session.extension::<Plots>().last_results = Some(file.to_owned());
+}
+
+const PLOT: &str = r#"
+function plot "Draws trajectories of the last simulation over time."
+  input String y[:] "variables";
+  input String legend[:] = fill("", 0);
+  input Boolean plotInAll = false;
+  input Integer colors[:] = fill(0, 0);
+  input Integer patterns[:] = fill(0, 0);
+  input Integer markers[:] = fill(0, 0);
+  input Real thicknesses[:] = fill(0.0, 0);
+  input Integer axes[:] = fill(0, 0);
+  input Any displayUnits = fill("", 0);
+  output Boolean ok;
+end plot;
+"#;
+
+fn plot(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let names: Vec<String> = args.take("y")?;
+    let legends: Vec<String> = args.take("legend")?;
+    let drawing = Drawing { x: "time".to_owned(), names, legends, ..Drawing::default() };
+    draw_trajectories(session, drawing)?;
+    Ok(true.into())
+}
+
+const CREATE_PLOT: &str = r#"
+function createPlot "Draws trajectories of a result file."
+  input Integer id = 0;
+  input Any position = {0, 0, 0, 0};
+  input String x = "time";
+  input String y[:] = fill("", 0) "variables";
+  input String heading = "";
+  input Real range[:] = {0.0, 1.0, 0.0, 1.0};
+  input Boolean erase = true;
+  input Boolean autoscale = true;
+  input Boolean autoerase = true;
+  input Boolean autoreplot = true;
+  input Boolean description = false;
+  input Boolean grid = false;
+  input Boolean color = true;
+  input Boolean online = false;
+  input Boolean legend = true;
+  input Real timeWindow = 0.0;
+  input String filename = "" "result file; empty: that of the last simulation";
+  input Integer legendLocation = 1;
+  input Boolean legendHorizontal = true;
+  input Boolean legendFrame = false;
+  input Boolean suppressMarker = false;
+  input Boolean logX = false;
+  input Boolean logY = false;
+  input String legends[:] = fill("", 0);
+  input Integer subPlot = 1;
+  input Boolean uniformScaling = false;
+  input Integer leftTitleType = 1;
+  input String leftTitle = "";
+  input Integer bottomTitleType = 1;
+  input String bottomTitle = "";
+  input Any colors = 0;
+  input Any patterns = 0;
+  input Any markers = 0;
+  input Any thicknesses = 0;
+  input Any range2 = 0;
+  input Boolean logY2 = false;
+  input Integer rightTitleType = 1;
+  input String rightTitle = "";
+  input Any axes = 0;
+  input String timeUnit = "s";
+  input Any displayUnits = 0;
+  output Integer _window;
+end createPlot;
+"#;
+
+fn create_plot(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let id: i64 = args.take("id")?;
+    let drawing = Drawing {
+        title: args.take("heading")?,
+        x: args.take("x")?,
+        names: args.take("y")?,
+        legends: args.take("legends")?,
+        file: args.take("filename")?,
+        left_title: args.take("leftTitle")?,
+        bottom_title: args.take("bottomTitle")?,
+        logarithmic: [args.take("logX")?, args.take("logY")?],
+    };
+    if !drawing.names.is_empty() {
+        draw_trajectories(session, drawing)?;
+    }
+    Ok(Value::Integer(id.max(1)))
+}
+
+const PLOT_ARRAY: &str = r#"
+function plotArray "Draws one vector over another as a line."
+  input Real x[:];
+  input Real y[:];
+  input Integer style = 0;
+  input String legend = "";
+  input Integer id = 0;
+  input Any color = 0;
+  input Integer pattern = 0;
+  input Integer marker = 0;
+  input Real thickness = 0.25;
+  input Boolean erase = true;
+  input Integer axis = 1;
+  input String unit = "";
+  output Boolean ok;
+end plotArray;
+"#;
+
+const PLOT_SCATTER: &str = r#"
+function plotScatter "Draws one vector over another as points."
+  input Real x[:];
+  input Real y[:];
+  input Any colors = 0;
+  input Integer marker = 0;
+  input String legend = "";
+  input Integer axis = 1;
+  input String unit = "";
+  input Boolean erase = true;
+  input Integer id = 0;
+  output Boolean ok;
+end plotScatter;
+"#;
+
+fn plot_array(session: &mut Session, args: Args) -> Result<Value, Failure> {
+    draw_vectors(session, args, Mark::Line)
+}
+
+fn plot_scatter(session: &mut Session, args: Args) -> Result<Value, Failure> {
+    draw_vectors(session, args, Mark::Points)
+}
+
+const REMOVE_PLOTS: &str = r#"
+function removePlots "Forgets the plots; files that were drawn stay, the next ones overwrite them."
+  input Boolean closeResults = true;
+  output Boolean ok;
+end removePlots;
+"#;
+
+fn remove_plots(session: &mut Session, _: Args) -> Result<Value, Failure> {
+    session.extension::<Plots>().drawn = 0;
+    Ok(true.into())
+}
+
+/// What `plot` and `createPlot` draw.
+#[derive(Default)]
+struct Drawing {
+    title: String,
+    x: String,
+    names: Vec<String>,
+    legends: Vec<String>,
+    file: String,
+    left_title: String,
+    bottom_title: String,
+    logarithmic: [bool; 2],
+}
+
+fn draw_trajectories(session: &mut Session, drawing: Drawing) -> Result<(), Fault> {
+    let file = match (drawing.file.as_str(), &session.extension::<Plots>().last_results) {
+        ("", Some(last)) => last.clone(),
+        ("", None) => bail!(
+            BAD_ARGUMENT,
+            "there is nothing to plot: no model has been simulated";
+            help: "simulate first, or name a result file with `createPlot(filename=…)`"
+        ),
+        (named, _) => named.to_owned(),
+    };
+    let table = super::results::table(session, &file)?;
+    let x = table.column(&drawing.x)?;
+    let mut series = Vec::with_capacity(drawing.names.len());
+    for (at, name) in drawing.names.iter().enumerate() {
+        let legend = drawing.legends.get(at).filter(|legend| !legend.is_empty());
+        series.push(Series {
+            name: legend.unwrap_or(name).clone(),
+            x: x.clone(),
+            y: table.column(name)?,
+            mark: Mark::Line,
+            colour: at + 1,
+        });
+    }
+    let unit = |name: &str| {
+        let series = table.series.iter().find(|series| series.name == name);
+        series.map_or(String::new(), |series| series.unit.clone())
+    };
+    let x_unit = if drawing.x.eq_ignore_ascii_case("time") { "s".into() } else { unit(&drawing.x) };
+    let axis = |title: &str, name: &str, unit: &str, logarithmic: bool| {
+        let label = if title.is_empty() { name } else { title };
+        if logarithmic { Axis::logarithmic(label, unit) } else { Axis::linear(label, unit) }
+    };
+    let y_name = if let [only] = drawing.names.as_slice() { only.as_str() } else { "" };
+    let y_unit = drawing.names.first().map_or(String::new(), |name| unit(name));
+    let [log_x, log_y] = drawing.logarithmic;
+    let figure = Figure {
+        title: drawing.title,
+        panels: vec![Panel {
+            x: axis(&drawing.bottom_title, &drawing.x, &x_unit, log_x),
+            y: axis(&drawing.left_title, y_name, &y_unit, log_y),
+            height: 300.0,
+            zero_line: false,
+            series,
+        }],
+    };
+    write(session, &figure)
+}
+
+fn draw_vectors(session: &mut Session, mut args: Args, mark: Mark) -> Result<Value, Failure> {
+    let (x, y): (Vec<f64>, Vec<f64>) = (args.take("x")?, args.take("y")?);
+    let (legend, unit): (String, String) = (args.take("legend")?, args.take("unit")?);
+    if x.len() != y.len() {
+        bail!(BAD_ARGUMENT, "`x` has {} values and `y` has {}", x.len(), y.len());
+    }
+    let figure = Figure {
+        title: String::new(),
+        panels: vec![Panel {
+            x: Axis::linear("", ""),
+            y: Axis::linear("", &unit),
+            height: 300.0,
+            zero_line: false,
+            series: vec![Series { name: legend, x, y, mark, colour: 1 }],
+        }],
+    };
+    write(session, &figure)?;
+    Ok(true.into())
+}
+
+/// Writes the next `plot_<number>.svg` into the output folder.
+fn write(session: &mut Session, figure: &Figure) -> Result<(), Fault> {
+    let plots = session.extension::<Plots>();
+    plots.drawn += 1;
+    let name = format!("plot_{}.svg", plots.drawn);
+    let path = session.world.output_dir().join(name);
+    session.write_file(&path, figure.svg().as_bytes())
+}
