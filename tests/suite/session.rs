@@ -1,6 +1,6 @@
 //! Sessions: exit codes, strictness, dialects, echo, libraries, and what lasts between statements.
 
-use gapilib::script::world::{MemoryWorld, World as _};
+use gapilib::script::world::MemoryWorld;
 use gapilib::script::{Dialect, Echo, Options, Session, Strictness, Transcript};
 use gapilib::value::Value;
 use std::path::Path;
