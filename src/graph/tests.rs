@@ -1,3 +1,5 @@
+//! Tests of the graph algorithms against brute force and invariants.
+
 use super::*;
 use proptest::prelude::*;
 

@@ -1,3 +1,5 @@
+//! Tests of simulation against exact and reference solutions.
+
 use super::problems::{self, HeatRod, TestProblem};
 use super::*;
 use std::sync::Arc;

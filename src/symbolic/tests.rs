@@ -1,3 +1,5 @@
+//! Tests of building, differentiating and solving expressions.
+
 use super::*;
 use proptest::prelude::*;
 

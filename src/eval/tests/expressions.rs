@@ -1,3 +1,5 @@
+//! Tests of evaluating expressions.
+
 use super::{eval, fails, run};
 
 #[test]

@@ -1,3 +1,5 @@
+//! Tests of calling functions.
+
 use super::host::TestHost;
 use super::{Scope, run, run_fails, run_in, try_run};
 use crate::value::Value;

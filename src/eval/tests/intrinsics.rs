@@ -1,3 +1,5 @@
+//! Tests of the intrinsic functions.
+
 use super::{eval, fails};
 use crate::eval::{call_intrinsic, intrinsic_names};
 use crate::value::Value;

@@ -1,3 +1,5 @@
+//! Tests of executing statements.
+
 use super::host::TestHost;
 use super::{Scope, run, run_fails, run_in};
 use crate::name::Ident;

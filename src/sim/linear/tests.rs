@@ -1,3 +1,5 @@
+//! Tests of the factorizations.
+
 use super::*;
 use proptest::prelude::*;
 
