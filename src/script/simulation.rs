@@ -1,7 +1,7 @@
 //! Models of a session: translated once, simulated many times with other parameters.
 
 use super::Session;
-use super::errors::{BAD_PARAMETER_VALUE, SHARED_NAME, UNKNOWN_PARAMETER};
+use super::errors::{BAD_PARAMETER_VALUE, INTERRUPTED, SHARED_NAME, UNKNOWN_PARAMETER};
 use crate::compile::{Access, Program, System};
 use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::flatten::{self, Experiment, FlatModel, Variability};
@@ -211,7 +211,8 @@ pub fn simulate(
     wishes: &Wishes,
 ) -> Result<Simulated, Diagnostic> {
     let call = session.call;
-    let settings = settings(&model.program.experiment(), wishes).at(call)?;
+    let mut settings = settings(&model.program.experiment(), wishes).at(call)?;
+    settings.cancel = session.world.interrupt_flag();
     let mut system = model.program.system();
     if let Some(current) = &session.models.last
         && std::ptr::eq(&*current.model, model)
@@ -224,6 +225,9 @@ pub fn simulate(
     match Simulator::new().run(&mut system, &settings, &mut trajectory) {
         Ok(statistics) => {
             Ok(Simulated { table: result_table(model, &system, &trajectory), statistics })
+        }
+        Err(_) if session.world.interrupted() => {
+            Err(Fault::new(INTERRUPTED, "interrupted").at(call))
         }
         Err(error) => Err(model.program.explain(&error)),
     }
