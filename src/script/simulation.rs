@@ -292,20 +292,27 @@ impl Session {
     /// parameter its value too; said once for each name.
     pub(super) fn share_with_model(&mut self, name: Ident, value: &Value) -> Result<(), Fault> {
         let Some(current) = &self.models.last else { return Ok(()) };
-        let program = &current.model.program;
-        let (Ok(index), Some(number)) = (program.find_parameter(name.as_str()), value.as_real())
-        else {
-            return Ok(());
-        };
-        if !program.parameters()[index].top_level {
+        let model = current.model.clone();
+        let declared = model.flat.variables.get(name.as_str());
+        let is_parameter =
+            declared.is_some_and(|v| v.top_level && v.variability == Variability::Parameter);
+        if !is_parameter {
             return Ok(());
         }
-        let problem = current.model.problem.clone();
-        self.set_parameter(name.as_str(), number)?;
+        let (tunable, number) = (model.program.find_parameter(name.as_str()), value.as_real());
+        let consequence = match (tunable, number) {
+            (Ok(_), Some(number)) => {
+                self.set_parameter(name.as_str(), number)?;
+                "it is set there as well".to_owned()
+            }
+            _ => format!("there it keeps its value: {}", not_tunable(&model, name.as_str())),
+        };
         if self.shared.insert(name) {
-            let message =
-                format!("`{name}` is a parameter of `{problem}` too: it is set there as well");
-            self.note(SHARED_NAME, message);
+            let problem = &model.problem;
+            self.note(
+                SHARED_NAME,
+                format!("`{name}` is a parameter of `{problem}` too: {consequence}"),
+            );
         }
         Ok(())
     }
