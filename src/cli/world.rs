@@ -140,6 +140,10 @@ impl World for SystemWorld {
         self.interrupt.load(Ordering::Relaxed)
     }
 
+    fn interrupt_flag(&self) -> Option<Arc<AtomicBool>> {
+        Some(Arc::clone(&self.interrupt))
+    }
+
     fn threads(&self) -> usize {
         self.threads
     }

@@ -12,7 +12,8 @@ use crate::name::{Ident, Name};
 use crate::source::{SourceId, Span, Spanned};
 use crate::syntax;
 use crate::syntax::ast::{
-    ClassDefinition, ComponentReference, Expression, ExpressionKind, StoredDefinition, Subscript,
+    ClassDefinition, ClassSpecifier, ComponentReference, Element, Expression, ExpressionKind,
+    Section, StoredDefinition, Subscript,
 };
 use crate::value::Value;
 use std::collections::{BTreeMap, HashSet};
@@ -359,7 +360,7 @@ impl Session {
     fn package_constant(&mut self, name: &Name) -> Result<Option<Value>, Fault> {
         const ASKING: &str = "'a constant'";
         let name = Name::new(name.parts.iter().copied());
-        for type_name in ["Real", "Integer", "Boolean", "String"] {
+        for type_name in self.likely_types(&name) {
             let text = format!(
                 "function {ASKING} output {type_name} y; algorithm y := .{name}; end {ASKING};"
             );
@@ -377,6 +378,29 @@ impl Session {
             }
         }
         Ok(None)
+    }
+
+    /// The predefined types that a constant may have, the declared one first where it is written.
+    fn likely_types(&self, name: &Name) -> [&'static str; 4] {
+        let mut types = ["Real", "Integer", "Boolean", "String"];
+        let declared = self.classes.library.definition(&name.parent()).and_then(|package| {
+            let ClassSpecifier::Long(long) = &package.specifier else { return None };
+            long.sections.iter().find_map(|section| {
+                let Section::Elements { elements, .. } = section else { return None };
+                elements.iter().find_map(|element| match element {
+                    Element::Component(clause)
+                        if clause.components.iter().any(|c| Some(c.name.node) == name.last()) =>
+                    {
+                        clause.type_specifier.name.last()
+                    }
+                    _ => None,
+                })
+            })
+        });
+        if let Some(at) = types.iter().position(|name| declared.is_some_and(|d| d == *name)) {
+            types.swap(0, at);
+        }
+        types
     }
 
     /// The file that a path or a `modelica://Package/…` URI names.

@@ -4,7 +4,7 @@ use super::Session;
 use super::builtins::{self, BuiltinId, Failure};
 use super::errors::INTERRUPTED;
 use crate::diag::{At, Diagnostic, Fault};
-use crate::eval::{Callee, Function, Host, Scope};
+use crate::eval::{self, Callee, Function, Host, Scope};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::ComponentReference;
@@ -133,7 +133,9 @@ impl Session {
             }
         }
         for candidate in self.candidates(name) {
-            if candidate.parts.len() > 1 && self.class_exists(&candidate.parent()) {
+            let is_intrinsic = candidate.is_simple()
+                && eval::intrinsic_names().any(|intrinsic| candidate.parts[0] == intrinsic);
+            if !is_intrinsic && self.class_exists(&Name::new(candidate.first())) {
                 return Ok(self.loaded_function(name)?.map(Callee::Function));
             }
         }

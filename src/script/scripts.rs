@@ -151,7 +151,7 @@ impl Session {
     }
 
     fn interrupt(&mut self, span: Span) {
-        if self.stop != Some(Stop::Interrupt) {
+        if self.stop.is_none() {
             self.stop = Some(Stop::Interrupt);
             let message = "interrupted; what has been found until now is kept";
             self.report(Fault::new(INTERRUPTED, message).at(span).warning());

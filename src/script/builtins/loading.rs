@@ -3,6 +3,7 @@
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::Diagnostic;
 use crate::name::Name;
+use crate::script::errors::INTERRUPTED;
 use crate::script::{Dialect, Session};
 use crate::value::Value;
 use std::path::{Path, PathBuf};
@@ -40,7 +41,9 @@ impl Session {
         match result {
             Ok(value) => Some(value),
             Err(errors) => {
-                errors.into_iter().for_each(|error| self.report(error));
+                // The script that is being stopped says that it was interrupted.
+                let told = errors.into_iter().filter(|error| error.code != INTERRUPTED);
+                told.for_each(|error| self.report(error));
                 None
             }
         }
