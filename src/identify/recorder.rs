@@ -76,6 +76,8 @@ pub struct Best {
     pub simulated: Vec<f64>,
     /// The measured X of those points.
     pub x: Vec<f64>,
+    /// The measured Y of those points; `None` where nobody told.
+    pub measured: Option<Vec<f64>>,
 }
 
 /// What was observed of a run.
@@ -99,8 +101,8 @@ pub struct Recorder {
     pub causes: IndexMap<String, u64>,
     /// The random numbers being drawn: the seed they began with, and the one they go on with.
     chain: Option<Chain>,
-    /// What `Yexp` was compared with last.
-    measured_y: Option<Vec<f64>>,
+    /// Individuals of the generation that ended last.
+    generation_size: usize,
     sorted_by_fit_order: bool,
     fitness_by_fit: bool,
     pending: Pending,
@@ -118,6 +120,8 @@ struct Chain {
 struct Pending {
     study: Option<Arc<Study>>,
     x: Vec<f64>,
+    /// What `Fit` compared with.
+    measured: Option<Vec<f64>>,
     genomes: Vec<Vec<f64>>,
     simulated: Vec<Vec<f64>>,
     fitness: Vec<f64>,
@@ -126,7 +130,6 @@ struct Pending {
 impl Recorder {
     /// `Exp_Adq_SISO` has read data.
     pub fn measured(&mut self, measurement: Measurement) {
-        self.measured_y = Some(measurement.y.clone());
         self.measurement = Some(measurement);
     }
 
@@ -181,11 +184,15 @@ impl Recorder {
         pending.simulated.extend(simulated.rows.chunks(x.len().max(1)).map(<[f64]>::to_vec));
     }
 
-    /// `Fit` has rated the simulations of the last individuals.
-    pub fn rated(&mut self, fitness: &[f64], measured_y: &[f64]) {
-        self.fitness_by_fit = true;
-        self.measured_y = Some(measured_y.to_vec());
+    /// `Fit` has rated the simulations of the last individuals. Calls about anything else, such as
+    /// the check of a result with other data, are none of ours.
+    pub fn rated(&mut self, fitness: &[f64], measured: &[f64]) {
         let pending = &mut self.pending;
+        if fitness.len() > pending.genomes.len() || measured.len() != pending.x.len() {
+            return;
+        }
+        self.fitness_by_fit = true;
+        pending.measured = Some(measured.to_vec());
         if pending.fitness.len() + fitness.len() > pending.genomes.len() {
             pending.fitness.clear();
         }
@@ -203,6 +210,7 @@ impl Recorder {
             return;
         }
         self.history.record(fitness);
+        self.generation_size = fitness.len();
         let best = crate::ga::best(population, fitness);
         if let Some(best) = best
             && let Some(k) = self.pending.genomes.iter().position(|known| *known == best.genome)
@@ -215,16 +223,25 @@ impl Recorder {
     /// The run has ended or was interrupted: ends the generation that is complete.
     pub fn finish(&mut self) {
         let nobody_told = self.history.generations.is_empty() && !self.fitness_by_fit;
-        if nobody_told && let Some(measured) = &self.measured_y {
-            let rate = |row: &Vec<f64>| match row.len() == measured.len() {
-                true => sum_of_squares(row, measured),
+        if nobody_told && let Some(measurement) = &self.measurement {
+            let rate = |row: &Vec<f64>| match row.len() == measurement.y.len() {
+                true => sum_of_squares(row, &measurement.y),
                 false => FAILED_FITNESS,
             };
             self.pending.fitness = self.pending.simulated.iter().map(rate).collect();
         }
-        if self.pending.is_rated() {
+        if self.pending.is_rated() && (!self.sorted_by_fit_order || self.is_next_generation()) {
             self.end_pending_generation();
         }
+    }
+
+    /// Whether what is pending may be a generation that was interrupted before `Fit_Order`, and not
+    /// a simulation for another purpose.
+    fn is_next_generation(&self) -> bool {
+        let alike = |best: &Best| {
+            best.x == self.pending.x && Some(&best.study) == self.pending.study.as_ref()
+        };
+        self.pending.genomes.len() == self.generation_size && self.best.as_ref().is_some_and(alike)
     }
 
     /// Which fitness decided.
@@ -236,10 +253,9 @@ impl Recorder {
         }
     }
 
-    /// The measured Y of the best individual's points, if they belong together.
+    /// The measured Y of the best individual's points, if known.
     pub fn measured_y(&self) -> Option<&[f64]> {
-        let points = self.best.as_ref()?.x.len();
-        self.measured_y.as_deref().filter(|y| y.len() == points)
+        self.best.as_ref()?.measured.as_deref()
     }
 
     fn count_failure(&mut self, cause: &str) {
@@ -264,12 +280,15 @@ impl Recorder {
             return;
         }
         let Some(study) = self.pending.study.clone() else { return };
+        let read = self.measurement.as_ref().filter(|read| read.x == self.pending.x);
+        let measured = self.pending.measured.clone().or(read.map(|read| read.y.clone()));
         self.best = Some(Best {
             study,
             genome: self.pending.genomes[k].clone(),
             fitness,
             simulated: self.pending.simulated[k].clone(),
             x: self.pending.x.clone(),
+            measured,
         });
     }
 }
@@ -284,6 +303,7 @@ impl Pending {
         self.genomes.clear();
         self.simulated.clear();
         self.fitness.clear();
+        self.measured = None;
     }
 }
 
@@ -365,6 +385,20 @@ mod tests {
         assert_eq!((before.seed, before.evaluations), (Some(seed(1.0)), 1));
         recorder.seeded(seed(9.0), seed(10.0));
         assert_eq!((recorder.seed, recorder.evaluations), (Some(seed(7.0)), 0));
+    }
+
+    #[test]
+    fn a_check_with_other_data_is_no_generation() {
+        let mut recorder = Recorder::default();
+        recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &simulated(&[3.0]));
+        recorder.rated(&[9.0], &[0.0]);
+        recorder.ordered(&genomes(&[5.0]), &[9.0]);
+        recorder.evaluated(&study(), &[1.0], &genomes(&[5.0]), &simulated(&[3.0]));
+        recorder.rated(&[0.0], &[3.0]);
+        recorder.finish();
+        assert_eq!(recorder.history.generations.len(), 1);
+        assert_eq!(recorder.best.as_ref().unwrap().fitness, 9.0);
+        assert_eq!(recorder.measured_y(), Some(&[0.0][..]));
     }
 
     #[test]

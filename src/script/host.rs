@@ -4,7 +4,7 @@ use super::Session;
 use super::builtins::{self, BuiltinId, Failure};
 use super::errors::INTERRUPTED;
 use crate::diag::{At, Diagnostic, Fault};
-use crate::eval::{self, Callee, Function, Host, Scope};
+use crate::eval::{self, Callee, Function, FunctionBody, Host, Scope};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::ComponentReference;
@@ -125,7 +125,7 @@ impl Host for Session {
 impl Session {
     fn look_up_callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
         if let Some(function) = self.loaded_function(name)? {
-            return Ok(Some(Callee::Function(function)));
+            return Ok(Some(self.loaded_callee(function)));
         }
         for candidate in self.candidates(name) {
             if let Some(id) = builtins::find(&candidate, self.dialect) {
@@ -136,10 +136,25 @@ impl Session {
             let is_intrinsic = candidate.is_simple()
                 && eval::intrinsic_names().any(|intrinsic| candidate.parts[0] == intrinsic);
             if !is_intrinsic && self.class_exists(&Name::new(candidate.first())) {
-                return Ok(self.loaded_function(name)?.map(Callee::Function));
+                let function = self.loaded_function(name)?;
+                return Ok(function.map(|function| self.loaded_callee(function)));
             }
         }
         Ok(None)
+    }
+
+    /// A loaded function, or the command that it declares with `external "builtin"`.
+    fn loaded_callee(&self, function: Arc<Function>) -> Callee {
+        let command = match &function.body {
+            FunctionBody::External(external) if external.language.as_deref() == Some("builtin") => {
+                external
+                    .function
+                    .as_ref()
+                    .and_then(|called| builtins::find(&Name::new([called.node]), self.dialect))
+            }
+            _ => None,
+        };
+        command.map_or(Callee::Function(function), |id| Callee::Builtin(id.function()))
     }
 
     /// What a name may stand for: itself, and what the imports of the scripts make of it.

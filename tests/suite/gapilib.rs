@@ -118,6 +118,21 @@ fn elites_pass_crossover_and_mutation_unaltered() {
 }
 
 #[test]
+fn functions_that_need_the_machine_are_built_in_also_in_the_package() {
+    let session = session(&format!(
+        "{LOAD}(ok, sizes, x, y) := GAPILib.Basics.Exp_Adq_SISO(\
+         \"scripts/data/ecsim_nafion112/c12_n20_rh50_p15psig.mat\", \"i\", \"V\");\n\
+         d := GAPILib.Basics.Eval(\"models/CaseStudies\", \
+         \"CaseStudies.PolarizationCurve(i_max=1.46)\", x[1:2], \
+         [0.0285, 0.011, 2e-7, 0.1, 0.25, 2.0], X_Name=\"i\");\n"
+    ));
+    assert_eq!(reals(&session, "x").len(), 14);
+    let expected =
+        1.2 - 0.25 * 0.011 - 0.0285 * (0.011_f64 / 2e-7).ln() + 0.1 * (1.0 - 0.011_f64 / 2.0).ln();
+    assert!((reals(&session, "d")[0] - expected).abs() < 1e-14);
+}
+
+#[test]
 fn a_users_own_function_of_the_same_name_wins() {
     let session = session(
         "function Fit\n  input Real D[:,:];\n  input Real Y[:];\n  output Real e[size(D, 1)];\n\

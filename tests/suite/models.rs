@@ -15,3 +15,18 @@ fn every_model_parses() {
         }
     }
 }
+
+/// Every model of `models/CaseStudies` says how long it is to be simulated, and can be.
+#[test]
+fn case_studies_simulate_as_they_say() {
+    for model in
+        ["CaseStudies.PolarizationCurve", "CaseStudies.PolarizationCurve(Ilim = 2, i_max = 1.46)"]
+    {
+        let script = format!(
+            "openModel(\"models/CaseStudies/package.mo\");\nok := simulateModel(\"{model}\");\n"
+        );
+        let run = shipped::run("test.mos", &script);
+        assert_eq!(run.errors, "", "{model}");
+        assert_eq!(run.session.variable("ok"), Some(&true.into()), "{model}");
+    }
+}

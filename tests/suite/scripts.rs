@@ -2,7 +2,8 @@
 
 use crate::shipped;
 use gapilib::source::SourceMap;
-use gapilib::syntax;
+use gapilib::{mat, syntax};
+use std::path::Path;
 
 #[test]
 fn every_script_parses_and_says_first_what_it_shows() {
@@ -16,4 +17,44 @@ fn every_script_parses_and_says_first_what_it_shows() {
             panic!("{}: {diagnostic}", sources.location(diagnostic.span()));
         }
     }
+}
+
+/// The numbers of a data file, column by column.
+fn columns(path: &Path, names: [&str; 2]) -> [Vec<f64>; 2] {
+    let file = mat::read_named(&path.to_string_lossy(), &std::fs::read(path).unwrap()).unwrap();
+    names.map(|name| file.matrix(name).unwrap().row_major())
+}
+
+#[test]
+fn matrices_and_tables_hold_the_same_data() {
+    let tables = shipped::files("scripts/data", "csv");
+    assert_eq!(tables.len(), 42 + 2, "measured curves and twins");
+    for table in tables {
+        let matrices = columns(&table.with_extension("mat"), ["i", "V"]);
+        assert_eq!(matrices, columns(&table, ["i_A_per_cm2", "V"]), "{}", table.display());
+        assert!(matrices[0].len() >= 10 && matrices[0].is_sorted(), "{}", table.display());
+    }
+}
+
+#[test]
+fn the_twin_is_the_published_curve() {
+    let folder = shipped::project("scripts/data/twin");
+    let [i, v] = columns(&folder.join("table4.mat"), ["i", "V"]);
+    assert_eq!((i.len(), i[0], i[29]), (30, 0.002, 0.22));
+    for (i, v) in i.iter().zip(&v) {
+        let total = i + 1.4e-3;
+        let expected = 1.2 - 7.2860e-4 * total - 0.0390 * (total / 1.5856e-6).ln()
+            + 0.0918 * (1.0 - total / 0.2265).ln();
+        assert!((v - expected).abs() < 1e-15, "at {i}: {v} {expected}");
+    }
+    let [_, noisy] = columns(&folder.join("table4_noise_2mV.mat"), ["i", "V"]);
+    let variance = noisy.iter().zip(&v).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / 30.0;
+    assert!((0.0015..0.0025).contains(&variance.sqrt()), "{}", variance.sqrt());
+}
+
+#[test]
+fn measured_data_come_with_their_source() {
+    let readme = shipped::project("scripts/data/ecsim_nafion112/README.md");
+    let text = std::fs::read_to_string(readme).unwrap();
+    assert!(text.contains("CC-BY 4.0") && text.contains("10.26434/chemrxiv.11902023"));
 }
