@@ -133,8 +133,9 @@ impl Evaluator {
             y,
         };
         let threads = threads.max(1);
-        // Without a pool (one thread, or no more threads to be had) the caller's thread works.
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok();
+        // Without a pool (one thread, or no more threads to be had) the caller's thread works alone.
+        let helpers = threads.saturating_sub(1).max(1);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(helpers).build().ok();
         Ok(Evaluator {
             study: Arc::new(study),
             parameters,
@@ -188,13 +189,20 @@ impl Evaluator {
                 answers.push(Answer { individual, row });
             }
         };
-        let answers: Vec<Vec<Answer>> = match pool {
-            Some(pool) => {
-                use rayon::prelude::*;
-                pool.install(|| workers.par_iter_mut().with_max_len(1).map(work).collect())
-            }
-            None => workers.iter_mut().take(1).map(work).collect(),
-        };
+        let mut answers: Vec<Vec<Answer>> = workers.iter().map(|_| Vec::new()).collect();
+        let mut shares = workers.iter_mut().zip(&mut answers);
+        let own = shares.next();
+        // The caller's thread works too: it has begun long before another one is awake.
+        let work_own = || own.into_iter().for_each(|(worker, found)| *found = work(worker));
+        match pool {
+            Some(pool) => pool.in_place_scope(|scope| {
+                for (worker, found) in shares {
+                    scope.spawn(|_| *found = work(worker));
+                }
+                work_own();
+            }),
+            None => work_own(),
+        }
         Ok(collect(answers, genomes.len(), x.len()))
     }
 
