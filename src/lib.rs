@@ -1,5 +1,58 @@
-//! Runs GAPILib scripts: identifies the parameters of Modelica models from measured data with a
-//! genetic algorithm.
+//! Identifies the parameters of Modelica models from measured data with a genetic algorithm, by
+//! running the scripts of GAPILib ([Rubio et al. 2006](bibliography#rubio-2006)) unchanged.
+//!
+//! ```
+//! use gapilib::script::world::MemoryWorld;
+//! use gapilib::script::Session;
+//! use gapilib::value::Value;
+//!
+//! let world = MemoryWorld::new();
+//! let mut session = Session::new(Box::new(world));
+//! let status = session.run_text(
+//!     "decay.mos",
+//!     "model Decay
+//!        parameter Real k = 1;
+//!        Real x(start = 1, fixed = true);
+//!      equation
+//!        der(x) = -k*x;
+//!      end Decay;
+//!      translateModel(\"Decay\")
+//!      k = 2
+//!      simulateModel(\"Decay\", stopTime = 1, tolerance = 1e-8, resultFile = \"decay\")
+//!      x = readTrajectory(\"decay.mat\", {\"x\"}, 501)
+//!      last = x[1,end]",
+//! );
+//! assert_eq!(status.code, 0);
+//! let Some(Value::Real(last)) = session.variable("last") else { panic!("no value") };
+//! assert!((last - (-2.0f64).exp()).abs() < 1e-6);
+//! ```
+//!
+//! # The way of a script
+//!
+//! ```text
+//!  text ──syntax──▶ tree ──script, eval──▶ values, files, transcript
+//!                                │
+//!                                │ Eval, simulateModel, …
+//!                                ▼
+//!  model text ──syntax──▶ tree ──flatten──▶ FlatModel ──dae──▶ SortedDae ──compile──▶ Program
+//!                                                                                      │
+//!               Outcome ◀──identify── fitness ◀── Trajectory ◀──sim── System (one a thread)
+//!                                │
+//!                                └── ga: selection, crossover, mutation, random numbers
+//! ```
+//!
+//! A module owns one stage and one noun, imports only modules below it (a test checks the table in
+//! `tests/suite/architecture.rs`), and never changes what the stage before it made:
+//!
+//! - [`source`], [`name`], [`diag`], [`registry`]: places, names, diagnostics, named choices;
+//! - [`syntax`]: the grammar of classes and scripts, trees, printing;
+//! - [`value`], [`eval`]: values and their operations; expressions, statements, functions;
+//! - [`symbolic`], [`graph`]: scalar expressions; matching, sorting, tearing;
+//! - [`flatten`], [`dae`], [`compile`]: from a class to a program that evaluates itself;
+//! - [`sim`]: integrators, events, trajectories; knows nothing of Modelica;
+//! - [`ga`], [`identify`]: the genetic algorithm; populations of simulations, and what they tell;
+//! - [`mat`], [`results`], [`plot`]: files and figures;
+//! - [`script`]: sessions and their commands; [`cli`]: the command line, the only door outside.
 
 pub mod bibliography;
 pub mod diag;

@@ -92,18 +92,30 @@ fn escape(text: &str) -> String {
     out
 }
 
+/// Writes `10^{-3}` with raised digits. They are letters of their own, not shifted parts: viewers
+/// disagree about where shifted parts of centred text lie.
 fn raised(text: &str) -> String {
     let mut parts = text.split("^{");
     let mut out = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let (exponent, after) = part.split_once('}').unwrap_or((part, ""));
-        out += &format!("<tspan dy=\"-4.5\" font-size=\"9.5\">{exponent}</tspan>");
-        // Lowering works on text alone: an empty element would leave what follows raised.
-        if !after.is_empty() {
-            out += &format!("<tspan dy=\"4.5\">{after}</tspan>");
-        }
+        out.extend(exponent.chars().map(raised_letter));
+        out += after;
     }
     out
+}
+
+fn raised_letter(letter: char) -> char {
+    match letter {
+        '0' => '⁰',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        '4'..='9' => char::from_u32('⁴' as u32 + letter as u32 - '4' as u32).unwrap_or(letter),
+        '-' | '−' => '⁻',
+        '+' => '⁺',
+        other => other,
+    }
 }
 
 /// About how wide text is, in pixels, in the widest of the faces asked for.

@@ -53,7 +53,7 @@ fn fit_has_a_circle_per_measurement_and_a_stem_per_residual() {
     let svg = polarization().svg();
     assert_eq!(svg.matches("fill=\"#ffffff\" stroke=\"#000000\"").count(), 18 + 1);
     assert_eq!(svg.matches("r=\"2.6\"").count(), 18);
-    assert!(svg.contains("cell voltage [V]") && svg.contains("current density [A/cm<tspan"));
+    assert!(svg.contains("cell voltage [V]") && svg.contains("current density [A/cm²]"));
     assert!(svg.contains("20 °C &amp; 50 % humidity"));
 }
 
