@@ -35,8 +35,8 @@ fn run(session: &mut Session, arguments: &SimulateArgs) -> Result<(), Vec<Diagno
     for (name, value) in &arguments.set {
         session.set_parameter(name, *value).map_err(one)?;
     }
-    let simulated = simulation::simulate(session, &model, &wishes(arguments))
-        .map_err(|error| vec![error])?;
+    let simulated =
+        simulation::simulate(session, &model, &wishes(arguments)).map_err(|error| vec![error])?;
     session.print(&summary(&arguments.model, &simulated));
     match (&arguments.output, format) {
         (Some(path), Some(format)) => {
@@ -90,7 +90,10 @@ fn last_values(table: &ResultTable) -> Result<String, Fault> {
         text.push('\n');
     }
     if table.series.len() > SHOWN {
-        text.push_str(&format!("  … {} more; `--output FILE` writes all\n", table.series.len() - SHOWN));
+        text.push_str(&format!(
+            "  … {} more; `--output FILE` writes all\n",
+            table.series.len() - SHOWN
+        ));
     }
     Ok(text)
 }

@@ -1,7 +1,7 @@
 //! Values known at translation: constants of packages, and parameters that shape the model
 //! (MLS §3.8, §4.5).
 
-use super::errors::{NOT_CONSTANT, TYPE_MISMATCH};
+use super::errors::{NOT_CONSTANT, TOO_LARGE, TYPE_MISMATCH};
 use super::instance::{Context, NodeId, NodeKind};
 use super::instantiation::{Instantiation, picked};
 use super::library::ClassId;
@@ -258,6 +258,9 @@ fn check_type(value: &Value, base: &BaseType) -> Result<(), Fault> {
 /// Answers calls of functions while constants are evaluated; variables are values already.
 struct Functions<'i, 'a>(&'i mut Instantiation<'a>);
 
+/// The most turns of loops and statements that may be run to find the values of one model.
+const MAX_STEPS: usize = 10_000_000;
+
 impl Host for Functions<'_, '_> {
     fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Fault> {
         Ok(self.0.functions.get(name).cloned().flatten().map(Callee::Function))
@@ -271,6 +274,14 @@ impl Host for Functions<'_, '_> {
     ) -> Result<Vec<Value>, Diagnostic> {
         Err(fault!(NOT_CONSTANT, "`{}` is a command, not a function of values", header.name)
             .at(span))
+    }
+
+    fn interrupted(&mut self) -> Option<Fault> {
+        self.0.steps += 1;
+        (self.0.steps > MAX_STEPS).then(|| {
+            fault!(TOO_LARGE, "the values needed at translation take more than {MAX_STEPS} steps";
+                help: "check the condition that ends the loop")
+        })
     }
 
     fn variable(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Diagnostic> {

@@ -3,7 +3,7 @@
 
 use super::Variability;
 use super::errors::{
-    CYCLIC_CLASS, DUPLICATE_ELEMENT, NOT_SUPPORTED, TYPE_MISMATCH, UNKNOWN_ELEMENT,
+    CYCLIC_CLASS, DUPLICATE_ELEMENT, NOT_SUPPORTED, TOO_LARGE, TYPE_MISMATCH, UNKNOWN_ELEMENT,
 };
 use super::instance::{Context, Declaration, Member, MemberState, NodeId, Shape};
 use super::library::{ClassId, Library};
@@ -23,6 +23,9 @@ use std::sync::Arc;
 
 /// How many classes may extend one another before it is taken for a cycle.
 const MAX_DEPTH: usize = 100;
+
+/// How many base classes one class may have in all.
+const MAX_BASES: usize = 2000;
 
 /// The components of a class and the classes that its equations come from.
 #[derive(Debug, Default)]
@@ -76,6 +79,10 @@ impl Library {
         let found = self.class(class);
         if depth > MAX_DEPTH {
             return Err(fault!(CYCLIC_CLASS, "`{}` extends itself", found.name)
+                .at(found.definition.name.span));
+        }
+        if out.lineage.len() > MAX_BASES {
+            return Err(fault!(TOO_LARGE, "`{}` is one of too many base classes", found.name)
                 .at(found.definition.name.span));
         }
         if let ClassSpecifier::Short(short) = &found.definition.specifier {

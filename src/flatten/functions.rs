@@ -30,6 +30,13 @@ impl Library {
         name: &Name,
     ) -> Result<Option<IndexMap<Name, Arc<Function>>>, Diagnostic> {
         let Some(id) = self.find(name) else { return Ok(None) };
+        super::on_deep_stack(|| self.ready_function(id))?
+    }
+
+    fn ready_function(
+        &self,
+        id: ClassId,
+    ) -> Result<Option<IndexMap<Name, Arc<Function>>>, Diagnostic> {
         let mut instantiation = Instantiation::new(self);
         let Some(full) = instantiation.function(id)? else { return Ok(None) };
         let mut functions: IndexMap<Name, Arc<Function>> = IndexMap::new();

@@ -1,7 +1,7 @@
 //! Models as `gapi check` and `gapi flatten` show them.
 
-use super::simulation::{self, Translated};
 use super::Session;
+use super::simulation::{self, Translated};
 use crate::dae;
 use crate::diag::Diagnostic;
 use crate::flatten::FlatModel;
