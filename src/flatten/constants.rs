@@ -157,6 +157,14 @@ impl Instantiation<'_> {
             if self.is_constant(package, first) {
                 return self.walk(package, &reference.parts, reference, context, local);
             }
+            if Some(class) != context.class && self.has_component(package, first) {
+                let class = &self.library.class(class).name;
+                return Err(fault!(
+                    NOT_CONSTANT,
+                    "`{first}` is a component of the enclosing class `{class}` and no constant";
+                    help: "only constants of enclosing classes can be used (MLS §5.3.1)")
+                .at(reference.span));
+            }
             for name in self.library.imported_name(class, first) {
                 let mut imported = ComponentReference::from_name(&name, reference.span);
                 imported.global = true;
@@ -179,6 +187,10 @@ impl Instantiation<'_> {
         self.composite_of(package)
             .and_then(|composite| composite.members.get(&name))
             .is_some_and(|member| member.declaration.variability == Some(Variability::Constant))
+    }
+
+    fn has_component(&self, package: NodeId, name: Ident) -> bool {
+        self.composite_of(package).is_some_and(|composite| composite.members.contains_key(&name))
     }
 
     fn through_short_classes(&self, mut class: ClassId) -> ClassId {

@@ -139,6 +139,7 @@ impl Library {
             .at(extends.span));
         }
         let base = self.base_class(self.lookup_base(class, &extends.base)?, &extends.base)?;
+        self.check_base_kind(class, base, extends.span)?;
         let context = Context { node, class: Some(class) };
         let own = Modifier::of_arguments(&extends.modification, context)?;
         let names: Vec<Ident> = own.elements.keys().copied().collect();
@@ -157,6 +158,34 @@ impl Library {
             .at(extends.span)),
             None => Ok(left),
         }
+    }
+
+    /// Which kinds of classes may extend which (MLS §7.1.3).
+    fn check_base_kind(&self, class: ClassId, base: ClassId, span: Span) -> Result<(), Diagnostic> {
+        use Restriction as R;
+        let (own, inherited) = (self.class(class), self.class(base));
+        let fits = match (inherited.definition.restriction, own.definition.restriction) {
+            // What is only a class holds what all kinds may hold.
+            (R::Class, _) => true,
+            (R::Function { .. }, R::Function { .. }) => true,
+            (R::Package, R::Package) => true,
+            (R::Record, R::Record | R::OperatorRecord | R::Connector | R::ExpandableConnector)
+            | (R::Record, R::Model | R::Block | R::Class) => true,
+            (R::Model, R::Model | R::Class) => true,
+            (R::Block, R::Block | R::Model | R::Class) => true,
+            (R::Connector, R::Connector | R::Model | R::Block | R::Class) => true,
+            (one, other) => one == other,
+        };
+        if fits {
+            return Ok(());
+        }
+        Err(fault!(
+            TYPE_MISMATCH,
+            "`{}` cannot extend `{}`, which is another kind of class",
+            own.name,
+            inherited.name
+        )
+        .at(span))
     }
 
     /// A component inherited twice is one if both are the same declaration (MLS §7.1).

@@ -23,6 +23,7 @@ mod lookup;
 mod modification;
 mod print;
 mod resolve;
+mod types;
 mod variables;
 
 pub use flat_model::*;
