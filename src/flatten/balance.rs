@@ -126,7 +126,7 @@ fn reference_dims(reference: &ComponentReference, model: &FlatModel) -> Option<V
 }
 
 /// The name of the variable that a flat reference names, without the last subscripts.
-fn path(reference: &ComponentReference) -> String {
+pub(super) fn path(reference: &ComponentReference) -> String {
     let mut path = String::new();
     for (at, part) in reference.parts.iter().enumerate() {
         if at > 0 {

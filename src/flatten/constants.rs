@@ -1,7 +1,7 @@
 //! Values known at translation: constants of packages, and parameters that shape the model
 //! (MLS §3.8, §4.5).
 
-use super::errors::{NOT_CONSTANT, TYPE_MISMATCH};
+use super::errors::{NOT_CONSTANT, TOO_LARGE, TYPE_MISMATCH};
 use super::instance::{Context, NodeId, NodeKind};
 use super::instantiation::{Instantiation, picked};
 use super::library::ClassId;
@@ -157,6 +157,14 @@ impl Instantiation<'_> {
             if self.is_constant(package, first) {
                 return self.walk(package, &reference.parts, reference, context, local);
             }
+            if Some(class) != context.class && self.has_component(package, first) {
+                let class = &self.library.class(class).name;
+                return Err(fault!(
+                    NOT_CONSTANT,
+                    "`{first}` is a component of the enclosing class `{class}` and no constant";
+                    help: "only constants of enclosing classes can be used (MLS §5.3.1)")
+                .at(reference.span));
+            }
             for name in self.library.imported_name(class, first) {
                 let mut imported = ComponentReference::from_name(&name, reference.span);
                 imported.global = true;
@@ -179,6 +187,10 @@ impl Instantiation<'_> {
         self.composite_of(package)
             .and_then(|composite| composite.members.get(&name))
             .is_some_and(|member| member.declaration.variability == Some(Variability::Constant))
+    }
+
+    fn has_component(&self, package: NodeId, name: Ident) -> bool {
+        self.composite_of(package).is_some_and(|composite| composite.members.contains_key(&name))
     }
 
     fn through_short_classes(&self, mut class: ClassId) -> ClassId {
@@ -258,6 +270,9 @@ fn check_type(value: &Value, base: &BaseType) -> Result<(), Fault> {
 /// Answers calls of functions while constants are evaluated; variables are values already.
 struct Functions<'i, 'a>(&'i mut Instantiation<'a>);
 
+/// The most turns of loops and statements that may be run to find the values of one model.
+const MAX_STEPS: usize = 10_000_000;
+
 impl Host for Functions<'_, '_> {
     fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
         Ok(self.0.functions.get(name).cloned().flatten().map(Callee::Function))
@@ -271,6 +286,14 @@ impl Host for Functions<'_, '_> {
     ) -> Result<Vec<Value>, Diagnostic> {
         Err(fault!(NOT_CONSTANT, "`{}` is a command, not a function of values", header.name)
             .at(span))
+    }
+
+    fn interrupted(&mut self) -> Option<Fault> {
+        self.0.steps += 1;
+        (self.0.steps > MAX_STEPS).then(|| {
+            fault!(TOO_LARGE, "the values needed at translation take more than {MAX_STEPS} steps";
+                help: "check the condition that ends the loop")
+        })
     }
 
     fn variable(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Diagnostic> {

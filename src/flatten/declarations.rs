@@ -3,7 +3,7 @@
 
 use super::Variability;
 use super::errors::{
-    CYCLIC_CLASS, DUPLICATE_ELEMENT, NOT_SUPPORTED, TYPE_MISMATCH, UNKNOWN_ELEMENT,
+    CYCLIC_CLASS, DUPLICATE_ELEMENT, NOT_SUPPORTED, TOO_LARGE, TYPE_MISMATCH, UNKNOWN_ELEMENT,
 };
 use super::instance::{Context, Declaration, Member, MemberState, NodeId, Shape};
 use super::library::{ClassId, Library};
@@ -23,6 +23,9 @@ use std::sync::Arc;
 
 /// How many classes may extend one another before it is taken for a cycle.
 const MAX_DEPTH: usize = 100;
+
+/// How many base classes one class may have in all.
+const MAX_BASES: usize = 2000;
 
 /// The components of a class and the classes that its equations come from.
 #[derive(Debug, Default)]
@@ -76,6 +79,10 @@ impl Library {
         let found = self.class(class);
         if depth > MAX_DEPTH {
             return Err(fault!(CYCLIC_CLASS, "`{}` extends itself", found.name)
+                .at(found.definition.name.span));
+        }
+        if out.lineage.len() > MAX_BASES {
+            return Err(fault!(TOO_LARGE, "`{}` is one of too many base classes", found.name)
                 .at(found.definition.name.span));
         }
         if let ClassSpecifier::Short(short) = &found.definition.specifier {
@@ -132,6 +139,7 @@ impl Library {
             .at(extends.span));
         }
         let base = self.base_class(self.lookup_base(class, &extends.base)?, &extends.base)?;
+        self.check_base_kind(class, base, extends.span)?;
         let context = Context { node, class: Some(class) };
         let own = Modifier::of_arguments(&extends.modification, context)?;
         let names: Vec<Ident> = own.elements.keys().copied().collect();
@@ -150,6 +158,34 @@ impl Library {
             .at(extends.span)),
             None => Ok(left),
         }
+    }
+
+    /// Which kinds of classes may extend which (MLS §7.1.3).
+    fn check_base_kind(&self, class: ClassId, base: ClassId, span: Span) -> Result<(), Diagnostic> {
+        use Restriction as R;
+        let (own, inherited) = (self.class(class), self.class(base));
+        let fits = match (inherited.definition.restriction, own.definition.restriction) {
+            // What is only a class holds what all kinds may hold.
+            (R::Class, _) => true,
+            (R::Function { .. }, R::Function { .. }) => true,
+            (R::Package, R::Package) => true,
+            (R::Record, R::Record | R::OperatorRecord | R::Connector | R::ExpandableConnector)
+            | (R::Record, R::Model | R::Block | R::Class) => true,
+            (R::Model, R::Model | R::Class) => true,
+            (R::Block, R::Block | R::Model | R::Class) => true,
+            (R::Connector, R::Connector | R::Model | R::Block | R::Class) => true,
+            (one, other) => one == other,
+        };
+        if fits {
+            return Ok(());
+        }
+        Err(fault!(
+            TYPE_MISMATCH,
+            "`{}` cannot extend `{}`, which is another kind of class",
+            own.name,
+            inherited.name
+        )
+        .at(span))
     }
 
     /// A component inherited twice is one if both are the same declaration (MLS §7.1).

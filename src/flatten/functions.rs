@@ -30,6 +30,13 @@ impl Library {
         name: &Name,
     ) -> Result<Option<IndexMap<Name, Arc<Function>>>, Diagnostic> {
         let Some(id) = self.find(name) else { return Ok(None) };
+        super::on_deep_stack(|| self.ready_function(id))?
+    }
+
+    fn ready_function(
+        &self,
+        id: ClassId,
+    ) -> Result<Option<IndexMap<Name, Arc<Function>>>, Diagnostic> {
         let mut instantiation = Instantiation::new(self);
         let Some(full) = instantiation.function(id)? else { return Ok(None) };
         let mut functions: IndexMap<Name, Arc<Function>> = IndexMap::new();
@@ -131,7 +138,9 @@ impl Instantiation<'_> {
         let library = self.library;
         let components = self.components_of(class)?;
         let names: Vec<Ident> = components.iter().map(|c| c.component.name).collect();
-        let local = Local::default().with(names);
+        let inputs_of = |c: &Declared| c.causality == Some(CausalityPrefix::Input);
+        let read_only = components.iter().filter(|c| inputs_of(c)).map(|c| c.component.name);
+        let local = Local { read_only: read_only.collect(), ..Local::default().with(names) };
         let (mut inputs, mut outputs, mut locals) = (Vec::new(), Vec::new(), Vec::new());
         for declared in components {
             let list = match declared.causality {
@@ -143,6 +152,7 @@ impl Instantiation<'_> {
         }
         let lineage = library.collect(class, NodeId(0), Modifier::default())?.lineage;
         let definition = &library.class(class).definition;
+        self.check_complete(class, definition.name.span)?;
         let purity = match definition.restriction {
             Restriction::Function { purity, .. } => purity,
             _ => None,
@@ -194,6 +204,8 @@ impl Instantiation<'_> {
         let collected = library.collect(class, NodeId(0), Modifier::default())?;
         let names: Vec<Ident> = collected.members.keys().copied().collect();
         let local = Local::default().with(names);
+        let restriction = library.class(class).definition.restriction;
+        let is_function = matches!(restriction, Restriction::Function { .. });
         let mut components = Vec::with_capacity(collected.members.len());
         for member in collected.members.values() {
             let declared = &member.declaration;
@@ -211,6 +223,14 @@ impl Instantiation<'_> {
                 None => None,
             };
             let value_type = self.value_type(&declared.shape, declared.span)?;
+            if is_function && !declared.protected && declared.causality.is_none() {
+                return Err(fault!(
+                    TYPE_MISMATCH,
+                    "`{}` is public in a function and neither input nor output",
+                    declared.name;
+                    help: "declare it `input` or `output`, or behind `protected`")
+                .at(declared.span));
+            }
             components.push(Declared {
                 causality: declared.causality.filter(|_| !declared.protected),
                 component: FunctionComponent {
@@ -250,11 +270,20 @@ impl Instantiation<'_> {
     fn body(&mut self, lineage: &[ClassId], local: &Local) -> Result<FunctionBody, Diagnostic> {
         let library = self.library;
         let mut statements = Vec::new();
+        let mut has_algorithm = false;
         for base in lineage {
             let context = Context { node: NodeId(0), class: Some(*base) };
             for section in library.class(*base).sections() {
                 match section {
-                    Section::Algorithm { initial: false, statements: own, .. } => {
+                    Section::Algorithm { initial: false, statements: own, span } => {
+                        if std::mem::replace(&mut has_algorithm, true) {
+                            let name = &library.class(*base).name;
+                            return Err(fault!(
+                                TYPE_MISMATCH,
+                                "function `{name}` has more than one algorithm"
+                            )
+                            .at(*span));
+                        }
                         statements.extend(self.statements(own, context, local)?);
                     }
                     Section::Algorithm { span, .. } | Section::Equations { span, .. } => {
@@ -351,6 +380,13 @@ impl Instantiation<'_> {
         local: &Local,
     ) -> Result<ComponentReference, Diagnostic> {
         let span = target.span;
+        if let Some(first) = target.parts.first().map(|part| part.name)
+            && local.read_only.contains(&first)
+        {
+            return Err(fault!(TYPE_MISMATCH, "`{first}` is an input and cannot be assigned to";
+                help: "assign to a protected variable instead")
+            .at(span));
+        }
         let e = Expression::new(ExpressionKind::Reference(target.clone()), span);
         match self.resolve(&e, context, local)?.kind {
             ExpressionKind::Reference(resolved) => Ok(resolved),

@@ -24,8 +24,9 @@ use indexmap::{IndexMap, IndexSet};
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
-/// The most scalar variables and the deepest nesting that are built.
+/// The most scalar variables, the most components and the deepest nesting that are built.
 const MAX_SCALARS: usize = 2_000_000;
+const MAX_INSTANCES: usize = 100_000;
 const MAX_DEPTH: usize = 60;
 
 /// The attributes of the predefined types (MLS §4.9).
@@ -50,6 +51,8 @@ pub(super) struct Instantiation<'a> {
     pub(super) read: Read,
     /// How deep expressions are being resolved.
     pub(super) depth: usize,
+    /// Statements run so far to find values.
+    pub(super) steps: usize,
     scalars: usize,
 }
 
@@ -75,6 +78,7 @@ impl<'a> Instantiation<'a> {
             values: FxHashMap::default(),
             read: Read::new(),
             depth: 0,
+            steps: 0,
             scalars: 0,
         }
     }
@@ -91,6 +95,10 @@ impl<'a> Instantiation<'a> {
         if inherited.depth > MAX_DEPTH {
             let name = &self.library.class(class).name;
             return Err(fault!(CYCLIC_CLASS, "`{name}` contains a component of its own class")
+                .at(definition.name.span));
+        }
+        if self.nodes.len() > MAX_INSTANCES {
+            return Err(fault!(TOO_LARGE, "the model has more than {MAX_INSTANCES} components")
                 .at(definition.name.span));
         }
         let record =
@@ -273,15 +281,14 @@ impl<'a> Instantiation<'a> {
         if parent.is_empty() { name.to_string() } else { format!("{parent}.{name}") }
     }
 
-    fn count(&mut self, scalars: usize, declared: &Declaration) -> Result<(), Diagnostic> {
+    fn count(&mut self, scalars: usize, span: Span) -> Result<(), Diagnostic> {
         self.scalars = self.scalars.saturating_add(scalars.max(1));
         if self.scalars > MAX_SCALARS {
             return Err(fault!(
                 TOO_LARGE,
-                "the model has more than {MAX_SCALARS} scalar variables at `{}`",
-                declared.name
+                "the model has more than {MAX_SCALARS} scalar variables"
             )
-            .at(declared.span));
+            .at(span));
         }
         Ok(())
     }
@@ -314,7 +321,7 @@ impl<'a> Instantiation<'a> {
             return Ok(MemberState::Single(built));
         }
         let count = dims.iter().try_fold(1usize, |n, d| n.checked_mul(*d)).unwrap_or(usize::MAX);
-        self.count(count, declared)?;
+        self.count(count, declared.span)?;
         let mut nodes = Vec::with_capacity(count);
         for at in 0..count {
             let indices = indices_of(at, &dims);
@@ -356,7 +363,7 @@ impl<'a> Instantiation<'a> {
             }
         }
         let scalars = dims.iter().try_fold(1usize, |n, d| n.checked_mul(*d)).unwrap_or(usize::MAX);
-        self.count(scalars, declared)?;
+        self.count(scalars, declared.span)?;
         let inherited = self.inherited_by(node, declared);
         let top_level = self.nodes[node.0].path.is_empty();
         let name: Arc<str> = self.path_of(node, declared.name).into();

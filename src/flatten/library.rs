@@ -9,8 +9,10 @@ use crate::syntax::ast::{
     Visibility,
 };
 use indexmap::IndexMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeSet;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::ThreadId;
 
 /// A class of a [`Library`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
@@ -24,6 +26,16 @@ pub struct Library {
     roots: IndexMap<Ident, ClassId>,
     /// Top-level names that were looked for and are not loaded.
     missing: Arc<Mutex<BTreeSet<Ident>>>,
+    /// What the classes extend, found so far; another cache as soon as a class is added.
+    bases: Arc<Mutex<BaseCache>>,
+}
+
+/// The classes that others extend, as far as they were looked up.
+#[derive(Debug, Default)]
+struct BaseCache {
+    known: FxHashMap<ClassId, Vec<ClassId>>,
+    /// Classes whose bases a thread is looking up: one that needs its own bases for that has none.
+    busy: FxHashSet<(ThreadId, ClassId)>,
 }
 
 /// A class with what its text says directly, before inheritance.
@@ -87,6 +99,7 @@ impl Library {
             Some(parent) => self.classes[parent.0 as usize].children.insert(own, id),
             None => self.roots.insert(own, id),
         };
+        self.bases = Arc::default();
         self.classes.push(Class {
             name,
             definition: definition.clone(),
@@ -198,23 +211,48 @@ impl Library {
     /// The top-level names that were looked for in vain since the last call, sorted: who has the
     /// files can load them and try again.
     pub fn take_missing(&self) -> BTreeSet<Ident> {
-        match self.missing.lock() {
-            Ok(mut missing) => std::mem::take(&mut *missing),
-            Err(poisoned) => std::mem::take(&mut *poisoned.into_inner()),
-        }
+        std::mem::take(&mut *locked(&self.missing))
     }
 
     pub(super) fn root(&self, name: Ident) -> Option<ClassId> {
         let found = self.roots.get(&name).copied();
-        if let (None, Ok(mut missing)) = (found, self.missing.lock()) {
-            missing.insert(name);
+        if found.is_none() {
+            locked(&self.missing).insert(name);
         }
+        found
+    }
+
+    /// The classes that a class extends as `find` finds them, each looked up once.
+    pub(super) fn bases_once(
+        &self,
+        class: ClassId,
+        find: impl FnOnce() -> Vec<ClassId>,
+    ) -> Vec<ClassId> {
+        let thread = std::thread::current().id();
+        {
+            let mut cache = locked(&self.bases);
+            if let Some(known) = cache.known.get(&class) {
+                return known.clone();
+            }
+            if !cache.busy.insert((thread, class)) {
+                return Vec::new();
+            }
+        }
+        let found = find();
+        let mut cache = locked(&self.bases);
+        cache.busy.remove(&(thread, class));
+        cache.known.insert(class, found.clone());
         found
     }
 
     pub(super) fn class(&self, id: ClassId) -> &Class {
         &self.classes[id.0 as usize]
     }
+}
+
+/// What a mutex holds; a panic elsewhere leaves these sets whole.
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Class {

@@ -40,8 +40,11 @@ impl Predefined {
     }
 }
 
-/// Classes whose inherited elements are being searched: a class that extends itself ends there.
+/// Classes whose inherited elements were searched already: a class that extends itself ends there.
 type Visited = BTreeSet<ClassId>;
+
+/// The most base classes in which a name is searched.
+const MAX_BASES: usize = 1000;
 
 impl Library {
     /// What a type specifier means in the scope of a class; an error with suggestions if nothing.
@@ -113,16 +116,18 @@ impl Library {
         if let Some(own) = self.class(class).children.get(&name) {
             return Some(*own);
         }
-        if !visited.insert(class) {
+        if visited.len() >= MAX_BASES || !visited.insert(class) {
             return None;
         }
-        let found = self.bases(class).iter().find_map(|base| self.member(*base, name, visited));
-        visited.remove(&class);
-        found
+        self.bases(class).iter().find_map(|base| self.member(*base, name, visited))
     }
 
     /// The classes that a class extends, or that it is short for; unknown ones left out.
     pub(super) fn bases(&self, class: ClassId) -> Vec<ClassId> {
+        self.bases_once(class, || self.find_bases(class))
+    }
+
+    fn find_bases(&self, class: ClassId) -> Vec<ClassId> {
         let found = self.class(class);
         let mut own: Visited = [class].into();
         let mut class_of = |scope, name: &Name| match self.lookup_with(scope, name, &mut own) {

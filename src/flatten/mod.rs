@@ -23,6 +23,7 @@ mod lookup;
 mod modification;
 mod print;
 mod resolve;
+mod types;
 mod variables;
 
 pub use flat_model::*;
@@ -36,10 +37,13 @@ use crate::syntax::ast::{
     self, Annotation, Argument, Binding, ClassDefinition, ClassSpecifier, ExpressionKind,
     Restriction, Section, TypeSpecifier, UnaryOperator,
 };
-use errors::NOT_A_MODEL;
+use errors::{NOT_A_MODEL, TOO_LARGE};
 use instance::{Context, Inherited, NodeId};
 use instantiation::Instantiation;
 use modification::Modifier;
+
+/// Bytes of stack for instantiation, which nests with the expressions and bindings of the model.
+const STACK: usize = 256 << 20;
 
 /// A flat model and what is worth knowing about how it came about.
 #[derive(Debug, Clone)]
@@ -53,6 +57,29 @@ pub struct Flattened {
 /// Flattens a class under a modification, such as that of `M(p = 2)`. The errors are independent
 /// of each other as far as one can tell.
 pub fn flatten(
+    library: &Library,
+    class: &Name,
+    modification: &[Argument],
+) -> Result<Flattened, Vec<Diagnostic>> {
+    on_deep_stack(|| flattened(library, class, modification))
+        .unwrap_or_else(|error| Err(vec![error]))
+}
+
+/// Runs work on a thread whose stack holds the deepest nesting of expressions that is accepted.
+fn on_deep_stack<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Diagnostic> {
+    std::thread::scope(|scope| {
+        let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work);
+        match thread.map(std::thread::ScopedJoinHandle::join) {
+            Ok(Ok(result)) => Ok(result),
+            Ok(Err(panic)) => std::panic::resume_unwind(panic),
+            Err(error) => {
+                Err(fault!(TOO_LARGE, "no thread could be started: {error}").at(Span::NONE))
+            }
+        }
+    })
+}
+
+fn flattened(
     library: &Library,
     class: &Name,
     modification: &[Argument],

@@ -1,6 +1,6 @@
 //! Merging modifications (MLS §7.2): outer modifiers override inner ones, element by element.
 
-use super::errors::{FINAL_OVERRIDE, NOT_SUPPORTED};
+use super::errors::{DUPLICATE_ELEMENT, FINAL_OVERRIDE, NOT_SUPPORTED};
 use super::instance::Context;
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -88,9 +88,25 @@ impl Modifier {
                 entry = (*part, Modifier { elements, span, ..Modifier::default() });
             }
             let known = merged.elements.shift_remove(&entry.0).unwrap_or_default();
+            if let Some(name) = known.conflict(&entry.1, entry.0) {
+                return Err(fault!(DUPLICATE_ELEMENT, "`{name}` is modified twice";
+                    help: "remove one of the two modifiers")
+                .at(element.name.span));
+            }
             merged.elements.insert(entry.0, known.overridden_by(entry.1, entry.0)?);
         }
         Ok(merged)
+    }
+
+    /// The element to which both modifiers give a value (MLS §7.2.4).
+    fn conflict(&self, other: &Modifier, name: Ident) -> Option<Ident> {
+        if self.binding.is_some() && other.binding.is_some() {
+            return Some(name);
+        }
+        let inner = |(name, modifier): (&Ident, &Modifier)| {
+            self.elements.get(name)?.conflict(modifier, *name)
+        };
+        other.elements.iter().find_map(inner)
     }
 
     /// This modifier with an outer one over it; `name` is the element's, for messages.

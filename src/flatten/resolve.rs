@@ -23,6 +23,8 @@ pub(super) struct Local {
     /// Loop variables and variables of a function, innermost last; those of an unrolled loop with
     /// their value.
     pub(super) names: Vec<(Ident, Option<Expression>)>,
+    /// Inputs of a function.
+    pub(super) read_only: Vec<Ident>,
     /// Whether variables are replaced by their values, which must be constant.
     pub(super) values: bool,
 }

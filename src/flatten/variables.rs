@@ -7,6 +7,7 @@ use super::instance::{Leaf, MemberState, NodeId, NodeKind};
 use super::instantiation::{ATTRIBUTES, Instantiation, picked};
 use super::modification::Bound;
 use super::resolve::Local;
+use super::types::type_name;
 use super::{Attribute, BaseType, Variable};
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -72,6 +73,9 @@ impl Instantiation<'_> {
         if let Some(binding) = variable.binding.take() {
             check_literal(&binding, &variable.base, &variable)?;
             let each = leaf.modifier.binding.as_ref().is_some_and(|bound| bound.each);
+            // `each` is about the array that holds the component, whose own value may be an array.
+            let each = each && self.rank_of(&binding) != Some(variable.dims.len());
+            self.check_value(&binding, &variable, each)?;
             variable.binding = Some(if each { filled(binding, &variable.dims) } else { binding });
         }
         for name in ATTRIBUTES {
@@ -88,8 +92,29 @@ impl Instantiation<'_> {
 
     fn bound(&mut self, bound: &Bound) -> Result<Option<Expression>, Diagnostic> {
         let Some(value) = &bound.value else { return Ok(None) };
+        self.check_elements(value, bound)?;
         let value = picked(value.clone(), &bound.indices);
         self.resolve(&value, bound.context, &Local::default()).map(Some)
+    }
+}
+
+impl Instantiation<'_> {
+    /// A value for the elements of an array of components must be an array (MLS §7.2.5).
+    fn check_elements(&mut self, value: &Expression, bound: &Bound) -> Result<(), Diagnostic> {
+        if bound.indices.is_empty() {
+            return Ok(());
+        }
+        let whole = self.resolve(value, bound.context, &Local::default())?;
+        let wanted = bound.indices.len();
+        match self.rank_of(&whole) {
+            Some(found) if found < wanted => Err(fault!(
+                SIZE_MISMATCH,
+                "a modifier of an array of components needs a value with {wanted} dimensions at \
+                 least, not {found}";
+                help: "write `each` before the modifier to give every element the same value")
+            .at(value.span)),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -156,14 +181,4 @@ fn check_array(
         ExpressionKind::Array(deeper) => check_array(deeper, element, base, inner, variable),
         _ => check_literal(element, base, variable),
     })
-}
-
-fn type_name(base: &BaseType) -> String {
-    match base {
-        BaseType::Real => "Real".into(),
-        BaseType::Integer => "Integer".into(),
-        BaseType::Boolean => "Boolean".into(),
-        BaseType::String => "String".into(),
-        BaseType::Enumeration(definition) => definition.name.to_string(),
-    }
 }

@@ -5,6 +5,7 @@ mod compat;
 mod diagnostics;
 mod flat_class;
 mod flattening;
+mod flattening_properties;
 mod gapilib;
 mod grammar;
 mod identification;

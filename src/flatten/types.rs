@@ -1,0 +1,280 @@
+//! Types, numbers of dimensions and variability of resolved expressions, as far as their text
+//! shows them, and whether they fit what they are bound to (MLS §3.8, §6.7, §10.1).
+
+use super::balance::path;
+use super::errors::{NOT_CONSTANT, SIZE_MISMATCH, TYPE_MISMATCH};
+use super::instantiation::Instantiation;
+use super::{BaseType, Variability, Variable};
+use crate::diag::Diagnostic;
+use crate::eval::ValueType;
+use crate::fault;
+use crate::syntax::ast::{
+    Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, Subscript,
+    UnaryOperator,
+};
+use crate::syntax::visit::{Visit, walk_expression, walk_reference};
+
+/// Functions whose value is Real, whatever the arguments.
+const REAL_FUNCTIONS: &[&str] = &[
+    "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log",
+    "log10", "sqrt", "der",
+];
+
+/// Functions that read sizes of their argument and not its value.
+const SIZE_FUNCTIONS: &[&str] = &["size", "ndims"];
+
+impl Instantiation<'_> {
+    /// Refuses a value whose type, dimensions or variability cannot be those of the variable.
+    pub(super) fn check_value(
+        &self,
+        e: &Expression,
+        variable: &Variable,
+        each: bool,
+    ) -> Result<(), Diagnostic> {
+        let name = &variable.name;
+        if let Some(found) = self.type_of(e)
+            && !fits(&found, &variable.base, e)
+        {
+            let (wanted, found) = (type_name(&variable.base), type_name(&found));
+            return Err(
+                fault!(TYPE_MISMATCH, "`{name}` is {wanted}, its value is {found}").at(e.span)
+            );
+        }
+        let wanted = if each { 0 } else { variable.dims.len() };
+        match self.rank_of(e) {
+            Some(found) if found != wanted => {
+                let help = (found == 0).then(|| "give an array, such as `fill(value, n)`; in a modifier, `each` repeats a value");
+                return Err(fault!(
+                    SIZE_MISMATCH,
+                    "`{name}` has {wanted} dimensions, its value has {found}"
+                )
+                .help_if(help.map(str::to_owned))
+                .at(e.span));
+            }
+            _ => {}
+        }
+        self.check_variability(e, variable)
+    }
+
+    fn check_variability(&self, e: &Expression, variable: &Variable) -> Result<(), Diagnostic> {
+        if variable.variability > Variability::Parameter {
+            return Ok(());
+        }
+        let Some((name, found)) = self.most_variable(e) else { return Ok(()) };
+        if found <= variable.variability {
+            return Ok(());
+        }
+        let what = |variability| match variability {
+            Variability::Constant => "a constant",
+            Variability::Parameter => "a parameter",
+            Variability::Discrete | Variability::Continuous => "a variable",
+        };
+        Err(fault!(
+            NOT_CONSTANT,
+            "`{}` is {}, and its value needs `{name}`, which is {}",
+            variable.name,
+            what(variable.variability),
+            what(found)
+        )
+        .at(e.span))
+    }
+
+    /// The variable in an expression that changes most often, with its variability.
+    fn most_variable(&self, e: &Expression) -> Option<(String, Variability)> {
+        let mut search = MostVariable { instantiation: self, most: None };
+        search.expression(e);
+        search.most
+    }
+
+    fn variability_of(&self, reference: &ComponentReference) -> Option<Variability> {
+        if reference.as_ident().is_some_and(|name| name == "time") {
+            return Some(Variability::Continuous);
+        }
+        self.named(reference).map(|variable| variable.variability)
+    }
+
+    fn named(&self, reference: &ComponentReference) -> Option<&Variable> {
+        let at = self.variable_of.get(path(reference).as_str())?;
+        Some(&self.variables[*at].0)
+    }
+
+    /// The element type of an expression; `None` where its text does not show it.
+    pub(super) fn type_of(&self, e: &Expression) -> Option<BaseType> {
+        match &e.kind {
+            ExpressionKind::Real(_) => Some(BaseType::Real),
+            ExpressionKind::Integer(_) => Some(BaseType::Integer),
+            ExpressionKind::Boolean(_) => Some(BaseType::Boolean),
+            ExpressionKind::String(_) => Some(BaseType::String),
+            ExpressionKind::Reference(reference) => match reference.as_ident() {
+                Some(name) if name == "time" => Some(BaseType::Real),
+                _ => Some(self.named(reference)?.base.clone()),
+            },
+            ExpressionKind::Unary { operator: UnaryOperator::Not, .. } => Some(BaseType::Boolean),
+            ExpressionKind::Unary { operand, .. } => self.type_of(operand),
+            ExpressionKind::Binary { operator, left, right } => {
+                self.binary_type(*operator, left, right)
+            }
+            ExpressionKind::If { otherwise, .. } => self.type_of(otherwise),
+            ExpressionKind::Array(elements) => {
+                let mut types = elements.iter().map(|element| self.type_of(element));
+                let first = types.next()??;
+                types.try_fold(first, |all, one| joined(all, one?))
+            }
+            ExpressionKind::Call { function, arguments } => self.call_type(function, arguments),
+            _ => None,
+        }
+    }
+
+    fn binary_type(
+        &self,
+        operator: BinaryOperator,
+        left: &Expression,
+        right: &Expression,
+    ) -> Option<BaseType> {
+        use BinaryOperator as Op;
+        match operator {
+            Op::Less
+            | Op::LessEqual
+            | Op::Greater
+            | Op::GreaterEqual
+            | Op::Equal
+            | Op::NotEqual
+            | Op::And
+            | Op::Or => Some(BaseType::Boolean),
+            Op::Divide | Op::ElementwiseDivide | Op::Power | Op::ElementwisePower => {
+                Some(BaseType::Real)
+            }
+            _ => joined(self.type_of(left)?, self.type_of(right)?),
+        }
+    }
+
+    fn call_type(&self, function: &ComponentReference, arguments: &Arguments) -> Option<BaseType> {
+        if let Some(Some(user)) = self.functions.get(&function.name()) {
+            return match user.outputs.first()?.value_type {
+                ValueType::Real => Some(BaseType::Real),
+                ValueType::Integer => Some(BaseType::Integer),
+                ValueType::Boolean => Some(BaseType::Boolean),
+                ValueType::String => Some(BaseType::String),
+                _ => None,
+            };
+        }
+        match function.as_ident()?.as_str() {
+            name if REAL_FUNCTIONS.contains(&name) => Some(BaseType::Real),
+            "size" | "ndims" | "integer" => Some(BaseType::Integer),
+            "fill" => self.type_of(arguments.positional.first()?),
+            _ => None,
+        }
+    }
+
+    /// The number of dimensions of an expression; `None` where its text does not show it.
+    pub(super) fn rank_of(&self, e: &Expression) -> Option<usize> {
+        match &e.kind {
+            ExpressionKind::Real(_)
+            | ExpressionKind::Integer(_)
+            | ExpressionKind::Boolean(_)
+            | ExpressionKind::String(_) => Some(0),
+            ExpressionKind::Reference(reference) => self.reference_rank(reference),
+            ExpressionKind::Unary { operand, .. } => self.rank_of(operand),
+            ExpressionKind::Binary { left, right, .. } => {
+                match (self.rank_of(left)?, self.rank_of(right)?) {
+                    (0, 0) => Some(0),
+                    _ => None,
+                }
+            }
+            ExpressionKind::Array(elements) => Some(1 + self.rank_of(elements.first()?)?),
+            ExpressionKind::Call { function, arguments }
+                if function.as_ident().is_some_and(|name| name == "fill") =>
+            {
+                let inner = self.rank_of(arguments.positional.first()?)?;
+                Some(inner + arguments.positional.len() - 1)
+            }
+            _ => None,
+        }
+    }
+
+    fn reference_rank(&self, reference: &ComponentReference) -> Option<usize> {
+        if reference.as_ident().is_some_and(|name| name == "time") {
+            return Some(0);
+        }
+        let dims = self.named(reference)?.dims.len();
+        let mut gone = 0;
+        for subscript in &reference.parts.last()?.subscripts {
+            if let Subscript::Index(e) = subscript {
+                match self.rank_of(e)? {
+                    0 => gone += 1,
+                    _ => return None,
+                }
+            }
+        }
+        dims.checked_sub(gone)
+    }
+}
+
+/// Searches the variable that changes most often.
+struct MostVariable<'i, 'a> {
+    instantiation: &'i Instantiation<'a>,
+    most: Option<(String, Variability)>,
+}
+
+impl Visit for MostVariable<'_, '_> {
+    fn expression(&mut self, e: &Expression) {
+        match &e.kind {
+            ExpressionKind::Call { function, .. }
+                if function.as_ident().is_some_and(|f| SIZE_FUNCTIONS.contains(&f.as_str())) => {}
+            _ => walk_expression(self, e),
+        }
+    }
+
+    fn reference(&mut self, reference: &ComponentReference) {
+        if let Some(found) = self.instantiation.variability_of(reference)
+            && self.most.as_ref().is_none_or(|(_, known)| found > *known)
+        {
+            self.most = Some((path(reference), found));
+        }
+        walk_reference(self, reference);
+    }
+}
+
+/// The type that values of both types have.
+fn joined(one: BaseType, other: BaseType) -> Option<BaseType> {
+    match (one, other) {
+        (BaseType::Real, BaseType::Integer) | (BaseType::Integer, BaseType::Real) => {
+            Some(BaseType::Real)
+        }
+        (one, other) => (one == other).then_some(one),
+    }
+}
+
+/// Whether a value of one type can be given to a variable of another; literals of enumerations
+/// are Integer literals by now.
+fn fits(found: &BaseType, wanted: &BaseType, e: &Expression) -> bool {
+    match (found, wanted) {
+        (BaseType::Integer, BaseType::Real) => true,
+        (BaseType::Integer, BaseType::Enumeration(_)) => has_only_literals(e),
+        (BaseType::Enumeration(one), BaseType::Enumeration(other)) => one.name == other.name,
+        _ => found == wanted,
+    }
+}
+
+fn has_only_literals(e: &Expression) -> bool {
+    struct References(bool);
+    impl Visit for References {
+        fn reference(&mut self, _: &ComponentReference) {
+            self.0 = true;
+        }
+    }
+    let mut references = References(false);
+    references.expression(e);
+    !references.0
+}
+
+/// The name of a type, for messages.
+pub(super) fn type_name(base: &BaseType) -> String {
+    match base {
+        BaseType::Real => "Real".into(),
+        BaseType::Integer => "Integer".into(),
+        BaseType::Boolean => "Boolean".into(),
+        BaseType::String => "String".into(),
+        BaseType::Enumeration(definition) => definition.name.to_string(),
+    }
+}
