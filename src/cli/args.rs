@@ -174,6 +174,10 @@ pub(super) struct FlattenArgs {
 
 /// Arguments of `gapi explain`.
 #[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi explain unknown-class
+  gapi explain")]
 pub(super) struct ExplainArgs {
     /// The code, as it stands in brackets behind `error`; without it, all codes are listed
     pub code: Option<String>,

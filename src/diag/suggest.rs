@@ -1,15 +1,16 @@
 //! "Did you mean": the nearest name.
 
 /// The candidate nearest to `wanted`, if it is near enough to be a slip of the fingers: at most
-/// one edit in three letters, case not counted.
+/// one edit in three letters, case not counted. For a single letter only the case may differ.
 pub fn nearest<'a>(wanted: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = wanted.to_lowercase();
-    let limit = (wanted.chars().count() / 3).max(1);
+    let length = wanted.chars().count();
+    let limit = (length / 3).max(1);
     candidates
         .into_iter()
         .filter(|candidate| *candidate != wanted)
         .map(|candidate| (distance(&lower, &candidate.to_lowercase()), candidate))
-        .filter(|(edits, _)| *edits <= limit)
+        .filter(|(edits, _)| *edits <= limit && (*edits == 0 || limit < length))
         .min_by_key(|(edits, _)| *edits)
         .map(|(_, candidate)| candidate)
 }

@@ -28,6 +28,8 @@ pub(super) struct Identification {
     prepared: Option<(Request, u64, Evaluator)>,
     /// When the run began.
     started: Option<f64>,
+    /// Whether measured data could not be read.
+    pub(super) data_missing: bool,
     /// Runs reported so far.
     reported: usize,
 }
@@ -84,7 +86,9 @@ impl Session {
         if !self.identification().recorder.history.generations.is_empty() {
             report_run(self)?;
         }
-        self.identification().recorder.measured(measurement);
+        let identification = self.identification();
+        identification.recorder.measured(measurement);
+        identification.data_missing = false;
         Ok(())
     }
 

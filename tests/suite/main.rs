@@ -1,6 +1,8 @@
 //! The integration tests; one module per suite.
 
 mod architecture;
+mod bad_input;
+mod cli;
 mod compat;
 mod diagnostics;
 mod flat_class;

@@ -11,6 +11,7 @@ use crate::identify::Question;
 use crate::identify::errors::BAD_DATA;
 use crate::identify::fitness::sum_of_squares;
 use crate::script::Session;
+use crate::script::errors::FOLLOW_UP;
 use crate::script::identification::Request;
 use crate::value::errors::TYPE_MISMATCH;
 use crate::value::{ArrayValue, FromValue, RealMatrix, Value};
@@ -135,6 +136,7 @@ fn exp_adq_siso(session: &mut Session, mut args: Args) -> Result<Value, Failure>
         }
         Err(fault) => {
             session.report_fault(fault);
+            session.identification().data_missing = true;
             Ok(acquired(false, Vec::new(), Vec::new()))
         }
     }
@@ -166,6 +168,12 @@ fn eval(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let genomes = take_genomes(&mut args, "New_Generation")?;
     let parameters: Vec<String> = args.take("Parameter_Names")?;
     let (x_name, y_name) = (args.take("X_Name")?, args.take("Y_Name")?);
+    if x.is_empty() && session.identification().data_missing {
+        // One cause, one error: reading the data has failed, and has said so.
+        let message = "nothing is simulated, because the measured data could not be read";
+        let note = Fault::new(FOLLOW_UP, message).at(session.call_site()).note();
+        return Err(note.into());
+    }
     let columns = x.len();
     let question = Question { parameters, x_name, y_name, x };
     let simulated = session.evaluate_population(Request { path, model, question }, &genomes)?;

@@ -1,0 +1,209 @@
+//! The program as a user starts it: arguments in; output, files and exit code out.
+
+use crate::shipped::project;
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use tempfile::TempDir;
+
+const DECAY: &str = "\
+model Decay
+  parameter Real rate = 1;
+  Real x(start = 1, fixed = true);
+equation
+  der(x) = -rate*x;
+  annotation(experiment(StopTime = 1));
+end Decay;
+";
+
+/// A working directory with these files.
+fn folder(files: &[(&str, &str)]) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    folder
+}
+
+fn command(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_gapi"));
+    command.args(arguments).current_dir(folder).env_remove("NO_COLOR").env_remove("MODELICAPATH");
+    command
+}
+
+/// What a run left: exit code, standard output, standard error.
+fn gapi(folder: &TempDir, arguments: &[&str]) -> (i32, String, String) {
+    let Output { status, stdout, stderr } = command(folder.path(), arguments).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (status.code().expect("ended by itself"), text(stdout), text(stderr))
+}
+
+#[test]
+fn version_and_help() {
+    let here = folder(&[]);
+    let (code, out, _) = gapi(&here, &["--version"]);
+    assert_eq!((code, out.trim()), (0, concat!("gapi ", env!("CARGO_PKG_VERSION"))));
+    for name in ["run", "simulate", "check", "flatten", "explain", "completions"] {
+        let (code, out, _) = gapi(&here, &[name, "--help"]);
+        assert_eq!(code, 0);
+        assert!(out.contains("Example") && out.contains(&format!("  gapi {name} ")), "{out}");
+    }
+    assert_eq!(gapi(&here, &["walk"]).0, 2);
+}
+
+#[test]
+fn exit_codes_follow_the_strictness() {
+    let here = folder(&[("good.mos", "print(\"one\")\n"), ("bad.mos", "a = b\nprint(\"on\")\n")]);
+    assert_eq!(gapi(&here, &["run", "good.mos"]), (0, "one\n".into(), String::new()));
+    let (code, out, errors) = gapi(&here, &["run", "bad.mos"]);
+    assert_eq!((code, out.as_str()), (1, "on\n"));
+    assert!(
+        errors.starts_with("error[unknown-variable]") && errors.contains("bad.mos:1:5"),
+        "{errors}"
+    );
+    let (code, out, _) = gapi(&here, &["run", "bad.mos", "--strict"]);
+    assert_eq!((code, out.as_str()), (1, ""), "nothing runs behind the error");
+    let (code, _, errors) = gapi(&here, &["run", "bad.mos", "--lenient"]);
+    assert!(code == 0 && errors.contains("unknown-variable"), "{errors}");
+    assert_eq!(gapi(&here, &["run", "good.mos", "--quiet"]), (0, String::new(), String::new()));
+    assert_eq!(gapi(&here, &["run", "bad.mos", "--strict", "--lenient"]).0, 2);
+    assert_eq!(gapi(&here, &["run", "good.mos", "--threads", "0"]).0, 2);
+    let (code, _, errors) = gapi(&here, &["run", "godo.mos"]);
+    assert!(code == 1 && errors.contains("script-not-found"), "{errors}");
+}
+
+#[test]
+fn a_transcript_holds_statements_and_answers() {
+    let here = folder(&[("a.mos", "x = 2\nprint(\"hi\")\n")]);
+    assert_eq!(gapi(&here, &["run", "a.mos", "--transcript", "t.txt"]).0, 0);
+    let text = fs::read_to_string(here.path().join("t.txt")).unwrap();
+    assert!(text.contains(">>> x = 2") && text.contains("hi"), "{text}");
+    let (code, _, errors) = gapi(&here, &["run", "a.mos", "--transcript", "no/t.txt"]);
+    assert!(code == 1 && errors.contains("`no/t.txt` cannot be written"), "{errors}");
+}
+
+#[test]
+fn simulations_go_to_files() {
+    let here = folder(&[("Decay.mo", DECAY)]);
+    let base = ["simulate", "Decay.mo", "--model", "Decay"];
+    let run = |more: &[&str]| gapi(&here, &[&base[..], more].concat());
+    let (code, _, errors) = run(&["--set", "rate=2", "--stop-time", "0.5", "--output", "a.csv"]);
+    assert_eq!((code, errors.as_str()), (0, ""));
+    let csv = fs::read_to_string(here.path().join("a.csv")).unwrap();
+    let header: Vec<&str> = csv.lines().next().unwrap().split(',').collect();
+    let last: Vec<&str> = csv.lines().last().unwrap().split(',').collect();
+    let column = |name: &str| header.iter().position(|h| h.trim_matches('"') == name).unwrap();
+    assert_eq!(last[column("time")].parse::<f64>().unwrap(), 0.5);
+    let x: f64 = last[column("x")].parse().unwrap();
+    assert!((x - (-1.0_f64).exp()).abs() < 1e-3, "{x}");
+    assert_eq!(run(&["--output", "a.mat"]).0, 0);
+    assert!(here.path().join("a.mat").is_file());
+}
+
+#[test]
+fn wrong_names_get_a_suggestion() {
+    let here = folder(&[("Decay.mo", DECAY)]);
+    let cases: [(&[&str], &str); 4] = [
+        (&["simulate", "Decay.mo", "--model", "Decai"], "Decay"),
+        (&["simulate", "Decay.mo", "--model", "Decay", "--set", "rat=2"], "rate"),
+        (&["simulate", "Decay.mo", "--model", "Decay", "--method", "Dasl"], "dassl"),
+        (&["explain", "unknown-clas"], "unknown-class"),
+    ];
+    for (arguments, meant) in cases {
+        let (code, _, errors) = gapi(&here, arguments);
+        assert_ne!(code, 0);
+        assert!(errors.to_lowercase().contains("did you mean"), "{arguments:?}: {errors}");
+        assert!(errors.to_lowercase().contains(&meant.to_lowercase()), "{arguments:?}: {errors}");
+    }
+}
+
+#[test]
+fn check_flatten_explain_completions() {
+    let here = folder(&[("Decay.mo", DECAY)]);
+    assert_eq!(gapi(&here, &["check", "Decay.mo"]).0, 0);
+    assert_eq!(gapi(&here, &["check", "Decay.mo", "--model", "Decay"]).0, 0);
+    let (code, out, _) = gapi(&here, &["flatten", "Decay.mo", "--model", "Decay"]);
+    assert!(code == 0 && out.contains("der(x) = "), "{out}");
+    let (code, out, _) = gapi(&here, &["explain", "bad-seed"]);
+    assert!(code == 0 && out.contains("## What to do"), "{out}");
+    let (code, out, _) = gapi(&here, &["completions", "bash"]);
+    assert!(code == 0 && out.contains("complete "), "{out}");
+    assert_eq!(gapi(&here, &["check", "missing.mo"]).0, 1);
+}
+
+#[test]
+fn colours_are_as_asked() {
+    let here = folder(&[("bad.mos", "a = b\n")]);
+    let (_, _, plain) = gapi(&here, &["run", "bad.mos", "--color", "never"]);
+    let (_, _, coloured) = gapi(&here, &["run", "bad.mos", "--color", "always"]);
+    assert!(!plain.contains('\u{1b}') && coloured.contains('\u{1b}'), "{coloured}");
+}
+
+/// A process whose output nobody reads any more ends without a panic.
+#[test]
+fn a_broken_pipe_is_no_panic() {
+    let here =
+        folder(&[("long.mos", "for k in 1:2000 loop\n  print(\"a line of text\")\nend for\n")]);
+    let mut child = command(here.path(), &["run", "long.mos"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(String::from_utf8(output.stderr).unwrap(), "");
+    assert_eq!(output.status.code(), Some(0));
+}
+
+/// The main job with one generation.
+fn main_job(cycles: &str) -> String {
+    let folder = project("scripts");
+    let folder = folder.display();
+    format!(
+        "cd(\"{folder}\")\nRunScript(\"GAPILib_INI.mos\")\nN_Cycle = {cycles}\nprint(\"begun\")\n\
+         RunScript(\"GAPILib_CYCLE.mos\")\n"
+    )
+}
+
+#[test]
+fn results_that_cannot_be_written_are_an_error() {
+    let here = folder(&[("job.mos", &main_job("1")), ("taken", "a file")]);
+    let (code, _, errors) = gapi(&here, &["run", "job.mos", "--out", "taken"]);
+    assert_eq!(code, 1);
+    assert!(errors.contains("error[file-error]"), "{errors}");
+    assert_eq!(errors.matches("error[").count(), 1, "{errors}");
+}
+
+#[cfg(unix)]
+fn interrupt(child: &Child) {
+    let id = child.id().to_string();
+    assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_identification_writes_what_it_has() {
+    use std::io::{BufRead as _, BufReader, Read as _};
+    let here = folder(&[("job.mos", &main_job("1000000").replace("\nRunScript(\"GAPILib_CYCLE", "\nDATASim := Eval(SimuPath, SimuCaseStudyName, Xexp, New_Generation, Parameter_Names, X_Name, Y_Name);\nRated := Fit(DATASim, Yexp);\nprint(\"rated\")\nRunScript(\"GAPILib_CYCLE"))]);
+    let mut child = command(here.path(), &["run", "job.mos"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut lines = BufReader::new(child.stdout.take().unwrap());
+    let mut line = String::new();
+    while line != "rated\n" {
+        line.clear();
+        assert_ne!(lines.read_line(&mut line).unwrap(), 0, "ended before it was interrupted");
+    }
+    interrupt(&child);
+    let mut shown = String::new();
+    lines.read_to_string(&mut shown).unwrap();
+    let output = child.wait_with_output().unwrap();
+    let errors = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(130), "{errors}");
+    assert!(errors.contains("interrupted"), "{errors}");
+    for name in ["history.csv", "result.json"] {
+        assert!(here.path().join("results").join(name).is_file(), "{name}: {shown}\n{errors}");
+    }
+}
