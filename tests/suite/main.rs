@@ -17,6 +17,7 @@ mod results;
 mod scripts;
 mod shipped;
 mod simulation;
+mod structural_parameters;
 mod structure;
 mod syntax_properties;
 mod transcripts;
