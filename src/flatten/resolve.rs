@@ -213,6 +213,15 @@ impl Instantiation<'_> {
         } else {
             self.function_name(&function.name(), context, function.span)?
         };
+        let impure =
+            self.functions.get(&name).is_some_and(|f| f.as_ref().is_some_and(|f| f.impure));
+        if impure && context.node != NodeId(0) {
+            return Err(
+                fault!(NOT_SUPPORTED, "`{name}` is impure and cannot be called in a model yet";
+                help: "declare it `pure` if equal arguments always give equal values")
+                .at(span),
+            );
+        }
         let arguments = self.with_defaults(&name, arguments, span);
         let function = ComponentReference::from_name(&name, function.span);
         let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
