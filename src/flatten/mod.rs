@@ -7,7 +7,7 @@
 //! Not translated yet, each refused with `unsupported-language`: connectors and connections
 //! (ch. 9), inner and outer (§5.4), redeclarations (§7.3), `break` in extends clauses (§7.4),
 //! stream connectors (ch. 15), overloaded operators (ch. 14), loops over implicit ranges in
-//! equations (§11.2.2.1).
+//! equations (§11.2.2.1), impure functions in models (§12.3).
 
 mod balance;
 mod constants;

@@ -44,7 +44,9 @@ impl Instantiation<'_> {
         let wanted = if each { 0 } else { variable.dims.len() };
         match self.rank_of(e) {
             Some(found) if found != wanted => {
-                let help = (found == 0).then(|| "give an array, such as `fill(value, n)`; in a modifier, `each` repeats a value");
+                let help = "give an array, such as `fill(value, n)`; in a modifier, `each` repeats \
+                            a value";
+                let help = (found == 0).then_some(help);
                 return Err(fault!(
                     SIZE_MISMATCH,
                     "`{name}` has {wanted} dimensions, its value has {found}"
