@@ -104,10 +104,10 @@ impl Instantiation<'_> {
                 if self.record_equation(left, right, equation, context, local, out)? {
                     return Ok(());
                 }
-                EquationKind::Equal {
-                    left: self.resolve(left, context, local)?,
-                    right: self.resolve(right, context, local)?,
-                }
+                let left = self.resolve(left, context, local)?;
+                let right = self.resolve(right, context, local)?;
+                self.check_sides(&left, &right, equation.span)?;
+                EquationKind::Equal { left, right }
             }
             EquationKind::For { indices, body } => {
                 return self.unroll(indices, body, context, local, out);

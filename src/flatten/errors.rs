@@ -24,6 +24,9 @@ codes! {
     /// A modification of something final.
     FINAL_OVERRIDE = "final-override":
         "## What it means\n\nAn element or attribute declared `final` cannot be modified (MLS §7.2.6).\n\n## Example\n\n`type Voltage = Real(final unit = \"V\"); Voltage v(unit = \"mV\");`\n\n## What to do\n\nRemove the modifier.",
+    /// A protected component used from outside.
+    PROTECTED_ACCESS = "protected-access":
+        "## What it means\n\nA component declared behind `protected` was used from outside its class, where only public components are visible (MLS §4.1).\n\n## Example\n\n```modelica\nmodel A\nprotected\n  Real x = 1;\nend A;\nmodel M\n  A a;\n  Real y = a.x;\nend M;\n```\n\n## What to do\n\nUse a public variable, or move the declaration in front of `protected`.",
     /// A value of the wrong type.
     TYPE_MISMATCH = "type-mismatch":
         "## What it means\n\nA value has a type that does not fit where it stands (MLS §6.7).\n\n## Example\n\n`parameter Integer n = 1.5;`\n\n## What to do\n\nGive a value of the type that the message names.",

@@ -7,11 +7,12 @@
 //! Not translated yet, each refused with `unsupported-language`: connectors and connections
 //! (ch. 9), inner and outer (§5.4), redeclarations (§7.3), `break` in extends clauses (§7.4),
 //! stream connectors (ch. 15), overloaded operators (ch. 14), loops over implicit ranges in
-//! equations (§11.2.2.1).
+//! equations (§11.2.2.1), impure functions in models (§12.3).
 
 mod balance;
 mod constants;
 mod declarations;
+mod defaults;
 mod equations;
 pub mod errors;
 mod flat_model;
@@ -41,6 +42,7 @@ use errors::{NOT_A_MODEL, TOO_LARGE};
 use instance::{Context, Inherited, NodeId};
 use instantiation::Instantiation;
 use modification::Modifier;
+use std::collections::BTreeSet;
 
 /// Bytes of stack for instantiation, which nests with the expressions and bindings of the model.
 const STACK: usize = 256 << 20;
@@ -96,7 +98,7 @@ fn flattened(
     let outside = Context { node: NodeId(0), class: None };
     let modifier = Modifier::of_arguments(modification, outside).map_err(one)?;
     let root = tree.composite(id, String::new(), modifier, Inherited::default()).map_err(one)?;
-    tree.complete(root)?;
+    tree.complete(root).map_err(distinct)?;
     let mut model = FlatModel {
         name: library.class(id).name.to_string(),
         description: described(&definition),
@@ -108,13 +110,24 @@ fn flattened(
     tree.add_equations(root, &mut model, &mut errors);
     tree.add_variables(root, &mut model, &mut errors);
     if !errors.is_empty() {
-        return Err(errors);
+        return Err(distinct(errors));
     }
     for (name, function) in tree.functions {
         model.functions.extend(function.map(|function| (name, function)));
     }
     balance::check(&model).map_err(one)?;
     Ok(Flattened { model, warnings: Vec::new() })
+}
+
+/// The errors without those that say the same of the same place, as those of the elements of an
+/// array do.
+fn distinct(errors: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let mut seen = BTreeSet::new();
+    let place = |error: &Diagnostic| {
+        let label = error.labels.first().map(|label| (label.span.source, label.span.start));
+        (error.message.clone(), label)
+    };
+    errors.into_iter().filter(|error| seen.insert(place(error))).collect()
 }
 
 /// Only models, blocks and classes can be simulated (MLS §4.7).

@@ -1,7 +1,9 @@
 //! Resolves the names in expressions: components become their flat paths, constants of packages
 //! their values, functions their full names (MLS §5.3, §5.6.2).
 
-use super::errors::{NOT_CONSTANT, NOT_SUPPORTED, SIZE_MISMATCH, TOO_LARGE, UNKNOWN_NAME};
+use super::errors::{
+    NOT_CONSTANT, NOT_SUPPORTED, PROTECTED_ACCESS, SIZE_MISMATCH, TOO_LARGE, UNKNOWN_NAME,
+};
 use super::instance::{Context, MemberState, NodeId, NodeKind};
 use super::instantiation::Instantiation;
 use crate::diag::{Diagnostic, suggest};
@@ -211,6 +213,16 @@ impl Instantiation<'_> {
         } else {
             self.function_name(&function.name(), context, function.span)?
         };
+        let impure =
+            self.functions.get(&name).is_some_and(|f| f.as_ref().is_some_and(|f| f.impure));
+        if impure && context.node != NodeId(0) {
+            return Err(
+                fault!(NOT_SUPPORTED, "`{name}` is impure and cannot be called in a model yet";
+                help: "declare it `pure` if equal arguments always give equal values")
+                .at(span),
+            );
+        }
+        let arguments = self.with_defaults(&name, arguments, span);
         let function = ComponentReference::from_name(&name, function.span);
         let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
         Ok(Expression::new(kind, span))
@@ -279,6 +291,16 @@ impl Instantiation<'_> {
             Some(state) => state,
             None => return Err(self.unknown_component(node, part.name, whole.span)),
         };
+        if parts.len() < whole.parts.len() && self.is_protected(node, part.name) {
+            let path = &self.nodes[node.0].path;
+            return Err(fault!(
+                PROTECTED_ACCESS,
+                "`{}` is protected in `{}`",
+                part.name,
+                path.trim_start_matches('.')
+            )
+            .at(whole.span));
+        }
         match state {
             MemberState::Single(id) => {
                 if let NodeKind::Variable(_) = self.nodes[id.0].kind {
@@ -489,6 +511,13 @@ impl Instantiation<'_> {
         Ok(Expression::new(ExpressionKind::Field { base: Box::new(base), name }, span))
     }
 
+    /// Whether a component is protected in the class of its node.
+    fn is_protected(&self, node: NodeId, name: Ident) -> bool {
+        self.composite_of(node)
+            .and_then(|composite| composite.members.get(&name))
+            .is_some_and(|member| member.declaration.protected)
+    }
+
     fn unknown_component(&self, node: NodeId, name: Ident, span: Span) -> Diagnostic {
         let Some(composite) = self.composite_of(node) else {
             return fault!(UNKNOWN_NAME, "`{name}` is unknown").at(span);
@@ -611,7 +640,7 @@ fn array_literal(
 }
 
 /// `base[subscripts]`, written shortly where the base allows it.
-fn subscripted(base: Expression, subscripts: Vec<Subscript>, span: Span) -> Expression {
+pub(super) fn subscripted(base: Expression, subscripts: Vec<Subscript>, span: Span) -> Expression {
     if subscripts.is_empty() {
         return base;
     }

@@ -8,6 +8,7 @@ use super::{BaseType, Variability, Variable};
 use crate::diag::Diagnostic;
 use crate::eval::ValueType;
 use crate::fault;
+use crate::source::Span;
 use crate::syntax::ast::{
     Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, Subscript,
     UnaryOperator,
@@ -43,7 +44,9 @@ impl Instantiation<'_> {
         let wanted = if each { 0 } else { variable.dims.len() };
         match self.rank_of(e) {
             Some(found) if found != wanted => {
-                let help = (found == 0).then_some("give an array, such as `fill(value, n)`; in a modifier, `each` repeats a value");
+                let help = "give an array, such as `fill(value, n)`; in a modifier, `each` repeats \
+                            a value";
+                let help = (found == 0).then_some(help);
                 return Err(fault!(
                     SIZE_MISMATCH,
                     "`{name}` has {wanted} dimensions, its value has {found}"
@@ -54,6 +57,21 @@ impl Instantiation<'_> {
             _ => {}
         }
         self.check_variability(e, variable)
+    }
+
+    /// Refuses an equation between values of different types (MLS §8.3.1).
+    pub(super) fn check_sides(
+        &self,
+        left: &Expression,
+        right: &Expression,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        let (Some(a), Some(b)) = (self.type_of(left), self.type_of(right)) else { return Ok(()) };
+        if fits(&a, &b, left) || fits(&b, &a, right) {
+            return Ok(());
+        }
+        let (a, b) = (type_name(&a), type_name(&b));
+        Err(fault!(TYPE_MISMATCH, "the left side is {a}, the right side {b}").at(span))
     }
 
     fn check_variability(&self, e: &Expression, variable: &Variable) -> Result<(), Diagnostic> {

@@ -20,6 +20,7 @@ mod scripts;
 mod session;
 mod shipped;
 mod simulation;
+mod structural_parameters;
 mod structure;
 mod syntax_properties;
 mod transcripts;
