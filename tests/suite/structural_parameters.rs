@@ -88,7 +88,7 @@ fn parameters_that_chose_equations_or_sizes_cannot_be_set() {
 struct Functions(IndexMap<Name, Arc<Function>>);
 
 impl Host for Functions {
-    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, gapilib::diag::Fault> {
+    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, gapilib::diag::Diagnostic> {
         Ok(self.0.get(name).cloned().map(Callee::Function))
     }
 
