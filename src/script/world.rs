@@ -154,8 +154,8 @@ impl Default for MemoryWorld {
     fn default() -> MemoryWorld {
         MemoryWorld {
             files: BTreeMap::new(),
-            dirs: [PathBuf::from("/"), PathBuf::from("/work")].into(),
-            current: PathBuf::from("/work"),
+            dirs: [PathBuf::from("/"), PathBuf::from("/memory")].into(),
+            current: PathBuf::from("/memory"),
             changes: 0,
             stamps: BTreeMap::new(),
             streams: Streams::default(),
@@ -165,7 +165,7 @@ impl Default for MemoryWorld {
 }
 
 impl MemoryWorld {
-    /// An empty world with the working directory `/work`.
+    /// An empty world with the working directory `/memory`.
     pub fn new() -> MemoryWorld {
         MemoryWorld::default()
     }
@@ -309,7 +309,7 @@ impl World for MemoryWorld {
     }
 
     fn output_dir(&self) -> PathBuf {
-        PathBuf::from("/work/results")
+        PathBuf::from("/memory/results")
     }
 
     fn progress(&mut self, _progress: &Progress) {}
@@ -322,7 +322,7 @@ mod tests {
     #[test]
     fn relative_paths_follow_the_working_directory() {
         let mut world = MemoryWorld::new().with_file("a/b.txt", "1");
-        assert_eq!(world.read(Path::new("/work/a/b.txt")).ok(), Some(b"1".to_vec()));
+        assert_eq!(world.read(Path::new("/memory/a/b.txt")).ok(), Some(b"1".to_vec()));
         assert!(world.set_current_dir(Path::new("a")).is_ok());
         assert!(world.exists(Path::new("../a/./b.txt")));
         assert!(world.set_current_dir(Path::new("missing")).is_err());

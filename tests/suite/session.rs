@@ -184,5 +184,5 @@ fn a_working_directory_changed_by_a_model_is_kept() {
     let world = MemoryWorld::new().with_file("sub/M.mo", "model M Real x = 1; end M;");
     let (code, _, session) = run(world, Options::default(), "openModel(\"sub/M.mo\")");
     assert_eq!(code, 0);
-    assert_eq!(session.world.current_dir(), Path::new("/work/sub"));
+    assert_eq!(session.world.current_dir(), Path::new("/memory/sub"));
 }
