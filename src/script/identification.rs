@@ -15,7 +15,6 @@ use crate::identify::{
 use crate::mat::{self, MatFile};
 use crate::plot::{self, Comparison, Figure};
 use crate::source::Span;
-use crate::value::Value;
 use std::path::Path;
 
 /// What a session knows of the identification that its scripts carry out.
@@ -124,18 +123,18 @@ impl Session {
         Ok(Evaluator::new(&model, request.question.clone(), threads)?)
     }
 
-    /// How far the run is: the turn of the loop that the script is in, or the generations seen.
-    /// `N_Cycle` is where the paper's scripts say how many there will be.
+    /// How far the run is: the generations seen, of as many as the loop that the script is in has
+    /// turns.
     fn show_progress(&mut self) {
-        let cycles = match self.variable("N_Cycle") {
-            Some(Value::Integer(cycles)) => u64::try_from(*cycles).unwrap_or(0),
+        let turns = match self.loop_turn() {
+            Some((_, Some(turns))) => turns as u64,
             _ => 0,
         };
         let recorder = &self.identification().recorder;
         let progress = Progress {
             label: "generation".to_owned(),
             done: recorder.history.generations.len() as u64,
-            total: cycles,
+            total: turns,
             best: recorder.best.as_ref().map(|best| best.fitness),
             failures: recorder.failures,
         };
