@@ -1,6 +1,7 @@
 //! The world of a real run: disk, clock, environment, terminal, Ctrl-C.
 
 use super::terminal::Terminal;
+use crate::models;
 use crate::script::world::{Progress, Stamp, World};
 use std::fs;
 use std::io::{self, Write as _};
@@ -59,7 +60,10 @@ impl SystemWorld {
 
 impl World for SystemWorld {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        fs::read(self.at(path))
+        match models::read(path) {
+            Some(bytes) => Ok(bytes.to_vec()),
+            None => fs::read(self.at(path)),
+        }
     }
 
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
@@ -77,11 +81,11 @@ impl World for SystemWorld {
     }
 
     fn exists(&self, path: &Path) -> bool {
-        self.at(path).exists()
+        models::read(path).is_some() || models::list(path).is_some() || self.at(path).exists()
     }
 
     fn is_dir(&self, path: &Path) -> bool {
-        self.at(path).is_dir()
+        models::list(path).is_some() || self.at(path).is_dir()
     }
 
     fn stamp(&self, path: &Path) -> Option<Stamp> {
@@ -91,6 +95,9 @@ impl World for SystemWorld {
     }
 
     fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
+        if let Some(names) = models::list(path) {
+            return Ok(names);
+        }
         let mut names = Vec::new();
         for entry in fs::read_dir(self.at(path))? {
             names.push(entry?.file_name().to_string_lossy().into_owned());

@@ -228,7 +228,7 @@ impl Session {
     }
 
     /// Where the top-level class of this name is: in the library folders, the working directory,
-    /// or a folder `models` beside the scripts being run or above them.
+    /// a folder `models` beside the scripts being run or above them, or in the program.
     fn search_class(&self, name: &str) -> Option<PathBuf> {
         let current = self.world.current_dir();
         let beside = self
@@ -238,8 +238,8 @@ impl Session {
             .flat_map(|frame| frame.folder.ancestors())
             .chain(current.ancestors());
         let models = beside.map(|folder| folder.join("models"));
-        let folders =
-            self.classes.directories.iter().cloned().chain([current.clone()]).chain(models);
+        let own = self.classes.directories.iter().cloned().chain([current.clone()]);
+        let folders = own.chain(models).chain([PathBuf::from(crate::models::FOLDER)]);
         folders.map(|folder| normalized(&folder)).find_map(|folder| self.class_in(&folder, name))
     }
 
