@@ -17,21 +17,13 @@ pub(super) fn open(global: &Global, world: SystemWorld) -> Session {
     session
 }
 
-/// `--library` first, then `MODELICAPATH`, then the models that are shipped with the program.
+/// `--library` first, then `MODELICAPATH`.
 fn library_folders(global: &Global) -> Vec<PathBuf> {
     let mut folders = global.library.clone();
     if let Some(path) = std::env::var_os("MODELICAPATH") {
         folders.extend(std::env::split_paths(&path).filter(|p| !p.as_os_str().is_empty()));
     }
-    folders.extend(shipped_models());
     folders
-}
-
-/// The folder `models` beside the program, or beside a folder that holds the program (as in the
-/// source tree).
-fn shipped_models() -> Option<PathBuf> {
-    let program = std::env::current_exe().ok()?;
-    program.ancestors().skip(1).take(4).map(|folder| folder.join("models")).find(|f| f.is_dir())
 }
 
 /// A session in which these files and folders are loaded.

@@ -118,7 +118,8 @@ impl Library {
         files: &Arc<dyn LibraryFiles>,
         path: &Path,
     ) -> Result<Vec<Name>, Diagnostic> {
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let stem = name.strip_suffix(".mo").unwrap_or(&name).to_owned();
         let package = path.join("package.mo");
         let entry = match files.is_file(&package) {
             true => Entry { file: package, folder: Some(path.to_owned()), stem },
@@ -126,6 +127,12 @@ impl Library {
         };
         let file = entry.heads(files.as_ref())?;
         let parent = self.package_around(&file)?;
+        if file.classes.is_empty() {
+            return Err(fault!(UNKNOWN_CLASS, "there is no class in this file").at(file.span));
+        }
+        if entry.folder.is_some() {
+            self.meet_folder(&entry, &file);
+        }
         let mut names = Vec::new();
         for (class, origin) in entry.classes(files, &file) {
             let id = self.add(origin, class, parent);

@@ -4,7 +4,7 @@
 //! and stay unread in turn. Places in such an excerpt are translated back, so that a tree read
 //! lazily equals the one read at once.
 
-use super::ast::{ClassSpecifier, Section, StoredDefinition};
+use super::ast::{ClassDefinition, ClassSpecifier, Element, Section, StoredDefinition};
 use super::lower;
 use super::outline::Outline;
 use super::parser::{self, Rule};
@@ -48,6 +48,21 @@ pub(super) fn stored_definition(
     let Excerpt { text, place } = text.excerpt(None);
     let rule = Rule::stored_definition;
     parser::parse(&place, &text, rule, Dialect::Modelica, lower::stored_definition)
+}
+
+/// The syntax errors of a class and of those in it, in the order of the text.
+pub(super) fn errors(class: &ClassDefinition) -> Vec<Diagnostic> {
+    let ClassSpecifier::Long(long) = &class.specifier else { return Vec::new() };
+    let mut errors: Vec<Diagnostic> = long.sections.error().cloned().into_iter().collect();
+    for section in &long.sections {
+        let Section::Elements { elements, .. } = section else { continue };
+        for element in elements {
+            if let Element::Class(nested) = element {
+                errors.extend(self::errors(&nested.class));
+            }
+        }
+    }
+    errors
 }
 
 impl OutlinedText {

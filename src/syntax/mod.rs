@@ -85,6 +85,25 @@ pub fn parse_stored_definition_lazily(
     lazy::stored_definition(source, text)
 }
 
+/// Reads a `.mo` file and tells all that is wrong with it, as far as its classes can be told apart:
+/// the first error of each class.
+///
+/// # Errors
+/// Syntax errors, in the order of the text.
+pub fn parse_all_of_stored_definition(
+    source: SourceId,
+    text: &str,
+) -> Result<StoredDefinition, Vec<Diagnostic>> {
+    parse_stored_definition(source, text).map_err(|first| {
+        let lazy = lazy::stored_definition(source, &text.into());
+        let mut errors: Vec<Diagnostic> = lazy.map_or(Vec::new(), |file| {
+            file.classes.iter().flat_map(|class| lazy::errors(class)).collect()
+        });
+        errors.sort_by_key(|error| error.span().start);
+        if errors.is_empty() { vec![first] } else { errors }
+    })
+}
+
 /// Reads a `.mos` file: interactive statements, closed by `;` or line ends.
 ///
 /// ```

@@ -53,8 +53,8 @@ impl Outline {
     }
 }
 
-/// Classes inside each other that are still outlined; the parser reads fewer.
-const MAX_NESTING: usize = 1000;
+/// Classes inside each other that are still outlined: as many as the parser reads.
+const MAX_NESTING: usize = 200;
 
 struct Scan<'t> {
     text: &'t [u8],

@@ -146,8 +146,15 @@ impl Library {
         self.meet_name(library, entry, file, name);
     }
 
+    /// Notes a library's folder whose name, without its version, is not that of the package.
+    pub(super) fn meet_folder(&self, entry: &Entry, file: &StoredDefinition) {
+        let library = file.classes.first().map(|class| class.name.node);
+        let name = entry.stem.split(' ').next().unwrap_or_default();
+        self.meet_name(library, entry, file, Ident::new(name));
+    }
+
     /// Notes a file or folder whose name is none of a class in it.
-    pub(super) fn meet_name(
+    fn meet_name(
         &self,
         library: Option<Ident>,
         entry: &Entry,
