@@ -11,8 +11,8 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
-    ClassDefinition, ClassSpecifier, Element, Extends, ImportKind, Section, StoredDefinition,
-    Visibility,
+    ClassDefinition, ClassSpecifier, Constraint, Element, ElementPrefixes, Extends, ImportKind,
+    Section, StoredDefinition, Visibility,
 };
 use files::{Entry, Folder};
 use habits::Habits;
@@ -59,8 +59,17 @@ struct BaseCache {
 struct Slot {
     name: Name,
     parent: Option<ClassId>,
+    declared: Declared,
     origin: Origin,
     class: OnceLock<Class>,
+}
+
+/// What the class around it says of a class.
+#[derive(Debug, Clone, Default)]
+struct Declared {
+    prefixes: ElementPrefixes,
+    is_protected: bool,
+    constraint: Option<Constraint>,
 }
 
 /// Where a class comes from.
@@ -81,6 +90,7 @@ pub(super) struct Class {
     pub(super) children: IndexMap<Ident, ClassId>,
     pub(super) imports: Vec<ImportKind>,
     pub(super) extends: Vec<Extends>,
+    declared: Declared,
     /// What is wrong with its text.
     problems: Vec<Diagnostic>,
 }
@@ -172,7 +182,7 @@ impl Library {
 
     /// Makes a name in a package, or at the top level, mean another class.
     fn add(&mut self, origin: Origin, name: Ident, parent: Option<ClassId>) -> ClassId {
-        let id = self.push(origin, name, parent);
+        let id = self.push(origin, Declared::default(), name, parent);
         match parent {
             Some(parent) => {
                 self.read(parent);
@@ -188,12 +198,19 @@ impl Library {
         id
     }
 
-    fn push(&self, origin: Origin, name: Ident, parent: Option<ClassId>) -> ClassId {
+    fn push(
+        &self,
+        origin: Origin,
+        declared: Declared,
+        name: Ident,
+        parent: Option<ClassId>,
+    ) -> ClassId {
         let name = match parent {
             Some(parent) => self.slot(parent).name.child(name),
             None => Name::from(name),
         };
-        ClassId(self.classes.push(Slot { name, parent, origin, class: OnceLock::new() }) as u32)
+        let class = OnceLock::new();
+        ClassId(self.classes.push(Slot { name, parent, declared, origin, class }) as u32)
     }
 
     fn class_mut(&mut self, id: ClassId) -> Option<&mut Class> {
@@ -357,7 +374,67 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+#[allow(dead_code, reason = "instantiation is being rewritten to ask these instead of the fields")]
 impl Class {
+    /// Its full name.
+    pub(super) fn name(&self) -> &Name {
+        &self.name
+    }
+
+    pub(super) fn definition(&self) -> &Arc<ClassDefinition> {
+        &self.definition
+    }
+
+    /// The class around it, `None` at the top level.
+    pub(super) fn parent(&self) -> Option<ClassId> {
+        self.parent
+    }
+
+    /// The class of this name that is declared in it, or lies in its folder.
+    pub(super) fn child(&self, name: Ident) -> Option<ClassId> {
+        self.children.get(&name).copied()
+    }
+
+    /// All these, in order.
+    pub(super) fn children(&self) -> impl Iterator<Item = (Ident, ClassId)> {
+        self.children.iter().map(|(name, id)| (*name, *id))
+    }
+
+    pub(super) fn imports(&self) -> &[ImportKind] {
+        &self.imports
+    }
+
+    pub(super) fn extends(&self) -> &[Extends] {
+        &self.extends
+    }
+
+    pub(super) fn encapsulated(&self) -> bool {
+        self.definition.encapsulated
+    }
+
+    /// What stands before its keyword in the class around it; nothing for one in a file of its own.
+    pub(super) fn prefixes(&self) -> ElementPrefixes {
+        self.declared.prefixes
+    }
+
+    /// Whether it is declared behind `protected`.
+    pub(super) fn is_protected(&self) -> bool {
+        self.declared.is_protected
+    }
+
+    /// Its `constrainedby`.
+    pub(super) fn constraint(&self) -> Option<&Constraint> {
+        self.declared.constraint.as_ref()
+    }
+
+    /// Whether it is written `model extends M … end M` (MLS §7.3.1).
+    pub(super) fn is_class_extends(&self) -> bool {
+        match &self.definition.specifier {
+            ClassSpecifier::Long(long) => long.class_extends.is_some(),
+            _ => false,
+        }
+    }
+
     /// The elements with their visibility, in order; none for a short class.
     pub(super) fn elements(&self) -> impl Iterator<Item = (Visibility, &Element)> {
         self.sections().iter().flat_map(|section| {

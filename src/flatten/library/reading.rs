@@ -2,16 +2,15 @@
 
 use super::files::{Entry, Folder};
 use super::habits::{self, Habit};
-use super::{Class, ClassId, Library, Origin, Slot};
+use super::{Class, ClassId, Declared, Library, Origin, Slot};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::DUPLICATE_ELEMENT;
 use crate::name::{Ident, Name};
-use crate::source::Span;
-use crate::source::Spanned;
+use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
     ClassDefinition, ClassElement, ClassSpecifier, Element, LongClass, Restriction, Section,
-    StoredDefinition,
+    StoredDefinition, Visibility,
 };
 use indexmap::IndexMap;
 use rustc_hash::FxHashMap;
@@ -43,6 +42,7 @@ impl Library {
             children: IndexMap::new(),
             imports: Vec::new(),
             extends: Vec::new(),
+            declared: slot.declared.clone(),
             problems: problem.into_iter().collect(),
         };
         if let ClassSpecifier::Long(long) = &definition.specifier {
@@ -60,10 +60,11 @@ impl Library {
             self.habits.meet(class.name.first(), habit, span);
         }
         for section in &long.sections {
-            let Section::Elements { elements, .. } = section else { continue };
+            let Section::Elements { visibility, elements } = section else { continue };
+            let is_protected = *visibility == Some(Visibility::Protected);
             for element in elements {
                 match element {
-                    Element::Class(nested) => self.add_nested(id, class, nested),
+                    Element::Class(nested) => self.add_nested(id, class, nested, is_protected),
                     Element::Import(import) => class.imports.push(import.kind.clone()),
                     Element::Extends(extends) => class.extends.push(extends.clone()),
                     Element::Component(_) => {}
@@ -72,7 +73,13 @@ impl Library {
         }
     }
 
-    fn add_nested(&self, id: ClassId, class: &mut Class, nested: &ClassElement) {
+    fn add_nested(
+        &self,
+        id: ClassId,
+        class: &mut Class,
+        nested: &ClassElement,
+        is_protected: bool,
+    ) {
         let Spanned { node: name, span } = nested.class.name;
         if class.children.contains_key(&name) {
             let owner = &class.name;
@@ -81,7 +88,9 @@ impl Library {
             return;
         }
         let origin = Origin::Head(nested.class.clone(), None);
-        class.children.insert(name, self.push(origin, name, Some(id)));
+        let constraint = nested.constraint.clone();
+        let declared = Declared { prefixes: nested.prefixes, is_protected, constraint };
+        class.children.insert(name, self.push(origin, declared, name, Some(id)));
     }
 
     /// Adds the classes beside a `package.mo`. A file that `package.order` lists is not opened.
@@ -103,7 +112,8 @@ impl Library {
             };
             for (name, origin) in found {
                 if !class.children.contains_key(&name) {
-                    class.children.insert(name, self.push(origin, name, Some(id)));
+                    let declared = Declared::default();
+                    class.children.insert(name, self.push(origin, declared, name, Some(id)));
                 }
             }
         }
