@@ -271,8 +271,13 @@ impl Library {
     /// Full names of all classes, in order of loading, outer before inner. What was not read yet
     /// is read now.
     pub fn all(&self) -> Vec<Name> {
-        let ids = self.roots.values().flat_map(|root| self.below(*root, |_| true));
-        ids.map(|id| self.slot(id).name.clone()).collect()
+        self.roots().flat_map(|root| self.all_in(&root.into())).collect()
+    }
+
+    /// The same for one class, which comes first, and those in it; none if it is not loaded.
+    pub fn all_in(&self, name: &Name) -> Vec<Name> {
+        let ids = self.find(name).map_or(Vec::new(), |id| self.below(id, |_| true));
+        ids.into_iter().map(|id| self.slot(id).name.clone()).collect()
     }
 
     /// Full names of the classes that are known without reading more, in the order of
@@ -281,6 +286,11 @@ impl Library {
         let is_read = |id: ClassId| self.slot(id).class.get().is_some();
         let ids = self.roots.values().flat_map(|root| self.below(*root, is_read));
         ids.map(|id| self.slot(id).name.clone()).collect()
+    }
+
+    /// How many classes were read so far.
+    pub fn number_read(&self) -> usize {
+        self.classes.iter().filter(|(_, slot)| slot.class.get().is_some()).count()
     }
 
     /// Reads a class and all that are in it, and returns what is wrong with their texts.

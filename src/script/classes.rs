@@ -133,6 +133,7 @@ impl Session {
         if !self.world.is_dir(path) {
             return self.load_file(path);
         }
+        self.load_package_around(path)?;
         let names = self.load_library(path)?;
         let library = &self.classes.library;
         let errors: Vec<Diagnostic> =
@@ -141,9 +142,22 @@ impl Session {
         self.from_sound_texts(answer).map_err(|_| errors)
     }
 
+    /// The package at the top that a folder or file belongs to, if it is not loaded: the outermost
+    /// of the folders around it that are packages.
+    fn load_package_around(&mut self, path: &Path) -> Result<(), Vec<Diagnostic>> {
+        let is_package = |folder: &&Path| self.world.exists(&folder.join("package.mo"));
+        let Some(root) = path.ancestors().skip(1).take_while(is_package).last() else {
+            return Ok(());
+        };
+        if self.classes.files.values().any(|file| file == root) {
+            return Ok(());
+        }
+        self.load_library(root).map(|_| ())
+    }
+
     fn load_file(&mut self, path: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {
         let (source, text) = self.add_file(path).at(self.call).map_err(|error| vec![error])?;
-        let names = self.load_source(source, &text)?;
+        let names = self.load_source(source, &text, Some(path))?;
         self.note_files(&names, path);
         Ok(names)
     }
@@ -170,13 +184,21 @@ impl Session {
     /// Loads classes from a text; `name` stands in diagnostics.
     pub fn load_text(&mut self, name: &str, text: &str) -> Result<Vec<Name>, Vec<Diagnostic>> {
         let source = self.sources.add(name, text);
-        self.load_source(source, text)
+        self.load_source(source, text, None)
     }
 
-    fn load_source(&mut self, source: SourceId, text: &str) -> Result<Vec<Name>, Vec<Diagnostic>> {
+    fn load_source(
+        &mut self,
+        source: SourceId,
+        text: &str,
+        path: Option<&Path>,
+    ) -> Result<Vec<Name>, Vec<Diagnostic>> {
         let file = syntax::parse_all_of_stored_definition(source, text)?;
         self.classes.changed();
         if let Some(package) = file.within.as_ref().and_then(|within| within.node.first()) {
+            if let (Some(path), false) = (path, self.classes.library.contains(&package.into())) {
+                self.load_package_around(path)?;
+            }
             self.autoload_class(package)?;
         }
         let loaded = self.classes.library.load(&file).map_err(|error| vec![error]);
