@@ -39,6 +39,24 @@ codes! {
     /// An element declared twice with different declarations.
     DUPLICATE_ELEMENT = "duplicate-element":
         "## What it means\n\nA class has two elements of one name (MLS §7.1).\n\n## Example\n\n`Real x; Real x;`\n\n## What to do\n\nRename or remove one of them.",
+    /// A name that the language keeps for itself.
+    RESERVED_NAME = "reserved-name":
+        "## What it means\n\nAn element has the name of a predefined type (MLS §4.9), or an enumeration literal that of an attribute of enumerations (§4.9.5).\n\n## Example\n\n```modelica\nmodel M\n  parameter Boolean Real = true;\nend M;\n```\n\n## What to do\n\nChoose another name.",
+    /// A specialized class with contents that it cannot have.
+    CLASS_RESTRICTION = "class-restriction":
+        "## What it means\n\nA record, connector, block, package, type or operator contains something that its kind of class cannot have (MLS §4.7): equations in a record, variables in a package, acausal connectors in a block.\n\n## Example\n\n```modelica\nrecord R\n  Real x;\nequation\n  x = 1;\nend R;\n```\n\n## What to do\n\nMove it elsewhere, or declare the class as what it is: a model may contain everything.",
+    /// A prefix where it has no meaning.
+    ILLEGAL_PREFIX = "illegal-prefix":
+        "## What it means\n\nA component has a prefix that its type cannot have, or one that contradicts another (MLS §4.4.2.2, §9.3, §15.1).\n\n## Example\n\n```modelica\nconnector C\n  flow Boolean on;\nend C;\n```\n\n## What to do\n\nRemove the prefix, or declare the component otherwise.",
+    /// A class that cannot be extended, or not together with what else there is.
+    ILLEGAL_EXTENDS = "illegal-extends":
+        "## What it means\n\nA class extends one that cannot be extended here: a replaceable class (MLS §7.1.4), an operator record (§14.1), or, beside other contents, an array class, a class with a prefix or a predefined type (§4.6.2).\n\n## Example\n\n```modelica\nmodel M\n  extends Modelica.Units.SI.Voltage;\n  Real x;\nend M;\n```\n\n## What to do\n\nDeclare a component of that class instead.",
+    /// An import clause that cannot be.
+    ILLEGAL_IMPORT = "illegal-import":
+        "## What it means\n\nAn import clause imports from a class that is no package, or two of them import one name (MLS §13.2).\n\n## Example\n\n```modelica\nimport Modelica.Math.sin;\nimport sin = MyLibrary.sin;\n```\n\n## What to do\n\nRename one of the imports, or move what is imported into a package.",
+    /// An equation or a statement in a place where it has no meaning.
+    MISPLACED = "misplaced-equation":
+        "## What it means\n\nAn equation or a statement stands where it cannot: a when-clause inside another one or in a function (MLS §8.3.5.2, §12.2), `connect` in a when-clause or under a condition that changes during the simulation (§9.1), `break` outside of a loop (§11.2.4), `return` outside of a function (§11.2.5).\n\n## Example\n\n```modelica\nwhen x > 1 then\n  when y > 1 then\n    n = pre(n) + 1;\n  end when;\nend when;\n```\n\n## What to do\n\nMove it to a place where it can stand; conditions of nested when-clauses can be combined.",
     /// A part of the language that is not built yet.
     NOT_SUPPORTED = "unsupported-language":
         "## What it means\n\nThe text is Modelica, and this program does not translate that part of the language yet. The message names it.\n\n## Example\n\n`inStream(port.h_outflow)`\n\n## What to do\n\nWrite the model without it.",

@@ -10,6 +10,7 @@
 //! equations (§11.2.2.1), impure functions in models (§12.3).
 
 mod balance;
+mod checks;
 mod constants;
 mod declarations;
 mod defaults;
@@ -81,6 +82,13 @@ fn on_deep_stack<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Diagnost
     })
 }
 
+/// What is wrong with a class by its text and the names in it, whatever is made of it: a package, a
+/// function or a model that nobody instantiates can be checked too. Nothing if no such class is
+/// loaded.
+pub fn check(library: &Library, class: &Name) -> Vec<Diagnostic> {
+    library.find(class).map_or(Vec::new(), |id| checks::check_class(library, id))
+}
+
 fn flattened(
     library: &Library,
     class: &Name,
@@ -93,6 +101,10 @@ fn flattened(
     };
     let definition = library.class(id).definition.clone();
     check_restriction(class, &definition).map_err(one)?;
+    let wrong = checks::check(library, id);
+    if !wrong.is_empty() {
+        return Err(distinct(wrong));
+    }
     let mut tree = Instantiation::new(library);
     tree.check_complete(id, definition.name.span).map_err(one)?;
     let outside = Context { node: NodeId(0), class: None };
