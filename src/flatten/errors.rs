@@ -54,6 +54,18 @@ codes! {
     /// An import clause that cannot be.
     ILLEGAL_IMPORT = "illegal-import":
         "## What it means\n\nAn import clause imports from a class that is no package, or two of them import one name (MLS §13.2).\n\n## Example\n\n```modelica\nimport Modelica.Math.sin;\nimport sin = MyLibrary.sin;\n```\n\n## What to do\n\nRename one of the imports, or move what is imported into a package.",
+    /// A name that looks into a class that cannot be looked into.
+    ILLEGAL_ACCESS = "illegal-access":
+        "## What it means\n\nA name with dots looks into a class that is no package for something that is not encapsulated (MLS §5.3.2), or into a partial class.\n\n## Example\n\n```modelica\nmodel A\n  Real x = 1;\n  model B\n    Real y = 2;\n  end B;\nend A;\nmodel M\n  A.B b;\nend M;\n```\n\n## What to do\n\nMove what is named into a package, or declare it `encapsulated`.",
+    /// An operator function that no operator can call.
+    ILLEGAL_OPERATOR = "illegal-operator":
+        "## What it means\n\nA function of an operator record has other inputs or outputs than its operator asks for, or two of them fit the same call (MLS §14.2 to §14.5).\n\n## Example\n\n```modelica\noperator record Pair\n  Real a;\n  encapsulated operator function '+'\n    import Pair;\n    input Pair x;\n    output Pair y = x;\n  end '+';\nend Pair;\n```\n\n## What to do\n\nGive it the inputs and the one output of its operator.",
+    /// A conditional component used where it may be absent.
+    CONDITIONAL_COMPONENT = "conditional-component":
+        "## What it means\n\nA component that is declared under a condition is used in an equation or an expression, where it would be missing if the condition were false. It can only be connected, modified, and named in modifiers of other conditional components (MLS §4.4.5).\n\n## Example\n\n```modelica\nmodel M\n  parameter Boolean on = true;\n  Real x if on;\nequation\n  x = 1;\nend M;\n```\n\n## What to do\n\nMake the variable a connector and connect it, or declare it without a condition.",
+    /// An argument that an operator cannot have.
+    ILLEGAL_ARGUMENT = "illegal-argument":
+        "## What it means\n\nAn operator has an argument of the wrong kind: `der` of something that is not a continuous Real variable, `reinit` of a parameter, `sample` or `delay` with times that change during the simulation, `inStream` of a variable that is no stream variable (MLS §3.7, §15.2).\n\n## Example\n\n```modelica\nmodel M\n  Integer n = 1;\n  Real x = der(n);\nend M;\n```\n\n## What to do\n\nGive the operator what it asks for.",
     /// An equation or a statement in a place where it has no meaning.
     MISPLACED = "misplaced-equation":
         "## What it means\n\nAn equation or a statement stands where it cannot: a when-clause inside another one or in a function (MLS §8.3.5.2, §12.2), `connect` in a when-clause or under a condition that changes during the simulation (§9.1), `break` outside of a loop (§11.2.4), `return` outside of a function (§11.2.5).\n\n## Example\n\n```modelica\nwhen x > 1 then\n  when y > 1 then\n    n = pre(n) + 1;\n  end when;\nend when;\n```\n\n## What to do\n\nMove it to a place where it can stand; conditions of nested when-clauses can be combined.",

@@ -69,7 +69,9 @@ fn standard_library_breaks_no_rule() {
     let Some(root) = folder("GAPILIB_MSL") else { return };
     let corpus = Corpus::load(&root);
     let mut wrong = Vec::new();
-    for class in corpus.library.all() {
+    let classes = corpus.library.all();
+    say(&format!("{} classes", classes.len()));
+    for class in classes {
         for error in flatten::check(&corpus.library, &class) {
             let place = corpus.sources.location(error.span());
             wrong.push(format!("{place}: {}: {error}", error.code.slug));

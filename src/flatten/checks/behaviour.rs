@@ -8,8 +8,8 @@ use crate::flatten::errors::MISPLACED;
 use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{
-    Equation, EquationKind, Expression, ExpressionKind, ForIndex, Restriction, Section, Statement,
-    StatementKind,
+    ComponentReference, Equation, EquationKind, Expression, ExpressionKind, ForIndex, Restriction,
+    Section, Statement, StatementKind, Subscript,
 };
 
 /// What stands around an equation or a statement.
@@ -81,7 +81,7 @@ impl Walk<'_, '_> {
 
     fn equation(&mut self, equation: &Equation, around: &Around) {
         match &equation.kind {
-            EquationKind::Equal { .. } => {}
+            EquationKind::Equal { left, .. } => self.equality(left, equation.span, around),
             EquationKind::If { branches, otherwise } => {
                 let varies = branches.iter().any(|(condition, _)| !self.is_fixed(condition));
                 let inside = Around { varying: around.varying || varies, ..around.clone() };
@@ -101,9 +101,49 @@ impl Walk<'_, '_> {
                 let inside = Around { when: true, ..around.clone() };
                 branches.iter().for_each(|(_, body)| self.equations(body, &inside));
             }
-            EquationKind::Connect { .. } => self.connection("connect", equation.span, around),
+            EquationKind::Connect { left, right } => {
+                self.connection("connect", equation.span, around);
+                self.subscripts(left);
+                self.subscripts(right);
+            }
             EquationKind::Call(call) => self.call(call, around),
         }
+    }
+
+    /// An equation of a when-clause says what it determines on its left side (MLS §8.3.5.1).
+    fn equality(&mut self, left: &Expression, span: Span, around: &Around) {
+        let names_result =
+            matches!(left.kind, ExpressionKind::Reference(_) | ExpressionKind::Tuple(_));
+        if around.when && !names_result {
+            let message = "an equation of a when-clause must have a variable on its left side";
+            self.wrong(span, message, "solve the equation for the variable that it determines");
+        }
+    }
+
+    fn subscripts(&mut self, connector: &ComponentReference) {
+        for subscript in connector.parts.iter().flat_map(|part| &part.subscripts) {
+            if let Subscript::Index(index) = subscript
+                && !self.is_fixed(index)
+            {
+                let message =
+                    "a connector is chosen by a subscript that changes during the simulation";
+                self.wrong(index.span, message, "use a parameter, a constant or a loop variable");
+            }
+        }
+    }
+
+    /// Parameters and constants are not assigned to, but in initial algorithms.
+    fn assigned(&mut self, target: &ComponentReference, around: &Around) {
+        let Some(component) = self.class.component_at(target) else { return };
+        if around.function || around.initial || !component.is_fixed() {
+            return;
+        }
+        let message = format!("`{}` is no variable and cannot be assigned to", component.name());
+        self.wrong(
+            target.span,
+            &message,
+            "assign to a variable, or remove the prefix of the declaration",
+        );
     }
 
     fn when(&mut self, span: Span, around: &Around) {
@@ -170,7 +210,10 @@ impl Walk<'_, '_> {
 
     fn statement(&mut self, statement: &Statement, around: &Around) {
         match &statement.kind {
-            StatementKind::Assign { .. } | StatementKind::MultiAssign { .. } => {}
+            StatementKind::Assign { target, .. } => self.assigned(target, around),
+            StatementKind::MultiAssign { targets, .. } => {
+                targets.iter().flatten().for_each(|target| self.assigned(target, around));
+            }
             StatementKind::Call(call) => self.call(call, around),
             StatementKind::If { branches, otherwise } => {
                 let inside = Around { varying: true, ..around.clone() };

@@ -202,9 +202,7 @@ fn has_prefix(short: &ShortClass) -> bool {
 
 fn is_empty(class: Scope<'_>) -> bool {
     class.lineage().into_iter().all(|class| {
-        let behaves = |section: &Section| {
-            matches!(section, Section::Equations { .. } | Section::Algorithm { .. })
-        };
-        class.components().next().is_none() && !class.sections().iter().any(behaves)
+        let behaves = class.sections().iter().any(super::restrictions::is_behaviour);
+        class.components().next().is_none() && !behaves
     })
 }

@@ -4,13 +4,17 @@
 //! what the names in it mean, before anything is instantiated. What depends on modifications is
 //! left to instantiation. Where a name means nothing, nothing is said here.
 
+mod access;
 mod behaviour;
 mod elements;
 mod imports;
+mod names;
+mod operators;
 mod participants;
 mod prefixes;
 mod restrictions;
 mod scope;
+mod usage;
 mod variability;
 
 use super::library::{ClassId, Library};
@@ -38,9 +42,12 @@ pub(super) fn check_class(library: &Library, class: ClassId) -> Vec<Diagnostic> 
 fn check_one(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     elements::check(class, errors);
     restrictions::check(class, errors);
+    operators::check(class, errors);
     prefixes::check(class, errors);
     imports::check(class, errors);
     behaviour::check(class, errors);
+    access::check(class, errors);
+    usage::check(class, errors);
 }
 
 /// A restriction as the messages call it.

@@ -19,6 +19,7 @@ pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
         let found = wrong_use(class, &component)
             .or_else(|| wrong_kind(&component))
             .or_else(|| wrong_type(&component))
+            .or_else(|| no_additive_group(&component))
             .or_else(|| conflict(&component));
         errors.extend(found);
     }
@@ -105,6 +106,25 @@ fn wrong_type(component: &Component<'_>) -> Option<Diagnostic> {
             help: "declare it Real, or remove the prefix")
         .at(component.declaration.name.span)
     })
+}
+
+/// A flow variable of an operator record that cannot be added up (MLS §9.2).
+fn no_additive_group(component: &Component<'_>) -> Option<Diagnostic> {
+    if component.clause.type_prefixes.connection != Some(ConnectionPrefix::Flow) {
+        return None;
+    }
+    let (class, _) = component.class()?.unaliased();
+    let class = class.filter(|class| class.restriction() == Restriction::OperatorRecord)?;
+    let declares = |operator: &str| {
+        class.class_elements().any(|(_, nested)| nested.class.name.node.as_str() == operator)
+    };
+    let missing = ["'+'", "'-'", "'0'"].into_iter().find(|operator| !declares(operator))?;
+    Some(
+        fault!(ILLEGAL_PREFIX, "the flow variable `{}` is of the operator record `{}`, which has no operator `{missing}`",
+            component.name(), class.name();
+            help: "declare the operator; flows are added, negated and zero")
+        .at(component.declaration.name.span),
+    )
 }
 
 /// A prefix of a structured component whose elements have one of their own.

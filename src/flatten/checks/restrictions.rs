@@ -6,7 +6,7 @@ use crate::fault;
 use crate::flatten::errors::CLASS_RESTRICTION;
 use crate::source::Span;
 use crate::syntax::ast::{
-    CausalityPrefix, Element, Restriction, Section, VariabilityPrefix, Visibility,
+    CausalityPrefix, Element, Restriction, Section, TypePrefixes, VariabilityPrefix, Visibility,
 };
 
 /// Checks the own contents of a class against its keyword.
@@ -152,14 +152,20 @@ fn has_acausal_variable(connector: Scope<'_>) -> bool {
     }
     let Some(target) = target else { return connector.predefined().is_some() };
     target.lineage().into_iter().flat_map(Scope::components).any(|component| {
-        let prefixes = component.clause.type_prefixes;
-        let is_variable = !matches!(
-            prefixes.variability,
-            Some(VariabilityPrefix::Constant | VariabilityPrefix::Parameter)
-        );
-        let is_predefined = component.class().is_none_or(|class| class.predefined().is_some());
-        is_variable && prefixes.causality.is_none() && is_predefined
+        !component.is_fixed() && !has_direction(&component) && is_predefined(&component)
     })
+}
+
+/// Whether a component or its type is declared input or output.
+fn has_direction(component: &Component<'_>) -> bool {
+    let directed = |prefixes: &TypePrefixes| prefixes.causality.is_some();
+    let of_type =
+        || component.class().is_some_and(|class| class.unaliased().1.iter().any(directed));
+    directed(&component.clause.type_prefixes) || of_type()
+}
+
+fn is_predefined(component: &Component<'_>) -> bool {
+    component.class().is_none_or(|class| class.predefined().is_some())
 }
 
 /// Only public elements, no equations, no algorithms.
@@ -188,6 +194,11 @@ fn no_behaviour(class: Scope<'_>, what: &str, errors: &mut Vec<Diagnostic>) {
             .at(span),
         );
     }
+}
+
+/// Whether a section holds equations or an algorithm.
+pub(super) fn is_behaviour(section: &Section) -> bool {
+    matches!(section, Section::Equations { .. } | Section::Algorithm { .. })
 }
 
 fn no_components(class: Scope<'_>, what: &str, errors: &mut Vec<Diagnostic>) {

@@ -4,8 +4,8 @@ use crate::flatten::library::{ClassId, Library};
 use crate::flatten::lookup::{Predefined, Type};
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
-    ClassDefinition, ClassElement, ClassSpecifier, ComponentClause, ComponentDeclaration, Element,
-    Restriction, Section, TypePrefixes, VariabilityPrefix, Visibility,
+    ClassDefinition, ClassElement, ClassSpecifier, ComponentClause, ComponentDeclaration,
+    ComponentReference, Element, Restriction, Section, TypePrefixes, VariabilityPrefix, Visibility,
 };
 use rustc_hash::FxHashSet;
 
@@ -116,6 +116,29 @@ impl<'a> Scope<'a> {
     /// The component of a name that it declares itself.
     pub(super) fn own_component(self, name: Ident) -> Option<Component<'a>> {
         self.components().find(|component| component.declaration.name.node == name)
+    }
+
+    /// The components that the parts of a reference name, followed through their classes as they
+    /// are declared; `None` where a redeclaration could change them.
+    pub(super) fn path(self, reference: &ComponentReference) -> Option<Vec<Component<'a>>> {
+        if reference.global {
+            return None;
+        }
+        let (first, rest) = reference.parts.split_first()?;
+        let mut path = vec![self.component(first.name)?];
+        for part in rest {
+            let last = path.last()?;
+            if last.clause.prefixes.replaceable || last.clause.prefixes.outer {
+                return None;
+            }
+            path.push(last.class()?.component(part.name)?);
+        }
+        Some(path)
+    }
+
+    /// The component that a reference names, as [`Scope::path`] finds it.
+    pub(super) fn component_at(self, reference: &ComponentReference) -> Option<Component<'a>> {
+        self.path(reference)?.pop()
     }
 
     /// What a name of a type or class means in it.
