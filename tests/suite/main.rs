@@ -13,6 +13,7 @@ mod grammar;
 mod identification;
 mod identified_models;
 mod lazy_reading;
+mod libraries;
 mod mat;
 mod models;
 mod plot;
