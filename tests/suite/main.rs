@@ -15,6 +15,7 @@ mod grammar;
 mod identification;
 mod identified_models;
 mod lazy_reading;
+mod libraries;
 mod mat;
 mod models;
 mod msl;
