@@ -13,6 +13,7 @@ mod grammar;
 mod identification;
 mod identified_models;
 mod mat;
+mod modelica;
 mod models;
 mod plot;
 mod results;
