@@ -39,6 +39,9 @@ codes! {
     /// An element declared twice with different declarations.
     DUPLICATE_ELEMENT = "duplicate-element":
         "## What it means\n\nA class has two elements of one name (MLS §7.1).\n\n## Example\n\n`Real x; Real x;`\n\n## What to do\n\nRename or remove one of them.",
+    /// A connection that cannot be made.
+    INVALID_CONNECTION = "invalid-connection":
+        "## What it means\n\nA `connect` equation names what cannot be connected: two connectors of different kinds or sizes, something that is no connector, or a place where connections are not allowed (MLS §9.3).\n\n## Example\n\n`connect(resistor.p, thermometer.port)` where one is an electrical pin and the other a heat port.\n\n## What to do\n\nConnect connectors with the same components, at the level of equations of a class.",
     /// A part of the language that is not built yet.
     NOT_SUPPORTED = "unsupported-language":
         "## What it means\n\nThe text is Modelica, and this program does not translate that part of the language yet. The message names it.\n\n## Example\n\n`inStream(port.h_outflow)`\n\n## What to do\n\nWrite the model without it.",
