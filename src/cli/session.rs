@@ -4,6 +4,7 @@ use super::args::Global;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use crate::diag::Diagnostic;
+use crate::name::Name;
 use crate::script::Session;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -26,20 +27,25 @@ fn library_folders(global: &Global) -> Vec<PathBuf> {
     folders
 }
 
-/// A session in which these files and folders are loaded.
-pub(super) fn with_files(global: &Global, files: &[PathBuf]) -> Result<Session, ExitCode> {
+/// A session in which these files and folders are loaded, and the names of their classes.
+pub(super) fn with_files(
+    global: &Global,
+    files: &[PathBuf],
+) -> Result<(Session, Vec<Name>), ExitCode> {
     let world = SystemWorld::new(Terminal::new(global.color, false), "results".as_ref(), None);
     let world = world.map_err(|error| {
         terminal::eprint(&format!("error: the working directory cannot be read: {error}\n"));
         ExitCode::FAILURE
     })?;
     let mut session = open(global, world);
+    let (mut names, mut errors) = (Vec::new(), Vec::new());
     for file in files {
-        if let Err(errors) = session.load_path(file) {
-            return Err(failed(&mut session, errors));
+        match session.load_path(file) {
+            Ok(loaded) => names.extend(loaded),
+            Err(wrong) => errors.extend(wrong),
         }
     }
-    Ok(session)
+    if errors.is_empty() { Ok((session, names)) } else { Err(failed(&mut session, errors)) }
 }
 
 /// Shows what is wrong.

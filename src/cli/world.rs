@@ -2,7 +2,7 @@
 
 use super::terminal::Terminal;
 use crate::models;
-use crate::script::world::{Progress, Stamp, World};
+use crate::script::world::{Files, Progress, Stamp, World};
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -58,12 +58,38 @@ impl SystemWorld {
     }
 }
 
-impl World for SystemWorld {
+/// The disk, and the models in the program.
+#[derive(Debug)]
+struct Disk;
+
+impl Files for Disk {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         match models::read(path) {
             Some(bytes) => Ok(bytes.to_vec()),
-            None => fs::read(self.at(path)),
+            None => fs::read(path),
         }
+    }
+
+    fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
+        if let Some(names) = models::list(path) {
+            return Ok(names);
+        }
+        let mut names = Vec::new();
+        for entry in fs::read_dir(path)? {
+            names.push(entry?.file_name().to_string_lossy().into_owned());
+        }
+        names.sort();
+        Ok(names)
+    }
+
+    fn is_file(&self, path: &Path) -> bool {
+        models::read(path).is_some() || path.is_file()
+    }
+}
+
+impl World for SystemWorld {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        Disk.read(&self.at(path))
     }
 
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
@@ -95,15 +121,11 @@ impl World for SystemWorld {
     }
 
     fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
-        if let Some(names) = models::list(path) {
-            return Ok(names);
-        }
-        let mut names = Vec::new();
-        for entry in fs::read_dir(self.at(path))? {
-            names.push(entry?.file_name().to_string_lossy().into_owned());
-        }
-        names.sort();
-        Ok(names)
+        Disk.list_dir(&self.at(path))
+    }
+
+    fn files(&self) -> Arc<dyn Files> {
+        Arc::new(Disk)
     }
 
     fn create_dirs(&mut self, path: &Path) -> io::Result<()> {

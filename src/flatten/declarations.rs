@@ -2,13 +2,13 @@
 //! what their types are made of (MLS §4.6).
 
 use super::errors::{
-    CYCLIC_CLASS, DUPLICATE_ELEMENT, FINAL_OVERRIDE, NOT_SUPPORTED, TYPE_MISMATCH,
+    CYCLIC_CLASS, DUPLICATE_ELEMENT, FINAL_OVERRIDE, NOT_SUPPORTED, TOO_LARGE, TYPE_MISMATCH,
 };
 use super::instance::{Declaration, Shape};
 use super::instantiation::Instantiation;
 use super::lookup::{Predefined, Type};
 use super::modification::{Modifier, Redeclaration, Replacement};
-use super::scope::{ScopeId, Text};
+use super::scope::{MAX_BASES, ScopeId, Text};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::name::{Ident, Name};
@@ -106,6 +106,12 @@ impl Instantiation<'_> {
             self.add_component(id, declaration, found)?;
         }
         found.lineage.extend(&inherited.lineage);
+        if found.lineage.len() > MAX_BASES {
+            let text = self.text(id);
+            return Err(
+                fault!(TOO_LARGE, "`{}` has too many base classes", text.name).at(text.span())
+            );
+        }
         Ok(())
     }
 

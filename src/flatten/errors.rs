@@ -51,4 +51,7 @@ codes! {
     /// A model larger than the program is ready to build.
     TOO_LARGE = "too-large":
         "## What it means\n\nThe model has more variables or deeper nesting than the program is ready to build.\n\n## Example\n\n`Real x[100000, 100000];`\n\n## What to do\n\nCheck the array sizes; a missing factor or a wrong unit makes them explode.",
+    /// What an old library does otherwise (a warning).
+    OLD_LIBRARY = "old-library":
+        "## What it means\n\nA library is written in a way that today's Modelica does not have: files without `within`, folders or files named otherwise than what is in them (MLS §13.4), annotations anywhere in a class, graphics of Modelica 1 or 2. The library works all the same. The warning is given once for each library and way of writing, at the first place met.\n\n## Example\n\nA folder `CaseStudies` whose `package.mo` has `package casestudies`.\n\n## What to do\n\nNothing, or what the message says, in all files of the library.",
 }

@@ -31,7 +31,7 @@ mod types;
 mod variables;
 
 pub use flat_model::*;
-pub use library::{ClassId, Library};
+pub use library::{ClassId, Library, LibraryFiles};
 
 use crate::diag::Diagnostic;
 use crate::fault;

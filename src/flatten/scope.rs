@@ -24,7 +24,7 @@ use std::sync::Arc;
 const MAX_SCOPES: usize = 1_000_000;
 
 /// The most base classes that one class may have, those of its bases included.
-const MAX_BASES: usize = 2000;
+pub(super) const MAX_BASES: usize = 2000;
 
 /// A class in its surroundings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -7,12 +7,12 @@ model Wall "A wall of layers between two temperatures"
   HeatTransfer.Components.Convection outside;
   HeatTransfer.Sources.FixedTemperature warm(T = 353.15);
   HeatTransfer.Celsius.PrescribedTemperature cold;
-  HeatTransfer.Sensors.HeatFlowSensor flow;
+  HeatTransfer.Sensors.HeatFlowSensor flow_;
   Modelica.Blocks.Sources.Constant conductance(k = 2);
   Modelica.Blocks.Sources.Constant temperature(k = 10);
 equation
-  connect(warm.port, flow.port_a);
-  connect(flow.port_b, inside.port_a);
+  connect(warm.port, flow_.port_a);
+  connect(flow_.port_b, inside.port_a);
   connect(inside.port_b, layer[1].port);
   for i in 1:n - 1 loop
     connect(layer[i].port, between[i].port_a);

@@ -43,8 +43,8 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
-            "script", "identify", "compile", "results", "plot", "models", "registry", "source",
-            "diag",
+            "script", "identify", "compile", "results", "plot", "models", "registry", "name",
+            "source", "diag",
         ],
     ),
 ];

@@ -12,6 +12,7 @@ mod gapilib;
 mod grammar;
 mod identification;
 mod identified_models;
+mod lazy_reading;
 mod mat;
 mod modelica;
 mod models;
