@@ -17,6 +17,7 @@ mod identified_models;
 mod lazy_reading;
 mod libraries;
 mod mat;
+mod modelica;
 mod models;
 mod msl;
 mod plot;
