@@ -2,6 +2,8 @@
 //! its own [`System`] of it.
 
 pub mod errors;
+mod event_iteration;
+mod events;
 mod jacobian;
 mod lower;
 mod newton;

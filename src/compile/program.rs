@@ -1,6 +1,7 @@
 //! A compiled model: immutable, shared by any number of [`System`](super::System)s.
 
 use super::errors::*;
+use super::events::{CompiledRounding, Events, compile_events, linear_in_time};
 use super::jacobian::differentiate_sequence;
 use super::lower::{Registers, TapeBuilder};
 use super::system::System;
@@ -11,7 +12,7 @@ use crate::fault;
 use crate::flatten::{BaseType, Experiment, Variability};
 use crate::sim::{Failure, Pattern, SimError, SimErrorKind};
 use crate::source::Span;
-use crate::symbolic::{Expr, Pool, VarId, function, linear_in};
+use crate::symbolic::{Expr, Pool, VarId, function};
 use crate::syntax::ast::CausalityPrefix;
 use rustc_hash::FxHashSet;
 use std::collections::BTreeMap;
@@ -157,6 +158,7 @@ pub struct Program {
     pub(super) crossings: Outputs,
     pub(super) observe: Outputs,
     pub(super) assertions: Vec<(usize, Outputs)>,
+    pub(super) events: Events,
 }
 
 impl Program {
@@ -178,13 +180,20 @@ impl Program {
         let mut registers = Registers::new(n);
         let observed: Vec<VarId> = (0..n as u32)
             .map(VarId)
-            .filter(|v| sorted.dae.is_unknown(*v) && sorted.aliases[v.0 as usize].is_none())
+            .filter(|v| sorted.dae.is_solved_for(*v) && sorted.aliases[v.0 as usize].is_none())
             .collect();
         let mut next = n as u32;
         let mut pool = std::mem::take(&mut sorted.dae.pool);
         let steps = compile_steps(&mut pool, &mut registers, &sorted.blocks, &mut next);
         let initial_steps =
             compile_steps(&mut pool, &mut registers, &sorted.initial_blocks, &mut next);
+        let mut event_steps =
+            compile_steps(&mut pool, &mut registers, &sorted.event_blocks, &mut next);
+        for step in &mut event_steps {
+            if let Step::Solve(newton) = step {
+                newton.block += sorted.blocks.len() as u32;
+            }
+        }
 
         let mut outputs: Vec<Expr> = Vec::new();
         for state in &sorted.states {
@@ -224,7 +233,7 @@ impl Program {
         let mut rests = Vec::new();
         for relation in &sorted.dae.relations {
             let difference = pool.sub(relation.left, relation.right);
-            let time = time_relation(&mut pool, &sorted, difference);
+            let time = linear_in_time(&mut pool, &sorted, difference);
             match time {
                 None => differences.push(difference),
                 Some((_, rest)) => rests.push((relations.len(), rest)),
@@ -237,10 +246,29 @@ impl Program {
             let sides = [relation.left, relation.right];
             relation_sides.push(compile_outputs(&pool, &mut registers, &[], &sides));
         }
+        let mut roundings = Vec::new();
+        for rounding in &sorted.dae.events.roundings {
+            let time = linear_in_time(&mut pool, &sorted, rounding.argument);
+            match time {
+                None => {
+                    let value = pool.variable(rounding.variable);
+                    let above = pool.sub(rounding.argument, value);
+                    let one = pool.constant(1.0);
+                    differences.extend([above, pool.sub(above, one)]);
+                }
+                Some((_, rest)) => rests.push((relations.len() + roundings.len(), rest)),
+            }
+            let time = time.map(|(slope, _)| (slope, 0));
+            roundings.push(CompiledRounding { register: rounding.variable.0, time });
+        }
         let rest_expressions: Vec<Expr> = rests.iter().map(|(_, rest)| *rest).collect();
         let time_rests = compile_outputs(&pool, &mut registers, &[], &rest_expressions);
         for ((at, _), register) in rests.iter().zip(&time_rests.outputs) {
-            if let Some(time) = &mut relations[*at].time {
+            let time = match at.checked_sub(relations.len()) {
+                None => &mut relations[*at].time,
+                Some(at) => &mut roundings[at].time,
+            };
+            if let Some(time) = time {
                 time.1 = *register;
             }
         }
@@ -259,7 +287,10 @@ impl Program {
             })
             .collect();
 
-        let base = sorted.dae.equations.len() + sorted.dae.initial_equations.len();
+        let mut events = compile_events(&pool, &mut registers, &sorted);
+        events.steps = event_steps;
+        events.roundings = roundings;
+        let base = number_of_equations(&sorted);
         let mut parameter_tapes = Vec::new();
         for parameter in &sorted.parameters {
             if let Some(binding) = sorted.dae.variable(*parameter).binding {
@@ -273,7 +304,7 @@ impl Program {
         let mut nominals = Vec::new();
         for position in 0..n as u32 {
             let variable = sorted.dae.variable(VarId(position));
-            if !sorted.dae.is_unknown(VarId(position)) {
+            if !sorted.dae.is_solved_for(VarId(position)) {
                 continue;
             }
             if let Some(start) = variable.start {
@@ -313,6 +344,7 @@ impl Program {
             crossings,
             observe,
             assertions,
+            events,
         };
         program.fill_defaults();
         Ok(Arc::new(program))
@@ -447,8 +479,9 @@ impl Program {
                 fault!(DOMAIN_ERROR, "{what} {when}").at(self.place(place >> 8))
             }
             Failure::Assertion { assertion } => {
-                let assertions = &self.sorted.dae.assertions;
-                match assertions.get(assertion as usize) {
+                let dae = &self.sorted.dae;
+                let mut all = dae.assertions.iter().chain(&dae.events.assertions);
+                match all.nth(assertion as usize) {
                     Some(failed) => {
                         fault!(ASSERTION_FAILED, "{} ({when})", failed.message).at(failed.span)
                     }
@@ -473,11 +506,14 @@ impl Program {
     }
 
     fn explain_block(&self, block: u32, when: &str, code: crate::diag::Code) -> Diagnostic {
-        let blocks = match code == INITIALIZATION_FAILED {
-            true => &self.sorted.initial_blocks,
-            false => &self.sorted.blocks,
+        let block = block as usize;
+        let sorted = &self.sorted;
+        let found = match (code == INITIALIZATION_FAILED, block.checked_sub(sorted.blocks.len())) {
+            (true, _) => sorted.initial_blocks.get(block),
+            (false, None) => sorted.blocks.get(block),
+            (false, Some(at_events)) => sorted.event_blocks.get(at_events),
         };
-        let Some(Block::Loop(torn)) = blocks.get(block as usize) else {
+        let Some(Block::Loop(torn)) = found else {
             return fault!(code, "an algebraic loop of `{}` did not converge {when}", self.name())
                 .at(self.first_span());
         };
@@ -492,13 +528,13 @@ impl Program {
         .at(self.place(equation))
     }
 
-    /// Where an origin is written: equations, initial equations, then variables.
+    /// Where an origin is written: equations, initial equations, those of events, then variables.
     fn place(&self, origin: u32) -> Span {
         let dae = &self.sorted.dae;
-        let mut spans = dae.equations.iter().chain(&dae.initial_equations).map(|e| e.span);
+        let equations = dae.equations.iter().chain(&dae.initial_equations);
+        let mut spans = equations.chain(&dae.events.equations).map(|e| e.span);
         let declared = || {
-            let base = dae.equations.len() + dae.initial_equations.len();
-            let position = (origin as usize).checked_sub(base)?;
+            let position = (origin as usize).checked_sub(number_of_equations(&self.sorted))?;
             dae.variables.get(position).map(|v| v.span)
         };
         spans.nth(origin as usize).or_else(declared).unwrap_or(Span::NONE)
@@ -523,15 +559,16 @@ impl Program {
         close(pool, &self.sequence, wanted)
     }
 
-    /// Whether states or iteration variables are needed to compute these variables: if not, they
+    /// Whether states, iteration variables or discrete variables are needed to compute these variables: if not, they
     /// are functions of time and parameters alone.
     pub fn needs_states(&self, variables: &[usize]) -> bool {
         let needed = self.dependencies(variables);
-        self.sorted.states.iter().chain(&self.iteration).any(|v| needed.contains(v))
+        let found = |v: &VarId| needed.contains(v);
+        self.sorted.states.iter().chain(&self.iteration).chain(&self.events.discrete).any(found)
     }
 
     /// Whether a variable is computed from one of these parameters, other parameters between them
-    /// included. States and iteration variables count as depending on every parameter.
+    /// included. States, iteration variables and discrete variables count as depending on every parameter.
     pub fn depends_on_parameters(&self, variable: usize, parameters: &[usize]) -> bool {
         if parameters.is_empty() {
             return false;
@@ -560,6 +597,12 @@ impl Program {
         let hidden = close(&self.sorted.dae.pool, &self.sequence, hidden);
         parameters.iter().filter_map(of).any(|p| needed.contains(&p) || hidden.contains(&p))
     }
+}
+
+/// Equations, initial equations and those of events.
+fn number_of_equations(sorted: &SortedDae) -> usize {
+    let dae = &sorted.dae;
+    dae.equations.len() + dae.initial_equations.len() + dae.events.equations.len()
 }
 
 /// A set of variables with all that they are computed from.
@@ -673,19 +716,6 @@ pub(super) fn resolved(pool: &mut Pool, sorted: &SortedDae, variable: VarId) -> 
     }
 }
 
-/// `factor * time + rest` with a known factor and a rest of parameters.
-fn time_relation(pool: &mut Pool, sorted: &SortedDae, difference: Expr) -> Option<(f64, Expr)> {
-    let parametric = |v: &VarId| {
-        *v == VarId(0) || matches!(sorted.dae.variable(*v).kind, Kind::Parameter { .. })
-    };
-    if !pool.variables(difference).iter().all(parametric) {
-        return None;
-    }
-    let linear = linear_in(pool, difference, VarId(0))?;
-    let factor = pool.as_constant(linear.coefficient)?;
-    (factor != 0.0).then_some((factor, linear.rest))
-}
-
 /// Entries of a Jacobian by columns.
 fn by_columns(rows: &[BTreeMap<usize, Expr>], n: usize) -> (Pattern, Vec<Expr>) {
     let mut columns: Vec<Vec<(usize, Expr)>> = vec![Vec::new(); n];
@@ -731,8 +761,9 @@ fn variables(sorted: &SortedDae, observed: &[VarId]) -> Vec<VariableInfo> {
             Kind::Time => Access::Time,
             Kind::Constant(value) => Access::Constant(value),
             Kind::Parameter { .. } => Access::Parameter,
-            Kind::Frozen | Kind::Text => continue,
-            Kind::Unknown | Kind::Derivative(_) => {
+            Kind::Frozen | Kind::Text | Kind::Previous(_) | Kind::Signal => continue,
+            Kind::Discrete if v.name.starts_with('$') => continue,
+            Kind::Unknown | Kind::Derivative(_) | Kind::Discrete => {
                 let of = alias.map_or(id, |alias| alias.of);
                 let column = observed.binary_search(&of);
                 Access::Observed {

@@ -9,7 +9,7 @@ use crate::flatten::{self, BaseType, FlatModel, Variability};
 use crate::source::Span;
 use crate::symbolic::{Expr, Pool, VarId};
 use crate::syntax::ast::{self, EquationKind, Expression, ExpressionKind, StatementKind};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
 /// Largest number of scalar equations.
@@ -37,6 +37,14 @@ pub(super) struct Builder<'a> {
     pub(super) statements: usize,
     /// Whether initial equations are being read.
     pub(super) initial: bool,
+    /// Whether the body of a when-clause is being read.
+    pub(super) in_when: bool,
+    /// `pre` of every variable that needs it.
+    pub(super) previous: FxHashMap<VarId, VarId>,
+    /// Discrete variables that hold conditions.
+    pub(super) conditions: FxHashMap<Expr, VarId>,
+    /// What when-clauses assign.
+    pub(super) assigned: FxHashSet<VarId>,
 }
 
 /// The scalar system of a flat model.
@@ -56,8 +64,13 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         calls: 0,
         statements: super::inline::MAX_STATEMENTS,
         initial: false,
+        in_when: false,
+        previous: FxHashMap::default(),
+        conditions: FxHashMap::default(),
+        assigned: FxHashSet::default(),
     };
     builder.declare();
+    builder.find_discrete();
     builder.fold_constants()?;
     builder.bindings()?;
     for equation in &flat.equations {
@@ -81,7 +94,12 @@ impl<'a> Builder<'a> {
         for variable in self.flat.variables.values() {
             self.first.push(VarId(self.dae.variables.len() as u32));
             for position in 0..variable.len() {
-                self.dae.variables.push(declared(variable, position));
+                let mut scalar = declared(variable, position);
+                if matches!(variable.base, BaseType::Enumeration(_)) {
+                    // The default is the first literal (MLS §4.9.5).
+                    scalar.start = Some(self.dae.pool.constant(1.0));
+                }
+                self.dae.variables.push(scalar);
             }
         }
     }
@@ -250,9 +268,7 @@ impl<'a> Builder<'a> {
                 Ok(())
             }
             EquationKind::Call(call) => self.call_equation(call, loops),
-            EquationKind::When { .. } => {
-                Err(fault!(NOT_SUPPORTED, "when-equations are not supported yet").at(equation.span))
-            }
+            EquationKind::When { branches } => self.when_equation(branches, equation.span, loops),
             EquationKind::Connect { .. } => {
                 Err(fault!(NOT_SUPPORTED, "a connection is left in the flat model")
                     .at(equation.span))
@@ -268,7 +284,7 @@ impl<'a> Builder<'a> {
     }
 
     /// The scalar equations of `left = right`.
-    fn equal(
+    pub(super) fn equal(
         &mut self,
         left: &Expression,
         right: &Expression,
@@ -278,8 +294,10 @@ impl<'a> Builder<'a> {
         if let ExpressionKind::Tuple(targets) = &left.kind {
             return self.tuple_equal(targets, right, span, loops);
         }
+        let live = self.in_when;
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.to_vec();
+        lowering.live = live;
         let (a, b) = (lowering.lower(left)?, lowering.lower(right)?);
         pairs(&a, &b, span)
     }
@@ -295,8 +313,10 @@ impl<'a> Builder<'a> {
         let ExpressionKind::Call { function, arguments } = &right.kind else {
             return Err(fault!(ARRAY_MISMATCH, "an output list needs a function call").at(span));
         };
+        let live = self.in_when;
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.to_vec();
+        lowering.live = live;
         let name = function.name();
         let user = super::lowering::Target::function(lowering.target, &name).ok_or_else(|| {
             fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`").at(function.span)
@@ -430,7 +450,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn assertion(
+    pub(super) fn assertion(
         &mut self,
         arguments: &ast::Arguments,
         span: Span,
@@ -505,7 +525,8 @@ fn declared(variable: &flatten::Variable, position: usize) -> Variable {
         (_, Variability::Constant | Variability::Parameter) => {
             Kind::Parameter { tunable: variable.is_tunable() }
         }
-        _ => Kind::Unknown,
+        (BaseType::Real, _) => Kind::Unknown,
+        _ => Kind::Discrete,
     };
     Variable {
         name,

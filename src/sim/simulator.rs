@@ -169,7 +169,11 @@ impl Run<'_> {
                 break;
             }
         }
-        Ok(())
+        let finished = self.problem.system.finish(self.t, self.y);
+        match finished.map_err(SimErrorKind::Evaluation)? {
+            true => self.record(),
+            false => Ok(()),
+        }
     }
 
     fn initialize(&mut self) -> Result<(), SimErrorKind> {

@@ -47,6 +47,10 @@ pub trait DaeSystem {
     fn handle_event(&mut self, _t: f64, _y: &mut [f64]) -> Result<EventOutcome, Failure> {
         Ok(EventOutcome::Continue { y_changed: false })
     }
+    /// The event at the end of a simulation (`terminal()`); whether anything changed.
+    fn finish(&mut self, _t: f64, _y: &mut [f64]) -> Result<bool, Failure> {
+        Ok(false)
+    }
     /// Checks at an accepted step what must hold there (assertions).
     fn check(&mut self, _t: f64, _y: &[f64]) -> Result<(), Failure> {
         Ok(())
