@@ -116,7 +116,10 @@ impl System {
         for previous in &self.program.events.previous {
             let value = self.registers[previous.of.0 as usize];
             let slot = &mut self.registers[previous.register as usize];
-            changed |= previous.discrete && *slot != value;
+            if previous.discrete && *slot != value {
+                changed = true;
+                self.unstable = previous.of.0;
+            }
             *slot = value;
         }
         changed
@@ -176,7 +179,7 @@ impl System {
                 });
             }
         }
-        Err(Failure::EventIteration)
+        Err(Failure::EventIteration { variable: self.unstable })
     }
 
     /// Solves and updates relations until they stay as they are; whether one changed.
@@ -192,14 +195,16 @@ impl System {
                 return Err(failure);
             }
             let mut lagged = self.lagged.iter().zip(&program.events.lagged);
-            let lag = lagged.any(|(old, variable)| *old != self.registers[variable.0 as usize]);
+            let lag = lagged.find(|(old, variable)| **old != self.registers[variable.0 as usize]);
+            let lag = lag.map(|(_, variable)| variable.0);
+            self.unstable = lag.unwrap_or(self.unstable);
             let changed = self.update_relations(t);
             any |= changed;
-            if !lag && !changed && (pass > 0 || !any) {
+            if lag.is_none() && !changed && (pass > 0 || !any) {
                 return Ok(any);
             }
         }
-        Err(Failure::EventIteration)
+        Err(Failure::EventIteration { variable: self.unstable })
     }
 
     /// Checks the assertions of when-clauses; whether one of them ends the simulation.
@@ -248,7 +253,10 @@ impl System {
                 },
             };
             let slot = &mut self.registers[rounding.register as usize];
-            changed |= *slot != value;
+            if *slot != value {
+                changed = true;
+                self.unstable = rounding.register;
+            }
             *slot = value;
         }
         changed

@@ -496,13 +496,26 @@ impl Program {
             Failure::Initialization { block } => {
                 self.explain_block(block, when, INITIALIZATION_FAILED)
             }
-            Failure::EventIteration => fault!(
-                SIMULATION_FAILED,
-                "event iteration of `{}` does not end {when}",
-                self.name()
-            )
-            .at(self.first_span()),
+            Failure::EventIteration { variable } => self.explain_iteration(variable, when),
         }
+    }
+
+    fn explain_iteration(&self, variable: u32, when: &str) -> Diagnostic {
+        let dae = &self.sorted.dae;
+        let (relations, roundings) = (dae.relations.iter(), dae.events.roundings.iter());
+        let mut frozen = relations.map(|r| (r.variable, r.span));
+        let switching = frozen
+            .find(|(v, _)| v.0 == variable)
+            .or_else(|| roundings.map(|r| (r.variable, r.span)).find(|(v, _)| v.0 == variable));
+        let (what, span) = match (switching, dae.variables.get(variable as usize)) {
+            (Some((_, span)), _) => ("a relation".to_owned(), span),
+            (None, Some(v)) if v.name.starts_with('$') => ("a condition".to_owned(), v.span),
+            (None, Some(v)) => (format!("`{}`", v.name), v.span),
+            (None, None) => ("a discrete variable".to_owned(), self.first_span()),
+        };
+        fault!(SIMULATION_FAILED, "event iteration does not end {when}: {what} keeps changing";
+            help: "use `pre(…)` where a variable depends on itself, or a hysteresis")
+        .labelled(span, "keeps changing")
     }
 
     fn explain_block(&self, block: u32, when: &str, code: crate::diag::Code) -> Diagnostic {

@@ -28,6 +28,8 @@ pub struct System {
     pub(super) before: Vec<f64>,
     /// Values that variables of discrete loops had in the pass before.
     pub(super) lagged: Vec<f64>,
+    /// The variable that changed last in an event iteration.
+    pub(super) unstable: u32,
 }
 
 impl System {
@@ -43,6 +45,7 @@ impl System {
             clocks: Vec::with_capacity(program.events.samples.len()),
             before: vec![0.0; program.events.discrete.len()],
             lagged: vec![0.0; program.events.lagged.len()],
+            unstable: 0,
             program,
         };
         system.evaluate_nominals();
@@ -225,7 +228,10 @@ impl System {
             };
             let value = f64::from(u8::from(holds));
             let slot = &mut self.registers[relation.register as usize];
-            changed |= *slot != value;
+            if *slot != value {
+                changed = true;
+                self.unstable = relation.register;
+            }
             *slot = value;
         }
         changed

@@ -1,5 +1,6 @@
 //! A flat model becomes a [`Dae`]: every variable a scalar, every equation a pair of scalars.
 
+use super::algorithm::Execution;
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, PARAMETER_CYCLE, UNRESOLVED_REFERENCE};
 use super::lowering::{Array, Lowered, Lowering, size_fault};
 use super::model::{Assertion, Dae, Equation, Kind, Variable};
@@ -8,7 +9,7 @@ use crate::fault;
 use crate::flatten::{self, BaseType, FlatModel, Variability};
 use crate::source::Span;
 use crate::symbolic::{Expr, Pool, VarId};
-use crate::syntax::ast::{self, EquationKind, Expression, ExpressionKind, StatementKind};
+use crate::syntax::ast::{self, EquationKind, Expression, ExpressionKind};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
@@ -43,8 +44,12 @@ pub(super) struct Builder<'a> {
     pub(super) previous: FxHashMap<VarId, VarId>,
     /// Discrete variables that hold conditions.
     pub(super) conditions: FxHashMap<Expr, VarId>,
-    /// What when-clauses assign.
+    /// What when-clauses and algorithms assign.
     pub(super) assigned: FxHashSet<VarId>,
+    /// The algorithm in progress.
+    pub(super) execution: Execution,
+    /// More than zero where a reference means the variable, not the value it has in an algorithm.
+    pub(super) raw: usize,
 }
 
 /// The scalar system of a flat model.
@@ -68,6 +73,8 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         previous: FxHashMap::default(),
         conditions: FxHashMap::default(),
         assigned: FxHashSet::default(),
+        execution: Execution::default(),
+        raw: 0,
     };
     builder.declare();
     builder.find_discrete();
@@ -76,11 +83,16 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
     for equation in &flat.equations {
         builder.equation(equation, &mut Vec::new())?;
     }
+    for statements in &flat.algorithms {
+        builder.algorithm(statements)?;
+    }
     builder.initial = true;
     for equation in &flat.initial_equations {
         builder.equation(equation, &mut Vec::new())?;
     }
-    builder.refuse_algorithms()?;
+    for statements in &flat.initial_algorithms {
+        builder.algorithm(statements)?;
+    }
     Ok(builder.dae)
 }
 
@@ -100,22 +112,6 @@ impl<'a> Builder<'a> {
                     scalar.start = Some(self.dae.pool.constant(1.0));
                 }
                 self.dae.variables.push(scalar);
-            }
-        }
-    }
-
-    fn refuse_algorithms(&self) -> Result<(), Diagnostic> {
-        let sections = self.flat.algorithms.iter().chain(&self.flat.initial_algorithms);
-        match sections.flatten().next() {
-            None => Ok(()),
-            Some(statement) => {
-                let what = match statement.kind {
-                    StatementKind::When { .. } => "a when-statement",
-                    _ => "an algorithm section",
-                };
-                Err(fault!(NOT_SUPPORTED, "{what} in a model is not supported yet";
-                    help: "write equations, or move the statements into a function")
-                .at(statement.span))
             }
         }
     }
@@ -406,7 +402,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Assertions in a branch hold only where it is taken.
-    fn guard_assertions(&mut self, from: usize, condition: Expr) {
+    pub(super) fn guard_assertions(&mut self, from: usize, condition: Expr) {
         let not = self.dae.pool.not(condition);
         for assertion in &mut self.dae.assertions[from..] {
             assertion.condition = self.dae.pool.or(not, assertion.condition);

@@ -134,7 +134,8 @@ impl Target for Builder<'_> {
         let elements = (first..first + variable.len() as u32)
             .map(|id| match self.dae.variables[id as usize].kind {
                 Kind::Constant(value) => self.dae.pool.constant(value),
-                _ => self.dae.pool.variable(VarId(id)),
+                _ if self.raw > 0 => self.dae.pool.variable(VarId(id)),
+                _ => self.value_now(VarId(id)),
             })
             .collect();
         Ok(Lowered::Array(Array { dims: variable.dims.clone(), elements }))
@@ -165,9 +166,12 @@ impl Target for Builder<'_> {
             "noEvent" => Operator::Live(0),
             "smooth" => Operator::Live(1),
             "homotopy" => Operator::Argument(0),
-            "pre" | "edge" | "change" | "sample" | "initial" | "terminal" | "semiLinear" => {
+            "pre" | "edge" | "change" => {
+                // Until `temporal`, which follows when the argument is lowered.
+                self.raw += 1;
                 Operator::Temporal
             }
+            "sample" | "initial" | "terminal" | "semiLinear" => Operator::Temporal,
             "delay"
             | "reinit"
             | "terminate"

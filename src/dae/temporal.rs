@@ -27,6 +27,9 @@ impl Builder<'_> {
             "semiLinear" => 3,
             _ => 1,
         };
+        if matches!(name, "pre" | "edge" | "change") {
+            self.raw -= 1;
+        }
         if arguments.len() != arity {
             return Err(fault!(ARRAY_MISMATCH, "`{name}` takes {arity} arguments here").at(span));
         }
@@ -51,7 +54,7 @@ impl Builder<'_> {
                 for element in &mut array.elements {
                     *element = match name {
                         "pre" => self.previous(*element, span)?,
-                        "edge" => self.edge(*element, span)?,
+                        "edge" => self.edge_of_variable(*element, span)?,
                         _ => self.change(*element, span)?,
                     };
                 }
@@ -100,10 +103,26 @@ impl Builder<'_> {
         Ok(self.dae.pool.and(b, not))
     }
 
+    /// `edge(b)` of a variable, with the value it has where an algorithm stands.
+    fn edge_of_variable(&mut self, b: Expr, span: Span) -> Result<Expr, Diagnostic> {
+        let before = self.previous(b, span)?;
+        let now = self.now(b);
+        let not = self.dae.pool.not(before);
+        Ok(self.dae.pool.and(now, not))
+    }
+
     /// `v <> pre(v)`
     fn change(&mut self, v: Expr, span: Span) -> Result<Expr, Diagnostic> {
         let before = self.previous(v, span)?;
-        Ok(self.dae.pool.relation(RelationOperator::NotEqual, v, before))
+        let now = self.now(v);
+        Ok(self.dae.pool.relation(RelationOperator::NotEqual, now, before))
+    }
+
+    fn now(&mut self, v: Expr) -> Expr {
+        match self.dae.pool.as_variable(v) {
+            Some(variable) => self.value_now(variable),
+            None => v,
+        }
     }
 
     /// A Boolean as a discrete variable, so that it has a previous value.

@@ -1,10 +1,12 @@
 //! Models with events, from text to trajectory, against exact solutions.
 
-use super::flat_class::flat;
 use gapilib::compile::{Access, Program, System};
 use gapilib::dae::sort;
 use gapilib::diag::Diagnostic;
+use gapilib::flatten::{FlatModel, Library, flatten};
 use gapilib::sim::{OutputGrid, Settings, SimError, Simulator, Trajectory};
+use gapilib::source::SourceMap;
+use gapilib::syntax::parse_stored_definition;
 use std::sync::Arc;
 
 /// A finished simulation.
@@ -12,6 +14,18 @@ struct Run {
     program: Arc<Program>,
     system: System,
     rows: Trajectory,
+}
+
+/// The flat model of the first class of a text.
+fn flat(text: &str) -> FlatModel {
+    let source = SourceMap::default().add("model.mo", text);
+    let file = parse_stored_definition(source, text).expect("the text parses");
+    let mut library = Library::new();
+    let names = library.load(&file).expect("the classes can be loaded");
+    match flatten(&library, &names[0], &[]) {
+        Ok(flattened) => flattened.model,
+        Err(errors) => panic!("{}", errors[0].message),
+    }
 }
 
 fn compiled(text: &str) -> Result<Arc<Program>, Diagnostic> {
@@ -64,7 +78,7 @@ impl Run {
     fn at(&self, name: &str, time: f64) -> f64 {
         let rows = self.rows.time().iter().zip(self.column(name));
         let near = rows.filter(|(t, _)| (**t - time).abs() <= 1e-9);
-        near.last().unwrap_or_else(|| panic!("no row at {time}")).1
+        near.collect::<Vec<_>>().pop().unwrap_or_else(|| panic!("no row at {time}")).1
     }
 
     /// Times at which a variable jumps.
@@ -117,4 +131,234 @@ fn a_sampled_controller_follows_its_difference_equation() {
     assert_eq!(run.last("n"), 21.0);
     let times: Vec<f64> = (1..=20).map(|n| n as f64 * 0.1).collect();
     assert_eq!(run.jumps("n"), times);
+}
+
+#[test]
+fn an_algorithm_counts_at_samples() {
+    let run = simulated(&file("Counter"), 2.0);
+    let mut total = 0.0;
+    for k in 1..=7 {
+        let n = f64::from(k % 4);
+        total += 6.0 * n;
+        let t = 0.25 * f64::from(k);
+        near(run.at("n", t), n, 0.0);
+        near(run.at("total", t), total, 0.0);
+        near(run.at("odd", t), f64::from(k % 2), 0.0);
+    }
+    near(run.at("n", 1.92), 100.0, 0.0);
+    near(run.last("n"), 101.0, 0.0);
+}
+
+#[test]
+fn a_two_point_controller_switches_at_the_exact_times() {
+    let run = simulated(&file("Hysteresis"), 2.0);
+    let first = (12.0f64 / 8.0).ln();
+    let (fall, rise) = ((12.0f64 / 10.0).ln(), (10.0f64 / 8.0).ln());
+    let mut expected = vec![first];
+    while expected[expected.len() - 1] < 2.0 {
+        let step = if expected.len() % 2 == 1 { fall } else { rise };
+        expected.push(expected[expected.len() - 1] + step);
+    }
+    expected.pop();
+    assert!(expected.len() > 6);
+    all_near(&run.jumps("on"), &expected, 1e-7);
+}
+
+#[test]
+fn a_block_sticks_and_slips() {
+    let run = simulated(&file("StickSlip"), 12.0);
+    // It breaks away at t = 2 and slides with v = 1 - cos τ + sin τ until v = 0 at τ = 3π/2; then
+    // the force is 1 - (1 - 2)= 0, and 2 more seconds pass.
+    let slide = 1.5 * std::f64::consts::PI;
+    all_near(&run.jumps("sliding"), &[2.0, 2.0 + slide, 4.0 + slide], 1e-7);
+    let v = |tau: f64| 1.0 - tau.cos() + tau.sin();
+    near(run.at("v", 4.8), v(2.8), 1e-6);
+    near(run.at("v", 7.2), 0.0, 1e-12);
+}
+
+#[test]
+fn a_network_of_gates_and_flip_flops_runs_in_step() {
+    let run = simulated(&file("Logic"), 7.0);
+    let mut q = [false; 3];
+    for step in 1..=7 {
+        q = [!q[2], q[0], q[1]];
+        let t = f64::from(step);
+        let count = q.iter().filter(|on| **on).count();
+        for (at, on) in q.iter().enumerate() {
+            near(run.at(&format!("q[{}]", at + 1), t), f64::from(u8::from(*on)), 0.0);
+        }
+        near(run.at("sum", t), f64::from(u8::from(count % 2 == 1)), 0.0);
+        near(run.at("carry", t), f64::from(u8::from(count >= 2)), 0.0);
+    }
+}
+
+#[test]
+fn the_first_active_branch_of_a_when_clause_acts() {
+    let run = simulated(&file("Priority"), 4.0);
+    near(run.at("which", 0.96), 0.0, 0.0);
+    near(run.at("which", 1.0), 1.0, 0.0);
+    near(run.at("which", 2.0), 2.0, 0.0);
+    near(run.at("which", 3.0), 3.0, 0.0);
+    near(run.at("first", 0.0), 1.0, 0.0);
+    near(run.last("first"), 2.0, 0.0);
+}
+
+#[test]
+fn functions_that_jump_cause_events() {
+    let run = simulated(&file("Rounding"), 2.0);
+    for k in 1..50 {
+        let t = 0.04 * f64::from(k);
+        let x = 3.0 * t.sin();
+        near(run.at("down", t), x.floor(), 0.0);
+        near(run.at("up", t), x.ceil(), 0.0);
+        near(run.at("quotient", t), (x / 2.0).trunc(), 0.0);
+        if k % 25 != 0 {
+            near(run.at("whole", t), (2.0 * t).floor(), 0.0);
+            near(run.at("saw", t), t - (t / 0.5).floor() * 0.5, 1e-9);
+        }
+        if k % 15 != 0 {
+            near(run.at("back", t), -(t - (t / 0.3).floor() * 0.3), 1e-9);
+        }
+    }
+    assert_eq!(run.jumps("whole"), [0.5, 1.0, 1.5, 2.0]);
+    near(run.last("area"), 0.5, 1e-7);
+    all_near(&run.jumps("down")[..2], &[(1.0f64 / 3.0).asin(), (2.0f64 / 3.0).asin()], 1e-8);
+}
+
+#[test]
+fn an_if_equation_switches_at_its_conditions() {
+    let run = simulated(&file("Switch"), 3.0);
+    let half = 1.0 + 2.0f64.ln();
+    near(run.at("x", 0.6), 0.6, 1e-9);
+    near(run.at("y", 0.6), 0.6, 1e-9);
+    near(run.at("x", 1.5), (-0.5f64).exp(), 1e-7);
+    near(run.at("y", 1.5), 2.0 * (-0.5f64).exp(), 1e-7);
+    near(run.last("x"), 0.5, 1e-7);
+    near(run.last("y"), -0.5, 1e-7);
+    all_near(&run.jumps("y"), &[1.0, half], 1e-7);
+}
+
+#[test]
+fn a_relay_without_hysteresis_chatters_and_is_reported() {
+    for (body, time) in [
+        ("equation der(x) = if x > 0 then -1 else 1;", 1.0),
+        ("Boolean b = x > 0; equation der(x) = if b then -1 - x else 1;", 2.0f64.ln()),
+    ] {
+        let text = &format!("model R Real x(start = 1, fixed = true); {body} end R;");
+        let (program, _, rows, ended) = attempt(text, 2.0);
+        let error = ended.expect_err("it cannot slide");
+        near(error.time, time, 1e-2);
+        assert_eq!(program.explain(&error).code.slug, "simulation-failed");
+        assert!(rows.len() < 10_000, "{}", rows.len());
+    }
+}
+
+#[test]
+fn logic_without_a_stable_state_is_reported() {
+    let text = "model O Boolean a(start = false); Boolean b = time > 0.5;
+        equation a = b and not pre(a); end O;";
+    let (program, _, _, ended) = attempt(text, 1.0);
+    let error = ended.expect_err("it does not settle");
+    near(error.time, 0.5, 1e-9);
+    let diagnostic = program.explain(&error);
+    assert!(diagnostic.message.contains("`a`"), "{}", diagnostic.message);
+}
+
+#[test]
+fn a_latch_of_two_gates_keeps_its_state() {
+    let text = "model L Boolean s = time > 1 and time < 1.5; Boolean r = time > 2 and time < 2.5;
+        Boolean q(start = false); Boolean n(start = true);
+        equation q = not (r or n); n = not (s or q); end L;";
+    let run = simulated(text, 3.0);
+    for (t, q) in [(0.6, 0.0), (1.2, 1.0), (1.8, 1.0), (2.1, 0.0), (3.0, 0.0)] {
+        near(run.at("q", t), q, 0.0);
+        near(run.at("n", t), 1.0 - q, 0.0);
+    }
+}
+
+#[test]
+fn a_discrete_value_and_a_continuous_one_are_solved_together() {
+    // y = 2u + x and u = 1 - y at samples: u = (1 - x)/3.
+    let text = "model C Real x = time; Real y; discrete Real u(start = 0);
+        equation y = 2*u + x; when sample(0, 0.5) then u = 1 - y; end when; end C;";
+    let run = simulated(text, 1.2);
+    near(run.at("u", 0.5), 0.5 / 3.0, 1e-12);
+    near(run.at("y", 0.6), 1.0 / 3.0 + 0.6, 1e-12);
+    near(run.last("u"), 0.0, 1e-12);
+}
+
+#[test]
+fn terminate_ends_and_terminal_acts_at_the_end() {
+    let text = "model T Real x(start = 0, fixed = true); Integer n(start = 0); Boolean done(start = false);
+        equation der(x) = 1; when x > 0.7 then terminate(\"enough\"); end when;
+        when terminal() then n = 5; done = true; end when; end T;";
+    let run = simulated(text, 2.0);
+    near(run.last("time"), 0.7, 1e-9);
+    assert_eq!(run.last("n"), 5.0);
+    assert_eq!(run.last("done"), 1.0);
+}
+
+#[test]
+fn an_assertion_at_an_event_holds_at_that_event_only() {
+    let text = |limit: f64| {
+        format!(
+            "model A Real x(start = 0, fixed = true); equation der(x) = 1;
+             when sample(1, 1) then assert(x < {limit}, \"too large\"); end when; end A;"
+        )
+    };
+    simulated(&text(2.5), 2.9);
+    let (program, _, _, ended) = attempt(&text(1.5), 2.9);
+    let error = ended.expect_err("x is 2 at the second sample");
+    near(error.time, 2.0, 1e-12);
+    assert_eq!(program.explain(&error).code.slug, "assertion-failed");
+}
+
+#[test]
+fn samples_do_not_drift() {
+    let text = "model S Integer n(start = 0); discrete Real t(start = 0); Integer both(start = 0);
+        equation when sample(0, 0.1) then n = pre(n) + 1; t = time; end when;
+        when sample(0, 0.1) and sample(0, 0.3) then both = pre(both) + 1; end when; end S;";
+    let run = simulated(text, 1000.0);
+    assert_eq!(run.last("n"), 10_001.0);
+    assert_eq!(run.last("both"), 3_334.0);
+    let times: Vec<f64> = (1..=10_000).map(|i| f64::from(i) * 0.1).collect();
+    all_near(&run.jumps("n"), &times, 1e-12);
+}
+
+#[test]
+fn enumerations_step_through_states() {
+    let text = "model E type Light = enumeration(red, green, yellow); Light light(start = Light.red, fixed = true);
+        Integer k; equation when sample(1, 1) then
+        if pre(light) == Light.red then light = Light.green; elseif pre(light) == Light.green then
+        light = Light.yellow; else light = Light.red; end if;
+        end when; k = if light == Light.yellow then 10 else Integer(light); end E;";
+    let run = simulated(text, 4.5);
+    for (t, light, k) in
+        [(0.9, 1.0, 1.0), (1.0, 2.0, 2.0), (2.0, 3.0, 10.0), (3.0, 1.0, 1.0), (4.0, 2.0, 2.0)]
+    {
+        near(run.at("light", t), light, 0.0);
+        near(run.at("k", t), k, 0.0);
+    }
+}
+
+#[test]
+fn initial_values_of_discrete_variables_follow_initial_equations() {
+    let text = "model I Integer a(start = 3); Integer b(start = 4, fixed = true); Real x; discrete Real d;
+        initial equation pre(a) = 7; der(x) = 0; d = 2;
+        equation der(x) = 1 - x/d; when time > 1 then a = pre(a) + b; b = pre(b) + 1; d = 4; end when; end I;";
+    let run = simulated(text, 2.0);
+    assert_eq!((run.at("a", 0.0), run.at("b", 0.0), run.at("d", 0.0)), (7.0, 4.0, 2.0));
+    near(run.at("x", 0.0), 2.0, 1e-12);
+    assert_eq!((run.last("a"), run.last("b")), (12.0, 5.0));
+    near(run.last("x"), 4.0 - 2.0 * (-0.25f64).exp(), 1e-7);
+}
+
+#[test]
+fn change_and_edge_see_both_directions() {
+    let text = "model D Boolean b = sin(6*time) > 0; Integer up(start = 0); Integer any(start = 0);
+        equation when edge(b) then up = pre(up) + 1; end when;
+        when change(b) then any = pre(any) + 1; end when; end D;";
+    let run = simulated(text, 3.0);
+    assert_eq!(run.last("up"), 3.0);
+    assert_eq!(run.last("any"), 6.0);
 }
