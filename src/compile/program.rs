@@ -144,6 +144,8 @@ pub struct Program {
     pub(super) parameter_tapes: Vec<(VarId, Tape)>,
     /// Start value of every unknown that has one.
     pub(super) starts: Vec<(VarId, Tape)>,
+    /// Parameters that the initial system determines.
+    pub(super) solved: Vec<VarId>,
     pub(super) nominals: Vec<(VarId, Tape, Register)>,
     pub(super) initial_steps: Vec<Step>,
     pub(super) steps: Vec<Step>,
@@ -300,11 +302,15 @@ impl Program {
                 parameter_tapes.push((*parameter, builder.finish()));
             }
         }
+        let kinds = sorted.dae.variables.iter().map(|v| v.kind);
+        let solved = (0u32..).map(VarId).zip(kinds).filter(|(_, k)| *k == Kind::Solved);
+        let solved = solved.map(|(v, _)| v).collect();
         let mut starts = Vec::new();
         let mut nominals = Vec::new();
         for position in 0..n as u32 {
             let variable = sorted.dae.variable(VarId(position));
-            if !sorted.dae.is_solved_for(VarId(position)) {
+            let id = VarId(position);
+            if !sorted.dae.is_solved_for(id) && variable.kind != Kind::Solved {
                 continue;
             }
             if let Some(start) = variable.start {
@@ -332,6 +338,7 @@ impl Program {
             observed,
             parameter_tapes,
             starts,
+            solved,
             nominals,
             initial_steps,
             steps,
@@ -561,27 +568,49 @@ impl Program {
         }
     }
 
-    /// Everything that variables of [`Program::variables`] are computed from.
+    /// Everything that variables of [`Program::variables`] are computed from, what relations
+    /// compare included.
     fn dependencies(&self, variables: &[usize]) -> FxHashSet<VarId> {
-        let pool = &self.sorted.dae.pool;
+        let dae = &self.sorted.dae;
         let wanted: FxHashSet<VarId> = variables
             .iter()
             .filter_map(|at| self.variables.get(*at))
             .map(|info| self.resolve(info.variable).0)
             .collect();
-        close(pool, &self.sequence, wanted)
+        let mut needed = close(&dae.pool, &self.sequence, wanted);
+        loop {
+            let mut wanted = needed.clone();
+            for relation in dae.relations.iter().filter(|r| needed.contains(&r.variable)) {
+                wanted.extend(dae.pool.variables(relation.left));
+                wanted.extend(dae.pool.variables(relation.right));
+            }
+            for rounding in dae.events.roundings.iter().filter(|r| needed.contains(&r.variable)) {
+                wanted.extend(dae.pool.variables(rounding.argument));
+            }
+            let before = needed.len();
+            needed = close(&dae.pool, &self.sequence, wanted);
+            if needed.len() == before {
+                return needed;
+            }
+        }
     }
 
-    /// Whether states, iteration variables or discrete variables are needed to compute these variables: if not, they
-    /// are functions of time and parameters alone.
+    /// Whether states, iteration variables or values of events are needed to compute these
+    /// variables: if not, they are functions of time and parameters alone.
     pub fn needs_states(&self, variables: &[usize]) -> bool {
         let needed = self.dependencies(variables);
+        let remembered = |v: &VarId| {
+            matches!(
+                self.sorted.dae.variable(*v).kind,
+                Kind::Discrete | Kind::Previous(_) | Kind::Signal | Kind::Solved
+            )
+        };
         let found = |v: &VarId| needed.contains(v);
-        self.sorted.states.iter().chain(&self.iteration).chain(&self.events.discrete).any(found)
+        needed.iter().any(remembered) || self.sorted.states.iter().chain(&self.iteration).any(found)
     }
 
     /// Whether a variable is computed from one of these parameters, other parameters between them
-    /// included. States, iteration variables and discrete variables count as depending on every parameter.
+    /// included. States, iteration variables and values of events count as depending on every parameter.
     pub fn depends_on_parameters(&self, variable: usize, parameters: &[usize]) -> bool {
         if parameters.is_empty() {
             return false;
@@ -598,17 +627,7 @@ impl Program {
             }
         }
         let of = |at: &usize| self.parameters.get(*at).map(|p| p.variable);
-        // A frozen relation may hide a parameter in its sides.
-        let frozen = self.sorted.dae.relations.iter().filter(|r| needed.contains(&r.variable));
-        let hidden: FxHashSet<VarId> = frozen
-            .flat_map(|r| {
-                let mut all = self.sorted.dae.pool.variables(r.left);
-                all.extend(self.sorted.dae.pool.variables(r.right));
-                all
-            })
-            .collect();
-        let hidden = close(&self.sorted.dae.pool, &self.sequence, hidden);
-        parameters.iter().filter_map(of).any(|p| needed.contains(&p) || hidden.contains(&p))
+        parameters.iter().filter_map(of).any(|p| needed.contains(&p))
     }
 }
 
@@ -773,7 +792,7 @@ fn variables(sorted: &SortedDae, observed: &[VarId]) -> Vec<VariableInfo> {
         let access = match v.kind {
             Kind::Time => Access::Time,
             Kind::Constant(value) => Access::Constant(value),
-            Kind::Parameter { .. } => Access::Parameter,
+            Kind::Parameter { .. } | Kind::Solved => Access::Parameter,
             Kind::Frozen | Kind::Text | Kind::Previous(_) | Kind::Signal => continue,
             Kind::Discrete if v.name.starts_with('$') => continue,
             Kind::Unknown | Kind::Derivative(_) | Kind::Discrete => {

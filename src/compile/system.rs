@@ -293,7 +293,7 @@ impl DaeSystem for System {
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         let program = self.program.clone();
         self.registers[0] = t;
-        for variable in &program.observed {
+        for variable in program.observed.iter().chain(&program.solved) {
             self.registers[variable.0 as usize] = 0.0;
         }
         for relation in &program.relations {
@@ -312,9 +312,9 @@ impl DaeSystem for System {
         if let Some(initial) = program.events.initial {
             self.registers[initial.0 as usize] = 1.0;
         }
-        self.start_clocks(t)?;
         self.update_relations(t);
         self.settle(t, Stage::Initial)?;
+        self.start_clocks(t)?;
         self.iterate_at_start(t)?;
         self.unload(y);
         self.violated().map_or(Ok(()), Err)

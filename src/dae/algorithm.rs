@@ -79,6 +79,7 @@ impl Builder<'_> {
                 self.previous(own, span)
             }
             Kind::Unknown => Ok(known.start.unwrap_or(zero)),
+            Kind::Solved if self.initial => Ok(known.start.unwrap_or(zero)),
             _ => Err(fault!(NOT_SUPPORTED, "`{}` cannot be assigned", known.name).at(span)),
         }
     }

@@ -212,14 +212,32 @@ impl<'a> Builder<'a> {
                 }
             }
             if *name == "fixed" && variable.variability == Variability::Parameter {
-                let free = (first..first + variable.len()).any(|i| !self.dae.variables[i].fixed);
-                if free {
+                self.free_parameters(first..first + variable.len(), e.span)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Parameters with `fixed = false` are found by the initial system; a binding is a start value.
+    fn free_parameters(
+        &mut self,
+        scalars: std::ops::Range<usize>,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        for scalar in &mut self.dae.variables[scalars] {
+            match scalar.kind {
+                _ if scalar.fixed => {}
+                Kind::Parameter { .. } => {
+                    scalar.kind = Kind::Solved;
+                    scalar.start = scalar.start.or(scalar.binding.take());
+                }
+                _ => {
+                    let name = &scalar.name;
                     return Err(fault!(
                         NOT_SUPPORTED,
-                        "parameter `{}` with `fixed = false` is not supported yet",
-                        variable.name
+                        "`{name}` shaped the model and cannot have `fixed = false`"
                     )
-                    .at(e.span));
+                    .at(span));
                 }
             }
         }

@@ -1,8 +1,9 @@
 //! The initial system (MLS §8.6): the equations, the initial equations, and as many start values
 //! as are needed to determine everything.
 //!
-//! Unknown are also `pre(v)` of discrete variables: it has the start value of `v` unless initial
-//! equations say otherwise, and when-clauses without `initial()` leave `v = pre(v)`.
+//! Unknown are also parameters with `fixed = false`, and `pre(v)` of
+//! discrete variables: it has the start value of `v` unless initial equations say otherwise, and
+//! when-clauses without `initial()` leave `v = pre(v)`.
 
 use super::blt::incidence;
 use super::mixed::{of_kind, sort_mixed, with_initial};
@@ -30,6 +31,7 @@ pub(super) fn sort_initial(
             .filter(|v| aliases[v.0 as usize].is_none()),
     );
     all.extend(&previous);
+    all.extend(of_kind(dae, |kind| kind == Kind::Solved));
 
     let mut equations = dae.equations.clone();
     equations.extend(&dae.initial_equations);

@@ -84,6 +84,8 @@ pub enum Kind {
         /// Whether a user may set it without compiling again.
         tunable: bool,
     },
+    /// A parameter that the initial system determines (`fixed = false`).
+    Solved,
     /// To be solved for.
     Unknown,
     /// The derivative of another variable.

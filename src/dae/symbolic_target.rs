@@ -214,7 +214,8 @@ impl Target for Builder<'_> {
 impl Builder<'_> {
     /// Whether an expression is made of parameters and numbers alone.
     pub(super) fn is_parametric(&self, a: Expr) -> bool {
-        let fixed = |v: &VarId| matches!(self.dae.variable(*v).kind, Kind::Parameter { .. });
+        let fixed =
+            |v: &VarId| matches!(self.dae.variable(*v).kind, Kind::Parameter { .. } | Kind::Solved);
         self.dae.pool.variables(a).iter().all(fixed)
     }
 

@@ -362,3 +362,69 @@ fn change_and_edge_see_both_directions() {
     assert_eq!(run.last("up"), 3.0);
     assert_eq!(run.last("any"), 6.0);
 }
+
+#[test]
+fn parameters_that_are_not_fixed_follow_from_the_initial_equations() {
+    let text = "model P parameter Real k(fixed = false, start = 1); parameter Real twice = 2*k; parameter Real x0 = 3;
+        Real x(start = 1); initial equation x = x0; der(x) = -6; equation der(x) = -k*x; end P;";
+    let run = simulated(text, 1.0);
+    near(run.last("k"), 2.0, 1e-12);
+    near(run.last("twice"), 4.0, 1e-12);
+    near(run.last("x"), 3.0 * (-2.0f64).exp(), 1e-7);
+}
+
+#[test]
+fn initial_algorithms_set_parameters_and_states() {
+    let text =
+        "model A final parameter Integer n = 4; parameter Real s(fixed = false); Real x(start = 9);
+        initial algorithm s := 0; for i in 1:n loop s := s + i; end for; x := 2*s;
+        equation der(x) = s; end A;";
+    let run = simulated(text, 1.0);
+    near(run.last("s"), 10.0, 1e-12);
+    near(run.at("x", 0.0), 20.0, 1e-12);
+    near(run.last("x"), 30.0, 1e-7);
+}
+
+/// The fault of a model that cannot be sorted or compiled: code, message, helps.
+fn refused(text: &str) -> String {
+    match compiled(text) {
+        Ok(_) => panic!("the model is accepted"),
+        Err(d) => format!("{}: {}; {}", d.code.slug, d.message, d.helps.join("; ")),
+    }
+}
+
+#[test]
+fn an_initial_system_that_does_not_fit_is_reported_by_name() {
+    let many = refused(
+        "model M Real x(start = 1, fixed = true); initial equation x = 2; equation der(x) = 1; end M;",
+    );
+    assert!(many.starts_with("unbalanced-model: the initial system of `M` has"), "{many}");
+    assert!(many.contains("determine `x` more than once"), "{many}");
+    let few = refused(
+        "model M parameter Real p(fixed = false); Real x(start = 1, fixed = true); equation der(x) = p; end M;",
+    );
+    assert!(few.contains("add an equation that determines") && few.contains("`p`"), "{few}");
+}
+
+#[test]
+fn what_hybrid_models_may_not_do_is_refused_with_a_reason() {
+    for (body, reason) in [
+        ("Boolean b = noEvent(x > 1);", "may change between events"),
+        (
+            "discrete Real d; Real free; equation when x > 1 then d = 1; end when; when x > 2 then d = 2; end when;",
+            "assigned by two when-clauses",
+        ),
+        (
+            "Integer n; equation when x > 1 then when x > 2 then n = 1; end when; end when;",
+            "`when` inside `when`",
+        ),
+        ("Boolean a; Boolean b; equation a = not b; b and a = true;", "discrete"),
+        ("Real y; equation y = x; when x > 1 then reinit(2*y, 1); end when;", "no state"),
+        ("Real y = pre(x) + pre(2*x);", "no variable"),
+        ("Boolean s = sample(x, 1);", "parameters"),
+    ] {
+        let text = format!("model M Real x = time; {body} end M;");
+        let fault = refused(&text);
+        assert!(fault.contains(reason), "{body}: {fault}");
+    }
+}
