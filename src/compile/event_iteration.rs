@@ -11,7 +11,7 @@
 //! ```
 //!
 //! Samples are true in all rounds of their event; behind it the iteration is done once more with
-//! all of them false.
+//! all of them false, as an event of its own if the model shows them.
 
 use super::system::{System, run};
 use crate::sim::{EventOutcome, Failure};
@@ -135,7 +135,8 @@ impl System {
             return Ok(());
         }
         self.update_previous();
-        self.event(t).map(|_| ())
+        while self.event(t)? == EventOutcome::Again {}
+        Ok(())
     }
 
     /// An event at `t`, the variables being those before it.
@@ -145,22 +146,39 @@ impl System {
             let y_changed = self.settle(t, Stage::Event)?;
             return Ok(EventOutcome::Continue { y_changed });
         }
-        if program.events.need_left_limits() {
-            self.solve(Stage::Continuous)?;
-        }
         for (slot, variable) in self.before.iter_mut().zip(&program.events.discrete) {
             *slot = self.registers[variable.0 as usize];
         }
-        self.update_previous();
-        let sampled = self.samples_due(t);
-        let mut outcome = self.iterate(t)?;
-        if sampled {
+        if std::mem::take(&mut self.sampled) {
             self.clear_samples();
-            outcome = either(outcome, self.iterate(t)?);
+            return self.iterate(t).map(|outcome| self.with_discrete(outcome));
         }
-        let mut pairs = self.before.iter().zip(&program.events.discrete);
+        if program.events.need_left_limits() {
+            self.solve(Stage::Continuous)?;
+        }
+        self.update_previous();
+        let arrived = self.advance_histories(t);
+        let sampled = self.samples_due(t);
+        let outcome = either(EventOutcome::Continue { y_changed: arrived }, self.iterate(t)?);
+        match (sampled, outcome) {
+            (true, EventOutcome::Continue { .. }) if program.events.shows_samples => {
+                self.sampled = true;
+                Ok(EventOutcome::Again)
+            }
+            (true, _) => {
+                self.clear_samples();
+                let outcome = either(outcome, self.iterate(t)?);
+                Ok(self.with_discrete(outcome))
+            }
+            (false, _) => Ok(self.with_discrete(outcome)),
+        }
+    }
+
+    /// The outcome, with what happened to discrete variables.
+    fn with_discrete(&self, outcome: EventOutcome) -> EventOutcome {
+        let mut pairs = self.before.iter().zip(&self.program.events.discrete);
         let changed = pairs.any(|(old, variable)| *old != self.registers[variable.0 as usize]);
-        Ok(either(outcome, EventOutcome::Continue { y_changed: changed }))
+        either(outcome, EventOutcome::Continue { y_changed: changed })
     }
 
     /// Rounds until `pre(v) = v` and no state is set.
@@ -277,7 +295,10 @@ impl System {
     /// Values of all discrete variables and their previous ones, for an event at the end.
     pub(super) fn final_event(&mut self, t: f64, terminal: VarId) -> Result<bool, Failure> {
         self.registers[terminal.0 as usize] = 1.0;
-        let outcome = self.event(t);
+        let mut outcome = self.event(t);
+        while outcome == Ok(EventOutcome::Again) {
+            outcome = self.event(t);
+        }
         self.registers[terminal.0 as usize] = 0.0;
         Ok(outcome? != EventOutcome::Continue { y_changed: false })
     }

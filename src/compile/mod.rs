@@ -4,6 +4,7 @@
 pub mod errors;
 mod event_iteration;
 mod events;
+mod history;
 mod jacobian;
 mod lower;
 mod newton;

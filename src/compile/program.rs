@@ -289,7 +289,7 @@ impl Program {
             })
             .collect();
 
-        let mut events = compile_events(&pool, &mut registers, &sorted);
+        let mut events = compile_events(&pool, &mut registers, &sorted, &sequence);
         events.steps = event_steps;
         events.roundings = roundings;
         let base = number_of_equations(&sorted);
@@ -602,7 +602,7 @@ impl Program {
         let remembered = |v: &VarId| {
             matches!(
                 self.sorted.dae.variable(*v).kind,
-                Kind::Discrete | Kind::Previous(_) | Kind::Signal | Kind::Solved
+                Kind::Discrete | Kind::Previous(_) | Kind::Signal | Kind::Solved | Kind::Delayed
             )
         };
         let found = |v: &VarId| needed.contains(v);
@@ -793,7 +793,9 @@ fn variables(sorted: &SortedDae, observed: &[VarId]) -> Vec<VariableInfo> {
             Kind::Time => Access::Time,
             Kind::Constant(value) => Access::Constant(value),
             Kind::Parameter { .. } | Kind::Solved => Access::Parameter,
-            Kind::Frozen | Kind::Text | Kind::Previous(_) | Kind::Signal => continue,
+            Kind::Frozen | Kind::Text | Kind::Previous(_) | Kind::Signal | Kind::Delayed => {
+                continue;
+            }
             Kind::Discrete if v.name.starts_with('$') => continue,
             Kind::Unknown | Kind::Derivative(_) | Kind::Discrete => {
                 let of = alias.map_or(id, |alias| alias.of);

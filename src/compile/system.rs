@@ -1,6 +1,7 @@
 //! One running instance of a program: its registers, parameter values and frozen relations.
 
 use super::event_iteration::{Clock, Stage, same_time};
+use super::history::History;
 use super::lower::Registers;
 use super::newton::solve_loop;
 use super::program::{Access, Outputs, Program, Step, compile_outputs, resolved};
@@ -28,6 +29,11 @@ pub struct System {
     pub(super) before: Vec<f64>,
     /// Values that variables of discrete loops had in the pass before.
     pub(super) lagged: Vec<f64>,
+    /// The past of delayed expressions, and by how much they are delayed.
+    pub(super) histories: Vec<History>,
+    pub(super) delay_times: Vec<f64>,
+    /// Whether samples are true that an event at the same time makes false.
+    pub(super) sampled: bool,
     /// The variable that changed last in an event iteration.
     pub(super) unstable: u32,
 }
@@ -45,6 +51,9 @@ impl System {
             clocks: Vec::with_capacity(program.events.samples.len()),
             before: vec![0.0; program.events.discrete.len()],
             lagged: vec![0.0; program.events.lagged.len()],
+            histories: vec![History::default(); program.events.delays.len()],
+            delay_times: vec![0.0; program.events.delays.len()],
+            sampled: false,
             unstable: 0,
             program,
         };
@@ -119,6 +128,9 @@ impl System {
         let states = self.program.sorted.states.iter();
         for (variable, value) in states.chain(&self.program.iteration).zip(y) {
             self.registers[variable.0 as usize] = *value;
+        }
+        if !self.histories.is_empty() {
+            self.load_delayed(t);
         }
     }
 
@@ -314,7 +326,9 @@ impl DaeSystem for System {
         }
         self.update_relations(t);
         self.settle(t, Stage::Initial)?;
+        self.sampled = false;
         self.start_clocks(t)?;
+        self.start_histories(t)?;
         self.iterate_at_start(t)?;
         self.unload(y);
         self.violated().map_or(Ok(()), Err)
@@ -331,7 +345,13 @@ impl DaeSystem for System {
 
     fn next_time_event(&self, t: f64) -> Option<f64> {
         let later = |time: &f64| *time > t && !same_time(*time, t);
-        let all = self.switches.iter().flatten().copied().chain(self.scheduled());
+        let all = self
+            .switches
+            .iter()
+            .flatten()
+            .copied()
+            .chain(self.scheduled())
+            .chain(self.arriving_jumps());
         all.filter(later).min_by(f64::total_cmp)
     }
 
@@ -340,6 +360,19 @@ impl DaeSystem for System {
         let outcome = self.event(t)?;
         self.unload(y);
         Ok(outcome)
+    }
+
+    fn remembers(&self) -> bool {
+        !self.histories.is_empty()
+    }
+
+    fn remember(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        self.load(t, y);
+        self.remember_values(t).map_err(|f| self.refine(f))
+    }
+
+    fn longest_step(&self) -> f64 {
+        self.delay_times.iter().copied().fold(f64::INFINITY, f64::min)
     }
 
     fn finish(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {

@@ -203,13 +203,16 @@ impl Builder<'_> {
 
     fn statement(&mut self, s: &Statement, loops: &mut Loops) -> Result<Flow, Diagnostic> {
         self.count_statement(s.span)?;
+        let asserted = self.dae.assertions.len();
         match &s.kind {
             StatementKind::Assign { target, value } => {
                 let value = self.statement_lowering(loops).lower(value)?;
                 self.assign(target, value, loops)?;
+                self.guard_new_assertions(asserted);
             }
             StatementKind::MultiAssign { targets, value } => {
                 self.assign_outputs(targets, value, loops)?;
+                self.guard_new_assertions(asserted);
             }
             StatementKind::If { branches, otherwise } => {
                 let branches: Vec<Branch> = branches.iter().map(|(c, b)| (c, &b[..])).collect();
@@ -231,7 +234,10 @@ impl Builder<'_> {
                 let none = self.dae.pool.constant(0.0);
                 self.when_statement(&branches, none, s.span, loops)?;
             }
-            StatementKind::Call(call) => self.statement_call(call, loops)?,
+            StatementKind::Call(call) => {
+                self.statement_call(call, loops)?;
+                self.guard_new_assertions(asserted);
+            }
             StatementKind::Break => return Ok(Flow::Break),
             StatementKind::Return => {
                 return Err(fault!(NOT_SUPPORTED, "`return` outside a function").at(s.span));
@@ -416,32 +422,38 @@ impl Builder<'_> {
     /// `assert`, `terminate`
     fn statement_call(&mut self, call: &Expression, loops: &Loops) -> Result<(), Diagnostic> {
         let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(()) };
-        let mut guard = self.dae.pool.constant(1.0);
-        for condition in self.execution.guards.clone() {
-            guard = self.dae.pool.and(guard, condition);
-        }
         match (function.name().to_string().as_str(), self.in_when) {
-            ("assert", true) => {
-                let before = self.dae.assertions.len();
-                self.assertion(arguments, call.span, loops)?;
-                self.move_assertions(before, guard);
-                Ok(())
-            }
-            ("assert", false) => {
-                let before = self.dae.assertions.len();
-                self.assertion(arguments, call.span, loops)?;
-                self.guard_assertions(before, guard);
-                Ok(())
-            }
+            ("assert", _) => self.assertion(arguments, call.span, loops),
             ("terminate", true) => {
                 let message = arguments.positional.first().map_or(String::new(), message_text);
+                let condition = self.guard();
                 let termination =
-                    Termination { condition: guard, message: message.into(), span: call.span };
+                    Termination { condition, message: message.into(), span: call.span };
                 self.dae.events.terminations.push(termination);
                 Ok(())
             }
             (name, _) => {
                 Err(fault!(NOT_SUPPORTED, "`{name}(…)` as a statement here").at(call.span))
+            }
+        }
+    }
+
+    /// The conditions of all branches around.
+    fn guard(&mut self) -> Expr {
+        let mut guard = self.dae.pool.constant(1.0);
+        for condition in &self.execution.guards {
+            guard = self.dae.pool.and(guard, *condition);
+        }
+        guard
+    }
+
+    /// Assertions of the statement hold where it is carried out.
+    fn guard_new_assertions(&mut self, from: usize) {
+        if self.dae.assertions.len() > from {
+            let guard = self.guard();
+            match self.in_when {
+                true => self.move_assertions(from, guard),
+                false => self.guard_assertions(from, guard),
             }
         }
     }

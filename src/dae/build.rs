@@ -40,6 +40,8 @@ pub(super) struct Builder<'a> {
     pub(super) initial: bool,
     /// Whether the body of a when-clause is being read.
     pub(super) in_when: bool,
+    /// How many branches of if-equations are being read whose conditions are not known.
+    pub(super) branches: usize,
     /// `pre` of every variable that needs it.
     pub(super) previous: FxHashMap<VarId, VarId>,
     /// Discrete variables that hold conditions.
@@ -70,6 +72,7 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         statements: super::inline::MAX_STATEMENTS,
         initial: false,
         in_when: false,
+        branches: 0,
         previous: FxHashMap::default(),
         conditions: FxHashMap::default(),
         assigned: FxHashSet::default(),
@@ -390,11 +393,13 @@ impl<'a> Builder<'a> {
                 false => self.if_equation(rest, otherwise, span, loops),
             };
         }
+        self.branches += 1;
         let asserted = self.dae.assertions.len();
         let first = self.collect(body, loops)?;
         self.guard_assertions(asserted, condition);
         let asserted = self.dae.assertions.len();
         let second = self.if_equation(rest, otherwise, span, loops)?;
+        self.branches -= 1;
         let not = self.dae.pool.not(condition);
         self.guard_assertions(asserted, not);
         if first.len() != second.len() {

@@ -170,7 +170,9 @@ fn check_constant_between_events(
     value: Expr,
     equation: Equation,
 ) -> Result<(), Diagnostic> {
-    let varies = |v: &VarId| *v == VarId(0) || dae.is_unknown(*v);
+    let varies = |v: &VarId| {
+        dae.is_unknown(*v) || matches!(dae.variable(*v).kind, Kind::Time | Kind::Delayed)
+    };
     match dae.pool.variables(value).iter().any(varies) {
         false => Ok(()),
         true => Err(fault!(NOT_SUPPORTED,

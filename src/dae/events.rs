@@ -15,6 +15,8 @@ pub struct Events {
     pub roundings: Vec<Rounding>,
     /// `sample(start, interval)`.
     pub samples: Vec<Sample>,
+    /// `delay(argument, time)`.
+    pub delays: Vec<Delay>,
     /// `reinit(x, value)` in when-clauses.
     pub reinits: Vec<Reinit>,
     /// Assertions in when-clauses.
@@ -51,6 +53,19 @@ pub struct Sample {
     pub span: Span,
 }
 
+/// `variable = delay(argument, time)` (MLS §3.7.4.1).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Delay {
+    /// The variable that holds the value.
+    pub variable: VarId,
+    /// What is delayed.
+    pub argument: Expr,
+    /// By how much, made of parameters, seconds.
+    pub time: Expr,
+    /// Where it is written.
+    pub span: Span,
+}
+
 /// `reinit(state, value)`, carried out when the condition holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Reinit {
@@ -83,6 +98,7 @@ impl Events {
             visit(&mut equation.right);
         }
         self.roundings.iter_mut().for_each(|r| visit(&mut r.argument));
+        self.delays.iter_mut().for_each(|d| visit(&mut d.argument));
         for reinit in &mut self.reinits {
             visit(&mut reinit.condition);
             visit(&mut reinit.value);

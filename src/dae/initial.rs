@@ -31,7 +31,7 @@ pub(super) fn sort_initial(
             .filter(|v| aliases[v.0 as usize].is_none()),
     );
     all.extend(&previous);
-    all.extend(of_kind(dae, |kind| kind == Kind::Solved));
+    all.extend(of_kind(dae, |kind| matches!(kind, Kind::Solved | Kind::Delayed)));
 
     let mut equations = dae.equations.clone();
     equations.extend(&dae.initial_equations);
@@ -43,6 +43,11 @@ pub(super) fn sort_initial(
         equations.push(equation);
         origins.push(variables + variable.0 as usize);
     };
+    for delay in dae.events.delays.clone() {
+        // Before the start everything was as it is at the start.
+        let (left, right) = (dae.pool.variable(delay.variable), delay.argument);
+        push(&mut equations, delay.variable, Equation { left, right, span: delay.span });
+    }
     for (state, equation) in reinits(dae, aliases) {
         push(&mut equations, state, equation);
     }

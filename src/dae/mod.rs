@@ -14,7 +14,8 @@
 //! relations keep their values. At events the whole system is solved, with `pre(v)` known, until
 //! `pre(v) = v` (MLS §8.5).
 //!
-//! Not handled yet, and refused with `not-supported`: `delay`, statements whose loops depend on variables, functions whose loops or returns depend on variables, systems of an index above one, parameters with `fixed = false`.
+//! Not handled yet, and refused with `not-supported`: `delay` by a time that varies, `spatialDistribution`,
+//! statements whose loops depend on variables, functions whose loops or returns depend on variables, systems of an index above one, parameters with `fixed = false`.
 
 mod algorithm;
 mod alias_elimination;

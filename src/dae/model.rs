@@ -96,6 +96,8 @@ pub enum Kind {
     Previous(VarId),
     /// The value of a relation or rounding, which changes at events only.
     Frozen,
+    /// The past value of an expression (`delay`).
+    Delayed,
     /// Set by the simulation: `initial()`, `terminal()`, `sample(…)`.
     Signal,
     /// A `String`, which equations cannot use.

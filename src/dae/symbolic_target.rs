@@ -171,9 +171,8 @@ impl Target for Builder<'_> {
                 self.raw += 1;
                 Operator::Temporal
             }
-            "sample" | "initial" | "terminal" | "semiLinear" => Operator::Temporal,
-            "delay"
-            | "reinit"
+            "sample" | "initial" | "terminal" | "semiLinear" | "delay" => Operator::Temporal,
+            "reinit"
             | "terminate"
             | "spatialDistribution"
             | "cardinality"
@@ -224,7 +223,7 @@ impl Builder<'_> {
         let varies = |v: &VarId| {
             matches!(
                 self.dae.variable(*v).kind,
-                Kind::Time | Kind::Unknown | Kind::Derivative(_) | Kind::Text
+                Kind::Time | Kind::Unknown | Kind::Derivative(_) | Kind::Delayed | Kind::Text
             )
         };
         self.dae.pool.variables(a).iter().any(varies)

@@ -2,7 +2,7 @@
 
 use super::build::{Builder, scalar_of_nothing};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
-use super::events::{Rounding, Sample};
+use super::events::{Delay, Rounding, Sample};
 use super::lowering::{Array, Target};
 use super::model::{Assertion, Equation, Kind};
 use crate::diag::Diagnostic;
@@ -23,7 +23,8 @@ impl Builder<'_> {
     ) -> Result<Array<Expr>, Diagnostic> {
         let arity = match name {
             "initial" | "terminal" => 0,
-            "sample" => 2,
+            "delay" if arguments.len() == 3 => 3,
+            "sample" | "delay" => 2,
             "semiLinear" => 3,
             _ => 1,
         };
@@ -44,6 +45,10 @@ impl Builder<'_> {
             "sample" => {
                 let (start, interval) = (scalar(0)?, scalar(1)?);
                 self.sample(start, interval, span)?
+            }
+            "delay" => {
+                let (argument, time) = (scalar(0)?, scalar(1)?);
+                self.delay(argument, time, span)?
             }
             "semiLinear" => {
                 let (x, positive, negative) = (scalar(0)?, scalar(1)?, scalar(2)?);
@@ -199,6 +204,29 @@ impl Builder<'_> {
         });
         let variable = self.signal(&format!("$sample[{}]", self.dae.events.samples.len() + 1));
         self.dae.events.samples.push(Sample { variable, start, interval, span });
+        Ok(self.dae.pool.variable(variable))
+    }
+
+    fn delay(&mut self, argument: Expr, time: Expr, span: Span) -> Result<Expr, Diagnostic> {
+        if !self.is_parametric(time) {
+            return Err(
+                fault!(NOT_SUPPORTED, "`delay` by a time that varies is not supported").at(span)
+            );
+        }
+        if self.is_parametric(argument) {
+            return Ok(argument);
+        }
+        let same = |d: &&Delay| d.argument == argument && d.time == time;
+        if let Some(known) = self.dae.events.delays.iter().find(same) {
+            return Ok(self.dae.pool.variable(known.variable));
+        }
+        let zero = self.dae.pool.constant(0.0);
+        let condition = self.dae.pool.relation(RelationOperator::Greater, time, zero);
+        let message = "the time of `delay` must be positive".into();
+        self.dae.assertions.push(Assertion { condition, message, is_error: true, span });
+        let name = format!("$delay[{}]", self.dae.events.delays.len() + 1);
+        let variable = self.declare_scalar(scalar_of_nothing(&name, Kind::Delayed, span));
+        self.dae.events.delays.push(Delay { variable, argument, time, span });
         Ok(self.dae.pool.variable(variable))
     }
 

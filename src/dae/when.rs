@@ -38,6 +38,11 @@ impl Builder<'_> {
         if self.initial {
             return Err(fault!(NOT_SUPPORTED, "`when` among the initial equations").at(span));
         }
+        if self.branches > 0 {
+            return Err(fault!(NOT_SUPPORTED, "`when` under a condition that may change";
+                help: "write the condition into that of the when-clause")
+            .at(span));
+        }
         let mut assigned = Assigned::new();
         let mut earlier = self.dae.pool.constant(0.0);
         for (condition, body) in branches {
@@ -140,6 +145,7 @@ impl Builder<'_> {
         loops: &mut Loops,
     ) -> Result<(), Diagnostic> {
         for equation in body {
+            let before = self.dae.assertions.len();
             match &equation.kind {
                 EquationKind::Equal { left, right } => {
                     for pair in self.equal(left, right, equation.span, loops)? {
@@ -167,6 +173,7 @@ impl Builder<'_> {
                     return Err(fault!(NOT_SUPPORTED, "`connect` inside `when`").at(equation.span));
                 }
             }
+            self.move_assertions(before, guard);
         }
         Ok(())
     }
@@ -229,12 +236,7 @@ impl Builder<'_> {
             return Err(fault!(NOT_SUPPORTED, "this is no equation").at(call.span));
         };
         match (function.name().to_string().as_str(), arguments.positional.as_slice()) {
-            ("assert", _) => {
-                let before = self.dae.assertions.len();
-                self.assertion(arguments, call.span, loops)?;
-                self.move_assertions(before, guard);
-                Ok(())
-            }
+            ("assert", _) => self.assertion(arguments, call.span, loops),
             ("terminate", arguments) => {
                 let message = arguments.first().map_or(String::new(), message_text).into();
                 let termination = Termination { condition: guard, message, span: call.span };

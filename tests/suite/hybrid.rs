@@ -428,3 +428,63 @@ fn what_hybrid_models_may_not_do_is_refused_with_a_reason() {
         assert!(fault.contains(reason), "{body}: {fault}");
     }
 }
+
+#[test]
+fn a_delayed_equation_follows_its_pieces() {
+    // x' = -x(t - 1), x = 1 before the start: x = 1 - t, then 1 - t + (t - 1)²/2, …
+    let text = "model D Real x(start = 1, fixed = true); equation der(x) = -delay(x, 1); end D;";
+    let run = simulated(text, 3.0);
+    near(run.at("x", 0.6), 0.4, 1e-7);
+    near(run.at("x", 1.8), 1.0 - 1.8 + 0.32, 1e-6);
+    let t = 3.0f64;
+    let exact = 1.0 - t + (t - 1.0).powi(2) / 2.0 - (t - 2.0).powi(3) / 6.0;
+    near(run.last("x"), exact, 1e-6);
+}
+
+#[test]
+fn delayed_jumps_arrive_at_the_exact_time() {
+    let text = "model J parameter Real d = 0.35; Real u = if time > 0.5 then 2 + sin(time) else 0; Real y = delay(u, d);
+        Real area(start = 0, fixed = true); Boolean late = y > 1; Real twice = delay(y, 0.4, 1);
+        equation der(area) = y; end J;";
+    let run = simulated(text, 2.0);
+    all_near(&run.jumps("y"), &[0.85], 1e-12);
+    all_near(&run.jumps("late"), &[0.85], 1e-12);
+    all_near(&run.jumps("twice"), &[1.25], 1e-12);
+    near(run.at("y", 1.0), 2.0 + 0.65f64.sin(), 1e-7);
+    near(run.at("twice", 1.6), 2.0 + 0.85f64.sin(), 1e-7);
+    near(run.last("area"), 2.0 * 1.15 + 0.5f64.cos() - 1.65f64.cos(), 1e-6);
+}
+
+#[test]
+fn a_sample_that_is_shown_is_true_at_its_instants_only() {
+    let text = "model S Boolean b = sample(0.5, 0.5); Integer n(start = 0); Integer off(start = 0);
+        equation when b then n = pre(n) + 1; end when; when not b then off = pre(off) + 1; end when; end S;";
+    let run = simulated(text, 2.1);
+    let rows = run.rows.time().iter().zip(run.column("b"));
+    let on: Vec<f64> = rows.filter(|(_, b)| *b != 0.0).map(|(t, _)| *t).collect();
+    assert_eq!(on, [0.5, 1.0, 1.5, 2.0]);
+    assert_eq!((run.last("b"), run.last("n"), run.last("off")), (0.0, 4.0, 4.0));
+}
+
+#[test]
+fn functions_in_when_clauses_check_their_arguments_when_called_only() {
+    let text = "model F function root input Real x; output Real y; algorithm assert(x >= 0, \"negative\"); y := sqrt(x); end root;
+        Real x = 1 - time; discrete Real r(start = 0); Real a; discrete Real s(start = 0);
+        equation when time > 0.5 then r = root(x); end when;
+        algorithm a := 0; if x > 0 then a := root(x); end if; when time > 0.75 then s := root(x); end when; end F;";
+    let run = simulated(text, 2.0);
+    near(run.last("r"), 0.5f64.sqrt(), 1e-9);
+    near(run.last("s"), 0.5, 1e-9);
+    near(run.last("a"), 0.0, 0.0);
+}
+
+#[test]
+fn initial_selects_what_holds_at_the_start() {
+    let text =
+        "model I Real x(start = 5); Real y; equation der(x) = 1; y = if initial() then 2 else x;
+        when initial() then reinit(x, 3); end when; end I;";
+    let run = simulated(text, 1.0);
+    near(run.at("x", 0.0), 3.0, 1e-12);
+    near(run.at("y", 0.0), 3.0, 1e-12);
+    near(run.last("x"), 4.0, 1e-9);
+}
