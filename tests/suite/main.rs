@@ -12,6 +12,7 @@ mod flattening;
 mod flattening_properties;
 mod gapilib;
 mod grammar;
+mod hybrid;
 mod identification;
 mod identified_models;
 mod lazy_reading;
