@@ -15,6 +15,7 @@ mod connections;
 mod constants;
 mod declarations;
 mod defaults;
+mod enumerations;
 mod equations;
 pub mod errors;
 mod flat_model;
@@ -28,6 +29,7 @@ mod modification;
 mod print;
 mod resolve;
 mod scope;
+mod shapes;
 mod types;
 mod variables;
 
