@@ -145,6 +145,8 @@ pub struct Program {
     pub(super) starts: Vec<(VarId, Tape)>,
     pub(super) nominals: Vec<(VarId, Tape, Register)>,
     pub(super) initial_steps: Vec<Step>,
+    /// Both sides of what initial values must fulfil besides.
+    pub(super) initial_checks: Vec<Outputs>,
     pub(super) steps: Vec<Step>,
     pub(super) relations: Vec<CompiledRelation>,
     /// Both sides of every relation, from the registers of the variables.
@@ -167,7 +169,7 @@ impl Program {
             sorted.blocks.iter().flat_map(|block| block.assignments()).copied().collect();
         let loops = sorted.blocks.iter().filter_map(|block| match block {
             Block::Loop(torn) => Some(torn),
-            Block::Assignment(_) => None,
+            Block::Assignment(_) | Block::Linear(_) => None,
         });
         let mut iteration = Vec::new();
         let mut residuals = Vec::new();
@@ -259,6 +261,12 @@ impl Program {
             })
             .collect();
 
+        let initial_checks = sorted
+            .initial_checks
+            .iter()
+            .map(|check| compile_outputs(&pool, &mut registers, &[], &[check.left, check.right]))
+            .collect();
+
         let base = sorted.dae.equations.len() + sorted.dae.initial_equations.len();
         let mut parameter_tapes = Vec::new();
         for parameter in &sorted.parameters {
@@ -303,6 +311,7 @@ impl Program {
             starts,
             nominals,
             initial_steps,
+            initial_checks,
             steps,
             relations,
             relation_sides,
@@ -444,7 +453,15 @@ impl Program {
                         None => "an operation without a finite value".to_owned(),
                     },
                 };
-                fault!(DOMAIN_ERROR, "{what} {when}").at(self.place(place >> 8))
+                let place = place >> 8;
+                match self.linear_loop(place) {
+                    Some(names) => fault!(
+                        SIMULATION_FAILED,
+                        "the linear algebraic loop of {names} has no unique solution {when}"
+                    )
+                    .at(self.place(place)),
+                    None => fault!(DOMAIN_ERROR, "{what} {when}").at(self.place(place)),
+                }
             }
             Failure::Assertion { assertion } => {
                 let assertions = &self.sorted.dae.assertions;
@@ -462,6 +479,13 @@ impl Program {
             }
             Failure::Initialization { block } => {
                 self.explain_block(block, when, INITIALIZATION_FAILED)
+            }
+            Failure::Inconsistent { check } => {
+                let place = self.sorted.initial_checks.get(check as usize).map(|e| e.span);
+                fault!(INITIALIZATION_FAILED,
+                    "the initial values of `{}` contradict each other: this does not hold {when}",
+                    self.name(); help: "remove this initial equation or `fixed` start value, or change its value")
+                .at(place.unwrap_or(Span::NONE))
             }
             Failure::EventIteration => fault!(
                 SIMULATION_FAILED,
@@ -490,6 +514,22 @@ impl Program {
         fault!(code, "the algebraic loop of {} did not converge {when}", names.join(", ");
             help: "give these variables start values near the solution")
         .at(self.place(equation))
+    }
+
+    /// The unknowns of the linear loop that this equation solves for one of them.
+    fn linear_loop(&self, equation: u32) -> Option<String> {
+        let unknowns = self.sorted.blocks.iter().find_map(|block| match block {
+            Block::Linear(solved) => {
+                let first = solved.assignments.iter().take(solved.unknowns.len());
+                first
+                    .map(|a| a.equation)
+                    .any(|e| e == equation as usize)
+                    .then_some(&solved.unknowns)
+            }
+            _ => None,
+        })?;
+        let name = |v: &VarId| format!("`{}`", self.sorted.dae.variable(*v).name);
+        Some(unknowns.iter().map(name).collect::<Vec<_>>().join(", "))
     }
 
     /// Where an origin is written: equations, initial equations, then variables.
@@ -607,8 +647,8 @@ fn compile_steps(
     let mut run: Vec<Assignment> = Vec::new();
     for (number, block) in blocks.iter().enumerate() {
         let torn = match block {
-            Block::Assignment(assignment) => {
-                run.push(*assignment);
+            Block::Assignment(_) | Block::Linear(_) => {
+                run.extend(block.assignments());
                 continue;
             }
             Block::Loop(torn) => torn,

@@ -13,6 +13,9 @@ use std::sync::Arc;
 /// Most rounds of an event iteration.
 const MAX_ROUNDS: usize = 100;
 
+/// How far, relative to their size or 1, the sides of a redundant initial equation may differ.
+const CONSISTENT: f64 = 1e-6;
+
 /// A system that one thread simulates.
 #[derive(Debug, Clone)]
 pub struct System {
@@ -243,6 +246,19 @@ impl System {
         Ok(())
     }
 
+    /// Compares both sides of the initial equations that were not needed.
+    fn check_initial_values(&mut self) -> Result<(), Failure> {
+        for (number, check) in self.program.initial_checks.iter().enumerate() {
+            run(&check.tape, &mut self.registers)?;
+            let [a, b] = [check.outputs[0], check.outputs[1]];
+            let (a, b) = (self.registers[a as usize], self.registers[b as usize]);
+            if (a - b).abs() > CONSISTENT * a.abs().max(b.abs()).max(1.0) {
+                return Err(Failure::Inconsistent { check: number as u32 });
+            }
+        }
+        Ok(())
+    }
+
     /// Solves and updates relations until they stay as they are (MLS §8.6).
     fn iterate(&mut self, t: f64, initial: bool) -> Result<bool, Failure> {
         let mut any = false;
@@ -304,6 +320,7 @@ impl DaeSystem for System {
         self.update_relations(t);
         self.iterate(t, true)?;
         self.unload(y);
+        self.check_initial_values()?;
         self.violated().map_or(Ok(()), Err)
     }
 

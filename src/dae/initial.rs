@@ -1,56 +1,82 @@
-//! The initial system (MLS §8.6): the equations, the initial equations, and as many start values
-//! of states as are needed to determine everything.
+//! The initial system (MLS §8.6): the equations, then the initial equations, then start values.
+//!
+//! What comes first goes first: an initial equation or fixed start value of which nothing is left to
+//! be determined is kept as a check, to be fulfilled by the solution of the others. Start values
+//! that are not fixed hold for states that nothing else determines.
 
 use super::blt::{incidence, sort_blocks};
 use super::model::{Dae, Equation};
 use super::sorted::Block;
 use crate::diag::Diagnostic;
+use crate::fault;
+use crate::flatten::{BaseType, Variability};
 use crate::graph::match_equations;
 use crate::symbolic::VarId;
 
-/// Sorts the initial system. Start values that are `fixed` always hold; others hold where the
-/// equations leave the state free.
+/// The initial system in solving order.
+pub(super) struct Initial {
+    pub(super) blocks: Vec<Block>,
+    /// What the solution must fulfil besides.
+    pub(super) checks: Vec<Equation>,
+}
+
+/// Sorts the initial system.
 pub(super) fn sort_initial(
     dae: &mut Dae,
     states: &[VarId],
     unknowns: &[VarId],
-) -> Result<Vec<Block>, Diagnostic> {
+) -> Result<Initial, Diagnostic> {
     let mut all: Vec<VarId> = states.to_vec();
     all.extend(unknowns);
     let mut equations = dae.equations.clone();
+    let model = equations.len();
     equations.extend(&dae.initial_equations);
     let (fixed, free): (Vec<VarId>, Vec<VarId>) =
-        states.iter().partition(|state| dae.variable(**state).fixed);
-    for state in fixed {
-        let equation = start_equation(dae, state);
-        equations.push(equation);
+        all.iter().partition(|v| dae.variable(**v).fixed && is_continuous(dae, **v));
+    fixed.iter().for_each(|v| equations.push(start_equation(dae, *v)));
+    let required = equations.len();
+    let mut taken = free.clone();
+    taken.retain(|v| states.binary_search(v).is_ok());
+    // A state with a start value of its own before one without.
+    taken.sort_by_key(|v| dae.variable(*v).start.is_none());
+    taken.iter().for_each(|v| equations.push(start_equation(dae, *v)));
+
+    let matching = match_equations(&incidence(dae, &equations, &all));
+    let is_used = |number: usize| matching.equation_to_unknown[number].is_some();
+    let numbered = || equations.iter().copied().enumerate();
+    let checks =
+        numbered().take(required).skip(model).filter(|(n, _)| !is_used(*n)).map(|(_, e)| e);
+    let checks = checks.collect();
+    let used: Vec<Equation> =
+        numbered().filter(|(n, _)| *n < model || is_used(*n)).map(|(_, e)| e).collect();
+    let held: Vec<VarId> =
+        taken.into_iter().enumerate().filter(|(n, _)| is_used(required + n)).map(|t| t.1).collect();
+    if required > model {
+        warn_of_start_values(dae, &held);
     }
-    if dae.initial_equations.is_empty() {
-        for state in free {
-            let equation = start_equation(dae, state);
-            equations.push(equation);
-        }
-    } else {
-        complete(dae, &mut equations, &free, &all);
-    }
-    sort_blocks(dae, &equations, &all)
+    Ok(Initial { blocks: sort_blocks(dae, &used, &all)?, checks })
 }
 
-/// Adds the start values that raise the number of determined unknowns.
-fn complete(dae: &mut Dae, equations: &mut Vec<Equation>, free: &[VarId], all: &[VarId]) {
-    let mut determined = match_equations(&incidence(dae, equations, all)).len();
-    for state in free {
-        if determined == all.len() {
-            return;
-        }
-        let equation = start_equation(dae, *state);
-        equations.push(equation);
-        let now = match_equations(&incidence(dae, equations, all)).len();
-        if now == determined {
-            equations.pop();
-        }
-        determined = now;
-    }
+fn is_continuous(dae: &Dae, v: VarId) -> bool {
+    let variable = dae.variable(v);
+    variable.base == BaseType::Real && variable.variability == Variability::Continuous
+}
+
+/// A model that says something about its start but not enough deserves a warning.
+fn warn_of_start_values(dae: &mut Dae, held: &[VarId]) {
+    let Some(first) = held.first() else { return };
+    let shown: Vec<String> =
+        held.iter().take(6).map(|v| format!("`{}`", dae.variable(*v).name)).collect();
+    let more = if held.len() > 6 { ", …" } else { "" };
+    let warning = fault!(
+        super::errors::MISSING_INITIAL_CONDITION,
+        "the initial equations of `{}` leave states free; the start values of {}{more} are taken as fixed",
+        dae.name,
+        shown.join(", ");
+        help: "give these variables `fixed = true`, or write initial equations for them"
+    );
+    let span = dae.variable(*first).span;
+    dae.warnings.push(warning.at(span).warning());
 }
 
 fn start_equation(dae: &mut Dae, state: VarId) -> Equation {

@@ -4,19 +4,23 @@
 //! build                every variable a scalar, every relation outside noEvent frozen
 //! order_parameters     bindings in order of dependence
 //! eliminate_aliases    a = b and a = -b become names
+//! reduce_index         constraints between states differentiated, states chosen
 //! sort_blocks          matching, strongly connected components, tearing
 //! sort_initial         the same for the system at the start
 //! ```
 //!
 //! Not handled yet, and refused with `not-supported`: when-clauses, `pre`, `sample`, `delay`,
-//! algorithm sections, functions whose loops or returns depend on variables, systems of an index above one, parameters with `fixed = false`.
+//! algorithm sections, functions whose loops or returns depend on variables, parameters with `fixed = false`.
 
 mod alias_elimination;
 mod blt;
 mod build;
+mod dummy_derivatives;
 pub mod errors;
+mod index_reduction;
 mod initial;
 mod inline;
+mod linear_loops;
 mod lowering;
 mod model;
 mod parameters;
@@ -38,6 +42,7 @@ pub const PASSES: &[(&str, &str)] = &[
     ("build", "every variable a scalar, relations outside `noEvent` frozen"),
     ("order_parameters", "bindings of parameters in order of dependence"),
     ("eliminate_aliases", "`a = b` and `a = -b` become names"),
+    ("reduce_index", "constraints between states differentiated, states chosen"),
     ("sort_blocks", "matching, strongly connected components, tearing"),
     ("sort_initial", "the same for the system at the start"),
 ];
@@ -47,27 +52,14 @@ pub fn sort(flat: &FlatModel) -> Result<SortedDae, Diagnostic> {
     let mut dae = build::build(flat)?;
     zero_inputs(&mut dae);
     let parameters = parameters::order_parameters(&mut dae)?;
-    let aliases = alias_elimination::eliminate_aliases(&mut dae);
-    let states: Vec<VarId> = dae
-        .variables
-        .iter()
-        .filter_map(|v| match v.kind {
-            Kind::Derivative(of) => Some(of),
-            _ => None,
-        })
-        .collect::<std::collections::BTreeSet<_>>()
-        .into_iter()
-        .collect();
-    let unknowns: Vec<VarId> = (0..dae.variables.len() as u32)
-        .map(VarId)
-        .filter(|v| dae.is_unknown(*v) && aliases[v.0 as usize].is_none())
-        .filter(|v| states.binary_search(v).is_err())
-        .collect();
+    let mut aliases = alias_elimination::eliminate_aliases(&mut dae);
+    let states = index_reduction::reduce_index(&mut dae, &mut aliases, &parameters)?;
+    let unknowns = index_reduction::unknowns(&dae, &aliases, &states);
     let equations = dae.equations.clone();
-    high_index(&dae, &states, &unknowns)?;
     let blocks = blt::sort_blocks(&mut dae, &equations, &unknowns)?;
-    let initial_blocks = initial::sort_initial(&mut dae, &states, &unknowns)?;
-    Ok(SortedDae { dae, aliases, states, blocks, initial_blocks, parameters })
+    let initial = initial::sort_initial(&mut dae, &states, &unknowns)?;
+    let initial::Initial { blocks: initial_blocks, checks: initial_checks } = initial;
+    Ok(SortedDae { dae, aliases, states, blocks, initial_blocks, initial_checks, parameters })
 }
 
 /// An input at the top level without a binding has its start value, which is zero by default.
@@ -93,24 +85,4 @@ fn zero_inputs(dae: &mut Dae) {
             dae.equations.push(Equation { left, right, span });
         }
     }
-}
-
-/// An equation between states alone constrains them: the index is above one.
-fn high_index(dae: &Dae, states: &[VarId], unknowns: &[VarId]) -> Result<(), Diagnostic> {
-    if dae.equations.len() != unknowns.len() {
-        return Ok(());
-    }
-    for equation in &dae.equations {
-        let mut variables = dae.pool.variables(equation.left);
-        variables.extend(dae.pool.variables(equation.right));
-        let constrains = variables.iter().any(|v| states.binary_search(v).is_ok())
-            && !variables.iter().any(|v| unknowns.binary_search(v).is_ok());
-        if constrains {
-            return Err(fault!(errors::NOT_SUPPORTED,
-                "high-index: this equation constrains states and would have to be differentiated";
-                help: "choose fewer states, or differentiate the constraint by hand")
-            .at(equation.span));
-        }
-    }
-    Ok(())
 }

@@ -65,8 +65,26 @@ pub struct Variable {
     pub max: Option<Expr>,
     /// Attribute `nominal`.
     pub nominal: Option<Expr>,
+    /// Attribute `stateSelect`.
+    pub state_select: StateSelect,
     /// Where it is declared.
     pub span: Span,
+}
+
+/// How much a variable is wanted as a state (MLS §4.9.8), the least wanted first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub enum StateSelect {
+    /// Only if nothing else is left.
+    Never,
+    /// Rather not.
+    Avoid,
+    /// If it is differentiated in the model.
+    #[default]
+    Default,
+    /// Rather than those of `Default`.
+    Prefer,
+    /// Before all others.
+    Always,
 }
 
 /// What part a variable plays.

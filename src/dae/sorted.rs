@@ -1,6 +1,6 @@
 //! The sorted system: what is computed from what, in order. Data only.
 
-use super::model::Dae;
+use super::model::{Dae, Equation};
 use crate::symbolic::{Expr, VarId};
 
 /// A system in solving order.
@@ -16,6 +16,8 @@ pub struct SortedDae {
     pub blocks: Vec<Block>,
     /// Solves for everything at the start.
     pub initial_blocks: Vec<Block>,
+    /// What the solution of these must fulfil besides.
+    pub initial_checks: Vec<Equation>,
     /// Parameters with bindings, each after those it depends on.
     pub parameters: Vec<VarId>,
 }
@@ -34,6 +36,8 @@ pub struct Alias {
 pub enum Block {
     /// A variable and its value.
     Assignment(Assignment),
+    /// A linear algebraic loop, solved in closed form.
+    Linear(LinearLoop),
     /// An algebraic loop, torn.
     Loop(Loop),
 }
@@ -47,6 +51,15 @@ pub struct Assignment {
     pub value: Expr,
     /// Number of the equation in the list that was sorted.
     pub equation: usize,
+}
+
+/// A linear loop in closed form.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinearLoop {
+    /// What its equations are solved for at once.
+    pub unknowns: Vec<VarId>,
+    /// These, then what follows from them, in order.
+    pub assignments: Vec<Assignment>,
 }
 
 /// A torn algebraic loop.
@@ -65,6 +78,7 @@ impl Block {
     pub fn assignments(&self) -> &[Assignment] {
         match self {
             Block::Assignment(assignment) => std::slice::from_ref(assignment),
+            Block::Linear(solved) => &solved.assignments,
             Block::Loop(torn) => &torn.assignments,
         }
     }

@@ -2,6 +2,7 @@
 
 use super::build::{Builder, scalar_of_nothing};
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
+use super::index_reduction::derivative_of;
 use super::lowering::{Array, Binary, Branch, Lowered, Operator, Target, Unary};
 use super::model::{Kind, Relation};
 use crate::diag::Diagnostic;
@@ -248,10 +249,7 @@ impl Builder<'_> {
         if source.kind != Kind::Unknown || source.base != BaseType::Real {
             return Err(fault!(NOT_SUPPORTED, "`{}` has no derivative", source.name).at(span));
         }
-        let name = format!("der({})", source.name);
-        let unit = source.unit.clone();
-        let mut variable = scalar_of_nothing(&name, Kind::Derivative(of), source.span);
-        variable.unit = if unit.is_empty() { unit } else { format!("{unit}/s").into() };
+        let variable = derivative_of(source, of);
         let id = VarId(self.dae.variables.len() as u32);
         self.dae.variables.push(variable);
         self.derivatives.insert(of, id);

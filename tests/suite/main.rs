@@ -12,6 +12,7 @@ mod gapilib;
 mod grammar;
 mod identification;
 mod identified_models;
+mod index_reduction;
 mod mat;
 mod models;
 mod plot;
