@@ -77,6 +77,10 @@
 //! - **deuflhard-2011** — P. Deuflhard: Newton methods for nonlinear problems. Affine invariance
 //!   and adaptive algorithms. Springer, 2011.
 //!
+//! <a id="nocedal-wright-2006"></a>
+//! - **nocedal-wright-2006** — J. Nocedal, S. J. Wright: Numerical optimization. Second edition,
+//!   Springer, 2006.
+//!
 //! <a id="goldberg-1989"></a>
 //! - **goldberg-1989** — D. E. Goldberg: Genetic algorithms in search, optimization and machine
 //!   learning. Addison-Wesley, 1989.

@@ -3,6 +3,7 @@
 
 pub mod errors;
 mod jacobian;
+mod least_squares;
 mod lower;
 mod newton;
 mod program;

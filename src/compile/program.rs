@@ -99,12 +99,12 @@ pub enum Access {
 #[derive(Debug, Clone)]
 pub(super) enum Step {
     Run(Tape),
-    Solve(Newton),
+    Solve(CompiledLoop),
 }
 
 /// A torn loop with its Jacobian.
 #[derive(Debug, Clone)]
-pub(super) struct Newton {
+pub(super) struct CompiledLoop {
     pub(super) tape: Tape,
     pub(super) unknowns: Vec<Register>,
     pub(super) residuals: Vec<Register>,
@@ -678,7 +678,7 @@ fn compile_steps(
                 jacobian.push(builder.emit(entry));
             }
         }
-        steps.push(Step::Solve(Newton {
+        steps.push(Step::Solve(CompiledLoop {
             tape: builder.finish(),
             unknowns: torn.iteration.iter().map(|v| v.0).collect(),
             residuals: results,

@@ -1,9 +1,10 @@
 //! One running instance of a program: its registers, parameter values and frozen relations.
 
 use super::lower::Registers;
-use super::newton::solve_loop;
+use super::newton::LoopSolver;
 use super::program::{Access, Outputs, Program, Step, compile_outputs, resolved};
 use super::tape::{Instruction, Tape};
+use crate::dae::Homotopy;
 use crate::diag::Fault;
 use crate::fault;
 use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern};
@@ -16,6 +17,10 @@ const MAX_ROUNDS: usize = 100;
 /// How far, relative to their size or 1, the sides of a redundant initial equation may differ.
 const CONSISTENT: f64 = 1e-6;
 
+/// Parts of the way from simplified to actual expressions.
+const FIRST_HOMOTOPY_STEP: f64 = 0.1;
+const SMALLEST_HOMOTOPY_STEP: f64 = 1e-5;
+
 /// A system that one thread simulates.
 #[derive(Debug, Clone)]
 pub struct System {
@@ -27,6 +32,11 @@ pub struct System {
     /// Times at which relations on time switch.
     switches: Vec<Option<f64>>,
     nominal: Vec<f64>,
+    /// One for every loop of the initial system, and of the system, in order.
+    initial_solvers: Vec<LoopSolver>,
+    solvers: Vec<LoopSolver>,
+    /// Whether the iteration variables are solved for in every evaluation.
+    solves_loops: bool,
 }
 
 impl System {
@@ -39,6 +49,9 @@ impl System {
             observed: None,
             switches: vec![None; program.relations.len()],
             nominal: vec![1.0; n],
+            initial_solvers: Vec::new(),
+            solvers: Vec::new(),
+            solves_loops: false,
             program,
         };
         system.evaluate_nominals();
@@ -115,6 +128,15 @@ impl System {
         }
     }
 
+    /// Loads y, and solves for the iteration variables that it does not hold.
+    fn load_solved(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        self.load(t, y);
+        if !self.solves_loops || self.program.iteration.is_empty() {
+            return Ok(());
+        }
+        self.solve(false)
+    }
+
     fn unload(&self, y: &mut [f64]) {
         let states = self.program.sorted.states.iter();
         for (variable, value) in states.chain(&self.program.iteration).zip(y) {
@@ -184,17 +206,36 @@ impl System {
         }
         let states = program.sorted.states.iter();
         for (at, variable) in states.chain(&program.iteration).enumerate() {
-            let given = program.nominals.iter().find(|(v, ..)| v == variable);
-            let value = match given {
-                Some((_, tape, register)) => match tape.run(&mut self.registers) {
-                    Ok(()) => self.registers[*register as usize],
-                    Err(_) => 1.0,
-                },
-                None => self.registers[variable.0 as usize],
-            };
-            let usable = value.is_finite() && value != 0.0;
-            self.nominal[at] = if usable { value.abs() } else { 1.0 };
+            self.nominal[at] = self.nominal_of(*variable);
         }
+        self.initial_solvers = self.solvers_of(&program.initial_steps);
+        self.solvers = self.solvers_of(&program.steps);
+    }
+
+    fn solvers_of(&mut self, steps: &[Step]) -> Vec<LoopSolver> {
+        let loops = steps.iter().filter_map(|step| match step {
+            Step::Solve(torn) => Some(torn),
+            Step::Run(_) => None,
+        });
+        loops
+            .map(|torn| {
+                let unknowns = torn.unknowns.iter();
+                LoopSolver::new(unknowns.map(|u| self.nominal_of(VarId(*u))).collect())
+            })
+            .collect()
+    }
+
+    fn nominal_of(&mut self, variable: VarId) -> f64 {
+        let program = self.program.clone();
+        let value = match program.nominals.iter().find(|(v, ..)| *v == variable) {
+            Some((_, tape, register)) => match tape.run(&mut self.registers) {
+                Ok(()) => self.registers[*register as usize],
+                Err(_) => 1.0,
+            },
+            None => self.registers[variable.0 as usize],
+        };
+        let usable = value.is_finite() && value != 0.0;
+        if usable { value.abs() } else { 1.0 }
     }
 
     /// Evaluates every relation at the values of the variables; whether one changed.
@@ -229,21 +270,79 @@ impl System {
 
     fn solve(&mut self, initial: bool) -> Result<(), Failure> {
         let program = self.program.clone();
-        let steps = if initial { &program.initial_steps } else { &program.steps };
+        let (steps, solvers) = match initial {
+            true => (&program.initial_steps, &mut self.initial_solvers),
+            false => (&program.steps, &mut self.solvers),
+        };
+        let mut solvers = solvers.iter_mut();
         for step in steps {
             match step {
                 Step::Run(tape) => run(tape, &mut self.registers)?,
-                Step::Solve(newton) => {
-                    solve_loop(newton, &mut self.registers).map_err(|f| match (f, initial) {
-                        (Failure::Newton { block } | Failure::Singular { block }, true) => {
-                            Failure::Initialization { block }
+                Step::Solve(torn) => {
+                    let solver = solvers.next().expect("every loop has its solver");
+                    solver.solve(torn, &mut self.registers, initial).map_err(|f| {
+                        match (f, initial) {
+                            (Failure::Newton { block } | Failure::Singular { block }, true) => {
+                                Failure::Initialization { block }
+                            }
+                            _ => f,
                         }
-                        _ => f,
                     })?
                 }
             }
         }
         Ok(())
+    }
+
+    /// Everything as it is before the initial system is solved.
+    fn take_start_values(&mut self, t: f64) -> Result<(), Failure> {
+        let program = self.program.clone();
+        self.registers[0] = t;
+        for variable in &program.observed {
+            self.registers[variable.0 as usize] = 0.0;
+        }
+        for relation in &program.relations {
+            self.registers[relation.register as usize] = 0.0;
+        }
+        self.evaluate_parameters()?;
+        for (_, tape) in &program.starts {
+            run(tape, &mut self.registers)?;
+        }
+        self.update_relations(t);
+        Ok(())
+    }
+
+    /// Solves the initial system with the simplified expressions of `homotopy` and goes on from
+    /// there to the actual ones, in shorter steps where a solution is missed.
+    fn follow_homotopy(&mut self, t: f64, homotopy: Homotopy) -> Result<(), Failure> {
+        let (active, lambda) = (homotopy.active.0 as usize, homotopy.lambda.0 as usize);
+        self.take_start_values(t)?;
+        self.registers[active] = 1.0;
+        self.registers[lambda] = 0.0;
+        let mut outcome = self.iterate(t, true).map(|_| ());
+        let (mut done, mut step) = (0.0, FIRST_HOMOTOPY_STEP);
+        let mut reached = self.registers.clone();
+        while outcome.is_ok() && done < 1.0 {
+            let next = f64::min(done + step, 1.0);
+            self.registers[lambda] = next;
+            match self.iterate(t, true) {
+                Ok(_) => {
+                    done = next;
+                    step *= 2.0;
+                    reached.copy_from_slice(&self.registers);
+                }
+                Err(failure) => {
+                    self.registers.copy_from_slice(&reached);
+                    step *= 0.25;
+                    if step < SMALLEST_HOMOTOPY_STEP {
+                        outcome = Err(failure);
+                    }
+                }
+            }
+        }
+        self.registers[active] = 0.0;
+        outcome?;
+        self.iterate(t, true).map(|_| ())
     }
 
     /// Compares both sides of the initial equations that were not needed.
@@ -283,15 +382,19 @@ impl DaeSystem for System {
     }
 
     fn n_algebraic(&self) -> usize {
-        self.program.iteration.len()
+        if self.solves_loops { 0 } else { self.program.iteration.len() }
+    }
+
+    fn solve_loops(&mut self, inside: bool) {
+        self.solves_loops = inside;
     }
 
     fn nominal(&self, out: &mut [f64]) {
-        out.copy_from_slice(&self.nominal);
+        out.copy_from_slice(&self.nominal[..out.len()]);
     }
 
     fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
-        self.load(t, y);
+        self.load_solved(t, y)?;
         read(&self.program.rhs, &mut self.registers, out).map_err(|f| self.refine(f))
     }
 
@@ -306,19 +409,10 @@ impl DaeSystem for System {
 
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         let program = self.program.clone();
-        self.registers[0] = t;
-        for variable in &program.observed {
-            self.registers[variable.0 as usize] = 0.0;
+        self.take_start_values(t)?;
+        if let Err(failure) = self.iterate(t, true) {
+            self.follow_homotopy(t, program.sorted.dae.homotopy.ok_or(failure)?)?;
         }
-        for relation in &program.relations {
-            self.registers[relation.register as usize] = 0.0;
-        }
-        self.evaluate_parameters()?;
-        for (_, tape) in &program.starts {
-            run(tape, &mut self.registers)?;
-        }
-        self.update_relations(t);
-        self.iterate(t, true)?;
         self.unload(y);
         self.check_initial_values()?;
         self.violated().map_or(Ok(()), Err)
@@ -329,7 +423,7 @@ impl DaeSystem for System {
     }
 
     fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
-        self.load(t, y);
+        self.load_solved(t, y)?;
         read(&self.program.crossings, &mut self.registers, out)
     }
 
@@ -349,7 +443,7 @@ impl DaeSystem for System {
         if self.program.assertions.is_empty() {
             return Ok(());
         }
-        self.load(t, y);
+        self.load_solved(t, y)?;
         self.violated().map_or(Ok(()), Err)
     }
 
@@ -358,7 +452,7 @@ impl DaeSystem for System {
     }
 
     fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
-        self.load(t, y);
+        self.load_solved(t, y)?;
         let observed = self.observed.as_ref().unwrap_or(&self.program.observe);
         read(observed, &mut self.registers, out).map_err(|f| self.refine(f))
     }

@@ -17,6 +17,7 @@ mod blt;
 mod build;
 mod dummy_derivatives;
 pub mod errors;
+mod homotopy;
 mod index_reduction;
 mod initial;
 mod inline;
@@ -55,7 +56,7 @@ pub fn sort(flat: &FlatModel) -> Result<SortedDae, Diagnostic> {
     let mut aliases = alias_elimination::eliminate_aliases(&mut dae);
     let states = index_reduction::reduce_index(&mut dae, &mut aliases, &parameters)?;
     let unknowns = index_reduction::unknowns(&dae, &aliases, &states);
-    let equations = dae.equations.clone();
+    let equations = homotopy::actual_equations(&mut dae);
     let blocks = blt::sort_blocks(&mut dae, &equations, &unknowns)?;
     let initial = initial::sort_initial(&mut dae, &states, &unknowns)?;
     let initial::Initial { blocks: initial_blocks, checks: initial_checks } = initial;

@@ -24,10 +24,23 @@ pub struct Dae {
     pub assertions: Vec<Assertion>,
     /// Relations that switch at events only.
     pub relations: Vec<Relation>,
+    /// What leads from the simplified expressions of `homotopy` to the actual ones.
+    pub homotopy: Option<Homotopy>,
     /// The `experiment` annotation.
     pub experiment: Experiment,
     /// What deserves a warning.
     pub warnings: Vec<Diagnostic>,
+}
+
+/// The variables behind every `homotopy(actual, simplified)`, which reads
+/// `if active then simplified + lambda*(actual - simplified) else actual` in the initial system and
+/// `actual` in the other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Homotopy {
+    /// Whether there is something between the two, 0 or 1.
+    pub active: VarId,
+    /// How far the way is done, 0 to 1.
+    pub lambda: VarId,
 }
 
 /// A scalar variable.

@@ -4,7 +4,7 @@ use super::build::{Builder, scalar_of_nothing};
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::index_reduction::derivative_of;
 use super::lowering::{Array, Binary, Branch, Lowered, Operator, Target, Unary};
-use super::model::{Kind, Relation};
+use super::model::{Homotopy, Kind, Relation};
 use crate::diag::Diagnostic;
 use crate::eval::Function;
 use crate::fault;
@@ -168,7 +168,6 @@ impl Target for Builder<'_> {
             "der" => Operator::Derivative,
             "noEvent" => Operator::Live(0),
             "smooth" => Operator::Live(1),
-            "homotopy" => Operator::Argument(0),
             "initial" if !self.initial => {
                 return Some(Err(fault!(NOT_SUPPORTED,
                     "`initial()` in an equation is not supported yet";
@@ -197,6 +196,19 @@ impl Target for Builder<'_> {
             }
             _ => return None,
         }))
+    }
+
+    fn homotopy(&mut self, actual: Expr, simplified: Expr) -> Expr {
+        if actual == simplified {
+            return actual;
+        }
+        let Homotopy { active, lambda } = self.homotopy_variables();
+        let pool = &mut self.dae.pool;
+        let (active, lambda) = (pool.variable(active), pool.variable(lambda));
+        let difference = pool.sub(actual, simplified);
+        let part = pool.mul(lambda, difference);
+        let between = pool.add(simplified, part);
+        pool.if_then_else(active, between, actual)
     }
 
     fn derivative(&mut self, a: Expr, span: Span) -> Result<Expr, Diagnostic> {
@@ -254,6 +266,19 @@ impl Builder<'_> {
         self.dae.variables.push(variable);
         self.derivatives.insert(of, id);
         Ok(id)
+    }
+
+    fn homotopy_variables(&mut self) -> Homotopy {
+        if let Some(known) = self.dae.homotopy {
+            return known;
+        }
+        let first = self.dae.variables.len() as u32;
+        for name in ["$homotopy.active", "$homotopy.lambda"] {
+            self.dae.variables.push(scalar_of_nothing(name, Kind::Frozen, Span::NONE));
+        }
+        let variables = Homotopy { active: VarId(first), lambda: VarId(first + 1) };
+        self.dae.homotopy = Some(variables);
+        variables
     }
 
     /// All variables below a path, as a record.

@@ -13,6 +13,7 @@ mod grammar;
 mod identification;
 mod identified_models;
 mod index_reduction;
+mod initialization;
 mod mat;
 mod models;
 mod plot;

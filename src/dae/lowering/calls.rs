@@ -29,6 +29,9 @@ impl<T: Target> Lowering<'_, T> {
         let text = name.to_string();
         let short = text.strip_prefix('.').unwrap_or(&text);
         let plain = &arguments.positional;
+        if short == "homotopy" {
+            return self.homotopy(arguments, span);
+        }
         if let Some(operator) = self.target.operator(short, plain, span) {
             return self.time_operator(short, operator?, plain, span);
         }
