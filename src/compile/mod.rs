@@ -7,6 +7,7 @@ mod least_squares;
 mod lower;
 mod newton;
 mod program;
+mod selection;
 mod system;
 mod tape;
 

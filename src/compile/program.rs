@@ -122,6 +122,18 @@ pub(super) struct CompiledRelation {
     pub(super) time: Option<(f64, Register)>,
 }
 
+/// States chosen at run time, as registers.
+#[derive(Debug, Clone)]
+pub(super) struct CompiledSelection {
+    /// By rows.
+    pub(super) jacobian: Outputs,
+    pub(super) candidates: Vec<Register>,
+    pub(super) states: Vec<Register>,
+    pub(super) weights: Vec<Vec<Register>>,
+    /// Places of the candidates that are states at first.
+    pub(super) chosen: Vec<usize>,
+}
+
 /// Code with the registers of its results.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Outputs {
@@ -157,6 +169,7 @@ pub struct Program {
     pub(super) jacobian: Outputs,
     pub(super) pattern: Pattern,
     pub(super) crossings: Outputs,
+    pub(super) selections: Vec<CompiledSelection>,
     pub(super) observe: Outputs,
     pub(super) assertions: Vec<(usize, Outputs)>,
 }
@@ -248,6 +261,19 @@ impl Program {
         }
         let crossings = compile_outputs(&pool, &mut registers, &sequence, &differences);
 
+        let selections = sorted.selections.iter().map(|selection| {
+            let entries: Vec<Expr> = selection.jacobian.iter().flatten().copied().collect();
+            let of = |variables: &[VarId]| variables.iter().map(|v| v.0).collect::<Vec<_>>();
+            CompiledSelection {
+                jacobian: compile_outputs(&pool, &mut registers, &sequence, &entries),
+                candidates: of(&selection.candidates),
+                states: of(&selection.states),
+                weights: selection.weights.iter().map(|row| of(row)).collect(),
+                chosen: selection.chosen.clone(),
+            }
+        });
+        let selections = selections.collect();
+
         let observed_expressions: Vec<Expr> = observed.iter().map(|v| pool.variable(*v)).collect();
         let observe = compile_outputs(&pool, &mut registers, &sequence, &observed_expressions);
         let assertions = sorted
@@ -320,6 +346,7 @@ impl Program {
             jacobian,
             pattern,
             crossings,
+            selections,
             observe,
             assertions,
         };
@@ -767,6 +794,10 @@ fn variables(sorted: &SortedDae, observed: &[VarId]) -> Vec<VariableInfo> {
     for (at, v) in sorted.dae.variables.iter().enumerate() {
         let id = VarId(at as u32);
         let alias = sorted.aliases[at];
+        // Made by the compiler, of no use to anybody else.
+        if v.name.contains('$') {
+            continue;
+        }
         let access = match v.kind {
             Kind::Time => Access::Time,
             Kind::Constant(value) => Access::Constant(value),

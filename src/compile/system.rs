@@ -3,6 +3,7 @@
 use super::lower::Registers;
 use super::newton::LoopSolver;
 use super::program::{Access, Outputs, Program, Step, compile_outputs, resolved};
+use super::selection::Choice;
 use super::tape::{Instruction, Tape};
 use crate::dae::Homotopy;
 use crate::diag::Fault;
@@ -35,6 +36,8 @@ pub struct System {
     /// One for every loop of the initial system, and of the system, in order.
     initial_solvers: Vec<LoopSolver>,
     solvers: Vec<LoopSolver>,
+    /// One for every selection of states.
+    choices: Vec<Choice>,
     /// Whether the iteration variables are solved for in every evaluation.
     solves_loops: bool,
 }
@@ -51,6 +54,7 @@ impl System {
             nominal: vec![1.0; n],
             initial_solvers: Vec::new(),
             solvers: Vec::new(),
+            choices: Vec::new(),
             solves_loops: false,
             program,
         };
@@ -210,6 +214,11 @@ impl System {
         }
         self.initial_solvers = self.solvers_of(&program.initial_steps);
         self.solvers = self.solvers_of(&program.steps);
+        for selection in &program.selections {
+            let candidates = selection.candidates.iter();
+            let nominal = candidates.map(|c| self.nominal_of(VarId(*c))).collect();
+            self.choices.push(Choice::new(selection, nominal));
+        }
     }
 
     fn solvers_of(&mut self, steps: &[Step]) -> Vec<LoopSolver> {
@@ -309,7 +318,19 @@ impl System {
             run(tape, &mut self.registers)?;
         }
         self.update_relations(t);
+        for (choice, selection) in self.choices.iter_mut().zip(&program.selections) {
+            choice.reset(selection, &mut self.registers);
+        }
         Ok(())
+    }
+
+    /// Chooses better states where those at hand come to their end; whether it did.
+    fn improve_choices(&mut self) -> Result<bool, Failure> {
+        let mut improved = false;
+        for (choice, selection) in self.choices.iter_mut().zip(&self.program.selections) {
+            improved |= choice.improve(selection, &mut self.registers)?;
+        }
+        Ok(improved)
     }
 
     /// Solves the initial system with the simplified expressions of `homotopy` and goes on from
@@ -413,18 +434,26 @@ impl DaeSystem for System {
         if let Err(failure) = self.iterate(t, true) {
             self.follow_homotopy(t, program.sorted.dae.homotopy.ok_or(failure)?)?;
         }
+        self.improve_choices()?;
         self.unload(y);
         self.check_initial_values()?;
         self.violated().map_or(Ok(()), Err)
     }
 
     fn n_crossings(&self) -> usize {
-        self.program.crossings.outputs.len()
+        self.program.crossings.outputs.len() + self.choices.len()
     }
 
     fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         self.load_solved(t, y)?;
-        read(&self.program.crossings, &mut self.registers, out)
+        read(&self.program.crossings, &mut self.registers, out)?;
+        let last = out.iter_mut().skip(self.program.crossings.outputs.len());
+        for ((choice, selection), out) in
+            self.choices.iter_mut().zip(&self.program.selections).zip(last)
+        {
+            *out = choice.quality(selection, &mut self.registers)?;
+        }
+        Ok(())
     }
 
     fn next_time_event(&self, t: f64) -> Option<f64> {
@@ -434,7 +463,8 @@ impl DaeSystem for System {
 
     fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
         self.load(t, y);
-        let changed = self.iterate(t, false)?;
+        let mut changed = self.iterate(t, false)?;
+        changed |= self.improve_choices()?;
         self.unload(y);
         Ok(EventOutcome::Continue { y_changed: changed })
     }

@@ -12,7 +12,7 @@
 
 use super::blt;
 use super::build::scalar_of_nothing;
-use super::dummy_derivatives::{Chains, choose_states};
+use super::dummy_derivatives::{Chains, ChosenStates, choose_states};
 use super::model::{Dae, Equation, Kind, Variable};
 use super::sorted::Alias;
 use crate::diag::Diagnostic;
@@ -26,10 +26,10 @@ pub(super) fn reduce_index(
     dae: &mut Dae,
     aliases: &mut Vec<Option<Alias>>,
     parameters: &[VarId],
-) -> Result<Vec<VarId>, Diagnostic> {
+) -> Result<ChosenStates, Diagnostic> {
     let states = differentiated_variables(dae, aliases);
     if is_regular(dae, aliases, &states) {
-        return Ok(states);
+        return Ok(ChosenStates { states, selections: Vec::new() });
     }
     let rows = continuous_equations(dae);
     let mut system = Continuous::new(dae, aliases, rows);
@@ -42,15 +42,17 @@ pub(super) fn reduce_index(
     system.var_to_derivative = differentiated.var_to_derivative;
     system.declare_derivatives(dae, given);
     system.differentiate(dae, &differentiated.eq_to_derivative);
-    aliases.resize(dae.variables.len(), None);
     let chains = Chains {
         equations: system.equations,
         variables: system.variables,
         eq_to_derivative: differentiated.eq_to_derivative,
         var_to_derivative: system.var_to_derivative,
+        negated: system.negated,
         var_to_equation: differentiated.var_to_equation,
     };
-    choose_states(dae, &chains, parameters)
+    let chosen = choose_states(dae, &chains, parameters)?;
+    aliases.resize(dae.variables.len(), None);
+    Ok(chosen)
 }
 
 /// Variables whose derivatives stand in the equations.

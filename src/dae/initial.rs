@@ -6,7 +6,7 @@
 
 use super::blt::{incidence, sort_blocks};
 use super::model::{Dae, Equation};
-use super::sorted::Block;
+use super::sorted::{Block, Selection};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
@@ -24,6 +24,7 @@ pub(super) struct Initial {
 pub(super) fn sort_initial(
     dae: &mut Dae,
     states: &[VarId],
+    selections: &[Selection],
     unknowns: &[VarId],
 ) -> Result<Initial, Diagnostic> {
     let mut all: Vec<VarId> = states.to_vec();
@@ -35,10 +36,7 @@ pub(super) fn sort_initial(
         all.iter().partition(|v| dae.variable(**v).fixed && is_continuous(dae, **v));
     fixed.iter().for_each(|v| equations.push(start_equation(dae, *v)));
     let required = equations.len();
-    let mut taken = free.clone();
-    taken.retain(|v| states.binary_search(v).is_ok());
-    // A state with a start value of its own before one without.
-    taken.sort_by_key(|v| dae.variable(*v).start.is_none());
+    let taken = start_values_to_take(dae, states, selections, &free);
     taken.iter().for_each(|v| equations.push(start_equation(dae, *v)));
 
     let matching = match_equations(&incidence(dae, &equations, &all));
@@ -55,6 +53,27 @@ pub(super) fn sort_initial(
         warn_of_start_values(dae, &held);
     }
     Ok(Initial { blocks: sort_blocks(dae, &used, &all)?, checks })
+}
+
+/// Variables whose start values hold where nothing else determines them, the most wanted first:
+/// states, and instead of those chosen at run time the candidates, those chosen at first before the
+/// others; among these the ones with a start value of their own.
+fn start_values_to_take(
+    dae: &Dae,
+    states: &[VarId],
+    selections: &[Selection],
+    free: &[VarId],
+) -> Vec<VarId> {
+    let chosen =
+        |v: &VarId| selections.iter().any(|s| s.chosen.iter().any(|at| s.candidates[*at] == *v));
+    let offered = |v: &VarId| match states.binary_search(v) {
+        Ok(_) => selections.iter().all(|s| !s.states.contains(v)),
+        Err(_) => selections.iter().any(|s| s.candidates.contains(v)),
+    };
+    let mut taken: Vec<VarId> = free.iter().copied().filter(offered).collect();
+    let is_candidate = |v: &VarId| states.binary_search(v).is_err();
+    taken.sort_by_key(|v| (is_candidate(v) && !chosen(v), dae.variable(*v).start.is_none()));
+    taken
 }
 
 fn is_continuous(dae: &Dae, v: VarId) -> bool {

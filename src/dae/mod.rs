@@ -16,6 +16,7 @@ mod alias_elimination;
 mod blt;
 mod build;
 mod dummy_derivatives;
+mod dynamic_states;
 pub mod errors;
 mod homotopy;
 mod index_reduction;
@@ -54,13 +55,23 @@ pub fn sort(flat: &FlatModel) -> Result<SortedDae, Diagnostic> {
     zero_inputs(&mut dae);
     let parameters = parameters::order_parameters(&mut dae)?;
     let mut aliases = alias_elimination::eliminate_aliases(&mut dae);
-    let states = index_reduction::reduce_index(&mut dae, &mut aliases, &parameters)?;
+    let chosen = index_reduction::reduce_index(&mut dae, &mut aliases, &parameters)?;
+    let dummy_derivatives::ChosenStates { states, selections } = chosen;
     let unknowns = index_reduction::unknowns(&dae, &aliases, &states);
     let equations = homotopy::actual_equations(&mut dae);
     let blocks = blt::sort_blocks(&mut dae, &equations, &unknowns)?;
-    let initial = initial::sort_initial(&mut dae, &states, &unknowns)?;
+    let initial = initial::sort_initial(&mut dae, &states, &selections, &unknowns)?;
     let initial::Initial { blocks: initial_blocks, checks: initial_checks } = initial;
-    Ok(SortedDae { dae, aliases, states, blocks, initial_blocks, initial_checks, parameters })
+    Ok(SortedDae {
+        dae,
+        aliases,
+        states,
+        selections,
+        blocks,
+        initial_blocks,
+        initial_checks,
+        parameters,
+    })
 }
 
 /// An input at the top level without a binding has its start value, which is zero by default.

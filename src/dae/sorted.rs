@@ -12,6 +12,8 @@ pub struct SortedDae {
     pub aliases: Vec<Option<Alias>>,
     /// The states, in order of declaration.
     pub states: Vec<VarId>,
+    /// States that are chosen at run time.
+    pub selections: Vec<Selection>,
     /// Solves for derivatives and algebraic variables, the states given.
     pub blocks: Vec<Block>,
     /// Solves for everything at the start.
@@ -20,6 +22,22 @@ pub struct SortedDae {
     pub initial_checks: Vec<Equation>,
     /// Parameters with bindings, each after those it depends on.
     pub parameters: Vec<VarId>,
+}
+
+/// States of which each is one of several candidates, chosen anew when the constraints between the
+/// candidates do not determine the others well.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Selection {
+    /// The Jacobian of the constraints in the candidates, by rows; fewer rows than columns.
+    pub jacobian: Vec<Vec<Expr>>,
+    /// The candidates.
+    pub candidates: Vec<VarId>,
+    /// The states, as many as candidates are free.
+    pub states: Vec<VarId>,
+    /// Frozen variables by states and candidates: 1 for the candidate that a state is equal to.
+    pub weights: Vec<Vec<VarId>>,
+    /// The candidates that are states at first, by their places.
+    pub chosen: Vec<usize>,
 }
 
 /// Another name for a variable.

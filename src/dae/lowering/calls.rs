@@ -107,7 +107,6 @@ impl<T: Target> Lowering<'_, T> {
         };
         match operator {
             Operator::Constant(value) => Ok(Lowered::scalar(self.target.constant(value))),
-            Operator::Argument(position) => self.lower(argument(position)?),
             Operator::Live(position) => {
                 let before = std::mem::replace(&mut self.live, true);
                 let value = self.lower(argument(position)?);

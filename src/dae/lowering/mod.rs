@@ -113,8 +113,6 @@ pub(crate) enum Operator {
     Derivative,
     /// The argument of this position, relations inside it live.
     Live(usize),
-    /// The argument of this position as it is.
-    Argument(usize),
 }
 
 /// An if-expression under construction.
