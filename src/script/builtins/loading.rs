@@ -231,15 +231,20 @@ fn get_class_names(session: &mut Session, mut args: Args) -> Result<Value, Failu
     let at_top = class.last().is_some_and(|name| name == "AllLoadedClasses");
     let class = if at_top { Name::default() } else { class };
     let (recursive, qualified): (bool, bool) = (args.take("recursive")?, args.take("qualified")?);
-    let within = |name: &Name| name.parts.starts_with(&class.parts) && name.parts != class.parts;
-    let is_wanted =
-        |name: &Name| within(name) && (recursive || name.parts.len() == class.parts.len() + 1);
+    let library = session.library();
+    let found: Vec<Name> = match (class.parts.is_empty(), recursive) {
+        (true, true) => library.all(),
+        (true, false) => library.roots().map(Name::from).collect(),
+        (false, true) => library.all_in(&class).into_iter().skip(1).collect(),
+        (false, false) => {
+            library.children(&class).into_iter().map(|name| class.child(name)).collect()
+        }
+    };
     let shown = |name: Name| match (qualified || recursive, name.last()) {
         (false, Some(last)) => last.to_string(),
         _ => name.to_string(),
     };
-    let mut names: Vec<String> =
-        session.library().all().into_iter().filter(is_wanted).map(shown).collect();
+    let mut names: Vec<String> = found.into_iter().map(shown).collect();
     if args.take("sort")? {
         names.sort();
     }
