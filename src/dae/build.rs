@@ -182,7 +182,10 @@ impl<'a> Builder<'a> {
             }
             for at in 0..variable.len() {
                 let element = array.elements[if array.dims.is_empty() { 0 } else { at }];
-                let known = self.dae.pool.as_constant(element);
+                let known = match *name {
+                    "fixed" | "stateSelect" => self.settled(element)?,
+                    _ => None,
+                };
                 let scalar = &mut self.dae.variables[first + at];
                 match *name {
                     "start" => scalar.start = Some(element),
@@ -214,7 +217,11 @@ impl<'a> Builder<'a> {
     }
 
     /// A value that must have these sizes; a scalar is repeated.
-    fn sized(&mut self, e: &Expression, dims: &[usize]) -> Result<Array<Expr>, Diagnostic> {
+    pub(super) fn sized(
+        &mut self,
+        e: &Expression,
+        dims: &[usize],
+    ) -> Result<Array<Expr>, Diagnostic> {
         let array = Lowering::new(self).array(e)?;
         if array.dims == dims {
             return Ok(array);

@@ -27,6 +27,7 @@ mod lowering;
 mod model;
 mod parameters;
 mod report;
+mod settled;
 mod sorted;
 mod symbolic_target;
 
