@@ -1,5 +1,7 @@
 //! One running instance of a program: its registers, parameter values and frozen relations.
 
+use super::event_iteration::{Clock, Stage, either, same_time};
+use super::history::History;
 use super::lower::Registers;
 use super::newton::LoopSolver;
 use super::program::{Access, Outputs, Program, Step, compile_outputs, resolved};
@@ -12,9 +14,6 @@ use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern};
 use crate::symbolic::{Expr, VarId, function};
 use std::sync::Arc;
 
-/// Most rounds of an event iteration.
-const MAX_ROUNDS: usize = 100;
-
 /// How far, relative to their size or 1, the sides of a redundant initial equation may differ.
 const CONSISTENT: f64 = 1e-6;
 
@@ -25,21 +24,35 @@ const SMALLEST_HOMOTOPY_STEP: f64 = 1e-5;
 /// A system that one thread simulates.
 #[derive(Debug, Clone)]
 pub struct System {
-    program: Arc<Program>,
-    registers: Vec<f64>,
+    pub(super) program: Arc<Program>,
+    pub(super) registers: Vec<f64>,
     /// Values set from outside, by number of the parameter.
     set: Vec<Option<f64>>,
     observed: Option<Outputs>,
     /// Times at which relations on time switch.
     switches: Vec<Option<f64>>,
     nominal: Vec<f64>,
-    /// One for every loop of the initial system, and of the system, in order.
+    /// One for every loop of the initial system, of the system, and of that at events, in order.
     initial_solvers: Vec<LoopSolver>,
     solvers: Vec<LoopSolver>,
+    event_solvers: Vec<LoopSolver>,
     /// One for every selection of states.
     choices: Vec<Choice>,
     /// Whether the iteration variables are solved for in every evaluation.
     solves_loops: bool,
+    /// The samples.
+    pub(super) clocks: Vec<Clock>,
+    /// Values that discrete variables had before an event.
+    pub(super) before: Vec<f64>,
+    /// Values that variables of discrete loops had in the pass before.
+    pub(super) lagged: Vec<f64>,
+    /// The past of delayed expressions, and by how much they are delayed.
+    pub(super) histories: Vec<History>,
+    pub(super) delay_times: Vec<f64>,
+    /// Whether samples are true that an event at the same time makes false.
+    pub(super) sampled: bool,
+    /// The variable that changed last in an event iteration.
+    pub(super) unstable: u32,
 }
 
 impl System {
@@ -54,8 +67,16 @@ impl System {
             nominal: vec![1.0; n],
             initial_solvers: Vec::new(),
             solvers: Vec::new(),
+            event_solvers: Vec::new(),
             choices: Vec::new(),
             solves_loops: false,
+            clocks: Vec::with_capacity(program.events.samples.len()),
+            before: vec![0.0; program.events.discrete.len()],
+            lagged: vec![0.0; program.events.lagged.len()],
+            histories: vec![History::default(); program.events.delays.len()],
+            delay_times: vec![0.0; program.events.delays.len()],
+            sampled: false,
+            unstable: 0,
             program,
         };
         system.evaluate_nominals();
@@ -130,6 +151,9 @@ impl System {
         for (variable, value) in states.chain(&self.program.iteration).zip(y) {
             self.registers[variable.0 as usize] = *value;
         }
+        if !self.histories.is_empty() {
+            self.load_delayed(t);
+        }
     }
 
     /// Loads y, and solves for the iteration variables that it does not hold.
@@ -138,7 +162,7 @@ impl System {
         if !self.solves_loops || self.program.iteration.is_empty() {
             return Ok(());
         }
-        self.solve(false)
+        self.solve(Stage::Continuous)
     }
 
     fn unload(&self, y: &mut [f64]) {
@@ -149,7 +173,7 @@ impl System {
     }
 
     /// A domain failure where an assertion does not hold is the assertion's.
-    fn refine(&mut self, failure: Failure) -> Failure {
+    pub(super) fn refine(&mut self, failure: Failure) -> Failure {
         match failure {
             Failure::Domain { .. } => self.violated().unwrap_or(failure),
             other => other,
@@ -214,6 +238,7 @@ impl System {
         }
         self.initial_solvers = self.solvers_of(&program.initial_steps);
         self.solvers = self.solvers_of(&program.steps);
+        self.event_solvers = self.solvers_of(&program.events.steps);
         for selection in &program.selections {
             let candidates = selection.candidates.iter();
             let nominal = candidates.map(|c| self.nominal_of(VarId(*c))).collect();
@@ -248,14 +273,14 @@ impl System {
     }
 
     /// Evaluates every relation at the values of the variables; whether one changed.
-    fn update_relations(&mut self, t: f64) -> bool {
+    pub(super) fn update_relations(&mut self, t: f64) -> bool {
         let program = self.program.clone();
-        let mut changed = false;
+        let mut changed = self.update_roundings(t);
         let sides = program.relation_sides.iter().zip(&self.switches);
         for (relation, (sides, switch)) in program.relations.iter().zip(sides) {
             let holds = match (relation.time, switch) {
                 (Some((factor, _)), Some(switch)) => {
-                    let near = (t - switch).abs() <= 1e-12 * t.abs().max(switch.abs());
+                    let near = same_time(t, *switch);
                     // At the instant itself the value is that behind it.
                     let difference = if near { factor } else { factor * (t - switch) };
                     relation.operator.holds(difference, 0.0)
@@ -271,18 +296,26 @@ impl System {
             };
             let value = f64::from(u8::from(holds));
             let slot = &mut self.registers[relation.register as usize];
-            changed |= *slot != value;
+            if *slot != value {
+                changed = true;
+                self.unstable = relation.register;
+            }
             *slot = value;
         }
         changed
     }
 
-    fn solve(&mut self, initial: bool) -> Result<(), Failure> {
+    /// Solves the blocks of a stage one after another.
+    pub(super) fn solve(&mut self, stage: Stage) -> Result<(), Failure> {
         let program = self.program.clone();
-        let (steps, solvers) = match initial {
-            true => (&program.initial_steps, &mut self.initial_solvers),
-            false => (&program.steps, &mut self.solvers),
+        let (steps, solvers) = match stage {
+            Stage::Initial => (&program.initial_steps, &mut self.initial_solvers),
+            Stage::Event if !program.events.steps.is_empty() => {
+                (&program.events.steps, &mut self.event_solvers)
+            }
+            Stage::Event | Stage::Continuous => (&program.steps, &mut self.solvers),
         };
+        let initial = stage == Stage::Initial;
         let mut solvers = solvers.iter_mut();
         for step in steps {
             match step {
@@ -307,7 +340,7 @@ impl System {
     fn take_start_values(&mut self, t: f64) -> Result<(), Failure> {
         let program = self.program.clone();
         self.registers[0] = t;
-        for variable in &program.observed {
+        for variable in program.observed.iter().chain(&program.solved) {
             self.registers[variable.0 as usize] = 0.0;
         }
         for relation in &program.relations {
@@ -317,6 +350,7 @@ impl System {
         for (_, tape) in &program.starts {
             run(tape, &mut self.registers)?;
         }
+        self.take_start_values_of_events();
         self.update_relations(t);
         for (choice, selection) in self.choices.iter_mut().zip(&program.selections) {
             choice.reset(selection, &mut self.registers);
@@ -340,13 +374,13 @@ impl System {
         self.take_start_values(t)?;
         self.registers[active] = 1.0;
         self.registers[lambda] = 0.0;
-        let mut outcome = self.iterate(t, true).map(|_| ());
+        let mut outcome = self.settle(t, Stage::Initial).map(|_| ());
         let (mut done, mut step) = (0.0, FIRST_HOMOTOPY_STEP);
         let mut reached = self.registers.clone();
         while outcome.is_ok() && done < 1.0 {
             let next = f64::min(done + step, 1.0);
             self.registers[lambda] = next;
-            match self.iterate(t, true) {
+            match self.settle(t, Stage::Initial) {
                 Ok(_) => {
                     done = next;
                     step *= 2.0;
@@ -363,7 +397,7 @@ impl System {
         }
         self.registers[active] = 0.0;
         outcome?;
-        self.iterate(t, true).map(|_| ())
+        self.settle(t, Stage::Initial).map(|_| ())
     }
 
     /// Compares both sides of the initial equations that were not needed.
@@ -377,23 +411,6 @@ impl System {
             }
         }
         Ok(())
-    }
-
-    /// Solves and updates relations until they stay as they are (MLS §8.6).
-    fn iterate(&mut self, t: f64, initial: bool) -> Result<bool, Failure> {
-        let mut any = false;
-        for round in 0..MAX_ROUNDS {
-            if let Err(failure) = self.solve(initial) {
-                let failure = self.refine(failure);
-                return Err(failure);
-            }
-            let changed = self.update_relations(t);
-            any |= changed;
-            if !changed && (round > 0 || !any) {
-                return Ok(any);
-            }
-        }
-        Err(Failure::EventIteration)
     }
 }
 
@@ -431,12 +448,16 @@ impl DaeSystem for System {
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         let program = self.program.clone();
         self.take_start_values(t)?;
-        if let Err(failure) = self.iterate(t, true) {
+        if let Err(failure) = self.settle(t, Stage::Initial) {
             self.follow_homotopy(t, program.sorted.dae.homotopy.ok_or(failure)?)?;
         }
+        self.check_initial_values()?;
+        self.improve_choices()?;
+        self.start_clocks(t)?;
+        self.start_histories(t)?;
+        self.iterate_at_start(t)?;
         self.improve_choices()?;
         self.unload(y);
-        self.check_initial_values()?;
         self.violated().map_or(Ok(()), Err)
     }
 
@@ -457,16 +478,46 @@ impl DaeSystem for System {
     }
 
     fn next_time_event(&self, t: f64) -> Option<f64> {
-        let later = |time: &f64| *time > t && (time - t) > 1e-12 * t.abs().max(time.abs());
-        self.switches.iter().flatten().copied().filter(later).min_by(f64::total_cmp)
+        let later = |time: &f64| *time > t && !same_time(*time, t);
+        let all = self
+            .switches
+            .iter()
+            .flatten()
+            .copied()
+            .chain(self.scheduled())
+            .chain(self.arriving_jumps());
+        all.filter(later).min_by(f64::total_cmp)
     }
 
     fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
         self.load(t, y);
-        let mut changed = self.iterate(t, false)?;
-        changed |= self.improve_choices()?;
+        let mut outcome = self.event(t)?;
+        if self.improve_choices()? {
+            outcome = either(outcome, EventOutcome::Continue { y_changed: true });
+        }
         self.unload(y);
-        Ok(EventOutcome::Continue { y_changed: changed })
+        Ok(outcome)
+    }
+
+    fn remembers(&self) -> bool {
+        !self.histories.is_empty()
+    }
+
+    fn remember(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        self.load(t, y);
+        self.remember_values(t).map_err(|f| self.refine(f))
+    }
+
+    fn longest_step(&self) -> f64 {
+        self.delay_times.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    fn finish(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
+        let Some(terminal) = self.program.events.terminal else { return Ok(false) };
+        self.load(t, y);
+        let changed = self.final_event(t, terminal)?;
+        self.unload(y);
+        Ok(changed)
     }
 
     fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {

@@ -7,6 +7,7 @@ use super::model::{Dae, Equation, Kind, StateSelect, Variable};
 use super::sorted::Alias;
 use crate::source::Span;
 use crate::symbolic::{Expr, Node, Pool, VarId, substitute};
+use rustc_hash::FxHashMap;
 
 /// Removes alias equations; returns every variable's representative.
 pub(super) fn eliminate_aliases(dae: &mut Dae) -> Vec<Option<Alias>> {
@@ -16,8 +17,8 @@ pub(super) fn eliminate_aliases(dae: &mut Dae) -> Vec<Option<Alias>> {
     for equation in equations {
         match alias(&dae.pool, equation) {
             Some((a, b, negated))
-                if dae.is_unknown(a)
-                    && dae.is_unknown(b)
+                if dae.is_solved_for(a)
+                    && dae.is_solved_for(b)
                     && (dae.variable(a).base == dae.variable(b).base)
                     && sets.join(a.0, b.0, negated, equation.span) => {}
             _ => kept.push(equation),
@@ -67,6 +68,10 @@ struct Sets {
     parent: Vec<(u32, bool)>,
     /// A variable that is the derivative of every root.
     derivative: Vec<Option<u32>>,
+    /// Whether the variable is discrete.
+    discrete: Vec<bool>,
+    /// Whether an equation of the events determines it.
+    assigned: Vec<bool>,
     /// Variables found to be equal to their opposites, and the equation that says so.
     zeros: Vec<(u32, Span)>,
 }
@@ -80,7 +85,12 @@ impl Sets {
             }
         }
         let parent = (0..dae.variables.len() as u32).map(|v| (v, false)).collect();
-        Sets { parent, derivative, zeros: Vec::new() }
+        let discrete = dae.variables.iter().map(|v| v.kind == Kind::Discrete).collect();
+        let mut assigned = vec![false; dae.variables.len()];
+        for variable in dae.events.equations.iter().filter_map(|e| dae.pool.as_variable(e.left)) {
+            assigned[variable.0 as usize] = true;
+        }
+        Sets { parent, derivative, discrete, assigned, zeros: Vec::new() }
     }
 
     fn root(&mut self, v: u32) -> (u32, bool) {
@@ -98,11 +108,19 @@ impl Sets {
         (current, sign)
     }
 
+    /// A discrete variable is no state, and two equations at events determine two variables.
+    fn must_stay_apart(&self, a: usize, b: usize) -> bool {
+        (self.discrete[a] && self.derivative[b].is_some())
+            || (self.discrete[b] && self.derivative[a].is_some())
+            || (self.assigned[a] && self.assigned[b])
+    }
+
     /// Joins the sets of two variables, and with them those of their derivatives; `false` if they
-    /// were one already. The better representative stays: a variable with a derivative, then the
-    /// one declared first.
+    /// were one already or must stay apart. The better representative stays: a discrete variable,
+    /// then one with a derivative, then the one declared first.
     fn join(&mut self, a: u32, b: u32, negated: bool, span: Span) -> bool {
-        if self.root(a).0 == self.root(b).0 {
+        let (root_a, root_b) = (self.root(a).0, self.root(b).0);
+        if root_a == root_b || self.must_stay_apart(root_a as usize, root_b as usize) {
             return false;
         }
         let mut pending = vec![(a, b, negated)];
@@ -115,7 +133,10 @@ impl Sets {
                 }
                 continue;
             }
-            let rank = |v: u32| (self.derivative[v as usize].is_none(), v);
+            let rank = |v: u32| {
+                let at = v as usize;
+                (!self.assigned[at], !self.discrete[at], self.derivative[at].is_none(), v)
+            };
             let (keep, drop) = if rank(a) <= rank(b) { (a, b) } else { (b, a) };
             self.parent[drop as usize] = (keep, negated);
             if let (Some(x), Some(y)) =
@@ -155,7 +176,7 @@ fn merge_attributes(dae: &mut Dae, aliases: &[Option<Alias>]) {
 }
 
 fn rewrite(dae: &mut Dae, aliases: &[Option<Alias>]) {
-    let replacements: Vec<Option<Expr>> = aliases
+    let mut replacements: Vec<Option<Expr>> = aliases
         .iter()
         .map(|alias| {
             let alias = (*alias)?;
@@ -163,6 +184,7 @@ fn rewrite(dae: &mut Dae, aliases: &[Option<Alias>]) {
             Some(if alias.negated { dae.pool.neg(kept) } else { kept })
         })
         .collect();
+    rename_previous(dae, aliases, &mut replacements);
     let pool = &mut dae.pool;
     let mut replace = |e: &mut Expr| {
         *e = substitute(pool, *e, &|v| replacements[v.0 as usize]);
@@ -175,5 +197,28 @@ fn rewrite(dae: &mut Dae, aliases: &[Option<Alias>]) {
     for relation in &mut dae.relations {
         replace(&mut relation.left);
         replace(&mut relation.right);
+    }
+    dae.events.for_each_expression(replace);
+}
+
+/// `pre` of a name that was dropped is `pre` of the variable that stays.
+fn rename_previous(dae: &mut Dae, aliases: &[Option<Alias>], replacements: &mut [Option<Expr>]) {
+    let mut previous: FxHashMap<VarId, VarId> = FxHashMap::default();
+    for position in 0..dae.variables.len() {
+        if let Kind::Previous(of) = dae.variables[position].kind
+            && aliases[of.0 as usize].is_none()
+        {
+            previous.insert(of, VarId(position as u32));
+        }
+    }
+    for (position, replacement) in replacements.iter_mut().enumerate() {
+        let Kind::Previous(of) = dae.variables[position].kind else { continue };
+        let Some(alias) = aliases[of.0 as usize] else { continue };
+        let own = VarId(position as u32);
+        let kept = *previous.entry(alias.of).or_insert(own);
+        let variable = &mut dae.variables[position];
+        variable.kind = if kept == own { Kind::Previous(alias.of) } else { Kind::Signal };
+        let value = dae.pool.variable(kept);
+        *replacement = Some(if alias.negated { dae.pool.neg(value) } else { value });
     }
 }

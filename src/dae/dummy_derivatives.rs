@@ -285,7 +285,14 @@ impl Level<'_> {
             self.equations.iter().map(|e| dae.equations[self.chains.equations[*e]]).collect();
         let unknowns: Vec<VarId> = columns.iter().map(|c| self.chains.variables[*c]).collect();
         let graph = blt::incidence(dae, &equations, &unknowns);
-        Err(blt::report(dae, &equations, &unknowns, &graph, &match_equations(&graph)))
+        Err(blt::report(
+            dae,
+            &format!("`{}`", dae.name),
+            &equations,
+            &unknowns,
+            &graph,
+            &match_equations(&graph),
+        ))
     }
 }
 

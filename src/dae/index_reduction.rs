@@ -16,6 +16,7 @@ use super::dummy_derivatives::{Chains, ChosenStates, choose_states};
 use super::model::{Dae, Equation, Kind, Variable};
 use super::sorted::Alias;
 use crate::diag::Diagnostic;
+use crate::fault;
 use crate::flatten::{BaseType, Variability};
 use crate::graph::{Bipartite, differentiate_equations, match_equations};
 use crate::symbolic::{Expr, VarId, differentiate};
@@ -41,7 +42,7 @@ pub(super) fn reduce_index(
     let given = system.var_to_derivative.len();
     system.var_to_derivative = differentiated.var_to_derivative;
     system.declare_derivatives(dae, given);
-    system.differentiate(dae, &differentiated.eq_to_derivative);
+    system.differentiate(dae, &differentiated.eq_to_derivative)?;
     let chains = Chains {
         equations: system.equations,
         variables: system.variables,
@@ -194,7 +195,11 @@ impl Continuous {
     }
 
     /// Appends the derivatives of equations.
-    fn differentiate(&mut self, dae: &mut Dae, eq_to_derivative: &[Option<usize>]) {
+    fn differentiate(
+        &mut self,
+        dae: &mut Dae,
+        eq_to_derivative: &[Option<usize>],
+    ) -> Result<(), Diagnostic> {
         let one = dae.pool.constant(1.0);
         let mut slopes: FxHashMap<VarId, Expr> = FxHashMap::from_iter([(VarId(0), one)]);
         for (column, derivative) in self.var_to_derivative.iter().enumerate() {
@@ -213,12 +218,21 @@ impl Continuous {
         }
         for origin in &origins[self.equations.len()..] {
             let Equation { left, right, span } = dae.equations[self.equations[*origin]];
+            let delayed = |v: &VarId| dae.variable(*v).kind == Kind::Delayed;
+            if [left, right].iter().any(|side| dae.pool.variables(*side).iter().any(delayed)) {
+                return Err(fault!(
+                    super::errors::NOT_SUPPORTED,
+                    "this equation constrains states, but what it delays cannot be differentiated"
+                )
+                .at(span));
+            }
             let seed = |v: VarId| slopes.get(&v).copied();
             let left = differentiate(&mut dae.pool, left, &seed);
             let right = differentiate(&mut dae.pool, right, &seed);
             self.equations.push(dae.equations.len());
             dae.equations.push(Equation { left, right, span });
         }
+        Ok(())
     }
 
     /// The report of a system that no differentiation makes regular: every derivative stands for
@@ -240,7 +254,14 @@ impl Continuous {
         let row = |e: usize| full.unknowns(e).iter().map(|v| origin[*v]).collect::<Vec<_>>();
         let graph = Bipartite::new(unknowns.len(), (0..full.n_equations()).map(row));
         let equations: Vec<Equation> = self.equations.iter().map(|e| dae.equations[*e]).collect();
-        blt::report(dae, &equations, &unknowns, &graph, &match_equations(&graph))
+        blt::report(
+            dae,
+            &format!("`{}`", dae.name),
+            &equations,
+            &unknowns,
+            &graph,
+            &match_equations(&graph),
+        )
     }
 }
 

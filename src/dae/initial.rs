@@ -3,21 +3,42 @@
 //! What comes first goes first: an initial equation or fixed start value of which nothing is left to
 //! be determined is kept as a check, to be fulfilled by the solution of the others. Start values
 //! that are not fixed hold for states that nothing else determines.
+//!
+//! Unknown are also parameters with `fixed = false`, and `pre(v)` of discrete variables: it has the
+//! start value of `v` unless initial equations say otherwise, and when-clauses without `initial()`
+//! leave `v = pre(v)`.
 
-use super::blt::{incidence, sort_blocks};
-use super::model::{Dae, Equation};
-use super::sorted::{Block, Selection};
+use super::blt::incidence;
+use super::mixed::{of_kind, sort_mixed, with_initial};
+use super::model::{Dae, Equation, Kind};
+use super::sorted::{Alias, Block, Selection};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
 use crate::graph::match_equations;
-use crate::symbolic::VarId;
+use crate::symbolic::{VarId, substitute};
 
 /// The initial system in solving order.
 pub(super) struct Initial {
     pub(super) blocks: Vec<Block>,
     /// What the solution must fulfil besides.
     pub(super) checks: Vec<Equation>,
+    /// Discrete variables that blocks read before they write them.
+    pub(super) lagged: Vec<VarId>,
+}
+
+/// Equations with the numbers of what they come from.
+#[derive(Default)]
+struct Numbered {
+    equations: Vec<Equation>,
+    origins: Vec<usize>,
+}
+
+impl Numbered {
+    fn push(&mut self, equation: Equation, origin: usize) {
+        self.equations.push(equation);
+        self.origins.push(origin);
+    }
 }
 
 /// Sorts the initial system.
@@ -26,33 +47,110 @@ pub(super) fn sort_initial(
     states: &[VarId],
     selections: &[Selection],
     unknowns: &[VarId],
+    aliases: &[Option<Alias>],
 ) -> Result<Initial, Diagnostic> {
     let mut all: Vec<VarId> = states.to_vec();
     all.extend(unknowns);
-    let mut equations = dae.equations.clone();
-    let model = equations.len();
-    equations.extend(&dae.initial_equations);
     let (fixed, free): (Vec<VarId>, Vec<VarId>) =
         all.iter().partition(|v| dae.variable(**v).fixed && is_continuous(dae, **v));
-    fixed.iter().for_each(|v| equations.push(start_equation(dae, *v)));
-    let required = equations.len();
-    let taken = start_values_to_take(dae, states, selections, &free);
-    taken.iter().for_each(|v| equations.push(start_equation(dae, *v)));
+    all.extend(unknowns_at_start(dae, aliases));
 
-    let matching = match_equations(&incidence(dae, &equations, &all));
+    let mut system = model_equations(dae);
+    let model = system.equations.len();
+    let first = first_variable(dae);
+    for (number, equation) in dae.initial_equations.iter().enumerate() {
+        system.push(*equation, dae.equations.len() + number);
+    }
+    for (state, equation) in reinits(dae, aliases) {
+        system.push(equation, first + state.0 as usize);
+    }
+    for v in fixed {
+        system.push(start_equation(dae, v, v), first + v.0 as usize);
+    }
+    let (fixed, remembered) = previous_values(dae);
+    for (v, of) in fixed {
+        system.push(start_equation(dae, v, of), first + of.0 as usize);
+    }
+    let required = system.equations.len();
+    let taken = start_values_to_take(dae, states, selections, &free);
+    for (v, of) in taken.iter().map(|v| (*v, *v)).chain(remembered) {
+        system.push(start_equation(dae, v, of), first + of.0 as usize);
+    }
+    with_initial(dae, &mut system.equations, 1.0);
+
+    let matching = match_equations(&incidence(dae, &system.equations, &all));
     let is_used = |number: usize| matching.equation_to_unknown[number].is_some();
-    let numbered = || equations.iter().copied().enumerate();
+    let numbered = || system.equations.iter().copied().enumerate();
     let checks =
         numbered().take(required).skip(model).filter(|(n, _)| !is_used(*n)).map(|(_, e)| e);
     let checks = checks.collect();
-    let used: Vec<Equation> =
-        numbered().filter(|(n, _)| *n < model || is_used(*n)).map(|(_, e)| e).collect();
+    let mut used = Numbered::default();
+    for (number, equation) in numbered().filter(|(n, _)| *n < model || is_used(*n)) {
+        used.push(equation, system.origins[number]);
+    }
     let held: Vec<VarId> =
         taken.into_iter().enumerate().filter(|(n, _)| is_used(required + n)).map(|t| t.1).collect();
     if required > model {
         warn_of_start_values(dae, &held);
     }
-    Ok(Initial { blocks: sort_blocks(dae, &used, &all)?, checks })
+    let name = format!("the initial system of `{}`", dae.name);
+    let sorted = sort_mixed(dae, &name, &used.equations, &used.origins, &all)?;
+    Ok(Initial { blocks: sorted.blocks, checks, lagged: sorted.lagged })
+}
+
+/// Number of the first variable among what equations come from: behind all equations.
+fn first_variable(dae: &Dae) -> usize {
+    dae.equations.len() + dae.initial_equations.len() + dae.events.equations.len()
+}
+
+/// What is unknown at the start alone, and discrete variables.
+fn unknowns_at_start(dae: &Dae, aliases: &[Option<Alias>]) -> Vec<VarId> {
+    let discrete = of_kind(dae, |kind| kind == Kind::Discrete).into_iter();
+    let mut unknowns: Vec<VarId> = discrete.filter(|v| aliases[v.0 as usize].is_none()).collect();
+    unknowns.extend(of_kind(dae, |kind| {
+        matches!(kind, Kind::Previous(_) | Kind::Solved | Kind::Delayed)
+    }));
+    unknowns
+}
+
+/// The equations that hold always, and those of what is known later: `pre` of a continuous variable
+/// is the variable, a delayed value is the value.
+fn model_equations(dae: &mut Dae) -> Numbered {
+    let mut system = Numbered::default();
+    for (number, equation) in dae.equations.iter().enumerate() {
+        system.push(*equation, number);
+    }
+    let events = dae.equations.len() + dae.initial_equations.len();
+    for (number, equation) in dae.events.equations.iter().enumerate() {
+        system.push(*equation, events + number);
+    }
+    let first = first_variable(dae);
+    for delay in dae.events.delays.clone() {
+        let (left, right) = (dae.pool.variable(delay.variable), delay.argument);
+        let equation = Equation { left, right, span: delay.span };
+        system.push(equation, first + delay.variable.0 as usize);
+    }
+    for previous in of_kind(dae, |kind| matches!(kind, Kind::Previous(_))) {
+        let Kind::Previous(of) = dae.variable(previous).kind else { continue };
+        if dae.variable(of).kind != Kind::Discrete {
+            let (left, right) = (dae.pool.variable(previous), dae.pool.variable(of));
+            let equation = Equation { left, right, span: dae.variable(of).span };
+            system.push(equation, first + of.0 as usize);
+        }
+    }
+    system
+}
+
+/// `pre(v)` of discrete variables with v, those with fixed start values first.
+#[allow(clippy::type_complexity)]
+fn previous_values(dae: &Dae) -> (Vec<(VarId, VarId)>, Vec<(VarId, VarId)>) {
+    of_kind(dae, |kind| matches!(kind, Kind::Previous(_)))
+        .into_iter()
+        .filter_map(|v| match dae.variable(v).kind {
+            Kind::Previous(of) if dae.variable(of).kind == Kind::Discrete => Some((v, of)),
+            _ => None,
+        })
+        .partition(|(_, of)| dae.variable(*of).fixed)
 }
 
 /// Variables whose start values hold where nothing else determines them, the most wanted first:
@@ -98,9 +196,36 @@ fn warn_of_start_values(dae: &mut Dae, held: &[VarId]) {
     dae.warnings.push(warning.at(span).warning());
 }
 
-fn start_equation(dae: &mut Dae, state: VarId) -> Equation {
-    let left = dae.pool.variable(state);
-    let zero = dae.pool.constant(0.0);
-    let variable = dae.variable(state);
-    Equation { left, right: variable.start.unwrap_or(zero), span: variable.span }
+/// `reinit(x, e)` under `when initial()` is the initial equation `x = e`.
+fn reinits(dae: &mut Dae, aliases: &[Option<Alias>]) -> Vec<(VarId, Equation)> {
+    let Some(initial) = dae.events.initial else { return Vec::new() };
+    let mut equations = Vec::new();
+    for reinit in dae.events.reinits.clone() {
+        let one = dae.pool.constant(1.0);
+        let start = |v: VarId| (v == initial).then_some(one);
+        let condition = substitute(&mut dae.pool, reinit.condition, &start);
+        if dae.pool.as_constant(condition).is_some_and(|value| value != 0.0) {
+            let alias = aliases[reinit.state.0 as usize];
+            let state = alias.map_or(reinit.state, |alias| alias.of);
+            let mut left = dae.pool.variable(state);
+            if alias.is_some_and(|alias| alias.negated) {
+                left = dae.pool.neg(left);
+            }
+            let right = substitute(&mut dae.pool, reinit.value, &start);
+            equations.push((state, Equation { left, right, span: reinit.span }));
+        }
+    }
+    equations
+}
+
+/// `variable = start`, where `of` has the start value.
+fn start_equation(dae: &mut Dae, variable: VarId, of: VarId) -> Equation {
+    let left = dae.pool.variable(variable);
+    let default = match dae.variable(of).base {
+        BaseType::Enumeration(_) => 1.0,
+        _ => 0.0,
+    };
+    let default = dae.pool.constant(default);
+    let of = dae.variable(of);
+    Equation { left, right: of.start.unwrap_or(default), span: of.span }
 }

@@ -4,33 +4,47 @@
 //! build                every variable a scalar, every relation outside noEvent frozen
 //! order_parameters     bindings in order of dependence
 //! eliminate_aliases    a = b and a = -b become names
+//! separate_discrete    equations of discrete variables become assignments at events
 //! reduce_index         constraints between states differentiated, states chosen
 //! sort_blocks          matching, strongly connected components, tearing
+//! sort_events          the same for the system at events, discrete equations included
 //! sort_initial         the same for the system at the start
 //! ```
 //!
-//! Not handled yet, and refused with `not-supported`: when-clauses, `pre`, `sample`, `delay`,
-//! algorithm sections, functions whose loops or returns depend on variables, parameters with `fixed = false`.
+//! Between events the blocks give derivatives and algebraic variables; discrete variables and
+//! relations keep their values. At events the whole system is solved, with `pre(v)` known, until
+//! `pre(v) = v` (MLS §8.5).
+//!
+//! Not handled yet, and refused with `not-supported`: `delay` by a time that varies,
+//! `spatialDistribution`, statements whose loops depend on variables, functions whose loops or
+//! returns depend on variables.
 
+mod algorithm;
 mod alias_elimination;
 mod blt;
 mod build;
+mod discrete;
 mod dummy_derivatives;
 mod dynamic_states;
 pub mod errors;
+mod events;
 mod homotopy;
 mod index_reduction;
 mod initial;
 mod inline;
 mod linear_loops;
 mod lowering;
+mod mixed;
 mod model;
 mod parameters;
 mod report;
 mod settled;
 mod sorted;
 mod symbolic_target;
+mod temporal;
+mod when;
 
+pub use events::*;
 pub use model::*;
 pub use report::report;
 pub use sorted::*;
@@ -45,8 +59,10 @@ pub const PASSES: &[(&str, &str)] = &[
     ("build", "every variable a scalar, relations outside `noEvent` frozen"),
     ("order_parameters", "bindings of parameters in order of dependence"),
     ("eliminate_aliases", "`a = b` and `a = -b` become names"),
+    ("separate_discrete", "equations of discrete variables become assignments at events"),
     ("reduce_index", "constraints between states differentiated, states chosen"),
     ("sort_blocks", "matching, strongly connected components, tearing"),
+    ("sort_events", "the same for the system at events, discrete equations included"),
     ("sort_initial", "the same for the system at the start"),
 ];
 
@@ -56,21 +72,29 @@ pub fn sort(flat: &FlatModel) -> Result<SortedDae, Diagnostic> {
     zero_inputs(&mut dae);
     let parameters = parameters::order_parameters(&mut dae)?;
     let mut aliases = alias_elimination::eliminate_aliases(&mut dae);
+    discrete::separate_discrete(&mut dae, &aliases)?;
     let chosen = index_reduction::reduce_index(&mut dae, &mut aliases, &parameters)?;
     let dummy_derivatives::ChosenStates { states, selections } = chosen;
+    when::check_reinits(&dae, &aliases, &states, &selections)?;
     let unknowns = index_reduction::unknowns(&dae, &aliases, &states);
     let equations = homotopy::actual_equations(&mut dae);
     let blocks = blt::sort_blocks(&mut dae, &equations, &unknowns)?;
-    let initial = initial::sort_initial(&mut dae, &states, &selections, &unknowns)?;
-    let initial::Initial { blocks: initial_blocks, checks: initial_checks } = initial;
+    let events = mixed::sort_events(&mut dae, &equations, &unknowns)?;
+    let initial = initial::sort_initial(&mut dae, &states, &selections, &unknowns, &aliases)?;
+    let mut lagged = events.lagged;
+    lagged.extend(initial.lagged);
+    lagged.sort_unstable();
+    lagged.dedup();
     Ok(SortedDae {
         dae,
         aliases,
         states,
         selections,
         blocks,
-        initial_blocks,
-        initial_checks,
+        event_blocks: events.blocks,
+        initial_blocks: initial.blocks,
+        initial_checks: initial.checks,
+        lagged,
         parameters,
     })
 }
@@ -82,7 +106,7 @@ fn zero_inputs(dae: &mut Dae) {
     for position in 0..dae.variables.len() {
         let variable = &dae.variables[position];
         if variable.causality == Some(crate::syntax::ast::CausalityPrefix::Input)
-            && variable.kind == Kind::Unknown
+            && matches!(variable.kind, Kind::Unknown | Kind::Discrete)
             && !bound.contains(&VarId(position as u32))
         {
             let zero = dae.pool.constant(0.0);

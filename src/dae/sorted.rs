@@ -16,8 +16,13 @@ pub struct SortedDae {
     pub selections: Vec<Selection>,
     /// Solves for derivatives and algebraic variables, the states given.
     pub blocks: Vec<Block>,
+    /// Solves for discrete variables as well, at events; empty if there are none.
+    pub event_blocks: Vec<Block>,
     /// Solves for everything at the start.
     pub initial_blocks: Vec<Block>,
+    /// Discrete variables of loops: blocks read them before they write them, so the blocks are
+    /// solved until these do not change.
+    pub lagged: Vec<VarId>,
     /// What the solution of these must fulfil besides.
     pub initial_checks: Vec<Equation>,
     /// Parameters with bindings, each after those it depends on.

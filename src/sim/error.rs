@@ -35,7 +35,10 @@ pub enum Failure {
         check: u32,
     },
     /// Event iteration did not end.
-    EventIteration,
+    EventIteration {
+        /// A variable that kept changing; the system can explain it.
+        variable: u32,
+    },
 }
 
 /// Why a simulation failed, and when.
