@@ -29,6 +29,9 @@ impl<T: Target> Lowering<'_, T> {
         let text = name.to_string();
         let short = text.strip_prefix('.').unwrap_or(&text);
         let plain = &arguments.positional;
+        if short == "homotopy" {
+            return self.homotopy(arguments, span);
+        }
         if let Some(operator) = self.target.operator(short, plain, span) {
             return self.time_operator(short, operator?, plain, span);
         }
@@ -103,7 +106,6 @@ impl<T: Target> Lowering<'_, T> {
                 .ok_or_else(|| fault!(ARRAY_MISMATCH, "`{name}` needs another argument").at(span))
         };
         match operator {
-            Operator::Argument(position) => self.lower(argument(position)?),
             Operator::Temporal => {
                 let values = arguments.iter().map(|a| self.array(a)).collect::<Result<_, _>>()?;
                 Ok(Lowered::Array(self.target.temporal(name, values, self.live, span)?))
