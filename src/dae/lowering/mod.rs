@@ -7,6 +7,7 @@ mod arrays;
 mod calls;
 mod expression;
 mod operators;
+mod placed;
 
 pub(crate) use arrays::Choice;
 pub(crate) use expression::field;
