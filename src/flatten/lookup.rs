@@ -39,7 +39,7 @@ pub(super) enum Predefined {
 }
 
 impl Predefined {
-    fn named(name: Ident) -> Option<Predefined> {
+    pub(super) fn named(name: Ident) -> Option<Predefined> {
         match name.as_str() {
             "Real" => Some(Predefined::Real),
             "Integer" => Some(Predefined::Integer),
@@ -183,7 +183,7 @@ impl Instantiation<'_> {
         let Some(text) = &self.scope(scope).text else { return Ok(None) };
         let own = text.id.and_then(|id| self.library.class(id).child(name));
         if let Some(child) = own
-            && !self.is_redeclaration(child)
+            && !self.library.is_redeclaration(child)
         {
             return self.declared_class(scope, child, name).map(Some);
         }

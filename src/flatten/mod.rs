@@ -10,6 +10,7 @@
 //! equations (§11.2.2.1), impure functions in models (§12.3).
 
 mod balance;
+mod checks;
 mod connections;
 mod constants;
 mod declarations;
@@ -85,6 +86,13 @@ fn on_deep_stack<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Diagnost
     })
 }
 
+/// What is wrong with a class by its text and the names in it, whatever is made of it: a package, a
+/// function or a model that nobody instantiates can be checked too. Nothing if no such class is
+/// loaded.
+pub fn check(library: &Library, class: &Name) -> Vec<Diagnostic> {
+    library.find(class).map_or(Vec::new(), |id| checks::check_class(library, id))
+}
+
 fn flattened(
     library: &Library,
     class: &Name,
@@ -99,6 +107,10 @@ fn flattened(
     };
     let text = tree.text(id).clone();
     check_restriction(class, &text.definition).map_err(one)?;
+    let wrong = text.id.map_or(Vec::new(), |class| checks::check(library, class));
+    if !wrong.is_empty() {
+        return Err(distinct(wrong));
+    }
     tree.check_complete(id, text.span()).map_err(one)?;
     let modifier = Modifier::of_arguments(modification, ScopeId::TOP).map_err(one)?;
     let root = tree.model(id, modifier).map_err(one)?;

@@ -379,7 +379,7 @@ impl Instantiation<'_> {
         let children: Vec<(Ident, ClassId)> =
             text.id.map_or(Vec::new(), |class| library.class(class).children().collect());
         for (name, child) in children {
-            if self.is_redeclaration(child) {
+            if library.is_redeclaration(child) {
                 let redeclaration = Redeclaration {
                     replacement: Replacement::Element(child),
                     context: id,
@@ -391,12 +391,6 @@ impl Instantiation<'_> {
         }
         let name = text.definition.name.node;
         own.overridden_by(self.scope(id).modifier.clone(), name)
-    }
-
-    /// Whether a nested class stands for one that is inherited.
-    pub(super) fn is_redeclaration(&self, class: ClassId) -> bool {
-        let class = self.library.class(class);
-        class.prefixes().redeclare || class.is_class_extends()
     }
 
     /// The components of a class, inherited ones included.

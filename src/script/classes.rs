@@ -135,11 +135,11 @@ impl Session {
         }
         self.load_package_around(path)?;
         let names = self.load_library(path)?;
-        let library = &self.classes.library;
-        let errors: Vec<Diagnostic> =
-            names.iter().flat_map(|name| library.read_all(name)).collect();
-        let answer = if errors.is_empty() { Ok(names) } else { Err(errors.clone()) };
-        self.from_sound_texts(answer).map_err(|_| errors)
+        self.ask_library(|library| {
+            let problems = names.iter().flat_map(|name| library.read_all(name));
+            let problems: Vec<Diagnostic> = problems.collect();
+            if problems.is_empty() { Ok(names) } else { Err(problems) }
+        })
     }
 
     /// The package at the top that a folder or file belongs to, if it is not loaded: the outermost
@@ -167,8 +167,7 @@ impl Session {
         self.classes.changed();
         let texts = self.library_texts();
         let one = |error: Diagnostic| vec![error];
-        let loaded = self.classes.library.load_lazily(&texts, folder).map_err(one);
-        let names = self.from_sound_texts(loaded)?;
+        let names = self.ask_library(|library| library.load_lazily(&texts, folder).map_err(one))?;
         self.note_files(&names, folder);
         self.supply_units(&names).map_err(one)?;
         self.note_versions(&names);
@@ -201,8 +200,7 @@ impl Session {
             }
             self.autoload_class(package)?;
         }
-        let loaded = self.classes.library.load(&file).map_err(|error| vec![error]);
-        let names = self.from_sound_texts(loaded)?;
+        let names = self.ask_library(|library| library.load(&file).map_err(|error| vec![error]))?;
         self.note_versions(&names);
         Ok(names)
     }
@@ -242,12 +240,18 @@ impl Session {
     }
 
     /// Whether a class of this name is loaded or can be.
+    ///
+    /// # Errors
+    /// What is wrong with the texts that would tell.
+    pub(super) fn find_class(&mut self, name: &Name) -> Result<bool, Vec<Diagnostic>> {
+        self.autoload(name)?;
+        self.ask_library(|library| Ok(library.contains(name)))
+    }
+
+    /// The same, the errors reported.
     pub(super) fn class_exists(&mut self, name: &Name) -> bool {
-        let loaded = self.autoload(name);
-        if let Err(diagnostics) = loaded {
-            diagnostics.into_iter().for_each(|diagnostic| self.report(diagnostic));
-        }
-        self.classes.library.find(name).is_some()
+        let found = self.find_class(name);
+        self.or_report_all(found).unwrap_or(false)
     }
 
     /// A class that a script defines; it replaces one of the same name.
@@ -308,8 +312,8 @@ impl Session {
     fn function_named(&mut self, name: &Name) -> Result<Option<Arc<Function>>, Diagnostic> {
         let first = |mut errors: Vec<Diagnostic>| errors.swap_remove(0);
         loop {
-            let answer = self.classes.library.function(name).map_err(|error| vec![error]);
-            match self.from_sound_texts(answer) {
+            let one = |error: Diagnostic| vec![error];
+            match self.ask_library(|library| library.function(name).map_err(one)) {
                 Ok(functions) => {
                     return Ok(functions.and_then(|all| all.into_values().next()));
                 }

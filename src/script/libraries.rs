@@ -78,12 +78,15 @@ impl Session {
         })
     }
 
-    /// The answer of the library, or what is wrong with the texts that it needed for it. Tells the
-    /// warnings about them.
-    pub(super) fn from_sound_texts<T>(
+    /// The answer of the library to a question, or what is wrong with the texts that it needed for
+    /// it. Tells the warnings about them.
+    pub(super) fn ask_library<T>(
         &mut self,
-        answer: Result<T, Vec<Diagnostic>>,
+        question: impl FnOnce(&mut Library) -> Result<T, Vec<Diagnostic>>,
     ) -> Result<T, Vec<Diagnostic>> {
+        // What was found before concerned another question.
+        self.classes.library.take_problems();
+        let answer = question(&mut self.classes.library);
         let mut warnings = self.classes.take_warnings();
         warnings.extend(self.classes.library.take_warnings());
         warnings.into_iter().for_each(|warning| self.report(warning));
@@ -106,6 +109,20 @@ impl Session {
         exact
             .or_else(|| folders.iter().find_map(|folder| self.class_in(folder, name)))
             .or_else(|| folders.iter().find_map(|folder| self.in_other_case(folder, name)))
+    }
+
+    /// Asks for the first of these versions that is there, when the library is loaded.
+    pub(super) fn want_version(&mut self, name: &Name, versions: Vec<String>) {
+        let Some(library) = name.first() else { return };
+        let folders = self.folders();
+        let wanted = versions.into_iter().take_while(|version| version != "default");
+        let found = wanted.into_iter().find(|version| {
+            let named = format!("{library} {version}");
+            folders.iter().any(|folder| self.version_in(folder, &named).is_some())
+        });
+        if let Some(version) = found {
+            self.classes.versions.insert(library, version);
+        }
     }
 
     fn folders(&self) -> Vec<PathBuf> {
