@@ -14,6 +14,7 @@ use super::instance::{
 use super::library::Library;
 use super::lookup::Type;
 use super::modification::{Bound, Modifier};
+use super::own_sizes::with_own_sizes;
 use super::resolve::Local;
 use super::scope::{Nested, Scope, ScopeId, Text};
 use super::{BaseType, Variability, Variable};
@@ -387,7 +388,10 @@ impl<'a> Instantiation<'a> {
         let mut of_binding: Option<Vec<usize>> = None;
         for (at, (subscript, context)) in declared.dims.iter().chain(&expanded.dims).enumerate() {
             match subscript {
-                Subscript::Index(size) => dims.push(self.size(size, *context)?),
+                Subscript::Index(size) => {
+                    let size = with_own_sizes(size, declared.name, &dims);
+                    dims.push(self.size(&size, *context)?);
+                }
                 Subscript::All(span) => {
                     if of_binding.is_none() {
                         of_binding = Some(self.binding_dims(declared, expanded, *span)?);

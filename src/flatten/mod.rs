@@ -26,6 +26,7 @@ mod instantiation;
 mod library;
 mod lookup;
 mod modification;
+mod own_sizes;
 mod print;
 mod resolve;
 mod scope;

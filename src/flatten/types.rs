@@ -132,7 +132,11 @@ impl Instantiation<'_> {
             ExpressionKind::Binary { operator, left, right } => {
                 self.binary_type(*operator, left, right)
             }
-            ExpressionKind::If { otherwise, .. } => self.type_of(otherwise),
+            ExpressionKind::If { branches, otherwise } => {
+                let mut values = branches.iter().map(|(_, value)| value).chain([&**otherwise]);
+                let first = self.type_of(values.next()?)?;
+                values.try_fold(first, |all, value| joined(all, self.type_of(value)?))
+            }
             ExpressionKind::Array(elements) => {
                 let mut types = elements.iter().map(|element| self.type_of(element));
                 let first = types.next()??;
@@ -295,6 +299,10 @@ pub(super) fn has_only_literals(e: &Expression) -> bool {
         fn reference(&mut self, _: &ComponentReference) {
             self.0 = true;
         }
+    }
+    if let ExpressionKind::If { branches, otherwise } = &e.kind {
+        let mut values = branches.iter().map(|(_, value)| value).chain([&**otherwise]);
+        return values.all(has_only_literals);
     }
     let mut references = References(false);
     references.expression(e);
