@@ -374,6 +374,18 @@ impl Library {
         class
     }
 
+    /// Whether a nested class stands for an inherited one: `redeclare`, or `extends M(…)`
+    /// (MLS §7.3); known without reading it.
+    pub(super) fn is_redeclaration(&self, id: ClassId) -> bool {
+        let slot = self.slot(id);
+        let extends = |definition: &ClassDefinition| match &definition.specifier {
+            ClassSpecifier::Long(long) => long.class_extends.is_some(),
+            _ => false,
+        };
+        slot.declared.prefixes.redeclare
+            || matches!(&slot.origin, Origin::Head(definition, _) if extends(definition))
+    }
+
     fn slot(&self, id: ClassId) -> &Slot {
         &self.classes[id.0 as usize]
     }

@@ -135,6 +135,15 @@ fn local_library_reads_back() {
     assert!(failures.is_empty(), "{} texts:\n{}", failures.len(), failures.join("\n"));
 }
 
+#[test]
+fn shipped_models_read_back() {
+    for path in crate::shipped::files("models", "mo") {
+        let (sources, answer) = parse(&path);
+        let tree = answer.unwrap_or_else(|error| panic!("{}", render(&error, &sources, false)));
+        assert_eq!(tree.reads_back_differently(), None, "{}", path.display());
+    }
+}
+
 /// Megabytes a second; run with `--release -- --ignored --nocapture`.
 #[test]
 #[ignore = "measures, and asserts nothing but that every text is read"]

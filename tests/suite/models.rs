@@ -1,31 +1,7 @@
 //! The shipped models.
 
 use crate::shipped;
-use gapilib::source::SourceMap;
-use gapilib::syntax;
-use gapilib::syntax::ast::StoredDefinition;
 use std::collections::BTreeSet;
-
-/// Every file is read, and its printed tree is read as the same tree.
-#[test]
-fn every_model_parses() {
-    for path in shipped::files("models", "mo") {
-        let text = std::fs::read_to_string(&path).unwrap();
-        let name = path.display().to_string();
-        let printed = syntax::print::stored_definition(&parsed(&name, &text));
-        let again = syntax::print::stored_definition(&parsed(&name, &printed));
-        assert_eq!(printed, again, "{name}");
-    }
-}
-
-fn parsed(name: &str, text: &str) -> StoredDefinition {
-    let sources = SourceMap::default();
-    let source = sources.add(name, text);
-    match syntax::parse_stored_definition(source, text) {
-        Ok(definition) => definition,
-        Err(diagnostic) => panic!("{}: {diagnostic}", sources.location(diagnostic.span())),
-    }
-}
 
 /// `package.order` names what is there, and all of it.
 #[test]
