@@ -60,6 +60,9 @@ codes! {
     /// An operator function that no operator can call.
     ILLEGAL_OPERATOR = "illegal-operator":
         "## What it means\n\nA function of an operator record has other inputs or outputs than its operator asks for, or two of them fit the same call (MLS §14.2 to §14.5).\n\n## Example\n\n```modelica\noperator record Pair\n  Real a;\n  encapsulated operator function '+'\n    import Pair;\n    input Pair x;\n    output Pair y = x;\n  end '+';\nend Pair;\n```\n\n## What to do\n\nGive it the inputs and the one output of its operator.",
+    /// A redeclaration of something that cannot be redeclared, or not so.
+    ILLEGAL_REDECLARATION = "illegal-redeclaration":
+        "## What it means\n\nA redeclaration replaces an element that is not replaceable, or a constant, or it makes a protected element public or a public one protected (MLS §7.3).\n\n## Example\n\n```modelica\nmodel A\n  Real x = 1;\nend A;\nmodel M\n  A a(redeclare Integer x);\nend M;\n```\n\n## What to do\n\nDeclare the element `replaceable`, or modify it without `redeclare`.",
     /// A conditional component used where it may be absent.
     CONDITIONAL_COMPONENT = "conditional-component":
         "## What it means\n\nA component that is declared under a condition is used in an equation or an expression, where it would be missing if the condition were false. It can only be connected, modified, and named in modifiers of other conditional components (MLS §4.4.5).\n\n## Example\n\n```modelica\nmodel M\n  parameter Boolean on = true;\n  Real x if on;\nequation\n  x = 1;\nend M;\n```\n\n## What to do\n\nMake the variable a connector and connect it, or declare it without a condition.",
@@ -69,6 +72,9 @@ codes! {
     /// An equation or a statement in a place where it has no meaning.
     MISPLACED = "misplaced-equation":
         "## What it means\n\nAn equation or a statement stands where it cannot: a when-clause inside another one or in a function (MLS §8.3.5.2, §12.2), `connect` in a when-clause or under a condition that changes during the simulation (§9.1), `break` outside of a loop (§11.2.4), `return` outside of a function (§11.2.5).\n\n## Example\n\n```modelica\nwhen x > 1 then\n  when y > 1 then\n    n = pre(n) + 1;\n  end when;\nend when;\n```\n\n## What to do\n\nMove it to a place where it can stand; conditions of nested when-clauses can be combined.",
+    /// A connection that cannot be made.
+    INVALID_CONNECTION = "invalid-connection":
+        "## What it means\n\nA `connect` equation names what cannot be connected: two connectors of different kinds or sizes, something that is no connector, or a place where connections are not allowed (MLS §9.3).\n\n## Example\n\n`connect(resistor.p, thermometer.port)` where one is an electrical pin and the other a heat port.\n\n## What to do\n\nConnect connectors with the same components, at the level of equations of a class.",
     /// A part of the language that is not built yet.
     NOT_SUPPORTED = "unsupported-language":
         "## What it means\n\nThe text is Modelica, and this program does not translate that part of the language yet. The message names it.\n\n## Example\n\n`inStream(port.h_outflow)`\n\n## What to do\n\nWrite the model without it.",

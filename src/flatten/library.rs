@@ -5,8 +5,8 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
-    ClassDefinition, ClassSpecifier, Element, Extends, ImportKind, Section, StoredDefinition,
-    Visibility,
+    ClassDefinition, ClassElement, ClassSpecifier, Constraint, Element, ElementPrefixes, Extends,
+    ImportKind, Section, StoredDefinition, Visibility,
 };
 use indexmap::IndexMap;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -47,6 +47,9 @@ pub(super) struct Class {
     pub(super) children: IndexMap<Ident, ClassId>,
     pub(super) imports: Vec<ImportKind>,
     pub(super) extends: Vec<Extends>,
+    prefixes: ElementPrefixes,
+    protected: bool,
+    constraint: Option<Constraint>,
 }
 
 impl Library {
@@ -107,6 +110,9 @@ impl Library {
             children: IndexMap::new(),
             imports: Vec::new(),
             extends: Vec::new(),
+            prefixes: ElementPrefixes::default(),
+            protected: false,
+            constraint: None,
         });
         self.add_elements(id, definition)?;
         self.keep_separate_files(known, id);
@@ -133,7 +139,8 @@ impl Library {
     ) -> Result<(), Diagnostic> {
         let ClassSpecifier::Long(long) = &definition.specifier else { return Ok(()) };
         for section in &long.sections {
-            let Section::Elements { elements, .. } = section else { continue };
+            let Section::Elements { visibility, elements } = section else { continue };
+            let protected = *visibility == Some(Visibility::Protected);
             for element in elements {
                 match element {
                     Element::Class(nested) => {
@@ -147,7 +154,8 @@ impl Library {
                             )
                             .at(name.span));
                         }
-                        self.add(&nested.class, Some(id))?;
+                        let child = self.add(&nested.class, Some(id))?;
+                        self.declared(child, nested, protected);
                     }
                     Element::Import(import) => {
                         self.classes[id.0 as usize].imports.push(import.kind.clone());
@@ -160,6 +168,13 @@ impl Library {
             }
         }
         Ok(())
+    }
+
+    fn declared(&mut self, id: ClassId, element: &ClassElement, protected: bool) {
+        let class = &mut self.classes[id.0 as usize];
+        class.prefixes = element.prefixes;
+        class.protected = protected;
+        class.constraint = element.constraint.clone();
     }
 
     /// The class of a full name.
@@ -256,6 +271,58 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Class {
+    pub(super) fn name(&self) -> &Name {
+        &self.name
+    }
+
+    pub(super) fn definition(&self) -> &Arc<ClassDefinition> {
+        &self.definition
+    }
+
+    pub(super) fn parent(&self) -> Option<ClassId> {
+        self.parent
+    }
+
+    pub(super) fn child(&self, name: Ident) -> Option<ClassId> {
+        self.children.get(&name).copied()
+    }
+
+    pub(super) fn children(&self) -> impl Iterator<Item = (Ident, ClassId)> {
+        self.children.iter().map(|(name, id)| (*name, *id))
+    }
+
+    pub(super) fn imports(&self) -> &[ImportKind] {
+        &self.imports
+    }
+
+    pub(super) fn extends(&self) -> &[Extends] {
+        &self.extends
+    }
+
+    pub(super) fn encapsulated(&self) -> bool {
+        self.definition.encapsulated
+    }
+
+    /// The prefixes of the element that it is of its package or class.
+    pub(super) fn prefixes(&self) -> ElementPrefixes {
+        self.prefixes
+    }
+
+    /// Whether it is declared behind `protected`.
+    pub(super) fn is_protected(&self) -> bool {
+        self.protected
+    }
+
+    /// Whether it is `extends M(…)`, which replaces an inherited class (MLS §7.3.1).
+    pub(super) fn is_class_extends(&self) -> bool {
+        matches!(&self.definition.specifier, ClassSpecifier::Long(long) if long.class_extends.is_some())
+    }
+
+    /// What replacements must be compatible with (MLS §7.3.2).
+    pub(super) fn constraint(&self) -> Option<&Constraint> {
+        self.constraint.as_ref()
+    }
+
     /// The elements with their visibility, in order; none for a short class.
     pub(super) fn elements(&self) -> impl Iterator<Item = (Visibility, &Element)> {
         self.sections().iter().flat_map(|section| {

@@ -11,6 +11,7 @@
 
 mod balance;
 mod checks;
+mod connections;
 mod constants;
 mod declarations;
 mod defaults;
@@ -18,6 +19,7 @@ mod equations;
 pub mod errors;
 mod flat_model;
 mod functions;
+mod inner_outer;
 mod instance;
 mod instantiation;
 mod library;
@@ -25,6 +27,7 @@ mod lookup;
 mod modification;
 mod print;
 mod resolve;
+mod scope;
 mod types;
 mod variables;
 
@@ -40,9 +43,9 @@ use crate::syntax::ast::{
     Restriction, Section, TypeSpecifier, UnaryOperator,
 };
 use errors::{NOT_A_MODEL, TOO_LARGE};
-use instance::{Context, Inherited, NodeId};
 use instantiation::Instantiation;
 use modification::Modifier;
+use scope::ScopeId;
 use std::collections::BTreeSet;
 
 /// Bytes of stack for instantiation, which nests with the expressions and bindings of the model.
@@ -94,32 +97,37 @@ fn flattened(
     class: &Name,
     modification: &[Argument],
 ) -> Result<Flattened, Vec<Diagnostic>> {
-    let specifier = TypeSpecifier { name: class.clone(), span: Span::NONE };
     let one = |error: Diagnostic| vec![error];
-    let lookup::Type::Class(id) = library.lookup_type(None, &specifier).map_err(one)? else {
+    let mut tree = Instantiation::new(library);
+    let specifier = TypeSpecifier { name: class.clone(), span: Span::NONE };
+    let found = tree.lookup_type(ScopeId::TOP, &specifier).map_err(one)?;
+    let lookup::Type::Class(id) = found else {
         return Err(vec![fault!(NOT_A_MODEL, "`{class}` is a predefined type").at(Span::NONE)]);
     };
-    let definition = library.class(id).definition.clone();
-    check_restriction(class, &definition).map_err(one)?;
-    let wrong = checks::check(library, id);
+    let text = tree.text(id).clone();
+    check_restriction(class, &text.definition).map_err(one)?;
+    let wrong = text.id.map_or(Vec::new(), |id| checks::check(library, id));
     if !wrong.is_empty() {
         return Err(distinct(wrong));
     }
-    let mut tree = Instantiation::new(library);
-    tree.check_complete(id, definition.name.span).map_err(one)?;
-    let outside = Context { node: NodeId(0), class: None };
-    let modifier = Modifier::of_arguments(modification, outside).map_err(one)?;
-    let root = tree.composite(id, String::new(), modifier, Inherited::default()).map_err(one)?;
+    tree.check_complete(id, text.span()).map_err(one)?;
+    let modifier = Modifier::of_arguments(modification, ScopeId::TOP).map_err(one)?;
+    let root = tree.model(id, modifier).map_err(one)?;
     tree.complete(root).map_err(distinct)?;
     let mut model = FlatModel {
-        name: library.class(id).name.to_string(),
-        description: described(&definition),
-        experiment: experiment(&definition),
-        span: Some(definition.name.span),
+        name: text.name.to_string(),
+        description: described(&text.definition),
+        experiment: experiment(&text.definition),
+        span: Some(text.span()),
         ..FlatModel::default()
     };
     let mut errors = Vec::new();
+    let connections = std::rc::Rc::new(tree.connections(root, &mut errors));
+    tree.connections = Some(connections.clone());
     tree.add_equations(root, &mut model, &mut errors);
+    if errors.is_empty() {
+        tree.add_connection_equations(&connections, &mut model).map_err(one)?;
+    }
     tree.add_variables(root, &mut model, &mut errors);
     if !errors.is_empty() {
         return Err(distinct(errors));
@@ -128,7 +136,7 @@ fn flattened(
         model.functions.extend(function.map(|function| (name, function)));
     }
     balance::check(&model).map_err(one)?;
-    Ok(Flattened { model, warnings: Vec::new() })
+    Ok(Flattened { model, warnings: distinct(tree.warnings) })
 }
 
 /// The errors without those that say the same of the same place, as those of the elements of an

@@ -1,10 +1,11 @@
 //! Operators of operator records (MLS ch. 14).
 
+use super::lookup::Type;
 use super::scope::{Component, Scope};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::ILLEGAL_OPERATOR;
-use crate::flatten::lookup::{Predefined, Type};
+use crate::flatten::lookup::Predefined;
 use crate::name::Ident;
 use crate::syntax::ast::{CausalityPrefix, Restriction};
 

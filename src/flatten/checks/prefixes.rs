@@ -1,10 +1,11 @@
 //! Which components may have which type prefixes (MLS §4.4.2.2, §9.3, §15.1).
 
+use super::lookup::Type;
 use super::scope::{Component, Scope};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::ILLEGAL_PREFIX;
-use crate::flatten::lookup::{Predefined, Type};
+use crate::flatten::lookup::Predefined;
 use crate::source::Span;
 use crate::syntax::ast::{
     CausalityPrefix, ClassSpecifier, ConnectionPrefix, Restriction, TypePrefixes, VariabilityPrefix,

@@ -1,7 +1,8 @@
 //! What the checks ask about a class: its elements, those it inherits, and what names mean in it.
 
+use super::lookup::Type;
 use crate::flatten::library::{ClassId, Library};
-use crate::flatten::lookup::{Predefined, Type};
+use crate::flatten::lookup::Predefined;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
     ClassDefinition, ClassElement, ClassSpecifier, ComponentClause, ComponentDeclaration,
@@ -103,7 +104,7 @@ impl<'a> Scope<'a> {
                 continue;
             }
             found.push(self.of(class));
-            pending.extend(self.library.bases(class).iter().rev());
+            pending.extend(self.library.declared_bases(class).iter().rev());
         }
         found
     }
@@ -143,7 +144,7 @@ impl<'a> Scope<'a> {
 
     /// What a name of a type or class means in it.
     pub(super) fn meaning(self, name: &Name) -> Option<Type> {
-        self.library.lookup(Some(self.class), name)
+        self.library.meaning(Some(self.class), name)
     }
 
     /// The class that a name means in it.
