@@ -60,10 +60,10 @@ impl Library {
                 return found;
             }
             let class = self.class(id);
-            if class.encapsulated() {
+            if class.definition.encapsulated {
                 break;
             }
-            scope = class.parent();
+            scope = class.parent;
         }
         self.root(name)
     }
@@ -94,10 +94,10 @@ impl Library {
         };
         match &found.definition().specifier {
             ClassSpecifier::Short(short) => {
-                class_of(found.parent(), &short.target.name).into_iter().collect()
+                class_of(found.parent, &short.target.name).into_iter().collect()
             }
             _ => found
-                .extends()
+                .extends
                 .iter()
                 .filter_map(|extends| class_of(Some(class), &extends.base.name))
                 .collect(),
