@@ -58,6 +58,8 @@ pub(super) struct Instantiation<'a> {
     pub(super) functions: IndexMap<Name, Option<Arc<Function>>>,
     /// The names under which functions are known.
     pub(super) function_names: FxHashMap<ScopeId, Name>,
+    /// The classes of records by the names of their constructors.
+    pub(super) record_scopes: FxHashMap<Name, ScopeId>,
     /// The instance of the model.
     pub(super) root_node: NodeId,
     pub(super) warnings: Vec<Diagnostic>,
@@ -100,6 +102,7 @@ impl<'a> Instantiation<'a> {
             renaming: 0,
             functions: IndexMap::new(),
             function_names: FxHashMap::default(),
+            record_scopes: FxHashMap::default(),
             root_node: NodeId(0),
             warnings: Vec::new(),
             connections: None,
@@ -335,7 +338,7 @@ impl<'a> Instantiation<'a> {
         built.map(Some)
     }
 
-    fn set_state(&mut self, node: NodeId, name: Ident, state: MemberState) {
+    pub(super) fn set_state(&mut self, node: NodeId, name: Ident, state: MemberState) {
         if let NodeKind::Composite(composite) = &mut self.nodes[node.0].kind
             && let Some(member) =
                 composite.members.as_mut().and_then(|members| members.get_mut(&name))
