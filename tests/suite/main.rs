@@ -21,6 +21,7 @@ mod lazy_reading;
 mod libraries;
 mod mat;
 mod modelica;
+mod modelica_models;
 mod models;
 mod msl;
 mod plot;

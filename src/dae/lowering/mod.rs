@@ -8,6 +8,7 @@ mod calls;
 mod expression;
 mod homotopy;
 mod operators;
+mod placed;
 
 pub(crate) use arrays::Choice;
 pub(crate) use expression::field;
