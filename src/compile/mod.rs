@@ -6,9 +6,11 @@ mod event_iteration;
 mod events;
 mod history;
 mod jacobian;
+mod least_squares;
 mod lower;
 mod newton;
 mod program;
+mod selection;
 mod system;
 mod tape;
 

@@ -2,8 +2,9 @@
 
 use super::build::{Builder, scalar_of_nothing};
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
+use super::index_reduction::derivative_of;
 use super::lowering::{Array, Binary, Branch, Lowered, Operator, Target, Unary};
-use super::model::{Kind, Relation};
+use super::model::{Homotopy, Kind, Relation};
 use crate::diag::Diagnostic;
 use crate::eval::Function;
 use crate::fault;
@@ -165,7 +166,6 @@ impl Target for Builder<'_> {
             "der" => Operator::Derivative,
             "noEvent" => Operator::Live(0),
             "smooth" => Operator::Live(1),
-            "homotopy" => Operator::Argument(0),
             "pre" | "edge" | "change" => {
                 // Until `temporal`, which follows when the argument is lowered.
                 self.raw += 1;
@@ -186,6 +186,19 @@ impl Target for Builder<'_> {
             }
             _ => return None,
         }))
+    }
+
+    fn homotopy(&mut self, actual: Expr, simplified: Expr) -> Expr {
+        if actual == simplified {
+            return actual;
+        }
+        let Homotopy { active, lambda } = self.homotopy_variables();
+        let pool = &mut self.dae.pool;
+        let (active, lambda) = (pool.variable(active), pool.variable(lambda));
+        let difference = pool.sub(actual, simplified);
+        let part = pool.mul(lambda, difference);
+        let between = pool.add(simplified, part);
+        pool.if_then_else(active, between, actual)
     }
 
     fn derivative(&mut self, a: Expr, span: Span) -> Result<Expr, Diagnostic> {
@@ -239,6 +252,9 @@ impl Builder<'_> {
                     let derivative = self.derivative_variable(variable, span)?;
                     self.dae.pool.variable(derivative)
                 }
+                Kind::Delayed => {
+                    return Err(fault!(NOT_SUPPORTED, "the derivative of a delayed value").at(span));
+                }
                 Kind::Derivative(_) => {
                     return Err(fault!(NOT_SUPPORTED, "second derivatives need a variable";
                         help: "give the first derivative a name: `v = der(x)`, then `der(v)`")
@@ -260,14 +276,24 @@ impl Builder<'_> {
         if source.kind != Kind::Unknown || source.base != BaseType::Real {
             return Err(fault!(NOT_SUPPORTED, "`{}` has no derivative", source.name).at(span));
         }
-        let name = format!("der({})", source.name);
-        let unit = source.unit.clone();
-        let mut variable = scalar_of_nothing(&name, Kind::Derivative(of), source.span);
-        variable.unit = if unit.is_empty() { unit } else { format!("{unit}/s").into() };
+        let variable = derivative_of(source, of);
         let id = VarId(self.dae.variables.len() as u32);
         self.dae.variables.push(variable);
         self.derivatives.insert(of, id);
         Ok(id)
+    }
+
+    fn homotopy_variables(&mut self) -> Homotopy {
+        if let Some(known) = self.dae.homotopy {
+            return known;
+        }
+        let first = self.dae.variables.len() as u32;
+        for name in ["$homotopy.active", "$homotopy.lambda"] {
+            self.dae.variables.push(scalar_of_nothing(name, Kind::Frozen, Span::NONE));
+        }
+        let variables = Homotopy { active: VarId(first), lambda: VarId(first + 1) };
+        self.dae.homotopy = Some(variables);
+        variables
     }
 
     /// All variables below a path, as a record.

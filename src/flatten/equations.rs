@@ -40,10 +40,7 @@ impl Instantiation<'_> {
                         self.add_equations(one, model, errors);
                     }
                 }
-                MemberState::Pending
-                | MemberState::Busy
-                | MemberState::Absent
-                | MemberState::Outer(_) => {}
+                _ => {}
             }
         }
         for context in elements.lineage.iter().copied() {
@@ -189,11 +186,7 @@ impl Instantiation<'_> {
         let ExpressionKind::Reference(reference) = &e.kind else { return Ok(None) };
         let mut node = self.node_of(context);
         for ReferencePart { name, subscripts } in &reference.parts {
-            let state = match self.member(node, *name)? {
-                Some(MemberState::Outer(inner)) => Some(*inner),
-                state => state,
-            };
-            let next = match state {
+            let next = match self.member(node, *name)?.map(MemberState::seen) {
                 Some(MemberState::Single(one)) => one,
                 Some(MemberState::Array(_, nodes)) if !subscripts.is_empty() => match nodes.first()
                 {
@@ -250,7 +243,10 @@ impl Instantiation<'_> {
                 help: "write the range: `for {} in 1:n loop`", index.name.node)
             .at(span)
         })?;
-        let resolved = self.resolve(range, context, local)?;
+        let resolved = match self.type_range(range, context, local)? {
+            Some(values) => values,
+            None => self.resolve(range, context, local)?,
+        };
         for value in self.range_values(&resolved)? {
             let mut turn = local.clone();
             turn.names.push((index.name.node, Some(literal(&value, span))));
@@ -335,10 +331,9 @@ impl Instantiation<'_> {
 
     /// Whether an expression has a value at translation: no variable but constants and
     /// parameters, no operator of time.
-    fn is_fixed(&mut self, resolved: &Expression) -> bool {
-        let flat = self.flat_scope();
+    pub(super) fn is_fixed(&mut self, resolved: &Expression) -> bool {
         let read = std::mem::take(&mut self.read);
-        let fixed = self.known_value(resolved, flat).is_ok();
+        let fixed = self.known_flat_value(resolved).is_ok();
         self.read = read;
         fixed
     }

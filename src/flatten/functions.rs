@@ -246,7 +246,15 @@ impl Instantiation<'_> {
             for (subscript, context) in declared.dims.iter().chain(&expanded.dims) {
                 dims.push(match subscript {
                     Subscript::All(span) => Subscript::All(*span),
-                    Subscript::Index(e) => Subscript::Index(self.resolve(e, *context, &local)?),
+                    Subscript::Index(e) => match self.type_range(e, *context, &local)? {
+                        Some(values) => {
+                            let dims = self.shape_of(&values).unwrap_or_default();
+                            let size = dims.first().copied().unwrap_or(0) as i64;
+                            let kind = ExpressionKind::Integer(size);
+                            Subscript::Index(Expression::new(kind, e.span))
+                        }
+                        None => Subscript::Index(self.resolve(e, *context, &local)?),
+                    },
                 });
             }
             let bound = expanded.modifier.binding.as_ref();

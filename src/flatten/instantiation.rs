@@ -15,6 +15,7 @@ use super::library::Library;
 use super::lookup::Type;
 use super::modification::{Bound, Modifier};
 use super::own_sizes::with_own_sizes;
+use super::resolve::Local;
 use super::scope::{Nested, Scope, ScopeId, Text};
 use super::{BaseType, Variability, Variable};
 use crate::diag::{Diagnostic, suggest};
@@ -254,7 +255,7 @@ impl<'a> Instantiation<'a> {
         self.fill(node)?;
         let members = self.composite_of(node).and_then(|composite| composite.members.as_ref());
         Ok(members.map_or(Vec::new(), |members| {
-            members.iter().map(|(name, member)| (*name, member.state.clone())).collect()
+            members.iter().map(|(name, member)| (*name, member.state.clone().own())).collect()
         }))
     }
 
@@ -356,8 +357,17 @@ impl<'a> Instantiation<'a> {
             }
         }
         if declared.prefixes.outer {
-            return self.outer(node, declared);
+            let outer = self.outer(node, declared)?;
+            if !declared.prefixes.inner {
+                return Ok(outer);
+            }
+            let inner = Box::new(self.built(node, declared)?);
+            return Ok(MemberState::Both { inner, outer: Box::new(outer.seen()) });
         }
+        self.built(node, declared)
+    }
+
+    fn built(&mut self, node: NodeId, declared: &Declaration) -> Result<MemberState, Diagnostic> {
         let expanded = self.expand(declared)?;
         let dims = self.dimensions(declared, &expanded)?;
         match expanded.shape.base() {
@@ -404,6 +414,9 @@ impl<'a> Instantiation<'a> {
     }
 
     fn size(&mut self, size: &Expression, context: ScopeId) -> Result<usize, Diagnostic> {
+        if let Some(values) = self.type_range(size, context, &Local::default())? {
+            return Ok(self.shape_of(&values).and_then(|dims| dims.first().copied()).unwrap_or(0));
+        }
         match self.structural_value(size, context)? {
             Value::Integer(n) if n >= 0 => Ok(n as usize),
             Value::Integer(n) => {
@@ -430,6 +443,9 @@ impl<'a> Instantiation<'a> {
                 help: "write its size, or give it a value")
             .at(span));
         };
+        if let Some(dims) = self.bound_shape(&bound.clone())? {
+            return Ok(dims);
+        }
         let value = picked(value, &bound.indices);
         match self.structural_value(&value, bound.context)? {
             Value::Array(array) => Ok(array.dims),
@@ -588,7 +604,8 @@ impl<'a> Instantiation<'a> {
         // An `outer` component without an `inner` one adds a component to the model itself.
         while let Some(name) = self.member_at(node, at) {
             at += 1;
-            let nodes = match self.member(node, name) {
+            let state = self.member(node, name).map(|state| state.map(MemberState::own));
+            let nodes = match state {
                 Ok(Some(MemberState::Single(one))) => vec![one],
                 Ok(Some(MemberState::Array(_, nodes))) => nodes,
                 Ok(_) => Vec::new(),

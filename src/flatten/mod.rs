@@ -15,6 +15,7 @@ mod connections;
 mod constants;
 mod declarations;
 mod defaults;
+mod enumerations;
 mod equations;
 pub mod errors;
 mod flat_model;
@@ -29,6 +30,7 @@ mod own_sizes;
 mod print;
 mod resolve;
 mod scope;
+mod shapes;
 mod types;
 mod variables;
 

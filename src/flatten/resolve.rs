@@ -30,6 +30,8 @@ pub(super) struct Local {
     pub(super) read_only: Vec<Ident>,
     /// Whether variables are replaced by their values, which must be constant.
     pub(super) values: bool,
+    /// Whether names are flat paths, to which protected components are no secret.
+    pub(super) flat: bool,
 }
 
 impl Local {
@@ -95,13 +97,14 @@ impl Instantiation<'_> {
                 left: Box::new(sub(self, left)?),
                 right: Box::new(sub(self, right)?),
             },
-            ExpressionKind::If { branches, otherwise } => ExpressionKind::If {
-                branches: branches
-                    .iter()
-                    .map(|(condition, value)| Ok((sub(self, condition)?, sub(self, value)?)))
-                    .collect::<Result<_, Diagnostic>>()?,
-                otherwise: Box::new(sub(self, otherwise)?),
-            },
+            ExpressionKind::If { branches, otherwise } => {
+                return self.if_expression(e.span, branches, otherwise, context, local);
+            }
+            ExpressionKind::Range { start, step: None, stop }
+                if is_boolean(start) && is_boolean(stop) =>
+            {
+                ExpressionKind::Array(booleans(start, stop))
+            }
             ExpressionKind::Range { start, step, stop } => ExpressionKind::Range {
                 start: Box::new(sub(self, start)?),
                 step: step.as_ref().map(|step| sub(self, step).map(Box::new)).transpose()?,
@@ -138,6 +141,47 @@ impl Instantiation<'_> {
         Ok(Expression::new(kind, e.span))
     }
 
+    /// Branches whose conditions hold no variables are chosen at once: the others may name what
+    /// does not exist, such as the element before the first one.
+    fn if_expression(
+        &mut self,
+        span: Span,
+        branches: &[(Expression, Expression)],
+        otherwise: &Expression,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let mut resolved = Vec::with_capacity(branches.len());
+        for (condition, value) in branches {
+            let condition = self.resolve(condition, context, local)?;
+            match self.literal_condition(&condition) {
+                Some(true) if resolved.is_empty() => return self.resolve(value, context, local),
+                Some(false) => continue,
+                _ => resolved.push((condition, self.resolve(value, context, local)?)),
+            }
+        }
+        let otherwise = self.resolve(otherwise, context, local)?;
+        if resolved.is_empty() {
+            return Ok(otherwise);
+        }
+        let kind = ExpressionKind::If { branches: resolved, otherwise: Box::new(otherwise) };
+        Ok(Expression::new(kind, span))
+    }
+
+    /// The value of a resolved condition without references.
+    fn literal_condition(&mut self, condition: &Expression) -> Option<bool> {
+        if let ExpressionKind::Boolean(truth) = condition.kind {
+            return Some(truth);
+        }
+        if !super::types::has_only_literals(condition) {
+            return None;
+        }
+        match self.flat_value(condition) {
+            Ok(Value::Boolean(truth)) => Some(truth),
+            _ => None,
+        }
+    }
+
     fn all(
         &mut self,
         expressions: &[Expression],
@@ -172,8 +216,13 @@ impl Instantiation<'_> {
         let mut inner = local.clone();
         let mut resolved = Vec::with_capacity(indices.len());
         for index in indices {
-            let range =
-                index.range.as_ref().map(|r| self.resolve(r, context, &inner)).transpose()?;
+            let range = match &index.range {
+                Some(range) => match self.type_range(range, context, &inner)? {
+                    Some(values) => Some(values),
+                    None => Some(self.resolve(range, context, &inner)?),
+                },
+                None => None,
+            };
             resolved.push(ForIndex { name: index.name, range });
             inner.names.push((index.name.node, None));
         }
@@ -190,7 +239,13 @@ impl Instantiation<'_> {
             .iter()
             .map(|subscript| match subscript {
                 Subscript::All(span) => Ok(Subscript::All(*span)),
-                Subscript::Index(e) => Ok(Subscript::Index(self.resolve(e, context, local)?)),
+                Subscript::Index(e) => {
+                    let index = match self.type_range(e, context, local)? {
+                        Some(values) => values,
+                        None => self.resolve(e, context, local)?,
+                    };
+                    Ok(Subscript::Index(self.boolean_subscript(index)))
+                }
             })
             .collect()
     }
@@ -205,6 +260,14 @@ impl Instantiation<'_> {
     ) -> Result<Expression, Diagnostic> {
         if let Some(value) = self.connection_operator(span, function, arguments, context, local)? {
             return Ok(value);
+        }
+        if let Some(value) = self.conversion(span, function, arguments, context, local)? {
+            return Ok(value);
+        }
+        if let Some(name) = function.as_ident()
+            && let Some(size) = self.size_call(name.as_str(), arguments, context, local, span)?
+        {
+            return Ok(size);
         }
         let (iterators, inner) = self.iterators(&arguments.iterators, context, local)?;
         let arguments = Arguments {
@@ -293,11 +356,10 @@ impl Instantiation<'_> {
             return self.whole_instance(node, whole, context, local);
         };
         let state = match self.member(node, part.name)? {
-            Some(MemberState::Outer(inner)) => *inner,
-            Some(state) => state,
+            Some(state) => state.seen(),
             None => return Err(self.unknown_component(node, part.name, whole.span)),
         };
-        if parts.len() < whole.parts.len() && self.is_protected(node, part.name) {
+        if !local.flat && parts.len() < whole.parts.len() && self.is_protected(node, part.name) {
             let path = &self.nodes[node.0].path;
             return Err(fault!(
                 PROTECTED_ACCESS,
@@ -343,7 +405,7 @@ impl Instantiation<'_> {
             MemberState::Pending | MemberState::Busy => {
                 Err(fault!(NOT_CONSTANT, "`{}` depends on itself", part.name).at(whole.span))
             }
-            MemberState::Outer(_) => Err(fault!(
+            MemberState::Outer(_) | MemberState::Both { .. } => Err(fault!(
                 NOT_CONSTANT,
                 "`{}` is an outer component of one that is outer itself",
                 part.name
@@ -693,7 +755,7 @@ fn element_of<'e>(base: &'e Expression, indices: &[usize]) -> Option<&'e Express
 }
 
 /// The expression with `end` replaced by a size, where it is the whole of it.
-fn at_end(e: &Expression, size: usize) -> Expression {
+pub(super) fn at_end(e: &Expression, size: usize) -> Expression {
     let mut e = e.clone();
     replace_end(&mut e, size);
     e
@@ -719,4 +781,19 @@ fn replace_end(e: &mut Expression, size: usize) {
         }
         _ => {}
     }
+}
+
+fn is_boolean(e: &Expression) -> bool {
+    matches!(e.kind, ExpressionKind::Boolean(_))
+}
+
+/// The literals of a range of Booleans (MLS §10.4.3).
+fn booleans(start: &Expression, stop: &Expression) -> Vec<Expression> {
+    let is_in = |truth: &bool| {
+        let below = matches!(start.kind, ExpressionKind::Boolean(from) if from > *truth);
+        let above = matches!(stop.kind, ExpressionKind::Boolean(to) if *truth > to);
+        !below && !above
+    };
+    let literal = |truth| Expression::new(ExpressionKind::Boolean(truth), start.span.to(stop.span));
+    [false, true].into_iter().filter(is_in).map(literal).collect()
 }

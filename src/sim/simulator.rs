@@ -57,6 +57,9 @@ impl Simulator {
         settings: &Settings,
         out: &mut Trajectory,
     ) -> Result<Statistics, SimError> {
+        // Explicit methods see no algebraic variables if the system can do without.
+        let is_explicit = integrator(&mut self.integrator, settings).is_explicit();
+        system.solve_loops(is_explicit);
         let n = system.n_differential() + system.n_algebraic();
         self.resize(system, n);
         system.nominal(&mut self.nominal);

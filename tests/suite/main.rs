@@ -15,6 +15,8 @@ mod grammar;
 mod hybrid;
 mod identification;
 mod identified_models;
+mod index_reduction;
+mod initialization;
 mod lazy_reading;
 mod libraries;
 mod mat;

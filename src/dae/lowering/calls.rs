@@ -31,6 +31,9 @@ impl<T: Target> Lowering<'_, T> {
         }
         let text = name.to_string();
         let short = text.strip_prefix('.').unwrap_or(&text);
+        if short == "homotopy" {
+            return self.homotopy(arguments, span);
+        }
         let plain = &placed::of_operator(short, arguments);
         if let Some(operator) = self.target.operator(short, plain, span) {
             return self.time_operator(short, operator?, plain, span);
@@ -106,7 +109,6 @@ impl<T: Target> Lowering<'_, T> {
                 .ok_or_else(|| fault!(ARRAY_MISMATCH, "`{name}` needs another argument").at(span))
         };
         match operator {
-            Operator::Argument(position) => self.lower(argument(position)?),
             Operator::Temporal => {
                 let values = arguments.iter().map(|a| self.array(a)).collect::<Result<_, _>>()?;
                 Ok(Lowered::Array(self.target.temporal(name, values, self.live, span)?))

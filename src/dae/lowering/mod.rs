@@ -6,6 +6,7 @@
 mod arrays;
 mod calls;
 mod expression;
+mod homotopy;
 mod operators;
 mod placed;
 
@@ -97,6 +98,10 @@ pub(crate) trait Target {
         arguments: &[Expression],
         span: Span,
     ) -> Option<Result<Operator, Diagnostic>>;
+    /// What leads from `simplified` to `actual` at the start, and is `actual` afterwards.
+    fn homotopy(&mut self, actual: Self::Scalar, _simplified: Self::Scalar) -> Self::Scalar {
+        actual
+    }
     /// `der(a)`
     fn derivative(&mut self, a: Self::Scalar, span: Span) -> Result<Self::Scalar, Diagnostic>;
     /// An operator of values in time (`pre`, `edge`, `sample` …); functions have none.
@@ -117,8 +122,6 @@ pub(crate) enum Operator {
     Derivative,
     /// The argument of this position, relations inside it live.
     Live(usize),
-    /// The argument of this position as it is.
-    Argument(usize),
     /// Left to [`Target::temporal`].
     Temporal,
 }
