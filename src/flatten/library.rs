@@ -33,17 +33,32 @@ pub struct ClassId(u32);
 /// A class is read when it is asked for: its file first, if it lies in one of its own (MLS
 /// §13.4.1), then its elements, but not those of the classes in it. What is wrong with the text of
 /// a class is known only then: see [`Library::take_problems`].
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Default)]
 pub struct Library {
-    classes: boxcar::Vec<Slot>,
+    classes: Arc<boxcar::Vec<Slot>>,
     roots: IndexMap<Ident, ClassId>,
     /// Top-level names that were looked for and are not loaded.
-    missing: Arc<Mutex<BTreeSet<Ident>>>,
+    missing: Mutex<BTreeSet<Ident>>,
     /// What the classes extend, found so far; another cache as soon as a class is added.
     bases: Arc<Mutex<BaseCache>>,
     /// The classes that were asked for and could not be read.
-    broken: Arc<Mutex<IndexSet<ClassId>>>,
+    broken: Mutex<IndexSet<ClassId>>,
     habits: Habits,
+}
+
+/// A clone shares what was read and what either of them reads later. What was asked for in vain is
+/// its own.
+impl Clone for Library {
+    fn clone(&self) -> Library {
+        Library {
+            classes: self.classes.clone(),
+            roots: self.roots.clone(),
+            missing: Mutex::default(),
+            bases: self.bases.clone(),
+            broken: Mutex::default(),
+            habits: self.habits.clone(),
+        }
+    }
 }
 
 /// The classes that others extend, as far as they were looked up.
@@ -68,7 +83,6 @@ struct Slot {
 #[derive(Debug, Clone, Default)]
 struct Declared {
     prefixes: ElementPrefixes,
-    is_protected: bool,
     constraint: Option<Constraint>,
 }
 
@@ -214,7 +228,7 @@ impl Library {
     }
 
     fn class_mut(&mut self, id: ClassId) -> Option<&mut Class> {
-        self.classes.get_mut(id.0 as usize)?.class.get_mut()
+        Arc::make_mut(&mut self.classes).get_mut(id.0 as usize)?.class.get_mut()
     }
 
     /// A package read again from its own file keeps the classes that lie in files beside it.
@@ -396,7 +410,6 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-#[allow(dead_code, reason = "instantiation is being rewritten to ask these instead of the fields")]
 impl Class {
     /// Its full name.
     pub(super) fn name(&self) -> &Name {
@@ -405,11 +418,6 @@ impl Class {
 
     pub(super) fn definition(&self) -> &Arc<ClassDefinition> {
         &self.definition
-    }
-
-    /// The class around it, `None` at the top level.
-    pub(super) fn parent(&self) -> Option<ClassId> {
-        self.parent
     }
 
     /// The class of this name that is declared in it, or lies in its folder.
@@ -426,22 +434,9 @@ impl Class {
         &self.imports
     }
 
-    pub(super) fn extends(&self) -> &[Extends] {
-        &self.extends
-    }
-
-    pub(super) fn encapsulated(&self) -> bool {
-        self.definition.encapsulated
-    }
-
     /// What stands before its keyword in the class around it; nothing for one in a file of its own.
     pub(super) fn prefixes(&self) -> ElementPrefixes {
         self.declared.prefixes
-    }
-
-    /// Whether it is declared behind `protected`.
-    pub(super) fn is_protected(&self) -> bool {
-        self.declared.is_protected
     }
 
     /// Its `constrainedby`.

@@ -10,7 +10,7 @@ use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
     ClassDefinition, ClassElement, ClassSpecifier, Element, LongClass, Restriction, Section,
-    StoredDefinition, Visibility,
+    StoredDefinition,
 };
 use indexmap::IndexMap;
 use rustc_hash::FxHashMap;
@@ -60,11 +60,10 @@ impl Library {
             self.habits.meet(class.name.first(), habit, span);
         }
         for section in &long.sections {
-            let Section::Elements { visibility, elements } = section else { continue };
-            let is_protected = *visibility == Some(Visibility::Protected);
+            let Section::Elements { elements, .. } = section else { continue };
             for element in elements {
                 match element {
-                    Element::Class(nested) => self.add_nested(id, class, nested, is_protected),
+                    Element::Class(nested) => self.add_nested(id, class, nested),
                     Element::Import(import) => class.imports.push(import.kind.clone()),
                     Element::Extends(extends) => class.extends.push(extends.clone()),
                     Element::Component(_) => {}
@@ -73,13 +72,7 @@ impl Library {
         }
     }
 
-    fn add_nested(
-        &self,
-        id: ClassId,
-        class: &mut Class,
-        nested: &ClassElement,
-        is_protected: bool,
-    ) {
+    fn add_nested(&self, id: ClassId, class: &mut Class, nested: &ClassElement) {
         let Spanned { node: name, span } = nested.class.name;
         if class.children.contains_key(&name) {
             let owner = &class.name;
@@ -89,7 +82,7 @@ impl Library {
         }
         let origin = Origin::Head(nested.class.clone(), None);
         let constraint = nested.constraint.clone();
-        let declared = Declared { prefixes: nested.prefixes, is_protected, constraint };
+        let declared = Declared { prefixes: nested.prefixes, constraint };
         class.children.insert(name, self.push(origin, declared, name, Some(id)));
     }
 
