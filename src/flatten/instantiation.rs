@@ -23,7 +23,9 @@ use crate::eval::Function;
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
-use crate::syntax::ast::{Expression, ExpressionKind, Restriction, Subscript, VariabilityPrefix};
+use crate::syntax::ast::{
+    CausalityPrefix, Expression, ExpressionKind, Restriction, Subscript, VariabilityPrefix,
+};
 use crate::value::Value;
 use indexmap::{IndexMap, IndexSet};
 use rustc_hash::FxHashMap;
@@ -559,6 +561,9 @@ impl<'a> Instantiation<'a> {
         self.count(scalars, declared.span)?;
         let inherited = self.inherited_by(node, declared, &expanded);
         let top_level = self.nodes[node.0].path.is_empty();
+        // Nobody outside can give a protected input its value: it is determined inside.
+        let is_inner_input =
+            inherited.protected && inherited.causality == Some(CausalityPrefix::Input);
         let name: Arc<str> = self.path_of(node, declared.name).into();
         let discrete = base != BaseType::Real;
         let default = if discrete { Variability::Discrete } else { Variability::Continuous };
@@ -567,7 +572,7 @@ impl<'a> Instantiation<'a> {
             base,
             dims,
             variability: inherited.variability.unwrap_or(default).min(default),
-            causality: inherited.causality.filter(|_| top_level),
+            causality: inherited.causality.filter(|_| top_level && !is_inner_input),
             is_final: inherited.is_final,
             protected: inherited.protected,
             evaluate: declared.evaluate,
