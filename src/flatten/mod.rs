@@ -26,6 +26,7 @@ mod instantiation;
 mod library;
 mod lookup;
 mod modification;
+mod overloading;
 mod own_sizes;
 mod print;
 mod resolve;
