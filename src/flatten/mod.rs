@@ -20,6 +20,7 @@ mod equations;
 pub mod errors;
 mod flat_model;
 mod functions;
+mod implicit_ranges;
 mod inner_outer;
 mod instance;
 mod instantiation;
