@@ -36,6 +36,7 @@ mod shapes;
 mod specialization;
 mod types;
 mod variables;
+mod vectorization;
 
 pub use flat_model::*;
 pub use library::{ClassId, Library, LibraryFiles};
