@@ -18,6 +18,10 @@
 //!   random-number package with many long streams and substreams. Operations Research 50(6), 2002,
 //!   1073–1075.
 //!
+//! <a id="griewank-2008"></a>
+//! - **griewank-2008** — A. Griewank, A. Walther: Evaluating derivatives: principles and techniques
+//!   of algorithmic differentiation. 2nd edition, SIAM, 2008.
+//!
 //! <a id="larminie-dicks-2000"></a>
 //! - **larminie-dicks-2000** — J. Larminie, A. Dicks: Fuel cell systems explained. Wiley, 2000.
 //!

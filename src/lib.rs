@@ -48,6 +48,7 @@
 //! - [`syntax`]: the grammar of classes and scripts, trees, printing;
 //! - [`value`], [`eval`]: values and their operations; expressions, statements, functions;
 //! - [`symbolic`], [`graph`]: scalar expressions; matching, sorting, tearing;
+//! - [`bytecode`]: functions that loop and branch, as instructions;
 //! - [`flatten`], [`dae`], [`compile`]: from a class to a program that evaluates itself;
 //! - [`sim`]: integrators, events, trajectories; knows nothing of Modelica;
 //! - [`ga`], [`identify`]: the genetic algorithm; populations of simulations, and what they tell;
@@ -60,6 +61,7 @@ pub mod name;
 pub mod registry;
 pub mod source;
 
+pub mod bytecode;
 pub mod compile;
 pub mod dae;
 pub mod eval;

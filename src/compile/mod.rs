@@ -4,6 +4,7 @@
 pub mod errors;
 mod jacobian;
 mod lower;
+mod memory;
 mod newton;
 mod program;
 mod system;

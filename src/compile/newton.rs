@@ -1,5 +1,6 @@
 //! Newton's method with damping on one torn loop.
 
+use super::memory::Memory;
 use super::program::Newton;
 use super::system::run;
 use crate::sim::Failure;
@@ -12,7 +13,7 @@ const TOLERANCE: f64 = 1e-11;
 const MAX_HALVINGS: usize = 30;
 
 /// Solves a loop from the values its unknowns have.
-pub(super) fn solve_loop(newton: &Newton, r: &mut [f64]) -> Result<(), Failure> {
+pub(super) fn solve_loop(newton: &Newton, r: &mut Memory) -> Result<(), Failure> {
     let n = newton.unknowns.len();
     let (mut matrix, mut step, mut before) = (vec![0.0; n * n], vec![0.0; n], vec![0.0; n]);
     run(&newton.tape, r)?;
@@ -59,7 +60,7 @@ pub(super) fn solve_loop(newton: &Newton, r: &mut [f64]) -> Result<(), Failure> 
     Err(Failure::Newton { block: newton.block })
 }
 
-fn restore(newton: &Newton, values: &[f64], r: &mut [f64]) -> Result<(), Failure> {
+fn restore(newton: &Newton, values: &[f64], r: &mut Memory) -> Result<(), Failure> {
     for (unknown, value) in newton.unknowns.iter().zip(values) {
         r[*unknown as usize] = *value;
     }

@@ -5,6 +5,7 @@ use super::jacobian::differentiate_sequence;
 use super::lower::{Registers, TapeBuilder};
 use super::system::System;
 use super::tape::{Register, Tape};
+use crate::bytecode::{self, Reason};
 use crate::dae::{Assignment, Block, Kind, SortedDae, Variable};
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::fault;
@@ -175,7 +176,7 @@ impl Program {
             iteration.extend(&torn.iteration);
             residuals.extend(torn.residuals.iter().map(|(residual, _)| *residual));
         }
-        let mut registers = Registers::new(n);
+        let mut registers = Registers::new(n, sorted.dae.functions.clone());
         let observed: Vec<VarId> = (0..n as u32)
             .map(VarId)
             .filter(|v| sorted.dae.is_unknown(*v) && sorted.aliases[v.0 as usize].is_none())
@@ -445,6 +446,17 @@ impl Program {
                     },
                 };
                 fault!(DOMAIN_ERROR, "{what} {when}").at(self.place(place >> 8))
+            }
+            Failure::Function { function, at, reason } => {
+                let reason = Reason::ALL.get(usize::from(reason)).copied();
+                let reason = reason.unwrap_or(Reason::NotFinite);
+                let failure = bytecode::Failure { function, at, reason };
+                let (words, span) = self.sorted.dae.functions.explain(&failure);
+                let code = match reason {
+                    Reason::Assertion => ASSERTION_FAILED,
+                    _ => DOMAIN_ERROR,
+                };
+                fault!(code, "{words} ({when})").at(span)
             }
             Failure::Assertion { assertion } => {
                 let assertions = &self.sorted.dae.assertions;

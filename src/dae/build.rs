@@ -35,6 +35,8 @@ pub(super) struct Builder<'a> {
     /// How deep calls of user functions are nested, and how many statements they may still run.
     pub(super) calls: usize,
     pub(super) statements: usize,
+    /// Functions that cannot be expressions.
+    pub(super) functions: super::function::Instances,
     /// Whether initial equations are being read.
     pub(super) initial: bool,
 }
@@ -54,7 +56,8 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         derivatives: FxHashMap::default(),
         relations: FxHashMap::default(),
         calls: 0,
-        statements: super::inline::MAX_STATEMENTS,
+        statements: super::inline::MAX_INLINED,
+        functions: super::function::Instances::default(),
         initial: false,
     };
     builder.declare();
@@ -68,6 +71,7 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         builder.equation(equation, &mut Vec::new())?;
     }
     builder.refuse_algorithms()?;
+    builder.dae.functions = Arc::new(builder.functions.finish());
     Ok(builder.dae)
 }
 

@@ -9,12 +9,13 @@
 //! ```
 //!
 //! Not handled yet, and refused with `not-supported`: when-clauses, `pre`, `sample`, `delay`,
-//! algorithm sections, functions whose loops or returns depend on variables, systems of an index above one, parameters with `fixed = false`.
+//! algorithm sections, systems of an index above one, parameters with `fixed = false`.
 
 mod alias_elimination;
 mod blt;
 mod build;
 pub mod errors;
+mod function;
 mod initial;
 mod inline;
 mod lowering;

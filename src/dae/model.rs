@@ -1,5 +1,6 @@
 //! The system of equations: scalar, first order (MLS appendix B). Data only.
 
+use crate::bytecode::Functions;
 use crate::diag::Diagnostic;
 use crate::flatten::{BaseType, Experiment, Variability};
 use crate::source::Span;
@@ -22,6 +23,8 @@ pub struct Dae {
     pub initial_equations: Vec<Equation>,
     /// What must hold.
     pub assertions: Vec<Assertion>,
+    /// Functions that expressions call.
+    pub functions: Arc<Functions>,
     /// Relations that switch at events only.
     pub relations: Vec<Relation>,
     /// The `experiment` annotation.
@@ -131,7 +134,7 @@ pub struct Relation {
 }
 
 /// Sizes of an argument.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Shape {
     /// A scalar (no sizes) or an array.
     Array(Vec<usize>),

@@ -154,7 +154,7 @@ impl Target for Builder<'_> {
         arguments: Vec<Lowered<Expr>>,
         span: Span,
     ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
-        super::inline::inline(self, function, arguments, span)
+        super::function::call(self, function, arguments, span)
     }
 
     fn operator(

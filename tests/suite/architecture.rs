@@ -14,6 +14,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("diag", &["source"]),
     ("registry", &["diag"]),
     ("symbolic", &["diag"]),
+    ("bytecode", &["symbolic", "source"]),
     ("mat", &["diag"]),
     ("plot", &["diag"]),
     ("sim", &["registry", "diag"]),
@@ -23,12 +24,18 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("eval", &["syntax", "value", "symbolic", "name", "source", "diag"]),
     ("results", &["sim", "mat", "registry", "diag"]),
     ("flatten", &["syntax", "eval", "value", "symbolic", "name", "source", "diag"]),
-    ("dae", &["flatten", "eval", "value", "syntax", "symbolic", "graph", "name", "source", "diag"]),
+    (
+        "dae",
+        &[
+            "bytecode", "flatten", "eval", "value", "syntax", "symbolic", "graph", "name",
+            "source", "diag",
+        ],
+    ),
     (
         "compile",
         &[
-            "dae", "flatten", "eval", "value", "syntax", "symbolic", "graph", "sim", "name",
-            "source", "diag",
+            "bytecode", "dae", "flatten", "eval", "value", "syntax", "symbolic", "graph", "sim",
+            "name", "source", "diag",
         ],
     ),
     ("identify", &["compile", "results", "plot", "sim", "ga", "registry", "name", "diag"]),

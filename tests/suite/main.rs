@@ -8,6 +8,7 @@ mod diagnostics;
 mod flat_class;
 mod flattening;
 mod flattening_properties;
+mod functions;
 mod gapilib;
 mod grammar;
 mod identification;

@@ -28,7 +28,14 @@ impl<T: Target> Lowering<'_, T> {
         {
             return Ok(Lowered::Text(format!("{a}{b}").into()));
         }
-        let (a, b) = (self.array(left)?, self.array(right)?);
+        let a = self.array(left)?;
+        if matches!(operator, BinaryOperator::And | BinaryOperator::Or)
+            && a.dims.is_empty()
+            && self.target.short_circuits()
+        {
+            return self.short_circuit(operator, a.elements[0], right);
+        }
+        let b = self.array(right)?;
         let array = match operator {
             BinaryOperator::Add => self.same_size(Binary::Add, a, b, span)?,
             BinaryOperator::Subtract => self.same_size(Binary::Sub, a, b, span)?,
@@ -59,6 +66,29 @@ impl<T: Target> Lowering<'_, T> {
             BinaryOperator::NotEqual => self.compare(RelationOperator::NotEqual, a, b, span)?,
         };
         Ok(Lowered::Array(array))
+    }
+
+    /// `a and b` as `if a then b else false`, `a or b` as `if a then true else b`.
+    fn short_circuit(
+        &mut self,
+        operator: BinaryOperator,
+        a: T::Scalar,
+        right: &Expression,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let is_and = operator == BinaryOperator::And;
+        if let Some(known) = self.target.as_constant(a) {
+            return match (known != 0.0) == is_and {
+                true => Ok(Lowered::scalar(self.scalar(right)?)),
+                false => Ok(Lowered::scalar(a)),
+            };
+        }
+        let decided = self.target.constant(f64::from(u8::from(!is_and)));
+        let mut branch = self.target.begin_if(a);
+        let first = if is_and { self.scalar(right)? } else { decided };
+        self.target.begin_else(&mut branch, &[first]);
+        let second = if is_and { decided } else { self.scalar(right)? };
+        let values = self.target.end_if(branch, &[second]);
+        Ok(Lowered::scalar(values[0]))
     }
 
     /// The text of an expression made of string literals, `None` for numbers.
