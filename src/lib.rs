@@ -53,10 +53,12 @@
 //! - [`sim`]: integrators, events, trajectories; knows nothing of Modelica;
 //! - [`ga`], [`identify`]: the genetic algorithm; populations of simulations, and what they tell;
 //! - [`mat`], [`results`], [`plot`]: files and figures;
+//! - [`models`]: the Modelica packages that are part of the program;
 //! - [`script`]: sessions and their commands; [`cli`]: the command line, the only door outside.
 
 pub mod bibliography;
 pub mod diag;
+pub mod models;
 pub mod name;
 pub mod registry;
 pub mod source;

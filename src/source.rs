@@ -71,10 +71,11 @@ pub struct Source {
     line_starts: Arc<[u32]>,
 }
 
-/// All texts read so far.
+/// All texts read so far. Clones share them, so that a text can be added where somebody else only
+/// reads.
 #[derive(Debug, Clone, Default)]
 pub struct SourceMap {
-    sources: Vec<Source>,
+    sources: Arc<boxcar::Vec<Source>>,
 }
 
 /// A place for people: both counted from 1, columns in characters.
@@ -88,13 +89,13 @@ pub struct LineColumn {
 
 impl SourceMap {
     /// Adds a text and returns its number.
-    pub fn add(&mut self, name: impl Into<Arc<str>>, text: impl Into<Arc<str>>) -> SourceId {
+    pub fn add(&self, name: impl Into<Arc<str>>, text: impl Into<Arc<str>>) -> SourceId {
         let text: Arc<str> = text.into();
         let starts = std::iter::once(0)
             .chain(text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i as u32 + 1))
             .collect();
-        self.sources.push(Source { name: name.into(), text, line_starts: starts });
-        SourceId(self.sources.len() as u32 - 1)
+        let source = Source { name: name.into(), text, line_starts: starts };
+        SourceId(self.sources.push(source) as u32)
     }
 
     /// The source of this number; `None` for [`SourceId::NONE`].
@@ -104,8 +105,9 @@ impl SourceMap {
 
     /// The number of a text added before under the same name with the same content.
     pub fn find(&self, name: &str, text: &str) -> Option<SourceId> {
-        let found = self.sources.iter().position(|s| &*s.name == name && &*s.text == text)?;
-        Some(SourceId(found as u32))
+        let mut sources = self.sources.iter();
+        let (at, _) = sources.find(|(_, source)| &*source.name == name && &*source.text == text)?;
+        Some(SourceId(at as u32))
     }
 
     /// Line and column of the first byte of a span.

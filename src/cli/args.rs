@@ -114,8 +114,8 @@ Examples:
 
 What the command line does not say comes from the model's experiment annotation.")]
 pub(super) struct SimulateArgs {
-    /// Modelica files, or folders with packages
-    #[arg(required = true, value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    /// Modelica files, or folders with packages; what is found by name need not be given
+    #[arg(value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
     /// The class to simulate; it may carry a modification: 'M(p = 2)'
     #[arg(long, value_name = "CLASS")]
@@ -148,10 +148,11 @@ pub(super) struct SimulateArgs {
 #[command(after_help = "\
 Examples:
   gapi check models
-  gapi check models --model CaseStudies.PolarizationCurve")]
+  gapi check models --model CaseStudies.PolarizationCurve
+  gapi check --library ~/libraries --model Modelica.Blocks.Examples.PID_Controller")]
 pub(super) struct CheckArgs {
     /// Modelica files, or folders with packages
-    #[arg(required = true, value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    #[arg(required_unless_present = "model", value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
     /// The class to check as a model
     #[arg(long, value_name = "CLASS")]
@@ -164,8 +165,8 @@ pub(super) struct CheckArgs {
 Example:
   gapi flatten models --model CaseStudies.PolarizationCurve")]
 pub(super) struct FlattenArgs {
-    /// Modelica files, or folders with packages
-    #[arg(required = true, value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    /// Modelica files, or folders with packages; what is found by name need not be given
+    #[arg(value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
     /// The class to flatten
     #[arg(long, value_name = "CLASS")]

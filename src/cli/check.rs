@@ -2,42 +2,41 @@
 
 use super::args::{CheckArgs, FlattenArgs, Global};
 use super::session;
+use crate::name::Name;
 use crate::script::{Session, checking, simulation};
 use std::process::ExitCode;
 
 /// Checks all models of the files, or one down to its sorted equations.
 pub(super) fn check(arguments: &CheckArgs, global: &Global) -> ExitCode {
-    let mut session = match session::with_files(global, &arguments.files) {
+    let (mut session, loaded) = match session::with_files(global, &arguments.files) {
         Ok(session) => session,
         Err(code) => return code,
     };
     match &arguments.model {
         Some(model) => check_one(&mut session, model),
-        None => check_all(&mut session),
+        None => check_all(&mut session, &loaded),
     }
 }
 
 fn check_one(session: &mut Session, model: &str) -> ExitCode {
     match simulation::translate(session, model) {
         Ok(translated) => {
-            session.print(&checking::report(&translated));
+            let report = checking::report(session, &translated);
+            session.print(&report);
             ExitCode::SUCCESS
         }
         Err(errors) => session::failed(session, errors),
     }
 }
 
-fn check_all(session: &mut Session) -> ExitCode {
-    let (models, classes) = checking::models(session);
+fn check_all(session: &mut Session, loaded: &[Name]) -> ExitCode {
+    let (models, classes) = checking::models(session, loaded);
     let mut wrong = 0;
     for model in &models {
         match simulation::translate(session, &model.to_string()) {
             Ok(translated) => {
-                let report = checking::report(&translated);
-                let counts: Vec<&str> =
-                    report.lines().skip(1).take_while(|line| line.starts_with("  ")).collect();
-                let counts: Vec<&str> = counts.into_iter().map(str::trim).collect();
-                session.print(&format!("{model}: {}\n", counts.join(", ")));
+                let summary = checking::summary(session, &translated);
+                session.print(&format!("{model}: {summary}\n"));
             }
             Err(errors) => {
                 wrong += 1;
@@ -53,7 +52,7 @@ fn check_all(session: &mut Session) -> ExitCode {
 /// Prints a model as flat Modelica.
 pub(super) fn flatten(arguments: &FlattenArgs, global: &Global) -> ExitCode {
     let mut session = match session::with_files(global, &arguments.files) {
-        Ok(session) => session,
+        Ok((session, _)) => session,
         Err(code) => return code,
     };
     match checking::flat_model(&mut session, &arguments.model) {

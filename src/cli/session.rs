@@ -4,6 +4,7 @@ use super::args::Global;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use crate::diag::Diagnostic;
+use crate::name::Name;
 use crate::script::Session;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -17,37 +18,34 @@ pub(super) fn open(global: &Global, world: SystemWorld) -> Session {
     session
 }
 
-/// `--library` first, then `MODELICAPATH`, then the models that are shipped with the program.
+/// `--library` first, then `MODELICAPATH`.
 fn library_folders(global: &Global) -> Vec<PathBuf> {
     let mut folders = global.library.clone();
     if let Some(path) = std::env::var_os("MODELICAPATH") {
         folders.extend(std::env::split_paths(&path).filter(|p| !p.as_os_str().is_empty()));
     }
-    folders.extend(shipped_models());
     folders
 }
 
-/// The folder `models` beside the program, or beside a folder that holds the program (as in the
-/// source tree).
-fn shipped_models() -> Option<PathBuf> {
-    let program = std::env::current_exe().ok()?;
-    program.ancestors().skip(1).take(4).map(|folder| folder.join("models")).find(|f| f.is_dir())
-}
-
-/// A session in which these files and folders are loaded.
-pub(super) fn with_files(global: &Global, files: &[PathBuf]) -> Result<Session, ExitCode> {
+/// A session in which these files and folders are loaded, and the names of their classes.
+pub(super) fn with_files(
+    global: &Global,
+    files: &[PathBuf],
+) -> Result<(Session, Vec<Name>), ExitCode> {
     let world = SystemWorld::new(Terminal::new(global.color, false), "results".as_ref(), None);
     let world = world.map_err(|error| {
         terminal::eprint(&format!("error: the working directory cannot be read: {error}\n"));
         ExitCode::FAILURE
     })?;
     let mut session = open(global, world);
+    let (mut names, mut errors) = (Vec::new(), Vec::new());
     for file in files {
-        if let Err(errors) = session.load_path(file) {
-            return Err(failed(&mut session, errors));
+        match session.load_path(file) {
+            Ok(loaded) => names.extend(loaded),
+            Err(wrong) => errors.extend(wrong),
         }
     }
-    Ok(session)
+    if errors.is_empty() { Ok((session, names)) } else { Err(failed(&mut session, errors)) }
 }
 
 /// Shows what is wrong.

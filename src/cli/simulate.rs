@@ -16,7 +16,7 @@ const SHOWN: usize = 30;
 /// Simulates and writes the trajectories, or shows the last values.
 pub(super) fn simulate(arguments: &SimulateArgs, global: &Global) -> ExitCode {
     let mut session = match session::with_files(global, &arguments.files) {
-        Ok(session) => session,
+        Ok((session, _)) => session,
         Err(code) => return code,
     };
     match run(&mut session, arguments) {

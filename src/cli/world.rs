@@ -1,7 +1,8 @@
 //! The world of a real run: disk, clock, environment, terminal, Ctrl-C.
 
 use super::terminal::Terminal;
-use crate::script::world::{Progress, Stamp, World};
+use crate::models;
+use crate::script::world::{Files, Progress, Stamp, World};
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -57,9 +58,38 @@ impl SystemWorld {
     }
 }
 
+/// The disk, and the models in the program.
+#[derive(Debug)]
+struct Disk;
+
+impl Files for Disk {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        match models::read(path) {
+            Some(bytes) => Ok(bytes.to_vec()),
+            None => fs::read(path),
+        }
+    }
+
+    fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
+        if let Some(names) = models::list(path) {
+            return Ok(names);
+        }
+        let mut names = Vec::new();
+        for entry in fs::read_dir(path)? {
+            names.push(entry?.file_name().to_string_lossy().into_owned());
+        }
+        names.sort();
+        Ok(names)
+    }
+
+    fn is_file(&self, path: &Path) -> bool {
+        models::read(path).is_some() || path.is_file()
+    }
+}
+
 impl World for SystemWorld {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        fs::read(self.at(path))
+        Disk.read(&self.at(path))
     }
 
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
@@ -77,11 +107,11 @@ impl World for SystemWorld {
     }
 
     fn exists(&self, path: &Path) -> bool {
-        self.at(path).exists()
+        models::read(path).is_some() || models::list(path).is_some() || self.at(path).exists()
     }
 
     fn is_dir(&self, path: &Path) -> bool {
-        self.at(path).is_dir()
+        models::list(path).is_some() || self.at(path).is_dir()
     }
 
     fn stamp(&self, path: &Path) -> Option<Stamp> {
@@ -91,12 +121,11 @@ impl World for SystemWorld {
     }
 
     fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
-        let mut names = Vec::new();
-        for entry in fs::read_dir(self.at(path))? {
-            names.push(entry?.file_name().to_string_lossy().into_owned());
-        }
-        names.sort();
-        Ok(names)
+        Disk.list_dir(&self.at(path))
+    }
+
+    fn files(&self) -> Arc<dyn Files> {
+        Arc::new(Disk)
     }
 
     fn create_dirs(&mut self, path: &Path) -> io::Result<()> {

@@ -2,6 +2,9 @@
 //! its own [`System`] of it.
 
 pub mod errors;
+mod event_iteration;
+mod events;
+mod history;
 mod jacobian;
 mod lower;
 mod memory;

@@ -1,6 +1,7 @@
 //! A compiled model: immutable, shared by any number of [`System`](super::System)s.
 
 use super::errors::*;
+use super::events::{CompiledRounding, Events, compile_events, linear_in_time};
 use super::jacobian::differentiate_sequence;
 use super::lower::{Registers, TapeBuilder};
 use super::system::System;
@@ -12,7 +13,7 @@ use crate::fault;
 use crate::flatten::{BaseType, Experiment, Variability};
 use crate::sim::{Failure, Pattern, SimError, SimErrorKind};
 use crate::source::Span;
-use crate::symbolic::{Expr, Pool, VarId, function, linear_in};
+use crate::symbolic::{Expr, Pool, VarId, function};
 use crate::syntax::ast::CausalityPrefix;
 use rustc_hash::FxHashSet;
 use std::collections::BTreeMap;
@@ -144,6 +145,8 @@ pub struct Program {
     pub(super) parameter_tapes: Vec<(VarId, Tape)>,
     /// Start value of every unknown that has one.
     pub(super) starts: Vec<(VarId, Tape)>,
+    /// Parameters that the initial system determines.
+    pub(super) solved: Vec<VarId>,
     pub(super) nominals: Vec<(VarId, Tape, Register)>,
     pub(super) initial_steps: Vec<Step>,
     pub(super) steps: Vec<Step>,
@@ -158,6 +161,7 @@ pub struct Program {
     pub(super) crossings: Outputs,
     pub(super) observe: Outputs,
     pub(super) assertions: Vec<(usize, Outputs)>,
+    pub(super) events: Events,
 }
 
 impl Program {
@@ -179,13 +183,20 @@ impl Program {
         let mut registers = Registers::new(n, sorted.dae.functions.clone());
         let observed: Vec<VarId> = (0..n as u32)
             .map(VarId)
-            .filter(|v| sorted.dae.is_unknown(*v) && sorted.aliases[v.0 as usize].is_none())
+            .filter(|v| sorted.dae.is_solved_for(*v) && sorted.aliases[v.0 as usize].is_none())
             .collect();
         let mut next = n as u32;
         let mut pool = std::mem::take(&mut sorted.dae.pool);
         let steps = compile_steps(&mut pool, &mut registers, &sorted.blocks, &mut next);
         let initial_steps =
             compile_steps(&mut pool, &mut registers, &sorted.initial_blocks, &mut next);
+        let mut event_steps =
+            compile_steps(&mut pool, &mut registers, &sorted.event_blocks, &mut next);
+        for step in &mut event_steps {
+            if let Step::Solve(newton) = step {
+                newton.block += sorted.blocks.len() as u32;
+            }
+        }
 
         let mut outputs: Vec<Expr> = Vec::new();
         for state in &sorted.states {
@@ -225,7 +236,7 @@ impl Program {
         let mut rests = Vec::new();
         for relation in &sorted.dae.relations {
             let difference = pool.sub(relation.left, relation.right);
-            let time = time_relation(&mut pool, &sorted, difference);
+            let time = linear_in_time(&mut pool, &sorted, difference);
             match time {
                 None => differences.push(difference),
                 Some((_, rest)) => rests.push((relations.len(), rest)),
@@ -238,10 +249,29 @@ impl Program {
             let sides = [relation.left, relation.right];
             relation_sides.push(compile_outputs(&pool, &mut registers, &[], &sides));
         }
+        let mut roundings = Vec::new();
+        for rounding in &sorted.dae.events.roundings {
+            let time = linear_in_time(&mut pool, &sorted, rounding.argument);
+            match time {
+                None => {
+                    let value = pool.variable(rounding.variable);
+                    let above = pool.sub(rounding.argument, value);
+                    let one = pool.constant(1.0);
+                    differences.extend([above, pool.sub(above, one)]);
+                }
+                Some((_, rest)) => rests.push((relations.len() + roundings.len(), rest)),
+            }
+            let time = time.map(|(slope, _)| (slope, 0));
+            roundings.push(CompiledRounding { register: rounding.variable.0, time });
+        }
         let rest_expressions: Vec<Expr> = rests.iter().map(|(_, rest)| *rest).collect();
         let time_rests = compile_outputs(&pool, &mut registers, &[], &rest_expressions);
         for ((at, _), register) in rests.iter().zip(&time_rests.outputs) {
-            if let Some(time) = &mut relations[*at].time {
+            let time = match at.checked_sub(relations.len()) {
+                None => &mut relations[*at].time,
+                Some(at) => &mut roundings[at].time,
+            };
+            if let Some(time) = time {
                 time.1 = *register;
             }
         }
@@ -260,7 +290,10 @@ impl Program {
             })
             .collect();
 
-        let base = sorted.dae.equations.len() + sorted.dae.initial_equations.len();
+        let mut events = compile_events(&pool, &mut registers, &sorted, &sequence);
+        events.steps = event_steps;
+        events.roundings = roundings;
+        let base = number_of_equations(&sorted);
         let mut parameter_tapes = Vec::new();
         for parameter in &sorted.parameters {
             if let Some(binding) = sorted.dae.variable(*parameter).binding {
@@ -270,11 +303,15 @@ impl Program {
                 parameter_tapes.push((*parameter, builder.finish()));
             }
         }
+        let kinds = sorted.dae.variables.iter().map(|v| v.kind);
+        let solved = (0u32..).map(VarId).zip(kinds).filter(|(_, k)| *k == Kind::Solved);
+        let solved = solved.map(|(v, _)| v).collect();
         let mut starts = Vec::new();
         let mut nominals = Vec::new();
         for position in 0..n as u32 {
             let variable = sorted.dae.variable(VarId(position));
-            if !sorted.dae.is_unknown(VarId(position)) {
+            let id = VarId(position);
+            if !sorted.dae.is_solved_for(id) && variable.kind != Kind::Solved {
                 continue;
             }
             if let Some(start) = variable.start {
@@ -302,6 +339,7 @@ impl Program {
             observed,
             parameter_tapes,
             starts,
+            solved,
             nominals,
             initial_steps,
             steps,
@@ -314,6 +352,7 @@ impl Program {
             crossings,
             observe,
             assertions,
+            events,
         };
         program.fill_defaults();
         Ok(Arc::new(program))
@@ -459,8 +498,9 @@ impl Program {
                 fault!(code, "{words} ({when})").at(span)
             }
             Failure::Assertion { assertion } => {
-                let assertions = &self.sorted.dae.assertions;
-                match assertions.get(assertion as usize) {
+                let dae = &self.sorted.dae;
+                let mut all = dae.assertions.iter().chain(&dae.events.assertions);
+                match all.nth(assertion as usize) {
                     Some(failed) => {
                         fault!(ASSERTION_FAILED, "{} ({when})", failed.message).at(failed.span)
                     }
@@ -475,21 +515,37 @@ impl Program {
             Failure::Initialization { block } => {
                 self.explain_block(block, when, INITIALIZATION_FAILED)
             }
-            Failure::EventIteration => fault!(
-                SIMULATION_FAILED,
-                "event iteration of `{}` does not end {when}",
-                self.name()
-            )
-            .at(self.first_span()),
+            Failure::EventIteration { variable } => self.explain_iteration(variable, when),
         }
     }
 
-    fn explain_block(&self, block: u32, when: &str, code: crate::diag::Code) -> Diagnostic {
-        let blocks = match code == INITIALIZATION_FAILED {
-            true => &self.sorted.initial_blocks,
-            false => &self.sorted.blocks,
+    fn explain_iteration(&self, variable: u32, when: &str) -> Diagnostic {
+        let dae = &self.sorted.dae;
+        let (relations, roundings) = (dae.relations.iter(), dae.events.roundings.iter());
+        let mut frozen = relations.map(|r| (r.variable, r.span));
+        let switching = frozen
+            .find(|(v, _)| v.0 == variable)
+            .or_else(|| roundings.map(|r| (r.variable, r.span)).find(|(v, _)| v.0 == variable));
+        let (what, span) = match (switching, dae.variables.get(variable as usize)) {
+            (Some((_, span)), _) => ("a relation".to_owned(), span),
+            (None, Some(v)) if v.name.starts_with('$') => ("a condition".to_owned(), v.span),
+            (None, Some(v)) => (format!("`{}`", v.name), v.span),
+            (None, None) => ("a discrete variable".to_owned(), self.first_span()),
         };
-        let Some(Block::Loop(torn)) = blocks.get(block as usize) else {
+        fault!(SIMULATION_FAILED, "event iteration does not end {when}: {what} keeps changing";
+            help: "use `pre(…)` where a variable depends on itself, or a hysteresis")
+        .labelled(span, "keeps changing")
+    }
+
+    fn explain_block(&self, block: u32, when: &str, code: crate::diag::Code) -> Diagnostic {
+        let block = block as usize;
+        let sorted = &self.sorted;
+        let found = match (code == INITIALIZATION_FAILED, block.checked_sub(sorted.blocks.len())) {
+            (true, _) => sorted.initial_blocks.get(block),
+            (false, None) => sorted.blocks.get(block),
+            (false, Some(at_events)) => sorted.event_blocks.get(at_events),
+        };
+        let Some(Block::Loop(torn)) = found else {
             return fault!(code, "an algebraic loop of `{}` did not converge {when}", self.name())
                 .at(self.first_span());
         };
@@ -504,13 +560,13 @@ impl Program {
         .at(self.place(equation))
     }
 
-    /// Where an origin is written: equations, initial equations, then variables.
+    /// Where an origin is written: equations, initial equations, those of events, then variables.
     fn place(&self, origin: u32) -> Span {
         let dae = &self.sorted.dae;
-        let mut spans = dae.equations.iter().chain(&dae.initial_equations).map(|e| e.span);
+        let equations = dae.equations.iter().chain(&dae.initial_equations);
+        let mut spans = equations.chain(&dae.events.equations).map(|e| e.span);
         let declared = || {
-            let base = dae.equations.len() + dae.initial_equations.len();
-            let position = (origin as usize).checked_sub(base)?;
+            let position = (origin as usize).checked_sub(number_of_equations(&self.sorted))?;
             dae.variables.get(position).map(|v| v.span)
         };
         spans.nth(origin as usize).or_else(declared).unwrap_or(Span::NONE)
@@ -524,26 +580,49 @@ impl Program {
         }
     }
 
-    /// Everything that variables of [`Program::variables`] are computed from.
+    /// Everything that variables of [`Program::variables`] are computed from, what relations
+    /// compare included.
     fn dependencies(&self, variables: &[usize]) -> FxHashSet<VarId> {
-        let pool = &self.sorted.dae.pool;
+        let dae = &self.sorted.dae;
         let wanted: FxHashSet<VarId> = variables
             .iter()
             .filter_map(|at| self.variables.get(*at))
             .map(|info| self.resolve(info.variable).0)
             .collect();
-        close(pool, &self.sequence, wanted)
+        let mut needed = close(&dae.pool, &self.sequence, wanted);
+        loop {
+            let mut wanted = needed.clone();
+            for relation in dae.relations.iter().filter(|r| needed.contains(&r.variable)) {
+                wanted.extend(dae.pool.variables(relation.left));
+                wanted.extend(dae.pool.variables(relation.right));
+            }
+            for rounding in dae.events.roundings.iter().filter(|r| needed.contains(&r.variable)) {
+                wanted.extend(dae.pool.variables(rounding.argument));
+            }
+            let before = needed.len();
+            needed = close(&dae.pool, &self.sequence, wanted);
+            if needed.len() == before {
+                return needed;
+            }
+        }
     }
 
-    /// Whether states or iteration variables are needed to compute these variables: if not, they
-    /// are functions of time and parameters alone.
+    /// Whether states, iteration variables or values of events are needed to compute these
+    /// variables: if not, they are functions of time and parameters alone.
     pub fn needs_states(&self, variables: &[usize]) -> bool {
         let needed = self.dependencies(variables);
-        self.sorted.states.iter().chain(&self.iteration).any(|v| needed.contains(v))
+        let remembered = |v: &VarId| {
+            matches!(
+                self.sorted.dae.variable(*v).kind,
+                Kind::Discrete | Kind::Previous(_) | Kind::Signal | Kind::Solved | Kind::Delayed
+            )
+        };
+        let found = |v: &VarId| needed.contains(v);
+        needed.iter().any(remembered) || self.sorted.states.iter().chain(&self.iteration).any(found)
     }
 
     /// Whether a variable is computed from one of these parameters, other parameters between them
-    /// included. States and iteration variables count as depending on every parameter.
+    /// included. States, iteration variables and values of events count as depending on every parameter.
     pub fn depends_on_parameters(&self, variable: usize, parameters: &[usize]) -> bool {
         if parameters.is_empty() {
             return false;
@@ -560,18 +639,14 @@ impl Program {
             }
         }
         let of = |at: &usize| self.parameters.get(*at).map(|p| p.variable);
-        // A frozen relation may hide a parameter in its sides.
-        let frozen = self.sorted.dae.relations.iter().filter(|r| needed.contains(&r.variable));
-        let hidden: FxHashSet<VarId> = frozen
-            .flat_map(|r| {
-                let mut all = self.sorted.dae.pool.variables(r.left);
-                all.extend(self.sorted.dae.pool.variables(r.right));
-                all
-            })
-            .collect();
-        let hidden = close(&self.sorted.dae.pool, &self.sequence, hidden);
-        parameters.iter().filter_map(of).any(|p| needed.contains(&p) || hidden.contains(&p))
+        parameters.iter().filter_map(of).any(|p| needed.contains(&p))
     }
+}
+
+/// Equations, initial equations and those of events.
+fn number_of_equations(sorted: &SortedDae) -> usize {
+    let dae = &sorted.dae;
+    dae.equations.len() + dae.initial_equations.len() + dae.events.equations.len()
 }
 
 /// A set of variables with all that they are computed from.
@@ -685,19 +760,6 @@ pub(super) fn resolved(pool: &mut Pool, sorted: &SortedDae, variable: VarId) -> 
     }
 }
 
-/// `factor * time + rest` with a known factor and a rest of parameters.
-fn time_relation(pool: &mut Pool, sorted: &SortedDae, difference: Expr) -> Option<(f64, Expr)> {
-    let parametric = |v: &VarId| {
-        *v == VarId(0) || matches!(sorted.dae.variable(*v).kind, Kind::Parameter { .. })
-    };
-    if !pool.variables(difference).iter().all(parametric) {
-        return None;
-    }
-    let linear = linear_in(pool, difference, VarId(0))?;
-    let factor = pool.as_constant(linear.coefficient)?;
-    (factor != 0.0).then_some((factor, linear.rest))
-}
-
 /// Entries of a Jacobian by columns.
 fn by_columns(rows: &[BTreeMap<usize, Expr>], n: usize) -> (Pattern, Vec<Expr>) {
     let mut columns: Vec<Vec<(usize, Expr)>> = vec![Vec::new(); n];
@@ -742,9 +804,12 @@ fn variables(sorted: &SortedDae, observed: &[VarId]) -> Vec<VariableInfo> {
         let access = match v.kind {
             Kind::Time => Access::Time,
             Kind::Constant(value) => Access::Constant(value),
-            Kind::Parameter { .. } => Access::Parameter,
-            Kind::Frozen | Kind::Text => continue,
-            Kind::Unknown | Kind::Derivative(_) => {
+            Kind::Parameter { .. } | Kind::Solved => Access::Parameter,
+            Kind::Frozen | Kind::Text | Kind::Previous(_) | Kind::Signal | Kind::Delayed => {
+                continue;
+            }
+            Kind::Discrete if v.name.starts_with('$') => continue,
+            Kind::Unknown | Kind::Derivative(_) | Kind::Discrete => {
                 let of = alias.map_or(id, |alias| alias.of);
                 let column = observed.binary_search(&of);
                 Access::Observed {

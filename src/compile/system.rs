@@ -1,5 +1,7 @@
 //! One running instance of a program: its registers, parameter values and frozen relations.
 
+use super::event_iteration::{Clock, Stage, same_time};
+use super::history::History;
 use super::memory::Memory;
 use super::newton::solve_loop;
 use super::program::{Access, Outputs, Program, Step, compile_outputs, resolved};
@@ -10,20 +12,30 @@ use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern};
 use crate::symbolic::{Expr, VarId, function};
 use std::sync::Arc;
 
-/// Most rounds of an event iteration.
-const MAX_ROUNDS: usize = 100;
-
 /// A system that one thread simulates.
 #[derive(Debug, Clone)]
 pub struct System {
-    program: Arc<Program>,
-    registers: Memory,
+    pub(super) program: Arc<Program>,
+    pub(super) registers: Memory,
     /// Values set from outside, by number of the parameter.
     set: Vec<Option<f64>>,
     observed: Option<Outputs>,
     /// Times at which relations on time switch.
     switches: Vec<Option<f64>>,
     nominal: Vec<f64>,
+    /// The samples.
+    pub(super) clocks: Vec<Clock>,
+    /// Values that discrete variables had before an event.
+    pub(super) before: Vec<f64>,
+    /// Values that variables of discrete loops had in the pass before.
+    pub(super) lagged: Vec<f64>,
+    /// The past of delayed expressions, and by how much they are delayed.
+    pub(super) histories: Vec<History>,
+    pub(super) delay_times: Vec<f64>,
+    /// Whether samples are true that an event at the same time makes false.
+    pub(super) sampled: bool,
+    /// The variable that changed last in an event iteration.
+    pub(super) unstable: u32,
 }
 
 impl System {
@@ -36,6 +48,13 @@ impl System {
             observed: None,
             switches: vec![None; program.relations.len()],
             nominal: vec![1.0; n],
+            clocks: Vec::with_capacity(program.events.samples.len()),
+            before: vec![0.0; program.events.discrete.len()],
+            lagged: vec![0.0; program.events.lagged.len()],
+            histories: vec![History::default(); program.events.delays.len()],
+            delay_times: vec![0.0; program.events.delays.len()],
+            sampled: false,
+            unstable: 0,
             program,
         };
         system.evaluate_nominals();
@@ -107,6 +126,9 @@ impl System {
         for (variable, value) in states.chain(&self.program.iteration).zip(y) {
             self.registers[variable.0 as usize] = *value;
         }
+        if !self.histories.is_empty() {
+            self.load_delayed(t);
+        }
     }
 
     fn unload(&self, y: &mut [f64]) {
@@ -117,7 +139,7 @@ impl System {
     }
 
     /// A domain failure where an assertion does not hold is the assertion's.
-    fn refine(&mut self, failure: Failure) -> Failure {
+    pub(super) fn refine(&mut self, failure: Failure) -> Failure {
         match failure {
             Failure::Domain { .. } | Failure::Function { .. } => self.violated().unwrap_or(failure),
             other => other,
@@ -192,14 +214,14 @@ impl System {
     }
 
     /// Evaluates every relation at the values of the variables; whether one changed.
-    fn update_relations(&mut self, t: f64) -> bool {
+    pub(super) fn update_relations(&mut self, t: f64) -> bool {
         let program = self.program.clone();
-        let mut changed = false;
+        let mut changed = self.update_roundings(t);
         let sides = program.relation_sides.iter().zip(&self.switches);
         for (relation, (sides, switch)) in program.relations.iter().zip(sides) {
             let holds = match (relation.time, switch) {
                 (Some((factor, _)), Some(switch)) => {
-                    let near = (t - switch).abs() <= 1e-12 * t.abs().max(switch.abs());
+                    let near = same_time(t, *switch);
                     // At the instant itself the value is that behind it.
                     let difference = if near { factor } else { factor * (t - switch) };
                     relation.operator.holds(difference, 0.0)
@@ -215,15 +237,24 @@ impl System {
             };
             let value = f64::from(u8::from(holds));
             let slot = &mut self.registers[relation.register as usize];
-            changed |= *slot != value;
+            if *slot != value {
+                changed = true;
+                self.unstable = relation.register;
+            }
             *slot = value;
         }
         changed
     }
 
-    fn solve(&mut self, initial: bool) -> Result<(), Failure> {
+    /// Solves the blocks of a stage one after another.
+    pub(super) fn solve(&mut self, stage: Stage) -> Result<(), Failure> {
         let program = self.program.clone();
-        let steps = if initial { &program.initial_steps } else { &program.steps };
+        let steps = match stage {
+            Stage::Initial => &program.initial_steps,
+            Stage::Event if !program.events.steps.is_empty() => &program.events.steps,
+            Stage::Event | Stage::Continuous => &program.steps,
+        };
+        let initial = stage == Stage::Initial;
         for step in steps {
             match step {
                 Step::Run(tape) => run(tape, &mut self.registers)?,
@@ -238,23 +269,6 @@ impl System {
             }
         }
         Ok(())
-    }
-
-    /// Solves and updates relations until they stay as they are (MLS §8.6).
-    fn iterate(&mut self, t: f64, initial: bool) -> Result<bool, Failure> {
-        let mut any = false;
-        for round in 0..MAX_ROUNDS {
-            if let Err(failure) = self.solve(initial) {
-                let failure = self.refine(failure);
-                return Err(failure);
-            }
-            let changed = self.update_relations(t);
-            any |= changed;
-            if !changed && (round > 0 || !any) {
-                return Ok(any);
-            }
-        }
-        Err(Failure::EventIteration)
     }
 }
 
@@ -288,7 +302,7 @@ impl DaeSystem for System {
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         let program = self.program.clone();
         self.registers[0] = t;
-        for variable in &program.observed {
+        for variable in program.observed.iter().chain(&program.solved) {
             self.registers[variable.0 as usize] = 0.0;
         }
         for relation in &program.relations {
@@ -298,8 +312,21 @@ impl DaeSystem for System {
         for (_, tape) in &program.starts {
             run(tape, &mut self.registers)?;
         }
+        for previous in &program.events.previous {
+            self.registers[previous.register as usize] = self.registers[previous.of.0 as usize];
+        }
+        for signal in program.events.samples.iter().chain(&program.events.terminal) {
+            self.registers[signal.0 as usize] = 0.0;
+        }
+        if let Some(initial) = program.events.initial {
+            self.registers[initial.0 as usize] = 1.0;
+        }
         self.update_relations(t);
-        self.iterate(t, true)?;
+        self.settle(t, Stage::Initial)?;
+        self.sampled = false;
+        self.start_clocks(t)?;
+        self.start_histories(t)?;
+        self.iterate_at_start(t)?;
         self.unload(y);
         self.violated().map_or(Ok(()), Err)
     }
@@ -314,15 +341,43 @@ impl DaeSystem for System {
     }
 
     fn next_time_event(&self, t: f64) -> Option<f64> {
-        let later = |time: &f64| *time > t && (time - t) > 1e-12 * t.abs().max(time.abs());
-        self.switches.iter().flatten().copied().filter(later).min_by(f64::total_cmp)
+        let later = |time: &f64| *time > t && !same_time(*time, t);
+        let all = self
+            .switches
+            .iter()
+            .flatten()
+            .copied()
+            .chain(self.scheduled())
+            .chain(self.arriving_jumps());
+        all.filter(later).min_by(f64::total_cmp)
     }
 
     fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
         self.load(t, y);
-        let changed = self.iterate(t, false)?;
+        let outcome = self.event(t)?;
         self.unload(y);
-        Ok(EventOutcome::Continue { y_changed: changed })
+        Ok(outcome)
+    }
+
+    fn remembers(&self) -> bool {
+        !self.histories.is_empty()
+    }
+
+    fn remember(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        self.load(t, y);
+        self.remember_values(t).map_err(|f| self.refine(f))
+    }
+
+    fn longest_step(&self) -> f64 {
+        self.delay_times.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    fn finish(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
+        let Some(terminal) = self.program.events.terminal else { return Ok(false) };
+        self.load(t, y);
+        let changed = self.final_event(t, terminal)?;
+        self.unload(y);
+        Ok(changed)
     }
 
     fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {

@@ -3,6 +3,7 @@
 use super::model::{Dae, Equation, Kind};
 use super::sorted::Alias;
 use crate::symbolic::{Expr, Node, Pool, VarId, substitute};
+use rustc_hash::FxHashMap;
 
 /// Removes alias equations; returns every variable's representative.
 pub(super) fn eliminate_aliases(dae: &mut Dae) -> Vec<Option<Alias>> {
@@ -12,8 +13,8 @@ pub(super) fn eliminate_aliases(dae: &mut Dae) -> Vec<Option<Alias>> {
     for equation in equations {
         match alias(&dae.pool, equation) {
             Some((a, b, negated))
-                if dae.is_unknown(a)
-                    && dae.is_unknown(b)
+                if dae.is_solved_for(a)
+                    && dae.is_solved_for(b)
                     && (dae.variable(a).base == dae.variable(b).base)
                     && sets.join(dae, a, b, negated) => {}
             _ => kept.push(equation),
@@ -76,21 +77,28 @@ impl Sets {
     }
 
     /// Joins two sets; `false` if they were one already. The better representative stays: a
-    /// variable with a derivative, then the one declared first.
+    /// variable that is discrete, then one with a derivative, then the one declared first.
     fn join(&mut self, dae: &Dae, a: VarId, b: VarId, negated: bool) -> bool {
         let ((a, sign_a), (b, sign_b)) = (self.root(a.0), self.root(b.0));
         if a == b {
             return false;
         }
-        let rank = |v: u32| (!has_derivative(dae, VarId(v)), v);
+        let is_discrete = |v: u32| dae.variable(VarId(v)).kind == Kind::Discrete;
+        let rank = |v: u32| (!is_discrete(v), !has_derivative(dae, VarId(v)), v);
         let (keep, drop) = if rank(a) <= rank(b) { (a, b) } else { (b, a) };
         // Two states in one set would need index reduction: the equation stays and is reported.
-        if has_derivative(dae, VarId(drop)) {
+        // Two equations at events for one variable are reported as such.
+        if has_derivative(dae, VarId(drop)) || is_discrete(drop) && assigned_at_events(dae, drop) {
             return false;
         }
         self.parent[drop as usize] = (keep, negated ^ sign_a ^ sign_b);
         true
     }
+}
+
+/// Whether an equation of the events determines a variable.
+fn assigned_at_events(dae: &Dae, v: u32) -> bool {
+    dae.events.equations.iter().any(|e| dae.pool.as_variable(e.left) == Some(VarId(v)))
 }
 
 fn has_derivative(dae: &Dae, v: VarId) -> bool {
@@ -116,7 +124,7 @@ fn merge_attributes(dae: &mut Dae, aliases: &[Option<Alias>]) {
 }
 
 fn rewrite(dae: &mut Dae, aliases: &[Option<Alias>]) {
-    let replacements: Vec<Option<Expr>> = aliases
+    let mut replacements: Vec<Option<Expr>> = aliases
         .iter()
         .map(|alias| {
             let alias = (*alias)?;
@@ -124,6 +132,7 @@ fn rewrite(dae: &mut Dae, aliases: &[Option<Alias>]) {
             Some(if alias.negated { dae.pool.neg(kept) } else { kept })
         })
         .collect();
+    rename_previous(dae, aliases, &mut replacements);
     let pool = &mut dae.pool;
     let mut replace = |e: &mut Expr| {
         *e = substitute(pool, *e, &|v| replacements[v.0 as usize]);
@@ -136,5 +145,28 @@ fn rewrite(dae: &mut Dae, aliases: &[Option<Alias>]) {
     for relation in &mut dae.relations {
         replace(&mut relation.left);
         replace(&mut relation.right);
+    }
+    dae.events.for_each_expression(replace);
+}
+
+/// `pre` of a name that was dropped is `pre` of the variable that stays.
+fn rename_previous(dae: &mut Dae, aliases: &[Option<Alias>], replacements: &mut [Option<Expr>]) {
+    let mut previous: FxHashMap<VarId, VarId> = FxHashMap::default();
+    for position in 0..dae.variables.len() {
+        if let Kind::Previous(of) = dae.variables[position].kind
+            && aliases[of.0 as usize].is_none()
+        {
+            previous.insert(of, VarId(position as u32));
+        }
+    }
+    for (position, replacement) in replacements.iter_mut().enumerate() {
+        let Kind::Previous(of) = dae.variables[position].kind else { continue };
+        let Some(alias) = aliases[of.0 as usize] else { continue };
+        let own = VarId(position as u32);
+        let kept = *previous.entry(alias.of).or_insert(own);
+        let variable = &mut dae.variables[position];
+        variable.kind = if kept == own { Kind::Previous(alias.of) } else { Kind::Signal };
+        let value = dae.pool.variable(kept);
+        *replacement = Some(if alias.negated { dae.pool.neg(value) } else { value });
     }
 }

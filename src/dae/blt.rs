@@ -18,7 +18,8 @@ pub(super) fn sort_blocks(
     let graph = incidence(dae, equations, unknowns);
     let matching = match_equations(&graph);
     if equations.len() != unknowns.len() || !matching.is_perfect() {
-        return Err(report(dae, equations, unknowns, &graph, &matching));
+        let system = format!("`{}`", dae.name);
+        return Err(report(dae, &system, equations, unknowns, &graph, &matching));
     }
     let mut sorted = Vec::new();
     for block in blocks(&graph, &matching) {
@@ -49,7 +50,7 @@ pub(super) fn incidence(dae: &Dae, equations: &[Equation], unknowns: &[VarId]) -
     Bipartite::new(unknowns.len(), rows.collect::<Vec<_>>())
 }
 
-fn solve_block(
+pub(super) fn solve_block(
     dae: &mut Dae,
     equations: &[Equation],
     block: &[usize],
@@ -60,11 +61,8 @@ fn solve_block(
     {
         return Ok(Block::Assignment(Assignment { variable, value, equation }));
     }
-    if let Some(discrete) = members.iter().find(|v| {
-        let variable = dae.variable(**v);
-        variable.variability == crate::flatten::Variability::Discrete
-            || variable.base != crate::flatten::BaseType::Real
-    }) {
+    let is_discrete = |v: &&VarId| dae.variable(**v).base != crate::flatten::BaseType::Real;
+    if let Some(discrete) = members.iter().find(is_discrete) {
         return Err(fault!(
             NOT_SUPPORTED,
             "`{}` is discrete and stands in an algebraic loop",
@@ -102,7 +100,7 @@ fn solve_block(
 }
 
 /// The value of a variable by one equation, if it can be had without dividing by what may be zero.
-fn explicit(dae: &mut Dae, equation: Equation, variable: VarId) -> Option<Expr> {
+pub(super) fn explicit(dae: &mut Dae, equation: Equation, variable: VarId) -> Option<Expr> {
     let pool = &mut dae.pool;
     if pool.as_variable(equation.left) == Some(variable)
         && !pool.depends_on(equation.right, variable)
@@ -132,8 +130,9 @@ fn is_safe(dae: &Dae, divisor: Expr) -> bool {
 }
 
 /// Names the variables and equations that do not fit.
-fn report(
+pub(super) fn report(
     dae: &Dae,
+    system: &str,
     equations: &[Equation],
     unknowns: &[VarId],
     graph: &Bipartite,
@@ -148,15 +147,10 @@ fn report(
     };
     let balanced = equations.len() == unknowns.len();
     let mut fault = match balanced {
-        true => fault!(
-            SINGULAR_SYSTEM,
-            "the equations of `{}` do not determine its variables",
-            dae.name
-        ),
+        true => fault!(SINGULAR_SYSTEM, "the equations of {system} do not determine its variables"),
         false => fault!(
             UNBALANCED_MODEL,
-            "`{}` has {} unknowns but {} equations",
-            dae.name,
+            "{system} has {} unknowns but {} equations",
             unknowns.len(),
             equations.len()
         ),

@@ -1,5 +1,6 @@
 //! A flat model becomes a [`Dae`]: every variable a scalar, every equation a pair of scalars.
 
+use super::algorithm::Execution;
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, PARAMETER_CYCLE, UNRESOLVED_REFERENCE};
 use super::lowering::{Array, Lowered, Lowering, size_fault};
 use super::model::{Assertion, Dae, Equation, Kind, Variable};
@@ -8,8 +9,8 @@ use crate::fault;
 use crate::flatten::{self, BaseType, FlatModel, Variability};
 use crate::source::Span;
 use crate::symbolic::{Expr, Pool, VarId};
-use crate::syntax::ast::{self, EquationKind, Expression, ExpressionKind, StatementKind};
-use rustc_hash::FxHashMap;
+use crate::syntax::ast::{self, EquationKind, Expression, ExpressionKind};
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
 /// Largest number of scalar equations.
@@ -34,11 +35,27 @@ pub(super) struct Builder<'a> {
     pub(super) relations: FxHashMap<(crate::symbolic::RelationOperator, Expr, Expr), VarId>,
     /// How deep calls of user functions are nested, and how many statements they may still run.
     pub(super) calls: usize,
+    pub(super) inlined: usize,
+    /// How many statements of algorithms may still be carried out.
     pub(super) statements: usize,
     /// Functions that cannot be expressions.
     pub(super) functions: super::function::Instances,
     /// Whether initial equations are being read.
     pub(super) initial: bool,
+    /// Whether the body of a when-clause is being read.
+    pub(super) in_when: bool,
+    /// How many branches of if-equations are being read whose conditions are not known.
+    pub(super) branches: usize,
+    /// `pre` of every variable that needs it.
+    pub(super) previous: FxHashMap<VarId, VarId>,
+    /// Discrete variables that hold conditions.
+    pub(super) conditions: FxHashMap<Expr, VarId>,
+    /// What when-clauses and algorithms assign.
+    pub(super) assigned: FxHashSet<VarId>,
+    /// The algorithm in progress.
+    pub(super) execution: Execution,
+    /// More than zero where a reference means the variable, not the value it has in an algorithm.
+    pub(super) raw: usize,
 }
 
 /// The scalar system of a flat model.
@@ -56,21 +73,35 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         derivatives: FxHashMap::default(),
         relations: FxHashMap::default(),
         calls: 0,
-        statements: super::inline::MAX_INLINED,
+        statements: super::inline::MAX_STATEMENTS,
+        inlined: 0,
         functions: super::function::Instances::default(),
         initial: false,
+        in_when: false,
+        branches: 0,
+        previous: FxHashMap::default(),
+        conditions: FxHashMap::default(),
+        assigned: FxHashSet::default(),
+        execution: Execution::default(),
+        raw: 0,
     };
     builder.declare();
+    builder.find_discrete();
     builder.fold_constants()?;
     builder.bindings()?;
     for equation in &flat.equations {
         builder.equation(equation, &mut Vec::new())?;
     }
+    for statements in &flat.algorithms {
+        builder.algorithm(statements)?;
+    }
     builder.initial = true;
     for equation in &flat.initial_equations {
         builder.equation(equation, &mut Vec::new())?;
     }
-    builder.refuse_algorithms()?;
+    for statements in &flat.initial_algorithms {
+        builder.algorithm(statements)?;
+    }
     builder.dae.functions = Arc::new(builder.functions.finish());
     Ok(builder.dae)
 }
@@ -85,23 +116,12 @@ impl<'a> Builder<'a> {
         for variable in self.flat.variables.values() {
             self.first.push(VarId(self.dae.variables.len() as u32));
             for position in 0..variable.len() {
-                self.dae.variables.push(declared(variable, position));
-            }
-        }
-    }
-
-    fn refuse_algorithms(&self) -> Result<(), Diagnostic> {
-        let sections = self.flat.algorithms.iter().chain(&self.flat.initial_algorithms);
-        match sections.flatten().next() {
-            None => Ok(()),
-            Some(statement) => {
-                let what = match statement.kind {
-                    StatementKind::When { .. } => "a when-statement",
-                    _ => "an algorithm section",
-                };
-                Err(fault!(NOT_SUPPORTED, "{what} in a model is not supported yet";
-                    help: "write equations, or move the statements into a function")
-                .at(statement.span))
+                let mut scalar = declared(variable, position);
+                if matches!(variable.base, BaseType::Enumeration(_)) {
+                    // The default is the first literal (MLS §4.9.5).
+                    scalar.start = Some(self.dae.pool.constant(1.0));
+                }
+                self.dae.variables.push(scalar);
             }
         }
     }
@@ -202,14 +222,32 @@ impl<'a> Builder<'a> {
                 }
             }
             if *name == "fixed" && variable.variability == Variability::Parameter {
-                let free = (first..first + variable.len()).any(|i| !self.dae.variables[i].fixed);
-                if free {
+                self.free_parameters(first..first + variable.len(), e.span)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Parameters with `fixed = false` are found by the initial system; a binding is a start value.
+    fn free_parameters(
+        &mut self,
+        scalars: std::ops::Range<usize>,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        for scalar in &mut self.dae.variables[scalars] {
+            match scalar.kind {
+                _ if scalar.fixed => {}
+                Kind::Parameter { .. } => {
+                    scalar.kind = Kind::Solved;
+                    scalar.start = scalar.start.or(scalar.binding.take());
+                }
+                _ => {
+                    let name = &scalar.name;
                     return Err(fault!(
                         NOT_SUPPORTED,
-                        "parameter `{}` with `fixed = false` is not supported yet",
-                        variable.name
+                        "`{name}` shaped the model and cannot have `fixed = false`"
                     )
-                    .at(e.span));
+                    .at(span));
                 }
             }
         }
@@ -254,9 +292,7 @@ impl<'a> Builder<'a> {
                 Ok(())
             }
             EquationKind::Call(call) => self.call_equation(call, loops),
-            EquationKind::When { .. } => {
-                Err(fault!(NOT_SUPPORTED, "when-equations are not supported yet").at(equation.span))
-            }
+            EquationKind::When { branches } => self.when_equation(branches, equation.span, loops),
             EquationKind::Connect { .. } => {
                 Err(fault!(NOT_SUPPORTED, "a connection is left in the flat model")
                     .at(equation.span))
@@ -272,7 +308,7 @@ impl<'a> Builder<'a> {
     }
 
     /// The scalar equations of `left = right`.
-    fn equal(
+    pub(super) fn equal(
         &mut self,
         left: &Expression,
         right: &Expression,
@@ -282,8 +318,10 @@ impl<'a> Builder<'a> {
         if let ExpressionKind::Tuple(targets) = &left.kind {
             return self.tuple_equal(targets, right, span, loops);
         }
+        let live = self.in_when;
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.to_vec();
+        lowering.live = live;
         let (a, b) = (lowering.lower(left)?, lowering.lower(right)?);
         pairs(&a, &b, span)
     }
@@ -299,8 +337,10 @@ impl<'a> Builder<'a> {
         let ExpressionKind::Call { function, arguments } = &right.kind else {
             return Err(fault!(ARRAY_MISMATCH, "an output list needs a function call").at(span));
         };
+        let live = self.in_when;
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.to_vec();
+        lowering.live = live;
         let name = function.name();
         let user = super::lowering::Target::function(lowering.target, &name).ok_or_else(|| {
             fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`").at(function.span)
@@ -360,11 +400,13 @@ impl<'a> Builder<'a> {
                 false => self.if_equation(rest, otherwise, span, loops),
             };
         }
+        self.branches += 1;
         let asserted = self.dae.assertions.len();
         let first = self.collect(body, loops)?;
         self.guard_assertions(asserted, condition);
         let asserted = self.dae.assertions.len();
         let second = self.if_equation(rest, otherwise, span, loops)?;
+        self.branches -= 1;
         let not = self.dae.pool.not(condition);
         self.guard_assertions(asserted, not);
         if first.len() != second.len() {
@@ -390,7 +432,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Assertions in a branch hold only where it is taken.
-    fn guard_assertions(&mut self, from: usize, condition: Expr) {
+    pub(super) fn guard_assertions(&mut self, from: usize, condition: Expr) {
         let not = self.dae.pool.not(condition);
         for assertion in &mut self.dae.assertions[from..] {
             assertion.condition = self.dae.pool.or(not, assertion.condition);
@@ -434,7 +476,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn assertion(
+    pub(super) fn assertion(
         &mut self,
         arguments: &ast::Arguments,
         span: Span,
@@ -509,7 +551,8 @@ fn declared(variable: &flatten::Variable, position: usize) -> Variable {
         (_, Variability::Constant | Variability::Parameter) => {
             Kind::Parameter { tunable: variable.is_tunable() }
         }
-        _ => Kind::Unknown,
+        (BaseType::Real, _) => Kind::Unknown,
+        _ => Kind::Discrete,
     };
     Variable {
         name,

@@ -14,7 +14,7 @@ crate::codes! {
     /// Something of the language that the compiler cannot treat.
     NOT_SUPPORTED = "not-supported":
         "## What it means\nThe model uses a part of the language that this program does not treat in equations. It refuses rather than giving wrong numbers.\n\n\
-         ## Example\n`when sample(0, 1) then … end when;`\n\n\
+         ## Example\n`y = spatialDistribution(…);`\n\n\
          ## What to do\nWrite the model without it; the message names the place and the reason.",
     /// A parameter that depends on itself.
     PARAMETER_CYCLE = "parameter-cycle":

@@ -55,7 +55,7 @@ pub(super) fn inline(
         return refuse("is impure and cannot be used in equations");
     }
     if builder.calls >= MAX_CALLS {
-        builder.statements = 0;
+        builder.inlined = 0;
         return refuse("calls itself without an end that is known when compiling");
     }
     builder.calls += 1;
@@ -149,8 +149,8 @@ impl Call<'_, '_> {
     }
 
     fn statement(&mut self, s: &Statement, loops: &mut Loops) -> Result<Flow, Diagnostic> {
-        self.builder.statements = self.builder.statements.saturating_sub(1);
-        if self.builder.statements == 0 {
+        self.builder.inlined = self.builder.inlined.saturating_sub(1);
+        if self.builder.inlined == 0 {
             return Err(fault!(
                 NOT_SUPPORTED,
                 "functions in equations run more than {MAX_STATEMENTS} statements"
@@ -189,8 +189,8 @@ impl Call<'_, '_> {
                         Flow::Break => break,
                         Flow::Return => return Ok(Flow::Return),
                     }
-                    self.builder.statements = self.builder.statements.saturating_sub(1);
-                    if self.builder.statements == 0 {
+                    self.builder.inlined = self.builder.inlined.saturating_sub(1);
+                    if self.builder.inlined == 0 {
                         return Err(fault!(NOT_SUPPORTED, "this loop has no end").at(s.span));
                     }
                 }

@@ -4,27 +4,40 @@
 //! build                every variable a scalar, every relation outside noEvent frozen
 //! order_parameters     bindings in order of dependence
 //! eliminate_aliases    a = b and a = -b become names
+//! separate_discrete    equations of discrete variables become assignments at events
 //! sort_blocks          matching, strongly connected components, tearing
+//! sort_events          the same for the system at events, discrete equations included
 //! sort_initial         the same for the system at the start
 //! ```
 //!
-//! Not handled yet, and refused with `not-supported`: when-clauses, `pre`, `sample`, `delay`,
-//! algorithm sections, systems of an index above one, parameters with `fixed = false`.
+//! Between events the blocks give derivatives and algebraic variables; discrete variables and
+//! relations keep their values. At events the whole system is solved, with `pre(v)` known, until
+//! `pre(v) = v` (MLS §8.5).
+//!
+//! Not handled yet, and refused with `not-supported`: `delay` by a time that varies, `spatialDistribution`,
+//! statements whose loops depend on variables, systems of an index above one, parameters with `fixed = false`.
 
+mod algorithm;
 mod alias_elimination;
 mod blt;
 mod build;
+mod discrete;
 pub mod errors;
+mod events;
 mod function;
 mod initial;
 mod inline;
 mod lowering;
+mod mixed;
 mod model;
 mod parameters;
 mod report;
 mod sorted;
 mod symbolic_target;
+mod temporal;
+mod when;
 
+pub use events::*;
 pub use model::*;
 pub use report::report;
 pub use sorted::*;
@@ -39,7 +52,9 @@ pub const PASSES: &[(&str, &str)] = &[
     ("build", "every variable a scalar, relations outside `noEvent` frozen"),
     ("order_parameters", "bindings of parameters in order of dependence"),
     ("eliminate_aliases", "`a = b` and `a = -b` become names"),
+    ("separate_discrete", "equations of discrete variables become assignments at events"),
     ("sort_blocks", "matching, strongly connected components, tearing"),
+    ("sort_events", "the same for the system at events, discrete equations included"),
     ("sort_initial", "the same for the system at the start"),
 ];
 
@@ -49,6 +64,7 @@ pub fn sort(flat: &FlatModel) -> Result<SortedDae, Diagnostic> {
     zero_inputs(&mut dae);
     let parameters = parameters::order_parameters(&mut dae)?;
     let aliases = alias_elimination::eliminate_aliases(&mut dae);
+    discrete::separate_discrete(&mut dae, &aliases)?;
     let states: Vec<VarId> = dae
         .variables
         .iter()
@@ -67,8 +83,15 @@ pub fn sort(flat: &FlatModel) -> Result<SortedDae, Diagnostic> {
     let equations = dae.equations.clone();
     high_index(&dae, &states, &unknowns)?;
     let blocks = blt::sort_blocks(&mut dae, &equations, &unknowns)?;
-    let initial_blocks = initial::sort_initial(&mut dae, &states, &unknowns)?;
-    Ok(SortedDae { dae, aliases, states, blocks, initial_blocks, parameters })
+    let events = mixed::sort_events(&mut dae, &unknowns)?;
+    let (initial_blocks, initial_lagged) =
+        initial::sort_initial(&mut dae, &states, &unknowns, &aliases)?;
+    let mut lagged = events.lagged;
+    lagged.extend(initial_lagged);
+    lagged.sort_unstable();
+    lagged.dedup();
+    let event_blocks = events.blocks;
+    Ok(SortedDae { dae, aliases, states, blocks, event_blocks, initial_blocks, lagged, parameters })
 }
 
 /// An input at the top level without a binding has its start value, which is zero by default.
@@ -78,7 +101,7 @@ fn zero_inputs(dae: &mut Dae) {
     for position in 0..dae.variables.len() {
         let variable = &dae.variables[position];
         if variable.causality == Some(crate::syntax::ast::CausalityPrefix::Input)
-            && variable.kind == Kind::Unknown
+            && matches!(variable.kind, Kind::Unknown | Kind::Discrete)
             && !bound.contains(&VarId(position as u32))
         {
             let zero = dae.pool.constant(0.0);

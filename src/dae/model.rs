@@ -1,5 +1,6 @@
 //! The system of equations: scalar, first order (MLS appendix B). Data only.
 
+use super::events::Events;
 use crate::bytecode::Functions;
 use crate::diag::Diagnostic;
 use crate::flatten::{BaseType, Experiment, Variability};
@@ -27,6 +28,8 @@ pub struct Dae {
     pub functions: Arc<Functions>,
     /// Relations that switch at events only.
     pub relations: Vec<Relation>,
+    /// What else happens at events.
+    pub events: Events,
     /// The `experiment` annotation.
     pub experiment: Experiment,
     /// What deserves a warning.
@@ -84,12 +87,22 @@ pub enum Kind {
         /// Whether a user may set it without compiling again.
         tunable: bool,
     },
+    /// A parameter that the initial system determines (`fixed = false`).
+    Solved,
     /// To be solved for.
     Unknown,
     /// The derivative of another variable.
     Derivative(VarId),
-    /// The value of a relation, which changes at events only.
+    /// To be solved for at events, constant between them.
+    Discrete,
+    /// The value that another variable had before the event iteration in progress (`pre`).
+    Previous(VarId),
+    /// The value of a relation or rounding, which changes at events only.
     Frozen,
+    /// The past value of an expression (`delay`).
+    Delayed,
+    /// Set by the simulation: `initial()`, `terminal()`, `sample(…)`.
+    Signal,
     /// A `String`, which equations cannot use.
     Text,
 }
@@ -163,8 +176,13 @@ impl Dae {
         &self.variables[id.0 as usize]
     }
 
-    /// Whether its value is found by the equations.
+    /// Whether its value is found by the equations between events.
     pub fn is_unknown(&self, id: VarId) -> bool {
         matches!(self.variable(id).kind, Kind::Unknown | Kind::Derivative(_))
+    }
+
+    /// Whether its value is found by the equations, at events or between them.
+    pub fn is_solved_for(&self, id: VarId) -> bool {
+        self.is_unknown(id) || self.variable(id).kind == Kind::Discrete
     }
 }

@@ -1,7 +1,7 @@
 //! The order in which parameters are computed.
 
 use super::errors::{PARAMETER_CYCLE, PARAMETER_WITHOUT_VALUE};
-use super::model::{Dae, Kind};
+use super::model::{Dae, Equation, Kind};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::symbolic::VarId;
@@ -37,7 +37,29 @@ pub(super) fn order_parameters(dae: &mut Dae) -> Result<Vec<VarId>, Diagnostic> 
     for parameter in parameters {
         order.visit(parameter)?;
     }
-    Ok(order.sorted)
+    let sorted = order.sorted;
+    Ok(without_solved(dae, sorted))
+}
+
+/// Parameters that depend on those of the initial system belong to it as well.
+fn without_solved(dae: &mut Dae, sorted: Vec<VarId>) -> Vec<VarId> {
+    let mut rest = Vec::with_capacity(sorted.len());
+    for parameter in sorted {
+        let variable = dae.variable(parameter);
+        let (binding, span) = (variable.binding, variable.span);
+        let uses = binding.map(|b| dae.pool.variables(b)).unwrap_or_default();
+        match binding {
+            Some(right) if uses.iter().any(|v| dae.variable(*v).kind == Kind::Solved) => {
+                let left = dae.pool.variable(parameter);
+                dae.initial_equations.push(Equation { left, right, span });
+                let variable = &mut dae.variables[parameter.0 as usize];
+                variable.kind = Kind::Solved;
+                variable.binding = None;
+            }
+            _ => rest.push(parameter),
+        }
+    }
+    rest
 }
 
 /// Depth first, with its own stack: chains of parameters may be long.

@@ -38,9 +38,37 @@ fn write_report(sorted: &SortedDae, out: &mut String) -> std::fmt::Result {
         writeln!(out, "event {name} = {left} {} {right}", relation.operator.symbol())?;
     }
     sorted.blocks.iter().try_for_each(|block| write_block(sorted, block, out))?;
+    write_events(sorted, out)?;
     if !dae.initial_equations.is_empty() {
         writeln!(out, "initially")?;
         sorted.initial_blocks.iter().try_for_each(|block| write_block(sorted, block, out))?;
+    }
+    Ok(())
+}
+
+/// What happens at events beside relations that switch.
+fn write_events(sorted: &SortedDae, out: &mut String) -> std::fmt::Result {
+    let dae = &sorted.dae;
+    let events = &dae.events;
+    let name = |v: VarId| &dae.variable(v).name;
+    for sample in &events.samples {
+        let (start, interval) = (text(sorted, sample.start), text(sorted, sample.interval));
+        writeln!(out, "event {} = sample({start}, {interval})", name(sample.variable))?;
+    }
+    for rounding in &events.roundings {
+        let argument = text(sorted, rounding.argument);
+        writeln!(out, "event {} = floor({argument})", name(rounding.variable))?;
+    }
+    if !sorted.event_blocks.is_empty() {
+        writeln!(out, "at events")?;
+        sorted.event_blocks.iter().try_for_each(|block| write_block(sorted, block, out))?;
+    }
+    for reinit in &events.reinits {
+        let (value, condition) = (text(sorted, reinit.value), text(sorted, reinit.condition));
+        writeln!(out, "reinit {} := {value} if {condition}", name(reinit.state))?;
+    }
+    for lagged in &sorted.lagged {
+        writeln!(out, "repeat until {} stays", name(*lagged))?;
     }
     Ok(())
 }

@@ -14,8 +14,13 @@ pub struct SortedDae {
     pub states: Vec<VarId>,
     /// Solves for derivatives and algebraic variables, the states given.
     pub blocks: Vec<Block>,
+    /// Solves for discrete variables as well, at events; empty if there are none.
+    pub event_blocks: Vec<Block>,
     /// Solves for everything at the start.
     pub initial_blocks: Vec<Block>,
+    /// Discrete variables of loops: blocks read them before they write them, so the blocks are
+    /// solved until these do not change.
+    pub lagged: Vec<VarId>,
     /// Parameters with bindings, each after those it depends on.
     pub parameters: Vec<VarId>,
 }

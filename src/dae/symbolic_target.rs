@@ -57,7 +57,8 @@ impl Target for Builder<'_> {
         let relation = self.dae.pool.relation(operator, a, b);
         let equality = matches!(operator, RelationOperator::Equal | RelationOperator::NotEqual);
         // `a == b` of Integers and Booleans has no zero crossing of its own: it changes when they do.
-        if live || equality || self.as_constant(relation).is_some() {
+        let varies = self.varies(a) || self.varies(b);
+        if live || equality || !varies || self.as_constant(relation).is_some() {
             return relation;
         }
         let key = (operator, a, b);
@@ -85,15 +86,11 @@ impl Target for Builder<'_> {
         live: bool,
         span: Span,
     ) -> Result<Expr, Diagnostic> {
-        let value = self.dae.pool.apply(function, arguments);
-        let known = arguments.iter().all(|a| self.is_parametric(*a));
-        if function.get().event_generating && !live && !known {
-            return Err(fault!(NOT_SUPPORTED,
-                "`{}` of a variable causes events, which is not supported yet",
-                function.get().name; help: "write `noEvent({}(…))`", function.get().name)
-            .at(span));
+        let varies = arguments.iter().any(|a| self.varies(*a));
+        match function.get().event_generating && !live && varies {
+            true => self.rounding_function(function, arguments, span),
+            false => Ok(self.dae.pool.apply(function, arguments)),
         }
-        Ok(value)
     }
 
     fn begin_if(&mut self, condition: Expr) -> Branch<Expr> {
@@ -137,7 +134,8 @@ impl Target for Builder<'_> {
         let elements = (first..first + variable.len() as u32)
             .map(|id| match self.dae.variables[id as usize].kind {
                 Kind::Constant(value) => self.dae.pool.constant(value),
-                _ => self.dae.pool.variable(VarId(id)),
+                _ if self.raw > 0 => self.dae.pool.variable(VarId(id)),
+                _ => self.value_now(VarId(id)),
             })
             .collect();
         Ok(Lowered::Array(Array { dims: variable.dims.clone(), elements }))
@@ -168,22 +166,14 @@ impl Target for Builder<'_> {
             "noEvent" => Operator::Live(0),
             "smooth" => Operator::Live(1),
             "homotopy" => Operator::Argument(0),
-            "initial" if !self.initial => {
-                return Some(Err(fault!(NOT_SUPPORTED,
-                    "`initial()` in an equation is not supported yet";
-                    help: "use an initial equation")
-                .at(span)));
+            "pre" | "edge" | "change" => {
+                // Until `temporal`, which follows when the argument is lowered.
+                self.raw += 1;
+                Operator::Temporal
             }
-            "initial" => Operator::Constant(1.0),
-            "pre"
-            | "edge"
-            | "change"
-            | "sample"
-            | "delay"
-            | "reinit"
-            | "terminal"
+            "sample" | "initial" | "terminal" | "semiLinear" | "delay" => Operator::Temporal,
+            "reinit"
             | "terminate"
-            | "semiLinear"
             | "spatialDistribution"
             | "cardinality"
             | "inStream"
@@ -208,13 +198,35 @@ impl Target for Builder<'_> {
         let derivative = self.derivative_variable(variable, span)?;
         Ok(self.dae.pool.variable(derivative))
     }
+
+    fn temporal(
+        &mut self,
+        name: &str,
+        arguments: Vec<Array<Expr>>,
+        live: bool,
+        span: Span,
+    ) -> Result<Array<Expr>, Diagnostic> {
+        self.temporal_operator(name, arguments, live, span)
+    }
 }
 
 impl Builder<'_> {
     /// Whether an expression is made of parameters and numbers alone.
     pub(super) fn is_parametric(&self, a: Expr) -> bool {
-        let fixed = |v: &VarId| matches!(self.dae.variable(*v).kind, Kind::Parameter { .. });
+        let fixed =
+            |v: &VarId| matches!(self.dae.variable(*v).kind, Kind::Parameter { .. } | Kind::Solved);
         self.dae.pool.variables(a).iter().all(fixed)
+    }
+
+    /// Whether an expression may vary between events.
+    pub(super) fn varies(&self, a: Expr) -> bool {
+        let varies = |v: &VarId| {
+            matches!(
+                self.dae.variable(*v).kind,
+                Kind::Time | Kind::Unknown | Kind::Derivative(_) | Kind::Delayed | Kind::Text
+            )
+        };
+        self.dae.pool.variables(a).iter().any(varies)
     }
 
     /// `der` of an expression: the sum of partial derivatives times derivatives.

@@ -136,6 +136,13 @@ impl Diagnostic {
         self
     }
 
+    /// The same at other places.
+    #[must_use]
+    pub fn with_spans(mut self, change: impl Fn(Span) -> Span) -> Diagnostic {
+        self.0.labels.iter_mut().for_each(|label| label.span = change(label.span));
+        self
+    }
+
     /// Adds an action.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Diagnostic {

@@ -65,7 +65,7 @@ impl Evaluator<'_> {
         given: Option<Value>,
         is_input: bool,
     ) -> Result<Variable, Diagnostic> {
-        let dims = self.dimensions(&component.dims)?;
+        let (dims, given) = self.dimensions_with(component, given)?;
         let declared = Declared { value_type: component.value_type.clone(), dims };
         let (value, span) = match (given, &component.binding) {
             (Some(value), _) => (Some(value), self.scope.call_span),
@@ -86,6 +86,24 @@ impl Evaluator<'_> {
             }
             None => self.unassigned(declared).map_err(|d| d.related(component.span, "")),
         }
+    }
+
+    /// The sizes of a component and its value: a size may be another one of the value given, as in
+    /// `input Real A[:, size(A, 1)]`.
+    fn dimensions_with(
+        &mut self,
+        component: &FunctionComponent,
+        given: Option<Value>,
+    ) -> Result<(Vec<Option<usize>>, Option<Value>), Diagnostic> {
+        let are_open = component.dims.iter().all(|dim| matches!(dim, Subscript::All(_)));
+        let value = match given {
+            Some(value) if !are_open => value,
+            given => return Ok((self.dimensions(&component.dims)?, given)),
+        };
+        self.scope.variables.insert(component.name, Variable::undeclared(value));
+        let dims = self.dimensions(&component.dims);
+        let given = self.scope.variables.swap_remove(&component.name);
+        Ok((dims?, given.map(|variable| variable.value)))
     }
 
     fn unassigned(&mut self, declared: Declared) -> Result<Variable, Diagnostic> {

@@ -2,34 +2,30 @@
 //! (MLS §3.8, §4.5).
 
 use super::errors::{NOT_CONSTANT, TOO_LARGE, TYPE_MISMATCH};
-use super::instance::{Context, NodeId, NodeKind};
+use super::instance::{NodeId, NodeKind};
 use super::instantiation::{Instantiation, picked};
-use super::library::ClassId;
 use super::lookup::Type;
 use super::resolve::Local;
+use super::scope::ScopeId;
 use super::{BaseType, Variability};
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::{Callee, Function, Host, Scope, evaluate};
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
-use crate::syntax::ast::{ClassSpecifier, ComponentReference, Expression, ExpressionKind};
+use crate::syntax::ast::{
+    ComponentReference, Expression, ExpressionKind, ReferencePart, VariabilityPrefix,
+};
 use crate::value::{ArrayValue, Value};
 use indexmap::IndexSet;
 use std::sync::Arc;
-
-/// Enumerations of the language (MLS §4.9, §8.3.7) and their literals.
-const PREDEFINED_ENUMERATIONS: &[(&str, &[&str])] = &[
-    ("StateSelect", &["never", "avoid", "default", "prefer", "always"]),
-    ("AssertionLevel", &["warning", "error"]),
-];
 
 impl Instantiation<'_> {
     /// The value of an expression that shapes the model; the parameters that it needs are marked.
     pub(super) fn structural_value(
         &mut self,
         e: &Expression,
-        context: Context,
+        context: ScopeId,
     ) -> Result<Value, Diagnostic> {
         let outer = std::mem::take(&mut self.read);
         let value = self.known_value(e, context);
@@ -40,14 +36,14 @@ impl Instantiation<'_> {
 
     /// The value of an expression whose names are resolved already.
     pub(super) fn flat_value(&mut self, e: &Expression) -> Result<Value, Diagnostic> {
-        self.structural_value(e, Context { node: NodeId(1), class: None })
+        self.structural_value(e, self.flat_scope())
     }
 
     /// The value of an expression of constants and parameters.
     pub(super) fn known_value(
         &mut self,
         e: &Expression,
-        context: Context,
+        context: ScopeId,
     ) -> Result<Value, Diagnostic> {
         let local = Local { values: true, ..Local::default() };
         let resolved = self.resolve(e, context, &local)?;
@@ -114,109 +110,140 @@ impl Instantiation<'_> {
     pub(super) fn constant(
         &mut self,
         reference: &ComponentReference,
-        context: Context,
-        local: &Local,
-    ) -> Result<Expression, Diagnostic> {
-        if let [part, literal] = reference.parts.as_slice()
-            && let Some(ordinal) = predefined_literal(part.name, literal.name)
-        {
-            return Ok(Expression::new(ExpressionKind::Integer(ordinal), reference.span));
-        }
-        for length in (1..reference.parts.len()).rev() {
-            let name = Name {
-                global: reference.global,
-                parts: reference.parts[..length].iter().map(|part| part.name).collect(),
-            };
-            let Some(Type::Class(class)) = self.library.lookup(context.class, &name) else {
-                continue;
-            };
-            let (class, scope) = (self.through_short_classes(class), &reference.parts[length..]);
-            if let Some(literal) = self.literal_of(class, scope[0].name) {
-                return Ok(Expression::new(ExpressionKind::Integer(literal), reference.span));
-            }
-            let package = self.package(class)?;
-            if self.is_constant(package, scope[0].name) {
-                return self.walk(package, scope, reference, context, local);
-            }
-            return Err(self.unknown_name(reference, context));
-        }
-        self.enclosing_constant(reference, context, local)
-    }
-
-    /// A constant declared in an enclosing class, or imported into one.
-    fn enclosing_constant(
-        &mut self,
-        reference: &ComponentReference,
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
         let first = reference.parts[0].name;
-        let mut scope = context.class.filter(|_| !reference.global);
-        while let Some(class) = scope {
-            let package = self.package(class)?;
-            if self.is_constant(package, first) {
-                return self.walk(package, &reference.parts, reference, context, local);
+        let mut scope = if reference.global { ScopeId::TOP } else { context };
+        while scope != ScopeId::TOP {
+            if scope != context && self.has_component(scope, first)? {
+                return self.enclosing_constant(scope, reference, context, local);
             }
-            if Some(class) != context.class && self.has_component(package, first) {
-                let class = &self.library.class(class).name;
-                return Err(fault!(
-                    NOT_CONSTANT,
-                    "`{first}` is a component of the enclosing class `{class}` and no constant";
-                    help: "only constants of enclosing classes can be used (MLS §5.3.1)")
-                .at(reference.span));
+            if let Some(nested) = self.find_class(scope, first)? {
+                let found = if nested.outer {
+                    self.lookup_simple(scope, first)?
+                } else {
+                    Some(self.instance(&nested)?)
+                };
+                return self.inside_class(found, &reference.parts[1..], reference, context, local);
             }
-            for name in self.library.imported_name(class, first) {
-                let mut imported = ComponentReference::from_name(&name, reference.span);
-                imported.global = true;
-                if let Some(last) = imported.parts.last_mut() {
-                    last.subscripts = reference.parts[0].subscripts.clone();
-                }
-                imported.parts.extend(reference.parts[1..].iter().cloned());
-                if let Ok(found) = self.constant(&imported, context, local) {
+            for name in self.imported_names(scope, first) {
+                if let Some(found) = self.imported_constant(&name, reference, context, local)? {
                     return Ok(found);
                 }
             }
-            let found = self.library.class(class);
-            scope = found.parent.filter(|_| !found.definition.encapsulated);
+            if self.is_encapsulated(scope) {
+                break;
+            }
+            scope = self.scope(scope).parent.unwrap_or(ScopeId::TOP);
+        }
+        let found = self.lookup(ScopeId::TOP, &Name::from(first))?;
+        self.inside_class(found, &reference.parts[1..], reference, context, local)
+    }
+
+    /// A component of an enclosing class, which must be a constant.
+    fn enclosing_constant(
+        &mut self,
+        scope: ScopeId,
+        reference: &ComponentReference,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let first = reference.parts[0].name;
+        let node = self.node_of(scope);
+        if self.is_constant(node, first) {
+            return self.walk(node, &reference.parts, reference, context, local);
+        }
+        let class = &self.text(scope).name;
+        Err(fault!(
+            NOT_CONSTANT,
+            "`{first}` is a component of the enclosing class `{class}` and no constant";
+            help: "only constants of enclosing classes can be used (MLS §5.3.1)")
+        .at(reference.span))
+    }
+
+    /// What an import makes of the first part of a reference, followed to the end.
+    fn imported_constant(
+        &mut self,
+        name: &Name,
+        reference: &ComponentReference,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        if let Some(found) = self.lookup(ScopeId::TOP, name)? {
+            let rest = &reference.parts[1..];
+            return self.inside_class(Some(found), rest, reference, context, local).map(Some);
+        }
+        let package = Name { global: true, ..name.parent() };
+        let Some(Type::Class(package)) = self.lookup(ScopeId::TOP, &package)? else {
+            return Ok(None);
+        };
+        let (Some(last), node) = (name.last(), self.node_of(package)) else { return Ok(None) };
+        if !self.has_component(package, last)? || !self.is_constant(node, last) {
+            return Ok(None);
+        }
+        let mut parts = reference.parts.clone();
+        parts[0].name = last;
+        self.walk(node, &parts, reference, context, local).map(Some)
+    }
+
+    /// The constant at the end of a path inside a class.
+    fn inside_class(
+        &mut self,
+        found: Option<Type>,
+        path: &[ReferencePart],
+        reference: &ComponentReference,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let mut found = found;
+        for (at, part) in path.iter().enumerate() {
+            let Some(class) = found else { break };
+            if let Some(definition) = self.enumeration(class, reference.span)? {
+                let literal = definition.literals.iter().position(|known| *known == part.name);
+                let Some(ordinal) = literal.filter(|_| at + 1 == path.len()) else { break };
+                let kind = ExpressionKind::Integer(ordinal as i64 + 1);
+                return Ok(Expression::new(kind, reference.span));
+            }
+            let Type::Class(scope) = class else { break };
+            if self.has_component(scope, part.name)? {
+                let node = self.node_of(scope);
+                if !self.is_constant(node, part.name) {
+                    break;
+                }
+                return self.walk(node, &path[at..], reference, context, local);
+            }
+            found = self.lookup_inside(found, &[part.name])?;
         }
         Err(self.unknown_name(reference, context))
     }
 
-    /// Whether a package's instance has a constant of this name.
-    fn is_constant(&self, package: NodeId, name: Ident) -> bool {
-        self.composite_of(package)
-            .and_then(|composite| composite.members.get(&name))
-            .is_some_and(|member| member.declaration.variability == Some(Variability::Constant))
-    }
-
-    fn has_component(&self, package: NodeId, name: Ident) -> bool {
-        self.composite_of(package).is_some_and(|composite| composite.members.contains_key(&name))
-    }
-
-    fn through_short_classes(&self, mut class: ClassId) -> ClassId {
-        for _ in 0..100 {
-            let ClassSpecifier::Short(_) = &self.library.class(class).definition.specifier else {
-                return class;
-            };
-            match self.library.bases(class).first() {
-                Some(base) => class = *base,
-                None => return class,
-            }
+    /// Whether a class has a component of this name, itself or inherited.
+    pub(super) fn has_component(
+        &mut self,
+        scope: ScopeId,
+        name: Ident,
+    ) -> Result<bool, Diagnostic> {
+        if scope == ScopeId::TOP {
+            return Ok(false);
         }
-        class
+        Ok(self.elements(scope)?.components.contains_key(&name))
     }
 
-    fn literal_of(&self, class: ClassId, name: Ident) -> Option<i64> {
-        let definition = self.library.enumeration(class, Span::NONE).ok()?;
-        let at = definition.literals.iter().position(|literal| *literal == name)?;
-        Some(at as i64 + 1)
+    /// Whether a package's instance has a constant of this name.
+    fn is_constant(&mut self, package: NodeId, name: Ident) -> bool {
+        if self.members(package).is_err() {
+            return false;
+        }
+        self.declaration_of(package, name).is_some_and(|declaration| {
+            declaration.type_prefixes.variability == Some(VariabilityPrefix::Constant)
+        })
     }
-}
 
-fn predefined_literal(enumeration: Ident, literal: Ident) -> Option<i64> {
-    let (_, literals) = PREDEFINED_ENUMERATIONS.iter().find(|(name, _)| enumeration == *name)?;
-    let at = literals.iter().position(|known| literal == *known)?;
-    Some(at as i64 + 1)
+    /// The scope in which flat names mean variables.
+    pub(super) fn flat_scope(&self) -> ScopeId {
+        self.scope_of(self.root_node).unwrap_or(ScopeId::TOP)
+    }
 }
 
 /// A value as a variable of this type and these sizes holds it.
@@ -258,7 +285,7 @@ fn check_type(value: &Value, base: &BaseType) -> Result<(), Fault> {
         BaseType::Integer => "Integer",
         BaseType::Boolean => "Boolean",
         BaseType::String => "String",
-        BaseType::Enumeration(_) => return Ok(()),
+        BaseType::Enumeration(_) | BaseType::ExternalObject(_) => return Ok(()),
     };
     let empty = matches!(value, Value::Array(array) if array.elements.is_empty());
     if found == wanted || empty {

@@ -1,170 +1,168 @@
 //! Collects the components of a class, inherited ones included (MLS §5.6.1, §7.1), and finds out
 //! what their types are made of (MLS §4.6).
 
-use super::Variability;
 use super::errors::{
-    CYCLIC_CLASS, DUPLICATE_ELEMENT, NOT_SUPPORTED, TOO_LARGE, TYPE_MISMATCH, UNKNOWN_ELEMENT,
+    CYCLIC_CLASS, DUPLICATE_ELEMENT, FINAL_OVERRIDE, NOT_SUPPORTED, TOO_LARGE, TYPE_MISMATCH,
 };
-use super::instance::{Context, Declaration, Member, MemberState, NodeId, Shape};
-use super::library::{ClassId, Library};
-use super::lookup::Type;
-use super::modification::Modifier;
-use crate::diag::{Diagnostic, suggest};
+use super::instance::{Declaration, Shape};
+use super::instantiation::Instantiation;
+use super::lookup::{Predefined, Type};
+use super::modification::{Modifier, Redeclaration, Replacement};
+use super::scope::{MAX_BASES, ScopeId, Text};
+use crate::diag::Diagnostic;
 use crate::fault;
-use crate::name::Ident;
+use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
-    self, CausalityPrefix, ClassSpecifier, ComponentClause, ComponentDeclaration, Element, Extends,
-    Restriction, Subscript, TypeSpecifier, VariabilityPrefix, Visibility,
+    self, CausalityPrefix, ClassSpecifier, ComponentClause, ComponentDeclaration, ConnectionPrefix,
+    Deselection, Element, EnumerationClass, Extends, Restriction, Subscript, TypeSpecifier,
 };
 use crate::value::EnumerationDefinition;
 use indexmap::IndexMap;
 use std::sync::Arc;
 
-/// How many classes may extend one another before it is taken for a cycle.
+/// How many short classes a type may lead through.
 const MAX_DEPTH: usize = 100;
 
-/// How many base classes one class may have in all.
-const MAX_BASES: usize = 2000;
+/// Enumerations of the language (MLS §4.9.7.1, §8.3.7) and their literals.
+const STATE_SELECT: &[&str] = &["never", "avoid", "default", "prefer", "always"];
+const ASSERTION_LEVEL: &[&str] = &["warning", "error"];
 
 /// The components of a class and the classes that its equations come from.
 #[derive(Debug, Default)]
-pub(super) struct Collected {
-    pub(super) members: IndexMap<Ident, Member>,
-    pub(super) lineage: Vec<ClassId>,
+pub(super) struct Elements {
+    pub(super) components: IndexMap<Ident, Arc<Declaration>>,
+    /// Bases first, the class itself last.
+    pub(super) lineage: Vec<ScopeId>,
 }
 
 /// What the type of a component is made of.
 pub(super) struct Expanded {
     pub(super) shape: Shape,
-    pub(super) dims: Vec<(Subscript, Context)>,
+    pub(super) dims: Vec<(Subscript, ScopeId)>,
     pub(super) modifier: Modifier,
     pub(super) causality: Option<CausalityPrefix>,
+    pub(super) connection: Option<ConnectionPrefix>,
+    pub(super) connector: bool,
 }
 
-impl Library {
-    /// The components of an instance of `class` at `node`, under an outer modifier. An error if
-    /// the modifier names what the class does not have.
-    pub(super) fn collect(
-        &self,
-        class: ClassId,
-        node: NodeId,
-        modifier: Modifier,
-    ) -> Result<Collected, Diagnostic> {
-        let mut collected = Collected::default();
-        let left = self.collect_into(class, node, modifier, false, &mut collected, 0)?;
-        if let Some((name, modifier)) = left.elements.first() {
-            let names = collected.members.keys().map(|name| name.as_str());
-            return Err(fault!(
-                UNKNOWN_ELEMENT,
-                "`{}` has no component `{name}` to modify",
-                self.class(class).name
-            )
-            .help_if(suggest::did_you_mean(name.as_str(), names))
-            .at(modifier.span.unwrap_or(Span::NONE)));
+impl Instantiation<'_> {
+    pub(super) fn find_elements(&mut self, id: ScopeId) -> Result<Elements, Diagnostic> {
+        let text = self.text(id).clone();
+        let bases = self.bases(id)?;
+        let mut bases = bases.iter();
+        let mut found = Elements::default();
+        let class_extends = text.extended.is_some();
+        if matches!(text.definition.specifier, ClassSpecifier::Short(_)) || class_extends {
+            for base in bases.by_ref().take(1) {
+                self.inherit(id, *base, false, &[], &mut found)?;
+            }
         }
-        Ok(collected)
-    }
-
-    /// Adds the components of a class and returns what is left of the modifier.
-    fn collect_into(
-        &self,
-        class: ClassId,
-        node: NodeId,
-        mut modifier: Modifier,
-        protected: bool,
-        out: &mut Collected,
-        depth: usize,
-    ) -> Result<Modifier, Diagnostic> {
-        let found = self.class(class);
-        if depth > MAX_DEPTH {
-            return Err(fault!(CYCLIC_CLASS, "`{}` extends itself", found.name)
-                .at(found.definition.name.span));
-        }
-        if out.lineage.len() > MAX_BASES {
-            return Err(fault!(TOO_LARGE, "`{}` is one of too many base classes", found.name)
-                .at(found.definition.name.span));
-        }
-        if let ClassSpecifier::Short(short) = &found.definition.specifier {
-            let context = Context { node, class: found.parent };
-            let own = Modifier::of_arguments(&short.modification, context)?;
-            let merged = own.overridden_by(modifier, found.definition.name.node)?;
-            let base =
-                self.base_class(self.lookup_in(found.parent, &short.target)?, &short.target)?;
-            return self.collect_into(base, node, merged, protected, out, depth + 1);
-        }
-        for (visibility, element) in found.elements() {
-            let protected = protected || visibility == Visibility::Protected;
+        for (protected, element) in text.elements() {
             match element {
                 Element::Extends(extends) => {
-                    modifier =
-                        self.collect_base(class, extends, node, modifier, protected, out, depth)?;
+                    self.check_extends(&text, extends)?;
+                    if let Some(base) = bases.next() {
+                        self.check_base_kind(&text, *base, extends.span)?;
+                        self.inherit(id, *base, protected, &extends.deselected, &mut found)?;
+                    }
+                }
+                Element::Component(clause) if clause.prefixes.redeclare => {
+                    self.check_redeclared(id, clause, &found)?;
                 }
                 Element::Component(clause) => {
                     for component in &clause.components {
-                        let outer = modifier.take(component.name.node);
-                        let context = Context { node, class: Some(class) };
-                        let declaration =
-                            self.declaration(clause, component, outer, protected, context)?;
-                        self.add_member(class, declaration, out)?;
+                        let declaration = self.declaration(clause, component, protected, id)?;
+                        self.add_component(id, Arc::new(declaration), &mut found)?;
                     }
-                }
-                Element::Class(nested) if nested.prefixes.redeclare => {
-                    return Err(fault!(NOT_SUPPORTED, "redeclarations are not translated yet")
-                        .at(nested.class.name.span));
                 }
                 Element::Class(_) | Element::Import(_) => {}
             }
         }
-        out.lineage.push(class);
-        Ok(modifier)
+        found.lineage.push(id);
+        Ok(found)
     }
 
-    #[allow(clippy::too_many_arguments, reason = "the state of one recursion")]
-    fn collect_base(
-        &self,
-        class: ClassId,
-        extends: &Extends,
-        node: NodeId,
-        modifier: Modifier,
+    fn inherit(
+        &mut self,
+        id: ScopeId,
+        base: ScopeId,
         protected: bool,
-        out: &mut Collected,
-        depth: usize,
-    ) -> Result<Modifier, Diagnostic> {
-        if !extends.deselected.is_empty() {
-            return Err(fault!(
-                NOT_SUPPORTED,
-                "`break` in an extends clause is not translated yet"
-            )
-            .at(extends.span));
+        deselected: &[Deselection],
+        found: &mut Elements,
+    ) -> Result<(), Diagnostic> {
+        let inherited = self.elements(base)?;
+        for (name, declaration) in &inherited.components {
+            let is_out =
+                |one: &Deselection| matches!(one, Deselection::Component(out) if out.node == *name);
+            if deselected.iter().any(is_out) {
+                continue;
+            }
+            let declaration = if protected && !declaration.protected {
+                Arc::new(Declaration { protected: true, ..(**declaration).clone() })
+            } else {
+                declaration.clone()
+            };
+            self.add_component(id, declaration, found)?;
         }
-        let base = self.base_class(self.lookup_base(class, &extends.base)?, &extends.base)?;
-        self.check_base_kind(class, base, extends.span)?;
-        let context = Context { node, class: Some(class) };
-        let own = Modifier::of_arguments(&extends.modification, context)?;
-        let names: Vec<Ident> = own.elements.keys().copied().collect();
-        let merged = own.overridden_by(modifier, self.class(base).definition.name.node)?;
-        let left = self.collect_into(base, node, merged, protected, out, depth + 1)?;
-        match names.iter().find(|name| left.elements.contains_key(*name)) {
-            Some(name) => Err(fault!(
-                UNKNOWN_ELEMENT,
-                "`{}` has no component `{name}` to modify",
-                self.class(base).name
-            )
-            .help_if(suggest::did_you_mean(
-                name.as_str(),
-                out.members.keys().map(|name| name.as_str()),
-            ))
-            .at(extends.span)),
-            None => Ok(left),
+        found.lineage.extend(&inherited.lineage);
+        if found.lineage.len() > MAX_BASES {
+            let text = self.text(id);
+            return Err(
+                fault!(TOO_LARGE, "`{}` has too many base classes", text.name).at(text.span())
+            );
         }
+        Ok(())
+    }
+
+    /// Connections that are deselected are refused; the components must exist (MLS §7.4).
+    fn check_extends(&self, text: &Text, extends: &Extends) -> Result<(), Diagnostic> {
+        for deselected in &extends.deselected {
+            if let Deselection::Connection(..) = deselected {
+                return Err(fault!(
+                    NOT_SUPPORTED,
+                    "`break connect` in an extends clause of `{}` is not translated yet",
+                    text.name
+                )
+                .at(extends.span));
+            }
+        }
+        Ok(())
+    }
+
+    /// A component redeclared among the elements must be inherited.
+    fn check_redeclared(
+        &mut self,
+        id: ScopeId,
+        clause: &ComponentClause,
+        found: &Elements,
+    ) -> Result<(), Diagnostic> {
+        for component in &clause.components {
+            let name = component.name.node;
+            if !found.components.contains_key(&name) {
+                // The extends clause may stand behind the redeclaration.
+                let mut inherited = false;
+                for base in self.bases(id)?.iter() {
+                    inherited |= self.elements(*base)?.components.contains_key(&name);
+                }
+                if !inherited {
+                    let class = &self.text(id).name;
+                    return Err(fault!(
+                        super::errors::UNKNOWN_ELEMENT,
+                        "`{class}` inherits no component `{name}` to redeclare"
+                    )
+                    .at(component.name.span));
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Which kinds of classes may extend which (MLS §7.1.3).
-    fn check_base_kind(&self, class: ClassId, base: ClassId, span: Span) -> Result<(), Diagnostic> {
+    fn check_base_kind(&self, own: &Text, base: ScopeId, span: Span) -> Result<(), Diagnostic> {
         use Restriction as R;
-        let (own, inherited) = (self.class(class), self.class(base));
-        let fits = match (inherited.definition.restriction, own.definition.restriction) {
+        let inherited = self.text(base);
+        let fits = match (inherited.restriction(), own.restriction()) {
             // What is only a class holds what all kinds may hold.
             (R::Class, _) => true,
             (R::Function { .. }, R::Function { .. }) => true,
@@ -173,7 +171,11 @@ impl Library {
             | (R::Record, R::Model | R::Block | R::Class) => true,
             (R::Model, R::Model | R::Class) => true,
             (R::Block, R::Block | R::Model | R::Class) => true,
-            (R::Connector, R::Connector | R::Model | R::Block | R::Class) => true,
+            (
+                R::Connector,
+                R::Connector | R::ExpandableConnector | R::Model | R::Block | R::Class,
+            ) => true,
+            (R::ExpandableConnector, R::ExpandableConnector) => true,
             (one, other) => one == other,
         };
         if fits {
@@ -189,124 +191,163 @@ impl Library {
     }
 
     /// A component inherited twice is one if both are the same declaration (MLS §7.1).
-    fn add_member(
+    fn add_component(
         &self,
-        class: ClassId,
-        declaration: Declaration,
-        out: &mut Collected,
+        id: ScopeId,
+        declaration: Arc<Declaration>,
+        found: &mut Elements,
     ) -> Result<(), Diagnostic> {
         let name = declaration.name;
-        if let Some(known) = out.members.get(&name) {
-            if known.declaration.span == declaration.span {
+        if let Some(known) = found.components.get(&name) {
+            if known.span == declaration.span
+                || (known.scope != declaration.scope && known.is_same(&declaration))
+            {
                 return Ok(());
             }
             return Err(fault!(
                 DUPLICATE_ELEMENT,
                 "`{}` has two components named `{name}`",
-                self.class(class).name
+                self.text(id).name
             )
             .at(declaration.span)
-            .related(known.declaration.span, "the other one"));
+            .related(known.span, "the other one"));
         }
-        let member = Member { declaration: Arc::new(declaration), state: MemberState::Pending };
-        out.members.insert(name, member);
+        found.components.insert(name, declaration);
         Ok(())
     }
 
     fn declaration(
-        &self,
+        &mut self,
         clause: &ComponentClause,
         component: &ComponentDeclaration,
-        outer: Modifier,
         protected: bool,
-        context: Context,
+        context: ScopeId,
     ) -> Result<Declaration, Diagnostic> {
-        refuse_prefixes(clause)?;
-        let own = Modifier::new(component.modification.as_ref(), false, context)?;
-        let mut modifier = own;
+        let name = component.name.node;
+        let outer = self.scope(context).modifier.elements.get(&name).cloned().unwrap_or_default();
+        let redeclaration = outer.redeclaration.clone();
+        let mut own = match (&redeclaration, &clause.constraint) {
+            (Some(_), Some(constraint)) => {
+                Modifier::of_arguments(&constraint.modification, context)?
+            }
+            _ => Modifier::new(component.modification.as_ref(), false, context)?,
+        };
         let declared_final = clause.prefixes.is_final;
-        modifier.is_final = declared_final;
+        own.is_final = declared_final;
         let is_final = declared_final || outer.is_final;
-        let mut modifier = modifier.overridden_by(outer, component.name.node)?;
+        let outer = Modifier { redeclaration: None, ..outer };
+        let outer_span = outer.span;
+        let mut modifier = own.overridden_by(outer, name)?;
         modifier.is_final = false;
-        let expanded = self.expand(context, &clause.type_specifier, modifier)?;
-        let mut dims: Vec<(Subscript, Context)> = component
-            .subscripts
-            .iter()
-            .chain(&clause.subscripts)
-            .map(|subscript| (subscript.clone(), context))
-            .collect();
-        dims.extend(expanded.dims);
-        Ok(Declaration {
-            name: component.name.node,
-            shape: expanded.shape,
-            dims,
-            modifier: expanded.modifier,
+        let subscripts = component.subscripts.iter().chain(&clause.subscripts);
+        let mut declaration = Declaration {
+            name,
+            type_specifier: clause.type_specifier.clone(),
+            scope: context,
+            dims: subscripts.map(|subscript| (subscript.clone(), context)).collect(),
+            modifier,
             condition: component.condition.clone().map(|condition| (condition, context)),
-            variability: clause.type_prefixes.variability.map(|variability| match variability {
-                VariabilityPrefix::Constant => Variability::Constant,
-                VariabilityPrefix::Parameter => Variability::Parameter,
-                VariabilityPrefix::Discrete => Variability::Discrete,
-            }),
-            causality: clause.type_prefixes.causality.or(expanded.causality),
+            prefixes: clause.prefixes,
+            type_prefixes: clause.type_prefixes,
             is_final,
             protected,
             evaluate: evaluates(component),
             description: component.comment.text.clone(),
             span: component.span,
-        })
+        };
+        if let Some(redeclaration) = redeclaration {
+            let span = outer_span.unwrap_or(component.span);
+            if declared_final {
+                return Err(
+                    fault!(FINAL_OVERRIDE, "`{name}` is final and cannot be redeclared").at(span)
+                );
+            }
+            redeclared(&mut declaration, &redeclaration, span)?;
+        }
+        Ok(declaration)
     }
 
-    /// Follows the short classes of a type down to what it is made of, collecting modifiers
-    /// (outer over inner) and dimensions.
-    pub(super) fn expand(
-        &self,
-        context: Context,
+    /// Follows the short classes of a component's type down to what it is made of, collecting
+    /// modifiers (outer over inner) and dimensions.
+    pub(super) fn expand(&mut self, declared: &Declaration) -> Result<Expanded, Diagnostic> {
+        let found = self.lookup_type(declared.scope, &declared.type_specifier)?;
+        self.expand_type(found, &declared.type_specifier, declared.modifier.clone())
+    }
+
+    /// As [`Instantiation::expand`], from what a type specifier means.
+    pub(super) fn expand_type(
+        &mut self,
+        mut found: Type,
         specifier: &TypeSpecifier,
-        mut modifier: Modifier,
+        modifier: Modifier,
     ) -> Result<Expanded, Diagnostic> {
-        let mut found = self.lookup_in(context.class, specifier)?;
-        let mut dims = Vec::new();
-        let mut causality = None;
+        let mut expanded = Expanded {
+            shape: Shape::Predefined(Predefined::Real),
+            dims: Vec::new(),
+            modifier,
+            causality: None,
+            connection: None,
+            connector: false,
+        };
         for _ in 0..MAX_DEPTH {
             let id = match found {
                 Type::Predefined(predefined) => {
-                    let shape = Shape::Predefined(predefined);
-                    return Ok(Expanded { shape, dims, modifier, causality });
+                    expanded.shape = predefined_shape(predefined, specifier)?;
+                    return Ok(expanded);
                 }
                 Type::Class(id) => id,
             };
-            let class = self.class(id);
-            let scope = Context { node: NodeId(0), class: class.parent };
-            match &class.definition.specifier {
-                ClassSpecifier::Enumeration(_) => {
-                    let shape = Shape::Enumeration(self.enumeration(id, specifier.span)?);
-                    return Ok(Expanded { shape, dims, modifier, causality });
+            let text = self.text(id).clone();
+            let name = text.definition.name.node;
+            let scope = self.scope(id);
+            let parent = scope.parent.unwrap_or(ScopeId::TOP);
+            let (around, defaults) = (scope.modifier.clone(), scope.defaults.clone());
+            expanded.connector |= matches!(
+                text.restriction(),
+                Restriction::Connector | Restriction::ExpandableConnector
+            );
+            let outer = std::mem::take(&mut expanded.modifier);
+            match &text.definition.specifier {
+                ClassSpecifier::Enumeration(enumeration) => {
+                    expanded.modifier = around.overridden_by(outer, name)?;
+                    let definition = enumeration_of(&text.name, enumeration, specifier.span)?;
+                    expanded.shape = Shape::Enumeration(definition);
+                    return Ok(expanded);
                 }
                 ClassSpecifier::Short(short) => {
-                    let own = Modifier::of_arguments(&short.modification, scope)?;
-                    modifier = own.overridden_by(modifier, class.definition.name.node)?;
-                    dims.extend(short.subscripts.iter().map(|s| (s.clone(), scope)));
-                    causality = causality.or(short.prefixes.causality);
-                    found = self.lookup_in(class.parent, &short.target)?;
+                    let own = Modifier::of_arguments(&short.modification, parent)?;
+                    let own = defaults.overridden_by(own, name)?.overridden_by(around, name)?;
+                    expanded.modifier = own.overridden_by(outer, name)?;
+                    expanded.dims.extend(short.subscripts.iter().map(|s| (s.clone(), parent)));
+                    expanded.causality = expanded.causality.or(short.prefixes.causality);
+                    expanded.connection = expanded.connection.or(short.prefixes.connection);
+                    found = self.lookup_type(parent, &short.target)?;
                 }
-                ClassSpecifier::Long(_) => match self.predefined_base(id)? {
+                ClassSpecifier::Long(_) => match self.predefined_base(id, &text)? {
+                    Some((Type::Predefined(Predefined::ExternalObject), _)) => {
+                        expanded.modifier = around.overridden_by(outer, name)?;
+                        expanded.shape = Shape::ExternalObject(text.name.clone());
+                        return Ok(expanded);
+                    }
                     Some((base, extends)) => {
-                        let scope = Context { node: NodeId(0), class: Some(id) };
-                        let own = Modifier::of_arguments(&extends.modification, scope)?;
-                        modifier = own.overridden_by(modifier, class.definition.name.node)?;
+                        let own = Modifier::of_arguments(&extends.modification, id)?;
+                        let own = own.overridden_by(around, name)?;
+                        expanded.modifier = own.overridden_by(outer, name)?;
                         found = base;
                     }
                     None => {
-                        self.check_component_class(id, specifier)?;
-                        return Ok(Expanded { shape: Shape::Class(id), dims, modifier, causality });
+                        check_component_class(&text, specifier)?;
+                        let own = defaults.overridden_by(around, name)?;
+                        expanded.modifier = own.overridden_by(outer, name)?;
+                        expanded.shape = Shape::Class(id);
+                        return Ok(expanded);
                     }
                 },
                 ClassSpecifier::Derivative(_) => {
                     return Err(fault!(
                         TYPE_MISMATCH,
                         "`{}` is a function, not the type of a component",
-                        class.name
+                        text.name
                     )
                     .at(specifier.span));
                 }
@@ -317,96 +358,161 @@ impl Library {
     }
 
     /// The predefined type that a long class extends, directly or through others, if it does:
-    /// `type T extends Real(…); end T;`
-    fn predefined_base(&self, class: ClassId) -> Result<Option<(Type, &Extends)>, Diagnostic> {
-        let found = self.class(class);
-        if found.definition.restriction != Restriction::Type {
+    /// `type T extends Real(…); end T;`, or a class of external objects.
+    fn predefined_base(
+        &mut self,
+        id: ScopeId,
+        text: &Text,
+    ) -> Result<Option<(Type, Extends)>, Diagnostic> {
+        let extends = text.elements().find_map(|(_, element)| match element {
+            Element::Extends(extends) => Some(extends),
+            _ => None,
+        });
+        let Some(extends) = extends else { return Ok(None) };
+        let is_external = extends.base.name.is_simple()
+            && extends.base.name.first().is_some_and(|name| name == "ExternalObject");
+        if text.restriction() != Restriction::Type && !is_external {
             return Ok(None);
         }
-        let Some(extends) = found.extends.first() else { return Ok(None) };
-        Ok(Some((self.lookup_base(class, &extends.base)?, extends)))
+        let parent = self.scope(id).parent.unwrap_or(ScopeId::TOP);
+        Ok(Some((self.lookup_type(parent, &extends.base)?, extends.clone())))
     }
 
-    fn check_component_class(
-        &self,
-        id: ClassId,
-        specifier: &TypeSpecifier,
-    ) -> Result<(), Diagnostic> {
-        let class = self.class(id);
-        match class.definition.restriction {
-            Restriction::Package | Restriction::Function { .. } | Restriction::Operator => {
-                Err(fault!(TYPE_MISMATCH, "`{}` cannot be the type of a component", class.name)
-                    .at(specifier.span))
-            }
-            Restriction::ExpandableConnector | Restriction::OperatorRecord => Err(fault!(
-                NOT_SUPPORTED,
-                "components of an expandable connector or an operator record, such as `{}`, are \
-                 not translated yet",
-                class.name
-            )
-            .at(specifier.span)),
-            _ => Ok(()),
-        }
-    }
-
-    /// The enumeration that a class declares.
+    /// The enumeration that a type is, through short classes; `None` if it is anything else.
     pub(super) fn enumeration(
-        &self,
-        id: ClassId,
+        &mut self,
+        found: Type,
         span: Span,
-    ) -> Result<Arc<EnumerationDefinition>, Diagnostic> {
-        let class = self.class(id);
-        match &class.definition.specifier {
-            ClassSpecifier::Enumeration(enumeration) => match &enumeration.literals {
-                Some(literals) => Ok(Arc::new(EnumerationDefinition {
-                    name: class.name.clone(),
-                    literals: literals.iter().map(|literal| literal.name.node).collect(),
-                })),
-                None => Err(fault!(
-                    NOT_SUPPORTED,
-                    "`{}` is an enumeration without literals: it can only be replaced",
-                    class.name
-                )
-                .at(span)),
-            },
-            _ => Err(fault!(TYPE_MISMATCH, "`{}` is no enumeration", class.name).at(span)),
+    ) -> Result<Option<Arc<EnumerationDefinition>>, Diagnostic> {
+        let mut found = found;
+        for _ in 0..MAX_DEPTH {
+            let id = match found {
+                Type::Predefined(Predefined::StateSelect) => {
+                    return Ok(Some(language_enumeration("StateSelect", STATE_SELECT)));
+                }
+                Type::Predefined(Predefined::AssertionLevel) => {
+                    return Ok(Some(language_enumeration("AssertionLevel", ASSERTION_LEVEL)));
+                }
+                Type::Predefined(_) => return Ok(None),
+                Type::Class(id) => id,
+            };
+            let text = self.text(id).clone();
+            match &text.definition.specifier {
+                ClassSpecifier::Enumeration(enumeration) => {
+                    return enumeration_of(&text.name, enumeration, span).map(Some);
+                }
+                ClassSpecifier::Short(short) => {
+                    let parent = self.scope(id).parent.unwrap_or(ScopeId::TOP);
+                    found = self.lookup_type(parent, &short.target)?;
+                }
+                _ => return Ok(None),
+            }
         }
-    }
-
-    fn lookup_in(
-        &self,
-        scope: Option<ClassId>,
-        specifier: &TypeSpecifier,
-    ) -> Result<Type, Diagnostic> {
-        self.lookup_type(scope, specifier)
-    }
-
-    fn base_class(&self, base: Type, specifier: &TypeSpecifier) -> Result<ClassId, Diagnostic> {
-        match base {
-            Type::Class(id) => Ok(id),
-            Type::Predefined(_) => Err(fault!(
-                TYPE_MISMATCH,
-                "a class with components cannot extend `{}`",
-                specifier.name
-            )
-            .at(specifier.span)),
-        }
+        Ok(None)
     }
 }
 
-/// What a declaration may not say yet.
-fn refuse_prefixes(clause: &ComponentClause) -> Result<(), Diagnostic> {
-    let prefixes = clause.prefixes;
-    let what = if clause.type_prefixes.connection.is_some() {
-        "flow and stream variables"
-    } else if prefixes.inner || prefixes.outer {
-        "inner and outer components"
-    } else if prefixes.redeclare {
-        "redeclarations"
-    } else {
-        return Ok(());
+impl Declaration {
+    /// Whether both declare the same, as two base classes may (MLS §7.1).
+    fn is_same(&self, other: &Declaration) -> bool {
+        let plain = |one: &Declaration| {
+            one.modifier.is_empty() && one.dims.is_empty() && one.condition.is_none()
+        };
+        self.type_specifier.name == other.type_specifier.name
+            && self.prefixes == other.prefixes
+            && self.type_prefixes == other.type_prefixes
+            && plain(self)
+            && plain(other)
+    }
+}
+
+/// Puts the type, the prefixes and the dimensions of a redeclaration in the place of the declared
+/// ones (MLS §7.3); its modifiers were merged before.
+fn redeclared(
+    declaration: &mut Declaration,
+    redeclaration: &Redeclaration,
+    span: Span,
+) -> Result<(), Diagnostic> {
+    let name = declaration.name;
+    let Replacement::Component(clause) = &redeclaration.replacement else {
+        return Err(fault!(TYPE_MISMATCH, "component `{name}` is redeclared as a class").at(span));
     };
-    Err(fault!(NOT_SUPPORTED, "{what} are not translated yet").at(clause.span))
+    let Some(component) = clause.components.first() else { return Ok(()) };
+    let context = redeclaration.context;
+    declaration.type_specifier = clause.type_specifier.clone();
+    declaration.scope = context;
+    let subscripts = component.subscripts.iter().chain(&clause.subscripts);
+    let dims: Vec<_> = subscripts.map(|subscript| (subscript.clone(), context)).collect();
+    if !dims.is_empty() {
+        declaration.dims = dims;
+    }
+    let (own, new) = (&mut declaration.type_prefixes, clause.type_prefixes);
+    own.variability = new.variability.or(own.variability);
+    own.causality = new.causality.or(own.causality);
+    own.connection = new.connection.or(own.connection);
+    declaration.is_final |= clause.prefixes.is_final;
+    declaration.evaluate |= evaluates(component);
+    if component.comment.text.is_some() {
+        declaration.description = component.comment.text.clone();
+    }
+    declaration.span = component.span;
+    Ok(())
+}
+
+fn predefined_shape(
+    predefined: Predefined,
+    specifier: &TypeSpecifier,
+) -> Result<Shape, Diagnostic> {
+    match predefined {
+        Predefined::StateSelect => {
+            Ok(Shape::Enumeration(language_enumeration("StateSelect", STATE_SELECT)))
+        }
+        Predefined::AssertionLevel => {
+            Ok(Shape::Enumeration(language_enumeration("AssertionLevel", ASSERTION_LEVEL)))
+        }
+        Predefined::ExternalObject => {
+            Err(fault!(super::errors::PARTIAL_CLASS, "`ExternalObject` is partial";
+                help: "use a class that extends it")
+            .at(specifier.span))
+        }
+        other => Ok(Shape::Predefined(other)),
+    }
+}
+
+fn language_enumeration(name: &str, literals: &[&str]) -> Arc<EnumerationDefinition> {
+    Arc::new(EnumerationDefinition {
+        name: Name::parse(name),
+        literals: literals.iter().map(|literal| Ident::new(literal)).collect(),
+    })
+}
+
+fn check_component_class(text: &Text, specifier: &TypeSpecifier) -> Result<(), Diagnostic> {
+    match text.restriction() {
+        Restriction::Package | Restriction::Function { .. } | Restriction::Operator => {
+            Err(fault!(TYPE_MISMATCH, "`{}` cannot be the type of a component", text.name)
+                .at(specifier.span))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The enumeration that a class declares.
+fn enumeration_of(
+    name: &Name,
+    enumeration: &EnumerationClass,
+    span: Span,
+) -> Result<Arc<EnumerationDefinition>, Diagnostic> {
+    match &enumeration.literals {
+        Some(literals) => Ok(Arc::new(EnumerationDefinition {
+            name: name.clone(),
+            literals: literals.iter().map(|literal| literal.name.node).collect(),
+        })),
+        None => Err(fault!(
+            NOT_SUPPORTED,
+            "`{name}` is an enumeration without literals: it can only be replaced"
+        )
+        .at(span)),
+    }
 }
 
 /// Whether a declaration carries `annotation(Evaluate = true)` (MLS §18.3).

@@ -3,9 +3,10 @@
 
 use super::FlatModel;
 use super::errors::{NOT_SUPPORTED, TYPE_MISMATCH};
-use super::instance::{Context, MemberState, NodeId, NodeKind};
+use super::instance::{MemberState, NodeId};
 use super::instantiation::Instantiation;
 use super::resolve::{Local, literal};
+use super::scope::ScopeId;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::name::Ident;
@@ -25,12 +26,13 @@ impl Instantiation<'_> {
         model: &mut FlatModel,
         errors: &mut Vec<Diagnostic>,
     ) {
-        let Some(composite) = self.composite_of(node) else { return };
-        let lineage = composite.lineage.clone();
-        let members: Vec<MemberState> =
-            composite.members.values().map(|member| member.state.clone()).collect();
-        let library = self.library;
-        for state in members {
+        let Some(scope) = self.scope_of(node) else { return };
+        let parts = self.elements(scope).and_then(|elements| Ok((elements, self.members(node)?)));
+        let (elements, members) = match parts {
+            Ok(parts) => parts,
+            Err(error) => return errors.push(error),
+        };
+        for (_, state) in members {
             match state {
                 MemberState::Single(one) => self.add_equations(one, model, errors),
                 MemberState::Array(_, nodes) => {
@@ -38,12 +40,15 @@ impl Instantiation<'_> {
                         self.add_equations(one, model, errors);
                     }
                 }
-                MemberState::Pending | MemberState::Busy | MemberState::Absent => {}
+                MemberState::Pending
+                | MemberState::Busy
+                | MemberState::Absent
+                | MemberState::Outer(_) => {}
             }
         }
-        for class in lineage {
-            let context = Context { node, class: Some(class) };
-            for section in library.class(class).sections() {
+        for context in elements.lineage.iter().copied() {
+            let text = self.text(context).clone();
+            for section in text.sections() {
                 if let Err(error) = self.add_section(section, context, model, errors) {
                     errors.push(error);
                 }
@@ -54,7 +59,7 @@ impl Instantiation<'_> {
     fn add_section(
         &mut self,
         section: &Section,
-        context: Context,
+        context: ScopeId,
         model: &mut FlatModel,
         errors: &mut Vec<Diagnostic>,
     ) -> Result<(), Diagnostic> {
@@ -95,7 +100,7 @@ impl Instantiation<'_> {
     fn equation(
         &mut self,
         equation: &Equation,
-        context: Context,
+        context: ScopeId,
         local: &Local,
         out: &mut Vec<Equation>,
     ) -> Result<(), Diagnostic> {
@@ -126,12 +131,10 @@ impl Instantiation<'_> {
                 }
                 EquationKind::When { branches: resolved }
             }
+            // Connections were collected before (see `connections`).
+            EquationKind::Connect { .. } => return Ok(()),
+            EquationKind::Call(call) if is_graph_statement(call) => return Ok(()),
             EquationKind::Call(call) => EquationKind::Call(self.resolve(call, context, local)?),
-            EquationKind::Connect { .. } => {
-                return Err(
-                    fault!(NOT_SUPPORTED, "connections are not translated yet").at(equation.span)
-                );
-            }
         };
         out.push(Equation { kind, comment: Default::default(), span: equation.span });
         Ok(())
@@ -140,7 +143,7 @@ impl Instantiation<'_> {
     fn equations(
         &mut self,
         equations: &[Equation],
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<Vec<Equation>, Diagnostic> {
         let mut out = Vec::new();
@@ -156,7 +159,7 @@ impl Instantiation<'_> {
         left: &Expression,
         right: &Expression,
         equation: &Equation,
-        context: Context,
+        context: ScopeId,
         local: &Local,
         out: &mut Vec<Equation>,
     ) -> Result<bool, Diagnostic> {
@@ -181,12 +184,16 @@ impl Instantiation<'_> {
     fn record_fields(
         &mut self,
         e: &Expression,
-        context: Context,
+        context: ScopeId,
     ) -> Result<Option<Vec<Ident>>, Diagnostic> {
         let ExpressionKind::Reference(reference) = &e.kind else { return Ok(None) };
-        let mut node = context.node;
+        let mut node = self.node_of(context);
         for ReferencePart { name, subscripts } in &reference.parts {
-            let next = match self.member(node, *name)? {
+            let state = match self.member(node, *name)? {
+                Some(MemberState::Outer(inner)) => Some(*inner),
+                state => state,
+            };
+            let next = match state {
                 Some(MemberState::Single(one)) => one,
                 Some(MemberState::Array(_, nodes)) if !subscripts.is_empty() => match nodes.first()
                 {
@@ -197,24 +204,44 @@ impl Instantiation<'_> {
             };
             node = next;
         }
-        Ok(match &self.nodes[node.0].kind {
-            NodeKind::Composite(composite) if composite.record => {
-                Some(composite.members.keys().copied().collect())
+        match self.scope_of(node) {
+            Some(scope) if self.is_record(scope) => {
+                Ok(Some(self.members(node)?.into_iter().map(|(name, _)| name).collect()))
             }
-            _ => None,
-        })
+            _ => Ok(None),
+        }
     }
 
     fn unroll(
         &mut self,
         indices: &[ForIndex],
         body: &[Equation],
-        context: Context,
+        context: ScopeId,
         local: &Local,
         out: &mut Vec<Equation>,
     ) -> Result<(), Diagnostic> {
+        let mut turns = Vec::new();
+        self.turns(indices, context, local, &mut turns)?;
+        for turn in turns {
+            out.extend(self.equations(body, context, &turn)?);
+            if out.len() > MAX_EQUATIONS {
+                return Err(fault!(super::errors::TOO_LARGE, "the loop has too many equations")
+                    .at(indices[0].name.span));
+            }
+        }
+        Ok(())
+    }
+
+    /// What the body of a loop knows in each of its turns.
+    pub(super) fn turns(
+        &mut self,
+        indices: &[ForIndex],
+        context: ScopeId,
+        local: &Local,
+        out: &mut Vec<Local>,
+    ) -> Result<(), Diagnostic> {
         let Some((index, inner)) = indices.split_first() else {
-            out.extend(self.equations(body, context, local)?);
+            out.push(local.clone());
             return Ok(());
         };
         let span = index.name.span;
@@ -227,10 +254,10 @@ impl Instantiation<'_> {
         for value in self.range_values(&resolved)? {
             let mut turn = local.clone();
             turn.names.push((index.name.node, Some(literal(&value, span))));
-            self.unroll(inner, body, context, &turn, out)?;
+            self.turns(inner, context, &turn, out)?;
             if out.len() > MAX_EQUATIONS {
                 return Err(
-                    fault!(super::errors::TOO_LARGE, "the loop has too many equations").at(span)
+                    fault!(super::errors::TOO_LARGE, "the loop has too many turns").at(span)
                 );
             }
         }
@@ -255,7 +282,7 @@ impl Instantiation<'_> {
         &mut self,
         branches: &[(Expression, Vec<Equation>)],
         otherwise: &[Equation],
-        context: Context,
+        context: ScopeId,
         local: &Local,
         out: &mut Vec<Equation>,
     ) -> Result<Option<EquationKind>, Diagnostic> {
@@ -282,10 +309,10 @@ impl Instantiation<'_> {
 
     /// Which branch the conditions choose, if all of them up to that one are constants or
     /// parameters with values: `Some(None)` means `else`.
-    fn chosen_branch(
+    pub(super) fn chosen_branch(
         &mut self,
         branches: &[(Expression, Vec<Equation>)],
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<Option<Option<usize>>, Diagnostic> {
         for (at, (condition, _)) in branches.iter().enumerate() {
@@ -309,10 +336,20 @@ impl Instantiation<'_> {
     /// Whether an expression has a value at translation: no variable but constants and
     /// parameters, no operator of time.
     fn is_fixed(&mut self, resolved: &Expression) -> bool {
-        let nowhere = Context { node: NodeId(1), class: None };
+        let flat = self.flat_scope();
         let read = std::mem::take(&mut self.read);
-        let fixed = self.known_value(resolved, nowhere).is_ok();
+        let fixed = self.known_value(resolved, flat).is_ok();
         self.read = read;
         fixed
+    }
+}
+
+/// `Connections.branch(…)` and the like, which are no equations.
+pub(super) fn is_graph_statement(call: &Expression) -> bool {
+    match &call.kind {
+        ExpressionKind::Call { function, .. } => {
+            function.parts.len() == 2 && function.parts[0].name == "Connections"
+        }
+        _ => false,
     }
 }

@@ -39,6 +39,39 @@ codes! {
     /// An element declared twice with different declarations.
     DUPLICATE_ELEMENT = "duplicate-element":
         "## What it means\n\nA class has two elements of one name (MLS §7.1).\n\n## Example\n\n`Real x; Real x;`\n\n## What to do\n\nRename or remove one of them.",
+    /// A connection that cannot be made.
+    INVALID_CONNECTION = "invalid-connection":
+        "## What it means\n\nA `connect` equation names what cannot be connected: two connectors of different kinds or sizes, something that is no connector, or a place where connections are not allowed (MLS §9.3).\n\n## Example\n\n`connect(resistor.p, thermometer.port)` where one is an electrical pin and the other a heat port.\n\n## What to do\n\nConnect connectors with the same components, at the level of equations of a class.",
+    /// A name that the language keeps for itself.
+    RESERVED_NAME = "reserved-name":
+        "## What it means\n\nAn element has the name of a predefined type (MLS §4.9), or an enumeration literal that of an attribute of enumerations (§4.9.5).\n\n## Example\n\n```modelica\nmodel M\n  parameter Boolean Real = true;\nend M;\n```\n\n## What to do\n\nChoose another name.",
+    /// A specialized class with contents that it cannot have.
+    CLASS_RESTRICTION = "class-restriction":
+        "## What it means\n\nA record, connector, block, package, type or operator contains something that its kind of class cannot have (MLS §4.7): equations in a record, variables in a package, acausal connectors in a block.\n\n## Example\n\n```modelica\nrecord R\n  Real x;\nequation\n  x = 1;\nend R;\n```\n\n## What to do\n\nMove it elsewhere, or declare the class as what it is: a model may contain everything.",
+    /// A prefix where it has no meaning.
+    ILLEGAL_PREFIX = "illegal-prefix":
+        "## What it means\n\nA component has a prefix that its type cannot have, or one that contradicts another (MLS §4.4.2.2, §9.3, §15.1).\n\n## Example\n\n```modelica\nconnector C\n  flow Boolean on;\nend C;\n```\n\n## What to do\n\nRemove the prefix, or declare the component otherwise.",
+    /// A class that cannot be extended, or not together with what else there is.
+    ILLEGAL_EXTENDS = "illegal-extends":
+        "## What it means\n\nA class extends one that cannot be extended here: a replaceable class (MLS §7.1.4), an operator record (§14.1), or, beside other contents, an array class, a class with a prefix or a predefined type (§4.6.2).\n\n## Example\n\n```modelica\nmodel M\n  extends Modelica.Units.SI.Voltage;\n  Real x;\nend M;\n```\n\n## What to do\n\nDeclare a component of that class instead.",
+    /// An import clause that cannot be.
+    ILLEGAL_IMPORT = "illegal-import":
+        "## What it means\n\nAn import clause imports from a class that is no package, or two of them import one name (MLS §13.2).\n\n## Example\n\n```modelica\nimport Modelica.Math.sin;\nimport sin = MyLibrary.sin;\n```\n\n## What to do\n\nRename one of the imports, or move what is imported into a package.",
+    /// A name that looks into a class that cannot be looked into.
+    ILLEGAL_ACCESS = "illegal-access":
+        "## What it means\n\nA name with dots looks into a class that is no package for something that is not encapsulated (MLS §5.3.2), or into a partial class.\n\n## Example\n\n```modelica\nmodel A\n  Real x = 1;\n  model B\n    Real y = 2;\n  end B;\nend A;\nmodel M\n  A.B b;\nend M;\n```\n\n## What to do\n\nMove what is named into a package, or declare it `encapsulated`.",
+    /// An operator function that no operator can call.
+    ILLEGAL_OPERATOR = "illegal-operator":
+        "## What it means\n\nA function of an operator record has other inputs or outputs than its operator asks for, or two of them fit the same call (MLS §14.2 to §14.5).\n\n## Example\n\n```modelica\noperator record Pair\n  Real a;\n  encapsulated operator function '+'\n    import Pair;\n    input Pair x;\n    output Pair y = x;\n  end '+';\nend Pair;\n```\n\n## What to do\n\nGive it the inputs and the one output of its operator.",
+    /// A conditional component used where it may be absent.
+    CONDITIONAL_COMPONENT = "conditional-component":
+        "## What it means\n\nA component that is declared under a condition is used in an equation or an expression, where it would be missing if the condition were false. It can only be connected, modified, and named in modifiers of other conditional components (MLS §4.4.5).\n\n## Example\n\n```modelica\nmodel M\n  parameter Boolean on = true;\n  Real x if on;\nequation\n  x = 1;\nend M;\n```\n\n## What to do\n\nMake the variable a connector and connect it, or declare it without a condition.",
+    /// An argument that an operator cannot have.
+    ILLEGAL_ARGUMENT = "illegal-argument":
+        "## What it means\n\nAn operator has an argument of the wrong kind: `der` of something that is not a continuous Real variable, `reinit` of a parameter, `sample` or `delay` with times that change during the simulation, `inStream` of a variable that is no stream variable (MLS §3.7, §15.2).\n\n## Example\n\n```modelica\nmodel M\n  Integer n = 1;\n  Real x = der(n);\nend M;\n```\n\n## What to do\n\nGive the operator what it asks for.",
+    /// An equation or a statement in a place where it has no meaning.
+    MISPLACED = "misplaced-equation":
+        "## What it means\n\nAn equation or a statement stands where it cannot: a when-clause inside another one or in a function (MLS §8.3.5.2, §12.2), `connect` in a when-clause or under a condition that changes during the simulation (§9.1), `break` outside of a loop (§11.2.4), `return` outside of a function (§11.2.5).\n\n## Example\n\n```modelica\nwhen x > 1 then\n  when y > 1 then\n    n = pre(n) + 1;\n  end when;\nend when;\n```\n\n## What to do\n\nMove it to a place where it can stand; conditions of nested when-clauses can be combined.",
     /// A part of the language that is not built yet.
     NOT_SUPPORTED = "unsupported-language":
         "## What it means\n\nThe text is Modelica, and this program does not translate that part of the language yet. The message names it.\n\n## Example\n\n`inStream(port.h_outflow)`\n\n## What to do\n\nWrite the model without it.",
@@ -48,4 +81,7 @@ codes! {
     /// A model larger than the program is ready to build.
     TOO_LARGE = "too-large":
         "## What it means\n\nThe model has more variables or deeper nesting than the program is ready to build.\n\n## Example\n\n`Real x[100000, 100000];`\n\n## What to do\n\nCheck the array sizes; a missing factor or a wrong unit makes them explode.",
+    /// What an old library does otherwise (a warning).
+    OLD_LIBRARY = "old-library":
+        "## What it means\n\nA library is written in a way that today's Modelica does not have: files without `within`, folders or files named otherwise than what is in them (MLS §13.4), annotations anywhere in a class, graphics of Modelica 1 or 2. The library works all the same. The warning is given once for each library and way of writing, at the first place met.\n\n## Example\n\nA folder `CaseStudies` whose `package.mo` has `package casestudies`.\n\n## What to do\n\nNothing, or what the message says, in all files of the library.",
 }

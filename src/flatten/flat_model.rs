@@ -110,6 +110,9 @@ pub enum BaseType {
     String,
     /// An enumeration
     Enumeration(Arc<EnumerationDefinition>),
+    /// A class that extends `ExternalObject` (MLS §12.9.7), by its full name: its value is what
+    /// the call of its constructor in the binding returns.
+    ExternalObject(Name),
 }
 
 /// When a variable may change (MLS §3.8).

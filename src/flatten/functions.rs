@@ -1,12 +1,12 @@
 //! Functions made ready to be called: inherited elements collected, names resolved (MLS ch. 12).
 
 use super::errors::{NOT_SUPPORTED, TYPE_MISMATCH, UNKNOWN_CLASS};
-use super::instance::{Context, NodeId, Shape};
+use super::instance::Shape;
 use super::instantiation::Instantiation;
-use super::library::{ClassId, Library};
+use super::library::Library;
 use super::lookup::{Predefined, Type};
-use super::modification::Modifier;
 use super::resolve::Local;
+use super::scope::{ScopeId, Text};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
@@ -29,15 +29,18 @@ impl Library {
         &self,
         name: &Name,
     ) -> Result<Option<IndexMap<Name, Arc<Function>>>, Diagnostic> {
-        let Some(id) = self.find(name) else { return Ok(None) };
-        super::on_deep_stack(|| self.ready_function(id))?
+        if self.find(name).is_none() {
+            return Ok(None);
+        }
+        super::on_deep_stack(|| self.ready_function(name))?
     }
 
     fn ready_function(
         &self,
-        id: ClassId,
+        name: &Name,
     ) -> Result<Option<IndexMap<Name, Arc<Function>>>, Diagnostic> {
         let mut instantiation = Instantiation::new(self);
+        let Some(Type::Class(id)) = instantiation.class_named(name)? else { return Ok(None) };
         let Some(full) = instantiation.function(id)? else { return Ok(None) };
         let mut functions: IndexMap<Name, Arc<Function>> = IndexMap::new();
         let own = instantiation.functions.shift_remove(&full).flatten();
@@ -47,13 +50,6 @@ impl Library {
         }
         Ok(Some(functions))
     }
-
-    fn is_function(&self, id: ClassId) -> bool {
-        matches!(
-            self.class(id).definition.restriction,
-            Restriction::Function { .. } | Restriction::Record | Restriction::OperatorRecord
-        )
-    }
 }
 
 impl Instantiation<'_> {
@@ -62,10 +58,10 @@ impl Instantiation<'_> {
     pub(super) fn function_name(
         &mut self,
         name: &Name,
-        context: Context,
+        context: ScopeId,
         span: Span,
     ) -> Result<Name, Diagnostic> {
-        match self.library.lookup(context.class, name) {
+        match self.lookup(context, name)? {
             Some(Type::Class(id)) => match self.function(id)? {
                 Some(full) => Ok(full),
                 None => Err(fault!(TYPE_MISMATCH, "`{name}` is not a function").at(span)),
@@ -84,58 +80,96 @@ impl Instantiation<'_> {
     }
 
     /// Makes a function ready and returns its full name; `None` if the class is no function.
-    pub(super) fn function(&mut self, id: ClassId) -> Result<Option<Name>, Diagnostic> {
-        let library = self.library;
-        let name = library.class(id).name.clone();
-        if self.functions.contains_key(&name) {
-            return Ok(Some(name));
+    pub(super) fn function(&mut self, id: ScopeId) -> Result<Option<Name>, Diagnostic> {
+        if let Some(known) = self.function_names.get(&id) {
+            return Ok(Some(known.clone()));
         }
-        let class = self.long_class(id);
-        if !library.is_function(class) {
+        let class = self.long_class(id)?;
+        let is_function = matches!(
+            self.text(class).restriction(),
+            Restriction::Function { .. } | Restriction::Record | Restriction::OperatorRecord
+        );
+        if !is_function {
             return Ok(None);
         }
         // Known by name before its body is read, which may call the function itself.
+        let name = self.free_name(&self.text(id).name.clone());
         self.functions.insert(name.clone(), None);
-        let function = match library.class(class).definition.restriction {
-            Restriction::Function { .. } => self.ready(id, class),
-            _ => self.constructor(id, class),
+        self.function_names.insert(id, name.clone());
+        let function = match self.is_record(class) {
+            false => self.ready(&name, class),
+            true => self.constructor(&name, class),
         };
         match function {
-            Ok(function) => {
-                self.functions.insert(name.clone(), Some(Arc::new(function)));
-                Ok(Some(name))
-            }
+            Ok(function) => Ok(Some(self.keep_function(id, name, function))),
             Err(error) => {
                 self.functions.shift_remove(&name);
+                self.function_names.remove(&id);
                 Err(error)
             }
         }
     }
 
-    fn long_class(&self, mut id: ClassId) -> ClassId {
-        for _ in 0..100 {
-            match (&self.library.class(id).definition.specifier, self.library.bases(id).first()) {
-                (ClassSpecifier::Short(_), Some(base)) => id = *base,
-                _ => break,
+    /// The name, with a number if another function has it: the same text in other surroundings.
+    fn free_name(&self, name: &Name) -> Name {
+        if !self.functions.contains_key(name) {
+            return name.clone();
+        }
+        let last = name.last().map_or("", Ident::as_str).trim_matches('\'').to_owned();
+        let numbered =
+            |number: usize| name.parent().child(Ident::new(&format!("'{last}${number}'")));
+        (2..)
+            .map(numbered)
+            .find(|name| !self.functions.contains_key(name))
+            .unwrap_or_else(|| name.clone())
+    }
+
+    /// Stores a function, unless one that differs in the name alone is known already.
+    fn keep_function(&mut self, id: ScopeId, name: Name, function: Function) -> Name {
+        let text = self.text(id).name.clone();
+        if name != text {
+            let mut at = 1;
+            let mut candidate = text.clone();
+            while candidate != name {
+                let renamed = Function { name: candidate.clone(), ..function.clone() };
+                let known = self.functions.get(&candidate).cloned().flatten();
+                if known.is_some_and(|known| same_function(&known, &renamed)) {
+                    self.functions.shift_remove(&name);
+                    self.function_names.insert(id, candidate.clone());
+                    return candidate;
+                }
+                at += 1;
+                let last = text.last().map_or("", Ident::as_str).trim_matches('\'').to_owned();
+                candidate = text.parent().child(Ident::new(&format!("'{last}${at}'")));
             }
         }
-        id
+        self.functions.insert(name.clone(), Some(Arc::new(function)));
+        name
+    }
+
+    fn long_class(&mut self, mut id: ScopeId) -> Result<ScopeId, Diagnostic> {
+        for _ in 0..100 {
+            let ClassSpecifier::Short(_) = &self.text(id).definition.specifier else { break };
+            match self.bases(id)?.first() {
+                Some(base) => id = *base,
+                None => break,
+            }
+        }
+        Ok(id)
     }
 
     /// The name of a record's constructor, made ready.
     pub(super) fn record_constructor(
         &mut self,
-        class: ClassId,
+        class: ScopeId,
         span: Span,
     ) -> Result<Name, Diagnostic> {
         self.function(class)?.ok_or_else(|| {
-            fault!(UNKNOWN_CLASS, "`{}` has no constructor", self.library.class(class).name)
-                .at(span)
+            fault!(UNKNOWN_CLASS, "`{}` has no constructor", self.text(class).name).at(span)
         })
     }
 
-    fn ready(&mut self, id: ClassId, class: ClassId) -> Result<Function, Diagnostic> {
-        let library = self.library;
+    fn ready(&mut self, name: &Name, class: ScopeId) -> Result<Function, Diagnostic> {
         let components = self.components_of(class)?;
         let names: Vec<Ident> = components.iter().map(|c| c.component.name).collect();
         let inputs_of = |c: &Declared| c.causality == Some(CausalityPrefix::Input);
@@ -150,32 +184,34 @@ impl Instantiation<'_> {
             };
             list.push(declared.component);
         }
-        let lineage = library.collect(class, NodeId(0), Modifier::default())?.lineage;
-        let definition = &library.class(class).definition;
-        self.check_complete(class, definition.name.span)?;
-        let purity = match definition.restriction {
+        let lineage = self.elements(class)?.lineage.clone();
+        let text = self.text(class).clone();
+        self.check_complete(class, text.span())?;
+        let purity = match text.restriction() {
             Restriction::Function { purity, .. } => purity,
             _ => None,
         };
+        let mut annotations = Vec::new();
+        for scope in &lineage {
+            annotations.extend(annotation(self.text(*scope).sections()));
+        }
         Ok(Function {
-            name: library.class(id).name.clone(),
+            name: name.clone(),
             inputs,
             outputs,
             locals,
             body: self.body(&lineage, &local)?,
-            description: description(&definition.specifier),
-            annotation: annotation(library.class(class).sections()),
+            description: description(&text.definition.specifier),
+            annotation: annotations,
             impure: purity == Some(Purity::Impure),
-            span: definition.name.span,
+            span: text.span(),
         })
     }
 
-    fn constructor(&mut self, id: ClassId, class: ClassId) -> Result<Function, Diagnostic> {
-        let library = self.library;
-        let name = library.class(id).name.clone();
+    fn constructor(&mut self, name: &Name, class: ScopeId) -> Result<Function, Diagnostic> {
         let fields: Vec<FunctionComponent> =
             self.components_of(class)?.into_iter().map(|declared| declared.component).collect();
-        let span = library.class(class).definition.name.span;
+        let span = self.text(class).span();
         let table = fields.iter().map(|field| (field.name, field.clone())).collect();
         let output = FunctionComponent {
             name: Ident::new("'constructed record'"),
@@ -186,7 +222,7 @@ impl Instantiation<'_> {
             span,
         };
         Ok(Function {
-            name,
+            name: name.clone(),
             inputs: fields,
             outputs: vec![output],
             locals: Vec::new(),
@@ -199,31 +235,29 @@ impl Instantiation<'_> {
     }
 
     /// The components of a function or record, inherited ones included.
-    fn components_of(&mut self, class: ClassId) -> Result<Vec<Declared>, Diagnostic> {
-        let library = self.library;
-        let collected = library.collect(class, NodeId(0), Modifier::default())?;
-        let names: Vec<Ident> = collected.members.keys().copied().collect();
-        let local = Local::default().with(names);
-        let restriction = library.class(class).definition.restriction;
-        let is_function = matches!(restriction, Restriction::Function { .. });
-        let mut components = Vec::with_capacity(collected.members.len());
-        for member in collected.members.values() {
-            let declared = &member.declaration;
+    fn components_of(&mut self, class: ScopeId) -> Result<Vec<Declared>, Diagnostic> {
+        let elements = self.elements(class)?;
+        let local = Local::default().with(elements.components.keys().copied());
+        let is_function = !self.is_record(class);
+        let mut components = Vec::with_capacity(elements.components.len());
+        for declared in elements.components.values() {
+            let expanded = self.expand(declared)?;
             let mut dims = Vec::with_capacity(declared.dims.len());
-            for (subscript, context) in &declared.dims {
+            for (subscript, context) in declared.dims.iter().chain(&expanded.dims) {
                 dims.push(match subscript {
                     Subscript::All(span) => Subscript::All(*span),
                     Subscript::Index(e) => Subscript::Index(self.resolve(e, *context, &local)?),
                 });
             }
-            let bound = declared.modifier.binding.as_ref();
+            let bound = expanded.modifier.binding.as_ref();
             let binding = match bound.and_then(|b| b.value.as_ref().map(|value| (value, b.context)))
             {
                 Some((value, written)) => Some(self.resolve(value, written, &local)?),
                 None => None,
             };
-            let value_type = self.value_type(&declared.shape, declared.span)?;
-            if is_function && !declared.protected && declared.causality.is_none() {
+            let value_type = self.value_type(&expanded.shape, declared.span)?;
+            let causality = declared.type_prefixes.causality.or(expanded.causality);
+            if is_function && !declared.protected && causality.is_none() {
                 return Err(fault!(
                     TYPE_MISMATCH,
                     "`{}` is public in a function and neither input nor output",
@@ -232,7 +266,7 @@ impl Instantiation<'_> {
                 .at(declared.span));
             }
             components.push(Declared {
-                causality: declared.causality.filter(|_| !declared.protected),
+                causality: causality.filter(|_| !declared.protected),
                 component: FunctionComponent {
                     name: declared.name,
                     value_type,
@@ -256,6 +290,11 @@ impl Instantiation<'_> {
                 return Ok(ValueType::Enumeration(definition.clone()));
             }
             Shape::Class(class) => *class,
+            Shape::Predefined(_) | Shape::ExternalObject(_) => {
+                return Err(
+                    fault!(NOT_SUPPORTED, "external objects are not translated yet").at(span)
+                );
+            }
         };
         let name = self.record_constructor(class, span)?;
         match self.functions.get(&name) {
@@ -267,17 +306,16 @@ impl Instantiation<'_> {
         }
     }
 
-    fn body(&mut self, lineage: &[ClassId], local: &Local) -> Result<FunctionBody, Diagnostic> {
-        let library = self.library;
+    fn body(&mut self, lineage: &[ScopeId], local: &Local) -> Result<FunctionBody, Diagnostic> {
         let mut statements = Vec::new();
         let mut has_algorithm = false;
-        for base in lineage {
-            let context = Context { node: NodeId(0), class: Some(*base) };
-            for section in library.class(*base).sections() {
+        for context in lineage.iter().copied() {
+            let text: Text = self.text(context).clone();
+            for section in text.sections() {
                 match section {
                     Section::Algorithm { initial: false, statements: own, span } => {
                         if std::mem::replace(&mut has_algorithm, true) {
-                            let name = &library.class(*base).name;
+                            let name = &text.name;
                             return Err(fault!(
                                 TYPE_MISMATCH,
                                 "function `{name}` has more than one algorithm"
@@ -287,7 +325,7 @@ impl Instantiation<'_> {
                         statements.extend(self.statements(own, context, local)?);
                     }
                     Section::Algorithm { span, .. } | Section::Equations { span, .. } => {
-                        let name = &library.class(*base).name;
+                        let name = &text.name;
                         return Err(fault!(
                             TYPE_MISMATCH,
                             "function `{name}` has equations; a function has one algorithm"
@@ -312,7 +350,7 @@ impl Instantiation<'_> {
     pub(super) fn statements(
         &mut self,
         statements: &[Statement],
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<Vec<Statement>, Diagnostic> {
         statements.iter().map(|statement| self.statement(statement, context, local)).collect()
@@ -321,7 +359,7 @@ impl Instantiation<'_> {
     fn statement(
         &mut self,
         statement: &Statement,
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<Statement, Diagnostic> {
         let kind = match &statement.kind {
@@ -361,7 +399,7 @@ impl Instantiation<'_> {
     fn statement_branches(
         &mut self,
         branches: &[(Expression, Vec<Statement>)],
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<Vec<(Expression, Vec<Statement>)>, Diagnostic> {
         branches
@@ -376,7 +414,7 @@ impl Instantiation<'_> {
     fn target(
         &mut self,
         target: &ComponentReference,
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<ComponentReference, Diagnostic> {
         let span = target.span;
@@ -393,6 +431,11 @@ impl Instantiation<'_> {
             _ => Err(fault!(TYPE_MISMATCH, "`{}` cannot be assigned to", target.name()).at(span)),
         }
     }
+}
+
+/// Whether two functions of one name do the same; of one that calls itself nothing is known.
+fn same_function(known: &Function, other: &Function) -> bool {
+    known == other
 }
 
 /// A component of a function with what it is.

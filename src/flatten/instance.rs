@@ -1,12 +1,15 @@
 //! The instance tree (MLS §5.6.1): components with their modifiers merged. Data only.
 
-use super::library::ClassId;
 use super::lookup::Predefined;
 use super::modification::Modifier;
+use super::scope::ScopeId;
 use super::{BaseType, Variability};
-use crate::name::Ident;
+use crate::name::{Ident, Name};
 use crate::source::Span;
-use crate::syntax::ast::{CausalityPrefix, Expression, Subscript};
+use crate::syntax::ast::{
+    CausalityPrefix, ConnectionPrefix, ElementPrefixes, Expression, Subscript, TypePrefixes,
+    TypeSpecifier,
+};
 use crate::value::EnumerationDefinition;
 use indexmap::IndexMap;
 use std::sync::Arc;
@@ -15,19 +18,13 @@ use std::sync::Arc;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct NodeId(pub(super) usize);
 
-/// Where an expression was written: the instance whose components its names mean, and the class
-/// from which other names are looked up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Context {
-    pub(super) node: NodeId,
-    pub(super) class: Option<ClassId>,
-}
-
 /// An instance: of a class with components, or of a predefined type.
 #[derive(Debug, Clone)]
 pub(super) struct Node {
     /// The path from the model, such as `pack.cell[2]`; empty for the model itself.
     pub(super) path: String,
+    /// The instance that holds it.
+    pub(super) parent: Option<NodeId>,
     pub(super) kind: NodeKind,
 }
 
@@ -42,13 +39,14 @@ pub(super) enum NodeKind {
 /// An instance of a class with components.
 #[derive(Debug, Clone)]
 pub(super) struct Composite {
-    pub(super) class: ClassId,
-    /// Whether it is a record: its binding is split over its components.
-    pub(super) record: bool,
-    pub(super) members: IndexMap<Ident, Member>,
-    /// The classes whose equations it has: bases first, the class itself last.
-    pub(super) lineage: Vec<ClassId>,
+    pub(super) scope: ScopeId,
+    /// The class that was asked for, without the modifiers of this instance.
+    pub(super) class: ScopeId,
+    /// Its components; `None` as long as nobody asked for one.
+    pub(super) members: Option<IndexMap<Ident, Member>>,
     pub(super) inherited: Inherited,
+    /// Whether its class is a connector, which may be known from a short class only.
+    pub(super) connector: bool,
 }
 
 /// What components inherit from the one that holds them.
@@ -56,6 +54,7 @@ pub(super) struct Composite {
 pub(super) struct Inherited {
     pub(super) variability: Option<Variability>,
     pub(super) causality: Option<CausalityPrefix>,
+    pub(super) connection: Option<ConnectionPrefix>,
     pub(super) is_final: bool,
     pub(super) protected: bool,
     pub(super) depth: usize,
@@ -79,19 +78,23 @@ pub(super) enum MemberState {
     Array(Vec<usize>, Vec<NodeId>),
     /// Its condition is false (MLS §4.4.5).
     Absent,
+    /// An `outer` component: what its `inner` one is (MLS §5.4).
+    Outer(Box<MemberState>),
 }
 
 /// The declaration of a component with its modifiers merged.
 #[derive(Debug, Clone)]
 pub(super) struct Declaration {
     pub(super) name: Ident,
-    pub(super) shape: Shape,
-    /// Dimensions of the declaration, then those of its type, each with its scope.
-    pub(super) dims: Vec<(Subscript, Context)>,
+    pub(super) type_specifier: TypeSpecifier,
+    /// Where its type is looked up.
+    pub(super) scope: ScopeId,
+    /// Dimensions of the declaration, those of its type not included, each with its scope.
+    pub(super) dims: Vec<(Subscript, ScopeId)>,
     pub(super) modifier: Modifier,
-    pub(super) condition: Option<(Expression, Context)>,
-    pub(super) variability: Option<Variability>,
-    pub(super) causality: Option<CausalityPrefix>,
+    pub(super) condition: Option<(Expression, ScopeId)>,
+    pub(super) prefixes: ElementPrefixes,
+    pub(super) type_prefixes: TypePrefixes,
     pub(super) is_final: bool,
     pub(super) protected: bool,
     pub(super) evaluate: bool,
@@ -104,7 +107,9 @@ pub(super) struct Declaration {
 pub(super) enum Shape {
     Predefined(Predefined),
     Enumeration(Arc<EnumerationDefinition>),
-    Class(ClassId),
+    Class(ScopeId),
+    /// An external object (MLS §12.9.7), of the class that extends `ExternalObject`.
+    ExternalObject(Name),
 }
 
 /// A variable of the tree.
@@ -114,6 +119,12 @@ pub(super) struct Leaf {
     pub(super) variable: usize,
     /// Its binding and attributes as written, resolved when the tree is whole.
     pub(super) modifier: Modifier,
+    /// `flow` or `stream`.
+    pub(super) connection: Option<ConnectionPrefix>,
+    /// `input` or `output`, wherever it stands.
+    pub(super) causality: Option<CausalityPrefix>,
+    /// Whether its type is a connector.
+    pub(super) connector: bool,
 }
 
 impl Shape {
@@ -125,7 +136,8 @@ impl Shape {
             Shape::Predefined(Predefined::Boolean) => BaseType::Boolean,
             Shape::Predefined(Predefined::String) => BaseType::String,
             Shape::Enumeration(definition) => BaseType::Enumeration(definition.clone()),
-            Shape::Class(_) => return None,
+            Shape::ExternalObject(name) => BaseType::ExternalObject(name.clone()),
+            Shape::Predefined(_) | Shape::Class(_) => return None,
         })
     }
 }

@@ -1,27 +1,31 @@
 //! Builds the instance tree (MLS §5.6.1), component by component as they are needed: a parameter
 //! that gives a size may be declared behind the array that it sizes.
 
+use super::connections::Connections;
 use super::constants::Read;
+use super::declarations::Expanded;
 use super::errors::{
     CYCLIC_CLASS, NOT_CONSTANT, PARTIAL_CLASS, SIZE_MISMATCH, TOO_LARGE, TYPE_MISMATCH,
     UNKNOWN_ELEMENT,
 };
 use super::instance::{
-    Composite, Context, Declaration, Inherited, Leaf, Member, MemberState, Node, NodeId, NodeKind,
-    Shape,
+    Composite, Declaration, Inherited, Leaf, Member, MemberState, Node, NodeId, NodeKind, Shape,
 };
-use super::library::{ClassId, Library};
+use super::library::Library;
+use super::lookup::Type;
 use super::modification::{Bound, Modifier};
+use super::scope::{Nested, Scope, ScopeId, Text};
 use super::{BaseType, Variability, Variable};
 use crate::diag::{Diagnostic, suggest};
 use crate::eval::Function;
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
-use crate::syntax::ast::{Expression, ExpressionKind, Restriction, Subscript};
+use crate::syntax::ast::{Expression, ExpressionKind, Restriction, Subscript, VariabilityPrefix};
 use crate::value::Value;
 use indexmap::{IndexMap, IndexSet};
 use rustc_hash::FxHashMap;
+use std::rc::Rc;
 use std::sync::Arc;
 
 /// The most scalar variables, the most components and the deepest nesting that are built.
@@ -40,9 +44,23 @@ pub(super) struct Instantiation<'a> {
     /// Variables with the node of each.
     pub(super) variables: Vec<(Variable, NodeId)>,
     pub(super) variable_of: FxHashMap<Arc<str>, usize>,
-    /// Instances of packages, for their constants.
-    pub(super) packages: FxHashMap<ClassId, NodeId>,
+    /// Classes in their surroundings; the first is the top.
+    pub(super) scopes: Vec<Scope>,
+    pub(super) roots: FxHashMap<Ident, Rc<Nested>>,
+    /// Classes found by name in a class and in what encloses it.
+    pub(super) nested: FxHashMap<(ScopeId, Ident), Option<Rc<Nested>>>,
+    pub(super) found: FxHashMap<(ScopeId, Ident), Option<Type>>,
+    /// How many classes are looking up their bases, and how many short classes lead to another.
+    pub(super) searching: usize,
+    pub(super) renaming: usize,
     pub(super) functions: IndexMap<Name, Option<Arc<Function>>>,
+    /// The names under which functions are known.
+    pub(super) function_names: FxHashMap<ScopeId, Name>,
+    /// The instance of the model.
+    pub(super) root_node: NodeId,
+    pub(super) warnings: Vec<Diagnostic>,
+    /// All connections, as soon as the tree is whole.
+    pub(super) connections: Option<Rc<Connections>>,
     /// Variables whose values shaped the model.
     pub(super) structural: IndexSet<usize>,
     /// Values found so far with the variables that they need; `None` while one is being found.
@@ -57,23 +75,32 @@ pub(super) struct Instantiation<'a> {
 }
 
 impl<'a> Instantiation<'a> {
-    /// A tree with the node 0, which has no components: the scope of what lies in packages.
+    /// A tree with the node 0, which has no components: the instance of the top scope.
     pub(super) fn new(library: &'a Library) -> Instantiation<'a> {
         let nowhere = Composite {
-            class: ClassId::default(),
-            record: false,
-            members: IndexMap::new(),
-            lineage: Vec::new(),
+            scope: ScopeId::TOP,
+            class: ScopeId::TOP,
+            members: Some(IndexMap::new()),
             inherited: Inherited::default(),
+            connector: false,
         };
-        let node = Node { path: String::new(), kind: NodeKind::Composite(nowhere) };
+        let node = Node { path: String::new(), parent: None, kind: NodeKind::Composite(nowhere) };
         Instantiation {
             library,
             nodes: vec![node],
             variables: Vec::new(),
             variable_of: FxHashMap::default(),
-            packages: FxHashMap::default(),
+            scopes: vec![Self::top_scope()],
+            roots: FxHashMap::default(),
+            nested: FxHashMap::default(),
+            found: FxHashMap::default(),
+            searching: 0,
+            renaming: 0,
             functions: IndexMap::new(),
+            function_names: FxHashMap::default(),
+            root_node: NodeId(0),
+            warnings: Vec::new(),
+            connections: None,
             structural: IndexSet::new(),
             values: FxHashMap::default(),
             read: Read::new(),
@@ -83,54 +110,169 @@ impl<'a> Instantiation<'a> {
         }
     }
 
-    /// An instance of a class with components at a path; its components are not built yet.
-    pub(super) fn composite(
+    /// The instance of the model itself, under a modifier.
+    pub(super) fn model(
         &mut self,
-        class: ClassId,
+        class: ScopeId,
+        modifier: Modifier,
+    ) -> Result<NodeId, Diagnostic> {
+        let text = self.text(class);
+        let modifier = self
+            .scope(class)
+            .modifier
+            .clone()
+            .overridden_by(modifier, text.definition.name.node)?;
+        let node = self.composite(class, String::new(), None, modifier, Inherited::default())?;
+        self.root_node = node;
+        Ok(node)
+    }
+
+    /// An instance of a class with components at a path; its components are not built yet.
+    fn composite(
+        &mut self,
+        class: ScopeId,
         path: String,
+        holder: Option<NodeId>,
         modifier: Modifier,
         inherited: Inherited,
     ) -> Result<NodeId, Diagnostic> {
-        let definition = &self.library.class(class).definition;
-        if inherited.depth > MAX_DEPTH {
-            let name = &self.library.class(class).name;
-            return Err(fault!(CYCLIC_CLASS, "`{name}` contains a component of its own class")
-                .at(definition.name.span));
+        let text = self.text(class).clone();
+        if inherited.depth > MAX_DEPTH || self.is_inside_itself(&text, holder) {
+            return Err(fault!(
+                CYCLIC_CLASS,
+                "`{}` contains a component of its own class",
+                text.name
+            )
+            .at(text.span()));
         }
         if self.nodes.len() > MAX_INSTANCES {
             return Err(fault!(TOO_LARGE, "the model has more than {MAX_INSTANCES} components")
-                .at(definition.name.span));
+                .at(text.span()));
         }
-        let record =
-            matches!(definition.restriction, Restriction::Record | Restriction::OperatorRecord);
-        let node = NodeId(self.nodes.len());
-        let binding = modifier.binding.clone();
-        let mut collected = self.library.collect(class, node, modifier)?;
-        if let Some(binding) = binding {
-            self.split_binding(class, record, &binding, &mut collected.members)?;
+        let parent = self.scope(class).parent.unwrap_or(ScopeId::TOP);
+        let names: Vec<(Ident, Option<Span>)> =
+            modifier.elements.iter().map(|(name, modifier)| (*name, modifier.span)).collect();
+        let span = modifier.span.unwrap_or(text.span());
+        let node = self.add_node(path, holder, inherited);
+        let scope = self.add_scope(text, parent, node, modifier, Modifier::default())?;
+        self.set_scope(node, scope);
+        self.set_class(node, class);
+        self.fill(node)?;
+        for (name, place) in names {
+            self.check_modified(scope, name, place.unwrap_or(span))?;
         }
-        let composite = Composite {
-            class,
-            record,
-            members: collected.members,
-            lineage: collected.lineage,
-            inherited,
-        };
-        self.nodes.push(Node { path, kind: NodeKind::Composite(composite) });
         Ok(node)
+    }
+
+    /// Whether a component of this class would hold itself.
+    fn is_inside_itself(&self, text: &Text, holder: Option<NodeId>) -> bool {
+        let mut node = holder;
+        let mut times = 0;
+        while let Some(id) = node {
+            let known = self.scope_of(id).and_then(|scope| self.scope(scope).text.as_ref());
+            if known.is_some_and(|known| known.definition.span == text.definition.span) {
+                times += 1;
+            }
+            node = self.nodes[id.0].parent;
+        }
+        // A class may hold another form of itself, with the recursion ended by a condition.
+        times > MAX_SELF
+    }
+
+    fn add_node(&mut self, path: String, parent: Option<NodeId>, inherited: Inherited) -> NodeId {
+        let id = NodeId(self.nodes.len());
+        let composite = Composite {
+            scope: ScopeId::TOP,
+            class: ScopeId::TOP,
+            members: None,
+            inherited,
+            connector: false,
+        };
+        self.nodes.push(Node { path, parent, kind: NodeKind::Composite(composite) });
+        id
+    }
+
+    /// The instance of a package or class for its constants; nothing in it is built yet.
+    pub(super) fn add_package(&mut self, name: &Name, holder: NodeId) -> NodeId {
+        let path = format!("{PACKAGE_MARK}{name}");
+        self.add_node(path, Some(holder), Inherited::default())
+    }
+
+    pub(super) fn set_scope(&mut self, node: NodeId, scope: ScopeId) {
+        if let NodeKind::Composite(composite) = &mut self.nodes[node.0].kind {
+            composite.scope = scope;
+            composite.class = scope;
+        }
+    }
+
+    fn set_class(&mut self, node: NodeId, class: ScopeId) {
+        if let NodeKind::Composite(composite) = &mut self.nodes[node.0].kind {
+            composite.class = class;
+        }
+    }
+
+    /// The class of an instance; `None` for a variable.
+    pub(super) fn scope_of(&self, node: NodeId) -> Option<ScopeId> {
+        self.composite_of(node).map(|composite| composite.scope)
+    }
+
+    /// Lists the components of an instance, as far as they are not listed yet.
+    fn fill(&mut self, node: NodeId) -> Result<(), Diagnostic> {
+        let Some(composite) = self.composite_of(node) else { return Ok(()) };
+        if composite.members.is_some() {
+            return Ok(());
+        }
+        let scope = composite.scope;
+        let elements = self.elements(scope)?;
+        let mut members: IndexMap<Ident, Member> = elements
+            .components
+            .iter()
+            .map(|(name, declaration)| {
+                let state = MemberState::Pending;
+                (*name, Member { declaration: declaration.clone(), state })
+            })
+            .collect();
+        if let Some(binding) = self.scope(scope).modifier.binding.clone() {
+            self.split_binding(scope, &binding, &mut members)?;
+        }
+        if let NodeKind::Composite(composite) = &mut self.nodes[node.0].kind {
+            composite.members = Some(members);
+        }
+        Ok(())
+    }
+
+    pub(super) fn is_record(&self, scope: ScopeId) -> bool {
+        matches!(self.text(scope).restriction(), Restriction::Record | Restriction::OperatorRecord)
+    }
+
+    /// The components of an instance, with their states.
+    pub(super) fn members(
+        &mut self,
+        node: NodeId,
+    ) -> Result<Vec<(Ident, MemberState)>, Diagnostic> {
+        self.fill(node)?;
+        let members = self.composite_of(node).and_then(|composite| composite.members.as_ref());
+        Ok(members.map_or(Vec::new(), |members| {
+            members.iter().map(|(name, member)| (*name, member.state.clone())).collect()
+        }))
+    }
+
+    /// The declaration of a component of an instance.
+    pub(super) fn declaration_of(&self, node: NodeId, name: Ident) -> Option<Arc<Declaration>> {
+        let members = self.composite_of(node)?.members.as_ref()?;
+        members.get(&name).map(|member| member.declaration.clone())
     }
 
     /// Gives every component of a record its part of the record's binding (MLS §7.2.2).
     fn split_binding(
         &self,
-        class: ClassId,
-        record: bool,
+        class: ScopeId,
         binding: &Bound,
         members: &mut IndexMap<Ident, Member>,
     ) -> Result<(), Diagnostic> {
         let Some(value) = &binding.value else { return Ok(()) };
-        if !record {
-            let name = &self.library.class(class).name;
+        if !self.is_record(class) {
+            let name = &self.text(class).name;
             return Err(fault!(TYPE_MISMATCH, "a component of `{name}` cannot be given a value";
                 help: "only records and variables have values")
             .at(value.span));
@@ -164,8 +306,11 @@ impl<'a> Instantiation<'a> {
         node: NodeId,
         name: Ident,
     ) -> Result<Option<MemberState>, Diagnostic> {
-        let Some(composite) = self.composite_of(node) else { return Ok(None) };
-        let Some(member) = composite.members.get(&name) else { return Ok(None) };
+        self.fill(node)?;
+        let members = self.composite_of(node).and_then(|composite| composite.members.as_ref());
+        let Some(member) = members.and_then(|members| members.get(&name)) else {
+            return Ok(None);
+        };
         let declaration = member.declaration.clone();
         match &member.state {
             MemberState::Pending => {}
@@ -190,7 +335,8 @@ impl<'a> Instantiation<'a> {
 
     fn set_state(&mut self, node: NodeId, name: Ident, state: MemberState) {
         if let NodeKind::Composite(composite) = &mut self.nodes[node.0].kind
-            && let Some(member) = composite.members.get_mut(&name)
+            && let Some(member) =
+                composite.members.as_mut().and_then(|members| members.get_mut(&name))
         {
             member.state = state;
         }
@@ -208,26 +354,36 @@ impl<'a> Instantiation<'a> {
                 }
             }
         }
-        let dims = self.dimensions(declared)?;
-        match declared.shape.base() {
-            Some(base) => self.variable(node, declared, base, dims).map(MemberState::Single),
-            None => self.components(node, declared, dims),
+        if declared.prefixes.outer {
+            return self.outer(node, declared);
+        }
+        let expanded = self.expand(declared)?;
+        let dims = self.dimensions(declared, &expanded)?;
+        match expanded.shape.base() {
+            Some(base) => {
+                self.variable(node, declared, expanded, base, dims).map(MemberState::Single)
+            }
+            None => self.components(node, declared, expanded, dims),
         }
     }
 
-    fn dimensions(&mut self, declared: &Declaration) -> Result<Vec<usize>, Diagnostic> {
-        let mut dims = Vec::with_capacity(declared.dims.len());
+    fn dimensions(
+        &mut self,
+        declared: &Declaration,
+        expanded: &Expanded,
+    ) -> Result<Vec<usize>, Diagnostic> {
+        let rank = declared.dims.len() + expanded.dims.len();
+        let mut dims = Vec::with_capacity(rank);
         let mut of_binding: Option<Vec<usize>> = None;
-        for (at, (subscript, context)) in declared.dims.iter().enumerate() {
+        for (at, (subscript, context)) in declared.dims.iter().chain(&expanded.dims).enumerate() {
             match subscript {
                 Subscript::Index(size) => dims.push(self.size(size, *context)?),
                 Subscript::All(span) => {
                     if of_binding.is_none() {
-                        of_binding = Some(self.binding_dims(declared, *span)?);
+                        of_binding = Some(self.binding_dims(declared, expanded, *span)?);
                     }
                     let sizes = of_binding.as_deref().unwrap_or_default();
                     let size = sizes.get(at).copied().ok_or_else(|| {
-                        let rank = declared.dims.len();
                         fault!(
                             SIZE_MISMATCH,
                             "`{}` has {rank} dimensions, its value {}",
@@ -243,7 +399,7 @@ impl<'a> Instantiation<'a> {
         Ok(dims)
     }
 
-    fn size(&mut self, size: &Expression, context: Context) -> Result<usize, Diagnostic> {
+    fn size(&mut self, size: &Expression, context: ScopeId) -> Result<usize, Diagnostic> {
         match self.structural_value(size, context)? {
             Value::Integer(n) if n >= 0 => Ok(n as usize),
             Value::Integer(n) => {
@@ -261,9 +417,10 @@ impl<'a> Instantiation<'a> {
     fn binding_dims(
         &mut self,
         declared: &Declaration,
+        expanded: &Expanded,
         span: Span,
     ) -> Result<Vec<usize>, Diagnostic> {
-        let bound = declared.modifier.binding.as_ref();
+        let bound = expanded.modifier.binding.as_ref();
         let Some((Some(value), bound)) = bound.map(|b| (b.value.clone(), b)) else {
             return Err(fault!(NOT_CONSTANT, "the size of `{}` is not given", declared.name;
                 help: "write its size, or give it a value")
@@ -293,11 +450,13 @@ impl<'a> Instantiation<'a> {
         Ok(())
     }
 
-    fn inherited_by(&self, node: NodeId, declared: &Declaration) -> Inherited {
+    fn inherited_by(&self, node: NodeId, declared: &Declaration, expanded: &Expanded) -> Inherited {
         let parent = self.composite_of(node).map_or(Inherited::default(), |c| c.inherited);
+        let prefixes = declared.type_prefixes;
         Inherited {
-            variability: stricter(parent.variability, declared.variability),
-            causality: parent.causality.or(declared.causality),
+            variability: stricter(parent.variability, prefixes.variability.map(variability)),
+            causality: parent.causality.or(prefixes.causality).or(expanded.causality),
+            connection: parent.connection.or(prefixes.connection).or(expanded.connection),
             is_final: parent.is_final || declared.is_final,
             protected: parent.protected || declared.protected,
             depth: parent.depth + 1,
@@ -308,16 +467,18 @@ impl<'a> Instantiation<'a> {
         &mut self,
         node: NodeId,
         declared: &Declaration,
+        expanded: Expanded,
         dims: Vec<usize>,
     ) -> Result<MemberState, Diagnostic> {
-        let Shape::Class(class) = declared.shape else {
+        let Shape::Class(class) = expanded.shape else {
             return Err(fault!(TYPE_MISMATCH, "`{}` has no class", declared.name).at(declared.span));
         };
         self.check_complete(class, declared.span)?;
-        let inherited = self.inherited_by(node, declared);
+        let inherited = self.inherited_by(node, declared, &expanded);
         let path = self.path_of(node, declared.name);
         if dims.is_empty() {
-            let built = self.composite(class, path, declared.modifier.clone(), inherited)?;
+            let built = self.composite(class, path, Some(node), expanded.modifier, inherited)?;
+            self.mark_connector(built, expanded.connector);
             return Ok(MemberState::Single(built));
         }
         let count = dims.iter().try_fold(1usize, |n, d| n.checked_mul(*d)).unwrap_or(usize::MAX);
@@ -327,15 +488,23 @@ impl<'a> Instantiation<'a> {
             let indices = indices_of(at, &dims);
             let texts: Vec<String> = indices.iter().map(usize::to_string).collect();
             let element = format!("{path}[{}]", texts.join(","));
-            let modifier = declared.modifier.at_element(&indices);
-            nodes.push(self.composite(class, element, modifier, inherited)?);
+            let modifier = expanded.modifier.at_element(&indices);
+            let built = self.composite(class, element, Some(node), modifier, inherited)?;
+            self.mark_connector(built, expanded.connector);
+            nodes.push(built);
         }
         Ok(MemberState::Array(dims, nodes))
     }
 
+    fn mark_connector(&mut self, node: NodeId, connector: bool) {
+        if let NodeKind::Composite(composite) = &mut self.nodes[node.0].kind {
+            composite.connector = connector;
+        }
+    }
+
     /// A partial class has no instances (MLS §4.7).
-    pub(super) fn check_complete(&self, class: ClassId, span: Span) -> Result<(), Diagnostic> {
-        let found = self.library.class(class);
+    pub(super) fn check_complete(&self, class: ScopeId, span: Span) -> Result<(), Diagnostic> {
+        let found = self.text(class);
         if found.definition.partial {
             return Err(fault!(PARTIAL_CLASS, "`{}` is partial and has no instances", found.name;
                 help: "use a class that extends it")
@@ -348,10 +517,11 @@ impl<'a> Instantiation<'a> {
         &mut self,
         node: NodeId,
         declared: &Declaration,
+        expanded: Expanded,
         base: BaseType,
         dims: Vec<usize>,
     ) -> Result<NodeId, Diagnostic> {
-        for (name, modifier) in &declared.modifier.elements {
+        for (name, modifier) in &expanded.modifier.elements {
             if !ATTRIBUTES.contains(&name.as_str()) {
                 return Err(fault!(
                     UNKNOWN_ELEMENT,
@@ -364,7 +534,7 @@ impl<'a> Instantiation<'a> {
         }
         let scalars = dims.iter().try_fold(1usize, |n, d| n.checked_mul(*d)).unwrap_or(usize::MAX);
         self.count(scalars, declared.span)?;
-        let inherited = self.inherited_by(node, declared);
+        let inherited = self.inherited_by(node, declared, &expanded);
         let top_level = self.nodes[node.0].path.is_empty();
         let name: Arc<str> = self.path_of(node, declared.name).into();
         let discrete = base != BaseType::Real;
@@ -385,13 +555,20 @@ impl<'a> Instantiation<'a> {
             description: declared.description.clone(),
             span: declared.span,
         };
-        let leaf = Leaf { variable: self.variables.len(), modifier: declared.modifier.clone() };
+        let leaf = Leaf {
+            variable: self.variables.len(),
+            modifier: expanded.modifier,
+            connection: inherited.connection,
+            causality: inherited.causality,
+            connector: expanded.connector,
+        };
         let id = NodeId(self.nodes.len());
         if !self.in_package(node) {
             self.variable_of.insert(name.clone(), leaf.variable);
         }
         self.variables.push((variable, id));
-        self.nodes.push(Node { path: name.to_string(), kind: NodeKind::Variable(leaf) });
+        let path = name.to_string();
+        self.nodes.push(Node { path, parent: Some(node), kind: NodeKind::Variable(leaf) });
         Ok(id)
     }
 
@@ -402,17 +579,18 @@ impl<'a> Instantiation<'a> {
 
     /// Builds all components below a node.
     pub(super) fn complete(&mut self, node: NodeId) -> Result<(), Vec<Diagnostic>> {
-        let Some(composite) = self.composite_of(node) else { return Ok(()) };
-        let names: Vec<Ident> = composite.members.keys().copied().collect();
         let mut errors = Vec::new();
-        for name in names {
+        let mut at = 0;
+        // An `outer` component without an `inner` one adds a component to the model itself.
+        while let Some(name) = self.member_at(node, at) {
+            at += 1;
             let nodes = match self.member(node, name) {
                 Ok(Some(MemberState::Single(one))) => vec![one],
                 Ok(Some(MemberState::Array(_, nodes))) => nodes,
                 Ok(_) => Vec::new(),
                 Err(error) => {
                     errors.push(error);
-                    continue;
+                    Vec::new()
                 }
             };
             for one in nodes {
@@ -420,22 +598,22 @@ impl<'a> Instantiation<'a> {
                     errors.extend(more);
                 }
             }
+            // Whatever holds itself or is too large would only be found again and again.
+            if errors.iter().any(|error| [CYCLIC_CLASS, TOO_LARGE].contains(&error.code)) {
+                break;
+            }
         }
         if errors.is_empty() { Ok(()) } else { Err(errors) }
     }
 
-    /// The instance of a package or class for its constants, made once.
-    pub(super) fn package(&mut self, class: ClassId) -> Result<NodeId, Diagnostic> {
-        if let Some(node) = self.packages.get(&class) {
-            return Ok(*node);
-        }
-        let path = format!("{PACKAGE_MARK}{}", self.library.class(class).name);
-        let inherited = Inherited::default();
-        let node = self.composite(class, path, Modifier::default(), inherited)?;
-        self.packages.insert(class, node);
-        Ok(node)
+    fn member_at(&self, node: NodeId, at: usize) -> Option<Ident> {
+        let members = self.composite_of(node)?.members.as_ref()?;
+        members.get_index(at).map(|(name, _)| *name)
     }
 }
+
+/// How many times a class may hold a component of its own class.
+const MAX_SELF: usize = 20;
 
 /// Begins the path of a package's instance; no component can be named so.
 const PACKAGE_MARK: char = '.';
@@ -460,6 +638,14 @@ pub(super) fn picked(value: Expression, indices: &[usize]) -> Expression {
         |at: &usize| Subscript::Index(Expression::new(ExpressionKind::Integer(*at as i64), span));
     let subscripts = indices.iter().map(subscript).collect();
     Expression::new(ExpressionKind::Subscripted { base: Box::new(value), subscripts }, span)
+}
+
+fn variability(prefix: VariabilityPrefix) -> Variability {
+    match prefix {
+        VariabilityPrefix::Constant => Variability::Constant,
+        VariabilityPrefix::Parameter => Variability::Parameter,
+        VariabilityPrefix::Discrete => Variability::Discrete,
+    }
 }
 
 fn stricter(outer: Option<Variability>, own: Option<Variability>) -> Option<Variability> {

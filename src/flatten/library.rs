@@ -1,17 +1,26 @@
 //! All loaded classes, as a tree of packages (MLS ch. 13).
 
-use super::errors::{DUPLICATE_ELEMENT, UNKNOWN_CLASS};
+mod files;
+mod habits;
+mod reading;
+
+pub use files::LibraryFiles;
+
+use super::errors::UNKNOWN_CLASS;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
-    ClassDefinition, ClassSpecifier, Element, Extends, ImportKind, Section, StoredDefinition,
-    Visibility,
+    ClassDefinition, ClassSpecifier, Constraint, Element, ElementPrefixes, Extends, ImportKind,
+    Section, StoredDefinition, Visibility,
 };
-use indexmap::IndexMap;
+use files::{Entry, Folder};
+use habits::Habits;
+use indexmap::{IndexMap, IndexSet};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeSet;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::path::Path;
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::thread::ThreadId;
 
 /// A class of a [`Library`].
@@ -20,14 +29,21 @@ pub struct ClassId(u32);
 
 /// The loaded classes. Classes are never changed; loading one again under the same name makes the
 /// name mean the new one.
+///
+/// A class is read when it is asked for: its file first, if it lies in one of its own (MLS
+/// §13.4.1), then its elements, but not those of the classes in it. What is wrong with the text of
+/// a class is known only then: see [`Library::take_problems`].
 #[derive(Debug, Clone, Default)]
 pub struct Library {
-    classes: Vec<Class>,
+    classes: boxcar::Vec<Slot>,
     roots: IndexMap<Ident, ClassId>,
     /// Top-level names that were looked for and are not loaded.
     missing: Arc<Mutex<BTreeSet<Ident>>>,
     /// What the classes extend, found so far; another cache as soon as a class is added.
     bases: Arc<Mutex<BaseCache>>,
+    /// The classes that were asked for and could not be read.
+    broken: Arc<Mutex<IndexSet<ClassId>>>,
+    habits: Habits,
 }
 
 /// The classes that others extend, as far as they were looked up.
@@ -36,6 +52,33 @@ struct BaseCache {
     known: FxHashMap<ClassId, Vec<ClassId>>,
     /// Classes whose bases a thread is looking up: one that needs its own bases for that has none.
     busy: FxHashSet<(ThreadId, ClassId)>,
+}
+
+/// A class that may not have been read yet.
+#[derive(Debug, Clone)]
+struct Slot {
+    name: Name,
+    parent: Option<ClassId>,
+    declared: Declared,
+    origin: Origin,
+    class: OnceLock<Class>,
+}
+
+/// What the class around it says of a class.
+#[derive(Debug, Clone, Default)]
+struct Declared {
+    prefixes: ElementPrefixes,
+    is_protected: bool,
+    constraint: Option<Constraint>,
+}
+
+/// Where a class comes from.
+#[derive(Debug, Clone)]
+enum Origin {
+    /// Its head was read; a package may have a folder.
+    Head(Arc<ClassDefinition>, Option<Folder>),
+    /// Only its file is known.
+    File(Arc<dyn LibraryFiles>, Entry),
 }
 
 /// A class with what its text says directly, before inheritance.
@@ -47,6 +90,9 @@ pub(super) struct Class {
     pub(super) children: IndexMap<Ident, ClassId>,
     pub(super) imports: Vec<ImportKind>,
     pub(super) extends: Vec<Extends>,
+    declared: Declared,
+    /// What is wrong with its text.
+    problems: Vec<Diagnostic>,
 }
 
 impl Library {
@@ -58,108 +104,133 @@ impl Library {
     /// Adds the classes of a file and returns their full names. An error if the package named by
     /// `within` is not loaded, or if a class declares two classes of one name.
     pub fn load(&mut self, file: &StoredDefinition) -> Result<Vec<Name>, Diagnostic> {
-        let parent = match &file.within {
-            Some(within) if !within.node.parts.is_empty() => {
-                let found = self.find(&within.node);
-                Some(found.ok_or_else(|| {
-                    fault!(UNKNOWN_CLASS, "package `{}` of the within clause is not loaded", within.node;
-                        help: "load the package's own file, `package.mo`, first")
-                    .at(within.span)
-                })?)
+        let parent = self.package_around(file)?;
+        let mut names = Vec::new();
+        for class in &file.classes {
+            let former = self.named(parent, class.name.node);
+            let id = self.add(Origin::Head(class.clone(), None), class.name.node, parent);
+            if let Some(problem) = self.problems_below(id).into_iter().next() {
+                return Err(problem);
             }
-            _ => None,
+            self.keep_separate_files(former, id);
+            names.push(self.slot(id).name.clone());
+        }
+        Ok(names)
+    }
+
+    /// Adds the classes of a file, or a package from its folder, without reading more than their
+    /// heads now. Returns their full names.
+    ///
+    /// # Errors
+    /// The file cannot be read, has no class, or is within a package that is not loaded.
+    pub fn load_lazily(
+        &mut self,
+        files: &Arc<dyn LibraryFiles>,
+        path: &Path,
+    ) -> Result<Vec<Name>, Diagnostic> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let stem = name.strip_suffix(".mo").unwrap_or(&name).to_owned();
+        let package = path.join("package.mo");
+        let entry = match files.is_file(&package) {
+            true => Entry { file: package, folder: Some(path.to_owned()), stem },
+            false => Entry { file: path.to_owned(), folder: None, stem },
         };
-        file.classes
-            .iter()
-            .map(|class| {
-                let id = self.add(class, parent)?;
-                Ok(self.class(id).name.clone())
-            })
-            .collect()
+        let file = entry.heads(files.as_ref())?;
+        let parent = self.package_around(&file)?;
+        if file.classes.is_empty() {
+            return Err(fault!(UNKNOWN_CLASS, "there is no class in this file").at(file.span));
+        }
+        if entry.folder.is_some() {
+            self.meet_folder(&entry, &file);
+        }
+        let mut names = Vec::new();
+        for (class, origin) in entry.classes(files, &file) {
+            let id = self.add(origin, class, parent);
+            names.push(self.slot(id).name.clone());
+        }
+        Ok(names)
     }
 
     /// Adds one class at the top level, as a script defines it.
     pub fn define(&mut self, class: &Arc<ClassDefinition>) -> Result<Name, Diagnostic> {
-        let id = self.add(class, None)?;
-        Ok(self.class(id).name.clone())
+        let span = class.span;
+        let file = StoredDefinition { within: None, classes: vec![class.clone()], span };
+        self.load(&file)?;
+        Ok(Name::from(class.name.node))
     }
 
-    fn add(
-        &mut self,
-        definition: &Arc<ClassDefinition>,
-        parent: Option<ClassId>,
-    ) -> Result<ClassId, Diagnostic> {
-        let own = definition.name.node;
-        let name = match parent {
-            Some(parent) => self.class(parent).name.child(own),
-            None => Name::from(own),
+    /// The class that the `within` clause of a file names.
+    fn package_around(&self, file: &StoredDefinition) -> Result<Option<ClassId>, Diagnostic> {
+        let Some(within) = file.within.as_ref().filter(|within| !within.node.parts.is_empty())
+        else {
+            return Ok(None);
         };
-        let id = ClassId(self.classes.len() as u32);
-        let known = match parent {
-            Some(parent) => self.classes[parent.0 as usize].children.insert(own, id),
-            None => self.roots.insert(own, id),
-        };
+        let found = self.find(&within.node);
+        found.map(Some).ok_or_else(|| {
+            fault!(UNKNOWN_CLASS, "package `{}` of the within clause is not loaded", within.node;
+                help: "load the package's own file, `package.mo`, first")
+            .at(within.span)
+        })
+    }
+
+    fn named(&self, parent: Option<ClassId>, name: Ident) -> Option<ClassId> {
+        match parent {
+            Some(parent) => self.class(parent).children.get(&name).copied(),
+            None => self.roots.get(&name).copied(),
+        }
+    }
+
+    /// Makes a name in a package, or at the top level, mean another class.
+    fn add(&mut self, origin: Origin, name: Ident, parent: Option<ClassId>) -> ClassId {
+        let id = self.push(origin, Declared::default(), name, parent);
+        match parent {
+            Some(parent) => {
+                self.read(parent);
+                if let Some(class) = self.class_mut(parent) {
+                    class.children.insert(name, id);
+                }
+            }
+            None => {
+                self.roots.insert(name, id);
+            }
+        }
         self.bases = Arc::default();
-        self.classes.push(Class {
-            name,
-            definition: definition.clone(),
-            parent,
-            children: IndexMap::new(),
-            imports: Vec::new(),
-            extends: Vec::new(),
-        });
-        self.add_elements(id, definition)?;
-        self.keep_separate_files(known, id);
-        Ok(id)
+        id
+    }
+
+    fn push(
+        &self,
+        origin: Origin,
+        declared: Declared,
+        name: Ident,
+        parent: Option<ClassId>,
+    ) -> ClassId {
+        let name = match parent {
+            Some(parent) => self.slot(parent).name.child(name),
+            None => Name::from(name),
+        };
+        let class = OnceLock::new();
+        ClassId(self.classes.push(Slot { name, parent, declared, origin, class }) as u32)
+    }
+
+    fn class_mut(&mut self, id: ClassId) -> Option<&mut Class> {
+        self.classes.get_mut(id.0 as usize)?.class.get_mut()
     }
 
     /// A package read again from its own file keeps the classes that lie in files beside it.
     fn keep_separate_files(&mut self, former: Option<ClassId>, id: ClassId) {
         let Some(former) = former else { return };
         let source = self.class(former).definition.span.source;
-        let children = self.class(former).children.clone();
-        for (name, child) in children {
-            let elsewhere = self.class(child).definition.span.source != source;
-            if elsewhere && !self.class(id).children.contains_key(&name) {
-                self.classes[id.0 as usize].children.insert(name, child);
-            }
+        let elsewhere = |child: &ClassId| match &self.slot(*child).origin {
+            Origin::Head(definition, _) => definition.span.source != source,
+            Origin::File(..) => true,
+        };
+        let children = self.class(former).children.iter().map(|(name, child)| (*name, *child));
+        let kept: Vec<(Ident, ClassId)> = children.filter(|(_, child)| elsewhere(child)).collect();
+        let Some(class) = self.class_mut(id) else { return };
+        for (name, child) in kept {
+            class.children.entry(name).or_insert(child);
         }
-    }
-
-    fn add_elements(
-        &mut self,
-        id: ClassId,
-        definition: &ClassDefinition,
-    ) -> Result<(), Diagnostic> {
-        let ClassSpecifier::Long(long) = &definition.specifier else { return Ok(()) };
-        for section in &long.sections {
-            let Section::Elements { elements, .. } = section else { continue };
-            for element in elements {
-                match element {
-                    Element::Class(nested) => {
-                        let name = nested.class.name;
-                        if self.class(id).children.contains_key(&name.node) {
-                            let owner = &self.class(id).name;
-                            return Err(fault!(
-                                DUPLICATE_ELEMENT,
-                                "`{owner}` declares two classes named `{}`",
-                                name.node
-                            )
-                            .at(name.span));
-                        }
-                        self.add(&nested.class, Some(id))?;
-                    }
-                    Element::Import(import) => {
-                        self.classes[id.0 as usize].imports.push(import.kind.clone());
-                    }
-                    Element::Extends(extends) => {
-                        self.classes[id.0 as usize].extends.push(extends.clone());
-                    }
-                    Element::Component(_) => {}
-                }
-            }
-        }
-        Ok(())
     }
 
     /// The class of a full name.
@@ -197,15 +268,64 @@ impl Library {
         self.roots.shift_remove(&name).is_some()
     }
 
-    /// Full names of all classes, in order of loading, outer before inner.
+    /// Full names of all classes, in order of loading, outer before inner. What was not read yet
+    /// is read now.
     pub fn all(&self) -> Vec<Name> {
-        let mut names = Vec::new();
-        let mut pending: Vec<ClassId> = self.roots.values().rev().copied().collect();
+        self.roots().flat_map(|root| self.all_in(&root.into())).collect()
+    }
+
+    /// The same for one class, which comes first, and those in it; none if it is not loaded.
+    pub fn all_in(&self, name: &Name) -> Vec<Name> {
+        let ids = self.find(name).map_or(Vec::new(), |id| self.below(id, |_| true));
+        ids.into_iter().map(|id| self.slot(id).name.clone()).collect()
+    }
+
+    /// Full names of the classes that are known without reading more, in the order of
+    /// [`Library::all`].
+    pub fn known(&self) -> Vec<Name> {
+        let is_read = |id: ClassId| self.slot(id).class.get().is_some();
+        let ids = self.roots.values().flat_map(|root| self.below(*root, is_read));
+        ids.map(|id| self.slot(id).name.clone()).collect()
+    }
+
+    /// How many classes were read so far.
+    pub fn number_read(&self) -> usize {
+        self.classes.iter().filter(|(_, slot)| slot.class.get().is_some()).count()
+    }
+
+    /// Reads a class and all that are in it, and returns what is wrong with their texts.
+    pub fn read_all(&self, name: &Name) -> Vec<Diagnostic> {
+        self.find(name).map_or(Vec::new(), |id| self.problems_below(id))
+    }
+
+    /// A class and those in it, outer before inner; of those inside only where `enter` allows.
+    fn below(&self, id: ClassId, enter: impl Fn(ClassId) -> bool) -> Vec<ClassId> {
+        let mut found = Vec::new();
+        let mut pending = vec![id];
         while let Some(id) = pending.pop() {
-            names.push(self.class(id).name.clone());
-            pending.extend(self.class(id).children.values().rev());
+            found.push(id);
+            if enter(id) {
+                pending.extend(self.read(id).children.values().rev());
+            }
         }
-        names
+        found
+    }
+
+    fn problems_below(&self, id: ClassId) -> Vec<Diagnostic> {
+        let all = self.below(id, |_| true);
+        all.into_iter().flat_map(|id| self.read(id).problems.clone()).collect()
+    }
+
+    /// What is wrong with the texts of the classes that were asked for since the last call. What
+    /// was made of these classes is worth nothing.
+    pub fn take_problems(&self) -> Vec<Diagnostic> {
+        let broken = std::mem::take(&mut *locked(&self.broken));
+        broken.into_iter().flat_map(|id| self.read(id).problems.clone()).collect()
+    }
+
+    /// Warnings about the libraries read since the last call, each kind once for a library.
+    pub fn take_warnings(&self) -> Vec<Diagnostic> {
+        self.habits.take()
     }
 
     /// The top-level names that were looked for in vain since the last call, sorted: who has the
@@ -245,7 +365,28 @@ impl Library {
         found
     }
 
+    /// A class, read now if it was not.
     pub(super) fn class(&self, id: ClassId) -> &Class {
+        let class = self.read(id);
+        if !class.problems.is_empty() {
+            locked(&self.broken).insert(id);
+        }
+        class
+    }
+
+    /// Whether a nested class stands for an inherited one: `redeclare`, or `extends M(…)`
+    /// (MLS §7.3); known without reading it.
+    pub(super) fn is_redeclaration(&self, id: ClassId) -> bool {
+        let slot = self.slot(id);
+        let extends = |definition: &ClassDefinition| match &definition.specifier {
+            ClassSpecifier::Long(long) => long.class_extends.is_some(),
+            _ => false,
+        };
+        slot.declared.prefixes.redeclare
+            || matches!(&slot.origin, Origin::Head(definition, _) if extends(definition))
+    }
+
+    fn slot(&self, id: ClassId) -> &Slot {
         &self.classes[id.0 as usize]
     }
 }
@@ -255,7 +396,67 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+#[allow(dead_code, reason = "instantiation is being rewritten to ask these instead of the fields")]
 impl Class {
+    /// Its full name.
+    pub(super) fn name(&self) -> &Name {
+        &self.name
+    }
+
+    pub(super) fn definition(&self) -> &Arc<ClassDefinition> {
+        &self.definition
+    }
+
+    /// The class around it, `None` at the top level.
+    pub(super) fn parent(&self) -> Option<ClassId> {
+        self.parent
+    }
+
+    /// The class of this name that is declared in it, or lies in its folder.
+    pub(super) fn child(&self, name: Ident) -> Option<ClassId> {
+        self.children.get(&name).copied()
+    }
+
+    /// All these, in order.
+    pub(super) fn children(&self) -> impl Iterator<Item = (Ident, ClassId)> {
+        self.children.iter().map(|(name, id)| (*name, *id))
+    }
+
+    pub(super) fn imports(&self) -> &[ImportKind] {
+        &self.imports
+    }
+
+    pub(super) fn extends(&self) -> &[Extends] {
+        &self.extends
+    }
+
+    pub(super) fn encapsulated(&self) -> bool {
+        self.definition.encapsulated
+    }
+
+    /// What stands before its keyword in the class around it; nothing for one in a file of its own.
+    pub(super) fn prefixes(&self) -> ElementPrefixes {
+        self.declared.prefixes
+    }
+
+    /// Whether it is declared behind `protected`.
+    pub(super) fn is_protected(&self) -> bool {
+        self.declared.is_protected
+    }
+
+    /// Its `constrainedby`.
+    pub(super) fn constraint(&self) -> Option<&Constraint> {
+        self.declared.constraint.as_ref()
+    }
+
+    /// Whether it is written `model extends M … end M` (MLS §7.3.1).
+    pub(super) fn is_class_extends(&self) -> bool {
+        match &self.definition.specifier {
+            ClassSpecifier::Long(long) => long.class_extends.is_some(),
+            _ => false,
+        }
+    }
+
     /// The elements with their visibility, in order; none for a short class.
     pub(super) fn elements(&self) -> impl Iterator<Item = (Visibility, &Element)> {
         self.sections().iter().flat_map(|section| {

@@ -1,20 +1,24 @@
 //! Looking up names of classes: simple (MLS §5.3.1), composite (§5.3.2), global (§5.3.3) and
 //! imported ones (§5.3.4, §13.2).
 
-use super::errors::UNKNOWN_CLASS;
-use super::library::{ClassId, Library};
+use super::errors::{FINAL_OVERRIDE, UNKNOWN_CLASS};
+use super::instantiation::Instantiation;
+use super::library::ClassId;
+use super::modification::{Modifier, Redeclaration, Replacement};
+use super::scope::{Nested, ScopeId, Text};
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
-use crate::syntax::ast::{ClassSpecifier, ImportKind, TypeSpecifier};
-use std::collections::BTreeSet;
+use crate::syntax::ast::{ClassSpecifier, Constraint, ImportKind, TypeSpecifier};
+use std::cell::Cell;
+use std::rc::Rc;
 
 /// What the name of a type means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Type {
-    /// A class of the library.
-    Class(ClassId),
+    /// A class in its surroundings.
+    Class(ScopeId),
     /// A predefined type (MLS §4.9).
     Predefined(Predefined),
 }
@@ -26,174 +30,326 @@ pub(super) enum Predefined {
     Integer,
     Boolean,
     String,
+    /// `StateSelect` (MLS §4.9.7.1).
+    StateSelect,
+    /// `AssertionLevel` (MLS §8.3.7).
+    AssertionLevel,
+    /// `ExternalObject` (MLS §12.9.7).
+    ExternalObject,
 }
 
 impl Predefined {
-    fn named(name: Ident) -> Option<Predefined> {
+    pub(super) fn named(name: Ident) -> Option<Predefined> {
         match name.as_str() {
             "Real" => Some(Predefined::Real),
             "Integer" => Some(Predefined::Integer),
             "Boolean" => Some(Predefined::Boolean),
             "String" => Some(Predefined::String),
+            "StateSelect" => Some(Predefined::StateSelect),
+            "AssertionLevel" => Some(Predefined::AssertionLevel),
+            "ExternalObject" => Some(Predefined::ExternalObject),
             _ => None,
         }
     }
 }
 
-/// Classes whose inherited elements were searched already: a class that extends itself ends there.
-type Visited = BTreeSet<ClassId>;
-
-/// The most base classes in which a name is searched.
-const MAX_BASES: usize = 1000;
-
-impl Library {
-    /// What a type specifier means in the scope of a class; an error with suggestions if nothing.
+impl Instantiation<'_> {
+    /// What a type specifier means in a scope; an error with suggestions if nothing.
     pub(super) fn lookup_type(
-        &self,
-        scope: Option<ClassId>,
+        &mut self,
+        scope: ScopeId,
         specifier: &TypeSpecifier,
     ) -> Result<Type, Diagnostic> {
-        self.lookup(scope, &specifier.name)
-            .ok_or_else(|| self.unknown_class(scope, &specifier.name, specifier.span))
-    }
-
-    /// What a base class means: as [`Library::lookup_type`], but names inherited by the extending
-    /// class itself do not count (MLS §5.6.1.4).
-    pub(super) fn lookup_base(
-        &self,
-        class: ClassId,
-        specifier: &TypeSpecifier,
-    ) -> Result<Type, Diagnostic> {
-        self.lookup_with(Some(class), &specifier.name, &mut [class].into())
-            .ok_or_else(|| self.unknown_class(Some(class), &specifier.name, specifier.span))
-    }
-
-    /// What a name means in the scope of a class.
-    pub(super) fn lookup(&self, scope: Option<ClassId>, name: &Name) -> Option<Type> {
-        self.lookup_with(scope, name, &mut Visited::new())
-    }
-
-    fn lookup_with(
-        &self,
-        scope: Option<ClassId>,
-        name: &Name,
-        visited: &mut Visited,
-    ) -> Option<Type> {
-        let (first, rest) = name.parts.split_first()?;
-        let found = match scope {
-            Some(scope) if !name.global => self.lookup_simple(scope, *first, visited),
-            _ => self.root(*first),
-        };
-        let Some(mut class) = found else {
-            let predefined = Predefined::named(*first).filter(|_| rest.is_empty());
-            return predefined.map(Type::Predefined);
-        };
-        for part in rest {
-            class = self.member(class, *part, &mut Visited::new())?;
+        match self.lookup(scope, &specifier.name)? {
+            Some(found) => Ok(found),
+            None => Err(self.unknown_class(scope, &specifier.name, specifier.span)),
         }
-        Some(Type::Class(class))
+    }
+
+    /// What a name means as a class in a scope.
+    pub(super) fn lookup(
+        &mut self,
+        scope: ScopeId,
+        name: &Name,
+    ) -> Result<Option<Type>, Diagnostic> {
+        let Some((first, rest)) = name.parts.split_first() else { return Ok(None) };
+        if rest.is_empty()
+            && let Some(predefined) = Predefined::named(*first)
+        {
+            return Ok(Some(Type::Predefined(predefined)));
+        }
+        let found = match name.global {
+            true => self.root(*first)?,
+            false => self.lookup_simple(scope, *first)?,
+        };
+        self.lookup_inside(found, rest)
+    }
+
+    /// The class of a path of names inside a class.
+    pub(super) fn lookup_inside(
+        &mut self,
+        mut found: Option<Type>,
+        path: &[Ident],
+    ) -> Result<Option<Type>, Diagnostic> {
+        for part in path {
+            let Some(Type::Class(scope)) = found else { return Ok(None) };
+            found = match self.find_class(scope, *part)? {
+                Some(nested) => Some(self.instance(&nested)?),
+                None => None,
+            };
+        }
+        Ok(found)
     }
 
     /// A simple name: declared, inherited or imported by the class or by one that encloses it.
-    fn lookup_simple(&self, scope: ClassId, name: Ident, visited: &mut Visited) -> Option<ClassId> {
-        let mut scope = Some(scope);
-        while let Some(id) = scope {
-            let found = self.member(id, name, visited).or_else(|| self.imported(id, name));
-            if found.is_some() {
-                return found;
+    pub(super) fn lookup_simple(
+        &mut self,
+        scope: ScopeId,
+        name: Ident,
+    ) -> Result<Option<Type>, Diagnostic> {
+        if let Some(known) = self.found.get(&(scope, name)) {
+            return Ok(*known);
+        }
+        let searched = self.search_simple(scope, name)?;
+        // While base classes are looked up, inherited names are not seen.
+        if self.searching == 0 {
+            self.found.insert((scope, name), searched);
+        }
+        Ok(searched)
+    }
+
+    fn search_simple(&mut self, scope: ScopeId, name: Ident) -> Result<Option<Type>, Diagnostic> {
+        let mut scope = scope;
+        while scope != ScopeId::TOP {
+            if let Some(nested) = self.find_class(scope, name)? {
+                return if nested.outer {
+                    self.inner_class(scope, name, &nested).map(Some)
+                } else {
+                    self.instance(&nested).map(Some)
+                };
             }
-            let class = self.class(id);
-            if class.definition.encapsulated {
+            if let Some(found) = self.imported(scope, name)? {
+                return Ok(Some(found));
+            }
+            if self.is_encapsulated(scope) {
                 break;
             }
-            scope = class.parent;
+            scope = self.scope(scope).parent.unwrap_or(ScopeId::TOP);
         }
         self.root(name)
     }
 
-    /// A class that another declares or inherits.
-    fn member(&self, class: ClassId, name: Ident, visited: &mut Visited) -> Option<ClassId> {
-        if let Some(own) = self.class(class).children.get(&name) {
-            return Some(*own);
-        }
-        if visited.len() >= MAX_BASES || !visited.insert(class) {
-            return None;
-        }
-        self.bases(class).iter().find_map(|base| self.member(*base, name, visited))
-    }
-
-    /// The classes that a class extends, or that it is short for; unknown ones left out.
-    pub(super) fn bases(&self, class: ClassId) -> Vec<ClassId> {
-        self.bases_once(class, || self.find_bases(class))
-    }
-
-    fn find_bases(&self, class: ClassId) -> Vec<ClassId> {
-        let found = self.class(class);
-        let mut own: Visited = [class].into();
-        let mut class_of = |scope, name: &Name| match self.lookup_with(scope, name, &mut own) {
-            Some(Type::Class(base)) if base != class => Some(base),
-            _ => None,
-        };
-        match &found.definition.specifier {
-            ClassSpecifier::Short(short) => {
-                class_of(found.parent, &short.target.name).into_iter().collect()
+    /// The class that an `outer` class means (MLS §5.4): that of the nearest enclosing instance.
+    fn inner_class(
+        &mut self,
+        scope: ScopeId,
+        name: Ident,
+        outer: &Rc<Nested>,
+    ) -> Result<Type, Diagnostic> {
+        let mut node = self.nodes[self.node_of(scope).0].parent;
+        while let Some(id) = node {
+            if let Some(holder) = self.scope_of(id)
+                && let Some(nested) = self.find_class(holder, name)?
+                && nested.inner
+            {
+                return self.instance(&nested);
             }
-            _ => found
-                .extends
-                .iter()
-                .filter_map(|extends| class_of(Some(class), &extends.base.name))
-                .collect(),
+            node = self.nodes[id.0].parent;
+        }
+        self.instance(outer)
+    }
+
+    /// A class that another declares or inherits, with what replaces it.
+    pub(super) fn find_class(
+        &mut self,
+        scope: ScopeId,
+        name: Ident,
+    ) -> Result<Option<Rc<Nested>>, Diagnostic> {
+        if let Some(known) = self.nested.get(&(scope, name)) {
+            return Ok(known.clone());
+        }
+        let found = self.search_class(scope, name)?;
+        if found.is_some() || self.searching == 0 {
+            self.nested.insert((scope, name), found.clone());
+        }
+        Ok(found)
+    }
+
+    fn search_class(
+        &mut self,
+        scope: ScopeId,
+        name: Ident,
+    ) -> Result<Option<Rc<Nested>>, Diagnostic> {
+        let Some(text) = &self.scope(scope).text else { return Ok(None) };
+        let own = text.id.and_then(|id| self.library.class(id).child(name));
+        if let Some(child) = own
+            && !self.library.is_redeclaration(child)
+        {
+            return self.declared_class(scope, child, name).map(Some);
+        }
+        for base in self.bases(scope)?.iter() {
+            if let Some(found) = self.find_class(*base, name)? {
+                return Ok(Some(found));
+            }
+        }
+        Ok(None)
+    }
+
+    fn text_of(&self, class: ClassId) -> Text {
+        let found = self.library.class(class);
+        Text {
+            name: found.name().clone(),
+            definition: found.definition().clone(),
+            id: Some(class),
+            extended: None,
         }
     }
 
-    fn imported(&self, class: ClassId, name: Ident) -> Option<ClassId> {
-        let global = |name: &Name| match self.lookup_with(None, name, &mut Visited::new()) {
-            Some(Type::Class(found)) => Some(found),
-            _ => None,
+    fn declared_class(
+        &mut self,
+        scope: ScopeId,
+        child: ClassId,
+        name: Ident,
+    ) -> Result<Rc<Nested>, Diagnostic> {
+        let prefixes = self.library.class(child).prefixes();
+        let outer = self.scope(scope).modifier.elements.get(&name).cloned().unwrap_or_default();
+        let original = Nested {
+            text: self.text_of(child),
+            parent: scope,
+            modifier: Modifier { redeclaration: None, ..outer.clone() },
+            defaults: Modifier::default(),
+            outer: prefixes.outer,
+            inner: prefixes.inner,
+            instance: Cell::new(None),
         };
-        let imports = &self.class(class).imports;
-        let named = imports.iter().find_map(|import| match import {
-            ImportKind::Qualified(target) if target.last() == Some(name) => global(target),
-            ImportKind::Renaming(own, target) if *own == name => global(target),
-            ImportKind::Group(package, names) if names.contains(&name) => {
-                global(&package.child(name))
+        let Some(redeclaration) = outer.redeclaration else { return Ok(Rc::new(original)) };
+        if prefixes.is_final {
+            return Err(fault!(FINAL_OVERRIDE, "`{name}` is final and cannot be redeclared")
+                .at(outer.span.unwrap_or(Span::NONE)));
+        }
+        let constraint = self.library.class(child).constraint().cloned();
+        let defaults = self.constraining(&original, constraint.as_ref())?;
+        self.replaced(original, &redeclaration, &defaults)
+    }
+
+    /// The modifiers that hold for whatever replaces a class (MLS §7.3.2).
+    fn constraining(
+        &self,
+        original: &Nested,
+        constraint: Option<&Constraint>,
+    ) -> Result<Modifier, Diagnostic> {
+        match (constraint, &original.text.definition.specifier) {
+            (Some(constraint), _) => {
+                Modifier::of_arguments(&constraint.modification, original.parent)
             }
+            (None, ClassSpecifier::Short(short)) => {
+                Modifier::of_arguments(&short.modification, original.parent)
+            }
+            _ => Ok(Modifier::default()),
+        }
+    }
+
+    /// The class that a redeclaration puts in the place of another.
+    fn replaced(
+        &mut self,
+        original: Nested,
+        redeclaration: &Redeclaration,
+        defaults: &Modifier,
+    ) -> Result<Rc<Nested>, Diagnostic> {
+        let modifier = original.modifier.clone();
+        let (inner, outer) = (original.inner, original.outer);
+        let text = match &redeclaration.replacement {
+            Replacement::Class(element) => Text {
+                name: self.text(redeclaration.context).name.child(element.class.name.node),
+                definition: element.class.clone(),
+                id: None,
+                extended: None,
+            },
+            Replacement::Element(class) => {
+                let mut text = self.text_of(*class);
+                if self.library.class(*class).is_class_extends() {
+                    let below = Nested { modifier: Modifier::default(), ..original };
+                    text.extended = Some(match &redeclaration.over {
+                        Some(over) => self.replaced(below, over, defaults)?,
+                        None => Rc::new(below),
+                    });
+                }
+                text
+            }
+            Replacement::Component(clause) => {
+                return Err(fault!(
+                    super::errors::TYPE_MISMATCH,
+                    "class `{}` is redeclared as a component",
+                    original.text.name
+                )
+                .at(clause.span));
+            }
+        };
+        Ok(Rc::new(Nested {
+            text,
+            parent: redeclaration.context,
+            modifier,
+            defaults: defaults.clone(),
+            outer,
+            inner,
+            instance: Cell::new(None),
+        }))
+    }
+
+    fn imported(&mut self, scope: ScopeId, name: Ident) -> Result<Option<Type>, Diagnostic> {
+        for target in self.imported_names(scope, name) {
+            if let Some(found) = self.lookup(ScopeId::TOP, &target)? {
+                return Ok(Some(found));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The full names that imports of a class give to a name, the named imports first.
+    pub(super) fn imported_names(&self, scope: ScopeId, name: Ident) -> Vec<Name> {
+        let Some(class) = self.scope(scope).text.as_ref().and_then(|text| text.id) else {
+            return Vec::new();
+        };
+        let imports = self.library.class(class).imports();
+        let named = imports.iter().filter_map(|import| match import {
+            ImportKind::Qualified(target) if target.last() == Some(name) => Some(target.clone()),
+            ImportKind::Renaming(own, target) if *own == name => Some(target.clone()),
+            ImportKind::Group(package, names) if names.contains(&name) => Some(package.child(name)),
             _ => None,
         });
-        named.or_else(|| {
-            imports.iter().find_map(|import| match import {
-                ImportKind::Unqualified(package) => global(&package.child(name)),
-                _ => None,
-            })
-        })
+        let unqualified = imports.iter().filter_map(|import| match import {
+            ImportKind::Unqualified(package) => Some(package.child(name)),
+            _ => None,
+        });
+        named.chain(unqualified).map(|name| Name { global: true, ..name }).collect()
     }
 
-    /// The name with which an import makes a constant visible, if one does.
-    pub(super) fn imported_name(&self, class: ClassId, name: Ident) -> Vec<Name> {
-        self.class(class)
-            .imports
-            .iter()
-            .filter_map(|import| match import {
-                ImportKind::Qualified(target) if target.last() == Some(name) => {
-                    Some(target.clone())
-                }
-                ImportKind::Renaming(own, target) if *own == name => Some(target.clone()),
-                ImportKind::Group(package, names) if names.contains(&name) => {
-                    Some(package.child(name))
-                }
-                ImportKind::Unqualified(package) => Some(package.child(name)),
-                _ => None,
-            })
-            .collect()
+    /// A class at the top level.
+    pub(super) fn root(&mut self, name: Ident) -> Result<Option<Type>, Diagnostic> {
+        if let Some(known) = self.roots.get(&name) {
+            return self.instance(&known.clone()).map(Some);
+        }
+        let Some(id) = self.library.root(name) else { return Ok(None) };
+        let nested = Rc::new(Nested {
+            text: self.text_of(id),
+            parent: ScopeId::TOP,
+            modifier: Modifier::default(),
+            defaults: Modifier::default(),
+            outer: false,
+            inner: false,
+            instance: Cell::new(None),
+        });
+        self.roots.insert(name, nested.clone());
+        self.instance(&nested).map(Some)
+    }
+
+    /// The class of a full name, without what modifies it anywhere.
+    pub(super) fn class_named(&mut self, name: &Name) -> Result<Option<Type>, Diagnostic> {
+        self.lookup(ScopeId::TOP, &Name { global: true, ..name.clone() })
     }
 
     /// The diagnostic for a class that is not there.
-    pub(super) fn unknown_class(
-        &self,
-        scope: Option<ClassId>,
-        name: &Name,
-        span: Span,
-    ) -> Diagnostic {
+    pub(super) fn unknown_class(&mut self, scope: ScopeId, name: &Name, span: Span) -> Diagnostic {
         let wanted = name.last().map_or("", Ident::as_str);
         let (package, candidates) = self.siblings(scope, name);
         let suggestion = suggest::nearest(wanted, candidates.iter().map(|c| c.as_str()))
@@ -202,22 +358,29 @@ impl Library {
     }
 
     /// The names among which the last part of a name was looked up, and the package they lie in.
-    fn siblings(&self, scope: Option<ClassId>, name: &Name) -> (Name, Vec<Ident>) {
+    fn siblings(&mut self, scope: ScopeId, name: &Name) -> (Name, Vec<Ident>) {
         let package = name.parent();
         if !package.parts.is_empty() {
             let names = match self.lookup(scope, &package) {
-                Some(Type::Class(id)) => self.class(id).children.keys().copied().collect(),
+                Ok(Some(Type::Class(id))) => self.own_classes(id),
                 _ => Vec::new(),
             };
             return (package, names);
         }
         let mut names: Vec<Ident> = ["Real", "Integer", "Boolean", "String"].map(Ident::new).into();
-        let mut scope = scope;
+        let mut scope = Some(scope);
         while let Some(id) = scope {
-            names.extend(self.class(id).children.keys());
-            scope = self.class(id).parent;
+            names.extend(self.own_classes(id));
+            scope = self.scope(id).parent;
         }
-        names.extend(self.roots());
+        names.extend(self.library.roots());
         (Name::default(), names)
+    }
+
+    fn own_classes(&self, scope: ScopeId) -> Vec<Ident> {
+        let class = self.scope(scope).text.as_ref().and_then(|text| text.id);
+        class.map_or(Vec::new(), |id| {
+            self.library.class(id).children().map(|(name, _)| name).collect()
+        })
     }
 }

@@ -10,6 +10,8 @@
 //! equations (§11.2.2.1), impure functions in models (§12.3).
 
 mod balance;
+mod checks;
+mod connections;
 mod constants;
 mod declarations;
 mod defaults;
@@ -17,6 +19,7 @@ mod equations;
 pub mod errors;
 mod flat_model;
 mod functions;
+mod inner_outer;
 mod instance;
 mod instantiation;
 mod library;
@@ -24,11 +27,12 @@ mod lookup;
 mod modification;
 mod print;
 mod resolve;
+mod scope;
 mod types;
 mod variables;
 
 pub use flat_model::*;
-pub use library::{ClassId, Library};
+pub use library::{ClassId, Library, LibraryFiles};
 
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -39,9 +43,9 @@ use crate::syntax::ast::{
     Restriction, Section, TypeSpecifier, UnaryOperator,
 };
 use errors::{NOT_A_MODEL, TOO_LARGE};
-use instance::{Context, Inherited, NodeId};
 use instantiation::Instantiation;
 use modification::Modifier;
+use scope::ScopeId;
 use std::collections::BTreeSet;
 
 /// Bytes of stack for instantiation, which nests with the expressions and bindings of the model.
@@ -81,33 +85,49 @@ fn on_deep_stack<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Diagnost
     })
 }
 
+/// What is wrong with a class by its text and the names in it, whatever is made of it: a package, a
+/// function or a model that nobody instantiates can be checked too. Nothing if no such class is
+/// loaded.
+pub fn check(library: &Library, class: &Name) -> Vec<Diagnostic> {
+    library.find(class).map_or(Vec::new(), |id| checks::check_class(library, id))
+}
+
 fn flattened(
     library: &Library,
     class: &Name,
     modification: &[Argument],
 ) -> Result<Flattened, Vec<Diagnostic>> {
-    let specifier = TypeSpecifier { name: class.clone(), span: Span::NONE };
     let one = |error: Diagnostic| vec![error];
-    let lookup::Type::Class(id) = library.lookup_type(None, &specifier).map_err(one)? else {
+    let mut tree = Instantiation::new(library);
+    let specifier = TypeSpecifier { name: class.clone(), span: Span::NONE };
+    let found = tree.lookup_type(ScopeId::TOP, &specifier).map_err(one)?;
+    let lookup::Type::Class(id) = found else {
         return Err(vec![fault!(NOT_A_MODEL, "`{class}` is a predefined type").at(Span::NONE)]);
     };
-    let definition = library.class(id).definition.clone();
-    check_restriction(class, &definition).map_err(one)?;
-    let mut tree = Instantiation::new(library);
-    tree.check_complete(id, definition.name.span).map_err(one)?;
-    let outside = Context { node: NodeId(0), class: None };
-    let modifier = Modifier::of_arguments(modification, outside).map_err(one)?;
-    let root = tree.composite(id, String::new(), modifier, Inherited::default()).map_err(one)?;
+    let text = tree.text(id).clone();
+    check_restriction(class, &text.definition).map_err(one)?;
+    let wrong = text.id.map_or(Vec::new(), |class| checks::check(library, class));
+    if !wrong.is_empty() {
+        return Err(distinct(wrong));
+    }
+    tree.check_complete(id, text.span()).map_err(one)?;
+    let modifier = Modifier::of_arguments(modification, ScopeId::TOP).map_err(one)?;
+    let root = tree.model(id, modifier).map_err(one)?;
     tree.complete(root).map_err(distinct)?;
     let mut model = FlatModel {
-        name: library.class(id).name.to_string(),
-        description: described(&definition),
-        experiment: experiment(&definition),
-        span: Some(definition.name.span),
+        name: text.name.to_string(),
+        description: described(&text.definition),
+        experiment: experiment(&text.definition),
+        span: Some(text.span()),
         ..FlatModel::default()
     };
     let mut errors = Vec::new();
+    let connections = std::rc::Rc::new(tree.connections(root, &mut errors));
+    tree.connections = Some(connections.clone());
     tree.add_equations(root, &mut model, &mut errors);
+    if errors.is_empty() {
+        tree.add_connection_equations(&connections, &mut model).map_err(one)?;
+    }
     tree.add_variables(root, &mut model, &mut errors);
     if !errors.is_empty() {
         return Err(distinct(errors));
@@ -116,7 +136,7 @@ fn flattened(
         model.functions.extend(function.map(|function| (name, function)));
     }
     balance::check(&model).map_err(one)?;
-    Ok(Flattened { model, warnings: Vec::new() })
+    Ok(Flattened { model, warnings: distinct(tree.warnings) })
 }
 
 /// The errors without those that say the same of the same place, as those of the elements of an

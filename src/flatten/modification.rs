@@ -1,13 +1,19 @@
-//! Merging modifications (MLS §7.2): outer modifiers override inner ones, element by element.
+//! Merging modifications (MLS §7.2) and redeclarations (MLS §7.3): outer modifiers override inner
+//! ones, element by element.
 
-use super::errors::{DUPLICATE_ELEMENT, FINAL_OVERRIDE, NOT_SUPPORTED};
-use super::instance::Context;
+use super::errors::{DUPLICATE_ELEMENT, FINAL_OVERRIDE};
+use super::library::ClassId;
+use super::scope::ScopeId;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::name::Ident;
 use crate::source::Span;
-use crate::syntax::ast::{Argument, Binding, Expression, Modification};
+use crate::syntax::ast::{
+    Argument, Binding, ClassElement, ComponentClause, ComponentDeclaration, ElementRedeclaration,
+    Expression, Modification, RedeclaredElement,
+};
 use indexmap::IndexMap;
+use std::sync::Arc;
 
 /// All that modifies one element, merged.
 #[derive(Debug, Clone, Default)]
@@ -20,6 +26,29 @@ pub(super) struct Modifier {
     pub(super) span: Option<Span>,
     /// Whether a `final` forbids outer modifiers.
     pub(super) is_final: bool,
+    /// What stands in the place of the element.
+    pub(super) redeclaration: Option<Redeclaration>,
+}
+
+/// What an element is redeclared as.
+#[derive(Debug, Clone)]
+pub(super) struct Redeclaration {
+    pub(super) replacement: Replacement,
+    /// The scope that it was written in.
+    pub(super) context: ScopeId,
+    /// The inner redeclaration that this one stands over, which a class extends may extend.
+    pub(super) over: Option<Box<Redeclaration>>,
+}
+
+/// The text of a redeclaration.
+#[derive(Debug, Clone)]
+pub(super) enum Replacement {
+    /// A short class in a modification.
+    Class(Arc<ClassElement>),
+    /// A class among the elements of a class.
+    Element(ClassId),
+    /// A component, in a modification or among the elements.
+    Component(Arc<ComponentClause>),
 }
 
 /// A value with the scope that it was written in.
@@ -27,7 +56,7 @@ pub(super) struct Modifier {
 pub(super) struct Bound {
     /// The value; `None` for `= break`, which removes an inner one (MLS §7.2.7).
     pub(super) value: Option<Expression>,
-    pub(super) context: Context,
+    pub(super) context: ScopeId,
     /// `each`: holds for every element of an array.
     pub(super) each: bool,
     /// For modifiers of arrays of components: the element of the value that is meant, one index a
@@ -40,7 +69,7 @@ impl Modifier {
     pub(super) fn new(
         modification: Option<&Modification>,
         each: bool,
-        context: Context,
+        context: ScopeId,
     ) -> Result<Modifier, Diagnostic> {
         let Some(modification) = modification else { return Ok(Modifier::default()) };
         let mut modifier = Modifier::of_each(&modification.arguments, each, context)?;
@@ -57,7 +86,7 @@ impl Modifier {
     /// The modifier that stands in parentheses.
     pub(super) fn of_arguments(
         arguments: &[Argument],
-        context: Context,
+        context: ScopeId,
     ) -> Result<Modifier, Diagnostic> {
         Modifier::of_each(arguments, false, context)
     }
@@ -66,14 +95,16 @@ impl Modifier {
     fn of_each(
         arguments: &[Argument],
         each: bool,
-        context: Context,
+        context: ScopeId,
     ) -> Result<Modifier, Diagnostic> {
         let mut merged = Modifier::default();
         for argument in arguments {
-            let Argument::Element(element) = argument else {
-                let Argument::Redeclaration(redeclaration) = argument else { continue };
-                return Err(fault!(NOT_SUPPORTED, "redeclarations are not translated yet")
-                    .at(redeclaration.span));
+            let element = match argument {
+                Argument::Element(element) => element,
+                Argument::Redeclaration(redeclaration) => {
+                    merged.add_redeclaration(redeclaration, each, context)?;
+                    continue;
+                }
             };
             let each = each || element.each;
             let mut inner = Modifier::new(element.modification.as_ref(), each, context)?;
@@ -98,6 +129,67 @@ impl Modifier {
         Ok(merged)
     }
 
+    fn add_redeclaration(
+        &mut self,
+        element: &ElementRedeclaration,
+        each: bool,
+        context: ScopeId,
+    ) -> Result<(), Diagnostic> {
+        let each = each || element.each;
+        let (name, replacement, mut modifier, is_final) = match &element.element {
+            RedeclaredElement::Class(class) => {
+                let replacement = Replacement::Class(Arc::new((**class).clone()));
+                (class.class.name, replacement, Modifier::default(), class.prefixes.is_final)
+            }
+            RedeclaredElement::Component(clause) => {
+                let Some(component) = clause.components.first() else { return Ok(()) };
+                // The values that the redeclaration gives are those of an outer modifier.
+                let modifier = Modifier::new(component.modification.as_ref(), each, context)?;
+                let replacement = Replacement::Component(Arc::new((**clause).clone()));
+                (component.name, replacement, modifier, clause.prefixes.is_final)
+            }
+        };
+        modifier.redeclaration = Some(Redeclaration { replacement, context, over: None });
+        modifier.is_final = is_final;
+        modifier.span = Some(name.span);
+        let known = self.elements.shift_remove(&name.node).unwrap_or_default();
+        if known.redeclaration.is_some() || known.conflict(&modifier, name.node).is_some() {
+            return Err(fault!(DUPLICATE_ELEMENT, "`{}` is modified twice", name.node;
+                help: "remove one of the two modifiers")
+            .at(name.span));
+        }
+        self.elements.insert(name.node, known.overridden_by(modifier, name.node)?);
+        Ok(())
+    }
+
+    /// Adds the redeclaration of a component by an element of a class.
+    pub(super) fn redeclare_component(
+        &mut self,
+        clause: &ComponentClause,
+        component: &ComponentDeclaration,
+        context: ScopeId,
+    ) -> Result<(), Diagnostic> {
+        let mut modifier = Modifier::new(component.modification.as_ref(), false, context)?;
+        let one = ComponentClause { components: vec![component.clone()], ..clause.clone() };
+        let replacement = Replacement::Component(Arc::new(one));
+        modifier.redeclaration = Some(Redeclaration { replacement, context, over: None });
+        modifier.span = Some(component.name.span);
+        self.elements.insert(component.name.node, modifier);
+        Ok(())
+    }
+
+    /// Adds a redeclaration of a class.
+    pub(super) fn redeclare(&mut self, name: Ident, redeclaration: Redeclaration, span: Span) {
+        let entry = self.elements.entry(name).or_default();
+        entry.redeclaration = Some(redeclaration);
+        entry.span = Some(span);
+    }
+
+    /// Whether it changes nothing.
+    pub(super) fn is_empty(&self) -> bool {
+        self.binding.is_none() && self.elements.is_empty() && self.redeclaration.is_none()
+    }
+
     /// The element to which both modifiers give a value (MLS §7.2.4).
     fn conflict(&self, other: &Modifier, name: Ident) -> Option<Ident> {
         if self.binding.is_some() && other.binding.is_some() {
@@ -115,13 +207,23 @@ impl Modifier {
         outer: Modifier,
         name: Ident,
     ) -> Result<Modifier, Diagnostic> {
-        let changes = outer.binding.is_some() || !outer.elements.is_empty();
+        let changes = !outer.is_empty();
         if self.is_final && changes {
             return Err(fault!(FINAL_OVERRIDE, "`{name}` is final and cannot be modified")
                 .at(outer.span.unwrap_or(Span::NONE)));
         }
         if outer.binding.is_some() {
             self.binding = outer.binding;
+        }
+        if let Some(mut redeclaration) = outer.redeclaration {
+            redeclaration.over = match (redeclaration.over.take(), self.redeclaration.take()) {
+                (Some(mut over), Some(inner)) => {
+                    over.put_under(inner);
+                    Some(over)
+                }
+                (over, inner) => over.or(inner.map(Box::new)),
+            };
+            self.redeclaration = Some(redeclaration);
         }
         for (element, modifier) in outer.elements {
             let inner = self.elements.shift_remove(&element).unwrap_or_default();
@@ -130,11 +232,6 @@ impl Modifier {
         self.is_final |= outer.is_final;
         self.span = outer.span.or(self.span);
         Ok(self)
-    }
-
-    /// Takes the modifier of an element out.
-    pub(super) fn take(&mut self, name: Ident) -> Modifier {
-        self.elements.shift_remove(&name).unwrap_or_default()
     }
 
     /// The modifier of one element of an array of components: values written without `each` are
@@ -156,6 +253,16 @@ impl Modifier {
                 .collect(),
             span: self.span,
             is_final: self.is_final,
+            redeclaration: self.redeclaration.clone(),
+        }
+    }
+}
+
+impl Redeclaration {
+    fn put_under(&mut self, inner: Redeclaration) {
+        match &mut self.over {
+            Some(over) => over.put_under(inner),
+            None => self.over = Some(Box::new(inner)),
         }
     }
 }

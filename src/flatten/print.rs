@@ -1,6 +1,7 @@
 //! The flat model as text: one class of flat Modelica that reads as Modelica again. Paths are
 //! written as quoted identifiers, because they are names and no longer ways through components.
 
+use super::types::type_name;
 use super::{BaseType, FlatModel, Variability, Variable};
 use crate::name::Ident;
 use crate::syntax::ast::{
@@ -77,7 +78,7 @@ fn declaration(variable: &Variable) -> String {
         Some(CausalityPrefix::Output) => "output ",
         None => "",
     });
-    text.push_str(&type_text(&variable.base));
+    text.push_str(&type_name(&variable.base));
     if !variable.dims.is_empty() {
         let sizes: Vec<String> = variable.dims.iter().map(usize::to_string).collect();
         text.push_str(&format!("[{}]", sizes.join(", ")));
@@ -101,16 +102,6 @@ fn declaration(variable: &Variable) -> String {
         text.push_str(&format!(" {}", print::string_literal(description)));
     }
     text
-}
-
-fn type_text(base: &BaseType) -> String {
-    match base {
-        BaseType::Real => "Real".into(),
-        BaseType::Integer => "Integer".into(),
-        BaseType::Boolean => "Boolean".into(),
-        BaseType::String => "String".into(),
-        BaseType::Enumeration(definition) => definition.name.to_string(),
-    }
 }
 
 fn flat_text(e: &Expression) -> String {

@@ -4,8 +4,9 @@
 use super::errors::{
     NOT_CONSTANT, NOT_SUPPORTED, PROTECTED_ACCESS, SIZE_MISMATCH, TOO_LARGE, UNKNOWN_NAME,
 };
-use super::instance::{Context, MemberState, NodeId, NodeKind};
+use super::instance::{MemberState, NodeId, NodeKind};
 use super::instantiation::Instantiation;
+use super::scope::ScopeId;
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::name::{Ident, Name};
@@ -19,7 +20,7 @@ use crate::value::Value;
 /// The deepest nesting of expressions, bindings that lead to one another included.
 const MAX_DEPTH: usize = 400;
 
-/// What the resolution of an expression knows besides its [`Context`].
+/// What the resolution of an expression knows besides its scope.
 #[derive(Clone, Default)]
 pub(super) struct Local {
     /// Loop variables and variables of a function, innermost last; those of an unrolled loop with
@@ -49,7 +50,7 @@ impl Instantiation<'_> {
     pub(super) fn resolve(
         &mut self,
         e: &Expression,
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
         if self.depth >= MAX_DEPTH {
@@ -64,7 +65,7 @@ impl Instantiation<'_> {
     fn resolve_kind(
         &mut self,
         e: &Expression,
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
         let sub = |this: &mut Self, inner: &Expression| this.resolve(inner, context, local);
@@ -140,7 +141,7 @@ impl Instantiation<'_> {
     fn all(
         &mut self,
         expressions: &[Expression],
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<Vec<Expression>, Diagnostic> {
         expressions.iter().map(|e| self.resolve(e, context, local)).collect()
@@ -149,7 +150,7 @@ impl Instantiation<'_> {
     fn named_arguments(
         &mut self,
         named: &[NamedArgument],
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<Vec<NamedArgument>, Diagnostic> {
         named
@@ -165,7 +166,7 @@ impl Instantiation<'_> {
     pub(super) fn iterators(
         &mut self,
         indices: &[ForIndex],
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<(Vec<ForIndex>, Local), Diagnostic> {
         let mut inner = local.clone();
@@ -182,7 +183,7 @@ impl Instantiation<'_> {
     pub(super) fn subscripts(
         &mut self,
         subscripts: &[Subscript],
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<Vec<Subscript>, Diagnostic> {
         subscripts
@@ -199,9 +200,12 @@ impl Instantiation<'_> {
         span: Span,
         function: &ComponentReference,
         arguments: &Arguments,
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
+        if let Some(value) = self.connection_operator(span, function, arguments, context, local)? {
+            return Ok(value);
+        }
         let (iterators, inner) = self.iterators(&arguments.iterators, context, local)?;
         let arguments = Arguments {
             positional: self.all(&arguments.positional, context, &inner)?,
@@ -215,7 +219,7 @@ impl Instantiation<'_> {
         };
         let impure =
             self.functions.get(&name).is_some_and(|f| f.as_ref().is_some_and(|f| f.impure));
-        if impure && context.node != NodeId(0) {
+        if impure && !self.in_package(self.node_of(context)) && context != ScopeId::TOP {
             return Err(
                 fault!(NOT_SUPPORTED, "`{name}` is impure and cannot be called in a model yet";
                 help: "declare it `pure` if equal arguments always give equal values")
@@ -232,7 +236,7 @@ impl Instantiation<'_> {
     fn reference(
         &mut self,
         reference: &ComponentReference,
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
         let first = &reference.parts[0];
@@ -243,8 +247,9 @@ impl Instantiation<'_> {
                     _ => self.local_reference(reference, context, local),
                 };
             }
-            if self.member(context.node, first.name)?.is_some() {
-                return self.walk(context.node, &reference.parts, reference, context, local);
+            if self.has_component(context, first.name)? {
+                let node = self.node_of(context);
+                return self.walk(node, &reference.parts, reference, context, local);
             }
             if reference.as_ident().is_some_and(|name| name == "time") {
                 if local.values {
@@ -263,7 +268,7 @@ impl Instantiation<'_> {
     fn local_reference(
         &mut self,
         reference: &ComponentReference,
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
         let mut parts = Vec::with_capacity(reference.parts.len());
@@ -281,13 +286,14 @@ impl Instantiation<'_> {
         node: NodeId,
         parts: &[ReferencePart],
         whole: &ComponentReference,
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
         let Some((part, rest)) = parts.split_first() else {
             return self.whole_instance(node, whole, context, local);
         };
         let state = match self.member(node, part.name)? {
+            Some(MemberState::Outer(inner)) => *inner,
             Some(state) => state,
             None => return Err(self.unknown_component(node, part.name, whole.span)),
         };
@@ -337,12 +343,18 @@ impl Instantiation<'_> {
             MemberState::Pending | MemberState::Busy => {
                 Err(fault!(NOT_CONSTANT, "`{}` depends on itself", part.name).at(whole.span))
             }
+            MemberState::Outer(_) => Err(fault!(
+                NOT_CONSTANT,
+                "`{}` is an outer component of one that is outer itself",
+                part.name
+            )
+            .at(whole.span)),
         }
     }
 
     /// The elements of an array of components that subscripts choose: for every dimension the
     /// indices, and whether the dimension stays.
-    fn choose(
+    pub(super) fn choose(
         &mut self,
         dims: &[usize],
         subscripts: &[Subscript],
@@ -410,7 +422,7 @@ impl Instantiation<'_> {
         nodes: &[NodeId],
         rest: &[ReferencePart],
         whole: &ComponentReference,
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
         let Some(((indices, stays), more)) = chosen.split_first() else {
@@ -433,22 +445,21 @@ impl Instantiation<'_> {
         &mut self,
         node: NodeId,
         whole: &ComponentReference,
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
-        let Some(composite) = self.composite_of(node) else {
+        let Some(class) = self.composite_of(node).map(|composite| composite.class) else {
             return self.variable_reference(node, Vec::new(), whole.span, local);
         };
-        let class = composite.class;
-        if !composite.record {
+        if !self.is_record(class) {
             let path = &self.nodes[node.0].path;
             return Err(
                 fault!(NOT_SUPPORTED, "`{path}` is no record and has no value").at(whole.span)
             );
         }
-        let names: Vec<Ident> = composite.members.keys().copied().collect();
-        let mut named = Vec::with_capacity(names.len());
-        for name in names {
+        let members = self.members(node)?;
+        let mut named = Vec::with_capacity(members.len());
+        for (name, _) in members {
             let part = ReferencePart { name, subscripts: Vec::new() };
             let value = self.walk(node, &[part], whole, context, local)?;
             let name = crate::source::Spanned { node: name, span: whole.span };
@@ -487,7 +498,7 @@ impl Instantiation<'_> {
         base: &Expression,
         name: Ident,
         span: Span,
-        context: Context,
+        context: ScopeId,
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
         // A component of a named record is that component; anything else is computed first.
@@ -513,32 +524,35 @@ impl Instantiation<'_> {
 
     /// Whether a component is protected in the class of its node.
     fn is_protected(&self, node: NodeId, name: Ident) -> bool {
-        self.composite_of(node)
-            .and_then(|composite| composite.members.get(&name))
-            .is_some_and(|member| member.declaration.protected)
+        self.declaration_of(node, name).is_some_and(|declaration| declaration.protected)
     }
 
-    fn unknown_component(&self, node: NodeId, name: Ident, span: Span) -> Diagnostic {
-        let Some(composite) = self.composite_of(node) else {
+    pub(super) fn unknown_component(&self, node: NodeId, name: Ident, span: Span) -> Diagnostic {
+        let text = self.scope_of(node).and_then(|scope| self.scope(scope).text.as_ref());
+        let Some(text) = text else {
             return fault!(UNKNOWN_NAME, "`{name}` is unknown").at(span);
         };
-        let class = &self.library.class(composite.class).name;
-        let known = composite.members.keys().map(|known| known.as_str());
+        let class = &text.name;
+        let known = self.component_names(node);
+        let known = known.iter().map(|known| known.as_str());
         fault!(UNKNOWN_NAME, "`{class}` has no component `{name}`")
             .help_if(suggest::did_you_mean(name.as_str(), known))
             .at(span)
+    }
+
+    fn component_names(&self, node: NodeId) -> Vec<Ident> {
+        let members = self.composite_of(node).and_then(|composite| composite.members.as_ref());
+        members.map_or(Vec::new(), |members| members.keys().copied().collect())
     }
 
     /// The diagnostic for a name that is neither a component nor a constant.
     pub(super) fn unknown_name(
         &self,
         reference: &ComponentReference,
-        context: Context,
+        context: ScopeId,
     ) -> Diagnostic {
         let name = reference.name();
-        let known: Vec<Ident> = self
-            .composite_of(context.node)
-            .map_or(Vec::new(), |composite| composite.members.keys().copied().collect());
+        let known = self.component_names(self.node_of(context));
         let first = name.first().map_or("", Ident::as_str);
         fault!(UNKNOWN_NAME, "`{name}` is not declared")
             .help_if(suggest::did_you_mean(first, known.iter().map(|known| known.as_str())))

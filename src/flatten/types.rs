@@ -294,5 +294,6 @@ pub(super) fn type_name(base: &BaseType) -> String {
         BaseType::Boolean => "Boolean".into(),
         BaseType::String => "String".into(),
         BaseType::Enumeration(definition) => definition.name.to_string(),
+        BaseType::ExternalObject(name) => name.to_string(),
     }
 }

@@ -47,10 +47,12 @@ impl Instantiation<'_> {
                     Err(error) => errors.push(error),
                 }
             }
-            NodeKind::Composite(composite) => {
-                let states: Vec<MemberState> =
-                    composite.members.values().map(|member| member.state.clone()).collect();
-                for state in states {
+            NodeKind::Composite(_) => {
+                let members = match self.members(node) {
+                    Ok(members) => members,
+                    Err(error) => return errors.push(error),
+                };
+                for (_, state) in members {
                     let nodes = match state {
                         MemberState::Single(one) => vec![one],
                         MemberState::Array(_, nodes) => nodes,
@@ -149,6 +151,7 @@ fn check_literal(e: &Expression, base: &BaseType, variable: &Variable) -> Result
         BaseType::Integer | BaseType::Enumeration(_) => found == "Integer",
         BaseType::Boolean => found == "Boolean",
         BaseType::String => found == "String",
+        BaseType::ExternalObject(_) => false,
     };
     if !fits {
         let wanted = type_name(base);

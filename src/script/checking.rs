@@ -9,8 +9,19 @@ use crate::name::Name;
 use crate::syntax::ast::Restriction;
 
 /// Counts, alias sets and sorted blocks of a translated model.
-pub fn report(model: &Translated) -> String {
-    dae::report(model.program.sorted())
+pub fn report(session: &mut Session, model: &Translated) -> String {
+    let report = dae::report(model.program.sorted());
+    let (name, rest) = report.split_once('\n').unwrap_or((&report, ""));
+    let classes = session.library().number_read();
+    let unknowns = simulation::unknowns(&model.flat);
+    format!("{name}\n  classes read {classes}\n  unknowns {unknowns}\n{rest}")
+}
+
+/// The counts of a report in one line.
+pub fn summary(session: &mut Session, model: &Translated) -> String {
+    let report = report(session, model);
+    let counts = report.lines().skip(2).take_while(|line| line.starts_with("  "));
+    counts.map(str::trim).collect::<Vec<_>>().join(", ")
 }
 
 /// The flat model of a class, which may carry a modification.
@@ -21,11 +32,11 @@ pub fn flat_model(session: &mut Session, problem: &str) -> Result<FlatModel, Vec
     simulation::flat_model(session, problem)
 }
 
-/// The loaded classes that can be simulated: models and blocks that are not partial, in order of
-/// loading, and how many classes there are in all.
-pub fn models(session: &mut Session) -> (Vec<Name>, usize) {
+/// The classes that can be simulated among these and all in them: models and blocks that are not
+/// partial, in order of loading; and how many classes there are.
+pub fn models(session: &mut Session, loaded: &[Name]) -> (Vec<Name>, usize) {
     let library = session.library();
-    let all = library.all();
+    let all: Vec<Name> = loaded.iter().flat_map(|name| library.all_in(name)).collect();
     let count = all.len();
     let is_model = |name: &Name| {
         library.definition(name).is_some_and(|class| {

@@ -2,18 +2,18 @@
 
 use super::Session;
 use super::errors::BAD_PARAMETER_VALUE;
-use super::world::normalized;
+use super::libraries::Warnings;
 use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::eval::{self, Function, ValueType};
 use crate::fault;
 use crate::flatten::Library;
 use crate::flatten::errors::UNKNOWN_CLASS;
 use crate::name::{Ident, Name};
-use crate::source::{SourceId, Span, Spanned};
+use crate::source::{SourceId, Span};
 use crate::syntax;
 use crate::syntax::ast::{
     ClassDefinition, ClassSpecifier, ComponentReference, Element, Expression, ExpressionKind,
-    Section, StoredDefinition, Subscript,
+    Section, Subscript,
 };
 use crate::value::Value;
 use std::collections::{BTreeMap, HashSet};
@@ -32,6 +32,10 @@ pub(super) struct Classes {
     directories: Vec<PathBuf>,
     /// The file of each top-level class that came from one.
     files: BTreeMap<Name, PathBuf>,
+    /// The versions of libraries that were asked for.
+    pub(super) versions: BTreeMap<Ident, String>,
+    /// What is to be told about the encodings of libraries.
+    pub(super) warnings: Warnings,
 }
 
 impl Classes {
@@ -42,7 +46,26 @@ impl Classes {
 
     /// Full names of the loaded functions and of everything else that could be called.
     pub(super) fn function_names(&self) -> Vec<String> {
-        self.library.all().iter().map(Name::to_string).collect()
+        self.library.known().iter().map(Name::to_string).collect()
+    }
+
+    /// Folders whose packages are loaded when somebody names them.
+    pub(super) fn directories(&self) -> &[PathBuf] {
+        &self.directories
+    }
+
+    pub(super) fn add_directory(&mut self, path: PathBuf) {
+        self.directories.push(path);
+        self.nowhere.clear();
+    }
+
+    /// The file or folder of a class at the top level.
+    pub(super) fn file_of(&self, name: &Name) -> Option<&PathBuf> {
+        self.files.get(name)
+    }
+
+    pub(super) fn take_warnings(&self) -> Vec<Diagnostic> {
+        self.warnings.lock().map_or(Vec::new(), |mut warnings| std::mem::take(&mut *warnings))
     }
 
     fn changed(&mut self) {
@@ -52,13 +75,6 @@ impl Classes {
 }
 
 impl Session {
-    /// Makes the packages in a folder loadable by name.
-    pub fn add_library_dir(&mut self, path: &Path) {
-        let path = self.world.absolute(path);
-        self.classes.directories.push(path);
-        self.classes.nowhere.clear();
-    }
-
     /// The loaded classes.
     pub fn library(&mut self) -> &mut Library {
         &mut self.classes.library
@@ -78,8 +94,11 @@ impl Session {
         self.classes.files.values().any(|file| *file == found)
     }
 
-    /// Loads a `.mo` file, or a package from its folder or its `package.mo`. Returns the names of
-    /// the classes.
+    /// Loads a `.mo` file, or a package from its folder or its `package.mo`, or all that lie in a
+    /// folder, and reads all of it. Returns the names of the classes.
+    ///
+    /// # Errors
+    /// What is wrong with the texts; then nothing may be relied on of what they define.
     pub fn load_path(&mut self, path: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {
         let Some(mut found) = self.find_file(path) else {
             return Err(vec![self.missing_file(path).at(self.call)]);
@@ -87,111 +106,103 @@ impl Session {
         if found.file_name().is_some_and(|name| name == "package.mo") {
             found.pop();
         }
-        let mut files = Vec::new();
-        if self.world.is_dir(&found) && !self.world.exists(&found.join("package.mo")) {
-            self.collect_folder(&found, &mut files)?;
-        } else {
-            self.collect(&found, None, &mut files)?;
+        let (mut names, mut errors) = (Vec::new(), Vec::new());
+        for path in self.paths_to_load(found) {
+            match self.load_all_of(&path) {
+                Ok(loaded) => names.extend(loaded),
+                Err(wrong) => errors.extend(wrong),
+            }
         }
-        let names = self.load_definitions(files)?;
-        for name in names.iter().filter(|name| name.is_simple()) {
-            self.classes.files.insert(name.clone(), found.clone());
+        if errors.is_empty() { Ok(names) } else { Err(errors) }
+    }
+
+    /// A file or package, or all files and packages of a folder that is no package.
+    fn paths_to_load(&self, path: PathBuf) -> Vec<PathBuf> {
+        let is_package = |path: &Path| self.world.exists(&path.join("package.mo"));
+        if !self.world.is_dir(&path) || is_package(&path) {
+            return vec![path];
         }
+        let entries = self.world.list_dir(&path).unwrap_or_default().into_iter();
+        let inside = entries.map(|entry| path.join(entry));
+        inside
+            .filter(|path| is_package(path) || path.extension().is_some_and(|e| e == "mo"))
+            .collect()
+    }
+
+    fn load_all_of(&mut self, path: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {
+        if !self.world.is_dir(path) {
+            return self.load_file(path);
+        }
+        self.load_package_around(path)?;
+        let names = self.load_library(path)?;
+        self.ask_library(|library| {
+            let problems = names.iter().flat_map(|name| library.read_all(name));
+            let problems: Vec<Diagnostic> = problems.collect();
+            if problems.is_empty() { Ok(names) } else { Err(problems) }
+        })
+    }
+
+    /// The package at the top that a folder or file belongs to, if it is not loaded: the outermost
+    /// of the folders around it that are packages.
+    fn load_package_around(&mut self, path: &Path) -> Result<(), Vec<Diagnostic>> {
+        let is_package = |folder: &&Path| self.world.exists(&folder.join("package.mo"));
+        let Some(root) = path.ancestors().skip(1).take_while(is_package).last() else {
+            return Ok(());
+        };
+        if self.classes.files.values().any(|file| file == root) {
+            return Ok(());
+        }
+        self.load_library(root).map(|_| ())
+    }
+
+    fn load_file(&mut self, path: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {
+        let (source, text) = self.add_file(path).at(self.call).map_err(|error| vec![error])?;
+        let names = self.load_source(source, &text, Some(path))?;
+        self.note_files(&names, path);
         Ok(names)
+    }
+
+    /// Loads a package from its folder; its classes are read when they are needed.
+    fn load_library(&mut self, folder: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {
+        self.classes.changed();
+        let texts = self.library_texts();
+        let one = |error: Diagnostic| vec![error];
+        let names = self.ask_library(|library| library.load_lazily(&texts, folder).map_err(one))?;
+        self.note_files(&names, folder);
+        self.supply_units(&names).map_err(one)?;
+        self.note_versions(&names);
+        Ok(names)
+    }
+
+    fn note_files(&mut self, names: &[Name], path: &Path) {
+        for name in names.iter().filter(|name| name.is_simple()) {
+            self.classes.files.insert(name.clone(), path.to_owned());
+        }
     }
 
     /// Loads classes from a text; `name` stands in diagnostics.
     pub fn load_text(&mut self, name: &str, text: &str) -> Result<Vec<Name>, Vec<Diagnostic>> {
         let source = self.sources.add(name, text);
-        let definition =
-            syntax::parse_stored_definition(source, text).map_err(|error| vec![error])?;
-        self.load_definitions(vec![definition])
+        self.load_source(source, text, None)
     }
 
-    fn load_definitions(
+    fn load_source(
         &mut self,
-        files: Vec<StoredDefinition>,
+        source: SourceId,
+        text: &str,
+        path: Option<&Path>,
     ) -> Result<Vec<Name>, Vec<Diagnostic>> {
+        let file = syntax::parse_all_of_stored_definition(source, text)?;
         self.classes.changed();
-        let mut names = Vec::new();
-        for file in files {
-            if let Some(package) = file.within.as_ref().and_then(|within| within.node.first()) {
-                self.autoload_class(package)?;
+        if let Some(package) = file.within.as_ref().and_then(|within| within.node.first()) {
+            if let (Some(path), false) = (path, self.classes.library.contains(&package.into())) {
+                self.load_package_around(path)?;
             }
-            names.extend(self.classes.library.load(&file).map_err(|error| vec![error])?);
+            self.autoload_class(package)?;
         }
+        let names = self.ask_library(|library| library.load(&file).map_err(|error| vec![error]))?;
+        self.note_versions(&names);
         Ok(names)
-    }
-
-    /// All packages and files of a folder that is no package.
-    fn collect_folder(
-        &mut self,
-        folder: &Path,
-        files: &mut Vec<StoredDefinition>,
-    ) -> Result<(), Vec<Diagnostic>> {
-        for entry in self.world.list_dir(folder).unwrap_or_default() {
-            let path = folder.join(&entry);
-            let is_package = self.world.exists(&path.join("package.mo"));
-            if is_package || entry.ends_with(".mo") {
-                self.collect(&path, None, files)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Parses a file, or a package folder in the order of its `package.order` (MLS §13.4). What
-    /// does not say where it belongs belongs into `within`.
-    fn collect(
-        &mut self,
-        path: &Path,
-        within: Option<&Name>,
-        files: &mut Vec<StoredDefinition>,
-    ) -> Result<(), Vec<Diagnostic>> {
-        if !self.world.is_dir(path) {
-            return self.collect_file(path, within, files);
-        }
-        self.collect_file(&path.join("package.mo"), within, files)?;
-        let package = files.last().and_then(|file| Some(full_name(file, file.classes.first()?)));
-        for entry in self.ordered_entries(path) {
-            self.collect(&path.join(entry), package.as_ref(), files)?;
-        }
-        Ok(())
-    }
-
-    fn collect_file(
-        &mut self,
-        path: &Path,
-        within: Option<&Name>,
-        files: &mut Vec<StoredDefinition>,
-    ) -> Result<(), Vec<Diagnostic>> {
-        let (source, text) = self.add_file(path).at(self.call).map_err(|error| vec![error])?;
-        let mut file =
-            syntax::parse_stored_definition(source, &text).map_err(|error| vec![error])?;
-        if let (None, Some(within)) = (&file.within, within) {
-            file.within = Some(Spanned { node: within.clone(), span: Span::new(source, 0, 0) });
-        }
-        files.push(file);
-        Ok(())
-    }
-
-    /// The files and folders of a package: first those that `package.order` names.
-    fn ordered_entries(&self, folder: &Path) -> Vec<String> {
-        let entries = self.world.list_dir(folder).unwrap_or_default();
-        let order = self.world.read(&folder.join("package.order")).unwrap_or_default();
-        let order = String::from_utf8_lossy(&order).into_owned();
-        let place = |entry: &String| {
-            let name = entry.strip_suffix(".mo").unwrap_or(entry);
-            order.lines().position(|line| line.trim() == name).unwrap_or(usize::MAX)
-        };
-        let mut wanted: Vec<String> = entries
-            .into_iter()
-            .filter(|entry| {
-                let is_package = self.world.exists(&folder.join(entry).join("package.mo"));
-                is_package || entry.ends_with(".mo") && entry != "package.mo"
-            })
-            .collect();
-        wanted.sort_by_key(place);
-        wanted
     }
 
     /// Loads the top-level class that a name begins with, if it is not loaded and can be found.
@@ -208,8 +219,9 @@ impl Session {
         if known || self.classes.nowhere.contains(&name) {
             return Ok(false);
         }
-        match self.search_class(name.as_str()) {
-            Some(path) => self.load_path(&path).map(|_| true),
+        match self.search_class(name) {
+            Some(path) if self.world.is_dir(&path) => self.load_library(&path).map(|_| true),
+            Some(path) => self.load_file(&path).map(|_| true),
             None => {
                 self.classes.nowhere.insert(name);
                 Ok(false)
@@ -227,45 +239,19 @@ impl Session {
         Ok(loaded)
     }
 
-    /// Where the top-level class of this name is: in the library folders, the working directory,
-    /// or a folder `models` beside the scripts being run or above them.
-    fn search_class(&self, name: &str) -> Option<PathBuf> {
-        let current = self.world.current_dir();
-        let beside = self
-            .frames
-            .iter()
-            .rev()
-            .flat_map(|frame| frame.folder.ancestors())
-            .chain(current.ancestors());
-        let models = beside.map(|folder| folder.join("models"));
-        let folders =
-            self.classes.directories.iter().cloned().chain([current.clone()]).chain(models);
-        folders.map(|folder| normalized(&folder)).find_map(|folder| self.class_in(&folder, name))
-    }
-
-    fn class_in(&self, folder: &Path, name: &str) -> Option<PathBuf> {
-        let package = folder.join(name);
-        if self.world.exists(&package.join("package.mo")) {
-            return Some(package);
-        }
-        let file = folder.join(format!("{name}.mo"));
-        if self.world.exists(&file) {
-            return Some(file);
-        }
-        let prefix = format!("{name} ");
-        let entries = self.world.list_dir(folder).ok()?;
-        let versions = entries.iter().filter(|entry| entry.starts_with(&prefix));
-        let newest = versions.max_by_key(|entry| version(&entry[prefix.len()..]))?;
-        Some(folder.join(newest))
-    }
-
     /// Whether a class of this name is loaded or can be.
+    ///
+    /// # Errors
+    /// What is wrong with the texts that would tell.
+    pub(super) fn find_class(&mut self, name: &Name) -> Result<bool, Vec<Diagnostic>> {
+        self.autoload(name)?;
+        self.ask_library(|library| Ok(library.contains(name)))
+    }
+
+    /// The same, the errors reported.
     pub(super) fn class_exists(&mut self, name: &Name) -> bool {
-        let loaded = self.autoload(name);
-        if let Err(diagnostics) = loaded {
-            diagnostics.into_iter().for_each(|diagnostic| self.report(diagnostic));
-        }
-        self.classes.library.find(name).is_some()
+        let found = self.find_class(name);
+        self.or_report_all(found).unwrap_or(false)
     }
 
     /// A class that a script defines; it replaces one of the same name.
@@ -301,7 +287,7 @@ impl Session {
     /// The fault of a class that is not loaded and cannot be found.
     pub(super) fn unknown_class(&self, name: &Name) -> Fault {
         let wanted = name.to_string();
-        let known: Vec<String> = self.classes.library.all().iter().map(Name::to_string).collect();
+        let known = self.classes.function_names();
         let last = known.iter().map(|full| full.rsplit('.').next().unwrap_or(full));
         let hint = suggest::did_you_mean(&wanted, known.iter().map(String::as_str))
             .or_else(|| suggest::did_you_mean(&wanted, last));
@@ -324,15 +310,16 @@ impl Session {
     }
 
     fn function_named(&mut self, name: &Name) -> Result<Option<Arc<Function>>, Diagnostic> {
+        let first = |mut errors: Vec<Diagnostic>| errors.swap_remove(0);
         loop {
-            match self.classes.library.function(name) {
+            let one = |error: Diagnostic| vec![error];
+            match self.ask_library(|library| library.function(name).map_err(one)) {
                 Ok(functions) => {
                     return Ok(functions.and_then(|all| all.into_values().next()));
                 }
-                Err(error) => {
-                    let loaded = self.load_wanted();
-                    if !loaded.map_err(|mut errors| errors.remove(0))? {
-                        return Err(error);
+                Err(errors) => {
+                    if !self.load_wanted().map_err(first)? {
+                        return Err(first(errors));
                     }
                 }
             }
@@ -501,14 +488,4 @@ fn first_fault(diagnostic: Diagnostic) -> Fault {
     let mut fault = Fault::new(diagnostic.code, diagnostic.message.clone());
     fault.helps.clone_from(&diagnostic.helps);
     fault
-}
-
-fn full_name(file: &StoredDefinition, class: &ClassDefinition) -> Name {
-    let within = file.within.as_ref().map(|within| within.node.clone()).unwrap_or_default();
-    within.child(class.name.node)
-}
-
-/// The numbers of a version, for comparison.
-fn version(text: &str) -> Vec<u64> {
-    text.split(|c: char| !c.is_ascii_digit()).filter_map(|part| part.parse().ok()).collect()
 }

@@ -45,4 +45,7 @@ codes! {
     /// An import that names nothing.
     BAD_IMPORT = "bad-import":
         "## What it means\n\nAn import clause of a script names a package or class that is not loaded and is no package of built-in commands.\n\n## Example\n\n`import Modelica.Utilties.Streams;`\n\n## What to do\n\nCorrect the name, or load the library first.",
+    /// A library of another version than the one asked for (a warning).
+    OTHER_VERSION = "other-version":
+        "## What it means\n\nA package says in its annotation `uses` which version of a library it needs (MLS §18.8.3). No folder of that version was found, and the one that was found is older or has another main version. It is used as it is.\n\n## Example\n\n`annotation(uses(Modelica(version = \"3.2.3\")));` with `Modelica 4.0.0` as the only one in `MODELICAPATH`\n\n## What to do\n\nName the folder that has the version with `--library`, or convert the package.",
 }

@@ -143,9 +143,12 @@ impl Session {
         Ok(None)
     }
 
-    /// A loaded function, or the command that it declares with `external "builtin"`.
+    /// A loaded function, or the command that it declares with `external "builtin"`, or that is its
+    /// implementation: the functions of `Modelica.Utilities` are commands, loaded or not.
     fn loaded_callee(&self, function: Arc<Function>) -> Callee {
-        let command = match &function.body {
+        let is_utility = function.name.to_string().starts_with("Modelica.Utilities.");
+        let own = builtins::find(&function.name, self.dialect).filter(|_| is_utility);
+        let command = own.or_else(|| match &function.body {
             FunctionBody::External(external) if external.language.as_deref() == Some("builtin") => {
                 external
                     .function
@@ -153,7 +156,7 @@ impl Session {
                     .and_then(|called| builtins::find(&Name::new([called.node]), self.dialect))
             }
             _ => None,
-        };
+        });
         command.map_or(Callee::Function(function), |id| Callee::Builtin(id.function()))
     }
 

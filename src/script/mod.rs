@@ -18,6 +18,7 @@ mod files;
 mod follow_up;
 mod host;
 mod identification;
+mod libraries;
 mod messages;
 mod scripts;
 mod session;

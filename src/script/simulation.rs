@@ -132,7 +132,7 @@ pub fn flat_model(session: &mut Session, problem: &str) -> Result<FlatModel, Vec
         syntax::parse_class_with_modification(source, problem).map_err(|error| vec![error])?;
     session.autoload(&name)?;
     loop {
-        match flatten::flatten(session.library(), &name, &modification) {
+        match session.ask_library(|library| flatten::flatten(library, &name, &modification)) {
             Ok(flattened) => {
                 flattened.warnings.into_iter().for_each(|warning| session.report(warning));
                 return Ok(flattened.model);

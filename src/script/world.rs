@@ -5,6 +5,7 @@
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -29,6 +30,17 @@ pub struct Progress {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stamp(pub u64, pub u64);
 
+/// The files of a world, for reading alone: what a library keeps to read its classes when they are
+/// needed, from any thread. Paths are absolute.
+pub trait Files: fmt::Debug + Send + Sync {
+    /// The bytes of a file.
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
+    /// Names of the entries of a directory, sorted.
+    fn list_dir(&self, path: &Path) -> io::Result<Vec<String>>;
+    /// Whether there is a file of this path that is no directory.
+    fn is_file(&self, path: &Path) -> bool;
+}
+
 /// Everything that a script can do to the world and learn from it. Paths may be relative to
 /// [`World::current_dir`].
 pub trait World {
@@ -48,6 +60,8 @@ pub trait World {
     fn stamp(&self, path: &Path) -> Option<Stamp>;
     /// Names of the entries of a directory, sorted.
     fn list_dir(&self, path: &Path) -> io::Result<Vec<String>>;
+    /// The files as they are, or as they are now.
+    fn files(&self) -> Arc<dyn Files>;
     /// Makes a directory and the ones it lies in.
     fn create_dirs(&mut self, path: &Path) -> io::Result<()>;
     /// The working directory, absolute.
@@ -202,6 +216,33 @@ fn missing(path: &Path) -> io::Error {
     io::Error::new(io::ErrorKind::NotFound, format!("no such file: {}", path.display()))
 }
 
+/// The last names of the paths that lie directly in a directory, sorted.
+fn names_in<'a>(dir: &Path, paths: impl Iterator<Item = &'a PathBuf>) -> Vec<String> {
+    let inside = paths.filter_map(|path| path.strip_prefix(dir).ok()?.components().next());
+    let names: BTreeSet<String> =
+        inside.map(|name| name.as_os_str().to_string_lossy().into_owned()).collect();
+    names.into_iter().collect()
+}
+
+/// The files of a [`MemoryWorld`] at one moment.
+#[derive(Debug)]
+struct MemoryFiles(BTreeMap<PathBuf, Vec<u8>>);
+
+impl Files for MemoryFiles {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        self.0.get(path).cloned().ok_or_else(|| missing(path))
+    }
+
+    fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
+        let names = names_in(path, self.0.keys());
+        if names.is_empty() { Err(missing(path)) } else { Ok(names) }
+    }
+
+    fn is_file(&self, path: &Path) -> bool {
+        self.0.contains_key(path)
+    }
+}
+
 impl World for MemoryWorld {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         self.files.get(&self.absolute(path)).cloned().ok_or_else(|| missing(path))
@@ -245,18 +286,14 @@ impl World for MemoryWorld {
 
     fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
         let dir = self.absolute(path);
-        if !self.dirs.contains(&dir) {
-            return Err(missing(path));
+        match self.dirs.contains(&dir) {
+            true => Ok(names_in(&dir, self.files.keys().chain(&self.dirs))),
+            false => Err(missing(path)),
         }
-        let entries: BTreeSet<String> = self
-            .files
-            .keys()
-            .chain(&self.dirs)
-            .filter(|entry| entry.parent() == Some(&dir))
-            .filter_map(|entry| entry.file_name())
-            .map(|name| name.to_string_lossy().into_owned())
-            .collect();
-        Ok(entries.into_iter().collect())
+    }
+
+    fn files(&self) -> Arc<dyn Files> {
+        Arc::new(MemoryFiles(self.files.clone()))
     }
 
     fn create_dirs(&mut self, path: &Path) -> io::Result<()> {

@@ -39,7 +39,10 @@ pub enum Failure {
         block: u32,
     },
     /// Event iteration did not end.
-    EventIteration,
+    EventIteration {
+        /// A variable that kept changing; the system can explain it.
+        variable: u32,
+    },
 }
 
 /// Why a simulation failed, and when.

@@ -47,7 +47,7 @@
 //! ```
 //!
 //! The systems are those of [`DaeSystem`]: semi-explicit, index 1. Not handled here: index reduction
-//! and the choice of states (done before), delays, sliding along a discontinuity (reported as
+//! and the choice of states (done before), sliding along a discontinuity (reported as
 //! chattering).
 //!
 //! References: [Brenan, Campbell & Petzold 1996](crate::bibliography#brenan-campbell-petzold-1996),

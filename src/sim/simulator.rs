@@ -11,6 +11,8 @@ use crate::registry::Options;
 const MOST_EVENTS_AT_ONCE: u32 = 200;
 /// Distance of events that count as one place in time, relative to the simulated interval.
 const AT_ONCE: f64 = 1e-10;
+/// Points of every step that a system with a memory is shown.
+const POINTS_REMEMBERED: u32 = 4;
 
 /// Simulates systems one after the other with one workspace: nothing is allocated when a system has
 /// the sizes of the one before.
@@ -169,7 +171,11 @@ impl Run<'_> {
                 break;
             }
         }
-        Ok(())
+        let finished = self.problem.system.finish(self.t, self.y);
+        match finished.map_err(SimErrorKind::Evaluation)? {
+            true => self.record(),
+            false => Ok(()),
+        }
     }
 
     fn initialize(&mut self) -> Result<(), SimErrorKind> {
@@ -201,6 +207,7 @@ impl Run<'_> {
         let event = self.problem.system.next_time_event(self.t);
         let event = event.filter(|event| *event > self.t && *event <= stop);
         let mut limit = event.unwrap_or(stop);
+        limit = limit.min(self.t + self.problem.system.longest_step());
         if !self.has_unknowns {
             limit = self.next_output.map_or(limit, |point| limit.min(point));
         }
@@ -213,9 +220,11 @@ impl Run<'_> {
         let end = self.integrator.time();
         loop {
             self.y.copy_from_slice(self.integrator.state());
+            let begin = self.t;
             match self.first_event(end)? {
                 Some(event) => {
                     self.record_before(event)?;
+                    self.remember(begin, event)?;
                     self.problem.statistics.state_events += 1;
                     let after = self.handle_event(event)?;
                     if after != After::Resume || event >= end {
@@ -224,11 +233,13 @@ impl Run<'_> {
                 }
                 None if time_event => {
                     self.record_before(end)?;
+                    self.remember(begin, end)?;
                     self.problem.statistics.time_events += 1;
                     return self.handle_event(end);
                 }
                 None => {
                     self.record_before(end)?;
+                    self.remember(begin, end)?;
                     self.t = end;
                     self.y.copy_from_slice(self.integrator.state());
                     self.check()?;
@@ -265,30 +276,64 @@ impl Run<'_> {
         Ok(())
     }
 
+    /// Shows the part of the step from `begin` to `end` to a system that remembers; y is y(`end`)
+    /// before and afterwards.
+    fn remember(&mut self, begin: f64, end: f64) -> Result<(), SimErrorKind> {
+        if !self.problem.system.remembers() {
+            return Ok(());
+        }
+        for point in 1..=POINTS_REMEMBERED {
+            let share = f64::from(point) / f64::from(POINTS_REMEMBERED);
+            let t = if point == POINTS_REMEMBERED { end } else { begin + share * (end - begin) };
+            self.integrator.interpolate(t, self.y);
+            self.remember_now(t)?;
+        }
+        Ok(())
+    }
+
+    fn remember_now(&mut self, t: f64) -> Result<(), SimErrorKind> {
+        self.problem.system.remember(t, self.y).map_err(SimErrorKind::Evaluation)
+    }
+
     /// Handles the event at `t`, where y is; records both sides of it.
     fn handle_event(&mut self, t: f64) -> Result<After, SimErrorKind> {
         self.t = t;
         self.watch_for_chattering()?;
         self.record()?;
-        let outcome = self.problem.system.handle_event(t, self.y);
-        let outcome = outcome.map_err(SimErrorKind::Evaluation)?;
-        if !self.y.iter().all(|y| y.is_finite()) {
-            return Err(SimErrorKind::NotFinite);
+        let mut outcome = self.event(t)?;
+        while outcome == EventOutcome::Again {
+            outcome = match self.event(t)? {
+                EventOutcome::Continue { .. } => EventOutcome::Continue { y_changed: true },
+                other => other,
+            };
         }
-        self.check()?;
-        self.record()?;
         while self.next_output.is_some_and(|point| point <= t) {
             self.advance_output();
         }
         match outcome {
             EventOutcome::Terminate => return Ok(After::Terminated),
-            EventOutcome::Continue { y_changed: true } => self.restart()?,
+            EventOutcome::Continue { y_changed: true } | EventOutcome::Again => self.restart()?,
             EventOutcome::Continue { y_changed: false } => {
                 self.start_crossings()?;
                 return Ok(After::Resume);
             }
         }
         Ok(After::Restarted)
+    }
+
+    /// Lets the system handle an event and records what comes behind it.
+    fn event(&mut self, t: f64) -> Result<EventOutcome, SimErrorKind> {
+        let outcome = self.problem.system.handle_event(t, self.y);
+        let outcome = outcome.map_err(SimErrorKind::Evaluation)?;
+        if !self.y.iter().all(|y| y.is_finite()) {
+            return Err(SimErrorKind::NotFinite);
+        }
+        if self.problem.system.remembers() {
+            self.remember_now(t)?;
+        }
+        self.check()?;
+        self.record()?;
+        Ok(outcome)
     }
 
     fn watch_for_chattering(&mut self) -> Result<(), SimErrorKind> {

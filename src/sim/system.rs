@@ -47,6 +47,23 @@ pub trait DaeSystem {
     fn handle_event(&mut self, _t: f64, _y: &mut [f64]) -> Result<EventOutcome, Failure> {
         Ok(EventOutcome::Continue { y_changed: false })
     }
+    /// Whether it needs to see its past: then it is shown every step by [`DaeSystem::remember`].
+    fn remembers(&self) -> bool {
+        false
+    }
+    /// Takes note of (t, y), which belongs to the solution; at an event once before and once after
+    /// it. Times do not descend.
+    fn remember(&mut self, _t: f64, _y: &[f64]) -> Result<(), Failure> {
+        Ok(())
+    }
+    /// The longest step over which the right-hand side is known without its end.
+    fn longest_step(&self) -> f64 {
+        f64::INFINITY
+    }
+    /// The event at the end of a simulation (`terminal()`); whether anything changed.
+    fn finish(&mut self, _t: f64, _y: &mut [f64]) -> Result<bool, Failure> {
+        Ok(false)
+    }
     /// Checks at an accepted step what must hold there (assertions).
     fn check(&mut self, _t: f64, _y: &[f64]) -> Result<(), Failure> {
         Ok(())
@@ -65,6 +82,8 @@ pub enum EventOutcome {
         /// Whether the integrator must restart.
         y_changed: bool,
     },
+    /// Another event follows at the same time, behind which the integrator must restart.
+    Again,
     /// `terminate(…)` was called.
     Terminate,
 }

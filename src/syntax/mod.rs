@@ -4,25 +4,35 @@
 //! read by the pest grammar in `grammar/`, and lowered to the tree in [`ast`]. The first error
 //! stops the reading and is the one [`Diagnostic`] returned: an error in a bracket or an `end` is
 //! reported in preference to what the grammar makes of it later.
+//!
+//! A file of a library is read lazily: [`Outline`] tells where its classes are, and the body of a
+//! class is scanned, read and lowered when somebody looks at its [`Sections`].
 
 pub mod ast;
 mod decode;
 pub mod errors;
 mod failure;
+mod lazy;
 mod lower;
+mod outline;
 mod parser;
+mod place;
 pub mod print;
 mod scan;
 pub mod visit;
 
 pub use decode::decode;
+pub use lazy::Sections;
+pub use outline::{Outline, OutlinedClass};
 
 use crate::diag::Diagnostic;
 use crate::name::Name;
 use crate::source::SourceId;
 use ast::{Argument, Expression, Script, StoredDefinition};
 use parser::Rule;
+use place::Place;
 use scan::Dialect;
+use std::sync::Arc;
 
 /// Reads a `.mo` file (MLS §A.2.1).
 ///
@@ -41,7 +51,57 @@ pub fn parse_stored_definition(
     text: &str,
 ) -> Result<StoredDefinition, Diagnostic> {
     let rule = Rule::stored_definition;
-    parser::parse(source, text, rule, Dialect::Modelica, lower::stored_definition)
+    parser::parse(
+        &Place::in_source(source),
+        text,
+        rule,
+        Dialect::Modelica,
+        lower::stored_definition,
+    )
+}
+
+/// Reads a `.mo` file lazily: the heads of its classes now, the sections of each when somebody looks
+/// at them. What cannot be read then is told by [`Sections::error`].
+///
+/// ```
+/// use gapilib::syntax::ast::ClassSpecifier;
+/// use gapilib::{source::SourceId, syntax};
+///
+/// let text = "package P model M Real x end M; end P;";
+/// let file = syntax::parse_stored_definition_lazily(SourceId::NONE, &text.into())?;
+/// let ClassSpecifier::Long(package) = &file.classes[0].specifier else { panic!("P is long") };
+/// assert!(!package.sections.is_read());
+/// assert_eq!(package.sections.len(), 1);
+/// assert_eq!(package.sections.error(), None);
+/// # Ok::<(), gapilib::diag::Diagnostic>(())
+/// ```
+///
+/// # Errors
+/// A syntax error outside the bodies of the classes, or one that hides where they end.
+pub fn parse_stored_definition_lazily(
+    source: SourceId,
+    text: &Arc<str>,
+) -> Result<StoredDefinition, Diagnostic> {
+    lazy::stored_definition(source, text)
+}
+
+/// Reads a `.mo` file and tells all that is wrong with it, as far as its classes can be told apart:
+/// the first error of each class.
+///
+/// # Errors
+/// Syntax errors, in the order of the text.
+pub fn parse_all_of_stored_definition(
+    source: SourceId,
+    text: &str,
+) -> Result<StoredDefinition, Vec<Diagnostic>> {
+    parse_stored_definition(source, text).map_err(|first| {
+        let lazy = lazy::stored_definition(source, &text.into());
+        let mut errors: Vec<Diagnostic> = lazy.map_or(Vec::new(), |file| {
+            file.classes.iter().flat_map(|class| lazy::errors(class)).collect()
+        });
+        errors.sort_by_key(|error| error.span().start);
+        if errors.is_empty() { vec![first] } else { errors }
+    })
 }
 
 /// Reads a `.mos` file: interactive statements, closed by `;` or line ends.
@@ -60,7 +120,7 @@ pub fn parse_stored_definition(
 /// # Ok::<(), gapilib::diag::Diagnostic>(())
 /// ```
 pub fn parse_script(source: SourceId, text: &str) -> Result<Script, Diagnostic> {
-    parser::parse(source, text, Rule::script, Dialect::Script, lower::script)
+    parser::parse(&Place::in_source(source), text, Rule::script, Dialect::Script, lower::script)
 }
 
 /// Reads an expression.
@@ -78,7 +138,7 @@ pub fn parse_script(source: SourceId, text: &str) -> Result<Script, Diagnostic> 
 /// It is the whole text, such as the value of a command-line option.
 pub fn parse_expression(source: SourceId, text: &str) -> Result<Expression, Diagnostic> {
     let rule = Rule::lone_expression;
-    parser::parse(source, text, rule, Dialect::Fragment, lower::lone_expression)
+    parser::parse(&Place::in_source(source), text, rule, Dialect::Fragment, lower::lone_expression)
 }
 
 /// Reads a class name with an optional modification, `M(redeclare package P = Q, p = 2)`: the
@@ -88,7 +148,13 @@ pub fn parse_class_with_modification(
     text: &str,
 ) -> Result<(Name, Vec<Argument>), Diagnostic> {
     let rule = Rule::class_with_modification;
-    parser::parse(source, text, rule, Dialect::Fragment, lower::class_with_modification)
+    parser::parse(
+        &Place::in_source(source),
+        text,
+        rule,
+        Dialect::Fragment,
+        lower::class_with_modification,
+    )
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! The grammar, and the cursor over what it found.
 
 use super::failure;
+use super::place::Place;
 use super::scan::{self, Dialect};
 use crate::diag::Diagnostic;
-use crate::source::{SourceId, Span};
+use crate::source::Span;
 use pest::Parser as _;
 use pest::iterators::{Pair, Pairs};
 
@@ -18,22 +19,24 @@ pub(super) type Node<'i> = Pair<'i, Rule>;
 
 /// Scans a text, reads it by `rule`, and gives the nodes inside to `lower`.
 pub(super) fn parse<T>(
-    source: SourceId,
+    place: &Place,
     text: &str,
     rule: Rule,
     dialect: Dialect,
     lower: impl FnOnce(Nodes<'_>) -> Result<T, Diagnostic>,
 ) -> Result<T, Diagnostic> {
-    let scanned = scan::scan(source, text, dialect)?;
+    let scanned = scan::scan(place.source(), text, dialect).map_err(|e| place.relocated(e))?;
     let pairs = match read(rule, &scanned.text) {
         Ok(pairs) => pairs,
-        Err(error) => return Err(failure::explain(source, rule, scanned, &error)),
+        Err(error) => {
+            return Err(place.relocated(failure::explain(place.source(), rule, scanned, &error)));
+        }
     };
     if let Some(problem) = scanned.problem {
-        return Err(problem.diagnostic);
+        return Err(place.relocated(problem.diagnostic));
     }
-    let whole = Span::new(source, 0, text.len());
-    lower(Nodes { source, text: &scanned.text, pairs, whole })
+    let whole = place.span(0, text.len());
+    lower(Nodes { place, pairs, whole })
 }
 
 /// Reads a scanned text; the nodes are those inside `rule`.
@@ -48,8 +51,7 @@ pub(super) fn read(
 /// The nodes inside a node, one after another. Keywords that carry no information beyond the
 /// rule they stand in are skipped.
 pub(super) struct Nodes<'i> {
-    source: SourceId,
-    text: &'i str,
+    pub(super) place: &'i Place,
     pairs: Pairs<'i, Rule>,
     /// The node these are inside of, without white space behind it.
     pub(super) whole: Span,
@@ -59,14 +61,14 @@ impl<'i> Nodes<'i> {
     /// The nodes inside a node.
     pub(super) fn inside(&self, node: Node<'i>) -> Nodes<'i> {
         let whole = self.span(&node);
-        Nodes { source: self.source, text: self.text, pairs: node.into_inner(), whole }
+        Nodes { place: self.place, pairs: node.into_inner(), whole }
     }
 
     /// The place of a node, without the white space that the grammar includes behind it.
     pub(super) fn span(&self, node: &Node<'i>) -> Span {
         let written = node.as_str().trim_end();
         let start = node.as_span().start();
-        Span::new(self.source, start, start + written.len())
+        self.place.span(start, start + written.len())
     }
 
     /// The rule of the next node.

@@ -11,6 +11,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("source", &[]),
     ("name", &[]),
     ("graph", &[]),
+    ("models", &[]),
     ("diag", &["source"]),
     ("registry", &["diag"]),
     ("symbolic", &["diag"]),
@@ -43,10 +44,16 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         "script",
         &[
             "identify", "compile", "dae", "flatten", "eval", "value", "syntax", "symbolic",
-            "results", "plot", "mat", "sim", "ga", "registry", "name", "source", "diag",
+            "results", "plot", "mat", "sim", "ga", "registry", "models", "name", "source", "diag",
         ],
     ),
-    ("cli", &["script", "identify", "compile", "results", "plot", "registry", "source", "diag"]),
+    (
+        "cli",
+        &[
+            "script", "identify", "compile", "results", "plot", "models", "registry", "name",
+            "source", "diag",
+        ],
+    ),
 ];
 
 /// Words that only the outermost layer may use, because they reach the outside world.

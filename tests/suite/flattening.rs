@@ -11,7 +11,7 @@ use std::path::Path;
 fn flattened(path: &Path) -> String {
     let text = std::fs::read_to_string(path).expect("a readable file");
     let stem = path.file_stem().expect("a file name").to_string_lossy().into_owned();
-    let mut sources = SourceMap::default();
+    let sources = SourceMap::default();
     let source = sources.add(format!("{stem}.mo"), text.as_str());
     let file = parse_stored_definition(source, &text).expect("Modelica");
     let mut library = Library::new();
@@ -51,7 +51,7 @@ fn corpus() {
 #[test]
 fn a_modification_from_outside_overrides_the_declaration() {
     let text = "model M parameter Real p = 1; Real x = p; end M;";
-    let mut sources = SourceMap::default();
+    let sources = SourceMap::default();
     let source = sources.add("M.mo", text);
     let mut library = Library::new();
     library.load(&parse_stored_definition(source, text).expect("Modelica")).expect("loads");

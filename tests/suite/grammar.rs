@@ -54,7 +54,7 @@ impl Tree {
     /// What is wrong if the printed text does not read back as the same tree.
     fn reads_back_differently(self) -> Option<String> {
         let text = self.printed();
-        let mut sources = SourceMap::default();
+        let sources = SourceMap::default();
         let source = sources.add("printed", text.as_str());
         let again = match Tree::parse(source, &text, matches!(self, Tree::Script(_))) {
             Ok(again) => again,
@@ -69,7 +69,7 @@ impl Tree {
 fn parse(path: &Path) -> (SourceMap, Result<Tree, Diagnostic>) {
     let content = std::fs::read(path).expect("the file is readable");
     let (text, _) = syntax::decode(&content);
-    let mut sources = SourceMap::default();
+    let sources = SourceMap::default();
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let source = sources.add(name.as_ref(), text.as_str());
     let is_script = path.extension().is_some_and(|extension| extension == "mos");
@@ -123,7 +123,7 @@ fn local_library() -> Option<Vec<(PathBuf, String)>> {
 fn local_library_reads_back() {
     let mut failures = Vec::new();
     for (path, text) in local_library().unwrap_or_default() {
-        let mut sources = SourceMap::default();
+        let sources = SourceMap::default();
         let source = sources.add(path.display().to_string(), text.as_str());
         match Tree::parse(source, &text, false) {
             Ok(tree) => failures.extend(tree.reads_back_differently()),
@@ -133,6 +133,15 @@ fn local_library_reads_back() {
         }
     }
     assert!(failures.is_empty(), "{} texts:\n{}", failures.len(), failures.join("\n"));
+}
+
+#[test]
+fn shipped_models_read_back() {
+    for path in crate::shipped::files("models", "mo") {
+        let (sources, answer) = parse(&path);
+        let tree = answer.unwrap_or_else(|error| panic!("{}", render(&error, &sources, false)));
+        assert_eq!(tree.reads_back_differently(), None, "{}", path.display());
+    }
 }
 
 /// Megabytes a second; run with `--release -- --ignored --nocapture`.

@@ -10,7 +10,7 @@ use gapilib::{dae, syntax};
 
 fn polarization_curve(problem: &str) -> CompiledModel {
     let mut library = Library::new();
-    let mut sources = SourceMap::default();
+    let sources = SourceMap::default();
     for name in ["package.mo", "PolarizationCurve.mo"] {
         let path = shipped::project("models/CaseStudies").join(name);
         let text = std::fs::read_to_string(path).unwrap();

@@ -175,7 +175,7 @@ fn what_is_not_handled_is_refused() {
     assert_eq!(refused("model M Real x; Real y; equation x = 1; end M;"), "unbalanced-model");
     assert_eq!(refused("model M Real x; Real y; equation x = 1; x = 2; end M;"), "singular-system");
     assert_eq!(
-        refused("model M Real x; equation when time > 1 then x = 2; end when; end M;"),
+        refused("model M Real x = time; Boolean b = noEvent(x > 1); end M;"),
         "not-supported"
     );
     assert_eq!(

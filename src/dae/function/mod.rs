@@ -34,21 +34,21 @@ pub(super) fn call(
 ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
     let outermost = builder.calls == 0;
     if outermost {
-        builder.statements = MAX_INLINED;
+        builder.inlined = MAX_INLINED;
     }
     let asserted = builder.dae.assertions.len();
     let error = match inline(builder, function, arguments.clone(), span) {
         Err(e) if e.code == NOT_SUPPORTED || e.code == NO_CONSTANT_VALUE => e,
         result => return result,
     };
-    let too_big = builder.statements == 0;
+    let too_big = builder.inlined == 0;
     if too_big && !outermost {
         return Err(error);
     }
     builder.dae.assertions.truncate(asserted);
     match compiled_call(builder, function, arguments.clone(), span) {
         Err(_) if too_big => {
-            builder.statements = MAX_STATEMENTS;
+            builder.inlined = MAX_STATEMENTS;
             inline(builder, function, arguments, span)
         }
         result => result,

@@ -103,8 +103,11 @@ impl<T: Target> Lowering<'_, T> {
                 .ok_or_else(|| fault!(ARRAY_MISMATCH, "`{name}` needs another argument").at(span))
         };
         match operator {
-            Operator::Constant(value) => Ok(Lowered::scalar(self.target.constant(value))),
             Operator::Argument(position) => self.lower(argument(position)?),
+            Operator::Temporal => {
+                let values = arguments.iter().map(|a| self.array(a)).collect::<Result<_, _>>()?;
+                Ok(Lowered::Array(self.target.temporal(name, values, self.live, span)?))
+            }
             Operator::Live(position) => {
                 let before = std::mem::replace(&mut self.live, true);
                 let value = self.lower(argument(position)?);

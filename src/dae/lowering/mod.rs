@@ -11,7 +11,7 @@ mod operators;
 pub(crate) use arrays::Choice;
 pub(crate) use expression::field;
 
-use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE};
+use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::model::Shape;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
@@ -116,18 +116,28 @@ pub(crate) trait Target {
     ) -> Option<Result<Operator, Diagnostic>>;
     /// `der(a)`
     fn derivative(&mut self, a: Self::Scalar, span: Span) -> Result<Self::Scalar, Diagnostic>;
+    /// An operator of values in time (`pre`, `edge`, `sample` …); functions have none.
+    fn temporal(
+        &mut self,
+        name: &str,
+        _arguments: Vec<Array<Self::Scalar>>,
+        _live: bool,
+        span: Span,
+    ) -> Result<Array<Self::Scalar>, Diagnostic> {
+        Err(fault!(NOT_SUPPORTED, "`{name}` in a function").at(span))
+    }
 }
 
 /// What an operator with a meaning in time is replaced by.
 pub(crate) enum Operator {
-    /// A number.
-    Constant(f64),
     /// The derivative of the argument.
     Derivative,
     /// The argument of this position, relations inside it live.
     Live(usize),
     /// The argument of this position as it is.
     Argument(usize),
+    /// Left to [`Target::temporal`].
+    Temporal,
 }
 
 /// An if-expression under construction.

@@ -259,3 +259,13 @@ fn assertions_fail_or_warn() {
     assert_eq!(host.warnings.len(), 1);
     assert_eq!(host.warnings[0].message, "careful");
 }
+
+#[test]
+fn a_size_may_be_another_one_of_the_same_input() {
+    let script = "
+function trace input Real A[:, size(A, 1)]; output Real y;
+algorithm y := sum(A[i, i] for i in 1:size(A, 1)); end trace;
+";
+    assert_eq!(run(&format!("{script} y := trace([1, 2; 3, 4]);"), "y"), "5.0");
+    assert!(run_fails(&format!("{script} y := trace([1, 2, 3; 3, 4, 5]);")).contains("size"));
+}

@@ -37,7 +37,10 @@ pub(super) const OPENMODELICA: Family = Family {
 
 impl Session {
     /// A negative answer: whether there is a value; the errors are reported if there is none.
-    pub(super) fn or_report_all<T>(&mut self, result: Result<T, Vec<Diagnostic>>) -> Option<T> {
+    pub(in crate::script) fn or_report_all<T>(
+        &mut self,
+        result: Result<T, Vec<Diagnostic>>,
+    ) -> Option<T> {
         match result {
             Ok(value) => Some(value),
             Err(errors) => {
@@ -96,12 +99,13 @@ fn open_model_file(session: &mut Session, mut args: Args) -> Result<Value, Failu
 
 /// Whether a class is loaded, now if need be; reported if it is nowhere.
 fn is_loaded(session: &mut Session, name: &Name) -> bool {
-    let exists = session.class_exists(name);
-    if !exists {
+    let found = session.find_class(name);
+    let found = session.or_report_all(found);
+    if found == Some(false) {
         let fault = session.unknown_class(name);
         session.report_fault(fault);
     }
-    exists
+    found == Some(true)
 }
 
 const ERASE_CLASSES: &str = r#"
@@ -160,7 +164,7 @@ fn load_files(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 const LOAD_MODEL: &str = r#"
 function loadModel "Loads a package from the library folders."
   input TypeName className;
-  input Any priorityVersion = {"default"} "has no effect: the newest version is taken";
+  input String priorityVersion[:] = {"default"} "the most wanted first; default: the newest";
   input Boolean notify = false;
   input String languageStandard = "";
   input Boolean requireExactVersion = false;
@@ -170,6 +174,7 @@ end loadModel;
 
 fn load_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let name: Name = args.take("className")?;
+    session.want_version(&name, args.take("priorityVersion")?);
     Ok(is_loaded(session, &name).into())
 }
 
@@ -201,7 +206,8 @@ end existClass;
 
 fn exist_class(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let name: Name = args.take("cl")?;
-    Ok(session.library().contains(&name).into())
+    let found = session.ask_library(|library| Ok(library.contains(&name)));
+    Ok(session.or_report_all(found).unwrap_or(false).into())
 }
 
 const DELETE_CLASS: &str = r#"
@@ -231,15 +237,22 @@ fn get_class_names(session: &mut Session, mut args: Args) -> Result<Value, Failu
     let at_top = class.last().is_some_and(|name| name == "AllLoadedClasses");
     let class = if at_top { Name::default() } else { class };
     let (recursive, qualified): (bool, bool) = (args.take("recursive")?, args.take("qualified")?);
-    let within = |name: &Name| name.parts.starts_with(&class.parts) && name.parts != class.parts;
-    let is_wanted =
-        |name: &Name| within(name) && (recursive || name.parts.len() == class.parts.len() + 1);
+    let found = session.ask_library(|library| {
+        Ok(match (class.parts.is_empty(), recursive) {
+            (true, true) => library.all(),
+            (true, false) => library.roots().map(Name::from).collect(),
+            (false, true) => library.all_in(&class).into_iter().skip(1).collect(),
+            (false, false) => {
+                library.children(&class).into_iter().map(|name| class.child(name)).collect()
+            }
+        })
+    });
+    let found: Vec<Name> = session.or_report_all(found).unwrap_or_default();
     let shown = |name: Name| match (qualified || recursive, name.last()) {
         (false, Some(last)) => last.to_string(),
         _ => name.to_string(),
     };
-    let mut names: Vec<String> =
-        session.library().all().into_iter().filter(is_wanted).map(shown).collect();
+    let mut names: Vec<String> = found.into_iter().map(shown).collect();
     if args.take("sort")? {
         names.sort();
     }

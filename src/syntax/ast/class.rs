@@ -6,6 +6,7 @@ use super::{
 };
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
+use crate::syntax::lazy::Sections;
 use std::sync::Arc;
 
 /// A whole `.mo` file.
@@ -101,7 +102,7 @@ pub struct LongClass {
     pub description: Option<Arc<str>>,
     /// Sections in the order written; the first is [`Section::Elements`] without a keyword, if
     /// anything stands before the first keyword.
-    pub sections: Vec<Section>,
+    pub sections: Sections,
     /// The name behind `end`.
     pub end_name: Spanned<Ident>,
 }

@@ -4,13 +4,14 @@ use super::{
     Lowered, annotation, comment, component, description_string, equation, expression, ident,
     modification, name, statement, string,
 };
-use crate::name::Name;
+use crate::name::{Ident, Name};
 use crate::source::Spanned;
 use crate::syntax::ast::{
     ClassDefinition, ClassElement, ClassSpecifier, Constraint, DerivativeClass, Deselection,
     Element, ElementPrefixes, EnumerationClass, EnumerationLiteral, Extends, External, Import,
     ImportKind, LongClass, Purity, Restriction, Section, ShortClass, StoredDefinition, Visibility,
 };
+use crate::syntax::lazy::Sections;
 use crate::syntax::parser::{Nodes, Rule};
 use std::sync::Arc;
 
@@ -29,6 +30,11 @@ pub(in crate::syntax) fn stored_definition(mut nodes: Nodes<'_>) -> Lowered<Stor
     Ok(StoredDefinition { within, classes, span: nodes.whole })
 }
 
+/// The class definition that is the whole text.
+pub(in crate::syntax) fn lone_class(mut nodes: Nodes<'_>) -> Lowered<Arc<ClassDefinition>> {
+    definition(nodes.enter(Rule::class_definition), false)
+}
+
 /// The inside of a class definition, long or short.
 pub(super) fn definition(mut parts: Nodes<'_>, is_final: bool) -> Lowered<Arc<ClassDefinition>> {
     let encapsulated = parts.skip(Rule::kw_encapsulated);
@@ -37,9 +43,12 @@ pub(super) fn definition(mut parts: Nodes<'_>, is_final: bool) -> Lowered<Arc<Cl
     let (name, specifier) = match parts.try_enter(Rule::extends_class_specifier) {
         Some(mut inside) => {
             let name = ident(&mut inside);
-            (name, ClassSpecifier::Long(long_class(inside, true)?))
+            (name, ClassSpecifier::Long(long_class(inside, name, true)?))
         }
-        None => (ident(&mut parts), class_specifier(&mut parts)?),
+        None => {
+            let name = ident(&mut parts);
+            (name, class_specifier(&mut parts, name)?)
+        }
     };
     let span = parts.whole;
     Ok(Arc::new(ClassDefinition {
@@ -75,12 +84,12 @@ fn restriction(mut words: Nodes<'_>) -> Restriction {
     Restriction::Operator
 }
 
-fn class_specifier(parts: &mut Nodes<'_>) -> Lowered<ClassSpecifier> {
+fn class_specifier(parts: &mut Nodes<'_>, name: Spanned<Ident>) -> Lowered<ClassSpecifier> {
     let Some(node) = parts.next() else { panic!("the grammar promises a class specifier") };
     let rule = node.as_rule();
     let mut inside = parts.inside(node);
     Ok(match rule {
-        Rule::long_class_specifier => ClassSpecifier::Long(long_class(inside, false)?),
+        Rule::long_class_specifier => ClassSpecifier::Long(long_class(inside, name, false)?),
         Rule::short_class_specifier => ClassSpecifier::Short(ShortClass {
             prefixes: component::type_prefixes(&mut inside)?,
             target: component::type_specifier(&mut inside),
@@ -98,7 +107,7 @@ fn class_specifier(parts: &mut Nodes<'_>) -> Lowered<ClassSpecifier> {
     })
 }
 
-fn idents(nodes: &mut Nodes<'_>) -> Vec<Spanned<crate::name::Ident>> {
+fn idents(nodes: &mut Nodes<'_>) -> Vec<Spanned<Ident>> {
     let mut all = Vec::new();
     while nodes.peek() == Some(Rule::IDENT) {
         all.push(ident(nodes));
@@ -118,14 +127,16 @@ fn enumeration(mut inside: Nodes<'_>) -> Lowered<EnumerationClass> {
     Ok(EnumerationClass { literals: Some(literals), comment: comment(&mut inside)? })
 }
 
-fn long_class(mut inside: Nodes<'_>, extends: bool) -> Lowered<LongClass> {
+fn long_class(mut inside: Nodes<'_>, name: Spanned<Ident>, extends: bool) -> Lowered<LongClass> {
     let modification = modification::class_modification(&mut inside)?;
-    Ok(LongClass {
-        class_extends: extends.then_some(modification),
-        description: description_string(&mut inside),
-        sections: sections(inside.enter(Rule::composition))?,
-        end_name: ident(&mut inside),
-    })
+    let description = description_string(&mut inside);
+    let composition = inside.enter(Rule::composition);
+    let sections = match inside.place.unread(name.span) {
+        Some(unread) => unread,
+        None => Sections::from(sections(composition)?),
+    };
+    let class_extends = extends.then_some(modification);
+    Ok(LongClass { class_extends, description, sections, end_name: ident(&mut inside) })
 }
 
 /// Sections, cut at every annotation: what follows one is a section of the same kind.

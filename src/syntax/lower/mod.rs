@@ -8,7 +8,7 @@ mod modification;
 mod script;
 mod statement;
 
-pub(super) use class::stored_definition;
+pub(super) use class::{lone_class, stored_definition};
 pub(super) use script::script;
 
 use super::ast::{Annotation, Argument, Comment, Expression};

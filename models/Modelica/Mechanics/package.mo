@@ -1,0 +1,4 @@
+within Modelica;
+package Mechanics "Mechanical systems"
+  extends Modelica.Icons.Package;
+end Mechanics;

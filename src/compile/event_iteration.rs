@@ -1,0 +1,324 @@
+//! Event iteration (MLS §8.5, §8.6): solving with the discrete equations until relations agree with
+//! the variables and `pre(v) = v` for all discrete variables.
+//!
+//! ```text
+//! pre(v) := v, samples that are due := true
+//! repeat
+//!     solve until relations and variables of discrete loops stay as they are
+//!     check assertions, carry out terminate and reinit
+//!     pre(v) := v
+//! until nothing changed
+//! ```
+//!
+//! Samples are true in all rounds of their event; behind it the iteration is done once more with
+//! all of them false, as an event of its own if the model shows them.
+
+use super::system::{System, run};
+use crate::sim::{EventOutcome, Failure};
+use crate::symbolic::VarId;
+
+/// Most rounds of an event iteration, and most passes of a round.
+const MAX_ROUNDS: usize = 100;
+/// Relative distance of times that are one.
+const AT_ONCE: f64 = 1e-12;
+
+/// Whether two times are the same but for rounding.
+pub(super) fn same_time(a: f64, b: f64) -> bool {
+    (a - b).abs() <= AT_ONCE * a.abs().max(b.abs())
+}
+
+/// Which blocks are solved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stage {
+    /// Those of the initial system.
+    Initial,
+    /// Those of events.
+    Event,
+    /// Those between events.
+    Continuous,
+}
+
+/// The times of a `sample`.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Clock {
+    start: f64,
+    interval: f64,
+    /// Number of the next time.
+    next: f64,
+}
+
+impl Clock {
+    /// From the first time that is not before `t`.
+    fn at(start: f64, interval: f64, t: f64) -> Clock {
+        let mut clock = Clock { start, interval, next: 0.0 };
+        if interval > 0.0 && t > start {
+            clock.next = ((t - start) / interval).floor();
+            if clock.time() < t && !same_time(clock.time(), t) {
+                clock.next += 1.0;
+            }
+        }
+        clock
+    }
+
+    /// The next time.
+    pub(super) fn time(&self) -> f64 {
+        match self.interval > 0.0 {
+            true => self.start + self.next * self.interval,
+            false => f64::INFINITY,
+        }
+    }
+
+    /// Whether its next time has come; then the one after it is next.
+    fn is_due(&mut self, t: f64) -> bool {
+        let due = self.time() <= t || same_time(self.time(), t);
+        if due {
+            self.next = (self.next + 1.0).max(((t - self.start) / self.interval).floor());
+        }
+        due
+    }
+}
+
+impl System {
+    /// Times of samples from `t` on, with the parameters as they are.
+    pub(super) fn start_clocks(&mut self, t: f64) -> Result<(), Failure> {
+        let program = self.program.clone();
+        let clocks = &program.events.clocks;
+        run(&clocks.tape, &mut self.registers)?;
+        self.clocks.clear();
+        for pair in clocks.outputs.chunks_exact(2) {
+            let (start, interval) =
+                (self.registers[pair[0] as usize], self.registers[pair[1] as usize]);
+            self.clocks.push(Clock::at(start, interval, t));
+        }
+        Ok(())
+    }
+
+    /// Sets the samples that are due; whether there are any.
+    fn samples_due(&mut self, t: f64) -> bool {
+        let mut any = false;
+        for (clock, variable) in self.clocks.iter_mut().zip(&self.program.events.samples) {
+            let due = clock.is_due(t);
+            self.registers[variable.0 as usize] = f64::from(u8::from(due));
+            any |= due;
+        }
+        any
+    }
+
+    fn clear_samples(&mut self) {
+        for variable in &self.program.events.samples {
+            self.registers[variable.0 as usize] = 0.0;
+        }
+    }
+
+    /// `pre(v) := v`; whether a discrete variable had another value.
+    pub(super) fn update_previous(&mut self) -> bool {
+        let mut changed = false;
+        for previous in &self.program.events.previous {
+            let value = self.registers[previous.of.0 as usize];
+            let slot = &mut self.registers[previous.register as usize];
+            if previous.discrete && *slot != value {
+                changed = true;
+                self.unstable = previous.of.0;
+            }
+            *slot = value;
+        }
+        changed
+    }
+
+    /// What follows the initial system: `pre(v) := v` and the events of the first instant.
+    pub(super) fn iterate_at_start(&mut self, t: f64) -> Result<(), Failure> {
+        let program = self.program.clone();
+        if let Some(initial) = program.events.initial {
+            self.registers[initial.0 as usize] = 0.0;
+        }
+        if program.events.is_empty() {
+            return Ok(());
+        }
+        self.update_previous();
+        while self.event(t)? == EventOutcome::Again {}
+        Ok(())
+    }
+
+    /// An event at `t`, the variables being those before it.
+    pub(super) fn event(&mut self, t: f64) -> Result<EventOutcome, Failure> {
+        let program = self.program.clone();
+        if program.events.is_empty() {
+            let y_changed = self.settle(t, Stage::Event)?;
+            return Ok(EventOutcome::Continue { y_changed });
+        }
+        for (slot, variable) in self.before.iter_mut().zip(&program.events.discrete) {
+            *slot = self.registers[variable.0 as usize];
+        }
+        if std::mem::take(&mut self.sampled) {
+            self.clear_samples();
+            return self.iterate(t).map(|outcome| self.with_discrete(outcome));
+        }
+        if program.events.need_left_limits() {
+            self.solve(Stage::Continuous)?;
+        }
+        self.update_previous();
+        let arrived = self.advance_histories(t);
+        let sampled = self.samples_due(t);
+        let outcome = either(EventOutcome::Continue { y_changed: arrived }, self.iterate(t)?);
+        match (sampled, outcome) {
+            (true, EventOutcome::Continue { .. }) if program.events.shows_samples => {
+                self.sampled = true;
+                Ok(EventOutcome::Again)
+            }
+            (true, _) => {
+                self.clear_samples();
+                let outcome = either(outcome, self.iterate(t)?);
+                Ok(self.with_discrete(outcome))
+            }
+            (false, _) => Ok(self.with_discrete(outcome)),
+        }
+    }
+
+    /// The outcome, with what happened to discrete variables.
+    fn with_discrete(&self, outcome: EventOutcome) -> EventOutcome {
+        let mut pairs = self.before.iter().zip(&self.program.events.discrete);
+        let changed = pairs.any(|(old, variable)| *old != self.registers[variable.0 as usize]);
+        either(outcome, EventOutcome::Continue { y_changed: changed })
+    }
+
+    /// Rounds until `pre(v) = v` and no state is set.
+    fn iterate(&mut self, t: f64) -> Result<EventOutcome, Failure> {
+        let (mut changed, mut terminated) = (false, false);
+        for _ in 0..MAX_ROUNDS {
+            changed |= self.settle(t, Stage::Event)?;
+            terminated |= self.check_at_event()?;
+            let set = self.reinitialize()?;
+            let moved = self.update_previous();
+            changed |= set;
+            if !set && !moved {
+                return Ok(match terminated {
+                    true => EventOutcome::Terminate,
+                    false => EventOutcome::Continue { y_changed: changed },
+                });
+            }
+        }
+        Err(Failure::EventIteration { variable: self.unstable })
+    }
+
+    /// Solves and updates relations until they stay as they are; whether one changed.
+    pub(super) fn settle(&mut self, t: f64, stage: Stage) -> Result<bool, Failure> {
+        let program = self.program.clone();
+        let mut any = false;
+        for pass in 0..MAX_ROUNDS {
+            for (slot, variable) in self.lagged.iter_mut().zip(&program.events.lagged) {
+                *slot = self.registers[variable.0 as usize];
+            }
+            if let Err(failure) = self.solve(stage) {
+                let failure = self.refine(failure);
+                return Err(failure);
+            }
+            let mut lagged = self.lagged.iter().zip(&program.events.lagged);
+            let lag = lagged.find(|(old, variable)| **old != self.registers[variable.0 as usize]);
+            let lag = lag.map(|(_, variable)| variable.0);
+            self.unstable = lag.unwrap_or(self.unstable);
+            let changed = self.update_relations(t);
+            any |= changed;
+            if lag.is_none() && !changed && (pass > 0 || !any) {
+                return Ok(any);
+            }
+        }
+        Err(Failure::EventIteration { variable: self.unstable })
+    }
+
+    /// Checks the assertions of when-clauses; whether one of them ends the simulation.
+    fn check_at_event(&mut self) -> Result<bool, Failure> {
+        let program = self.program.clone();
+        let (assertions, ends) = (&program.events.assertions, &program.events.terminations);
+        run(&assertions.tape, &mut self.registers)?;
+        let value = |register: &u32| self.registers[*register as usize];
+        if let Some(failed) = assertions.outputs.iter().position(|a| value(a) == 0.0) {
+            let number = program.sorted.dae.assertions.len() + failed;
+            return Err(Failure::Assertion { assertion: number as u32 });
+        }
+        run(&ends.tape, &mut self.registers)?;
+        Ok(ends.outputs.iter().any(|end| self.registers[*end as usize] != 0.0))
+    }
+
+    /// Sets the states of the `reinit`s that are active; whether there are any.
+    fn reinitialize(&mut self) -> Result<bool, Failure> {
+        let program = self.program.clone();
+        let reinits = &program.events.reinits;
+        run(&reinits.tape, &mut self.registers)?;
+        let mut any = false;
+        let pairs = reinits.outputs.chunks_exact(2).zip(&program.events.reinitialized);
+        for (pair, (state, negated)) in pairs {
+            if self.registers[pair[0] as usize] != 0.0 {
+                let value = self.registers[pair[1] as usize];
+                self.registers[state.0 as usize] = if *negated { -value } else { value };
+                any = true;
+            }
+        }
+        Ok(any)
+    }
+
+    /// Evaluates every rounding at the values of the variables; whether one changed.
+    pub(super) fn update_roundings(&mut self, t: f64) -> bool {
+        let program = self.program.clone();
+        let mut changed = false;
+        for (rounding, code) in program.events.roundings.iter().zip(&program.events.rounded) {
+            let value = match rounding.time {
+                Some((slope, rest)) => {
+                    rounded_in_time(slope * t + self.registers[rest as usize], slope)
+                }
+                None => match code.tape.run(&mut self.registers) {
+                    Ok(()) => self.registers[code.outputs[0] as usize].floor(),
+                    Err(_) => continue,
+                },
+            };
+            let slot = &mut self.registers[rounding.register as usize];
+            if *slot != value {
+                changed = true;
+                self.unstable = rounding.register;
+            }
+            *slot = value;
+        }
+        changed
+    }
+
+    /// Times at which a rounding of time jumps or a sample is due next.
+    pub(super) fn scheduled(&self) -> impl Iterator<Item = f64> {
+        let jumps = self.program.events.roundings.iter().filter_map(|rounding| {
+            let (slope, rest) = rounding.time?;
+            let value = self.registers[rounding.register as usize];
+            let next = if slope > 0.0 { value + 1.0 } else { value };
+            Some((next - self.registers[rest as usize]) / slope)
+        });
+        let samples = self.clocks.iter().map(Clock::time);
+        jumps.chain(samples).filter(|time| time.is_finite())
+    }
+
+    /// Values of all discrete variables and their previous ones, for an event at the end.
+    pub(super) fn final_event(&mut self, t: f64, terminal: VarId) -> Result<bool, Failure> {
+        self.registers[terminal.0 as usize] = 1.0;
+        let mut outcome = self.event(t);
+        while outcome == Ok(EventOutcome::Again) {
+            outcome = self.event(t);
+        }
+        self.registers[terminal.0 as usize] = 0.0;
+        Ok(outcome? != EventOutcome::Continue { y_changed: false })
+    }
+}
+
+/// `floor`; at a jump the value behind it.
+fn rounded_in_time(value: f64, slope: f64) -> f64 {
+    let nearest = value.round();
+    if (value - nearest).abs() > AT_ONCE * value.abs().max(1.0) {
+        return value.floor();
+    }
+    if slope > 0.0 { nearest } else { nearest - 1.0 }
+}
+
+/// What two parts of one event did together.
+fn either(a: EventOutcome, b: EventOutcome) -> EventOutcome {
+    match (a, b) {
+        (EventOutcome::Continue { y_changed: a }, EventOutcome::Continue { y_changed: b }) => {
+            EventOutcome::Continue { y_changed: a || b }
+        }
+        _ => EventOutcome::Terminate,
+    }
+}

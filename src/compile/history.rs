@@ -1,0 +1,180 @@
+//! `delay(e, d)` (MLS §3.7.4.1): the past values of an expression.
+//!
+//! The past is a chain of smooth pieces with jumps between them; within a piece the value is that of
+//! the cubic through the four points around. Before the start it is the first value. The piece that
+//! is read changes at events only, so that a step never sees both sides of a jump.
+
+use super::event_iteration::same_time;
+use super::events::CompiledDelay;
+use super::system::{System, run};
+use crate::sim::Failure;
+use std::collections::VecDeque;
+
+/// Points of one interpolation.
+const POINTS: usize = 4;
+/// Values whose relative difference is not larger are the same.
+const SAME: f64 = 1e-9;
+/// Smallest distance of two points, relative to the next distance.
+const NEAR: f64 = 0.05;
+
+/// The past of one expression.
+#[derive(Debug, Clone, Default)]
+pub(super) struct History {
+    /// Times, not descending; equal ones at a jump.
+    times: VecDeque<f64>,
+    values: VecDeque<f64>,
+    /// Positions of the first points of the pieces behind the one that is read.
+    jumps: VecDeque<usize>,
+    /// Position of the first point of the piece that is read; `None` before the start.
+    first: Option<usize>,
+}
+
+impl History {
+    /// Forgets everything and starts with a value.
+    pub(super) fn start(&mut self, t: f64, value: f64) {
+        self.times.clear();
+        self.values.clear();
+        self.jumps.clear();
+        self.first = None;
+        self.times.push_back(t);
+        self.values.push_back(value);
+        self.jumps.push_back(0);
+    }
+
+    /// Adds the value at a time that is not before the last one; at the same time another value is
+    /// a jump.
+    pub(super) fn push(&mut self, t: f64, value: f64) {
+        let (Some(last), Some(old)) = (self.times.back(), self.values.back()) else { return };
+        let same = (value - old).abs() <= SAME * value.abs().max(old.abs());
+        if t < *last || (t == *last && same) {
+            return;
+        }
+        if t == *last {
+            self.jumps.push_back(self.times.len());
+        } else {
+            self.thin(t);
+        }
+        self.times.push_back(t);
+        self.values.push_back(value);
+    }
+
+    /// Drops the last point if it is so near to the one before it, compared with `t`, that the
+    /// cubic would amplify its rounding.
+    fn thin(&mut self, t: f64) {
+        let n = self.times.len();
+        let piece = self.jumps.back().copied().or(self.first).unwrap_or(0);
+        if n >= piece + 2 {
+            let (a, b) = (self.times[n - 2], self.times[n - 1]);
+            if b - a < NEAR * (t - b) {
+                self.times.pop_back();
+                self.values.pop_back();
+            }
+        }
+    }
+
+    /// The value at a past time, in the piece that is read.
+    pub(super) fn value(&self, t: f64) -> f64 {
+        let Some(first) = self.first else { return self.values.front().copied().unwrap_or(0.0) };
+        let end = self.jumps.front().copied().unwrap_or(self.times.len());
+        let n = (end - first).min(POINTS);
+        let behind = self.times.partition_point(|time| *time <= t);
+        let start = behind.saturating_sub(n / 2).clamp(first, end - n);
+        let mut value = 0.0;
+        for i in start..start + n {
+            let mut weight = 1.0;
+            for j in start..start + n {
+                if j != i {
+                    weight *= (t - self.times[j]) / (self.times[i] - self.times[j]);
+                }
+            }
+            value += weight * self.values[i];
+        }
+        value
+    }
+
+    /// When the piece that is read ends, if the next one is known.
+    pub(super) fn next_jump(&self) -> Option<f64> {
+        self.jumps.front().map(|at| self.times[*at])
+    }
+
+    /// Goes on to the pieces that begin up to `t` and forgets what lies far before it.
+    pub(super) fn advance(&mut self, t: f64) {
+        while let Some(at) = self.jumps.front().copied()
+            && (self.times[at] <= t || same_time(self.times[at], t))
+        {
+            self.first = Some(at);
+            self.jumps.pop_front();
+        }
+        self.forget(t);
+    }
+
+    /// Drops points that no interpolation from `t` on needs.
+    fn forget(&mut self, t: f64) {
+        let Some(first) = self.first else { return };
+        let unused = self.times.partition_point(|time| *time <= t).saturating_sub(2 * POINTS);
+        if unused < 64 {
+            return;
+        }
+        self.times.drain(..unused);
+        self.values.drain(..unused);
+        self.first = Some(first.saturating_sub(unused));
+        self.jumps.iter_mut().for_each(|at| *at -= unused);
+    }
+}
+
+impl System {
+    /// Sets the delayed values at `t`.
+    pub(super) fn load_delayed(&mut self, t: f64) {
+        let delays = &self.program.events.delays;
+        for ((history, delay), time) in self.histories.iter().zip(delays).zip(&self.delay_times) {
+            self.registers[delay.register as usize] = history.value(t - time);
+        }
+    }
+
+    /// Starts the histories with the values at `t`, all variables being known.
+    pub(super) fn start_histories(&mut self, t: f64) -> Result<(), Failure> {
+        let program = self.program.clone();
+        for (at, delay) in program.events.delays.iter().enumerate() {
+            let value = self.delayed_expression(delay)?;
+            self.histories[at].start(t, value);
+            run(&delay.time.tape, &mut self.registers)?;
+            self.delay_times[at] = self.registers[delay.time.outputs[0] as usize];
+        }
+        Ok(())
+    }
+
+    /// Adds the values at `t`, all registers of states and events being loaded.
+    pub(super) fn remember_values(&mut self, t: f64) -> Result<(), Failure> {
+        let program = self.program.clone();
+        for (at, delay) in program.events.delays.iter().enumerate() {
+            let value = self.delayed_expression(delay)?;
+            self.histories[at].push(t, value);
+        }
+        Ok(())
+    }
+
+    /// Goes beyond the jumps that arrive at `t`.
+    pub(super) fn advance_histories(&mut self, t: f64) -> bool {
+        let mut any = false;
+        for (history, time) in self.histories.iter_mut().zip(&self.delay_times) {
+            let before = history.next_jump();
+            history.advance(t - time);
+            any |= history.next_jump() != before;
+        }
+        if any {
+            self.load_delayed(t);
+        }
+        any
+    }
+
+    /// When jumps arrive.
+    pub(super) fn arriving_jumps(&self) -> impl Iterator<Item = f64> {
+        let pairs = self.histories.iter().zip(&self.delay_times);
+        pairs.filter_map(|(history, time)| Some(history.next_jump()? + time))
+    }
+
+    fn delayed_expression(&mut self, delay: &CompiledDelay) -> Result<f64, Failure> {
+        run(&delay.value.tape, &mut self.registers)?;
+        Ok(self.registers[delay.value.outputs[0] as usize])
+    }
+}

@@ -1,0 +1,468 @@
+//! Algorithm sections become equations: their statements are carried out on symbolic values, and
+//! every variable assigned equals what it has at the end (MLS §11.1).
+//!
+//! At the beginning a continuous variable has its start value, a discrete one its previous value.
+//! Loops of known length are unrolled, branches merged into if-expressions.
+
+use super::build::{Builder, message_text};
+use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNBALANCED_MODEL, UNRESOLVED_REFERENCE};
+use super::events::Termination;
+use super::lowering::{Lowered, Lowering, Target};
+use super::model::{Equation, Kind};
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::name::Ident;
+use crate::source::Span;
+use crate::symbolic::{Expr, VarId};
+use crate::syntax::ast::{
+    ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
+};
+use indexmap::IndexMap;
+use rustc_hash::FxHashSet;
+
+/// Values of the variables that an algorithm assigns, while its statements are carried out.
+#[derive(Debug, Default)]
+pub(super) struct Execution {
+    /// In the order of the first assignment.
+    pub(super) values: IndexMap<VarId, Expr>,
+    /// Conditions of the branches around the statement.
+    guards: Vec<Expr>,
+    /// What when-statements assign.
+    in_when: FxHashSet<VarId>,
+}
+
+/// How a sequence of statements ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Flow {
+    Next,
+    Break,
+}
+
+type Loops = Vec<(Ident, Expr)>;
+type Branch<'a> = (&'a Expression, &'a [Statement]);
+
+impl Builder<'_> {
+    /// Adds the equations of an algorithm section.
+    pub(super) fn algorithm(&mut self, statements: &[Statement]) -> Result<(), Diagnostic> {
+        let Some(first) = statements.first() else { return Ok(()) };
+        let mut targets = Vec::new();
+        self.targets(statements, &mut Vec::new(), &mut targets);
+        for variable in targets {
+            let before = self.value_before(variable, first.span)?;
+            self.execution.values.insert(variable, before);
+        }
+        self.statements(statements, &mut Vec::new())?;
+        let execution = std::mem::take(&mut self.execution);
+        for (variable, right) in execution.values {
+            let left = self.dae.pool.variable(variable);
+            let equation = Equation { left, right, span: first.span };
+            let is_discrete = self.dae.variable(variable).kind == Kind::Discrete;
+            match (self.initial, is_discrete) {
+                (true, _) => self.dae.initial_equations.push(equation),
+                (false, false) => self.dae.equations.push(equation),
+                (false, true) => {
+                    let in_when = execution.in_when.contains(&variable);
+                    self.discrete_assignment(variable, equation, in_when)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// What a variable that the algorithm assigns has before its first statement.
+    fn value_before(&mut self, variable: VarId, span: Span) -> Result<Expr, Diagnostic> {
+        let zero = self.dae.pool.constant(0.0);
+        let known = self.dae.variable(variable);
+        match known.kind {
+            Kind::Discrete => {
+                let own = self.dae.pool.variable(variable);
+                self.previous(own, span)
+            }
+            Kind::Unknown => Ok(known.start.unwrap_or(zero)),
+            Kind::Solved if self.initial => Ok(known.start.unwrap_or(zero)),
+            _ => Err(fault!(NOT_SUPPORTED, "`{}` cannot be assigned", known.name).at(span)),
+        }
+    }
+
+    fn discrete_assignment(
+        &mut self,
+        variable: VarId,
+        equation: Equation,
+        in_when: bool,
+    ) -> Result<(), Diagnostic> {
+        let name = self.dae.variable(variable).name.clone();
+        if !self.assigned.insert(variable) {
+            return Err(fault!(UNBALANCED_MODEL, "`{name}` is assigned more than once";
+                help: "assign it in one algorithm or one when-clause")
+            .at(equation.span));
+        }
+        if !in_when && self.varies(equation.right) {
+            return Err(fault!(NOT_SUPPORTED,
+                "`{name}` is discrete, but its value may change between events";
+                help: "write relations outside `noEvent` and outside functions")
+            .at(equation.span));
+        }
+        self.dae.events.equations.push(equation);
+        Ok(())
+    }
+
+    /// The scalars that statements assign, loops unrolled where their ranges are known.
+    fn targets(&mut self, statements: &[Statement], loops: &mut Loops, found: &mut Vec<VarId>) {
+        for statement in statements {
+            match &statement.kind {
+                StatementKind::Assign { target, .. } => {
+                    found.extend(self.scalars(target, loops).unwrap_or_default());
+                }
+                StatementKind::MultiAssign { targets, .. } => {
+                    for target in targets.iter().flatten() {
+                        found.extend(self.scalars(target, loops).unwrap_or_default());
+                    }
+                }
+                StatementKind::If { branches, otherwise } => {
+                    branches.iter().for_each(|(_, body)| self.targets(body, loops, found));
+                    self.targets(otherwise, loops, found);
+                }
+                StatementKind::When { branches } => {
+                    branches.iter().for_each(|(_, body)| self.targets(body, loops, found));
+                }
+                StatementKind::For { indices, body } => {
+                    self.targets_of_loop(indices, body, loops, found);
+                }
+                StatementKind::While { body, .. } => self.targets(body, loops, found),
+                StatementKind::Call(_) | StatementKind::Break | StatementKind::Return => {}
+            }
+        }
+    }
+
+    fn targets_of_loop(
+        &mut self,
+        indices: &[ForIndex],
+        body: &[Statement],
+        loops: &mut Loops,
+        found: &mut Vec<VarId>,
+    ) {
+        let Some((index, inner)) = indices.split_first() else {
+            return self.targets(body, loops, found);
+        };
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.clone();
+        for value in lowering.loop_values(index).unwrap_or_default() {
+            loops.push((index.name.node, value));
+            self.targets_of_loop(inner, body, loops, found);
+            loops.pop();
+        }
+    }
+
+    /// The variables that a left side stands for.
+    fn scalars(
+        &mut self,
+        target: &ComponentReference,
+        loops: &Loops,
+    ) -> Result<Vec<VarId>, Diagnostic> {
+        let e = Expression::new(ExpressionKind::Reference(target.clone()), target.span);
+        let live = self.in_when;
+        let mut lowering = self.statement_lowering(loops);
+        lowering.live = live;
+        lowering.target.raw += 1;
+        let value = lowering.lower(&e);
+        self.raw -= 1;
+        let mut scalars = Vec::new();
+        value?.append_scalars(&mut scalars);
+        let variable = |e: Expr| {
+            self.dae.pool.as_variable(e).ok_or_else(|| {
+                fault!(NOT_SUPPORTED, "`{}` cannot be assigned", target.name()).at(target.span)
+            })
+        };
+        scalars.into_iter().map(variable).collect()
+    }
+
+    fn statement_lowering(&mut self, loops: &Loops) -> Lowering<'_, Self> {
+        let live = self.in_when;
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.clone();
+        lowering.live = live;
+        lowering
+    }
+
+    fn statements(&mut self, list: &[Statement], loops: &mut Loops) -> Result<Flow, Diagnostic> {
+        for statement in list {
+            if self.statement(statement, loops)? == Flow::Break {
+                return Ok(Flow::Break);
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    fn count_statement(&mut self, span: Span) -> Result<(), Diagnostic> {
+        self.statements = self.statements.saturating_sub(1);
+        match self.statements {
+            0 => Err(fault!(NOT_SUPPORTED, "the statements of this model are too many").at(span)),
+            _ => Ok(()),
+        }
+    }
+
+    fn statement(&mut self, s: &Statement, loops: &mut Loops) -> Result<Flow, Diagnostic> {
+        self.count_statement(s.span)?;
+        let asserted = self.dae.assertions.len();
+        match &s.kind {
+            StatementKind::Assign { target, value } => {
+                let value = self.statement_lowering(loops).lower(value)?;
+                self.assign(target, value, loops)?;
+                self.guard_new_assertions(asserted);
+            }
+            StatementKind::MultiAssign { targets, value } => {
+                self.assign_outputs(targets, value, loops)?;
+                self.guard_new_assertions(asserted);
+            }
+            StatementKind::If { branches, otherwise } => {
+                let branches: Vec<Branch> = branches.iter().map(|(c, b)| (c, &b[..])).collect();
+                return self.if_statement(&branches, otherwise, s.span, loops);
+            }
+            StatementKind::For { indices, body } => {
+                return self.for_statement(indices, body, loops);
+            }
+            StatementKind::While { condition, body } => {
+                while self.statement_lowering(loops).known(condition)? != 0.0 {
+                    self.count_statement(s.span)?;
+                    if self.statements(body, loops)? == Flow::Break {
+                        break;
+                    }
+                }
+            }
+            StatementKind::When { branches } => {
+                let branches: Vec<Branch> = branches.iter().map(|(c, b)| (c, &b[..])).collect();
+                let none = self.dae.pool.constant(0.0);
+                self.when_statement(&branches, none, s.span, loops)?;
+            }
+            StatementKind::Call(call) => {
+                self.statement_call(call, loops)?;
+                self.guard_new_assertions(asserted);
+            }
+            StatementKind::Break => return Ok(Flow::Break),
+            StatementKind::Return => {
+                return Err(fault!(NOT_SUPPORTED, "`return` outside a function").at(s.span));
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    fn assign(
+        &mut self,
+        target: &ComponentReference,
+        value: Lowered<Expr>,
+        loops: &Loops,
+    ) -> Result<(), Diagnostic> {
+        let variables = self.scalars(target, loops)?;
+        let mut values = Vec::new();
+        value.append_scalars(&mut values);
+        if variables.len() != values.len() {
+            return Err(fault!(
+                ARRAY_MISMATCH,
+                "{} elements are assigned to {}",
+                values.len(),
+                variables.len()
+            )
+            .at(target.span));
+        }
+        for (variable, value) in variables.into_iter().zip(values) {
+            if !self.execution.values.contains_key(&variable) {
+                let name = self.dae.variable(variable).name.clone();
+                return Err(fault!(NOT_SUPPORTED, "`{name}` cannot be assigned").at(target.span));
+            }
+            if self.in_when {
+                self.execution.in_when.insert(variable);
+            }
+            self.execution.values.insert(variable, value);
+        }
+        Ok(())
+    }
+
+    /// `(a, , b) := f(x)`
+    fn assign_outputs(
+        &mut self,
+        targets: &[Option<ComponentReference>],
+        value: &Expression,
+        loops: &Loops,
+    ) -> Result<(), Diagnostic> {
+        let ExpressionKind::Call { function, arguments } = &value.kind else {
+            return Err(fault!(NOT_SUPPORTED, "several variables need a call").at(value.span));
+        };
+        let name = function.name();
+        let Some(user) = Target::function(self, &name) else {
+            return Err(
+                fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`").at(function.span)
+            );
+        };
+        let outputs = self.statement_lowering(loops).user_call(&user, arguments, value.span)?;
+        if targets.len() > outputs.len() {
+            return Err(
+                fault!(ARRAY_MISMATCH, "`{name}` has {} outputs", outputs.len()).at(value.span)
+            );
+        }
+        for (target, output) in targets.iter().zip(outputs) {
+            if let Some(target) = target {
+                self.assign(target, output, loops)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn if_statement(
+        &mut self,
+        branches: &[Branch],
+        otherwise: &[Statement],
+        span: Span,
+        loops: &mut Loops,
+    ) -> Result<Flow, Diagnostic> {
+        let Some(((condition, body), rest)) = branches.split_first() else {
+            return self.statements(otherwise, loops);
+        };
+        let condition = self.statement_lowering(loops).scalar(condition)?;
+        if let Some(known) = self.dae.pool.as_constant(condition) {
+            return match known != 0.0 {
+                true => self.statements(body, loops),
+                false => self.if_statement(rest, otherwise, span, loops),
+            };
+        }
+        self.choose(
+            condition,
+            span,
+            loops,
+            |builder, loops| builder.statements(body, loops),
+            |builder, loops| builder.if_statement(rest, otherwise, span, loops),
+        )
+    }
+
+    /// Carries out both branches and merges what they assign.
+    fn choose(
+        &mut self,
+        condition: Expr,
+        span: Span,
+        loops: &mut Loops,
+        first: impl FnOnce(&mut Self, &mut Loops) -> Result<Flow, Diagnostic>,
+        second: impl FnOnce(&mut Self, &mut Loops) -> Result<Flow, Diagnostic>,
+    ) -> Result<Flow, Diagnostic> {
+        let before = self.execution.values.clone();
+        self.execution.guards.push(condition);
+        let flow = first(self, loops)?;
+        self.execution.guards.pop();
+        let taken = std::mem::replace(&mut self.execution.values, before);
+        let not = self.dae.pool.not(condition);
+        self.execution.guards.push(not);
+        let other = second(self, loops)?;
+        self.execution.guards.pop();
+        if (flow, other) != (Flow::Next, Flow::Next) {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "`break` under a condition that depends on variables"
+            )
+            .at(span));
+        }
+        for ((_, value), (_, taken)) in self.execution.values.iter_mut().zip(&taken) {
+            *value = self.dae.pool.if_then_else(condition, *taken, *value);
+        }
+        Ok(Flow::Next)
+    }
+
+    /// The branches of a when-statement, unless one `earlier` is active.
+    fn when_statement(
+        &mut self,
+        branches: &[Branch],
+        earlier: Expr,
+        span: Span,
+        loops: &mut Loops,
+    ) -> Result<Flow, Diagnostic> {
+        let Some(((condition, body), rest)) = branches.split_first() else {
+            return Ok(Flow::Next);
+        };
+        if self.initial || self.in_when {
+            return Err(
+                fault!(NOT_SUPPORTED, "`when` inside `when` or initial algorithms").at(span)
+            );
+        }
+        let active = self.activation(condition, loops)?;
+        let not = self.dae.pool.not(earlier);
+        let guard = self.dae.pool.and(not, active);
+        let earlier = self.dae.pool.or(earlier, active);
+        self.choose(
+            guard,
+            span,
+            loops,
+            |builder, loops| {
+                builder.in_when = true;
+                let flow = builder.statements(body, loops);
+                builder.in_when = false;
+                flow
+            },
+            |builder, loops| builder.when_statement(rest, earlier, span, loops),
+        )
+    }
+
+    fn for_statement(
+        &mut self,
+        indices: &[ForIndex],
+        body: &[Statement],
+        loops: &mut Loops,
+    ) -> Result<Flow, Diagnostic> {
+        let Some((index, inner)) = indices.split_first() else {
+            return self.statements(body, loops);
+        };
+        for value in self.statement_lowering(loops).loop_values(index)? {
+            self.count_statement(index.name.span)?;
+            loops.push((index.name.node, value));
+            let flow = self.for_statement(inner, body, loops);
+            loops.pop();
+            if flow? == Flow::Break {
+                break;
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    /// `assert`, `terminate`
+    fn statement_call(&mut self, call: &Expression, loops: &Loops) -> Result<(), Diagnostic> {
+        let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(()) };
+        match (function.name().to_string().as_str(), self.in_when) {
+            ("assert", _) => self.assertion(arguments, call.span, loops),
+            ("terminate", true) => {
+                let message = arguments.positional.first().map_or(String::new(), message_text);
+                let condition = self.guard();
+                let termination =
+                    Termination { condition, message: message.into(), span: call.span };
+                self.dae.events.terminations.push(termination);
+                Ok(())
+            }
+            (name, _) => {
+                Err(fault!(NOT_SUPPORTED, "`{name}(…)` as a statement here").at(call.span))
+            }
+        }
+    }
+
+    /// The conditions of all branches around.
+    fn guard(&mut self) -> Expr {
+        let mut guard = self.dae.pool.constant(1.0);
+        for condition in &self.execution.guards {
+            guard = self.dae.pool.and(guard, *condition);
+        }
+        guard
+    }
+
+    /// Assertions of the statement hold where it is carried out.
+    fn guard_new_assertions(&mut self, from: usize) {
+        if self.dae.assertions.len() > from {
+            let guard = self.guard();
+            match self.in_when {
+                true => self.move_assertions(from, guard),
+                false => self.guard_assertions(from, guard),
+            }
+        }
+    }
+
+    /// The value that a variable has where the algorithm stands.
+    pub(super) fn value_now(&mut self, variable: VarId) -> Expr {
+        match self.execution.values.get(&variable) {
+            Some(value) => *value,
+            None => self.dae.pool.variable(variable),
+        }
+    }
+}

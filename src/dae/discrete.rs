@@ -1,0 +1,215 @@
+//! Which variables are discrete, and which equations determine them (MLS §3.8.4, §4.5).
+//!
+//! Booleans, Integers and enumerations are; a Real is where a when-clause assigns it. Their
+//! equations become assignments that are carried out at events.
+
+use super::build::Builder;
+use super::errors::{NOT_SUPPORTED, UNBALANCED_MODEL};
+use super::lowering::Lowering;
+use super::model::{Dae, Equation, Kind};
+use super::sorted::Alias;
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::flatten::BaseType;
+use crate::graph::{Bipartite, match_equations};
+use crate::symbolic::function::ResultType;
+use crate::symbolic::{Expr, Node, VarId};
+use crate::syntax::ast::{self, ComponentReference, EquationKind, ExpressionKind, StatementKind};
+use rustc_hash::{FxHashMap, FxHashSet};
+
+impl Builder<'_> {
+    /// Marks the Reals that when-clauses assign.
+    pub(super) fn find_discrete(&mut self) {
+        let flat = self.flat;
+        let mut targets = Vec::new();
+        flat.equations.iter().for_each(|e| equation_targets(e, false, &mut targets));
+        for statements in &flat.algorithms {
+            statements.iter().for_each(|s| statement_targets(s, false, &mut targets));
+        }
+        for target in targets {
+            for variable in self.target_scalars(target) {
+                let kind = &mut self.dae.variables[variable.0 as usize].kind;
+                if *kind == Kind::Unknown {
+                    *kind = Kind::Discrete;
+                }
+            }
+        }
+    }
+
+    /// The scalars of a target; the whole array where subscripts depend on a loop.
+    fn target_scalars(&mut self, target: &ComponentReference) -> Vec<VarId> {
+        let expression =
+            ast::Expression::new(ExpressionKind::Reference(target.clone()), target.span);
+        if let Ok(value) = Lowering::new(self).lower(&expression) {
+            let mut scalars = Vec::new();
+            value.append_scalars(&mut scalars);
+            return scalars.into_iter().filter_map(|e| self.dae.pool.as_variable(e)).collect();
+        }
+        let Ok(path) = Lowering::new(self).path(target) else { return Vec::new() };
+        let Some((position, _, variable)) = self.flat.variables.get_full(path.as_str()) else {
+            return Vec::new();
+        };
+        let first = self.first[position].0;
+        (first..first + variable.len() as u32).map(VarId).collect()
+    }
+}
+
+fn equation_targets<'a>(
+    equation: &'a ast::Equation,
+    in_when: bool,
+    targets: &mut Vec<&'a ComponentReference>,
+) {
+    let each = |body: &'a [ast::Equation], in_when, targets: &mut Vec<&'a ComponentReference>| {
+        body.iter().for_each(|e| equation_targets(e, in_when, targets));
+    };
+    match &equation.kind {
+        EquationKind::Equal { left, .. } if in_when => match &left.kind {
+            ExpressionKind::Reference(reference) => targets.push(reference),
+            ExpressionKind::Tuple(elements) => {
+                targets.extend(elements.iter().flatten().filter_map(|e| match &e.kind {
+                    ExpressionKind::Reference(reference) => Some(reference),
+                    _ => None,
+                }));
+            }
+            _ => {}
+        },
+        EquationKind::For { body, .. } => each(body, in_when, targets),
+        EquationKind::If { branches, otherwise } => {
+            branches.iter().for_each(|(_, body)| each(body, in_when, targets));
+            each(otherwise, in_when, targets);
+        }
+        EquationKind::When { branches } => {
+            branches.iter().for_each(|(_, body)| each(body, true, targets));
+        }
+        EquationKind::Equal { .. } | EquationKind::Connect { .. } | EquationKind::Call(_) => {}
+    }
+}
+
+fn statement_targets<'a>(
+    statement: &'a ast::Statement,
+    in_when: bool,
+    targets: &mut Vec<&'a ComponentReference>,
+) {
+    let each = |body: &'a [ast::Statement], in_when, targets: &mut Vec<&'a ComponentReference>| {
+        body.iter().for_each(|s| statement_targets(s, in_when, targets));
+    };
+    match &statement.kind {
+        StatementKind::Assign { target, .. } if in_when => targets.push(target),
+        StatementKind::MultiAssign { targets: several, .. } if in_when => {
+            targets.extend(several.iter().flatten());
+        }
+        StatementKind::For { body, .. } | StatementKind::While { body, .. } => {
+            each(body, in_when, targets);
+        }
+        StatementKind::If { branches, otherwise } => {
+            branches.iter().for_each(|(_, body)| each(body, in_when, targets));
+            each(otherwise, in_when, targets);
+        }
+        StatementKind::When { branches } => {
+            branches.iter().for_each(|(_, body)| each(body, true, targets));
+        }
+        _ => {}
+    }
+}
+
+/// Moves the equations that determine discrete variables to those of events.
+pub(super) fn separate_discrete(
+    dae: &mut Dae,
+    aliases: &[Option<Alias>],
+) -> Result<(), Diagnostic> {
+    let given: std::collections::BTreeSet<VarId> =
+        dae.events.equations.iter().filter_map(|e| dae.pool.as_variable(e.left)).collect();
+    let open: Vec<VarId> = (0..dae.variables.len() as u32)
+        .map(VarId)
+        .filter(|v| dae.variable(*v).kind == Kind::Discrete && aliases[v.0 as usize].is_none())
+        .filter(|v| !given.contains(v))
+        .collect();
+    if open.is_empty() {
+        return Ok(());
+    }
+    let column: FxHashMap<VarId, usize> = open.iter().enumerate().map(|(at, v)| (*v, at)).collect();
+    let rows: Vec<Vec<usize>> = dae
+        .equations
+        .iter()
+        .map(|equation| {
+            let sides = [(equation.left, equation.right), (equation.right, equation.left)];
+            let target = |(side, other): &(Expr, Expr)| {
+                let variable = dae.pool.as_variable(*side)?;
+                let at = column.get(&variable).copied()?;
+                let fits = !is_real(dae, *other) && !dae.pool.depends_on(*other, variable);
+                fits.then_some(at)
+            };
+            sides.iter().filter_map(target).collect()
+        })
+        .collect();
+    let matching = match_equations(&Bipartite::new(open.len(), rows));
+    if let Some(missing) = matching.unknown_to_equation.iter().position(Option::is_none) {
+        let variable = dae.variable(open[missing]);
+        return Err(fault!(UNBALANCED_MODEL, "no equation determines the discrete `{}`",
+            variable.name; help: "write an equation `{} = …` for it", variable.name)
+        .labelled(variable.span, "no equation determines this"));
+    }
+    for (equation, unknown) in
+        std::mem::take(&mut dae.equations).into_iter().zip(&matching.equation_to_unknown)
+    {
+        let Some(unknown) = unknown else {
+            dae.equations.push(equation);
+            continue;
+        };
+        let left = dae.pool.variable(open[*unknown]);
+        let right = if equation.left == left { equation.right } else { equation.left };
+        check_constant_between_events(dae, open[*unknown], right, equation)?;
+        dae.events.equations.push(Equation { left, right, span: equation.span });
+    }
+    Ok(())
+}
+
+fn check_constant_between_events(
+    dae: &Dae,
+    variable: VarId,
+    value: Expr,
+    equation: Equation,
+) -> Result<(), Diagnostic> {
+    let varies = |v: &VarId| {
+        dae.is_unknown(*v) || matches!(dae.variable(*v).kind, Kind::Time | Kind::Delayed)
+    };
+    match dae.pool.variables(value).iter().any(varies) {
+        false => Ok(()),
+        true => Err(fault!(NOT_SUPPORTED,
+            "`{}` is discrete, but its equation may change between events",
+            dae.variable(variable).name;
+            help: "write relations outside `noEvent` and outside functions")
+        .at(equation.span)),
+    }
+}
+
+/// Whether the value of an expression is a Real rather than an Integer, Boolean or enumeration.
+fn is_real(dae: &Dae, e: Expr) -> bool {
+    let (mut open, mut seen) = (vec![e], FxHashSet::default());
+    while let Some(e) = open.pop() {
+        if !seen.insert(e) {
+            continue;
+        }
+        match dae.pool.node(e) {
+            Node::Constant(number) if number.0.fract() != 0.0 => return true,
+            Node::Variable(v) => {
+                let variable = dae.variable(*v);
+                if variable.base == BaseType::Real && variable.kind != Kind::Frozen {
+                    return true;
+                }
+            }
+            Node::Div(..) | Node::Pow(..) => return true,
+            Node::Apply(id, arguments) => match id.get().result {
+                ResultType::Real if id.get().event_generating => {}
+                ResultType::Real => return true,
+                ResultType::Integer => {}
+                ResultType::AsArguments => open.extend(arguments.iter()),
+            },
+            Node::Neg(a) => open.push(*a),
+            Node::Add(a, b) | Node::Sub(a, b) | Node::Mul(a, b) => open.extend([*a, *b]),
+            Node::If(_, a, b) => open.extend([*a, *b]),
+            _ => {}
+        }
+    }
+    false
+}

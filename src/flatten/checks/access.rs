@@ -1,0 +1,95 @@
+//! What names with dots may lead through (MLS §4.1, §5.3.2, §5.3.3).
+
+use super::names;
+use super::scope::Scope;
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::flatten::errors::{ILLEGAL_ACCESS, PROTECTED_ACCESS};
+use crate::name::{Ident, Name};
+use crate::source::Span;
+use crate::syntax::ast::{Restriction, VariabilityPrefix, Visibility};
+
+/// Checks every name with dots that a class writes.
+pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+    for written in names::of(class) {
+        errors.extend(path(class, &written.name, written.span));
+    }
+}
+
+/// What is wrong with a name whose first part means a class.
+fn path(class: Scope<'_>, name: &Name, span: Span) -> Option<Diagnostic> {
+    let (first, rest) = name.parts.split_first()?;
+    let start = Name { global: name.global, parts: vec![*first] };
+    if !name.global && names::is_component(class, *first) {
+        return None;
+    }
+    let mut inside = class.class_named(&start)?;
+    let mut prefix = start;
+    for part in rest {
+        if inside.definition().partial && !class.definition().partial {
+            return Some(
+                fault!(ILLEGAL_ACCESS, "`{name}` looks into `{}`, which is partial", inside.name();
+                    help: "extend it, and look into the class that extends it")
+                .at(span),
+            );
+        }
+        prefix = prefix.child(*part);
+        let next = class.class_named(&prefix);
+        let found = element(inside, *part).or_else(|| next.map(Found::in_own_file))?;
+        if found.visibility == Visibility::Protected {
+            return Some(
+                fault!(PROTECTED_ACCESS, "`{part}` is protected in `{}`", inside.name();
+                    help: "move the declaration in front of `protected`")
+                .at(span),
+            );
+        }
+        if !found.encapsulated && !is_package_like(inside) {
+            return Some(
+                fault!(ILLEGAL_ACCESS, "`{name}` looks into `{}`, which is no package",
+                    inside.name();
+                    help: "declare `{part}` encapsulated, or move it into a package")
+                .at(span),
+            );
+        }
+        inside = next?;
+    }
+    None
+}
+
+/// An element of a class, as names with dots see it.
+struct Found {
+    visibility: Visibility,
+    encapsulated: bool,
+}
+
+impl Found {
+    /// A class whose file is another one than that of its package.
+    fn in_own_file(class: Scope<'_>) -> Found {
+        Found { visibility: Visibility::Public, encapsulated: class.definition().encapsulated }
+    }
+}
+
+fn element(class: Scope<'_>, name: Ident) -> Option<Found> {
+    class.lineage().into_iter().find_map(|class| {
+        let nested = class.class_elements().find(|(_, one)| one.class.name.node == name);
+        if let Some((visibility, nested)) = nested {
+            let encapsulated = nested.class.encapsulated;
+            return Some(Found { visibility, encapsulated });
+        }
+        let component = class.own_component(name)?;
+        Some(Found { visibility: component.visibility, encapsulated: false })
+    })
+}
+
+/// Whether a class contains only what a package may contain.
+fn is_package_like(class: Scope<'_>) -> bool {
+    if class.restriction() == Restriction::Package {
+        return true;
+    }
+    class.lineage().into_iter().all(|class| {
+        let only_constants = class.components().all(|component| {
+            component.clause.type_prefixes.variability == Some(VariabilityPrefix::Constant)
+        });
+        only_constants && !class.sections().iter().any(super::restrictions::is_behaviour)
+    })
+}

@@ -1,0 +1,69 @@
+//! Rules of the language that a class keeps or breaks by itself, whatever is made of it.
+//!
+//! [`check`] follows a class to all classes that take part in it and checks each by its text and by
+//! what the names in it mean, before anything is instantiated. What depends on modifications is
+//! left to instantiation. Where a name means nothing, nothing is said here.
+
+mod access;
+mod behaviour;
+mod elements;
+mod imports;
+mod lookup;
+mod names;
+mod operators;
+mod participants;
+mod prefixes;
+mod restrictions;
+mod scope;
+mod usage;
+mod variability;
+
+use super::library::{ClassId, Library};
+use crate::diag::Diagnostic;
+use crate::syntax::ast::Restriction;
+use scope::Scope;
+
+/// What is wrong with a class and with those that take part in it; the errors of one class
+/// follow each other.
+pub(super) fn check(library: &Library, class: ClassId) -> Vec<Diagnostic> {
+    let mut errors = Vec::new();
+    for class in participants::of(Scope { library, class }) {
+        check_one(class, &mut errors);
+    }
+    errors
+}
+
+/// What is wrong with one class, whatever takes part in it.
+pub(super) fn check_class(library: &Library, class: ClassId) -> Vec<Diagnostic> {
+    let mut errors = Vec::new();
+    check_one(Scope { library, class }, &mut errors);
+    errors
+}
+
+fn check_one(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+    elements::check(class, errors);
+    restrictions::check(class, errors);
+    operators::check(class, errors);
+    prefixes::check(class, errors);
+    imports::check(class, errors);
+    behaviour::check(class, errors);
+    access::check(class, errors);
+    usage::check(class, errors);
+}
+
+/// A restriction as the messages call it.
+fn word(restriction: Restriction) -> &'static str {
+    match restriction {
+        Restriction::Class => "class",
+        Restriction::Model => "model",
+        Restriction::Block => "block",
+        Restriction::Record => "record",
+        Restriction::OperatorRecord => "operator record",
+        Restriction::Connector => "connector",
+        Restriction::ExpandableConnector => "expandable connector",
+        Restriction::Type => "type",
+        Restriction::Package => "package",
+        Restriction::Function { .. } => "function",
+        Restriction::Operator => "operator",
+    }
+}

@@ -1,0 +1,235 @@
+//! What the checks ask about a class: its elements, those it inherits, and what names mean in it.
+
+use super::lookup::Type;
+use crate::flatten::library::{ClassId, Library};
+use crate::flatten::lookup::Predefined;
+use crate::name::{Ident, Name};
+use crate::syntax::ast::{
+    ClassDefinition, ClassElement, ClassSpecifier, ComponentClause, ComponentDeclaration,
+    ComponentReference, Element, Restriction, Section, TypePrefixes, VariabilityPrefix, Visibility,
+};
+use rustc_hash::FxHashSet;
+
+/// The most base classes that a class is followed to.
+const MAX_BASES: usize = 1000;
+
+/// The most short classes in a row that are followed.
+const MAX_CHAIN: usize = 100;
+
+/// A class of a library, as the checks see it.
+#[derive(Clone, Copy)]
+pub(super) struct Scope<'a> {
+    pub(super) library: &'a Library,
+    pub(super) class: ClassId,
+}
+
+/// A component with the clause and the class that declare it.
+#[derive(Clone, Copy)]
+pub(super) struct Component<'a> {
+    pub(super) owner: Scope<'a>,
+    pub(super) visibility: Visibility,
+    pub(super) clause: &'a ComponentClause,
+    pub(super) declaration: &'a ComponentDeclaration,
+}
+
+impl<'a> Scope<'a> {
+    /// Another class of the same library.
+    pub(super) fn of(self, class: ClassId) -> Scope<'a> {
+        Scope { class, ..self }
+    }
+
+    /// Its definition.
+    pub(super) fn definition(self) -> &'a ClassDefinition {
+        &self.library.class(self.class).definition
+    }
+
+    /// Its keyword.
+    pub(super) fn restriction(self) -> Restriction {
+        self.definition().restriction
+    }
+
+    /// Its full name.
+    pub(super) fn name(self) -> &'a Name {
+        &self.library.class(self.class).name
+    }
+
+    /// The class that it is written in.
+    pub(super) fn parent(self) -> Option<Scope<'a>> {
+        self.library.class(self.class).parent.map(|parent| self.of(parent))
+    }
+
+    /// Its sections; none for a short class.
+    pub(super) fn sections(self) -> &'a [Section] {
+        self.library.class(self.class).sections()
+    }
+
+    /// Its own elements with their visibility.
+    pub(super) fn elements(self) -> impl Iterator<Item = (Visibility, &'a Element)> {
+        self.library.class(self.class).elements()
+    }
+
+    /// Its own components.
+    pub(super) fn components(self) -> impl Iterator<Item = Component<'a>> {
+        self.elements().flat_map(move |(visibility, element)| {
+            let clause = match element {
+                Element::Component(clause) => Some(clause),
+                _ => None,
+            };
+            clause.into_iter().flat_map(move |clause| {
+                clause.components.iter().map(move |declaration| Component {
+                    owner: self,
+                    visibility,
+                    clause,
+                    declaration,
+                })
+            })
+        })
+    }
+
+    /// The classes that it declares itself, with their visibility.
+    pub(super) fn class_elements(self) -> impl Iterator<Item = (Visibility, &'a ClassElement)> {
+        self.elements().filter_map(|(visibility, element)| match element {
+            Element::Class(nested) => Some((visibility, nested)),
+            _ => None,
+        })
+    }
+
+    /// Itself and all classes that it extends or is short for.
+    pub(super) fn lineage(self) -> Vec<Scope<'a>> {
+        let mut seen = FxHashSet::default();
+        let mut found = Vec::new();
+        let mut pending = vec![self.class];
+        while let Some(class) = pending.pop() {
+            if found.len() >= MAX_BASES || !seen.insert(class) {
+                continue;
+            }
+            found.push(self.of(class));
+            pending.extend(self.library.bases(class).iter().rev());
+        }
+        found
+    }
+
+    /// Its component of a name, its own or inherited.
+    pub(super) fn component(self, name: Ident) -> Option<Component<'a>> {
+        self.lineage().into_iter().find_map(|class| class.own_component(name))
+    }
+
+    /// The component of a name that it declares itself.
+    pub(super) fn own_component(self, name: Ident) -> Option<Component<'a>> {
+        self.components().find(|component| component.declaration.name.node == name)
+    }
+
+    /// The components that the parts of a reference name, followed through their classes as they
+    /// are declared; `None` where a redeclaration could change them.
+    pub(super) fn path(self, reference: &ComponentReference) -> Option<Vec<Component<'a>>> {
+        if reference.global {
+            return None;
+        }
+        let (first, rest) = reference.parts.split_first()?;
+        let mut path = vec![self.component(first.name)?];
+        for part in rest {
+            let last = path.last()?;
+            if last.clause.prefixes.replaceable || last.clause.prefixes.outer {
+                return None;
+            }
+            path.push(last.class()?.component(part.name)?);
+        }
+        Some(path)
+    }
+
+    /// The component that a reference names, as [`Scope::path`] finds it.
+    pub(super) fn component_at(self, reference: &ComponentReference) -> Option<Component<'a>> {
+        self.path(reference)?.pop()
+    }
+
+    /// What a name of a type or class means in it.
+    pub(super) fn meaning(self, name: &Name) -> Option<Type> {
+        self.library.lookup(Some(self.class), name)
+    }
+
+    /// The class that a name means in it.
+    pub(super) fn class_named(self, name: &Name) -> Option<Scope<'a>> {
+        match self.meaning(name)? {
+            Type::Class(class) => Some(self.of(class)),
+            Type::Predefined(_) => None,
+        }
+    }
+
+    /// The class behind a row of short classes, and the prefixes that they add.
+    pub(super) fn unaliased(self) -> (Option<Scope<'a>>, Vec<TypePrefixes>) {
+        let mut class = self;
+        let mut prefixes = Vec::new();
+        for _ in 0..MAX_CHAIN {
+            let ClassSpecifier::Short(short) = &class.definition().specifier else {
+                return (Some(class), prefixes);
+            };
+            prefixes.push(short.prefixes);
+            let outside = class.parent();
+            let target = match outside {
+                Some(outside) => outside.class_named(&short.target.name),
+                None => self.library.find(&short.target.name).map(|found| self.of(found)),
+            };
+            match target {
+                Some(target) => class = target,
+                None => return (None, prefixes),
+            }
+        }
+        (None, prefixes)
+    }
+
+    /// The predefined type that it is made of, through short classes and extends clauses.
+    pub(super) fn predefined(self) -> Option<Predefined> {
+        self.lineage().into_iter().find_map(|class| match &class.definition().specifier {
+            ClassSpecifier::Short(short) => {
+                let scope = class.parent().unwrap_or(class);
+                predefined(scope.meaning(&short.target.name))
+            }
+            ClassSpecifier::Long(_) => {
+                let extends = &self.library.class(class.class).extends;
+                extends.iter().find_map(|one| predefined(class.meaning(&one.base.name)))
+            }
+            _ => None,
+        })
+    }
+
+    /// Whether it is an enumeration, by itself or through others.
+    pub(super) fn is_enumeration(self) -> bool {
+        self.lineage()
+            .into_iter()
+            .any(|class| matches!(class.definition().specifier, ClassSpecifier::Enumeration(_)))
+    }
+}
+
+impl<'a> Component<'a> {
+    /// What its type means.
+    pub(super) fn meaning(&self) -> Option<Type> {
+        self.owner.meaning(&self.clause.type_specifier.name)
+    }
+
+    /// The class of its type.
+    pub(super) fn class(&self) -> Option<Scope<'a>> {
+        self.owner.class_named(&self.clause.type_specifier.name)
+    }
+
+    /// Whether it, or its type, is declared constant or parameter.
+    pub(super) fn is_fixed(&self) -> bool {
+        let fixed = |prefixes: &TypePrefixes| {
+            let variability = prefixes.variability;
+            matches!(variability, Some(VariabilityPrefix::Constant | VariabilityPrefix::Parameter))
+        };
+        let of_type = || self.class().is_some_and(|class| class.unaliased().1.iter().any(fixed));
+        fixed(&self.clause.type_prefixes) || of_type()
+    }
+
+    /// Its name.
+    pub(super) fn name(&self) -> Ident {
+        self.declaration.name.node
+    }
+}
+
+fn predefined(meaning: Option<Type>) -> Option<Predefined> {
+    match meaning {
+        Some(Type::Predefined(predefined)) => Some(predefined),
+        _ => None,
+    }
+}

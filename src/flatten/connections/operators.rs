@@ -1,0 +1,89 @@
+//! Operators whose values the connections give: `inStream`, `actualStream` (MLS §15.2),
+//! `cardinality` (MLS §3.7.4.3), `Connections.isRoot` and `Connections.rooted` (MLS §9.4.1).
+
+use super::super::errors::INVALID_CONNECTION;
+use super::super::instantiation::Instantiation;
+use super::super::resolve::Local;
+use super::super::scope::ScopeId;
+use super::sets::Connections;
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::source::Span;
+use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
+use std::rc::Rc;
+
+impl Instantiation<'_> {
+    /// The value of such an operator; `None` for any other call.
+    pub(in super::super) fn connection_operator(
+        &mut self,
+        span: Span,
+        function: &ComponentReference,
+        arguments: &Arguments,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let names: Vec<&str> = function.parts.iter().map(|part| part.name.as_str()).collect();
+        let value = match names.as_slice() {
+            ["inStream"] => self.stream_operator(span, false, arguments, context, local)?,
+            ["actualStream"] => self.stream_operator(span, true, arguments, context, local)?,
+            ["cardinality"] => {
+                let reference = argument(arguments, span)?;
+                let connections = self.known_connections(span)?;
+                let ends = self.ends(reference, context, local)?;
+                let end = ends.and_then(|ends| ends.ends.first().copied());
+                let count = end.map_or(0, |end| connections.cardinality(end));
+                Expression::new(ExpressionKind::Integer(count), span)
+            }
+            ["Connections", "isRoot"] => {
+                let node = self.overdetermined_argument(arguments, 0, context, local)?;
+                let connections = self.known_connections(span)?;
+                let is_root = node.is_some_and(|node| connections.graph.is_root(node));
+                Expression::new(ExpressionKind::Boolean(is_root), span)
+            }
+            ["Connections", "rooted"] | ["rooted"] => {
+                let node = self.overdetermined_argument(arguments, 0, context, local)?;
+                let connections = self.known_connections(span)?;
+                let rooted = node.is_some_and(|node| connections.graph.is_rooted(node));
+                Expression::new(ExpressionKind::Boolean(rooted), span)
+            }
+            _ => return Ok(None),
+        };
+        Ok(Some(value))
+    }
+
+    fn stream_operator(
+        &mut self,
+        span: Span,
+        actual: bool,
+        arguments: &Arguments,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let reference = argument(arguments, span)?;
+        let connections = self.known_connections(span)?;
+        match self.ends(reference, context, local)? {
+            Some(ends) => self.stream_value(&ends, actual, &connections, span),
+            None => {
+                Err(fault!(INVALID_CONNECTION, "`{}` does not exist", reference.name()).at(span))
+            }
+        }
+    }
+
+    fn known_connections(&self, span: Span) -> Result<Rc<Connections>, Diagnostic> {
+        self.connections.clone().ok_or_else(|| {
+            fault!(INVALID_CONNECTION, "what shapes the model cannot depend on its connections")
+                .at(span)
+        })
+    }
+}
+
+fn argument(arguments: &Arguments, span: Span) -> Result<&ComponentReference, Diagnostic> {
+    match arguments.positional.first().map(|argument| &argument.kind) {
+        Some(ExpressionKind::Reference(reference)) => Ok(reference),
+        _ => Err(fault!(
+            INVALID_CONNECTION,
+            "the name of a connector or of a variable of one is needed"
+        )
+        .at(span)),
+    }
+}

@@ -1,0 +1,93 @@
+//! `inner` and `outer` components (MLS §5.4): an outer component is another name of the inner one
+//! of that name in the nearest enclosing instance.
+
+use super::errors::{NOT_SUPPORTED, PARTIAL_CLASS, UNKNOWN_NAME};
+use super::instance::{Declaration, Member, MemberState, NodeId, NodeKind};
+use super::instantiation::Instantiation;
+use super::modification::Modifier;
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::name::Ident;
+use crate::syntax::ast::ElementPrefixes;
+use std::sync::Arc;
+
+impl Instantiation<'_> {
+    /// What an outer component of an instance means.
+    pub(super) fn outer(
+        &mut self,
+        node: NodeId,
+        declared: &Declaration,
+    ) -> Result<MemberState, Diagnostic> {
+        if declared.prefixes.inner {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "`{}` is `inner outer`, which is not translated yet",
+                declared.name
+            )
+            .at(declared.span));
+        }
+        if !declared.modifier.is_empty() {
+            let name = declared.name;
+            self.warnings.push(
+                fault!(UNKNOWN_NAME, "the value of the outer component `{name}` is ignored";
+                    help: "give it to the inner component")
+                .at(declared.span)
+                .warning(),
+            );
+        }
+        let mut holder = self.nodes[node.0].parent;
+        while let Some(id) = holder {
+            if self.is_inner(id, declared.name) {
+                let state = self.member(id, declared.name)?;
+                return Ok(MemberState::Outer(Box::new(state.unwrap_or(MemberState::Absent))));
+            }
+            holder = self.nodes[id.0].parent;
+        }
+        self.missing_inner(node, declared)
+    }
+
+    fn is_inner(&self, node: NodeId, name: Ident) -> bool {
+        self.declaration_of(node, name).is_some_and(|declaration| declaration.prefixes.inner)
+    }
+
+    /// Without an inner component the model itself gets one, with the defaults of its class.
+    fn missing_inner(
+        &mut self,
+        node: NodeId,
+        declared: &Declaration,
+    ) -> Result<MemberState, Diagnostic> {
+        let name = declared.name;
+        let path = self.nodes[node.0].path.clone();
+        let expanded = self.expand(declared)?;
+        let missing = || {
+            fault!(UNKNOWN_NAME, "no `inner` component `{name}` encloses the `outer` one in `{path}`";
+                help: "declare `inner {} {name};` in the model", declared.type_specifier.name)
+            .at(declared.span)
+        };
+        let root = self.root_node;
+        let unsuitable = match expanded.shape {
+            super::instance::Shape::Class(class) => self
+                .check_complete(class, declared.span)
+                .is_err_and(|error| error.code == PARTIAL_CLASS),
+            _ => true,
+        };
+        if unsuitable || self.in_package(node) || self.declaration_of(root, name).is_some() {
+            return Err(missing());
+        }
+        self.warnings.push(missing().warning());
+        let declaration = Declaration {
+            prefixes: ElementPrefixes { inner: true, ..ElementPrefixes::default() },
+            modifier: Modifier::default(),
+            condition: None,
+            ..declared.clone()
+        };
+        let member = Member { declaration: Arc::new(declaration), state: MemberState::Pending };
+        if let NodeKind::Composite(composite) = &mut self.nodes[root.0].kind
+            && let Some(members) = &mut composite.members
+        {
+            members.insert(name, member);
+        }
+        let state = self.member(root, name)?;
+        Ok(MemberState::Outer(Box::new(state.unwrap_or(MemberState::Absent))))
+    }
+}

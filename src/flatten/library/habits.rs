@@ -1,0 +1,112 @@
+//! What old libraries do otherwise, told once for each library.
+
+use crate::diag::{Diagnostic, Fault};
+use crate::flatten::errors::OLD_LIBRARY;
+use crate::name::Ident;
+use crate::source::Span;
+use crate::syntax::ast::{Annotation, Argument, Section};
+use std::collections::BTreeSet;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A way of writing that today's Modelica does not have and that changes nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Habit {
+    /// A file in a package's folder says nothing about where it belongs.
+    NoWithin,
+    /// It names another package than that of its folder.
+    OtherWithin,
+    /// A folder with another name than its package's.
+    FolderName,
+    /// A file with another name than its class's.
+    FileName,
+    /// An annotation before other sections, or more than one.
+    AnnotationPlace,
+    /// The annotations that drew classes in Modelica 1 and 2.
+    OldGraphics,
+}
+
+/// The habits met in each library.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Habits {
+    met: Arc<Mutex<Met>>,
+}
+
+#[derive(Debug, Default)]
+struct Met {
+    known: BTreeSet<(Ident, Habit)>,
+    untold: Vec<Diagnostic>,
+}
+
+impl Habit {
+    fn fault(self, library: Ident) -> Fault {
+        let (what, remedy) = match self {
+            Habit::NoWithin => {
+                ("files without a `within` clause", "write `within` and the package's full name")
+            }
+            Habit::OtherWithin => (
+                "files with another `within` clause than their folder asks for",
+                "move the file, or write the name of the package whose folder it lies in",
+            ),
+            Habit::FolderName => {
+                ("folders named otherwise than their packages", "rename the folder")
+            }
+            Habit::FileName => ("files named otherwise than their classes", "rename the file"),
+            Habit::AnnotationPlace => (
+                "annotations before other elements, or several in one class",
+                "write one annotation at the end of the class",
+            ),
+            Habit::OldGraphics => (
+                "graphical annotations of Modelica 1 or 2, which are ignored",
+                "convert the library to Modelica 3, if it is to be drawn",
+            ),
+        };
+        Fault::new(OLD_LIBRARY, format!("library `{library}` has {what}")).help(remedy)
+    }
+}
+
+impl Habits {
+    /// Notes that a library has a habit, at the first place met.
+    pub(super) fn meet(&self, library: Option<Ident>, habit: Habit, span: Span) {
+        let Some(library) = library else { return };
+        let mut met = self.met.lock().unwrap_or_else(PoisonError::into_inner);
+        if met.known.insert((library, habit)) {
+            met.untold.push(habit.fault(library).at(span).warning());
+        }
+    }
+
+    /// The warnings since the last call.
+    pub(super) fn take(&self) -> Vec<Diagnostic> {
+        let mut met = self.met.lock().unwrap_or_else(PoisonError::into_inner);
+        std::mem::take(&mut met.untold)
+    }
+}
+
+/// The habits that the sections of a class show.
+pub(super) fn of_sections(sections: &[Section]) -> Vec<(Habit, Span)> {
+    let annotation = |section: &Section| match section {
+        Section::Annotation(annotation) => Some(annotation.span),
+        _ => None,
+    };
+    let mut found = Vec::new();
+    let before_last = sections.split_last().map_or(&[][..], |(_, before)| before);
+    if let Some(span) = before_last.iter().find_map(annotation) {
+        found.push((Habit::AnnotationPlace, span));
+    }
+    let old = sections.iter().find_map(|section| match section {
+        Section::Annotation(annotation) => old_graphics(annotation),
+        _ => None,
+    });
+    found.extend(old.map(|span| (Habit::OldGraphics, span)));
+    found
+}
+
+fn old_graphics(annotation: &Annotation) -> Option<Span> {
+    let is_old = |argument: &Argument| match argument {
+        Argument::Element(element) => {
+            let name = element.name.node.last()?;
+            matches!(name.as_str(), "Coordsys" | "Window").then_some(element.name.span)
+        }
+        Argument::Redeclaration(_) => None,
+    };
+    annotation.arguments.iter().find_map(is_old)
+}

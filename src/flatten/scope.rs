@@ -1,0 +1,435 @@
+//! Classes in their surroundings (MLS §5.6.1): the text of a class with the modifiers and
+//! redeclarations that reach it and the scope in which it stands. The same text in two
+//! surroundings, such as `Medium` in two tanks, is two scopes.
+
+use super::declarations::Elements;
+use super::errors::{CYCLIC_CLASS, TOO_LARGE, TYPE_MISMATCH, UNKNOWN_ELEMENT};
+use super::instance::NodeId;
+use super::instantiation::Instantiation;
+use super::library::ClassId;
+use super::lookup::Type;
+use super::modification::{Modifier, Redeclaration, Replacement};
+use crate::diag::{Diagnostic, suggest};
+use crate::fault;
+use crate::name::{Ident, Name};
+use crate::source::Span;
+use crate::syntax::ast::{
+    ClassDefinition, ClassSpecifier, Element, Extends, Restriction, Section, TypeSpecifier,
+    Visibility,
+};
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// The most scopes that one model may need.
+const MAX_SCOPES: usize = 1_000_000;
+
+/// The most base classes that one class may have, those of its bases included.
+pub(super) const MAX_BASES: usize = 2000;
+
+/// A class in its surroundings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(super) struct ScopeId(pub(super) u32);
+
+impl ScopeId {
+    /// The scope of the whole library, in which the top-level classes stand.
+    pub(super) const TOP: ScopeId = ScopeId(0);
+}
+
+/// The text of a class.
+#[derive(Debug, Clone)]
+pub(super) struct Text {
+    /// Full name, for messages and as the name of functions and records.
+    pub(super) name: Name,
+    pub(super) definition: Arc<ClassDefinition>,
+    /// The class of the library; `None` for one that stands in a modification.
+    pub(super) id: Option<ClassId>,
+    /// For `extends M(…)` (MLS §7.3.1): the class that it extends and replaces.
+    pub(super) extended: Option<Rc<Nested>>,
+}
+
+impl Text {
+    pub(super) fn restriction(&self) -> Restriction {
+        self.definition.restriction
+    }
+
+    pub(super) fn span(&self) -> Span {
+        self.definition.name.span
+    }
+
+    /// The sections of a long class; none for a short one.
+    pub(super) fn sections(&self) -> &[Section] {
+        match &self.definition.specifier {
+            ClassSpecifier::Long(long) => &long.sections,
+            _ => &[],
+        }
+    }
+
+    /// The elements with whether they are protected, in order.
+    pub(super) fn elements(&self) -> impl Iterator<Item = (bool, &Element)> {
+        self.sections().iter().flat_map(|section| {
+            let (protected, elements) = match section {
+                Section::Elements { visibility, elements } => {
+                    (*visibility == Some(Visibility::Protected), elements.as_slice())
+                }
+                _ => (false, [].as_slice()),
+            };
+            elements.iter().map(move |element| (protected, element))
+        })
+    }
+}
+
+/// A class declared in another, with all that replaces or modifies it there.
+#[derive(Debug)]
+pub(super) struct Nested {
+    pub(super) text: Text,
+    /// The scope in which its text stands.
+    pub(super) parent: ScopeId,
+    /// Modifiers over its own.
+    pub(super) modifier: Modifier,
+    /// Modifiers under its own: those of a constraining clause (MLS §7.3.2).
+    pub(super) defaults: Modifier,
+    pub(super) outer: bool,
+    pub(super) inner: bool,
+    pub(super) instance: std::cell::Cell<Option<Type>>,
+}
+
+/// A class in its surroundings.
+#[derive(Debug)]
+pub(super) struct Scope {
+    pub(super) text: Option<Text>,
+    /// The scope in which the text stands; `None` for the top.
+    pub(super) parent: Option<ScopeId>,
+    /// The instance whose components the names in the text mean; that of the derived class for a
+    /// base class.
+    pub(super) node: NodeId,
+    pub(super) modifier: Modifier,
+    pub(super) defaults: Modifier,
+    /// The class that extends this one here.
+    derived: Option<ScopeId>,
+    bases: Stage<Rc<[ScopeId]>>,
+    elements: Stage<Rc<Elements>>,
+}
+
+/// What is found out at most once.
+#[derive(Debug, Clone, Default)]
+enum Stage<T> {
+    #[default]
+    Pending,
+    Busy,
+    Done(T),
+    Failed(Box<Diagnostic>),
+}
+
+impl Instantiation<'_> {
+    pub(super) fn scope(&self, id: ScopeId) -> &Scope {
+        &self.scopes[id.0 as usize]
+    }
+
+    /// The text of a scope; that of the top is not asked for.
+    pub(super) fn text(&self, id: ScopeId) -> &Text {
+        self.scope(id).text.as_ref().expect("only the top scope has no text")
+    }
+
+    /// The instance whose components a scope's names mean.
+    pub(super) fn node_of(&self, id: ScopeId) -> NodeId {
+        self.scope(id).node
+    }
+
+    pub(super) fn is_encapsulated(&self, id: ScopeId) -> bool {
+        self.scope(id).text.as_ref().is_none_or(|text| text.definition.encapsulated)
+    }
+
+    pub(super) fn add_scope(
+        &mut self,
+        text: Text,
+        parent: ScopeId,
+        node: NodeId,
+        modifier: Modifier,
+        defaults: Modifier,
+    ) -> Result<ScopeId, Diagnostic> {
+        if self.scopes.len() > MAX_SCOPES {
+            return Err(
+                fault!(TOO_LARGE, "the model needs too many instances of classes").at(text.span())
+            );
+        }
+        let id = ScopeId(self.scopes.len() as u32);
+        self.scopes.push(Scope {
+            text: Some(text),
+            parent: Some(parent),
+            node,
+            modifier,
+            defaults,
+            derived: None,
+            bases: Stage::Pending,
+            elements: Stage::Pending,
+        });
+        Ok(id)
+    }
+
+    /// The top scope, without a class.
+    pub(super) fn top_scope() -> Scope {
+        Scope {
+            text: None,
+            parent: None,
+            node: NodeId(0),
+            modifier: Modifier::default(),
+            defaults: Modifier::default(),
+            derived: None,
+            bases: Stage::Done(Rc::new([])),
+            elements: Stage::Done(Rc::default()),
+        }
+    }
+
+    /// What a nested class is here: a scope of its own, or that of the class that it is another
+    /// name of.
+    pub(super) fn instance(&mut self, nested: &Rc<Nested>) -> Result<Type, Diagnostic> {
+        if let Some(known) = nested.instance.get() {
+            return Ok(known);
+        }
+        let found = match self.renamed(nested)? {
+            Some(target) => target,
+            None => Type::Class(self.class_scope(nested)?),
+        };
+        nested.instance.set(Some(found));
+        Ok(found)
+    }
+
+    fn class_scope(&mut self, nested: &Nested) -> Result<ScopeId, Diagnostic> {
+        let holder = self.node_of(nested.parent);
+        let node = self.add_package(&nested.text.name, holder);
+        let scope = self.add_scope(
+            nested.text.clone(),
+            nested.parent,
+            node,
+            nested.modifier.clone(),
+            nested.defaults.clone(),
+        )?;
+        self.set_scope(node, scope);
+        Ok(scope)
+    }
+
+    /// The class of which a short class without modifiers is another name.
+    fn renamed(&mut self, nested: &Nested) -> Result<Option<Type>, Diagnostic> {
+        let ClassSpecifier::Short(short) = &nested.text.definition.specifier else {
+            return Ok(None);
+        };
+        let plain = short.modification.is_empty()
+            && short.subscripts.is_empty()
+            && short.prefixes == Default::default()
+            && nested.modifier.is_empty()
+            && nested.defaults.is_empty()
+            && matches!(
+                nested.text.restriction(),
+                Restriction::Package | Restriction::Function { .. }
+            );
+        if !plain {
+            return Ok(None);
+        }
+        let cycle = || {
+            fault!(CYCLIC_CLASS, "`{}` is defined by itself", nested.text.name)
+                .at(nested.text.span())
+        };
+        if self.renaming > MAX_RENAMINGS {
+            return Err(cycle());
+        }
+        self.renaming += 1;
+        let found = self.lookup_type(nested.parent, &short.target);
+        self.renaming -= 1;
+        found.map(Some)
+    }
+
+    /// The base classes of a scope in the order of its extends clauses, each as a scope of its
+    /// own; none while they are being looked up, for names that a base class itself needs
+    /// (MLS §5.6.1.4).
+    pub(super) fn bases(&mut self, id: ScopeId) -> Result<Rc<[ScopeId]>, Diagnostic> {
+        match &self.scope(id).bases {
+            Stage::Done(bases) => return Ok(bases.clone()),
+            Stage::Busy => return Ok(Rc::new([])),
+            Stage::Failed(error) => return Err((**error).clone()),
+            Stage::Pending => {}
+        }
+        self.scopes[id.0 as usize].bases = Stage::Busy;
+        self.searching += 1;
+        let found = self.find_bases(id);
+        self.searching -= 1;
+        self.scopes[id.0 as usize].bases = match &found {
+            Ok(bases) => Stage::Done(bases.clone()),
+            Err(error) => Stage::Failed(Box::new(error.clone())),
+        };
+        found
+    }
+
+    fn find_bases(&mut self, id: ScopeId) -> Result<Rc<[ScopeId]>, Diagnostic> {
+        let text = self.text(id).clone();
+        let parent = self.scope(id).parent.unwrap_or(ScopeId::TOP);
+        let mut bases = Vec::new();
+        match &text.definition.specifier {
+            ClassSpecifier::Short(short) => {
+                let own = Modifier::of_arguments(&short.modification, parent)?;
+                let defaults = self.scope(id).defaults.clone();
+                let own = defaults.overridden_by(own, text.definition.name.node)?;
+                let base = self.lookup_type(parent, &short.target)?;
+                let modifier = self.scope(id).modifier.clone();
+                // A type made of a predefined one has no elements to inherit.
+                if let Type::Class(_) = base {
+                    bases.push(self.base(id, base, own, modifier, &short.target)?);
+                }
+            }
+            ClassSpecifier::Long(long) => {
+                let outer = self.modifier_of_bases(id)?;
+                if let (Some(arguments), Some(extended)) = (&long.class_extends, &text.extended) {
+                    let own = Modifier::of_arguments(arguments, id)?;
+                    let base = Type::Class(self.class_scope(extended)?);
+                    let specifier =
+                        TypeSpecifier { name: extended.text.name.clone(), span: text.span() };
+                    bases.push(self.base(id, base, own, outer.clone(), &specifier)?);
+                }
+                for (_, element) in text.elements() {
+                    let Element::Extends(extends) = element else { continue };
+                    bases.push(self.extended(id, extends, outer.clone())?);
+                }
+            }
+            ClassSpecifier::Enumeration(_) | ClassSpecifier::Derivative(_) => {}
+        }
+        Ok(bases.into())
+    }
+
+    fn extended(
+        &mut self,
+        id: ScopeId,
+        extends: &Extends,
+        outer: Modifier,
+    ) -> Result<ScopeId, Diagnostic> {
+        let base = self.lookup_type(id, &extends.base)?;
+        let own = Modifier::of_arguments(&extends.modification, id)?;
+        self.base(id, base, own, outer, &extends.base)
+    }
+
+    fn base(
+        &mut self,
+        derived: ScopeId,
+        base: Type,
+        own: Modifier,
+        outer: Modifier,
+        specifier: &TypeSpecifier,
+    ) -> Result<ScopeId, Diagnostic> {
+        let Type::Class(class) = base else {
+            return Err(fault!(
+                TYPE_MISMATCH,
+                "a class with components cannot extend `{}`",
+                specifier.name
+            )
+            .at(specifier.span));
+        };
+        self.check_cycle(derived, class, specifier)?;
+        let names: Vec<(Ident, Option<Span>)> =
+            own.elements.iter().map(|(name, modifier)| (*name, modifier.span)).collect();
+        let text = self.text(class).clone();
+        let name = text.definition.name.node;
+        let inner = self.scope(class).modifier.clone();
+        let modifier = inner.overridden_by(own.overridden_by(outer, name)?, name)?;
+        let defaults = self.scope(class).defaults.clone();
+        let parent = self.scope(class).parent.unwrap_or(ScopeId::TOP);
+        let node = self.node_of(derived);
+        let scope = self.add_scope(text, parent, node, modifier, defaults)?;
+        self.scopes[scope.0 as usize].derived = Some(derived);
+        for (name, span) in names {
+            self.check_modified(scope, name, span.unwrap_or(specifier.span))?;
+        }
+        Ok(scope)
+    }
+
+    fn check_cycle(
+        &self,
+        derived: ScopeId,
+        base: ScopeId,
+        specifier: &TypeSpecifier,
+    ) -> Result<(), Diagnostic> {
+        let base = self.text(base);
+        let mut derived = Some(derived);
+        let mut length = 0;
+        while let Some(id) = derived {
+            let text = self.text(id);
+            length += 1;
+            if text.definition.span == base.definition.span || length > MAX_BASES {
+                return Err(
+                    fault!(CYCLIC_CLASS, "`{}` extends itself", base.name).at(specifier.span)
+                );
+            }
+            derived = self.scope(id).derived;
+        }
+        Ok(())
+    }
+
+    /// What modifies the bases of a class: the outer modifiers, and the redeclarations among its
+    /// own elements (MLS §7.3).
+    fn modifier_of_bases(&mut self, id: ScopeId) -> Result<Modifier, Diagnostic> {
+        let text = self.text(id).clone();
+        let mut own = Modifier::default();
+        for (_, element) in text.elements() {
+            if let Element::Component(clause) = element
+                && clause.prefixes.redeclare
+            {
+                for component in &clause.components {
+                    own.redeclare_component(clause, component, id)?;
+                }
+            }
+        }
+        let library = self.library;
+        let children: Vec<(Ident, ClassId)> =
+            text.id.map_or(Vec::new(), |class| library.class(class).children().collect());
+        for (name, child) in children {
+            if library.is_redeclaration(child) {
+                let redeclaration = Redeclaration {
+                    replacement: Replacement::Element(child),
+                    context: id,
+                    over: None,
+                };
+                let span = library.class(child).definition().name.span;
+                own.redeclare(name, redeclaration, span);
+            }
+        }
+        let name = text.definition.name.node;
+        own.overridden_by(self.scope(id).modifier.clone(), name)
+    }
+
+    /// The components of a class, inherited ones included.
+    pub(super) fn elements(&mut self, id: ScopeId) -> Result<Rc<Elements>, Diagnostic> {
+        match &self.scope(id).elements {
+            Stage::Done(elements) => return Ok(elements.clone()),
+            Stage::Failed(error) => return Err((**error).clone()),
+            Stage::Busy => {
+                let text = self.text(id);
+                return Err(fault!(CYCLIC_CLASS, "`{}` needs itself", text.name).at(text.span()));
+            }
+            Stage::Pending => {}
+        }
+        self.scopes[id.0 as usize].elements = Stage::Busy;
+        let found = self.find_elements(id).map(Rc::new);
+        self.scopes[id.0 as usize].elements = match &found {
+            Ok(elements) => Stage::Done(elements.clone()),
+            Err(error) => Stage::Failed(Box::new(error.clone())),
+        };
+        found
+    }
+
+    /// An error if a class has no element of a name that a modifier names.
+    pub(super) fn check_modified(
+        &mut self,
+        id: ScopeId,
+        name: Ident,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        let elements = self.elements(id)?;
+        if elements.components.contains_key(&name) || self.find_class(id, name)?.is_some() {
+            return Ok(());
+        }
+        let known = elements.components.keys().map(|known| known.as_str());
+        Err(fault!(UNKNOWN_ELEMENT, "`{}` has no component `{name}` to modify", self.text(id).name)
+            .help_if(suggest::did_you_mean(name.as_str(), known))
+            .at(span))
+    }
+}
+
+/// How many short classes may be other names of one another.
+const MAX_RENAMINGS: usize = 100;

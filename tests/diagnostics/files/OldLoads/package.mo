@@ -1,0 +1,2 @@
+package oldLoads
+end oldLoads;

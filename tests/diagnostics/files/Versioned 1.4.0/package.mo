@@ -1,0 +1,6 @@
+package Versioned
+  model M
+    Real x = time;
+  end M;
+  annotation(version = "1.4.0");
+end Versioned;

@@ -1,0 +1,4 @@
+within Broken;
+model Worse
+  Real x = (1;
+end Worse;

@@ -1,0 +1,3 @@
+package Newest
+  model M = Ordered.Zero;
+end Newest;

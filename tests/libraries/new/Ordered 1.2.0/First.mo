@@ -1,0 +1,4 @@
+within Ordered;
+model First
+  extends Inner.M(p = 1);
+end First;

@@ -1,0 +1,5 @@
+within Ordered.Inner;
+model M
+  parameter Real p = 3;
+  Real x = p*time;
+end M;

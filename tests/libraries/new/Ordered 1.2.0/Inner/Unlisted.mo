@@ -1,0 +1,4 @@
+within Ordered.Inner;
+model Unlisted
+  Real x = 1;
+end Unlisted;

@@ -1,0 +1,3 @@
+within Ordered;
+package Inner
+end Inner;

@@ -1,0 +1,4 @@
+within Ordered;
+model Second
+  extends First;
+end Second;

@@ -1,0 +1,2 @@
+package Basics "T in °C"
+end Basics;

@@ -1,0 +1,3 @@
+package casestudies
+  extends Basics.Loads;
+end casestudies;

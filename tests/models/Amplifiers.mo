@@ -1,0 +1,31 @@
+model Amplifiers "An amplifier integrates a voltage, controlled sources and a transformer pass it on"
+  import Modelica.Electrical.Analog;
+  Analog.Sources.ConstantVoltage source(V = 2);
+  Analog.Basic.Resistor input_(R = 1000);
+  Analog.Basic.Capacitor feedback(C = 1e-3, v(start = 0, fixed = true));
+  Analog.Ideal.IdealOpAmp3Pin amplifier;
+  Analog.Basic.VCV follower(gain = 3);
+  Analog.Ideal.IdealTransformer transformer(n = 2);
+  Analog.Basic.Gyrator gyrator(G1 = 0.1, G2 = 0.1);
+  Analog.Basic.Conductor load(G = 0.05);
+  Analog.Basic.Ground ground;
+equation
+  connect(source.p, input_.p);
+  connect(input_.n, amplifier.in_n);
+  connect(feedback.p, amplifier.in_n);
+  connect(feedback.n, amplifier.out);
+  connect(amplifier.in_p, ground.p);
+  connect(source.n, ground.p);
+  connect(follower.p1, amplifier.out);
+  connect(follower.n1, ground.p);
+  connect(follower.p2, transformer.p1);
+  connect(follower.n2, ground.p);
+  connect(transformer.n1, ground.p);
+  connect(transformer.p2, gyrator.p1);
+  connect(transformer.n2, ground.p);
+  connect(gyrator.n1, ground.p);
+  connect(gyrator.p2, load.p);
+  connect(gyrator.n2, ground.p);
+  connect(load.n, ground.p);
+  annotation(experiment(StopTime = 0.5, Tolerance = 1e-9));
+end Amplifiers;

@@ -1,0 +1,490 @@
+//! Models with events, from text to trajectory, against exact solutions.
+
+use gapilib::compile::{Access, Program, System};
+use gapilib::dae::sort;
+use gapilib::diag::Diagnostic;
+use gapilib::flatten::{FlatModel, Library, flatten};
+use gapilib::sim::{OutputGrid, Settings, SimError, Simulator, Trajectory};
+use gapilib::source::SourceMap;
+use gapilib::syntax::parse_stored_definition;
+use std::sync::Arc;
+
+/// A finished simulation.
+struct Run {
+    program: Arc<Program>,
+    system: System,
+    rows: Trajectory,
+}
+
+/// The flat model of the first class of a text.
+fn flat(text: &str) -> FlatModel {
+    let source = SourceMap::default().add("model.mo", text);
+    let file = parse_stored_definition(source, text).expect("the text parses");
+    let mut library = Library::new();
+    let names = library.load(&file).expect("the classes can be loaded");
+    match flatten(&library, &names[0], &[]) {
+        Ok(flattened) => flattened.model,
+        Err(errors) => panic!("{}", errors[0].message),
+    }
+}
+
+fn compiled(text: &str) -> Result<Arc<Program>, Diagnostic> {
+    sort(&flat(text)).and_then(Program::compile)
+}
+
+fn attempt(text: &str, stop: f64) -> (Arc<Program>, System, Trajectory, Result<(), SimError>) {
+    let program = compiled(text).unwrap_or_else(|d| panic!("{}: {}", d.code.slug, d.message));
+    let mut system = program.system();
+    let output = OutputGrid::Intervals(50);
+    let settings = Settings { stop, tolerance: 1e-9, output, ..Settings::default() };
+    let mut rows = Trajectory::default();
+    let ended = Simulator::new().run(&mut system, &settings, &mut rows).map(|_| ());
+    (program, system, rows, ended)
+}
+
+fn simulated(text: &str, stop: f64) -> Run {
+    let (program, system, rows, ended) = attempt(text, stop);
+    if let Err(error) = ended {
+        panic!("{}", program.explain(&error).message);
+    }
+    Run { program, system, rows }
+}
+
+/// The model of this name in `tests/simulation`.
+fn file(name: &str) -> String {
+    let root = env!("CARGO_MANIFEST_DIR");
+    std::fs::read_to_string(format!("{root}/tests/simulation/{name}.mo")).expect("a model")
+}
+
+impl Run {
+    /// All values of a variable.
+    fn column(&self, name: &str) -> Vec<f64> {
+        let at = self.program.find_variable(name).expect("the variable exists");
+        match self.program.variables()[at].access {
+            Access::Observed { column, negated } => {
+                let sign = if negated { -1.0 } else { 1.0 };
+                self.rows.column(column).iter().map(|value| sign * value).collect()
+            }
+            Access::Time => self.rows.time().to_vec(),
+            _ => vec![self.system.value(at).expect("a parameter has a value"); self.rows.len()],
+        }
+    }
+
+    fn last(&self, name: &str) -> f64 {
+        *self.column(name).last().expect("a row")
+    }
+
+    /// The value behind all events at a time of the output grid or of an event.
+    fn at(&self, name: &str, time: f64) -> f64 {
+        let rows = self.rows.time().iter().zip(self.column(name));
+        let near = rows.filter(|(t, _)| (**t - time).abs() <= 1e-9);
+        near.collect::<Vec<_>>().pop().unwrap_or_else(|| panic!("no row at {time}")).1
+    }
+
+    /// Times at which a variable jumps.
+    fn jumps(&self, name: &str) -> Vec<f64> {
+        let (values, times) = (self.column(name), self.rows.time());
+        let pairs = values.windows(2).zip(times.windows(2));
+        pairs.filter(|(v, t)| v[0] != v[1] && t[0] == t[1]).map(|(_, t)| t[1]).collect()
+    }
+}
+
+#[track_caller]
+fn near(value: f64, expected: f64, tolerance: f64) {
+    let error = (value - expected).abs() / expected.abs().max(1.0);
+    assert!(error <= tolerance, "{value} instead of {expected}");
+}
+
+#[track_caller]
+fn all_near(values: &[f64], expected: &[f64], tolerance: f64) {
+    assert_eq!(values.len(), expected.len(), "{values:?} instead of {expected:?}");
+    values.iter().zip(expected).for_each(|(value, expected)| near(*value, *expected, tolerance));
+}
+
+#[test]
+fn a_ball_bounces_twenty_times_at_the_exact_times() {
+    let run = simulated(&file("BouncingBall"), 4.02);
+    let (e, g) = (0.8f64, 9.81f64);
+    let first = (2.0 / g).sqrt();
+    let mut expected = vec![first];
+    for n in 0..25 {
+        expected.push(expected[n] + 2.0 * first * e.powi(n as i32 + 1));
+    }
+    expected.retain(|t| *t < 4.02);
+    assert!(expected.len() >= 20, "{}", expected.len());
+    all_near(&run.jumps("impacts"), &expected, 1e-7);
+    assert_eq!(run.last("impacts"), expected.len() as f64);
+    near(run.last("last"), *expected.last().unwrap(), 1e-7);
+}
+
+#[test]
+fn a_sampled_controller_follows_its_difference_equation() {
+    let run = simulated(&file("SampledController"), 2.0);
+    let (k, decay) = (2.0, (-0.1f64).exp());
+    let mut x = 1.0;
+    for n in 0..20 {
+        let t = n as f64 * 0.1;
+        near(run.at("x", t), x, 1e-7);
+        near(run.at("u", t), -k * x, 1e-7);
+        x = x * decay - k * x * (1.0 - decay);
+    }
+    assert_eq!(run.last("n"), 21.0);
+    let times: Vec<f64> = (1..=20).map(|n| n as f64 * 0.1).collect();
+    assert_eq!(run.jumps("n"), times);
+}
+
+#[test]
+fn an_algorithm_counts_at_samples() {
+    let run = simulated(&file("Counter"), 2.0);
+    let mut total = 0.0;
+    for k in 1..=7 {
+        let n = f64::from(k % 4);
+        total += 6.0 * n;
+        let t = 0.25 * f64::from(k);
+        near(run.at("n", t), n, 0.0);
+        near(run.at("total", t), total, 0.0);
+        near(run.at("odd", t), f64::from(k % 2), 0.0);
+    }
+    near(run.at("n", 1.92), 100.0, 0.0);
+    near(run.last("n"), 101.0, 0.0);
+}
+
+#[test]
+fn a_two_point_controller_switches_at_the_exact_times() {
+    let run = simulated(&file("Hysteresis"), 2.0);
+    let first = (12.0f64 / 8.0).ln();
+    let (fall, rise) = ((12.0f64 / 10.0).ln(), (10.0f64 / 8.0).ln());
+    let mut expected = vec![first];
+    while expected[expected.len() - 1] < 2.0 {
+        let step = if expected.len() % 2 == 1 { fall } else { rise };
+        expected.push(expected[expected.len() - 1] + step);
+    }
+    expected.pop();
+    assert!(expected.len() > 6);
+    all_near(&run.jumps("on"), &expected, 1e-7);
+}
+
+#[test]
+fn a_block_sticks_and_slips() {
+    let run = simulated(&file("StickSlip"), 12.0);
+    // It breaks away at t = 2 and slides with v = 1 - cos τ + sin τ until v = 0 at τ = 3π/2; then
+    // the force is 1 - (1 - 2)= 0, and 2 more seconds pass.
+    let slide = 1.5 * std::f64::consts::PI;
+    all_near(&run.jumps("sliding"), &[2.0, 2.0 + slide, 4.0 + slide], 1e-7);
+    let v = |tau: f64| 1.0 - tau.cos() + tau.sin();
+    near(run.at("v", 4.8), v(2.8), 1e-6);
+    near(run.at("v", 7.2), 0.0, 1e-12);
+}
+
+#[test]
+fn a_network_of_gates_and_flip_flops_runs_in_step() {
+    let run = simulated(&file("Logic"), 7.0);
+    let mut q = [false; 3];
+    for step in 1..=7 {
+        q = [!q[2], q[0], q[1]];
+        let t = f64::from(step);
+        let count = q.iter().filter(|on| **on).count();
+        for (at, on) in q.iter().enumerate() {
+            near(run.at(&format!("q[{}]", at + 1), t), f64::from(u8::from(*on)), 0.0);
+        }
+        near(run.at("sum", t), f64::from(u8::from(count % 2 == 1)), 0.0);
+        near(run.at("carry", t), f64::from(u8::from(count >= 2)), 0.0);
+    }
+}
+
+#[test]
+fn the_first_active_branch_of_a_when_clause_acts() {
+    let run = simulated(&file("Priority"), 4.0);
+    near(run.at("which", 0.96), 0.0, 0.0);
+    near(run.at("which", 1.0), 1.0, 0.0);
+    near(run.at("which", 2.0), 2.0, 0.0);
+    near(run.at("which", 3.0), 3.0, 0.0);
+    near(run.at("first", 0.0), 1.0, 0.0);
+    near(run.last("first"), 2.0, 0.0);
+}
+
+#[test]
+fn functions_that_jump_cause_events() {
+    let run = simulated(&file("Rounding"), 2.0);
+    for k in 1..50 {
+        let t = 0.04 * f64::from(k);
+        let x = 3.0 * t.sin();
+        near(run.at("down", t), x.floor(), 0.0);
+        near(run.at("up", t), x.ceil(), 0.0);
+        near(run.at("quotient", t), (x / 2.0).trunc(), 0.0);
+        if k % 25 != 0 {
+            near(run.at("whole", t), (2.0 * t).floor(), 0.0);
+            near(run.at("saw", t), t - (t / 0.5).floor() * 0.5, 1e-9);
+        }
+        if k % 15 != 0 {
+            near(run.at("back", t), -(t - (t / 0.3).floor() * 0.3), 1e-9);
+        }
+    }
+    assert_eq!(run.jumps("whole"), [0.5, 1.0, 1.5, 2.0]);
+    near(run.last("area"), 0.5, 1e-7);
+    all_near(&run.jumps("down")[..2], &[(1.0f64 / 3.0).asin(), (2.0f64 / 3.0).asin()], 1e-8);
+}
+
+#[test]
+fn an_if_equation_switches_at_its_conditions() {
+    let run = simulated(&file("Switch"), 3.0);
+    let half = 1.0 + 2.0f64.ln();
+    near(run.at("x", 0.6), 0.6, 1e-9);
+    near(run.at("y", 0.6), 0.6, 1e-9);
+    near(run.at("x", 1.5), (-0.5f64).exp(), 1e-7);
+    near(run.at("y", 1.5), 2.0 * (-0.5f64).exp(), 1e-7);
+    near(run.last("x"), 0.5, 1e-7);
+    near(run.last("y"), -0.5, 1e-7);
+    all_near(&run.jumps("y"), &[1.0, half], 1e-7);
+}
+
+#[test]
+fn a_relay_without_hysteresis_chatters_and_is_reported() {
+    for (body, time) in [
+        ("equation der(x) = if x > 0 then -1 else 1;", 1.0),
+        ("Boolean b = x > 0; equation der(x) = if b then -1 - x else 1;", 2.0f64.ln()),
+    ] {
+        let text = &format!("model R Real x(start = 1, fixed = true); {body} end R;");
+        let (program, _, rows, ended) = attempt(text, 2.0);
+        let error = ended.expect_err("it cannot slide");
+        near(error.time, time, 1e-2);
+        assert_eq!(program.explain(&error).code.slug, "simulation-failed");
+        assert!(rows.len() < 10_000, "{}", rows.len());
+    }
+}
+
+#[test]
+fn logic_without_a_stable_state_is_reported() {
+    let text = "model O Boolean a(start = false); Boolean b = time > 0.5;
+        equation a = b and not pre(a); end O;";
+    let (program, _, _, ended) = attempt(text, 1.0);
+    let error = ended.expect_err("it does not settle");
+    near(error.time, 0.5, 1e-9);
+    let diagnostic = program.explain(&error);
+    assert!(diagnostic.message.contains("`a`"), "{}", diagnostic.message);
+}
+
+#[test]
+fn a_latch_of_two_gates_keeps_its_state() {
+    let text = "model L Boolean s = time > 1 and time < 1.5; Boolean r = time > 2 and time < 2.5;
+        Boolean q(start = false); Boolean n(start = true);
+        equation q = not (r or n); n = not (s or q); end L;";
+    let run = simulated(text, 3.0);
+    for (t, q) in [(0.6, 0.0), (1.2, 1.0), (1.8, 1.0), (2.1, 0.0), (3.0, 0.0)] {
+        near(run.at("q", t), q, 0.0);
+        near(run.at("n", t), 1.0 - q, 0.0);
+    }
+}
+
+#[test]
+fn a_discrete_value_and_a_continuous_one_are_solved_together() {
+    // y = 2u + x and u = 1 - y at samples: u = (1 - x)/3.
+    let text = "model C Real x = time; Real y; discrete Real u(start = 0);
+        equation y = 2*u + x; when sample(0, 0.5) then u = 1 - y; end when; end C;";
+    let run = simulated(text, 1.2);
+    near(run.at("u", 0.5), 0.5 / 3.0, 1e-12);
+    near(run.at("y", 0.6), 1.0 / 3.0 + 0.6, 1e-12);
+    near(run.last("u"), 0.0, 1e-12);
+}
+
+#[test]
+fn terminate_ends_and_terminal_acts_at_the_end() {
+    let text = "model T Real x(start = 0, fixed = true); Integer n(start = 0); Boolean done(start = false);
+        equation der(x) = 1; when x > 0.7 then terminate(\"enough\"); end when;
+        when terminal() then n = 5; done = true; end when; end T;";
+    let run = simulated(text, 2.0);
+    near(run.last("time"), 0.7, 1e-9);
+    assert_eq!(run.last("n"), 5.0);
+    assert_eq!(run.last("done"), 1.0);
+}
+
+#[test]
+fn an_assertion_at_an_event_holds_at_that_event_only() {
+    let text = |limit: f64| {
+        format!(
+            "model A Real x(start = 0, fixed = true); equation der(x) = 1;
+             when sample(1, 1) then assert(x < {limit}, \"too large\"); end when; end A;"
+        )
+    };
+    simulated(&text(2.5), 2.9);
+    let (program, _, _, ended) = attempt(&text(1.5), 2.9);
+    let error = ended.expect_err("x is 2 at the second sample");
+    near(error.time, 2.0, 1e-12);
+    assert_eq!(program.explain(&error).code.slug, "assertion-failed");
+}
+
+#[test]
+fn samples_do_not_drift() {
+    let text = "model S Integer n(start = 0); discrete Real t(start = 0); Integer both(start = 0);
+        equation when sample(0, 0.1) then n = pre(n) + 1; t = time; end when;
+        when sample(0, 0.1) and sample(0, 0.3) then both = pre(both) + 1; end when; end S;";
+    let run = simulated(text, 1000.0);
+    assert_eq!(run.last("n"), 10_001.0);
+    assert_eq!(run.last("both"), 3_334.0);
+    let times: Vec<f64> = (1..=10_000).map(|i| f64::from(i) * 0.1).collect();
+    all_near(&run.jumps("n"), &times, 1e-12);
+}
+
+#[test]
+fn enumerations_step_through_states() {
+    let text = "model E type Light = enumeration(red, green, yellow); Light light(start = Light.red, fixed = true);
+        Integer k; equation when sample(1, 1) then
+        if pre(light) == Light.red then light = Light.green; elseif pre(light) == Light.green then
+        light = Light.yellow; else light = Light.red; end if;
+        end when; k = if light == Light.yellow then 10 else Integer(light); end E;";
+    let run = simulated(text, 4.5);
+    for (t, light, k) in
+        [(0.9, 1.0, 1.0), (1.0, 2.0, 2.0), (2.0, 3.0, 10.0), (3.0, 1.0, 1.0), (4.0, 2.0, 2.0)]
+    {
+        near(run.at("light", t), light, 0.0);
+        near(run.at("k", t), k, 0.0);
+    }
+}
+
+#[test]
+fn initial_values_of_discrete_variables_follow_initial_equations() {
+    let text = "model I Integer a(start = 3); Integer b(start = 4, fixed = true); Real x; discrete Real d;
+        initial equation pre(a) = 7; der(x) = 0; d = 2;
+        equation der(x) = 1 - x/d; when time > 1 then a = pre(a) + b; b = pre(b) + 1; d = 4; end when; end I;";
+    let run = simulated(text, 2.0);
+    assert_eq!((run.at("a", 0.0), run.at("b", 0.0), run.at("d", 0.0)), (7.0, 4.0, 2.0));
+    near(run.at("x", 0.0), 2.0, 1e-12);
+    assert_eq!((run.last("a"), run.last("b")), (12.0, 5.0));
+    near(run.last("x"), 4.0 - 2.0 * (-0.25f64).exp(), 1e-7);
+}
+
+#[test]
+fn change_and_edge_see_both_directions() {
+    let text = "model D Boolean b = sin(6*time) > 0; Integer up(start = 0); Integer any(start = 0);
+        equation when edge(b) then up = pre(up) + 1; end when;
+        when change(b) then any = pre(any) + 1; end when; end D;";
+    let run = simulated(text, 3.0);
+    assert_eq!(run.last("up"), 3.0);
+    assert_eq!(run.last("any"), 6.0);
+}
+
+#[test]
+fn parameters_that_are_not_fixed_follow_from_the_initial_equations() {
+    let text = "model P parameter Real k(fixed = false, start = 1); parameter Real twice = 2*k; parameter Real x0 = 3;
+        Real x(start = 1); initial equation x = x0; der(x) = -6; equation der(x) = -k*x; end P;";
+    let run = simulated(text, 1.0);
+    near(run.last("k"), 2.0, 1e-12);
+    near(run.last("twice"), 4.0, 1e-12);
+    near(run.last("x"), 3.0 * (-2.0f64).exp(), 1e-7);
+}
+
+#[test]
+fn initial_algorithms_set_parameters_and_states() {
+    let text =
+        "model A final parameter Integer n = 4; parameter Real s(fixed = false); Real x(start = 9);
+        initial algorithm s := 0; for i in 1:n loop s := s + i; end for; x := 2*s;
+        equation der(x) = s; end A;";
+    let run = simulated(text, 1.0);
+    near(run.last("s"), 10.0, 1e-12);
+    near(run.at("x", 0.0), 20.0, 1e-12);
+    near(run.last("x"), 30.0, 1e-7);
+}
+
+/// The fault of a model that cannot be sorted or compiled: code, message, helps.
+fn refused(text: &str) -> String {
+    match compiled(text) {
+        Ok(_) => panic!("the model is accepted"),
+        Err(d) => format!("{}: {}; {}", d.code.slug, d.message, d.helps.join("; ")),
+    }
+}
+
+#[test]
+fn an_initial_system_that_does_not_fit_is_reported_by_name() {
+    let many = refused(
+        "model M Real x(start = 1, fixed = true); initial equation x = 2; equation der(x) = 1; end M;",
+    );
+    assert!(many.starts_with("unbalanced-model: the initial system of `M` has"), "{many}");
+    assert!(many.contains("determine `x` more than once"), "{many}");
+    let few = refused(
+        "model M parameter Real p(fixed = false); Real x(start = 1, fixed = true); equation der(x) = p; end M;",
+    );
+    assert!(few.contains("add an equation that determines") && few.contains("`p`"), "{few}");
+}
+
+#[test]
+fn what_hybrid_models_may_not_do_is_refused_with_a_reason() {
+    for (body, reason) in [
+        ("Boolean b = noEvent(x > 1);", "may change between events"),
+        (
+            "discrete Real d; Real free; equation when x > 1 then d = 1; end when; when x > 2 then d = 2; end when;",
+            "assigned by two when-clauses",
+        ),
+        (
+            "Integer n; equation when x > 1 then when x > 2 then n = 1; end when; end when;",
+            "`when` inside `when`",
+        ),
+        ("Boolean a; Boolean b; equation a = not b; b and a = true;", "discrete"),
+        ("Real y; equation y = x; when x > 1 then reinit(2*y, 1); end when;", "no state"),
+        ("Real y = pre(x) + pre(2*x);", "no variable"),
+        ("Boolean s = sample(x, 1);", "parameters"),
+    ] {
+        let text = format!("model M Real x = time; {body} end M;");
+        let fault = refused(&text);
+        assert!(fault.contains(reason), "{body}: {fault}");
+    }
+}
+
+#[test]
+fn a_delayed_equation_follows_its_pieces() {
+    // x' = -x(t - 1), x = 1 before the start: x = 1 - t, then 1 - t + (t - 1)²/2, …
+    let text = "model D Real x(start = 1, fixed = true); equation der(x) = -delay(x, 1); end D;";
+    let run = simulated(text, 3.0);
+    near(run.at("x", 0.6), 0.4, 1e-7);
+    near(run.at("x", 1.8), 1.0 - 1.8 + 0.32, 1e-6);
+    let t = 3.0f64;
+    let exact = 1.0 - t + (t - 1.0).powi(2) / 2.0 - (t - 2.0).powi(3) / 6.0;
+    near(run.last("x"), exact, 1e-6);
+}
+
+#[test]
+fn delayed_jumps_arrive_at_the_exact_time() {
+    let text = "model J parameter Real d = 0.35; Real u = if time > 0.5 then 2 + sin(time) else 0; Real y = delay(u, d);
+        Real area(start = 0, fixed = true); Boolean late = y > 1; Real twice = delay(y, 0.4, 1);
+        equation der(area) = y; end J;";
+    let run = simulated(text, 2.0);
+    all_near(&run.jumps("y"), &[0.85], 1e-12);
+    all_near(&run.jumps("late"), &[0.85], 1e-12);
+    all_near(&run.jumps("twice"), &[1.25], 1e-12);
+    near(run.at("y", 1.0), 2.0 + 0.65f64.sin(), 1e-7);
+    near(run.at("twice", 1.6), 2.0 + 0.85f64.sin(), 1e-7);
+    near(run.last("area"), 2.0 * 1.15 + 0.5f64.cos() - 1.65f64.cos(), 1e-6);
+}
+
+#[test]
+fn a_sample_that_is_shown_is_true_at_its_instants_only() {
+    let text = "model S Boolean b = sample(0.5, 0.5); Integer n(start = 0); Integer off(start = 0);
+        equation when b then n = pre(n) + 1; end when; when not b then off = pre(off) + 1; end when; end S;";
+    let run = simulated(text, 2.1);
+    let rows = run.rows.time().iter().zip(run.column("b"));
+    let on: Vec<f64> = rows.filter(|(_, b)| *b != 0.0).map(|(t, _)| *t).collect();
+    assert_eq!(on, [0.5, 1.0, 1.5, 2.0]);
+    assert_eq!((run.last("b"), run.last("n"), run.last("off")), (0.0, 4.0, 4.0));
+}
+
+#[test]
+fn functions_in_when_clauses_check_their_arguments_when_called_only() {
+    let text = "model F function root input Real x; output Real y; algorithm assert(x >= 0, \"negative\"); y := sqrt(x); end root;
+        Real x = 1 - time; discrete Real r(start = 0); Real a; discrete Real s(start = 0);
+        equation when time > 0.5 then r = root(x); end when;
+        algorithm a := 0; if x > 0 then a := root(x); end if; when time > 0.75 then s := root(x); end when; end F;";
+    let run = simulated(text, 2.0);
+    near(run.last("r"), 0.5f64.sqrt(), 1e-9);
+    near(run.last("s"), 0.5, 1e-9);
+    near(run.last("a"), 0.0, 0.0);
+}
+
+#[test]
+fn initial_selects_what_holds_at_the_start() {
+    let text =
+        "model I Real x(start = 5); Real y; equation der(x) = 1; y = if initial() then 2 else x;
+        when initial() then reinit(x, 3); end when; end I;";
+    let run = simulated(text, 1.0);
+    near(run.at("x", 0.0), 3.0, 1e-12);
+    near(run.at("y", 0.0), 3.0, 1e-12);
+    near(run.last("x"), 4.0, 1e-9);
+}
