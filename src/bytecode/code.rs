@@ -2,6 +2,7 @@
 
 use super::elementary::Elementary;
 use super::failure::{Failure, Reason};
+use crate::external::{Entry, Slot};
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
 use std::sync::Arc;
@@ -53,6 +54,8 @@ pub enum Instruction {
     JumpUnless { a: Register, target: u32 },
     /// Another function: its inputs are copied from `a` on, its outputs to `d` and on.
     Call { function: u32, d: Register, a: Register },
+    /// The external function of this number.
+    External { external: u32 },
     /// Fails if one of `n` registers has no value.
     Check { a: Register, n: u32 },
     /// Fails unless `a` holds.
@@ -78,10 +81,31 @@ pub struct Code {
     pub constants: Vec<(Register, f64)>,
     /// Texts of assertions.
     pub messages: Vec<Arc<str>>,
+    /// Texts that external functions take.
+    pub texts: Vec<Arc<str>>,
+    /// External functions.
+    pub externals: Vec<ExternalCall>,
     /// First instruction of every place, ascending.
     pub places: Vec<(u32, Span)>,
     /// A function for its derivative, `annotation(derivative = …)` (MLS §12.7.1).
     pub derivative: Option<Derivative>,
+}
+
+/// A call of an external function; slots are registers of the frame.
+#[derive(Clone)]
+pub struct ExternalCall {
+    /// The function.
+    pub entry: &'static Entry,
+    /// Its arguments.
+    pub arguments: Vec<Slot>,
+    /// Its result.
+    pub result: Option<Slot>,
+}
+
+impl std::fmt::Debug for ExternalCall {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ExternalCall").field("name", &self.entry.name).finish_non_exhaustive()
+    }
 }
 
 /// A function that computes the derivatives of another.
@@ -132,6 +156,10 @@ impl Functions {
             }
             (Reason::NotFinite, Some(Instruction::Div { .. })) => {
                 "a division by zero or an overflow of a division".to_owned()
+            }
+            (Reason::External, Some(Instruction::External { external })) => {
+                let name = code.externals[*external as usize].entry.name;
+                format!("the external function `{name}` has no result")
             }
             (reason, _) => reason.words().to_owned(),
         };

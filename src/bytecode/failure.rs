@@ -29,13 +29,15 @@ pub enum Reason {
     Budget,
     /// Calls nested too deep.
     Depth,
+    /// An external function has no result; the machine knows why.
+    External,
     /// The derivative does not exist or is not finite.
     Derivative,
 }
 
 impl Reason {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Reason; 8] = [
+    pub const ALL: [Reason; 9] = [
         Reason::NotFinite,
         Reason::Unassigned,
         Reason::Subscript,
@@ -43,6 +45,7 @@ impl Reason {
         Reason::Range,
         Reason::Budget,
         Reason::Depth,
+        Reason::External,
         Reason::Derivative,
     ];
 
@@ -56,6 +59,7 @@ impl Reason {
             Reason::Range => "the range of a loop has no end",
             Reason::Budget => "a loop does not end",
             Reason::Depth => "calls are nested too deep",
+            Reason::External => "an external function has no result",
             Reason::Derivative => "the derivative is not finite",
         }
     }

@@ -1,6 +1,7 @@
 //! Runs functions on a stack that is kept between calls.
 
-use super::code::{Code, Functions, Instruction};
+use super::code::{Code, Derivative, Functions, Instruction};
+use super::external::{Externals, RunExternal};
 use super::failure::{Failure, Reason};
 use super::number::{Dual, Number};
 
@@ -20,6 +21,7 @@ pub struct Machine {
     /// Callers, innermost last.
     callers: Vec<Caller>,
     slopes: Vec<f64>,
+    externals: Externals,
     budget: u64,
 }
 
@@ -41,6 +43,16 @@ struct Caller {
 }
 
 impl Machine {
+    /// Forgets all external objects.
+    pub fn clear_objects(&mut self) {
+        self.externals.objects.clear();
+    }
+
+    /// What the external function said that failed last.
+    pub fn message(&self) -> &str {
+        &self.externals.message
+    }
+
     /// Calls a function; returns its scalar outputs.
     pub fn call(
         &mut self,
@@ -110,14 +122,45 @@ impl Machine {
     }
 
     /// Runs a function whose frame stands at the bottom of the stack.
-    fn run<T: Number>(&mut self, functions: &Functions, function: u32) -> Result<(), Failure> {
+    fn run<T: Differentiate>(
+        &mut self,
+        functions: &Functions,
+        function: u32,
+    ) -> Result<(), Failure> {
         let mut stack = std::mem::take(T::stack(&mut self.stacks));
-        let result = self.run_at(functions, function, 0, &mut stack);
+        let code = &functions.codes[function as usize];
+        let mut result = Ok(false);
+        if let Some(derivative) = &code.derivative {
+            let (arguments, results) = (0..code.n_inputs as usize, code.outputs as usize);
+            let stack = &mut stack;
+            result =
+                T::differentiate(self, functions, function, derivative, stack, arguments, results);
+        }
+        if matches!(result, Ok(false)) {
+            result = self.run_at(functions, function, 0, &mut stack).map(|()| true);
+        }
         *T::stack(&mut self.stacks) = stack;
-        result
+        result.map(|_| ())
     }
 
-    fn run_at<T: Number>(
+    /// Runs a function on a stack of its own, while others run on numbers of another kind.
+    fn nested<T: Differentiate>(
+        &mut self,
+        functions: &Functions,
+        function: u32,
+        arguments: &[T],
+    ) -> Result<Vec<T>, Failure> {
+        let code = &functions.codes[function as usize];
+        let mut stack = std::mem::take(T::stack(&mut self.stacks));
+        grow(&mut stack, code.frame as usize);
+        stack[..arguments.len()].copy_from_slice(arguments);
+        let result = self.run_at(functions, function, 0, &mut stack);
+        let outputs = stack[code.outputs as usize..][..code.n_outputs as usize].to_vec();
+        *T::stack(&mut self.stacks) = stack;
+        result.map(|()| outputs)
+    }
+
+    fn run_at<T: Differentiate>(
         &mut self,
         functions: &Functions,
         mut function: u32,
@@ -142,7 +185,12 @@ impl Machine {
                         (caller.function, caller.at as usize, caller.base as usize);
                     code = &functions.codes[function as usize];
                 }
-                Ok(Some(call)) => {
+                Ok(Some(Wanted::External(external))) => {
+                    let external = &code.externals[external as usize];
+                    T::run_external(code, external, &mut stack[base..], &mut self.externals)
+                        .map_err(|reason| Failure { function, at: at as u32 - 1, reason })?;
+                }
+                Ok(Some(Wanted::Call(call))) => {
                     let callee = &functions.codes[call.function as usize];
                     let next = base + code.frame as usize;
                     let here = |reason| Failure { function, at: at as u32 - 1, reason };
@@ -151,6 +199,21 @@ impl Machine {
                     }
                     grow(stack, next + callee.frame as usize);
                     let first = base + call.arguments as usize;
+                    if let Some(derivative) = &callee.derivative {
+                        let arguments = first..first + callee.n_inputs as usize;
+                        let results = base + call.results as usize;
+                        if T::differentiate(
+                            self,
+                            functions,
+                            call.function,
+                            derivative,
+                            stack,
+                            arguments,
+                            results,
+                        )? {
+                            continue;
+                        }
+                    }
                     stack.copy_within(first..first + callee.n_inputs as usize, next);
                     self.callers.push(Caller {
                         function,
@@ -170,11 +233,76 @@ impl Machine {
     }
 }
 
+/// What a function wants its machine to do.
+enum Wanted {
+    Call(Call),
+    External(u32),
+}
+
 /// A call that a function wants.
 struct Call {
     function: u32,
     arguments: u32,
     results: u32,
+}
+
+/// Numbers whose derivatives another function may compute.
+trait Differentiate: RunExternal {
+    /// Calls a function with its derivative function, from and to the stack; whether this is
+    /// possible.
+    fn differentiate(
+        machine: &mut Machine,
+        functions: &Functions,
+        function: u32,
+        derivative: &Derivative,
+        stack: &mut [Self],
+        arguments: std::ops::Range<usize>,
+        results: usize,
+    ) -> Result<bool, Failure>;
+}
+
+impl Differentiate for f64 {
+    fn differentiate(
+        _: &mut Machine,
+        _: &Functions,
+        _: u32,
+        _: &Derivative,
+        _: &mut [f64],
+        _: std::ops::Range<usize>,
+        _: usize,
+    ) -> Result<bool, Failure> {
+        Ok(false)
+    }
+}
+
+impl<T: Differentiate> Differentiate for Dual<T>
+where
+    Dual<T>: RunExternal,
+{
+    fn differentiate(
+        machine: &mut Machine,
+        functions: &Functions,
+        function: u32,
+        derivative: &Derivative,
+        stack: &mut [Self],
+        arguments: std::ops::Range<usize>,
+        results: usize,
+    ) -> Result<bool, Failure> {
+        let given: Vec<Self> = stack[arguments].to_vec();
+        if derivative.zero.iter().any(|input| !given[*input as usize].d.is_zero()) {
+            return Ok(false);
+        }
+        let values: Vec<T> = given.iter().map(|x| x.v).collect();
+        let mut extended = values.clone();
+        extended.extend(derivative.tangents.iter().map(|input| given[*input as usize].d));
+        let values = machine.nested(functions, function, &values)?;
+        let slopes = machine.nested(functions, derivative.function, &extended)?;
+        for (at, (v, slope)) in values.into_iter().zip(&derivative.outputs).enumerate() {
+            let d = slope.map_or(T::constant(0.0), |slope| slopes[slope as usize]);
+            stack[results + at] = Dual { v, d };
+        }
+        Ok(true)
+    }
 }
 
 fn unit(at: usize, input: u32) -> f64 {
@@ -199,7 +327,7 @@ fn execute<T: Number>(
     at: &mut usize,
     r: &mut [T],
     budget: &mut u64,
-) -> Result<Option<Call>, Reason> {
+) -> Result<Option<Wanted>, Reason> {
     let truth = |holds: bool| T::constant(f64::from(u8::from(holds)));
     while let Some(instruction) = code.instructions.get(*at) {
         *at += 1;
@@ -267,7 +395,10 @@ fn execute<T: Number>(
             }
             Instruction::Call { function, d, a } => {
                 spend(budget, *at, 0)?;
-                return Ok(Some(Call { function, arguments: a, results: d }));
+                return Ok(Some(Wanted::Call(Call { function, arguments: a, results: d })));
+            }
+            Instruction::External { external } => {
+                return Ok(Some(Wanted::External(external)));
             }
             Instruction::Check { a, n } => {
                 if r[a as usize..(a + n) as usize].iter().any(|value| value.value().is_nan()) {

@@ -15,12 +15,14 @@
 
 mod code;
 mod elementary;
+mod external;
 mod failure;
 mod machine;
 mod number;
 
-pub use code::{Code, Derivative, Functions, Instruction, Register};
+pub use code::{Code, Derivative, ExternalCall, Functions, Instruction, Register};
 pub use elementary::Elementary;
+pub use external::{Externals, RunExternal};
 pub use failure::{Failure, Reason};
 pub use machine::Machine;
 pub use number::{Dual, Number};

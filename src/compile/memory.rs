@@ -45,6 +45,11 @@ impl Memory {
 }
 
 impl Calls {
+    /// Forgets the external objects, which parameters make anew.
+    pub(super) fn clear_objects(&mut self) {
+        self.machine.clear_objects();
+    }
+
     pub(super) fn run(&mut self, call: &Call, r: &mut [f64]) -> Result<(), Failure> {
         let arguments = call.arguments.iter().map(|a| r[*a as usize]);
         let results = match call.inputs.is_empty() {

@@ -804,6 +804,7 @@ fn variables(sorted: &SortedDae, observed: &[VarId]) -> Vec<VariableInfo> {
         let access = match v.kind {
             Kind::Time => Access::Time,
             Kind::Constant(value) => Access::Constant(value),
+            Kind::Parameter { .. } if matches!(v.base, BaseType::ExternalObject(_)) => continue,
             Kind::Parameter { .. } | Kind::Solved => Access::Parameter,
             Kind::Frozen | Kind::Text | Kind::Previous(_) | Kind::Signal | Kind::Delayed => {
                 continue;

@@ -159,6 +159,7 @@ impl System {
 
     fn evaluate_parameters(&mut self) -> Result<(), Failure> {
         let program = self.program.clone();
+        self.registers.calls.clear_objects();
         let mut tunable = 0;
         // Slots of set values first: tapes run in order of dependence, not of declaration.
         let mut given: Vec<(VarId, f64)> = Vec::new();

@@ -13,6 +13,9 @@ use crate::syntax::ast::{self, EquationKind, Expression, ExpressionKind};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
+/// Stands for a text that is not known when compiling.
+pub(super) const UNKNOWN_TEXT: &str = "…";
+
 /// Largest number of scalar equations.
 const MAX_EQUATIONS: usize = 2_000_000;
 
@@ -164,7 +167,8 @@ impl<'a> Builder<'a> {
                 continue;
             }
             let first = self.first[position].0 as usize;
-            let is_parameter = variable.variability <= Variability::Parameter;
+            let is_parameter = variable.variability <= Variability::Parameter
+                || matches!(variable.base, BaseType::ExternalObject(_));
             if let Some(binding) = &variable.binding {
                 let array = self.sized(binding, &variable.dims)?;
                 for (at, element) in array.elements.into_iter().enumerate() {
@@ -255,7 +259,11 @@ impl<'a> Builder<'a> {
     }
 
     /// A value that must have these sizes; a scalar is repeated.
-    fn sized(&mut self, e: &Expression, dims: &[usize]) -> Result<Array<Expr>, Diagnostic> {
+    pub(super) fn sized(
+        &mut self,
+        e: &Expression,
+        dims: &[usize],
+    ) -> Result<Array<Expr>, Diagnostic> {
         let array = Lowering::new(self).array(e)?;
         if array.dims == dims {
             return Ok(array);
@@ -548,6 +556,8 @@ fn declared(variable: &flatten::Variable, position: usize) -> Variable {
     };
     let kind = match (&variable.base, variable.variability) {
         (BaseType::String, _) => Kind::Text,
+        // Its constructor runs once, before the simulation.
+        (BaseType::ExternalObject(_), _) => Kind::Parameter { tunable: false },
         (_, Variability::Constant | Variability::Parameter) => {
             Kind::Parameter { tunable: variable.is_tunable() }
         }

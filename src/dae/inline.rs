@@ -449,9 +449,11 @@ pub(super) fn component_shape<T: Target>(
             };
             Ok(Shape::Record(fields.iter().map(shape).collect::<Result<_, Diagnostic>>()?))
         }
-        ValueType::Real | ValueType::Integer | ValueType::Boolean | ValueType::Enumeration(_) => {
-            Ok(Shape::Array(dims))
-        }
+        ValueType::Real
+        | ValueType::Integer
+        | ValueType::Boolean
+        | ValueType::Enumeration(_)
+        | ValueType::ExternalObject(_) => Ok(Shape::Array(dims)),
         _ => Err(fault!(
             NOT_SUPPORTED,
             "`{}` is of a type that functions in equations cannot have",

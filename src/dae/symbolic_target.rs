@@ -1,8 +1,8 @@
 //! Lowering into the symbolic expressions of a [`Dae`](super::model::Dae).
 
-use super::build::{Builder, scalar_of_nothing};
+use super::build::{Builder, Folding, UNKNOWN_TEXT, scalar_of_nothing};
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
-use super::lowering::{Array, Binary, Branch, Lowered, Operator, Target, Unary};
+use super::lowering::{Array, Binary, Branch, Lowered, Lowering, Operator, Target, Unary};
 use super::model::{Kind, Relation};
 use crate::diag::Diagnostic;
 use crate::eval::Function;
@@ -106,6 +106,10 @@ impl Target for Builder<'_> {
         pairs.map(|(a, b)| self.dae.pool.if_then_else(branch.condition, *a, *b)).collect()
     }
 
+    fn settle(&mut self, condition: Expr) -> Option<f64> {
+        self.settled(condition, 0)
+    }
+
     fn element(&mut self, _: &[Expr], _: Expr, span: Span) -> Result<Expr, Diagnostic> {
         Err(fault!(NO_CONSTANT_VALUE, "this subscript must be known when the model is compiled";
             help: "use a constant, or a parameter that is `final` or has `annotation(Evaluate = true)`")
@@ -125,7 +129,7 @@ impl Target for Builder<'_> {
             return self.record(path).ok_or_else(|| self.unresolved(path, reference.span));
         };
         if variable.base == BaseType::String {
-            return Ok(Lowered::Text("…".into()));
+            return Ok(Lowered::Text(self.text(position)));
         }
         if variable.variability <= Variability::Parameter {
             self.fold(position)?;
@@ -211,6 +215,51 @@ impl Target for Builder<'_> {
 }
 
 impl Builder<'_> {
+    /// The value of an expression of parameters with the values they are declared with; they
+    /// cannot be set any more.
+    fn settled(&mut self, e: Expr, depth: usize) -> Option<f64> {
+        const MAX_DEPTH: usize = 30;
+        if let Some(value) = self.dae.pool.as_constant(e) {
+            return Some(value);
+        }
+        let mut values = rustc_hash::FxHashMap::default();
+        for variable in self.dae.pool.variables(e) {
+            if depth >= MAX_DEPTH
+                || !matches!(self.dae.variable(variable).kind, Kind::Parameter { .. })
+            {
+                return None;
+            }
+            let position = self.first.partition_point(|first| first.0 <= variable.0) - 1;
+            let flat = self.flat;
+            let declared = &flat.variables[position];
+            let bound = self.sized(declared.binding.as_ref()?, &declared.dims).ok()?;
+            let element = (variable.0 - self.first[position].0) as usize;
+            let value = self.settled(*bound.elements.get(element)?, depth + 1)?;
+            self.dae.variables[variable.0 as usize].kind = Kind::Parameter { tunable: false };
+            values.insert(variable, self.dae.pool.constant(value));
+        }
+        let replacement = |variable| values.get(&variable).copied();
+        let known = crate::symbolic::substitute(&mut self.dae.pool, e, &replacement);
+        self.dae.pool.as_constant(known)
+    }
+
+    /// The text that a variable is bound to, [`UNKNOWN_TEXT`] if that is not known.
+    fn text(&mut self, position: usize) -> Arc<str> {
+        let flat = self.flat;
+        let unknown = || Arc::from(UNKNOWN_TEXT);
+        let Some(binding) = &flat.variables[position].binding else { return unknown() };
+        if self.folding[position] == Folding::InProgress {
+            return unknown();
+        }
+        let before = std::mem::replace(&mut self.folding[position], Folding::InProgress);
+        let lowered = Lowering::new(self).lower(binding);
+        self.folding[position] = before;
+        match lowered {
+            Ok(Lowered::Text(text)) => text,
+            _ => unknown(),
+        }
+    }
+
     /// Whether an expression is made of parameters and numbers alone.
     pub(super) fn is_parametric(&self, a: Expr) -> bool {
         let fixed =

@@ -15,21 +15,22 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("diag", &["source"]),
     ("registry", &["diag"]),
     ("symbolic", &["diag"]),
-    ("bytecode", &["symbolic", "source"]),
+    ("bytecode", &["external", "symbolic", "source", "diag"]),
     ("mat", &["diag"]),
+    ("external", &["mat", "diag"]),
     ("plot", &["diag"]),
     ("sim", &["registry", "diag"]),
     ("ga", &["registry", "diag"]),
     ("value", &["name", "diag"]),
     ("syntax", &["source", "name", "diag"]),
-    ("eval", &["syntax", "value", "symbolic", "name", "source", "diag"]),
+    ("eval", &["external", "syntax", "value", "symbolic", "name", "source", "diag"]),
     ("results", &["sim", "mat", "registry", "diag"]),
     ("flatten", &["syntax", "eval", "value", "symbolic", "name", "source", "diag"]),
     (
         "dae",
         &[
-            "bytecode", "flatten", "eval", "value", "syntax", "symbolic", "graph", "name",
-            "source", "diag",
+            "bytecode", "external", "flatten", "eval", "value", "syntax", "symbolic", "graph",
+            "name", "source", "diag",
         ],
     ),
     (
@@ -43,8 +44,9 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "script",
         &[
-            "identify", "compile", "dae", "flatten", "eval", "value", "syntax", "symbolic",
-            "results", "plot", "mat", "sim", "ga", "registry", "models", "name", "source", "diag",
+            "identify", "compile", "dae", "external", "flatten", "eval", "value", "syntax",
+            "symbolic", "results", "plot", "mat", "sim", "ga", "registry", "models", "name",
+            "source", "diag",
         ],
     ),
     (

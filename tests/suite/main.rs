@@ -7,6 +7,7 @@ mod compat;
 mod compliance;
 mod conformance;
 mod diagnostics;
+mod external;
 mod flat_class;
 mod flattening;
 mod flattening_properties;

@@ -1,6 +1,6 @@
 //! Writes the instructions of one function and hands out its registers.
 
-use crate::bytecode::{Code, Instruction, Register};
+use crate::bytecode::{Code, ExternalCall, Instruction, Register};
 use crate::source::Span;
 use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
@@ -19,6 +19,8 @@ pub(super) struct Emitter {
     instructions: Vec<Instruction>,
     places: Vec<(u32, Span)>,
     messages: Vec<Arc<str>>,
+    texts: Vec<Arc<str>>,
+    externals: Vec<ExternalCall>,
     constants: FxHashMap<u64, Register>,
     values: Vec<(Register, f64)>,
     next: Register,
@@ -55,6 +57,8 @@ impl Emitter {
             constants: self.values,
             messages: self.messages,
             places: self.places,
+            texts: self.texts,
+            externals: self.externals,
             derivative: None,
         }
     }
@@ -77,6 +81,16 @@ impl Emitter {
     pub(super) fn message(&mut self, text: Arc<str>) -> u32 {
         self.messages.push(text);
         self.messages.len() as u32 - 1
+    }
+
+    pub(super) fn text(&mut self, text: Arc<str>) -> u32 {
+        self.texts.push(text);
+        self.texts.len() as u32 - 1
+    }
+
+    pub(super) fn external(&mut self, call: ExternalCall) -> u32 {
+        self.externals.push(call);
+        self.externals.len() as u32 - 1
     }
 
     pub(super) fn checkpoint(&self) -> Checkpoint {

@@ -47,6 +47,8 @@ pub(crate) struct Instance {
     pub(super) code: u32,
     /// Shapes of its outputs.
     pub(super) outputs: Vec<Shape>,
+    /// Whether a call with numbers is a number.
+    pub(super) folds: bool,
     /// Which arguments are passed; the others are known.
     pub(super) passed: Vec<bool>,
 }
@@ -105,12 +107,12 @@ impl Instances {
             return Err(failed.clone());
         }
         let name = &function.name;
-        let FunctionBody::Algorithm(statements) = &function.body else {
-            return Err(fault!(
-                NOT_SUPPORTED,
-                "the function `{name}` is external and cannot be used in equations"
-            )
-            .at(span));
+        if let Some(reason) = super::external::refusal(function) {
+            return Err(fault!(NOT_SUPPORTED, "the function `{name}` {reason}").at(span));
+        }
+        let statements = match &function.body {
+            FunctionBody::Algorithm(statements) => statements.as_slice(),
+            FunctionBody::External(_) | FunctionBody::RecordConstructor => &[],
         };
         if function.impure {
             return Err(fault!(
@@ -154,12 +156,14 @@ impl Instances {
         let instance = Instance {
             code: body.instances.finished.len() as u32,
             outputs,
+            folds: !super::external::handles_objects(function),
             passed: signature.arguments.iter().map(passed).collect(),
         };
         body.instances.functions.codes.push(Code::default());
         body.instances.finished.push(false);
         body.instances.known.insert(signature.clone(), instance.clone());
-        let code = body.compile(statements)?;
+        let mut code = body.compile(statements)?;
+        code.derivative = self.derivative(flat, function, &signature.arguments, span);
         self.instructions += code.instructions.len();
         if self.instructions > MAX_INSTRUCTIONS {
             return Err(fault!(
@@ -219,6 +223,15 @@ fn signature(
             ValueType::Integer | ValueType::Boolean | ValueType::Enumeration(_)
         );
         list.push(match argument {
+            Lowered::Text(text) if &**text == crate::dae::build::UNKNOWN_TEXT => {
+                return Err(fault!(
+                    NOT_SUPPORTED,
+                    "the text for `{}` of `{}` must be known when the model is compiled",
+                    input.name,
+                    function.name
+                )
+                .at(span));
+            }
             Lowered::Text(text) => Argument::Text(text.clone()),
             Lowered::Array(array) => match array.elements.as_slice() {
                 [Some(value)] if array.dims.is_empty() && whole && with_values => {

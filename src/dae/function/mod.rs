@@ -6,7 +6,9 @@
 //! depends on the value of an Integer input, it is compiled for that value, which must be known.
 //! Loops stay loops; only a loop whose body needs sizes that change from turn to turn is unrolled.
 
+mod derivative;
 mod emitter;
+mod external;
 mod instances;
 mod place;
 mod statements;
@@ -72,7 +74,10 @@ fn compiled_call(
             argument.append_scalars(&mut scalars);
         }
     }
-    let numbers: Option<Vec<f64>> = scalars.iter().map(|e| pool.as_constant(*e)).collect();
+    let numbers: Option<Vec<f64>> = match instance.folds {
+        true => scalars.iter().map(|e| pool.as_constant(*e)).collect(),
+        false => None,
+    };
     let folded = numbers.and_then(|numbers| builder.functions.evaluate(&instance, &numbers));
     let pool = &mut builder.dae.pool;
     let mut results = Vec::new();

@@ -7,7 +7,7 @@ use crate::dae::build::message_text;
 use crate::dae::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use crate::dae::lowering::{Array, Lowered, Lowering, Target};
 use crate::diag::Diagnostic;
-use crate::eval::Function;
+use crate::eval::{Function, FunctionBody};
 use crate::fault;
 use crate::flatten::FlatModel;
 use crate::name::Ident;
@@ -57,6 +57,9 @@ impl<'a, 'f> Body<'a, 'f> {
 
     /// The statements, all components being declared.
     pub(super) fn compile(mut self, statements: &[Statement]) -> Result<Code, Diagnostic> {
+        if let FunctionBody::External(clause) = &self.function.clone().body {
+            self.external(clause)?;
+        }
         self.statements(statements, &mut Vec::new())?;
         for jump in std::mem::take(&mut self.returns) {
             self.emitter.land(jump);

@@ -219,7 +219,10 @@ impl Target for Body<'_, '_> {
                 argument.append_scalars(&mut scalars);
             }
         }
-        let numbers: Option<Vec<f64>> = scalars.iter().map(|s| self.as_constant(*s)).collect();
+        let numbers: Option<Vec<f64>> = match instance.folds {
+            true => scalars.iter().map(|s| self.as_constant(*s)).collect(),
+            false => None,
+        };
         let folded = numbers.and_then(|numbers| self.instances.evaluate(&instance, &numbers));
         let results: Vec<Operand> = match folded {
             Some(values) => values.into_iter().map(Operand::Constant).collect(),

@@ -74,6 +74,12 @@ pub(crate) trait Target {
         position: Self::Scalar,
         span: Span,
     ) -> Result<Self::Scalar, Diagnostic>;
+    /// The value of a condition that texts depend on, which cannot change from here on; `None` if
+    /// it is not known.
+    fn settle(&mut self, condition: Self::Scalar) -> Option<f64> {
+        let _ = condition;
+        None
+    }
     /// Whether the right operand of `and` and `or` is computed only where it decides.
     fn short_circuits(&self) -> bool {
         false

@@ -28,7 +28,11 @@ impl<T: Target> Lowering<'_, T> {
         {
             return Ok(Lowered::Text(format!("{a}{b}").into()));
         }
-        let a = self.array(left)?;
+        let a = match self.lower(left)? {
+            Lowered::Text(a) => return self.compare_texts(operator, &a, right, span),
+            Lowered::Array(a) => a,
+            Lowered::Record(_) => self.array(left)?,
+        };
         if matches!(operator, BinaryOperator::And | BinaryOperator::Or)
             && a.dims.is_empty()
             && self.target.short_circuits()
@@ -89,6 +93,37 @@ impl<T: Target> Lowering<'_, T> {
         let second = if is_and { decided } else { self.scalar(right)? };
         let values = self.target.end_if(branch, &[second]);
         Ok(Lowered::scalar(values[0]))
+    }
+
+    /// A relation of two texts that are known.
+    fn compare_texts(
+        &mut self,
+        operator: BinaryOperator,
+        a: &str,
+        right: &Expression,
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let unknown = crate::dae::build::UNKNOWN_TEXT;
+        let b = match self.lower(right)? {
+            Lowered::Text(b) if a != unknown && &*b != unknown => b,
+            _ => {
+                return Err(
+                    fault!(NOT_SUPPORTED, "a text that is not known when compiling").at(span)
+                );
+            }
+        };
+        let holds = match operator {
+            BinaryOperator::Equal => a == &*b,
+            BinaryOperator::NotEqual => a != &*b,
+            BinaryOperator::Less => a < &*b,
+            BinaryOperator::LessEqual => a <= &*b,
+            BinaryOperator::Greater => a > &*b,
+            BinaryOperator::GreaterEqual => a >= &*b,
+            _ => {
+                return Err(fault!(NOT_SUPPORTED, "this operator takes no texts").at(span));
+            }
+        };
+        Ok(Lowered::scalar(self.target.constant(f64::from(u8::from(holds)))))
     }
 
     /// The text of an expression made of string literals, `None` for numbers.
