@@ -93,9 +93,18 @@
 //!   differential-algebraic systems. SIAM Journal on Scientific and Statistical Computing 9(2),
 //!   1988, 213–231.
 //!
+//! <a id="mattsson-soderlind-1993"></a>
+//! - **mattsson-soderlind-1993** — S. E. Mattsson, G. Söderlind: Index reduction in
+//!   differential-algebraic equations using dummy derivatives. SIAM Journal on Scientific Computing
+//!   14(3), 1993, 677–692.
+//!
 //! <a id="deuflhard-2011"></a>
 //! - **deuflhard-2011** — P. Deuflhard: Newton methods for nonlinear problems. Affine invariance
 //!   and adaptive algorithms. Springer, 2011.
+//!
+//! <a id="nocedal-wright-2006"></a>
+//! - **nocedal-wright-2006** — J. Nocedal, S. J. Wright: Numerical optimization. Second edition,
+//!   Springer, 2006.
 //!
 //! <a id="goldberg-1989"></a>
 //! - **goldberg-1989** — D. E. Goldberg: Genetic algorithms in search, optimization and machine

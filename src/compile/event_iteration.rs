@@ -125,6 +125,21 @@ impl System {
         changed
     }
 
+    /// Previous values and signals as they are before the initial system is solved.
+    pub(super) fn take_start_values_of_events(&mut self) {
+        let program = self.program.clone();
+        self.sampled = false;
+        for previous in &program.events.previous {
+            self.registers[previous.register as usize] = self.registers[previous.of.0 as usize];
+        }
+        for signal in program.events.samples.iter().chain(&program.events.terminal) {
+            self.registers[signal.0 as usize] = 0.0;
+        }
+        if let Some(initial) = program.events.initial {
+            self.registers[initial.0 as usize] = 1.0;
+        }
+    }
+
     /// What follows the initial system: `pre(v) := v` and the events of the first instant.
     pub(super) fn iterate_at_start(&mut self, t: f64) -> Result<(), Failure> {
         let program = self.program.clone();
@@ -314,7 +329,7 @@ fn rounded_in_time(value: f64, slope: f64) -> f64 {
 }
 
 /// What two parts of one event did together.
-fn either(a: EventOutcome, b: EventOutcome) -> EventOutcome {
+pub(super) fn either(a: EventOutcome, b: EventOutcome) -> EventOutcome {
     match (a, b) {
         (EventOutcome::Continue { y_changed: a }, EventOutcome::Continue { y_changed: b }) => {
             EventOutcome::Continue { y_changed: a || b }

@@ -6,10 +6,12 @@ mod event_iteration;
 mod events;
 mod history;
 mod jacobian;
+mod least_squares;
 mod lower;
 mod memory;
 mod newton;
 mod program;
+mod selection;
 mod system;
 mod tape;
 

@@ -1,122 +1,134 @@
-//! Newton's method with damping on one torn loop.
+//! One torn loop: Newton's method, and where it fails, least squares with damping.
+//!
+//! ```text
+//! from the values at hand, then with zeros replaced by nominal values (at the start only)
+//!     Newton's method
+//!     otherwise Levenberg and Marquardt's method, then Newton's again
+//! ```
+//!
+//! A loop whose Jacobian is singular at the solution has none that is unique. At the start that
+//! nearest to the start values is taken; later it is an error.
 
+use super::least_squares::LeastSquares;
 use super::memory::Memory;
-use super::program::Newton;
+use super::program::CompiledLoop;
 use super::system::run;
-use crate::sim::Failure;
+use crate::sim::{Equations, Failure, Newton, NewtonFailure};
 
-/// Most iterations.
-const MAX_ITERATIONS: usize = 100;
-/// Relative size of the last correction.
-const TOLERANCE: f64 = 1e-11;
-/// Most halvings of a correction.
-const MAX_HALVINGS: usize = 30;
+/// The workspace of one loop.
+#[derive(Debug, Clone)]
+pub(super) struct LoopSolver {
+    newton: Newton,
+    least_squares: LeastSquares,
+    nominal: Vec<f64>,
+    guess: Vec<f64>,
+    /// Where an attempt begins, or what least squares found.
+    start: Vec<f64>,
+    x: Vec<f64>,
+}
 
-/// Solves a loop from the values its unknowns have.
-pub(super) fn solve_loop(newton: &Newton, r: &mut Memory) -> Result<(), Failure> {
-    let n = newton.unknowns.len();
-    let (mut matrix, mut step, mut before) = (vec![0.0; n * n], vec![0.0; n], vec![0.0; n]);
-    run(&newton.tape, r)?;
-    for _ in 0..MAX_ITERATIONS {
-        let size = residual_size(newton, r);
-        if size == 0.0 {
-            return Ok(());
+impl LoopSolver {
+    /// For a loop whose unknowns have these magnitudes.
+    pub(super) fn new(nominal: Vec<f64>) -> LoopSolver {
+        let n = nominal.len();
+        LoopSolver {
+            newton: Newton::new(n),
+            least_squares: LeastSquares::new(n),
+            nominal,
+            guess: vec![0.0; n],
+            start: vec![0.0; n],
+            x: vec![0.0; n],
         }
-        correction(newton, r, &mut matrix, &mut step)?;
-        for (value, unknown) in before.iter_mut().zip(&newton.unknowns) {
+    }
+
+    /// Solves a loop from the values its unknowns have; they keep these on failure.
+    pub(super) fn solve(
+        &mut self,
+        torn: &CompiledLoop,
+        r: &mut Memory,
+        initial: bool,
+    ) -> Result<(), Failure> {
+        for (value, unknown) in self.guess.iter_mut().zip(&torn.unknowns) {
             *value = r[*unknown as usize];
         }
-        let small = step
-            .iter()
-            .zip(&before)
-            .all(|(step, value)| step.abs() <= TOLERANCE * value.abs().max(1e-6));
-        let mut share = 1.0;
-        let mut accepted = false;
-        for _ in 0..MAX_HALVINGS {
-            for ((unknown, value), step) in newton.unknowns.iter().zip(&before).zip(&step) {
-                r[*unknown as usize] = value - share * step;
+        self.x.copy_from_slice(&self.guess);
+        let mut equations = Evaluation { torn, r };
+        let mut outcome = self.attempt(&mut equations, initial);
+        if outcome.is_err() && initial && self.guess.contains(&0.0) {
+            for ((x, guess), nominal) in self.x.iter_mut().zip(&self.guess).zip(&self.nominal) {
+                *x = if *guess == 0.0 { *nominal } else { *guess };
             }
-            let done = run(&newton.tape, r);
-            let now = residual_size(newton, r);
-            if done.is_ok() && now.is_finite() && (small || now < size * (1.0 - 1e-4 * share)) {
-                accepted = true;
-                break;
-            }
-            share *= 0.5;
+            outcome = self.attempt(&mut equations, initial).or(outcome);
         }
-        if small && accepted {
-            return Ok(());
-        }
-        if !accepted {
-            // No descent is left: a solution to rounding, or none.
-            restore(newton, &before, r)?;
-            let near = step
-                .iter()
-                .zip(&before)
-                .all(|(step, value)| step.abs() <= 1e-7 * value.abs().max(1e-6));
-            return if near { Ok(()) } else { Err(Failure::Newton { block: newton.block }) };
-        }
+        let solution = if outcome.is_ok() { &self.x } else { &self.guess };
+        // What follows from the unknowns is computed from the values they end with.
+        let evaluated = equations.evaluate(solution);
+        outcome.and(evaluated)
     }
-    Err(Failure::Newton { block: newton.block })
+
+    fn attempt(&mut self, equations: &mut Evaluation, initial: bool) -> Result<(), Failure> {
+        let block = equations.torn.block;
+        self.start.copy_from_slice(&self.x);
+        let first = self.newton.solve(equations, &mut self.x, &self.nominal);
+        let Err(failure) = first else { return Ok(()) };
+        self.x.copy_from_slice(&self.start);
+        let near = self.least_squares.solve(equations, &mut self.x, &self.nominal);
+        if near.is_ok() {
+            self.start.copy_from_slice(&self.x);
+            match self.newton.solve(equations, &mut self.x, &self.nominal) {
+                Ok(()) => return Ok(()),
+                Err(NewtonFailure::Singular) if !initial => {
+                    return Err(Failure::Singular { block });
+                }
+                Err(_) if initial => {
+                    self.x.copy_from_slice(&self.start);
+                    return Ok(());
+                }
+                Err(_) => {}
+            }
+        }
+        Err(match failure {
+            NewtonFailure::Evaluation(failure) => failure,
+            NewtonFailure::Singular => Failure::Singular { block },
+            NewtonFailure::NoProgress => Failure::Newton { block },
+        })
+    }
 }
 
-fn restore(newton: &Newton, values: &[f64], r: &mut Memory) -> Result<(), Failure> {
-    for (unknown, value) in newton.unknowns.iter().zip(values) {
-        r[*unknown as usize] = *value;
-    }
-    run(&newton.tape, r)
+/// A loop evaluated in the registers.
+struct Evaluation<'a> {
+    torn: &'a CompiledLoop,
+    r: &'a mut Memory,
 }
 
-fn residual_size(newton: &Newton, r: &[f64]) -> f64 {
-    newton.residuals.iter().map(|at| r[*at as usize] * r[*at as usize]).sum::<f64>().sqrt()
+impl Evaluation<'_> {
+    fn evaluate(&mut self, x: &[f64]) -> Result<(), Failure> {
+        for (unknown, value) in self.torn.unknowns.iter().zip(x) {
+            self.r[*unknown as usize] = *value;
+        }
+        run(&self.torn.tape, self.r)
+    }
 }
 
-/// Solves J step = residual by elimination with row scaling and column pivots.
-fn correction(
-    newton: &Newton,
-    r: &[f64],
-    matrix: &mut [f64],
-    step: &mut [f64],
-) -> Result<(), Failure> {
-    let n = step.len();
-    let singular = Failure::Singular { block: newton.block };
-    for row in 0..n {
-        let line = &newton.jacobian[row * n..(row + 1) * n];
-        let scale = line.iter().map(|at| r[*at as usize].abs()).fold(0.0, f64::max);
-        if scale == 0.0 || !scale.is_finite() {
-            return Err(singular);
+impl Equations for Evaluation<'_> {
+    fn residual(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.evaluate(x)?;
+        for (out, register) in out.iter_mut().zip(&self.torn.residuals) {
+            *out = self.r[*register as usize];
         }
-        for column in 0..n {
-            matrix[row * n + column] = r[line[column] as usize] / scale;
-        }
-        step[row] = r[newton.residuals[row] as usize] / scale;
+        Ok(())
     }
-    for k in 0..n {
-        let pivot = (k..n)
-            .max_by(|a, b| matrix[a * n + k].abs().total_cmp(&matrix[b * n + k].abs()))
-            .unwrap_or(k);
-        if matrix[pivot * n + k].abs() < 1e-14 {
-            return Err(singular);
+
+    fn jacobian(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        let here = self.torn.unknowns.iter().zip(x).all(|(u, x)| self.r[*u as usize] == *x);
+        if !here {
+            self.evaluate(x)?;
         }
-        if pivot != k {
-            for column in 0..n {
-                matrix.swap(k * n + column, pivot * n + column);
-            }
-            step.swap(k, pivot);
+        let n = x.len();
+        for (at, register) in self.torn.jacobian.iter().enumerate() {
+            let (row, column) = (at / n, at % n);
+            out[column * n + row] = self.r[*register as usize];
         }
-        for row in k + 1..n {
-            let factor = matrix[row * n + k] / matrix[k * n + k];
-            for column in k..n {
-                matrix[row * n + column] -= factor * matrix[k * n + column];
-            }
-            step[row] -= factor * step[k];
-        }
+        Ok(())
     }
-    for k in (0..n).rev() {
-        for column in k + 1..n {
-            step[k] -= matrix[k * n + column] * step[column];
-        }
-        step[k] /= matrix[k * n + k];
-    }
-    Ok(())
 }

@@ -101,12 +101,12 @@ pub enum Access {
 #[derive(Debug, Clone)]
 pub(super) enum Step {
     Run(Tape),
-    Solve(Newton),
+    Solve(CompiledLoop),
 }
 
 /// A torn loop with its Jacobian.
 #[derive(Debug, Clone)]
-pub(super) struct Newton {
+pub(super) struct CompiledLoop {
     pub(super) tape: Tape,
     pub(super) unknowns: Vec<Register>,
     pub(super) residuals: Vec<Register>,
@@ -122,6 +122,18 @@ pub(super) struct CompiledRelation {
     pub(super) operator: crate::symbolic::RelationOperator,
     /// For a relation on time alone: registers of the factor of time and of the rest.
     pub(super) time: Option<(f64, Register)>,
+}
+
+/// States chosen at run time, as registers.
+#[derive(Debug, Clone)]
+pub(super) struct CompiledSelection {
+    /// By rows.
+    pub(super) jacobian: Outputs,
+    pub(super) candidates: Vec<Register>,
+    pub(super) states: Vec<Register>,
+    pub(super) weights: Vec<Vec<Register>>,
+    /// Places of the candidates that are states at first.
+    pub(super) chosen: Vec<usize>,
 }
 
 /// Code with the registers of its results.
@@ -149,6 +161,8 @@ pub struct Program {
     pub(super) solved: Vec<VarId>,
     pub(super) nominals: Vec<(VarId, Tape, Register)>,
     pub(super) initial_steps: Vec<Step>,
+    /// Both sides of what initial values must fulfil besides.
+    pub(super) initial_checks: Vec<Outputs>,
     pub(super) steps: Vec<Step>,
     pub(super) relations: Vec<CompiledRelation>,
     /// Both sides of every relation, from the registers of the variables.
@@ -159,6 +173,7 @@ pub struct Program {
     pub(super) jacobian: Outputs,
     pub(super) pattern: Pattern,
     pub(super) crossings: Outputs,
+    pub(super) selections: Vec<CompiledSelection>,
     pub(super) observe: Outputs,
     pub(super) assertions: Vec<(usize, Outputs)>,
     pub(super) events: Events,
@@ -172,7 +187,7 @@ impl Program {
             sorted.blocks.iter().flat_map(|block| block.assignments()).copied().collect();
         let loops = sorted.blocks.iter().filter_map(|block| match block {
             Block::Loop(torn) => Some(torn),
-            Block::Assignment(_) => None,
+            Block::Assignment(_) | Block::Linear(_) => None,
         });
         let mut iteration = Vec::new();
         let mut residuals = Vec::new();
@@ -277,6 +292,19 @@ impl Program {
         }
         let crossings = compile_outputs(&pool, &mut registers, &sequence, &differences);
 
+        let selections = sorted.selections.iter().map(|selection| {
+            let entries: Vec<Expr> = selection.jacobian.iter().flatten().copied().collect();
+            let of = |variables: &[VarId]| variables.iter().map(|v| v.0).collect::<Vec<_>>();
+            CompiledSelection {
+                jacobian: compile_outputs(&pool, &mut registers, &sequence, &entries),
+                candidates: of(&selection.candidates),
+                states: of(&selection.states),
+                weights: selection.weights.iter().map(|row| of(row)).collect(),
+                chosen: selection.chosen.clone(),
+            }
+        });
+        let selections = selections.collect();
+
         let observed_expressions: Vec<Expr> = observed.iter().map(|v| pool.variable(*v)).collect();
         let observe = compile_outputs(&pool, &mut registers, &sequence, &observed_expressions);
         let assertions = sorted
@@ -290,6 +318,11 @@ impl Program {
             })
             .collect();
 
+        let initial_checks = sorted
+            .initial_checks
+            .iter()
+            .map(|check| compile_outputs(&pool, &mut registers, &[], &[check.left, check.right]))
+            .collect();
         let mut events = compile_events(&pool, &mut registers, &sorted, &sequence);
         events.steps = event_steps;
         events.roundings = roundings;
@@ -342,6 +375,7 @@ impl Program {
             solved,
             nominals,
             initial_steps,
+            initial_checks,
             steps,
             relations,
             relation_sides,
@@ -350,6 +384,7 @@ impl Program {
             jacobian,
             pattern,
             crossings,
+            selections,
             observe,
             assertions,
             events,
@@ -484,7 +519,15 @@ impl Program {
                         None => "an operation without a finite value".to_owned(),
                     },
                 };
-                fault!(DOMAIN_ERROR, "{what} {when}").at(self.place(place >> 8))
+                let place = place >> 8;
+                match self.linear_loop(place) {
+                    Some(names) => fault!(
+                        SIMULATION_FAILED,
+                        "the linear algebraic loop of {names} has no unique solution {when}"
+                    )
+                    .at(self.place(place)),
+                    None => fault!(DOMAIN_ERROR, "{what} {when}").at(self.place(place)),
+                }
             }
             Failure::Function { function, at, reason } => {
                 let reason = Reason::ALL.get(usize::from(reason)).copied();
@@ -514,6 +557,13 @@ impl Program {
             }
             Failure::Initialization { block } => {
                 self.explain_block(block, when, INITIALIZATION_FAILED)
+            }
+            Failure::Inconsistent { check } => {
+                let place = self.sorted.initial_checks.get(check as usize).map(|e| e.span);
+                fault!(INITIALIZATION_FAILED,
+                    "the initial values of `{}` contradict each other: this does not hold {when}",
+                    self.name(); help: "remove this initial equation or `fixed` start value, or change its value")
+                .at(place.unwrap_or(Span::NONE))
             }
             Failure::EventIteration { variable } => self.explain_iteration(variable, when),
         }
@@ -558,6 +608,24 @@ impl Program {
         fault!(code, "the algebraic loop of {} did not converge {when}", names.join(", ");
             help: "give these variables start values near the solution")
         .at(self.place(equation))
+    }
+
+    /// The unknowns of the linear loop that this equation solves for one of them.
+    fn linear_loop(&self, equation: u32) -> Option<String> {
+        let sorted = &self.sorted;
+        let blocks = sorted.blocks.iter().chain(&sorted.event_blocks);
+        let unknowns = blocks.chain(&sorted.initial_blocks).find_map(|block| match block {
+            Block::Linear(solved) => {
+                let first = solved.assignments.iter().take(solved.unknowns.len());
+                first
+                    .map(|a| a.equation)
+                    .any(|e| e == equation as usize)
+                    .then_some(&solved.unknowns)
+            }
+            _ => None,
+        })?;
+        let name = |v: &VarId| format!("`{}`", self.sorted.dae.variable(*v).name);
+        Some(unknowns.iter().map(name).collect::<Vec<_>>().join(", "))
     }
 
     /// Where an origin is written: equations, initial equations, those of events, then variables.
@@ -694,8 +762,8 @@ fn compile_steps(
     let mut run: Vec<Assignment> = Vec::new();
     for (number, block) in blocks.iter().enumerate() {
         let torn = match block {
-            Block::Assignment(assignment) => {
-                run.push(*assignment);
+            Block::Assignment(_) | Block::Linear(_) => {
+                run.extend(block.assignments());
                 continue;
             }
             Block::Loop(torn) => torn,
@@ -725,7 +793,7 @@ fn compile_steps(
                 jacobian.push(builder.emit(entry));
             }
         }
-        steps.push(Step::Solve(Newton {
+        steps.push(Step::Solve(CompiledLoop {
             tape: builder.finish(),
             unknowns: torn.iteration.iter().map(|v| v.0).collect(),
             residuals: results,
@@ -801,6 +869,10 @@ fn variables(sorted: &SortedDae, observed: &[VarId]) -> Vec<VariableInfo> {
     for (at, v) in sorted.dae.variables.iter().enumerate() {
         let id = VarId(at as u32);
         let alias = sorted.aliases[at];
+        // Made by the compiler, of no use to anybody else.
+        if v.name.contains('$') {
+            continue;
+        }
         let access = match v.kind {
             Kind::Time => Access::Time,
             Kind::Constant(value) => Access::Constant(value),

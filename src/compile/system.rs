@@ -1,16 +1,25 @@
 //! One running instance of a program: its registers, parameter values and frozen relations.
 
-use super::event_iteration::{Clock, Stage, same_time};
+use super::event_iteration::{Clock, Stage, either, same_time};
 use super::history::History;
 use super::memory::Memory;
-use super::newton::solve_loop;
+use super::newton::LoopSolver;
 use super::program::{Access, Outputs, Program, Step, compile_outputs, resolved};
+use super::selection::Choice;
 use super::tape::{Instruction, Tape};
+use crate::dae::Homotopy;
 use crate::diag::Fault;
 use crate::fault;
 use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern};
 use crate::symbolic::{Expr, VarId, function};
 use std::sync::Arc;
+
+/// How far, relative to their size or 1, the sides of a redundant initial equation may differ.
+const CONSISTENT: f64 = 1e-6;
+
+/// Parts of the way from simplified to actual expressions.
+const FIRST_HOMOTOPY_STEP: f64 = 0.1;
+const SMALLEST_HOMOTOPY_STEP: f64 = 1e-5;
 
 /// A system that one thread simulates.
 #[derive(Debug, Clone)]
@@ -23,6 +32,14 @@ pub struct System {
     /// Times at which relations on time switch.
     switches: Vec<Option<f64>>,
     nominal: Vec<f64>,
+    /// One for every loop of the initial system, of the system, and of that at events, in order.
+    initial_solvers: Vec<LoopSolver>,
+    solvers: Vec<LoopSolver>,
+    event_solvers: Vec<LoopSolver>,
+    /// One for every selection of states.
+    choices: Vec<Choice>,
+    /// Whether the iteration variables are solved for in every evaluation.
+    solves_loops: bool,
     /// The samples.
     pub(super) clocks: Vec<Clock>,
     /// Values that discrete variables had before an event.
@@ -48,6 +65,11 @@ impl System {
             observed: None,
             switches: vec![None; program.relations.len()],
             nominal: vec![1.0; n],
+            initial_solvers: Vec::new(),
+            solvers: Vec::new(),
+            event_solvers: Vec::new(),
+            choices: Vec::new(),
+            solves_loops: false,
             clocks: Vec::with_capacity(program.events.samples.len()),
             before: vec![0.0; program.events.discrete.len()],
             lagged: vec![0.0; program.events.lagged.len()],
@@ -131,6 +153,15 @@ impl System {
         }
     }
 
+    /// Loads y, and solves for the iteration variables that it does not hold.
+    fn load_solved(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        self.load(t, y);
+        if !self.solves_loops || self.program.iteration.is_empty() {
+            return Ok(());
+        }
+        self.solve(Stage::Continuous)
+    }
+
     fn unload(&self, y: &mut [f64]) {
         let states = self.program.sorted.states.iter();
         for (variable, value) in states.chain(&self.program.iteration).zip(y) {
@@ -201,17 +232,42 @@ impl System {
         }
         let states = program.sorted.states.iter();
         for (at, variable) in states.chain(&program.iteration).enumerate() {
-            let given = program.nominals.iter().find(|(v, ..)| v == variable);
-            let value = match given {
-                Some((_, tape, register)) => match tape.run(&mut self.registers) {
-                    Ok(()) => self.registers[*register as usize],
-                    Err(_) => 1.0,
-                },
-                None => self.registers[variable.0 as usize],
-            };
-            let usable = value.is_finite() && value != 0.0;
-            self.nominal[at] = if usable { value.abs() } else { 1.0 };
+            self.nominal[at] = self.nominal_of(*variable);
         }
+        self.initial_solvers = self.solvers_of(&program.initial_steps);
+        self.solvers = self.solvers_of(&program.steps);
+        self.event_solvers = self.solvers_of(&program.events.steps);
+        for selection in &program.selections {
+            let candidates = selection.candidates.iter();
+            let nominal = candidates.map(|c| self.nominal_of(VarId(*c))).collect();
+            self.choices.push(Choice::new(selection, nominal));
+        }
+    }
+
+    fn solvers_of(&mut self, steps: &[Step]) -> Vec<LoopSolver> {
+        let loops = steps.iter().filter_map(|step| match step {
+            Step::Solve(torn) => Some(torn),
+            Step::Run(_) => None,
+        });
+        loops
+            .map(|torn| {
+                let unknowns = torn.unknowns.iter();
+                LoopSolver::new(unknowns.map(|u| self.nominal_of(VarId(*u))).collect())
+            })
+            .collect()
+    }
+
+    fn nominal_of(&mut self, variable: VarId) -> f64 {
+        let program = self.program.clone();
+        let value = match program.nominals.iter().find(|(v, ..)| *v == variable) {
+            Some((_, tape, register)) => match tape.run(&mut self.registers) {
+                Ok(()) => self.registers[*register as usize],
+                Err(_) => 1.0,
+            },
+            None => self.registers[variable.0 as usize],
+        };
+        let usable = value.is_finite() && value != 0.0;
+        if usable { value.abs() } else { 1.0 }
     }
 
     /// Evaluates every relation at the values of the variables; whether one changed.
@@ -250,23 +306,106 @@ impl System {
     /// Solves the blocks of a stage one after another.
     pub(super) fn solve(&mut self, stage: Stage) -> Result<(), Failure> {
         let program = self.program.clone();
-        let steps = match stage {
-            Stage::Initial => &program.initial_steps,
-            Stage::Event if !program.events.steps.is_empty() => &program.events.steps,
-            Stage::Event | Stage::Continuous => &program.steps,
+        let (steps, solvers) = match stage {
+            Stage::Initial => (&program.initial_steps, &mut self.initial_solvers),
+            Stage::Event if !program.events.steps.is_empty() => {
+                (&program.events.steps, &mut self.event_solvers)
+            }
+            Stage::Event | Stage::Continuous => (&program.steps, &mut self.solvers),
         };
         let initial = stage == Stage::Initial;
+        let mut solvers = solvers.iter_mut();
         for step in steps {
             match step {
                 Step::Run(tape) => run(tape, &mut self.registers)?,
-                Step::Solve(newton) => {
-                    solve_loop(newton, &mut self.registers).map_err(|f| match (f, initial) {
-                        (Failure::Newton { block } | Failure::Singular { block }, true) => {
-                            Failure::Initialization { block }
+                Step::Solve(torn) => {
+                    let solver = solvers.next().expect("every loop has its solver");
+                    solver.solve(torn, &mut self.registers, initial).map_err(|f| {
+                        match (f, initial) {
+                            (Failure::Newton { block } | Failure::Singular { block }, true) => {
+                                Failure::Initialization { block }
+                            }
+                            _ => f,
                         }
-                        _ => f,
                     })?
                 }
+            }
+        }
+        Ok(())
+    }
+
+    /// Everything as it is before the initial system is solved.
+    fn take_start_values(&mut self, t: f64) -> Result<(), Failure> {
+        let program = self.program.clone();
+        self.registers[0] = t;
+        for variable in program.observed.iter().chain(&program.solved) {
+            self.registers[variable.0 as usize] = 0.0;
+        }
+        for relation in &program.relations {
+            self.registers[relation.register as usize] = 0.0;
+        }
+        self.evaluate_parameters()?;
+        for (_, tape) in &program.starts {
+            run(tape, &mut self.registers)?;
+        }
+        self.take_start_values_of_events();
+        self.update_relations(t);
+        for (choice, selection) in self.choices.iter_mut().zip(&program.selections) {
+            choice.reset(selection, &mut self.registers);
+        }
+        Ok(())
+    }
+
+    /// Chooses better states where those at hand come to their end; whether it did.
+    fn improve_choices(&mut self) -> Result<bool, Failure> {
+        let mut improved = false;
+        for (choice, selection) in self.choices.iter_mut().zip(&self.program.selections) {
+            improved |= choice.improve(selection, &mut self.registers)?;
+        }
+        Ok(improved)
+    }
+
+    /// Solves the initial system with the simplified expressions of `homotopy` and goes on from
+    /// there to the actual ones, in shorter steps where a solution is missed.
+    fn follow_homotopy(&mut self, t: f64, homotopy: Homotopy) -> Result<(), Failure> {
+        let (active, lambda) = (homotopy.active.0 as usize, homotopy.lambda.0 as usize);
+        self.take_start_values(t)?;
+        self.registers[active] = 1.0;
+        self.registers[lambda] = 0.0;
+        let mut outcome = self.settle(t, Stage::Initial).map(|_| ());
+        let (mut done, mut step) = (0.0, FIRST_HOMOTOPY_STEP);
+        let mut reached = self.registers.clone();
+        while outcome.is_ok() && done < 1.0 {
+            let next = f64::min(done + step, 1.0);
+            self.registers[lambda] = next;
+            match self.settle(t, Stage::Initial) {
+                Ok(_) => {
+                    done = next;
+                    step *= 2.0;
+                    reached.copy_from_slice(&self.registers);
+                }
+                Err(failure) => {
+                    self.registers.copy_from_slice(&reached);
+                    step *= 0.25;
+                    if step < SMALLEST_HOMOTOPY_STEP {
+                        outcome = Err(failure);
+                    }
+                }
+            }
+        }
+        self.registers[active] = 0.0;
+        outcome?;
+        self.settle(t, Stage::Initial).map(|_| ())
+    }
+
+    /// Compares both sides of the initial equations that were not needed.
+    fn check_initial_values(&mut self) -> Result<(), Failure> {
+        for (number, check) in self.program.initial_checks.iter().enumerate() {
+            run(&check.tape, &mut self.registers)?;
+            let [a, b] = [check.outputs[0], check.outputs[1]];
+            let (a, b) = (self.registers[a as usize], self.registers[b as usize]);
+            if (a - b).abs() > CONSISTENT * a.abs().max(b.abs()).max(1.0) {
+                return Err(Failure::Inconsistent { check: number as u32 });
             }
         }
         Ok(())
@@ -279,15 +418,19 @@ impl DaeSystem for System {
     }
 
     fn n_algebraic(&self) -> usize {
-        self.program.iteration.len()
+        if self.solves_loops { 0 } else { self.program.iteration.len() }
+    }
+
+    fn solve_loops(&mut self, inside: bool) {
+        self.solves_loops = inside;
     }
 
     fn nominal(&self, out: &mut [f64]) {
-        out.copy_from_slice(&self.nominal);
+        out.copy_from_slice(&self.nominal[..out.len()]);
     }
 
     fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
-        self.load(t, y);
+        self.load_solved(t, y)?;
         read(&self.program.rhs, &mut self.registers, out).map_err(|f| self.refine(f))
     }
 
@@ -302,43 +445,34 @@ impl DaeSystem for System {
 
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         let program = self.program.clone();
-        self.registers[0] = t;
-        for variable in program.observed.iter().chain(&program.solved) {
-            self.registers[variable.0 as usize] = 0.0;
+        self.take_start_values(t)?;
+        if let Err(failure) = self.settle(t, Stage::Initial) {
+            self.follow_homotopy(t, program.sorted.dae.homotopy.ok_or(failure)?)?;
         }
-        for relation in &program.relations {
-            self.registers[relation.register as usize] = 0.0;
-        }
-        self.evaluate_parameters()?;
-        for (_, tape) in &program.starts {
-            run(tape, &mut self.registers)?;
-        }
-        for previous in &program.events.previous {
-            self.registers[previous.register as usize] = self.registers[previous.of.0 as usize];
-        }
-        for signal in program.events.samples.iter().chain(&program.events.terminal) {
-            self.registers[signal.0 as usize] = 0.0;
-        }
-        if let Some(initial) = program.events.initial {
-            self.registers[initial.0 as usize] = 1.0;
-        }
-        self.update_relations(t);
-        self.settle(t, Stage::Initial)?;
-        self.sampled = false;
+        self.check_initial_values()?;
+        self.improve_choices()?;
         self.start_clocks(t)?;
         self.start_histories(t)?;
         self.iterate_at_start(t)?;
+        self.improve_choices()?;
         self.unload(y);
         self.violated().map_or(Ok(()), Err)
     }
 
     fn n_crossings(&self) -> usize {
-        self.program.crossings.outputs.len()
+        self.program.crossings.outputs.len() + self.choices.len()
     }
 
     fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
-        self.load(t, y);
-        read(&self.program.crossings, &mut self.registers, out)
+        self.load_solved(t, y)?;
+        read(&self.program.crossings, &mut self.registers, out)?;
+        let last = out.iter_mut().skip(self.program.crossings.outputs.len());
+        for ((choice, selection), out) in
+            self.choices.iter_mut().zip(&self.program.selections).zip(last)
+        {
+            *out = choice.quality(selection, &mut self.registers)?;
+        }
+        Ok(())
     }
 
     fn next_time_event(&self, t: f64) -> Option<f64> {
@@ -355,7 +489,10 @@ impl DaeSystem for System {
 
     fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
         self.load(t, y);
-        let outcome = self.event(t)?;
+        let mut outcome = self.event(t)?;
+        if self.improve_choices()? {
+            outcome = either(outcome, EventOutcome::Continue { y_changed: true });
+        }
         self.unload(y);
         Ok(outcome)
     }
@@ -385,7 +522,7 @@ impl DaeSystem for System {
         if self.program.assertions.is_empty() {
             return Ok(());
         }
-        self.load(t, y);
+        self.load_solved(t, y)?;
         self.violated().map_or(Ok(()), Err)
     }
 
@@ -394,7 +531,7 @@ impl DaeSystem for System {
     }
 
     fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
-        self.load(t, y);
+        self.load_solved(t, y)?;
         let observed = self.observed.as_ref().unwrap_or(&self.program.observe);
         read(observed, &mut self.registers, out).map_err(|f| self.refine(f))
     }

@@ -1,13 +1,17 @@
 //! `a = b` and `a = -b`: one variable of every alias set stays, the others become names for it.
+//!
+//! Where two variables with derivatives are one, so are their derivatives: this reduces the index of
+//! rigid connections without differentiating anything.
 
-use super::model::{Dae, Equation, Kind};
+use super::model::{Dae, Equation, Kind, StateSelect, Variable};
 use super::sorted::Alias;
+use crate::source::Span;
 use crate::symbolic::{Expr, Node, Pool, VarId, substitute};
 use rustc_hash::FxHashMap;
 
 /// Removes alias equations; returns every variable's representative.
 pub(super) fn eliminate_aliases(dae: &mut Dae) -> Vec<Option<Alias>> {
-    let mut sets = Sets { parent: (0..dae.variables.len() as u32).map(|v| (v, false)).collect() };
+    let mut sets = Sets::new(dae);
     let equations = std::mem::take(&mut dae.equations);
     let mut kept = Vec::with_capacity(equations.len());
     for equation in equations {
@@ -16,9 +20,13 @@ pub(super) fn eliminate_aliases(dae: &mut Dae) -> Vec<Option<Alias>> {
                 if dae.is_solved_for(a)
                     && dae.is_solved_for(b)
                     && (dae.variable(a).base == dae.variable(b).base)
-                    && sets.join(dae, a, b, negated) => {}
+                    && sets.join(a.0, b.0, negated, equation.span) => {}
             _ => kept.push(equation),
         }
+    }
+    for (zero, span) in std::mem::take(&mut sets.zeros) {
+        let (left, right) = (dae.pool.variable(VarId(zero)), dae.pool.constant(0.0));
+        kept.push(Equation { left, right, span });
     }
     dae.equations = kept;
     let aliases: Vec<Option<Alias>> = (0..dae.variables.len() as u32)
@@ -58,9 +66,33 @@ fn alias(pool: &Pool, equation: Equation) -> Option<(VarId, VarId, bool)> {
 /// Disjoint sets with signs.
 struct Sets {
     parent: Vec<(u32, bool)>,
+    /// A variable that is the derivative of every root.
+    derivative: Vec<Option<u32>>,
+    /// Whether the variable is discrete.
+    discrete: Vec<bool>,
+    /// Whether an equation of the events determines it.
+    assigned: Vec<bool>,
+    /// Variables found to be equal to their opposites, and the equation that says so.
+    zeros: Vec<(u32, Span)>,
 }
 
 impl Sets {
+    fn new(dae: &Dae) -> Sets {
+        let mut derivative = vec![None; dae.variables.len()];
+        for (position, variable) in dae.variables.iter().enumerate() {
+            if let Kind::Derivative(of) = variable.kind {
+                derivative[of.0 as usize] = Some(position as u32);
+            }
+        }
+        let parent = (0..dae.variables.len() as u32).map(|v| (v, false)).collect();
+        let discrete = dae.variables.iter().map(|v| v.kind == Kind::Discrete).collect();
+        let mut assigned = vec![false; dae.variables.len()];
+        for variable in dae.events.equations.iter().filter_map(|e| dae.pool.as_variable(e.left)) {
+            assigned[variable.0 as usize] = true;
+        }
+        Sets { parent, derivative, discrete, assigned, zeros: Vec::new() }
+    }
+
     fn root(&mut self, v: u32) -> (u32, bool) {
         let mut path = Vec::new();
         let mut current = v;
@@ -76,50 +108,70 @@ impl Sets {
         (current, sign)
     }
 
-    /// Joins two sets; `false` if they were one already. The better representative stays: a
-    /// variable that is discrete, then one with a derivative, then the one declared first.
-    fn join(&mut self, dae: &Dae, a: VarId, b: VarId, negated: bool) -> bool {
-        let ((a, sign_a), (b, sign_b)) = (self.root(a.0), self.root(b.0));
-        if a == b {
+    /// A discrete variable is no state, and two equations at events determine two variables.
+    fn must_stay_apart(&self, a: usize, b: usize) -> bool {
+        (self.discrete[a] && self.derivative[b].is_some())
+            || (self.discrete[b] && self.derivative[a].is_some())
+            || (self.assigned[a] && self.assigned[b])
+    }
+
+    /// Joins the sets of two variables, and with them those of their derivatives; `false` if they
+    /// were one already or must stay apart. The better representative stays: a discrete variable,
+    /// then one with a derivative, then the one declared first.
+    fn join(&mut self, a: u32, b: u32, negated: bool, span: Span) -> bool {
+        let (root_a, root_b) = (self.root(a).0, self.root(b).0);
+        if root_a == root_b || self.must_stay_apart(root_a as usize, root_b as usize) {
             return false;
         }
-        let is_discrete = |v: u32| dae.variable(VarId(v)).kind == Kind::Discrete;
-        let rank = |v: u32| (!is_discrete(v), !has_derivative(dae, VarId(v)), v);
-        let (keep, drop) = if rank(a) <= rank(b) { (a, b) } else { (b, a) };
-        // Two states in one set would need index reduction: the equation stays and is reported.
-        // Two equations at events for one variable are reported as such.
-        if has_derivative(dae, VarId(drop)) || is_discrete(drop) && assigned_at_events(dae, drop) {
-            return false;
+        let mut pending = vec![(a, b, negated)];
+        while let Some((a, b, negated)) = pending.pop() {
+            let ((a, sign_a), (b, sign_b)) = (self.root(a), self.root(b));
+            let negated = negated ^ sign_a ^ sign_b;
+            if a == b {
+                if negated {
+                    self.zeros.push((a, span));
+                }
+                continue;
+            }
+            let rank = |v: u32| {
+                let at = v as usize;
+                (!self.assigned[at], !self.discrete[at], self.derivative[at].is_none(), v)
+            };
+            let (keep, drop) = if rank(a) <= rank(b) { (a, b) } else { (b, a) };
+            self.parent[drop as usize] = (keep, negated);
+            if let (Some(x), Some(y)) =
+                (self.derivative[keep as usize], self.derivative[drop as usize])
+            {
+                pending.push((x, y, negated));
+            }
         }
-        self.parent[drop as usize] = (keep, negated ^ sign_a ^ sign_b);
         true
     }
 }
 
-/// Whether an equation of the events determines a variable.
-fn assigned_at_events(dae: &Dae, v: u32) -> bool {
-    dae.events.equations.iter().any(|e| dae.pool.as_variable(e.left) == Some(VarId(v)))
-}
-
-fn has_derivative(dae: &Dae, v: VarId) -> bool {
-    dae.variables.iter().rev().any(|d| d.kind == Kind::Derivative(v))
-}
-
-/// Start, fixed, nominal of a dropped name hold for the variable that stays where it has none.
+/// Attributes of a dropped name hold for the variable that stays where it has none; a start value
+/// that is fixed goes before one that is not, and a second fixed one becomes an initial equation.
 fn merge_attributes(dae: &mut Dae, aliases: &[Option<Alias>]) {
     for (position, alias) in aliases.iter().enumerate() {
         let Some(alias) = alias else { continue };
-        let (start, fixed, nominal) = {
-            let dropped = &dae.variables[position];
-            (dropped.start, dropped.fixed, dropped.nominal)
-        };
+        let &Variable { start, fixed, nominal, state_select, span, .. } = &dae.variables[position];
         let start = start.map(|e| if alias.negated { dae.pool.neg(e) } else { e });
         let kept = &mut dae.variables[alias.of.0 as usize];
+        kept.nominal = kept.nominal.or(nominal);
+        kept.state_select = match kept.state_select {
+            StateSelect::Default => state_select,
+            other if state_select == StateSelect::Default => other,
+            other => other.max(state_select),
+        };
+        if fixed && kept.fixed && start != kept.start {
+            let (left, zero) = (dae.pool.variable(alias.of), dae.pool.constant(0.0));
+            dae.initial_equations.push(Equation { left, right: start.unwrap_or(zero), span });
+            continue;
+        }
         if (start.is_some() && kept.start.is_none()) || (fixed && !kept.fixed) {
             kept.start = start;
         }
         kept.fixed |= fixed;
-        kept.nominal = kept.nominal.or(nominal);
     }
 }
 

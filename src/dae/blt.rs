@@ -1,6 +1,7 @@
 //! Block lower triangular form: which equation determines which unknown, in solving order.
 
 use super::errors::{NOT_SUPPORTED, SINGULAR_SYSTEM, UNBALANCED_MODEL};
+use super::linear_loops::solve_linear;
 use super::model::{Dae, Equation, Kind};
 use super::sorted::{Assignment, Block, Loop};
 use crate::diag::Diagnostic;
@@ -96,7 +97,11 @@ pub(super) fn solve_block(
         .map(|row| (dae.pool.sub(local[*row].left, local[*row].right), block[*row]))
         .collect();
     let iteration = torn.iteration_unknowns.iter().map(|u| members[*u]).collect();
-    Ok(Block::Loop(Loop { iteration, assignments, residuals }))
+    let torn = Loop { iteration, assignments, residuals };
+    Ok(match solve_linear(dae, &torn) {
+        Some(solved) => Block::Linear(solved),
+        None => Block::Loop(torn),
+    })
 }
 
 /// The value of a variable by one equation, if it can be had without dividing by what may be zero.

@@ -3,7 +3,7 @@
 use super::algorithm::Execution;
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, PARAMETER_CYCLE, UNRESOLVED_REFERENCE};
 use super::lowering::{Array, Lowered, Lowering, size_fault};
-use super::model::{Assertion, Dae, Equation, Kind, Variable};
+use super::model::{Assertion, Dae, Equation, Kind, StateSelect, Variable};
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::flatten::{self, BaseType, FlatModel, Variability};
@@ -190,7 +190,7 @@ impl<'a> Builder<'a> {
         for (name, attribute) in &variable.attributes {
             let e = &attribute.value;
             match *name {
-                "start" | "min" | "max" | "nominal" | "fixed" => {}
+                "start" | "min" | "max" | "nominal" | "fixed" | "stateSelect" => {}
                 "unit" | "displayUnit" => {
                     if let ExpressionKind::String(text) = &e.kind {
                         for scalar in &mut self.dae.variables[first..first + variable.len()] {
@@ -210,13 +210,17 @@ impl<'a> Builder<'a> {
             }
             for at in 0..variable.len() {
                 let element = array.elements[if array.dims.is_empty() { 0 } else { at }];
-                let known = self.dae.pool.as_constant(element);
+                let known = match *name {
+                    "fixed" | "stateSelect" => self.settled(element)?,
+                    _ => None,
+                };
                 let scalar = &mut self.dae.variables[first + at];
                 match *name {
                     "start" => scalar.start = Some(element),
                     "min" => scalar.min = Some(element),
                     "max" => scalar.max = Some(element),
                     "nominal" => scalar.nominal = Some(element),
+                    "stateSelect" => scalar.state_select = state_select(known, e.span)?,
                     _ => match known {
                         Some(value) => scalar.fixed = value != 0.0,
                         None => {
@@ -577,6 +581,18 @@ fn declared(variable: &flatten::Variable, position: usize) -> Variable {
     }
 }
 
+/// The value of `stateSelect` by its ordinal.
+fn state_select(ordinal: Option<f64>, span: Span) -> Result<StateSelect, Diagnostic> {
+    match ordinal {
+        Some(1.0) => Ok(StateSelect::Never),
+        Some(2.0) => Ok(StateSelect::Avoid),
+        Some(3.0) => Ok(StateSelect::Default),
+        Some(4.0) => Ok(StateSelect::Prefer),
+        Some(5.0) => Ok(StateSelect::Always),
+        _ => Err(fault!(NOT_SUPPORTED, "`stateSelect` must be known").at(span)),
+    }
+}
+
 /// `2,3` for a row-major position.
 fn subscripts(dims: &[usize], position: usize) -> String {
     let mut rest = position;
@@ -607,6 +623,7 @@ pub(super) fn scalar_of_nothing(name: &str, kind: Kind, span: Span) -> Variable 
         min: None,
         max: None,
         nominal: None,
+        state_select: StateSelect::Default,
         span,
     }
 }

@@ -41,4 +41,9 @@ crate::codes! {
         "## What it means\nA range, a subscript or a size in an equation must be known when the model is compiled, and this one is not.\n\n\
          ## Example\n`x[n]` where `n` is a variable.\n\n\
          ## What to do\nUse a constant, or a parameter that is `final` or has `annotation(Evaluate = true)`.",
+    /// Start values that are not fixed are taken as if they were.
+    MISSING_INITIAL_CONDITION = "missing-initial-condition":
+        "## What it means\nThe initial equations and fixed start values of a model do not determine all its states, so the start values of the states named hold although they are not fixed.\n\n\
+         ## Example\n`Real x(start = 1, fixed = true); Real y(start = 2);` with `der(x) = y; der(y) = -x;`: nothing fixes `y`.\n\n\
+         ## What to do\nGive the variables named `fixed = true`, or write an initial equation for each.",
 }

@@ -1,100 +1,199 @@
-//! The initial system (MLS §8.6): the equations, the initial equations, and as many start values
-//! as are needed to determine everything.
+//! The initial system (MLS §8.6): the equations, then the initial equations, then start values.
 //!
-//! Unknown are also parameters with `fixed = false`, and `pre(v)` of
-//! discrete variables: it has the start value of `v` unless initial equations say otherwise, and
-//! when-clauses without `initial()` leave `v = pre(v)`.
+//! What comes first goes first: an initial equation or fixed start value of which nothing is left to
+//! be determined is kept as a check, to be fulfilled by the solution of the others. Start values
+//! that are not fixed hold for states that nothing else determines.
+//!
+//! Unknown are also parameters with `fixed = false`, and `pre(v)` of discrete variables: it has the
+//! start value of `v` unless initial equations say otherwise, and when-clauses without `initial()`
+//! leave `v = pre(v)`.
 
 use super::blt::incidence;
 use super::mixed::{of_kind, sort_mixed, with_initial};
 use super::model::{Dae, Equation, Kind};
-use super::sorted::{Alias, Block};
+use super::sorted::{Alias, Block, Selection};
 use crate::diag::Diagnostic;
-use crate::flatten::BaseType;
+use crate::fault;
+use crate::flatten::{BaseType, Variability};
 use crate::graph::match_equations;
 use crate::symbolic::{VarId, substitute};
 
-/// Blocks of the initial system, and the variables that are read before they are written. Start
-/// values that are `fixed` always hold; others hold where the equations leave a variable free.
+/// The initial system in solving order.
+pub(super) struct Initial {
+    pub(super) blocks: Vec<Block>,
+    /// What the solution must fulfil besides.
+    pub(super) checks: Vec<Equation>,
+    /// Discrete variables that blocks read before they write them.
+    pub(super) lagged: Vec<VarId>,
+}
+
+/// Equations with the numbers of what they come from.
+#[derive(Default)]
+struct Numbered {
+    equations: Vec<Equation>,
+    origins: Vec<usize>,
+}
+
+impl Numbered {
+    fn push(&mut self, equation: Equation, origin: usize) {
+        self.equations.push(equation);
+        self.origins.push(origin);
+    }
+}
+
+/// Sorts the initial system.
 pub(super) fn sort_initial(
     dae: &mut Dae,
     states: &[VarId],
+    selections: &[Selection],
     unknowns: &[VarId],
     aliases: &[Option<Alias>],
-) -> Result<(Vec<Block>, Vec<VarId>), Diagnostic> {
-    let previous = of_kind(dae, |kind| matches!(kind, Kind::Previous(_)));
+) -> Result<Initial, Diagnostic> {
     let mut all: Vec<VarId> = states.to_vec();
     all.extend(unknowns);
-    all.extend(
-        of_kind(dae, |kind| kind == Kind::Discrete)
-            .into_iter()
-            .filter(|v| aliases[v.0 as usize].is_none()),
-    );
-    all.extend(&previous);
-    all.extend(of_kind(dae, |kind| matches!(kind, Kind::Solved | Kind::Delayed)));
+    let (fixed, free): (Vec<VarId>, Vec<VarId>) =
+        all.iter().partition(|v| dae.variable(**v).fixed && is_continuous(dae, **v));
+    all.extend(unknowns_at_start(dae, aliases));
 
-    let mut equations = dae.equations.clone();
-    equations.extend(&dae.initial_equations);
-    equations.extend(&dae.events.equations);
-    let mut origins: Vec<usize> = (0..equations.len()).collect();
-    with_initial(dae, &mut equations, 1.0);
-    let variables = equations.len();
-    let mut push = |equations: &mut Vec<Equation>, variable: VarId, equation: Equation| {
-        equations.push(equation);
-        origins.push(variables + variable.0 as usize);
-    };
-    for delay in dae.events.delays.clone() {
-        // Before the start everything was as it is at the start.
-        let (left, right) = (dae.pool.variable(delay.variable), delay.argument);
-        push(&mut equations, delay.variable, Equation { left, right, span: delay.span });
+    let mut system = model_equations(dae);
+    let model = system.equations.len();
+    let first = first_variable(dae);
+    for (number, equation) in dae.initial_equations.iter().enumerate() {
+        system.push(*equation, dae.equations.len() + number);
     }
     for (state, equation) in reinits(dae, aliases) {
-        push(&mut equations, state, equation);
+        system.push(equation, first + state.0 as usize);
     }
-    let mut free = Vec::new();
-    for variable in states.iter().chain(unknowns) {
-        match (dae.variable(*variable).fixed, states.binary_search(variable).is_ok()) {
-            (true, _) => push(&mut equations, *variable, start_equation(dae, *variable, *variable)),
-            (false, true) => free.push((*variable, *variable)),
-            (false, false) => {}
-        }
+    for v in fixed {
+        system.push(start_equation(dae, v, v), first + v.0 as usize);
     }
-    for variable in previous {
-        let Kind::Previous(of) = dae.variable(variable).kind else { continue };
-        if dae.variable(of).kind != Kind::Discrete {
-            let (left, right) = (dae.pool.variable(variable), dae.pool.variable(of));
-            push(&mut equations, of, Equation { left, right, span: dae.variable(of).span });
-        } else if dae.variable(of).fixed {
-            push(&mut equations, of, start_equation(dae, variable, of));
-        } else {
-            free.push((variable, of));
-        }
+    let (fixed, remembered) = previous_values(dae);
+    for (v, of) in fixed {
+        system.push(start_equation(dae, v, of), first + of.0 as usize);
     }
-    let given = equations.len();
-    for (variable, of) in free {
-        push(&mut equations, of, start_equation(dae, variable, of));
+    let required = system.equations.len();
+    let taken = start_values_to_take(dae, states, selections, &free);
+    for (v, of) in taken.iter().map(|v| (*v, *v)).chain(remembered) {
+        system.push(start_equation(dae, v, of), first + of.0 as usize);
     }
-    let (equations, origins) = needed(dae, &equations, &origins, given, &all);
-    let system = format!("the initial system of `{}`", dae.name);
-    let sorted = sort_mixed(dae, &system, &equations, &origins, &all)?;
-    Ok((sorted.blocks, sorted.lagged))
+    with_initial(dae, &mut system.equations, 1.0);
+
+    let matching = match_equations(&incidence(dae, &system.equations, &all));
+    let is_used = |number: usize| matching.equation_to_unknown[number].is_some();
+    let numbered = || system.equations.iter().copied().enumerate();
+    let checks =
+        numbered().take(required).skip(model).filter(|(n, _)| !is_used(*n)).map(|(_, e)| e);
+    let checks = checks.collect();
+    let mut used = Numbered::default();
+    for (number, equation) in numbered().filter(|(n, _)| *n < model || is_used(*n)) {
+        used.push(equation, system.origins[number]);
+    }
+    let held: Vec<VarId> =
+        taken.into_iter().enumerate().filter(|(n, _)| is_used(required + n)).map(|t| t.1).collect();
+    if required > model {
+        warn_of_start_values(dae, &held);
+    }
+    let name = format!("the initial system of `{}`", dae.name);
+    let sorted = sort_mixed(dae, &name, &used.equations, &used.origins, &all)?;
+    Ok(Initial { blocks: sorted.blocks, checks, lagged: sorted.lagged })
 }
 
-/// The first `given` equations and those of the others that determine something more.
-fn needed(
+/// Number of the first variable among what equations come from: behind all equations.
+fn first_variable(dae: &Dae) -> usize {
+    dae.equations.len() + dae.initial_equations.len() + dae.events.equations.len()
+}
+
+/// What is unknown at the start alone, and discrete variables.
+fn unknowns_at_start(dae: &Dae, aliases: &[Option<Alias>]) -> Vec<VarId> {
+    let discrete = of_kind(dae, |kind| kind == Kind::Discrete).into_iter();
+    let mut unknowns: Vec<VarId> = discrete.filter(|v| aliases[v.0 as usize].is_none()).collect();
+    unknowns.extend(of_kind(dae, |kind| {
+        matches!(kind, Kind::Previous(_) | Kind::Solved | Kind::Delayed)
+    }));
+    unknowns
+}
+
+/// The equations that hold always, and those of what is known later: `pre` of a continuous variable
+/// is the variable, a delayed value is the value.
+fn model_equations(dae: &mut Dae) -> Numbered {
+    let mut system = Numbered::default();
+    for (number, equation) in dae.equations.iter().enumerate() {
+        system.push(*equation, number);
+    }
+    let events = dae.equations.len() + dae.initial_equations.len();
+    for (number, equation) in dae.events.equations.iter().enumerate() {
+        system.push(*equation, events + number);
+    }
+    let first = first_variable(dae);
+    for delay in dae.events.delays.clone() {
+        let (left, right) = (dae.pool.variable(delay.variable), delay.argument);
+        let equation = Equation { left, right, span: delay.span };
+        system.push(equation, first + delay.variable.0 as usize);
+    }
+    for previous in of_kind(dae, |kind| matches!(kind, Kind::Previous(_))) {
+        let Kind::Previous(of) = dae.variable(previous).kind else { continue };
+        if dae.variable(of).kind != Kind::Discrete {
+            let (left, right) = (dae.pool.variable(previous), dae.pool.variable(of));
+            let equation = Equation { left, right, span: dae.variable(of).span };
+            system.push(equation, first + of.0 as usize);
+        }
+    }
+    system
+}
+
+/// `pre(v)` of discrete variables with v, those with fixed start values first.
+#[allow(clippy::type_complexity)]
+fn previous_values(dae: &Dae) -> (Vec<(VarId, VarId)>, Vec<(VarId, VarId)>) {
+    of_kind(dae, |kind| matches!(kind, Kind::Previous(_)))
+        .into_iter()
+        .filter_map(|v| match dae.variable(v).kind {
+            Kind::Previous(of) if dae.variable(of).kind == Kind::Discrete => Some((v, of)),
+            _ => None,
+        })
+        .partition(|(_, of)| dae.variable(*of).fixed)
+}
+
+/// Variables whose start values hold where nothing else determines them, the most wanted first:
+/// states, and instead of those chosen at run time the candidates, those chosen at first before the
+/// others; among these the ones with a start value of their own.
+fn start_values_to_take(
     dae: &Dae,
-    equations: &[Equation],
-    origins: &[usize],
-    given: usize,
-    all: &[VarId],
-) -> (Vec<Equation>, Vec<usize>) {
-    // Equations are matched one after the other: one that finds no unknown adds nothing.
-    let matching = match_equations(&incidence(dae, equations, all));
-    let pairs = equations.iter().zip(origins).enumerate();
-    pairs
-        .filter(|(at, _)| *at < given || matching.equation_to_unknown[*at].is_some())
-        .map(|(_, (equation, origin))| (*equation, *origin))
-        .unzip()
+    states: &[VarId],
+    selections: &[Selection],
+    free: &[VarId],
+) -> Vec<VarId> {
+    let chosen =
+        |v: &VarId| selections.iter().any(|s| s.chosen.iter().any(|at| s.candidates[*at] == *v));
+    let offered = |v: &VarId| match states.binary_search(v) {
+        Ok(_) => selections.iter().all(|s| !s.states.contains(v)),
+        Err(_) => selections.iter().any(|s| s.candidates.contains(v)),
+    };
+    let mut taken: Vec<VarId> = free.iter().copied().filter(offered).collect();
+    let is_candidate = |v: &VarId| states.binary_search(v).is_err();
+    taken.sort_by_key(|v| (is_candidate(v) && !chosen(v), dae.variable(*v).start.is_none()));
+    taken
+}
+
+fn is_continuous(dae: &Dae, v: VarId) -> bool {
+    let variable = dae.variable(v);
+    variable.base == BaseType::Real && variable.variability == Variability::Continuous
+}
+
+/// A model that says something about its start but not enough deserves a warning.
+fn warn_of_start_values(dae: &mut Dae, held: &[VarId]) {
+    let Some(first) = held.first() else { return };
+    let shown: Vec<String> =
+        held.iter().take(6).map(|v| format!("`{}`", dae.variable(*v).name)).collect();
+    let more = if held.len() > 6 { ", …" } else { "" };
+    let warning = fault!(
+        super::errors::MISSING_INITIAL_CONDITION,
+        "the initial equations of `{}` leave states free; the start values of {}{more} are taken as fixed",
+        dae.name,
+        shown.join(", ");
+        help: "give these variables `fixed = true`, or write initial equations for them"
+    );
+    let span = dae.variable(*first).span;
+    dae.warnings.push(warning.at(span).warning());
 }
 
 /// `reinit(x, e)` under `when initial()` is the initial equation `x = e`.

@@ -20,12 +20,17 @@ pub(super) struct Mixed {
     pub(super) lagged: Vec<VarId>,
 }
 
-/// Sorts the whole system as it is at events; empty if nothing is discrete.
-pub(super) fn sort_events(dae: &mut Dae, unknowns: &[VarId]) -> Result<Mixed, Diagnostic> {
+/// Sorts the whole system as it is at events, the equations between events given; empty if nothing
+/// is discrete.
+pub(super) fn sort_events(
+    dae: &mut Dae,
+    continuous: &[Equation],
+    unknowns: &[VarId],
+) -> Result<Mixed, Diagnostic> {
     if dae.events.equations.is_empty() {
         return Ok(Mixed::default());
     }
-    let mut equations = dae.equations.clone();
+    let mut equations = continuous.to_vec();
     equations.extend(&dae.events.equations);
     with_initial(dae, &mut equations, 0.0);
     let mut all = unknowns.to_vec();
@@ -139,6 +144,9 @@ fn cut(
 fn renumber(block: &mut Block, origins: &[usize]) {
     match block {
         Block::Assignment(assignment) => assignment.equation = origins[assignment.equation],
+        Block::Linear(solved) => {
+            solved.assignments.iter_mut().for_each(|a| a.equation = origins[a.equation]);
+        }
         Block::Loop(torn) => {
             torn.assignments.iter_mut().for_each(|a| a.equation = origins[a.equation]);
             torn.residuals.iter_mut().for_each(|(_, equation)| *equation = origins[*equation]);

@@ -5,6 +5,7 @@
 //! order_parameters     bindings in order of dependence
 //! eliminate_aliases    a = b and a = -b become names
 //! separate_discrete    equations of discrete variables become assignments at events
+//! reduce_index         constraints between states differentiated, states chosen
 //! sort_blocks          matching, strongly connected components, tearing
 //! sort_events          the same for the system at events, discrete equations included
 //! sort_initial         the same for the system at the start
@@ -14,24 +15,30 @@
 //! relations keep their values. At events the whole system is solved, with `pre(v)` known, until
 //! `pre(v) = v` (MLS §8.5).
 //!
-//! Not handled yet, and refused with `not-supported`: `delay` by a time that varies, `spatialDistribution`,
-//! statements whose loops depend on variables, systems of an index above one, parameters with `fixed = false`.
+//! Not handled yet, and refused with `not-supported`: `delay` by a time that varies,
+//! `spatialDistribution`, statements whose loops depend on variables.
 
 mod algorithm;
 mod alias_elimination;
 mod blt;
 mod build;
 mod discrete;
+mod dummy_derivatives;
+mod dynamic_states;
 pub mod errors;
 mod events;
 mod function;
+mod homotopy;
+mod index_reduction;
 mod initial;
 mod inline;
+mod linear_loops;
 mod lowering;
 mod mixed;
 mod model;
 mod parameters;
 mod report;
+mod settled;
 mod sorted;
 mod symbolic_target;
 mod temporal;
@@ -53,6 +60,7 @@ pub const PASSES: &[(&str, &str)] = &[
     ("order_parameters", "bindings of parameters in order of dependence"),
     ("eliminate_aliases", "`a = b` and `a = -b` become names"),
     ("separate_discrete", "equations of discrete variables become assignments at events"),
+    ("reduce_index", "constraints between states differentiated, states chosen"),
     ("sort_blocks", "matching, strongly connected components, tearing"),
     ("sort_events", "the same for the system at events, discrete equations included"),
     ("sort_initial", "the same for the system at the start"),
@@ -61,48 +69,49 @@ pub const PASSES: &[(&str, &str)] = &[
 /// Sorts a flat model.
 pub fn sort(flat: &FlatModel) -> Result<SortedDae, Diagnostic> {
     let mut dae = build::build(flat)?;
-    zero_inputs(&mut dae);
+    zero_inputs(&mut dae, flat);
     let parameters = parameters::order_parameters(&mut dae)?;
-    let aliases = alias_elimination::eliminate_aliases(&mut dae);
+    let mut aliases = alias_elimination::eliminate_aliases(&mut dae);
     discrete::separate_discrete(&mut dae, &aliases)?;
-    let states: Vec<VarId> = dae
-        .variables
-        .iter()
-        .filter_map(|v| match v.kind {
-            Kind::Derivative(of) => Some(of),
-            _ => None,
-        })
-        .collect::<std::collections::BTreeSet<_>>()
-        .into_iter()
-        .collect();
-    let unknowns: Vec<VarId> = (0..dae.variables.len() as u32)
-        .map(VarId)
-        .filter(|v| dae.is_unknown(*v) && aliases[v.0 as usize].is_none())
-        .filter(|v| states.binary_search(v).is_err())
-        .collect();
-    let equations = dae.equations.clone();
-    high_index(&dae, &states, &unknowns)?;
+    let chosen = index_reduction::reduce_index(&mut dae, &mut aliases, &parameters)?;
+    let dummy_derivatives::ChosenStates { states, selections } = chosen;
+    when::check_reinits(&dae, &aliases, &states, &selections)?;
+    let unknowns = index_reduction::unknowns(&dae, &aliases, &states);
+    let equations = homotopy::actual_equations(&mut dae);
     let blocks = blt::sort_blocks(&mut dae, &equations, &unknowns)?;
-    let events = mixed::sort_events(&mut dae, &unknowns)?;
-    let (initial_blocks, initial_lagged) =
-        initial::sort_initial(&mut dae, &states, &unknowns, &aliases)?;
+    let events = mixed::sort_events(&mut dae, &equations, &unknowns)?;
+    let initial = initial::sort_initial(&mut dae, &states, &selections, &unknowns, &aliases)?;
     let mut lagged = events.lagged;
-    lagged.extend(initial_lagged);
+    lagged.extend(initial.lagged);
     lagged.sort_unstable();
     lagged.dedup();
-    let event_blocks = events.blocks;
-    Ok(SortedDae { dae, aliases, states, blocks, event_blocks, initial_blocks, lagged, parameters })
+    Ok(SortedDae {
+        dae,
+        aliases,
+        states,
+        selections,
+        blocks,
+        event_blocks: events.blocks,
+        initial_blocks: initial.blocks,
+        initial_checks: initial.checks,
+        lagged,
+        parameters,
+    })
 }
 
 /// An input at the top level without a binding has its start value, which is zero by default.
-fn zero_inputs(dae: &mut Dae) {
-    let bound: std::collections::BTreeSet<VarId> =
-        dae.equations.iter().filter_map(|e| dae.pool.as_variable(e.left)).collect();
+fn zero_inputs(dae: &mut Dae, flat: &FlatModel) {
+    let is_bound = |name: &str| {
+        let whole = name.strip_suffix(']').and_then(|name| name.rsplit_once('['));
+        let declared = flat.variables.get(name);
+        let declared = declared.or_else(|| flat.variables.get(whole?.0));
+        declared.is_some_and(|variable| variable.binding.is_some())
+    };
     for position in 0..dae.variables.len() {
         let variable = &dae.variables[position];
         if variable.causality == Some(crate::syntax::ast::CausalityPrefix::Input)
             && matches!(variable.kind, Kind::Unknown | Kind::Discrete)
-            && !bound.contains(&VarId(position as u32))
+            && !is_bound(&variable.name)
         {
             let zero = dae.pool.constant(0.0);
             let right = variable.start.unwrap_or(zero);
@@ -117,24 +126,4 @@ fn zero_inputs(dae: &mut Dae) {
             dae.equations.push(Equation { left, right, span });
         }
     }
-}
-
-/// An equation between states alone constrains them: the index is above one.
-fn high_index(dae: &Dae, states: &[VarId], unknowns: &[VarId]) -> Result<(), Diagnostic> {
-    if dae.equations.len() != unknowns.len() {
-        return Ok(());
-    }
-    for equation in &dae.equations {
-        let mut variables = dae.pool.variables(equation.left);
-        variables.extend(dae.pool.variables(equation.right));
-        let constrains = variables.iter().any(|v| states.binary_search(v).is_ok())
-            && !variables.iter().any(|v| unknowns.binary_search(v).is_ok());
-        if constrains {
-            return Err(fault!(errors::NOT_SUPPORTED,
-                "high-index: this equation constrains states and would have to be differentiated";
-                help: "choose fewer states, or differentiate the constraint by hand")
-            .at(equation.span));
-        }
-    }
-    Ok(())
 }

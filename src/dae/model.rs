@@ -30,10 +30,23 @@ pub struct Dae {
     pub relations: Vec<Relation>,
     /// What else happens at events.
     pub events: Events,
+    /// What leads from the simplified expressions of `homotopy` to the actual ones.
+    pub homotopy: Option<Homotopy>,
     /// The `experiment` annotation.
     pub experiment: Experiment,
     /// What deserves a warning.
     pub warnings: Vec<Diagnostic>,
+}
+
+/// The variables behind every `homotopy(actual, simplified)`, which reads
+/// `if active then simplified + lambda*(actual - simplified) else actual` in the initial system and
+/// `actual` in the other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Homotopy {
+    /// Whether there is something between the two, 0 or 1.
+    pub active: VarId,
+    /// How far the way is done, 0 to 1.
+    pub lambda: VarId,
 }
 
 /// A scalar variable.
@@ -71,8 +84,26 @@ pub struct Variable {
     pub max: Option<Expr>,
     /// Attribute `nominal`.
     pub nominal: Option<Expr>,
+    /// Attribute `stateSelect`.
+    pub state_select: StateSelect,
     /// Where it is declared.
     pub span: Span,
+}
+
+/// How much a variable is wanted as a state (MLS §4.9.8), the least wanted first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub enum StateSelect {
+    /// Only if nothing else is left.
+    Never,
+    /// Rather not.
+    Avoid,
+    /// If it is differentiated in the model.
+    #[default]
+    Default,
+    /// Rather than those of `Default`.
+    Prefer,
+    /// Before all others.
+    Always,
 }
 
 /// What part a variable plays.

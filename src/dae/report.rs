@@ -16,7 +16,7 @@ pub fn report(sorted: &SortedDae) -> String {
 fn write_report(sorted: &SortedDae, out: &mut String) -> std::fmt::Result {
     let dae = &sorted.dae;
     let count = |test: &dyn Fn(Kind) -> bool| dae.variables.iter().filter(|v| test(v.kind)).count();
-    let loops = sorted.blocks.iter().filter(|b| matches!(b, Block::Loop(_))).count();
+    let loops = sorted.blocks.iter().filter(|b| !matches!(b, Block::Assignment(_))).count();
     writeln!(out, "{}", dae.name)?;
     writeln!(out, "  states {}", sorted.states.len())?;
     writeln!(out, "  equations {}", dae.equations.len())?;
@@ -79,6 +79,13 @@ fn write_block(sorted: &SortedDae, block: &Block, out: &mut String) -> std::fmt:
     };
     match block {
         Block::Assignment(assignment) => writeln!(out, "{}", assign(assignment)),
+        Block::Linear(solved) => {
+            let names: Vec<&str> =
+                solved.unknowns.iter().map(|v| &*sorted.dae.variable(*v).name).collect();
+            let n = solved.assignments.len();
+            writeln!(out, "linear loop of {n} solved for {}", names.join(", "))?;
+            solved.assignments.iter().try_for_each(|a| writeln!(out, "  {}", assign(a)))
+        }
         Block::Loop(torn) => {
             let names: Vec<&str> =
                 torn.iteration.iter().map(|v| &*sorted.dae.variable(*v).name).collect();

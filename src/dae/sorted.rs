@@ -1,6 +1,6 @@
 //! The sorted system: what is computed from what, in order. Data only.
 
-use super::model::Dae;
+use super::model::{Dae, Equation};
 use crate::symbolic::{Expr, VarId};
 
 /// A system in solving order.
@@ -12,6 +12,8 @@ pub struct SortedDae {
     pub aliases: Vec<Option<Alias>>,
     /// The states, in order of declaration.
     pub states: Vec<VarId>,
+    /// States that are chosen at run time.
+    pub selections: Vec<Selection>,
     /// Solves for derivatives and algebraic variables, the states given.
     pub blocks: Vec<Block>,
     /// Solves for discrete variables as well, at events; empty if there are none.
@@ -21,8 +23,26 @@ pub struct SortedDae {
     /// Discrete variables of loops: blocks read them before they write them, so the blocks are
     /// solved until these do not change.
     pub lagged: Vec<VarId>,
+    /// What the solution of these must fulfil besides.
+    pub initial_checks: Vec<Equation>,
     /// Parameters with bindings, each after those it depends on.
     pub parameters: Vec<VarId>,
+}
+
+/// States of which each is one of several candidates, chosen anew when the constraints between the
+/// candidates do not determine the others well.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Selection {
+    /// The Jacobian of the constraints in the candidates, by rows; fewer rows than columns.
+    pub jacobian: Vec<Vec<Expr>>,
+    /// The candidates.
+    pub candidates: Vec<VarId>,
+    /// The states, as many as candidates are free.
+    pub states: Vec<VarId>,
+    /// Frozen variables by states and candidates: 1 for the candidate that a state is equal to.
+    pub weights: Vec<Vec<VarId>>,
+    /// The candidates that are states at first, by their places.
+    pub chosen: Vec<usize>,
 }
 
 /// Another name for a variable.
@@ -39,6 +59,8 @@ pub struct Alias {
 pub enum Block {
     /// A variable and its value.
     Assignment(Assignment),
+    /// A linear algebraic loop, solved in closed form.
+    Linear(LinearLoop),
     /// An algebraic loop, torn.
     Loop(Loop),
 }
@@ -52,6 +74,15 @@ pub struct Assignment {
     pub value: Expr,
     /// Number of the equation in the list that was sorted.
     pub equation: usize,
+}
+
+/// A linear loop in closed form.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LinearLoop {
+    /// What its equations are solved for at once.
+    pub unknowns: Vec<VarId>,
+    /// These, then what follows from them, in order.
+    pub assignments: Vec<Assignment>,
 }
 
 /// A torn algebraic loop.
@@ -70,6 +101,7 @@ impl Block {
     pub fn assignments(&self) -> &[Assignment] {
         match self {
             Block::Assignment(assignment) => std::slice::from_ref(assignment),
+            Block::Linear(solved) => &solved.assignments,
             Block::Loop(torn) => &torn.assignments,
         }
     }

@@ -2,8 +2,9 @@
 
 use super::build::{Builder, Folding, UNKNOWN_TEXT, scalar_of_nothing};
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
+use super::index_reduction::derivative_of;
 use super::lowering::{Array, Binary, Branch, Lowered, Lowering, Operator, Target, Unary};
-use super::model::{Kind, Relation};
+use super::model::{Homotopy, Kind, Relation};
 use crate::diag::Diagnostic;
 use crate::eval::Function;
 use crate::fault;
@@ -107,7 +108,7 @@ impl Target for Builder<'_> {
     }
 
     fn settle(&mut self, condition: Expr) -> Option<f64> {
-        self.settled(condition, 0)
+        self.settled(condition).ok().flatten()
     }
 
     fn element(&mut self, _: &[Expr], _: Expr, span: Span) -> Result<Expr, Diagnostic> {
@@ -169,7 +170,6 @@ impl Target for Builder<'_> {
             "der" => Operator::Derivative,
             "noEvent" => Operator::Live(0),
             "smooth" => Operator::Live(1),
-            "homotopy" => Operator::Argument(0),
             "pre" | "edge" | "change" => {
                 // Until `temporal`, which follows when the argument is lowered.
                 self.raw += 1;
@@ -190,6 +190,19 @@ impl Target for Builder<'_> {
             }
             _ => return None,
         }))
+    }
+
+    fn homotopy(&mut self, actual: Expr, simplified: Expr) -> Expr {
+        if actual == simplified {
+            return actual;
+        }
+        let Homotopy { active, lambda } = self.homotopy_variables();
+        let pool = &mut self.dae.pool;
+        let (active, lambda) = (pool.variable(active), pool.variable(lambda));
+        let difference = pool.sub(actual, simplified);
+        let part = pool.mul(lambda, difference);
+        let between = pool.add(simplified, part);
+        pool.if_then_else(active, between, actual)
     }
 
     fn derivative(&mut self, a: Expr, span: Span) -> Result<Expr, Diagnostic> {
@@ -215,34 +228,6 @@ impl Target for Builder<'_> {
 }
 
 impl Builder<'_> {
-    /// The value of an expression of parameters with the values they are declared with; they
-    /// cannot be set any more.
-    fn settled(&mut self, e: Expr, depth: usize) -> Option<f64> {
-        const MAX_DEPTH: usize = 30;
-        if let Some(value) = self.dae.pool.as_constant(e) {
-            return Some(value);
-        }
-        let mut values = rustc_hash::FxHashMap::default();
-        for variable in self.dae.pool.variables(e) {
-            if depth >= MAX_DEPTH
-                || !matches!(self.dae.variable(variable).kind, Kind::Parameter { .. })
-            {
-                return None;
-            }
-            let position = self.first.partition_point(|first| first.0 <= variable.0) - 1;
-            let flat = self.flat;
-            let declared = &flat.variables[position];
-            let bound = self.sized(declared.binding.as_ref()?, &declared.dims).ok()?;
-            let element = (variable.0 - self.first[position].0) as usize;
-            let value = self.settled(*bound.elements.get(element)?, depth + 1)?;
-            self.dae.variables[variable.0 as usize].kind = Kind::Parameter { tunable: false };
-            values.insert(variable, self.dae.pool.constant(value));
-        }
-        let replacement = |variable| values.get(&variable).copied();
-        let known = crate::symbolic::substitute(&mut self.dae.pool, e, &replacement);
-        self.dae.pool.as_constant(known)
-    }
-
     /// The text that a variable is bound to, [`UNKNOWN_TEXT`] if that is not known.
     fn text(&mut self, position: usize) -> Arc<str> {
         let flat = self.flat;
@@ -288,6 +273,9 @@ impl Builder<'_> {
                     let derivative = self.derivative_variable(variable, span)?;
                     self.dae.pool.variable(derivative)
                 }
+                Kind::Delayed => {
+                    return Err(fault!(NOT_SUPPORTED, "the derivative of a delayed value").at(span));
+                }
                 Kind::Derivative(_) => {
                     return Err(fault!(NOT_SUPPORTED, "second derivatives need a variable";
                         help: "give the first derivative a name: `v = der(x)`, then `der(v)`")
@@ -309,14 +297,24 @@ impl Builder<'_> {
         if source.kind != Kind::Unknown || source.base != BaseType::Real {
             return Err(fault!(NOT_SUPPORTED, "`{}` has no derivative", source.name).at(span));
         }
-        let name = format!("der({})", source.name);
-        let unit = source.unit.clone();
-        let mut variable = scalar_of_nothing(&name, Kind::Derivative(of), source.span);
-        variable.unit = if unit.is_empty() { unit } else { format!("{unit}/s").into() };
+        let variable = derivative_of(source, of);
         let id = VarId(self.dae.variables.len() as u32);
         self.dae.variables.push(variable);
         self.derivatives.insert(of, id);
         Ok(id)
+    }
+
+    fn homotopy_variables(&mut self) -> Homotopy {
+        if let Some(known) = self.dae.homotopy {
+            return known;
+        }
+        let first = self.dae.variables.len() as u32;
+        for name in ["$homotopy.active", "$homotopy.lambda"] {
+            self.dae.variables.push(scalar_of_nothing(name, Kind::Frozen, Span::NONE));
+        }
+        let variables = Homotopy { active: VarId(first), lambda: VarId(first + 1) };
+        self.dae.homotopy = Some(variables);
+        variables
     }
 
     /// All variables below a path, as a record.

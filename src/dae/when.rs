@@ -8,7 +8,8 @@ use super::build::{Builder, message_text};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNBALANCED_MODEL};
 use super::events::{Reinit, Termination};
 use super::lowering::{Array, Lowering};
-use super::model::{Equation, Kind};
+use super::model::{Dae, Equation, Kind};
+use super::sorted::{Alias, Selection};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::name::Ident;
@@ -283,6 +284,26 @@ impl Builder<'_> {
         }
         Ok(())
     }
+}
+
+/// Only states can be set.
+pub(super) fn check_reinits(
+    dae: &Dae,
+    aliases: &[Option<Alias>],
+    states: &[VarId],
+    selections: &[Selection],
+) -> Result<(), Diagnostic> {
+    for reinit in &dae.events.reinits {
+        let state = aliases[reinit.state.0 as usize].map_or(reinit.state, |alias| alias.of);
+        let chosen = selections.iter().any(|s| s.states.contains(&state));
+        if states.binary_search(&state).is_err() || chosen {
+            let name = &dae.variable(reinit.state).name;
+            return Err(fault!(NOT_SUPPORTED, "`reinit` of `{name}`, which is no state";
+                help: "give `{name}` the attribute `stateSelect = StateSelect.always`")
+            .at(reinit.span));
+        }
+    }
+    Ok(())
 }
 
 /// `initial()`

@@ -36,7 +36,18 @@ impl Instantiation<'_> {
 
     /// The value of an expression whose names are resolved already.
     pub(super) fn flat_value(&mut self, e: &Expression) -> Result<Value, Diagnostic> {
-        self.structural_value(e, self.flat_scope())
+        let outer = std::mem::take(&mut self.read);
+        let value = self.known_flat_value(e);
+        let read = std::mem::replace(&mut self.read, outer);
+        self.structural.extend(read);
+        value
+    }
+
+    /// The value of an expression of flat names of constants and parameters.
+    pub(super) fn known_flat_value(&mut self, e: &Expression) -> Result<Value, Diagnostic> {
+        let local = Local { values: true, flat: true, ..Local::default() };
+        let resolved = self.resolve(e, self.flat_scope(), &local)?;
+        evaluate(&resolved, &mut Scope::script(), &mut Functions(self))
     }
 
     /// The value of an expression of constants and parameters.

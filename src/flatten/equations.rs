@@ -8,8 +8,10 @@ use super::instantiation::Instantiation;
 use super::resolve::{Local, literal};
 use super::scope::ScopeId;
 use crate::diag::Diagnostic;
+use crate::eval::{FunctionBody, ValueType};
 use crate::fault;
 use crate::name::Ident;
+use crate::source::Span;
 use crate::syntax::ast::{
     Equation, EquationKind, Expression, ExpressionKind, ForIndex, ReferencePart, Section,
 };
@@ -40,10 +42,7 @@ impl Instantiation<'_> {
                         self.add_equations(one, model, errors);
                     }
                 }
-                MemberState::Pending
-                | MemberState::Busy
-                | MemberState::Absent
-                | MemberState::Outer(_) => {}
+                _ => {}
             }
         }
         for context in elements.lineage.iter().copied() {
@@ -111,6 +110,9 @@ impl Instantiation<'_> {
                 }
                 let left = self.resolve(left, context, local)?;
                 let right = self.resolve(right, context, local)?;
+                if self.equal_fields(&left, &right, equation.span, local, out) {
+                    return Ok(());
+                }
                 self.check_sides(&left, &right, equation.span)?;
                 EquationKind::Equal { left, right }
             }
@@ -180,6 +182,45 @@ impl Instantiation<'_> {
         Ok(true)
     }
 
+    /// An equation between resolved records, such as results of functions, field by field; `false`
+    /// if the sides are no records.
+    fn equal_fields(
+        &self,
+        left: &Expression,
+        right: &Expression,
+        span: Span,
+        local: &Local,
+        out: &mut Vec<Equation>,
+    ) -> bool {
+        let of_left = self.value_type_of(left, local);
+        let found = match of_left {
+            Some(ValueType::Record(..)) => of_left,
+            _ => self.value_type_of(right, local),
+        };
+        let Some(ValueType::Record(_, fields)) = found else { return false };
+        for name in fields.keys() {
+            let kind = EquationKind::Equal {
+                left: self.field(left, *name),
+                right: self.field(right, *name),
+            };
+            out.push(Equation { kind, comment: Default::default(), span });
+        }
+        true
+    }
+
+    /// A component of a resolved record.
+    fn field(&self, record: &Expression, name: Ident) -> Expression {
+        if let ExpressionKind::Call { function, arguments } = &record.kind
+            && let Some(Some(constructor)) = self.functions.get(&function.name())
+            && constructor.body == FunctionBody::RecordConstructor
+            && let Some(given) = arguments.named.iter().find(|given| given.name.node == name)
+        {
+            return given.value.clone();
+        }
+        let kind = ExpressionKind::Field { base: Box::new(record.clone()), name };
+        Expression::new(kind, record.span)
+    }
+
     /// The components of the record that a reference names; `None` if it names anything else.
     fn record_fields(
         &mut self,
@@ -189,11 +230,7 @@ impl Instantiation<'_> {
         let ExpressionKind::Reference(reference) = &e.kind else { return Ok(None) };
         let mut node = self.node_of(context);
         for ReferencePart { name, subscripts } in &reference.parts {
-            let state = match self.member(node, *name)? {
-                Some(MemberState::Outer(inner)) => Some(*inner),
-                state => state,
-            };
-            let next = match state {
+            let next = match self.member(node, *name)?.map(MemberState::seen) {
                 Some(MemberState::Single(one)) => one,
                 Some(MemberState::Array(_, nodes)) if !subscripts.is_empty() => match nodes.first()
                 {
@@ -250,7 +287,10 @@ impl Instantiation<'_> {
                 help: "write the range: `for {} in 1:n loop`", index.name.node)
             .at(span)
         })?;
-        let resolved = self.resolve(range, context, local)?;
+        let resolved = match self.type_range(range, context, local)? {
+            Some(values) => values,
+            None => self.resolve(range, context, local)?,
+        };
         for value in self.range_values(&resolved)? {
             let mut turn = local.clone();
             turn.names.push((index.name.node, Some(literal(&value, span))));
@@ -335,10 +375,9 @@ impl Instantiation<'_> {
 
     /// Whether an expression has a value at translation: no variable but constants and
     /// parameters, no operator of time.
-    fn is_fixed(&mut self, resolved: &Expression) -> bool {
-        let flat = self.flat_scope();
+    pub(super) fn is_fixed(&mut self, resolved: &Expression) -> bool {
         let read = std::mem::take(&mut self.read);
-        let fixed = self.known_value(resolved, flat).is_ok();
+        let fixed = self.known_flat_value(resolved).is_ok();
         self.read = read;
         fixed
     }

@@ -63,6 +63,9 @@ codes! {
     /// An operator function that no operator can call.
     ILLEGAL_OPERATOR = "illegal-operator":
         "## What it means\n\nA function of an operator record has other inputs or outputs than its operator asks for, or two of them fit the same call (MLS §14.2 to §14.5).\n\n## Example\n\n```modelica\noperator record Pair\n  Real a;\n  encapsulated operator function '+'\n    import Pair;\n    input Pair x;\n    output Pair y = x;\n  end '+';\nend Pair;\n```\n\n## What to do\n\nGive it the inputs and the one output of its operator.",
+    /// A redeclaration of something that cannot be redeclared, or not so.
+    ILLEGAL_REDECLARATION = "illegal-redeclaration":
+        "## What it means\n\nA redeclaration replaces an element that is not replaceable, or a constant, or it makes a protected element public or a public one protected (MLS §7.3).\n\n## Example\n\n```modelica\nmodel A\n  Real x = 1;\nend A;\nmodel M\n  A a(redeclare Integer x);\nend M;\n```\n\n## What to do\n\nDeclare the element `replaceable`, or modify it without `redeclare`.",
     /// A conditional component used where it may be absent.
     CONDITIONAL_COMPONENT = "conditional-component":
         "## What it means\n\nA component that is declared under a condition is used in an equation or an expression, where it would be missing if the condition were false. It can only be connected, modified, and named in modifiers of other conditional components (MLS §4.4.5).\n\n## Example\n\n```modelica\nmodel M\n  parameter Boolean on = true;\n  Real x if on;\nequation\n  x = 1;\nend M;\n```\n\n## What to do\n\nMake the variable a connector and connect it, or declare it without a condition.",

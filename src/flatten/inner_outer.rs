@@ -1,7 +1,7 @@
 //! `inner` and `outer` components (MLS §5.4): an outer component is another name of the inner one
 //! of that name in the nearest enclosing instance.
 
-use super::errors::{NOT_SUPPORTED, PARTIAL_CLASS, UNKNOWN_NAME};
+use super::errors::{PARTIAL_CLASS, UNKNOWN_NAME};
 use super::instance::{Declaration, Member, MemberState, NodeId, NodeKind};
 use super::instantiation::Instantiation;
 use super::modification::Modifier;
@@ -18,15 +18,7 @@ impl Instantiation<'_> {
         node: NodeId,
         declared: &Declaration,
     ) -> Result<MemberState, Diagnostic> {
-        if declared.prefixes.inner {
-            return Err(fault!(
-                NOT_SUPPORTED,
-                "`{}` is `inner outer`, which is not translated yet",
-                declared.name
-            )
-            .at(declared.span));
-        }
-        if !declared.modifier.is_empty() {
+        if !declared.prefixes.inner && !declared.modifier.is_empty() {
             let name = declared.name;
             self.warnings.push(
                 fault!(UNKNOWN_NAME, "the value of the outer component `{name}` is ignored";
@@ -38,7 +30,7 @@ impl Instantiation<'_> {
         let mut holder = self.nodes[node.0].parent;
         while let Some(id) = holder {
             if self.is_inner(id, declared.name) {
-                let state = self.member(id, declared.name)?;
+                let state = self.member(id, declared.name)?.map(MemberState::own);
                 return Ok(MemberState::Outer(Box::new(state.unwrap_or(MemberState::Absent))));
             }
             holder = self.nodes[id.0].parent;
@@ -87,7 +79,7 @@ impl Instantiation<'_> {
         {
             members.insert(name, member);
         }
-        let state = self.member(root, name)?;
+        let state = self.member(root, name)?.map(MemberState::own);
         Ok(MemberState::Outer(Box::new(state.unwrap_or(MemberState::Absent))))
     }
 }

@@ -80,6 +80,31 @@ pub(super) enum MemberState {
     Absent,
     /// An `outer` component: what its `inner` one is (MLS §5.4).
     Outer(Box<MemberState>),
+    /// An `inner outer` component: its own instance, which encloses others, and what its name
+    /// means in its own class (MLS §5.4).
+    Both {
+        inner: Box<MemberState>,
+        outer: Box<MemberState>,
+    },
+}
+
+impl MemberState {
+    /// What belongs to the instance that holds the component.
+    pub(super) fn own(self) -> MemberState {
+        match self {
+            MemberState::Outer(_) => MemberState::Absent,
+            MemberState::Both { inner, .. } => *inner,
+            state => state,
+        }
+    }
+
+    /// What the name of the component means in its class.
+    pub(super) fn seen(self) -> MemberState {
+        match self {
+            MemberState::Outer(state) | MemberState::Both { outer: state, .. } => *state,
+            state => state,
+        }
+    }
 }
 
 /// The declaration of a component with its modifiers merged.

@@ -14,6 +14,8 @@ use super::instance::{
 use super::library::Library;
 use super::lookup::Type;
 use super::modification::{Bound, Modifier};
+use super::own_sizes::with_own_sizes;
+use super::resolve::Local;
 use super::scope::{Nested, Scope, ScopeId, Text};
 use super::{BaseType, Variability, Variable};
 use crate::diag::{Diagnostic, suggest};
@@ -21,7 +23,9 @@ use crate::eval::Function;
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
-use crate::syntax::ast::{Expression, ExpressionKind, Restriction, Subscript, VariabilityPrefix};
+use crate::syntax::ast::{
+    CausalityPrefix, Expression, ExpressionKind, Restriction, Subscript, VariabilityPrefix,
+};
 use crate::value::Value;
 use indexmap::{IndexMap, IndexSet};
 use rustc_hash::FxHashMap;
@@ -56,6 +60,8 @@ pub(super) struct Instantiation<'a> {
     pub(super) functions: IndexMap<Name, Option<Arc<Function>>>,
     /// The names under which functions are known.
     pub(super) function_names: FxHashMap<ScopeId, Name>,
+    /// The classes of records by the names of their constructors.
+    pub(super) record_scopes: FxHashMap<Name, ScopeId>,
     /// The instance of the model.
     pub(super) root_node: NodeId,
     pub(super) warnings: Vec<Diagnostic>,
@@ -98,6 +104,7 @@ impl<'a> Instantiation<'a> {
             renaming: 0,
             functions: IndexMap::new(),
             function_names: FxHashMap::default(),
+            record_scopes: FxHashMap::default(),
             root_node: NodeId(0),
             warnings: Vec::new(),
             connections: None,
@@ -253,7 +260,7 @@ impl<'a> Instantiation<'a> {
         self.fill(node)?;
         let members = self.composite_of(node).and_then(|composite| composite.members.as_ref());
         Ok(members.map_or(Vec::new(), |members| {
-            members.iter().map(|(name, member)| (*name, member.state.clone())).collect()
+            members.iter().map(|(name, member)| (*name, member.state.clone().own())).collect()
         }))
     }
 
@@ -333,7 +340,7 @@ impl<'a> Instantiation<'a> {
         built.map(Some)
     }
 
-    fn set_state(&mut self, node: NodeId, name: Ident, state: MemberState) {
+    pub(super) fn set_state(&mut self, node: NodeId, name: Ident, state: MemberState) {
         if let NodeKind::Composite(composite) = &mut self.nodes[node.0].kind
             && let Some(member) =
                 composite.members.as_mut().and_then(|members| members.get_mut(&name))
@@ -355,8 +362,17 @@ impl<'a> Instantiation<'a> {
             }
         }
         if declared.prefixes.outer {
-            return self.outer(node, declared);
+            let outer = self.outer(node, declared)?;
+            if !declared.prefixes.inner {
+                return Ok(outer);
+            }
+            let inner = Box::new(self.built(node, declared)?);
+            return Ok(MemberState::Both { inner, outer: Box::new(outer.seen()) });
         }
+        self.built(node, declared)
+    }
+
+    fn built(&mut self, node: NodeId, declared: &Declaration) -> Result<MemberState, Diagnostic> {
         let expanded = self.expand(declared)?;
         let dims = self.dimensions(declared, &expanded)?;
         match expanded.shape.base() {
@@ -377,7 +393,10 @@ impl<'a> Instantiation<'a> {
         let mut of_binding: Option<Vec<usize>> = None;
         for (at, (subscript, context)) in declared.dims.iter().chain(&expanded.dims).enumerate() {
             match subscript {
-                Subscript::Index(size) => dims.push(self.size(size, *context)?),
+                Subscript::Index(size) => {
+                    let size = with_own_sizes(size, declared.name, &dims);
+                    dims.push(self.size(&size, *context)?);
+                }
                 Subscript::All(span) => {
                     if of_binding.is_none() {
                         of_binding = Some(self.binding_dims(declared, expanded, *span)?);
@@ -400,6 +419,9 @@ impl<'a> Instantiation<'a> {
     }
 
     fn size(&mut self, size: &Expression, context: ScopeId) -> Result<usize, Diagnostic> {
+        if let Some(values) = self.type_range(size, context, &Local::default())? {
+            return Ok(self.shape_of(&values).and_then(|dims| dims.first().copied()).unwrap_or(0));
+        }
         match self.structural_value(size, context)? {
             Value::Integer(n) if n >= 0 => Ok(n as usize),
             Value::Integer(n) => {
@@ -426,6 +448,9 @@ impl<'a> Instantiation<'a> {
                 help: "write its size, or give it a value")
             .at(span));
         };
+        if let Some(dims) = self.bound_shape(&bound.clone())? {
+            return Ok(dims);
+        }
         let value = picked(value, &bound.indices);
         match self.structural_value(&value, bound.context)? {
             Value::Array(array) => Ok(array.dims),
@@ -536,6 +561,9 @@ impl<'a> Instantiation<'a> {
         self.count(scalars, declared.span)?;
         let inherited = self.inherited_by(node, declared, &expanded);
         let top_level = self.nodes[node.0].path.is_empty();
+        // Nobody outside can give a protected input its value: it is determined inside.
+        let is_inner_input =
+            inherited.protected && inherited.causality == Some(CausalityPrefix::Input);
         let name: Arc<str> = self.path_of(node, declared.name).into();
         let discrete = base != BaseType::Real;
         let default = if discrete { Variability::Discrete } else { Variability::Continuous };
@@ -544,7 +572,7 @@ impl<'a> Instantiation<'a> {
             base,
             dims,
             variability: inherited.variability.unwrap_or(default).min(default),
-            causality: inherited.causality.filter(|_| top_level),
+            causality: inherited.causality.filter(|_| top_level && !is_inner_input),
             is_final: inherited.is_final,
             protected: inherited.protected,
             evaluate: declared.evaluate,
@@ -584,7 +612,8 @@ impl<'a> Instantiation<'a> {
         // An `outer` component without an `inner` one adds a component to the model itself.
         while let Some(name) = self.member_at(node, at) {
             at += 1;
-            let nodes = match self.member(node, name) {
+            let state = self.member(node, name).map(|state| state.map(MemberState::own));
+            let nodes = match state {
                 Ok(Some(MemberState::Single(one))) => vec![one],
                 Ok(Some(MemberState::Array(_, nodes))) => nodes,
                 Ok(_) => Vec::new(),

@@ -33,17 +33,32 @@ pub struct ClassId(u32);
 /// A class is read when it is asked for: its file first, if it lies in one of its own (MLS
 /// §13.4.1), then its elements, but not those of the classes in it. What is wrong with the text of
 /// a class is known only then: see [`Library::take_problems`].
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Default)]
 pub struct Library {
-    classes: boxcar::Vec<Slot>,
+    classes: Arc<boxcar::Vec<Slot>>,
     roots: IndexMap<Ident, ClassId>,
     /// Top-level names that were looked for and are not loaded.
-    missing: Arc<Mutex<BTreeSet<Ident>>>,
+    missing: Mutex<BTreeSet<Ident>>,
     /// What the classes extend, found so far; another cache as soon as a class is added.
     bases: Arc<Mutex<BaseCache>>,
     /// The classes that were asked for and could not be read.
-    broken: Arc<Mutex<IndexSet<ClassId>>>,
+    broken: Mutex<IndexSet<ClassId>>,
     habits: Habits,
+}
+
+/// A clone shares what was read and what either of them reads later. What was asked for in vain is
+/// its own.
+impl Clone for Library {
+    fn clone(&self) -> Library {
+        Library {
+            classes: self.classes.clone(),
+            roots: self.roots.clone(),
+            missing: Mutex::default(),
+            bases: self.bases.clone(),
+            broken: Mutex::default(),
+            habits: self.habits.clone(),
+        }
+    }
 }
 
 /// The classes that others extend, as far as they were looked up.
@@ -68,7 +83,6 @@ struct Slot {
 #[derive(Debug, Clone, Default)]
 struct Declared {
     prefixes: ElementPrefixes,
-    is_protected: bool,
     constraint: Option<Constraint>,
 }
 
@@ -119,7 +133,8 @@ impl Library {
     }
 
     /// Adds the classes of a file, or a package from its folder, without reading more than their
-    /// heads now. Returns their full names.
+    /// heads now; they belong to the package `around`, if the file says nothing else. Returns their
+    /// full names.
     ///
     /// # Errors
     /// The file cannot be read, has no class, or is within a package that is not loaded.
@@ -127,6 +142,7 @@ impl Library {
         &mut self,
         files: &Arc<dyn LibraryFiles>,
         path: &Path,
+        around: &Name,
     ) -> Result<Vec<Name>, Diagnostic> {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let stem = name.strip_suffix(".mo").unwrap_or(&name).to_owned();
@@ -136,12 +152,15 @@ impl Library {
             false => Entry { file: path.to_owned(), folder: None, stem },
         };
         let file = entry.heads(files.as_ref())?;
-        let parent = self.package_around(&file)?;
+        let parent = match &file.within {
+            Some(_) => self.package_around(&file)?,
+            None => self.find(around),
+        };
         if file.classes.is_empty() {
             return Err(fault!(UNKNOWN_CLASS, "there is no class in this file").at(file.span));
         }
         if entry.folder.is_some() {
-            self.meet_folder(&entry, &file);
+            self.meet_folder(parent, &entry, &file);
         }
         let mut names = Vec::new();
         for (class, origin) in entry.classes(files, &file) {
@@ -214,7 +233,7 @@ impl Library {
     }
 
     fn class_mut(&mut self, id: ClassId) -> Option<&mut Class> {
-        self.classes.get_mut(id.0 as usize)?.class.get_mut()
+        Arc::make_mut(&mut self.classes).get_mut(id.0 as usize)?.class.get_mut()
     }
 
     /// A package read again from its own file keeps the classes that lie in files beside it.
@@ -396,7 +415,6 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-#[allow(dead_code, reason = "instantiation is being rewritten to ask these instead of the fields")]
 impl Class {
     /// Its full name.
     pub(super) fn name(&self) -> &Name {
@@ -405,11 +423,6 @@ impl Class {
 
     pub(super) fn definition(&self) -> &Arc<ClassDefinition> {
         &self.definition
-    }
-
-    /// The class around it, `None` at the top level.
-    pub(super) fn parent(&self) -> Option<ClassId> {
-        self.parent
     }
 
     /// The class of this name that is declared in it, or lies in its folder.
@@ -426,22 +439,9 @@ impl Class {
         &self.imports
     }
 
-    pub(super) fn extends(&self) -> &[Extends] {
-        &self.extends
-    }
-
-    pub(super) fn encapsulated(&self) -> bool {
-        self.definition.encapsulated
-    }
-
     /// What stands before its keyword in the class around it; nothing for one in a file of its own.
     pub(super) fn prefixes(&self) -> ElementPrefixes {
         self.declared.prefixes
-    }
-
-    /// Whether it is declared behind `protected`.
-    pub(super) fn is_protected(&self) -> bool {
-        self.declared.is_protected
     }
 
     /// Its `constrainedby`.

@@ -51,6 +51,12 @@ impl Predefined {
             _ => None,
         }
     }
+
+    /// Whether no class can have its name (MLS §4.9).
+    pub(super) fn is_reserved(self) -> bool {
+        use Predefined::{Boolean, Integer, Real, String};
+        matches!(self, Real | Integer | Boolean | String)
+    }
 }
 
 impl Instantiation<'_> {
@@ -73,15 +79,17 @@ impl Instantiation<'_> {
         name: &Name,
     ) -> Result<Option<Type>, Diagnostic> {
         let Some((first, rest)) = name.parts.split_first() else { return Ok(None) };
-        if rest.is_empty()
-            && let Some(predefined) = Predefined::named(*first)
-        {
-            return Ok(Some(Type::Predefined(predefined)));
+        let predefined = Predefined::named(*first).filter(|_| rest.is_empty());
+        if let Some(reserved) = predefined.filter(|predefined| predefined.is_reserved()) {
+            return Ok(Some(Type::Predefined(reserved)));
         }
         let found = match name.global {
             true => self.root(*first)?,
             false => self.lookup_simple(scope, *first)?,
         };
+        if let (None, Some(predefined)) = (&found, predefined) {
+            return Ok(Some(Type::Predefined(predefined)));
+        }
         self.lookup_inside(found, rest)
     }
 

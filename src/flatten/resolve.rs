@@ -6,16 +6,19 @@ use super::errors::{
 };
 use super::instance::{MemberState, NodeId, NodeKind};
 use super::instantiation::Instantiation;
+use super::lookup::Type;
 use super::scope::ScopeId;
 use crate::diag::{Diagnostic, suggest};
+use crate::eval::ValueType;
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
     Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, NamedArgument,
-    ReferencePart, Subscript,
+    ReferencePart, Subscript, UnaryOperator,
 };
 use crate::value::Value;
+use std::rc::Rc;
 
 /// The deepest nesting of expressions, bindings that lead to one another included.
 const MAX_DEPTH: usize = 400;
@@ -28,8 +31,12 @@ pub(super) struct Local {
     pub(super) names: Vec<(Ident, Option<Expression>)>,
     /// Inputs of a function.
     pub(super) read_only: Vec<Ident>,
+    /// Types of the variables of a function.
+    pub(super) types: Rc<Vec<(Ident, ValueType)>>,
     /// Whether variables are replaced by their values, which must be constant.
     pub(super) values: bool,
+    /// Whether names are flat paths, to which protected components are no secret.
+    pub(super) flat: bool,
 }
 
 impl Local {
@@ -86,22 +93,38 @@ impl Instantiation<'_> {
                 let named = self.named_arguments(named, context, local)?;
                 ExpressionKind::PartialApplication { function, named }
             }
-            ExpressionKind::Unary { operator, operand } => ExpressionKind::Unary {
-                operator: *operator,
-                operand: Box::new(sub(self, operand)?),
-            },
-            ExpressionKind::Binary { operator, left, right } => ExpressionKind::Binary {
-                operator: *operator,
-                left: Box::new(sub(self, left)?),
-                right: Box::new(sub(self, right)?),
-            },
-            ExpressionKind::If { branches, otherwise } => ExpressionKind::If {
-                branches: branches
-                    .iter()
-                    .map(|(condition, value)| Ok((sub(self, condition)?, sub(self, value)?)))
-                    .collect::<Result<_, Diagnostic>>()?,
-                otherwise: Box::new(sub(self, otherwise)?),
-            },
+            ExpressionKind::Unary { operator, operand } => {
+                let operand = sub(self, operand)?;
+                let sign = match operator {
+                    UnaryOperator::Minus | UnaryOperator::ElementwiseMinus => "'-'",
+                    UnaryOperator::Not => "'not'",
+                    UnaryOperator::Plus | UnaryOperator::ElementwisePlus => "'+'",
+                };
+                if let Some(call) = self.overloaded_unary(sign, &operand, local, e.span)? {
+                    return Ok(call);
+                }
+                ExpressionKind::Unary { operator: *operator, operand: Box::new(operand) }
+            }
+            ExpressionKind::Binary { operator, left, right } => {
+                let (left, right) = (sub(self, left)?, sub(self, right)?);
+                let call = self.overloaded_binary(*operator, &left, &right, local, e.span)?;
+                if let Some(call) = call {
+                    return Ok(call);
+                }
+                ExpressionKind::Binary {
+                    operator: *operator,
+                    left: Box::new(left),
+                    right: Box::new(right),
+                }
+            }
+            ExpressionKind::If { branches, otherwise } => {
+                return self.if_expression(e.span, branches, otherwise, context, local);
+            }
+            ExpressionKind::Range { start, step: None, stop }
+                if is_boolean(start) && is_boolean(stop) =>
+            {
+                ExpressionKind::Array(booleans(start, stop))
+            }
             ExpressionKind::Range { start, step, stop } => ExpressionKind::Range {
                 start: Box::new(sub(self, start)?),
                 step: step.as_ref().map(|step| sub(self, step).map(Box::new)).transpose()?,
@@ -138,6 +161,47 @@ impl Instantiation<'_> {
         Ok(Expression::new(kind, e.span))
     }
 
+    /// Branches whose conditions hold no variables are chosen at once: the others may name what
+    /// does not exist, such as the element before the first one.
+    fn if_expression(
+        &mut self,
+        span: Span,
+        branches: &[(Expression, Expression)],
+        otherwise: &Expression,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Expression, Diagnostic> {
+        let mut resolved = Vec::with_capacity(branches.len());
+        for (condition, value) in branches {
+            let condition = self.resolve(condition, context, local)?;
+            match self.literal_condition(&condition) {
+                Some(true) if resolved.is_empty() => return self.resolve(value, context, local),
+                Some(false) => continue,
+                _ => resolved.push((condition, self.resolve(value, context, local)?)),
+            }
+        }
+        let otherwise = self.resolve(otherwise, context, local)?;
+        if resolved.is_empty() {
+            return Ok(otherwise);
+        }
+        let kind = ExpressionKind::If { branches: resolved, otherwise: Box::new(otherwise) };
+        Ok(Expression::new(kind, span))
+    }
+
+    /// The value of a resolved condition without references.
+    fn literal_condition(&mut self, condition: &Expression) -> Option<bool> {
+        if let ExpressionKind::Boolean(truth) = condition.kind {
+            return Some(truth);
+        }
+        if !super::types::has_only_literals(condition) {
+            return None;
+        }
+        match self.flat_value(condition) {
+            Ok(Value::Boolean(truth)) => Some(truth),
+            _ => None,
+        }
+    }
+
     fn all(
         &mut self,
         expressions: &[Expression],
@@ -172,8 +236,13 @@ impl Instantiation<'_> {
         let mut inner = local.clone();
         let mut resolved = Vec::with_capacity(indices.len());
         for index in indices {
-            let range =
-                index.range.as_ref().map(|r| self.resolve(r, context, &inner)).transpose()?;
+            let range = match &index.range {
+                Some(range) => match self.type_range(range, context, &inner)? {
+                    Some(values) => Some(values),
+                    None => Some(self.resolve(range, context, &inner)?),
+                },
+                None => None,
+            };
             resolved.push(ForIndex { name: index.name, range });
             inner.names.push((index.name.node, None));
         }
@@ -190,7 +259,13 @@ impl Instantiation<'_> {
             .iter()
             .map(|subscript| match subscript {
                 Subscript::All(span) => Ok(Subscript::All(*span)),
-                Subscript::Index(e) => Ok(Subscript::Index(self.resolve(e, context, local)?)),
+                Subscript::Index(e) => {
+                    let index = match self.type_range(e, context, local)? {
+                        Some(values) => values,
+                        None => self.resolve(e, context, local)?,
+                    };
+                    Ok(Subscript::Index(self.boolean_subscript(index)))
+                }
             })
             .collect()
     }
@@ -206,6 +281,14 @@ impl Instantiation<'_> {
         if let Some(value) = self.connection_operator(span, function, arguments, context, local)? {
             return Ok(value);
         }
+        if let Some(value) = self.conversion(span, function, arguments, context, local)? {
+            return Ok(value);
+        }
+        if let Some(name) = function.as_ident()
+            && let Some(size) = self.size_call(name.as_str(), arguments, context, local, span)?
+        {
+            return Ok(size);
+        }
         let (iterators, inner) = self.iterators(&arguments.iterators, context, local)?;
         let arguments = Arguments {
             positional: self.all(&arguments.positional, context, &inner)?,
@@ -216,6 +299,12 @@ impl Instantiation<'_> {
             function.name()
         } else {
             self.function_name(&function.name(), context, function.span)?
+        };
+        let name = match self.lookup(context, &function.name())? {
+            Some(Type::Class(class)) => {
+                self.overloaded_constructor(class, &arguments, &inner)?.unwrap_or(name)
+            }
+            _ => name,
         };
         let impure =
             self.functions.get(&name).is_some_and(|f| f.as_ref().is_some_and(|f| f.impure));
@@ -293,11 +382,10 @@ impl Instantiation<'_> {
             return self.whole_instance(node, whole, context, local);
         };
         let state = match self.member(node, part.name)? {
-            Some(MemberState::Outer(inner)) => *inner,
-            Some(state) => state,
+            Some(state) => state.seen(),
             None => return Err(self.unknown_component(node, part.name, whole.span)),
         };
-        if parts.len() < whole.parts.len() && self.is_protected(node, part.name) {
+        if !local.flat && parts.len() < whole.parts.len() && self.is_protected(node, part.name) {
             let path = &self.nodes[node.0].path;
             return Err(fault!(
                 PROTECTED_ACCESS,
@@ -343,7 +431,7 @@ impl Instantiation<'_> {
             MemberState::Pending | MemberState::Busy => {
                 Err(fault!(NOT_CONSTANT, "`{}` depends on itself", part.name).at(whole.span))
             }
-            MemberState::Outer(_) => Err(fault!(
+            MemberState::Outer(_) | MemberState::Both { .. } => Err(fault!(
                 NOT_CONSTANT,
                 "`{}` is an outer component of one that is outer itself",
                 part.name
@@ -696,7 +784,7 @@ fn element_of<'e>(base: &'e Expression, indices: &[usize]) -> Option<&'e Express
 }
 
 /// The expression with `end` replaced by a size, where it is the whole of it.
-fn at_end(e: &Expression, size: usize) -> Expression {
+pub(super) fn at_end(e: &Expression, size: usize) -> Expression {
     let mut e = e.clone();
     replace_end(&mut e, size);
     e
@@ -722,4 +810,19 @@ fn replace_end(e: &mut Expression, size: usize) {
         }
         _ => {}
     }
+}
+
+fn is_boolean(e: &Expression) -> bool {
+    matches!(e.kind, ExpressionKind::Boolean(_))
+}
+
+/// The literals of a range of Booleans (MLS §10.4.3).
+fn booleans(start: &Expression, stop: &Expression) -> Vec<Expression> {
+    let is_in = |truth: &bool| {
+        let below = matches!(start.kind, ExpressionKind::Boolean(from) if from > *truth);
+        let above = matches!(stop.kind, ExpressionKind::Boolean(to) if *truth > to);
+        !below && !above
+    };
+    let literal = |truth| Expression::new(ExpressionKind::Boolean(truth), start.span.to(stop.span));
+    [false, true].into_iter().filter(is_in).map(literal).collect()
 }

@@ -132,7 +132,11 @@ impl Instantiation<'_> {
             ExpressionKind::Binary { operator, left, right } => {
                 self.binary_type(*operator, left, right)
             }
-            ExpressionKind::If { otherwise, .. } => self.type_of(otherwise),
+            ExpressionKind::If { branches, otherwise } => {
+                let mut values = branches.iter().map(|(_, value)| value).chain([&**otherwise]);
+                let first = self.type_of(values.next()?)?;
+                values.try_fold(first, |all, value| joined(all, self.type_of(value)?))
+            }
             ExpressionKind::Array(elements) => {
                 let mut types = elements.iter().map(|element| self.type_of(element));
                 let first = types.next()??;
@@ -268,18 +272,37 @@ fn joined(one: BaseType, other: BaseType) -> Option<BaseType> {
 fn fits(found: &BaseType, wanted: &BaseType, e: &Expression) -> bool {
     match (found, wanted) {
         (BaseType::Integer, BaseType::Real) => true,
-        (BaseType::Integer, BaseType::Enumeration(_)) => has_only_literals(e),
+        (BaseType::Integer, BaseType::Enumeration(_)) => may_be_literal(e),
         (BaseType::Enumeration(one), BaseType::Enumeration(other)) => one.name == other.name,
         _ => found == wanted,
     }
 }
 
-fn has_only_literals(e: &Expression) -> bool {
+/// Whether what gives the value may be a literal of an enumeration, which is an Integer by now.
+fn may_be_literal(e: &Expression) -> bool {
+    match &e.kind {
+        ExpressionKind::Integer(_) => true,
+        ExpressionKind::If { branches, otherwise } => {
+            branches.iter().all(|(_, value)| may_be_literal(value)) && may_be_literal(otherwise)
+        }
+        ExpressionKind::Array(elements) => elements.iter().all(may_be_literal),
+        ExpressionKind::Matrix(rows) => rows.iter().flatten().all(may_be_literal),
+        ExpressionKind::Reference(_) => false,
+        _ => true,
+    }
+}
+
+/// Whether an expression holds no references and calls no functions of a library.
+pub(super) fn has_only_literals(e: &Expression) -> bool {
     struct References(bool);
     impl Visit for References {
         fn reference(&mut self, _: &ComponentReference) {
             self.0 = true;
         }
+    }
+    if let ExpressionKind::If { branches, otherwise } = &e.kind {
+        let mut values = branches.iter().map(|(_, value)| value).chain([&**otherwise]);
+        return values.all(has_only_literals);
     }
     let mut references = References(false);
     references.expression(e);

@@ -6,12 +6,15 @@ use super::errors::{SIZE_MISMATCH, TYPE_MISMATCH};
 use super::instance::{Leaf, MemberState, NodeId, NodeKind};
 use super::instantiation::{ATTRIBUTES, Instantiation, picked};
 use super::modification::Bound;
-use super::resolve::Local;
+use super::resolve::{Local, literal};
 use super::types::type_name;
 use super::{Attribute, BaseType, Variable};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
+
+/// Attributes that must be known when the equations are sorted.
+const DECIDED: [&str; 2] = ["fixed", "stateSelect"];
 
 impl Instantiation<'_> {
     /// Adds the variables of a node and of all below it, in order of declaration.
@@ -85,11 +88,20 @@ impl Instantiation<'_> {
             let Some((_, modifier)) = modifier else { continue };
             let Some(bound) = &modifier.binding else { continue };
             if let Some(value) = self.bound(bound)? {
+                let value = if DECIDED.contains(&name) { self.decided(value)? } else { value };
                 let attribute = Attribute { value, is_final: modifier.is_final };
                 variable.attributes.insert(name, attribute);
             }
         }
         Ok(variable)
+    }
+
+    /// The value of an attribute that decides how a variable is treated.
+    fn decided(&mut self, value: Expression) -> Result<Expression, Diagnostic> {
+        if !self.is_fixed(&value) {
+            return Ok(value);
+        }
+        Ok(literal(&self.flat_value(&value)?, value.span))
     }
 
     fn bound(&mut self, bound: &Bound) -> Result<Option<Expression>, Diagnostic> {

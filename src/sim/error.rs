@@ -38,6 +38,11 @@ pub enum Failure {
         /// Which block of the initial system.
         block: u32,
     },
+    /// The initial values contradict an initial equation that was not needed to find them.
+    Inconsistent {
+        /// Which one.
+        check: u32,
+    },
     /// Event iteration did not end.
     EventIteration {
         /// A variable that kept changing; the system can explain it.

@@ -214,6 +214,14 @@ pub(super) fn algebraic() -> TestProblem {
     })
 }
 
+/// x' = 2 t x (1 − x) + (w − exp(−t)), w' = −w, x(0) = 1/2: x = 1/(1 + exp(−t²)), w = exp(−t).
+pub(super) fn driven_logistic() -> TestProblem {
+    TestProblem::new(&[0.5, 1.0], 2, |t, y, _, out| {
+        out[0] = 2.0 * t * y[0] * (1.0 - y[0]) + (y[1] - (-t).exp());
+        out[1] = -y[1];
+    })
+}
+
 /// A ball from height 1 with restitution 0.7 and g = 9.81.
 pub(super) fn bouncing_ball() -> TestProblem {
     TestProblem::new(&[1.0, 0.0], 2, |_, y, _, out| {

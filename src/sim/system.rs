@@ -19,6 +19,10 @@ pub trait DaeSystem {
     fn n_differential(&self) -> usize;
     /// Number of algebraic variables v.
     fn n_algebraic(&self) -> usize;
+    /// Asks the system to solve for v itself whenever it is evaluated, so that
+    /// [`n_algebraic`](DaeSystem::n_algebraic) is 0, or to stop doing so. A system that cannot leaves
+    /// everything as it is; it cannot be simulated with explicit methods.
+    fn solve_loops(&mut self, _inside: bool) {}
     /// Typical magnitude of every y; what is not positive and finite counts as 1.
     fn nominal(&self, out: &mut [f64]);
     /// Writes (f, g) at (t, y).

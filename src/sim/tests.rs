@@ -88,6 +88,45 @@ fn methods_with_fixed_step_have_their_order() {
     }
 }
 
+/// The error at the end with steps of this length, the error test being satisfied by anything.
+fn error_with_step(method: &str, problem: &mut TestProblem, step: f64, exact: Exact) -> f64 {
+    let stop = 2.0;
+    let mut settings = by(method, settings(stop, 1.0));
+    (settings.step, settings.initial_step, settings.max_step) = (Some(step), Some(step), step);
+    let ends = final_values(problem, &settings).into_iter().zip(exact(stop));
+    ends.map(|(value, expected)| (value - expected).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn every_one_step_method_has_its_order_on_every_problem() {
+    let oscillator: (fn() -> TestProblem, Exact) =
+        (problems::oscillator, |t| vec![t.cos(), -t.sin()]);
+    let algebraic: (fn() -> TestProblem, Exact) =
+        (problems::algebraic, |t| vec![2.0 * t * (-t).exp(), 2.0 * (1.0 - t) * (-t).exp()]);
+    let logistic: (fn() -> TestProblem, Exact) =
+        (problems::driven_logistic, |t| vec![1.0 / (1.0 + (-t * t).exp()), (-t).exp()]);
+    for (method, order, step) in [
+        ("euler", 1.0, 0.01),
+        ("rungekutta", 4.0, 0.05),
+        ("dopri5", 5.0, 0.1),
+        ("rodas4", 4.0, 0.05),
+        ("radau", 5.0, 0.2),
+    ] {
+        for (problem, exact) in [oscillator, algebraic, logistic] {
+            if problem().n_algebraic() > 0 && !["rodas4", "radau"].contains(&method) {
+                continue;
+            }
+            let coarse = error_with_step(method, &mut problem(), step, exact);
+            let fine = error_with_step(method, &mut problem(), 0.5 * step, exact);
+            let estimated = (coarse / fine).log2();
+            assert!(
+                estimated > order - 0.35 && estimated < order + 1.2,
+                "{method} has order {estimated}: {coarse:e}, {fine:e}"
+            );
+        }
+    }
+}
+
 #[test]
 fn robertson_with_algebraic_equation() {
     for (tolerance, allowed) in [(1e-4, 2e-4), (1e-8, 2e-7)] {

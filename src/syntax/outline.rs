@@ -84,7 +84,6 @@ impl Scan<'_> {
             b'"' => self.quoted(b'"'),
             b'\'' => self.quoted(b'\''),
             b'(' | b'[' | b'{' => self.brackets(),
-            b')' | b']' | b'}' => None,
             b'/' => self.slash(),
             _ => {
                 self.at += 1;
@@ -93,19 +92,21 @@ impl Scan<'_> {
         }
     }
 
-    /// From an opening bracket to behind its partner.
+    /// From an opening bracket to behind its partner. One that is not closed before a `;` outside
+    /// `[…]` ends there: the parser tells of it when it reads the class.
     fn brackets(&mut self) -> Option<()> {
-        let mut depth = 0;
+        let mut open = Vec::new();
         while let Some(byte) = self.peek(0) {
             match byte {
-                b'(' | b'[' | b'{' => depth += 1,
+                b'(' | b'[' | b'{' => open.push(byte),
                 b')' | b']' | b'}' => {
-                    depth -= 1;
-                    if depth == 0 {
+                    open.pop();
+                    if open.is_empty() {
                         self.at += 1;
                         return Some(());
                     }
                 }
+                b';' if open.last() != Some(&b'[') => return Some(()),
                 b'"' | b'\'' => {
                     self.quoted(byte)?;
                     continue;

@@ -9,6 +9,6 @@ package enclosing_variable
     Inner inside;
   end Outer;
   model Main
-    Outer.Inner i;
+    Outer outside;
   end Main;
 end enclosing_variable;

@@ -5,7 +5,7 @@ model Amplifiers "An amplifier integrates a voltage, controlled sources and a tr
   Analog.Basic.Capacitor feedback(C = 1e-3, v(start = 0, fixed = true));
   Analog.Ideal.IdealOpAmp3Pin amplifier;
   Analog.Basic.VCV follower(gain = 3);
-  Analog.Ideal.IdealTransformer transformer(n = 2);
+  Analog.Ideal.IdealTransformer transformer(n = 2, Lm1 = 1);
   Analog.Basic.Gyrator gyrator(G1 = 0.1, G2 = 0.1);
   Analog.Basic.Conductor load(G = 0.05);
   Analog.Basic.Ground ground;

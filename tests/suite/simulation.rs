@@ -184,10 +184,6 @@ fn what_is_not_handled_is_refused() {
     );
     assert_eq!(refused("model M parameter Real a; Real x = a; end M;"), "parameter-without-value");
     assert_eq!(refused("model M Real x[2] = {1, 2, 3}; end M;"), "array-mismatch");
-    assert_eq!(
-        refused("model P Real x; Real y; equation der(x) = y; x = time; end P;"),
-        "not-supported"
-    );
 }
 
 const POLARIZATION: &str = "model P parameter Real Eoc = 1.2; parameter Real R = 0.73; parameter Real In = 1.4e-3;

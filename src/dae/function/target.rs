@@ -246,8 +246,8 @@ impl Target for Body<'_, '_> {
         span: Span,
     ) -> Option<Result<Operator, Diagnostic>> {
         Some(match name {
-            "noEvent" | "homotopy" => Ok(Operator::Argument(0)),
-            "smooth" => Ok(Operator::Argument(1)),
+            "noEvent" | "homotopy" => Ok(Operator::Live(0)),
+            "smooth" => Ok(Operator::Live(1)),
             "der"
             | "initial"
             | "terminal"

@@ -2,7 +2,7 @@
 //! table (MLS §3.7), user functions.
 
 use super::arrays::concatenate;
-use super::{Array, Binary, Lowered, Lowering, Operator, Target};
+use super::{Array, Binary, Lowered, Lowering, Operator, Target, placed};
 use crate::dae::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use crate::diag::{Diagnostic, suggest};
 use crate::eval::FunctionBody;
@@ -20,6 +20,9 @@ impl<T: Target> Lowering<'_, T> {
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
         let name = callee.name();
         if let Some(user) = self.target.function(&name) {
+            if let Some((builtin, placed)) = placed::of_builtin(&user, arguments) {
+                return self.table_function(builtin, &placed, span);
+            }
             let mut outputs = self.user_call(&user, arguments, span)?;
             if outputs.is_empty() {
                 return Err(fault!(ARRAY_MISMATCH, "`{name}` has no output").at(span));
@@ -28,7 +31,10 @@ impl<T: Target> Lowering<'_, T> {
         }
         let text = name.to_string();
         let short = text.strip_prefix('.').unwrap_or(&text);
-        let plain = &arguments.positional;
+        if short == "homotopy" {
+            return self.homotopy(arguments, span);
+        }
+        let plain = &placed::of_operator(short, arguments);
         if let Some(operator) = self.target.operator(short, plain, span) {
             return self.time_operator(short, operator?, plain, span);
         }
@@ -119,7 +125,6 @@ impl<T: Target> Lowering<'_, T> {
                 .ok_or_else(|| fault!(ARRAY_MISMATCH, "`{name}` needs another argument").at(span))
         };
         match operator {
-            Operator::Argument(position) => self.lower(argument(position)?),
             Operator::Temporal => {
                 let values = arguments.iter().map(|a| self.array(a)).collect::<Result<_, _>>()?;
                 Ok(Lowered::Array(self.target.temporal(name, values, self.live, span)?))

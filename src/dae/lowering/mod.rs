@@ -6,7 +6,9 @@
 mod arrays;
 mod calls;
 mod expression;
+mod homotopy;
 mod operators;
+mod placed;
 
 pub(crate) use arrays::Choice;
 pub(crate) use expression::field;
@@ -120,6 +122,10 @@ pub(crate) trait Target {
         arguments: &[Expression],
         span: Span,
     ) -> Option<Result<Operator, Diagnostic>>;
+    /// What leads from `simplified` to `actual` at the start, and is `actual` afterwards.
+    fn homotopy(&mut self, actual: Self::Scalar, _simplified: Self::Scalar) -> Self::Scalar {
+        actual
+    }
     /// `der(a)`
     fn derivative(&mut self, a: Self::Scalar, span: Span) -> Result<Self::Scalar, Diagnostic>;
     /// An operator of values in time (`pre`, `edge`, `sample` …); functions have none.
@@ -140,8 +146,6 @@ pub(crate) enum Operator {
     Derivative,
     /// The argument of this position, relations inside it live.
     Live(usize),
-    /// The argument of this position as it is.
-    Argument(usize),
     /// Left to [`Target::temporal`].
     Temporal,
 }

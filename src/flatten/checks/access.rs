@@ -1,10 +1,10 @@
 //! What names with dots may lead through (MLS §4.1, §5.3.2, §5.3.3).
 
-use super::names;
 use super::scope::Scope;
+use super::{imports, names};
 use crate::diag::Diagnostic;
 use crate::fault;
-use crate::flatten::errors::{ILLEGAL_ACCESS, PROTECTED_ACCESS};
+use crate::flatten::errors::{ILLEGAL_ACCESS, ILLEGAL_IMPORT, PROTECTED_ACCESS};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{Restriction, VariabilityPrefix, Visibility};
@@ -12,8 +12,53 @@ use crate::syntax::ast::{Restriction, VariabilityPrefix, Visibility};
 /// Checks every name with dots that a class writes.
 pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     for written in names::of(class) {
-        errors.extend(path(class, &written.name, written.span));
+        let unclear = unqualified(class, &written.name, written.span);
+        errors.extend(unclear.or_else(|| path(class, &written.name, written.span)));
     }
+}
+
+/// A name that only unqualified imports make visible: one public element of one package
+/// (MLS §5.3.1).
+fn unqualified(class: Scope<'_>, name: &Name, span: Span) -> Option<Diagnostic> {
+    let first = *name.parts.first().filter(|_| !name.global)?;
+    let around = std::iter::successors(Some(class), |scope| {
+        if scope.definition().encapsulated { None } else { scope.parent() }
+    });
+    for scope in around {
+        if element(scope, first).is_some() || imports::names(scope, first) {
+            return None;
+        }
+        let packages = imports::unqualified_packages(scope);
+        let holders: Vec<_> = packages
+            .iter()
+            .filter_map(|package| Some((package, element(*package, first)?)))
+            .collect();
+        let is_public = |found: &Found| found.visibility == Visibility::Public;
+        let public: Vec<_> = holders.iter().filter(|(_, found)| is_public(found)).collect();
+        match (public.as_slice(), holders.as_slice()) {
+            ([(a, _), (b, _), ..], _) if a.class != b.class => {
+                return Some(
+                    fault!(ILLEGAL_IMPORT, "`{first}` is imported from both `{}` and `{}`",
+                        a.name(), b.name();
+                        help: "import the one that is meant by its name")
+                    .at(span),
+                );
+            }
+            ([], [(package, _), ..]) => {
+                return Some(protected(first, *(*package), span));
+            }
+            ([], []) => {}
+            _ => return None,
+        }
+    }
+    None
+}
+
+/// The diagnostic for a protected element of a class.
+pub(super) fn protected(name: Ident, class: Scope<'_>, span: Span) -> Diagnostic {
+    fault!(PROTECTED_ACCESS, "`{name}` is protected in `{}`", class.name();
+        help: "move the declaration in front of `protected`")
+    .at(span)
 }
 
 /// What is wrong with a name whose first part means a class.
@@ -37,11 +82,7 @@ fn path(class: Scope<'_>, name: &Name, span: Span) -> Option<Diagnostic> {
         let next = class.class_named(&prefix);
         let found = element(inside, *part).or_else(|| next.map(Found::in_own_file))?;
         if found.visibility == Visibility::Protected {
-            return Some(
-                fault!(PROTECTED_ACCESS, "`{part}` is protected in `{}`", inside.name();
-                    help: "move the declaration in front of `protected`")
-                .at(span),
-            );
+            return Some(protected(*part, inside, span));
         }
         if !found.encapsulated && !is_package_like(inside) {
             return Some(
@@ -57,8 +98,8 @@ fn path(class: Scope<'_>, name: &Name, span: Span) -> Option<Diagnostic> {
 }
 
 /// An element of a class, as names with dots see it.
-struct Found {
-    visibility: Visibility,
+pub(super) struct Found {
+    pub(super) visibility: Visibility,
     encapsulated: bool,
 }
 
@@ -69,7 +110,8 @@ impl Found {
     }
 }
 
-fn element(class: Scope<'_>, name: Ident) -> Option<Found> {
+/// The element of a class, its own or inherited, among those written in its file.
+pub(super) fn element(class: Scope<'_>, name: Ident) -> Option<Found> {
     class.lineage().into_iter().find_map(|class| {
         let nested = class.class_elements().find(|(_, one)| one.class.name.node == name);
         if let Some((visibility, nested)) = nested {

@@ -1,12 +1,13 @@
 //! Import clauses (MLS §13.2).
 
+use super::access::{self, element};
 use super::scope::Scope;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::ILLEGAL_IMPORT;
 use crate::name::{Ident, Name};
 use crate::source::Span;
-use crate::syntax::ast::{Element, Import, ImportKind, Restriction};
+use crate::syntax::ast::{Element, Import, ImportKind, Restriction, Visibility};
 use rustc_hash::FxHashMap;
 
 /// Checks the import clauses of a class.
@@ -15,7 +16,8 @@ pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     for (_, element) in class.elements() {
         let Element::Import(import) = element else { continue };
         errors.extend(from_other_than_package(class, import));
-        for (name, target) in names(&import.kind) {
+        for (name, target) in named_by(&import.kind) {
+            errors.extend(protected(class, &target, import.span));
             let known = named.insert(name, (target.clone(), import.span));
             if let Some((other, first)) = known
                 && other != target
@@ -32,7 +34,7 @@ pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
 }
 
 /// The names that an import declares and what they mean; none for an unqualified one.
-fn names(kind: &ImportKind) -> Vec<(Ident, Name)> {
+fn named_by(kind: &ImportKind) -> Vec<(Ident, Name)> {
     match kind {
         ImportKind::Qualified(target) => {
             target.last().into_iter().map(|name| (name, target.clone())).collect()
@@ -45,10 +47,37 @@ fn names(kind: &ImportKind) -> Vec<(Ident, Name)> {
     }
 }
 
+/// Whether an import of a class declares a name.
+pub(super) fn names(class: Scope<'_>, name: Ident) -> bool {
+    let imports = class.library.class(class.class).imports();
+    imports.iter().flat_map(named_by).any(|(own, _)| own == name)
+}
+
+/// The packages from which a class imports everything.
+pub(super) fn unqualified_packages(class: Scope<'_>) -> Vec<Scope<'_>> {
+    let imports = class.library.class(class.class).imports();
+    let packages = imports.iter().filter_map(|import| match import {
+        ImportKind::Unqualified(package) => Some(global(package)),
+        _ => None,
+    });
+    packages.filter_map(|package| class.class_named(&package)).collect()
+}
+
+fn global(name: &Name) -> Name {
+    Name { global: true, parts: name.parts.clone() }
+}
+
+/// An import of a protected element.
+fn protected(class: Scope<'_>, target: &Name, span: Span) -> Option<Diagnostic> {
+    let package = class.class_named(&global(&target.parent()))?;
+    let name = target.last()?;
+    let found = element(package, name)?;
+    (found.visibility == Visibility::Protected).then(|| access::protected(name, package, span))
+}
+
 /// What is imported by its name is a package or an element of one, or a class at the top level;
 /// what is imported from is a package.
 fn from_other_than_package(class: Scope<'_>, import: &Import) -> Option<Diagnostic> {
-    let global = |name: &Name| Name { global: true, parts: name.parts.clone() };
     let package = match &import.kind {
         ImportKind::Qualified(target) | ImportKind::Renaming(_, target) => {
             if class.class_named(&global(target)).is_some_and(is_package) {

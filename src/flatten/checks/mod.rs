@@ -9,6 +9,7 @@ mod behaviour;
 mod elements;
 mod imports;
 mod lookup;
+mod modifications;
 mod names;
 mod operators;
 mod participants;
@@ -48,6 +49,7 @@ fn check_one(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     imports::check(class, errors);
     behaviour::check(class, errors);
     access::check(class, errors);
+    modifications::check(class, errors);
     usage::check(class, errors);
 }
 

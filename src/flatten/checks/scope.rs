@@ -104,7 +104,7 @@ impl<'a> Scope<'a> {
                 continue;
             }
             found.push(self.of(class));
-            pending.extend(self.library.bases(class).iter().rev());
+            pending.extend(self.library.declared_bases(class).iter().rev());
         }
         found
     }
@@ -144,7 +144,7 @@ impl<'a> Scope<'a> {
 
     /// What a name of a type or class means in it.
     pub(super) fn meaning(self, name: &Name) -> Option<Type> {
-        self.library.lookup(Some(self.class), name)
+        self.library.meaning(Some(self.class), name)
     }
 
     /// The class that a name means in it.

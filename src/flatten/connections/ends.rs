@@ -75,10 +75,7 @@ impl Instantiation<'_> {
         node: NodeId,
         part: &ReferencePart,
     ) -> Result<Option<MemberState>, Diagnostic> {
-        Ok(match self.member(node, part.name)? {
-            Some(MemberState::Outer(inner)) => Some(*inner),
-            state => state,
-        })
+        Ok(self.member(node, part.name)?.map(MemberState::seen))
     }
 
     #[allow(clippy::type_complexity, reason = "sizes and ends, or nothing")]
@@ -126,7 +123,10 @@ impl Instantiation<'_> {
                 Ok(Some((kept, ends)))
             }
             MemberState::Absent => Ok(None),
-            MemberState::Pending | MemberState::Busy | MemberState::Outer(_) => {
+            MemberState::Pending
+            | MemberState::Busy
+            | MemberState::Outer(_)
+            | MemberState::Both { .. } => {
                 Err(fault!(INVALID_CONNECTION, "`{}` cannot be connected here", part.name)
                     .at(whole.span))
             }

@@ -89,6 +89,13 @@ impl Connections {
         self.counts.get(&end).copied().unwrap_or(0)
     }
 
+    /// Whether a connection names a scalar.
+    pub(super) fn has(&self, leaf: NodeId, element: usize) -> bool {
+        [false, true]
+            .iter()
+            .any(|outside| self.number.contains_key(&Face { leaf, element, outside: *outside }))
+    }
+
     /// Lists the members of the sets.
     pub(super) fn close(&mut self) {
         for at in 0..self.parent.len() {
@@ -154,6 +161,9 @@ impl Instantiation<'_> {
         span: Span,
         connections: &mut Connections,
     ) -> Result<(), Diagnostic> {
+        if self.is_expandable(one) != self.is_expandable(other) {
+            return Err(self.unlike(End::Composite(one), End::Composite(other), span));
+        }
         let left = self.connectable(one)?;
         let right = self.connectable(other)?;
         let missing = |from: &[(Ident, MemberState)], to: &[(Ident, MemberState)]| {

@@ -10,11 +10,14 @@ use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
     ClassDefinition, ClassElement, ClassSpecifier, Element, LongClass, Restriction, Section,
-    StoredDefinition, Visibility,
+    StoredDefinition,
 };
 use indexmap::IndexMap;
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
+
+/// Packages inside each other whose folders are still looked into.
+const MAX_FOLDERS: usize = 20;
 
 impl Library {
     /// A class, read now if it was not; nobody is told of its problems.
@@ -60,11 +63,10 @@ impl Library {
             self.habits.meet(class.name.first(), habit, span);
         }
         for section in &long.sections {
-            let Section::Elements { visibility, elements } = section else { continue };
-            let is_protected = *visibility == Some(Visibility::Protected);
+            let Section::Elements { elements, .. } = section else { continue };
             for element in elements {
                 match element {
-                    Element::Class(nested) => self.add_nested(id, class, nested, is_protected),
+                    Element::Class(nested) => self.add_nested(id, class, nested),
                     Element::Import(import) => class.imports.push(import.kind.clone()),
                     Element::Extends(extends) => class.extends.push(extends.clone()),
                     Element::Component(_) => {}
@@ -73,13 +75,7 @@ impl Library {
         }
     }
 
-    fn add_nested(
-        &self,
-        id: ClassId,
-        class: &mut Class,
-        nested: &ClassElement,
-        is_protected: bool,
-    ) {
+    fn add_nested(&self, id: ClassId, class: &mut Class, nested: &ClassElement) {
         let Spanned { node: name, span } = nested.class.name;
         if class.children.contains_key(&name) {
             let owner = &class.name;
@@ -89,12 +85,16 @@ impl Library {
         }
         let origin = Origin::Head(nested.class.clone(), None);
         let constraint = nested.constraint.clone();
-        let declared = Declared { prefixes: nested.prefixes, is_protected, constraint };
+        let declared = Declared { prefixes: nested.prefixes, constraint };
         class.children.insert(name, self.push(origin, declared, name, Some(id)));
     }
 
     /// Adds the classes beside a `package.mo`. A file that `package.order` lists is not opened.
     fn add_folder(&self, id: ClassId, class: &mut Class, folder: &Folder) {
+        if class.name.parts.len() > MAX_FOLDERS {
+            // A link that leads back would make the package one without end.
+            return;
+        }
         let order = folder.order().unwrap_or_default();
         let place: FxHashMap<Ident, usize> =
             order.iter().enumerate().map(|(at, name)| (Ident::new(name), at)).collect();
@@ -156,9 +156,17 @@ impl Library {
         self.meet_name(library, entry, file, name);
     }
 
-    /// Notes a library's folder whose name, without its version, is not that of the package.
-    pub(super) fn meet_folder(&self, entry: &Entry, file: &StoredDefinition) {
-        let library = file.classes.first().map(|class| class.name.node);
+    /// Notes a package's folder whose name, without a version, is not that of the package.
+    pub(super) fn meet_folder(
+        &self,
+        parent: Option<ClassId>,
+        entry: &Entry,
+        file: &StoredDefinition,
+    ) {
+        let library = match parent {
+            Some(parent) => self.slot(parent).name.first(),
+            None => file.classes.first().map(|class| class.name.node),
+        };
         let name = entry.stem.split(' ').next().unwrap_or_default();
         self.meet_name(library, entry, file, Ident::new(name));
     }

@@ -4,6 +4,9 @@ pub(super) mod bdf;
 mod dopri5;
 mod euler;
 mod explicit;
+mod mass_matrix;
+mod radau;
+mod rodas;
 mod rungekutta;
 mod without_unknowns;
 
@@ -15,7 +18,7 @@ pub(super) use without_unknowns::WithoutUnknowns;
 
 /// The methods a script may ask for.
 pub const INTEGRATORS: &[&Entry<dyn Integrator>] =
-    &[&bdf::ENTRY, &dopri5::ENTRY, &euler::ENTRY, &rungekutta::ENTRY];
+    &[&bdf::ENTRY, &rodas::ENTRY, &radau::ENTRY, &dopri5::ENTRY, &euler::ENTRY, &rungekutta::ENTRY];
 
 /// The method of this name or alias.
 ///

@@ -1,0 +1,19 @@
+//! `homotopy` after the start: only the actual expressions are left.
+
+use super::model::{Dae, Equation};
+use crate::symbolic::substitute;
+
+/// The equations with every `homotopy(actual, simplified)` replaced by `actual`.
+pub(super) fn actual_equations(dae: &mut Dae) -> Vec<Equation> {
+    let mut equations = dae.equations.clone();
+    if let Some(homotopy) = dae.homotopy {
+        let inactive = dae.pool.constant(0.0);
+        let pool = &mut dae.pool;
+        for equation in &mut equations {
+            for side in [&mut equation.left, &mut equation.right] {
+                *side = substitute(pool, *side, &|v| (v == homotopy.active).then_some(inactive));
+            }
+        }
+    }
+    equations
+}

@@ -1,0 +1,46 @@
+//! Arguments in the places that an operator or a function of the language has for them.
+
+use crate::eval::{Function, FunctionBody};
+use crate::syntax::ast::{Arguments, Expression, ExpressionKind};
+use std::borrow::Cow;
+
+/// The inputs of operators that models name: `homotopy(actual = a, simplified = b)` (MLS §3.7.4).
+const INPUTS: &[(&str, &[&str])] =
+    &[("homotopy", &["actual", "simplified"]), ("smooth", &["p", "expr"])];
+
+/// The arguments of an operator in order. Arguments by name that it does not have are left out.
+pub(super) fn of_operator<'a>(name: &str, arguments: &'a Arguments) -> Cow<'a, [Expression]> {
+    let inputs = INPUTS.iter().find(|(operator, _)| *operator == name);
+    let Some((_, inputs)) = inputs.filter(|_| !arguments.named.is_empty()) else {
+        return Cow::Borrowed(&arguments.positional);
+    };
+    let behind = inputs.iter().skip(arguments.positional.len());
+    let named = behind.map_while(|input| {
+        let named = arguments.named.iter().find(|argument| argument.name.node == *input)?;
+        Some(named.value.clone())
+    });
+    Cow::Owned(arguments.positional.iter().cloned().chain(named).collect())
+}
+
+/// The function of the language that a function with `external "builtin"` stands for (MLS §12.9),
+/// and the arguments of the call in the order of that function's.
+pub(super) fn of_builtin(
+    user: &Function,
+    arguments: &Arguments,
+) -> Option<(&'static str, Vec<Expression>)> {
+    let FunctionBody::External(external) = &user.body else { return None };
+    if external.language.as_deref() != Some("builtin") {
+        return None;
+    }
+    let called = external.function.as_ref()?.node;
+    let known = crate::eval::intrinsic_names().find(|name| called == *name)?;
+    let given = |argument: &Expression| {
+        let ExpressionKind::Reference(reference) = &argument.kind else { return None };
+        let name = reference.as_ident()?;
+        let at = user.inputs.iter().position(|input| input.name == name)?;
+        let named = arguments.named.iter().find(|argument| argument.name.node == name);
+        arguments.positional.get(at).or(named.map(|named| &named.value)).cloned()
+    };
+    let placed: Option<Vec<Expression>> = external.arguments.iter().map(given).collect();
+    Some((known, placed?))
+}

@@ -1,0 +1,140 @@
+//! Enumerations and Boolean as ranges, sizes and subscripts (MLS §10.1, §10.5, §11.2.2.2), and
+//! their conversions (§4.9.5.2, §4.9.5.3). In the flat model the literals are their ordinals.
+
+use super::BaseType;
+use super::errors::TYPE_MISMATCH;
+use super::instantiation::Instantiation;
+use super::lookup::{Predefined, Type};
+use super::resolve::Local;
+use super::scope::ScopeId;
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::source::Span;
+use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind, Subscript};
+
+impl Instantiation<'_> {
+    /// All values of the type that an expression names, as a vector; `None` if it names none.
+    pub(super) fn type_range(
+        &mut self,
+        e: &Expression,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let ExpressionKind::Reference(reference) = &e.kind else { return Ok(None) };
+        let first = reference.parts[0].name;
+        if local.names.iter().any(|(name, _)| *name == first)
+            || (!reference.global && self.has_component(context, first)?)
+        {
+            return Ok(None);
+        }
+        let Some(found) = self.lookup(context, &reference.name())? else { return Ok(None) };
+        if found == Type::Predefined(Predefined::Boolean) {
+            let truth = |truth| Expression::new(ExpressionKind::Boolean(truth), e.span);
+            let both = ExpressionKind::Array(vec![truth(false), truth(true)]);
+            return Ok(Some(Expression::new(both, e.span)));
+        }
+        let Some(definition) = self.enumeration(found, e.span)? else { return Ok(None) };
+        let integer = |n: usize| Expression::new(ExpressionKind::Integer(n as i64), e.span);
+        let ordinals = (1..=definition.literals.len()).map(integer).collect();
+        Ok(Some(Expression::new(ExpressionKind::Array(ordinals), e.span)))
+    }
+
+    /// Subscripts of Boolean as places: `false` is the first (MLS §10.5).
+    pub(super) fn boolean_subscript(&self, index: Expression) -> Expression {
+        if self.type_of(&index) != Some(BaseType::Boolean) {
+            return index;
+        }
+        let span = index.span;
+        let place = |n| Expression::new(ExpressionKind::Integer(n), span);
+        match index.kind {
+            ExpressionKind::Boolean(truth) => place(1 + i64::from(truth)),
+            ExpressionKind::Array(elements) => {
+                let places = elements.into_iter().map(|e| self.boolean_subscript(e)).collect();
+                Expression::new(ExpressionKind::Array(places), span)
+            }
+            _ => {
+                let kind = ExpressionKind::If {
+                    branches: vec![(index, place(2))],
+                    otherwise: Box::new(place(1)),
+                };
+                Expression::new(kind, span)
+            }
+        }
+    }
+
+    /// `E(i)`, `Integer(e)` and `String(e)` of enumerations; `None` for any other call.
+    pub(super) fn conversion(
+        &mut self,
+        span: Span,
+        function: &ComponentReference,
+        arguments: &Arguments,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let [argument] = arguments.positional.as_slice() else { return Ok(None) };
+        if !arguments.named.is_empty() || !arguments.iterators.is_empty() {
+            return Ok(None);
+        }
+        match self.lookup(context, &function.name())? {
+            Some(Type::Predefined(Predefined::Integer)) => {
+                self.resolve(argument, context, local).map(Some)
+            }
+            Some(Type::Predefined(Predefined::String)) => {
+                self.literal_name(argument, context, local)
+            }
+            Some(found @ Type::Class(_)) => {
+                let Some(definition) = self.enumeration(found, span)? else { return Ok(None) };
+                let value = self.resolve(argument, context, local)?;
+                let count = definition.literals.len() as i64;
+                match value.kind {
+                    ExpressionKind::Integer(n) if !(1..=count).contains(&n) => Err(fault!(
+                        TYPE_MISMATCH,
+                        "`{}` has {count} literals, not one number {n}",
+                        definition.name
+                    )
+                    .at(span)),
+                    _ => Ok(Some(value)),
+                }
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// The name of a literal, or of the value of a variable of an enumeration.
+    fn literal_name(
+        &mut self,
+        argument: &Expression,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let ExpressionKind::Reference(reference) = &argument.kind else { return Ok(None) };
+        let span = argument.span;
+        let resolved = self.resolve(argument, context, local)?;
+        let definition = match self.type_of(&resolved) {
+            Some(BaseType::Enumeration(definition)) => definition,
+            Some(BaseType::Integer) => {
+                let prefix = crate::name::Name {
+                    parts: reference.name().parent().parts,
+                    global: reference.global,
+                };
+                let first = reference.parts[0].name;
+                if prefix.parts.is_empty() || self.has_component(context, first)? {
+                    return Ok(None);
+                }
+                let Some(found) = self.lookup(context, &prefix)? else { return Ok(None) };
+                match self.enumeration(found, span)? {
+                    Some(definition) => definition,
+                    None => return Ok(None),
+                }
+            }
+            _ => return Ok(None),
+        };
+        let name = |literal: &crate::name::Ident| {
+            let text = literal.as_str().trim_matches('\'');
+            Expression::new(ExpressionKind::String(text.into()), span)
+        };
+        let names = ExpressionKind::Array(definition.literals.iter().map(name).collect());
+        let base = Expression::new(names, span);
+        Ok(Some(super::resolve::subscripted(base, vec![Subscript::Index(resolved)], span)))
+    }
+}

@@ -1,0 +1,384 @@
+//! Sizes of the values of expressions, found without their values (MLS §10.1): a size may depend on
+//! variables whose values are not known at translation.
+
+use super::balance::path;
+use super::instantiation::{Instantiation, picked};
+use super::modification::Bound;
+use super::resolve::Local;
+use super::scope::ScopeId;
+use crate::diag::Diagnostic;
+use crate::name::{Ident, Name};
+use crate::source::{Span, Spanned};
+use crate::syntax::ast::{
+    Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, ForIndex,
+    NamedArgument, Subscript,
+};
+use crate::value::Value;
+
+/// Functions that leave the sizes of their first argument as they are.
+const SAME_SIZES: &[&str] = &[
+    "der",
+    "pre",
+    "noEvent",
+    "smooth",
+    "delay",
+    "homotopy",
+    "symmetric",
+    "semiLinear",
+    "change",
+    "edge",
+];
+
+/// Reductions of arrays to scalars.
+const TO_SCALAR: &[&str] = &["sum", "product", "scalar", "ndims"];
+
+impl Instantiation<'_> {
+    /// The sizes of the value that a binding gives; `None` where its text does not tell them.
+    pub(super) fn bound_shape(&mut self, bound: &Bound) -> Result<Option<Vec<usize>>, Diagnostic> {
+        let Some(value) = &bound.value else { return Ok(None) };
+        let value = picked(value.clone(), &bound.indices);
+        let resolved = self.resolve(&value, bound.context, &Local::default())?;
+        Ok(self.shape_of(&resolved))
+    }
+
+    /// `size(x, i)` and `size(x)` where only the sizes of `x` are known; `None` for other calls.
+    pub(super) fn size_call(
+        &mut self,
+        name: &str,
+        arguments: &Arguments,
+        context: ScopeId,
+        local: &Local,
+        span: Span,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let (Some(array), true) = (arguments.positional.first(), local.values) else {
+            return Ok(None);
+        };
+        if !["size", "ndims"].contains(&name) || !arguments.named.is_empty() {
+            return Ok(None);
+        }
+        let plain = Local { values: false, ..local.clone() };
+        let Ok(resolved) = self.resolve(array, context, &plain) else { return Ok(None) };
+        let Some(dims) = self.shape_of(&resolved) else { return Ok(None) };
+        let integer = |n: usize| Expression::new(ExpressionKind::Integer(n as i64), span);
+        let value = match (name, arguments.positional.get(1)) {
+            ("ndims", None) => integer(dims.len()),
+            ("size", None) => Expression::new(
+                ExpressionKind::Array(dims.into_iter().map(integer).collect()),
+                span,
+            ),
+            ("size", Some(at)) => {
+                let resolved = self.resolve(at, context, local)?;
+                let Value::Integer(at) = self.flat_value(&resolved)? else { return Ok(None) };
+                let found = usize::try_from(at - 1).ok().and_then(|at| dims.get(at).copied());
+                match found {
+                    Some(size) => integer(size),
+                    None => return Ok(None),
+                }
+            }
+            _ => return Ok(None),
+        };
+        Ok(Some(value))
+    }
+
+    /// The sizes of a resolved expression; `None` where its text does not tell them.
+    pub(super) fn shape_of(&mut self, e: &Expression) -> Option<Vec<usize>> {
+        match &e.kind {
+            ExpressionKind::Real(_)
+            | ExpressionKind::Integer(_)
+            | ExpressionKind::Boolean(_)
+            | ExpressionKind::String(_) => Some(Vec::new()),
+            ExpressionKind::Reference(reference) => self.reference_shape(reference),
+            ExpressionKind::Unary { operand, .. } => self.shape_of(operand),
+            ExpressionKind::Binary { operator, left, right } => {
+                let (left, right) = (self.shape_of(left)?, self.shape_of(right)?);
+                binary_shape(*operator, left, right)
+            }
+            ExpressionKind::If { branches, otherwise } => {
+                let value = branches.first().map(|(_, value)| value)?;
+                self.shape_of(value).or_else(|| self.shape_of(otherwise))
+            }
+            ExpressionKind::Array(elements) => {
+                let inner = match elements.first() {
+                    Some(first) => self.shape_of(first)?,
+                    None => Vec::new(),
+                };
+                Some(std::iter::once(elements.len()).chain(inner).collect())
+            }
+            ExpressionKind::Comprehension { element, indices } => {
+                self.comprehension_shape(element, indices)
+            }
+            ExpressionKind::Matrix(rows) => self.matrix_shape(rows),
+            ExpressionKind::Range { .. } => self.value_shape(e),
+            ExpressionKind::Subscripted { base, subscripts } => {
+                let dims = self.shape_of(base)?;
+                self.subscripted_shape(dims, subscripts)
+            }
+            ExpressionKind::Call { function, arguments } => {
+                self.call_shape(&function.name(), arguments).or_else(|| self.value_shape(e))
+            }
+            _ => None,
+        }
+    }
+
+    /// The sizes of the value, where it is known.
+    fn value_shape(&mut self, e: &Expression) -> Option<Vec<usize>> {
+        match self.flat_value(e).ok()? {
+            Value::Array(array) => Some(array.dims),
+            Value::Record(_) | Value::Tuple(_) => None,
+            _ => Some(Vec::new()),
+        }
+    }
+
+    fn reference_shape(&mut self, reference: &ComponentReference) -> Option<Vec<usize>> {
+        if reference.as_ident().is_some_and(|name| name == "time") {
+            return Some(Vec::new());
+        }
+        let at = *self.variable_of.get(path(reference).as_str())?;
+        let dims = self.variables[at].0.dims.clone();
+        let subscripts = reference.parts.last()?.subscripts.clone();
+        self.subscripted_shape(dims, &subscripts)
+    }
+
+    fn subscripted_shape(
+        &mut self,
+        dims: Vec<usize>,
+        subscripts: &[Subscript],
+    ) -> Option<Vec<usize>> {
+        let mut left = Vec::with_capacity(dims.len());
+        for (at, size) in dims.iter().enumerate() {
+            match subscripts.get(at) {
+                None | Some(Subscript::All(_)) => left.push(*size),
+                Some(Subscript::Index(index)) => {
+                    let index = super::resolve::at_end(index, *size);
+                    left.extend(self.shape_of(&index)?);
+                }
+            }
+        }
+        (subscripts.len() <= dims.len()).then_some(left)
+    }
+
+    fn comprehension_shape(
+        &mut self,
+        element: &Expression,
+        indices: &[ForIndex],
+    ) -> Option<Vec<usize>> {
+        let mut sizes = Vec::with_capacity(indices.len());
+        for index in indices {
+            sizes.push(*self.shape_of(index.range.as_ref()?)?.first()?);
+        }
+        // The last iterator is the outer one (MLS §10.4.1).
+        sizes.reverse();
+        sizes.extend(self.shape_of(element)?);
+        Some(sizes)
+    }
+
+    fn matrix_shape(&mut self, rows: &[Vec<Expression>]) -> Option<Vec<usize>> {
+        let mut height = 0;
+        let mut width = 0;
+        for row in rows {
+            let mut row_height = 1;
+            width = 0;
+            for element in row {
+                match self.shape_of(element)?.as_slice() {
+                    [] => width += 1,
+                    [n] => {
+                        row_height = *n;
+                        width += 1;
+                    }
+                    [n, m] => {
+                        row_height = *n;
+                        width += m;
+                    }
+                    _ => return None,
+                }
+            }
+            height += row_height;
+        }
+        Some(vec![height, width])
+    }
+
+    fn call_shape(&mut self, name: &Name, arguments: &Arguments) -> Option<Vec<usize>> {
+        if !arguments.iterators.is_empty() {
+            return Some(Vec::new());
+        }
+        if let Some(Some(function)) = self.functions.get(name).cloned() {
+            return self.function_shape(&function, arguments);
+        }
+        let positional = &arguments.positional;
+        let word = name.last().filter(|_| name.is_simple())?;
+        match word.as_str() {
+            word if SAME_SIZES.contains(&word) => {
+                let at = usize::from(word == "smooth");
+                self.shape_of(positional.get(at)?)
+            }
+            word if TO_SCALAR.contains(&word) => Some(Vec::new()),
+            "fill" => {
+                let inner = self.shape_of(positional.first()?)?;
+                let mut dims = self.sizes(&positional[1..])?;
+                dims.extend(inner);
+                Some(dims)
+            }
+            "zeros" | "ones" => self.sizes(positional),
+            "identity" => {
+                let n = *self.sizes(positional)?.first()?;
+                Some(vec![n, n])
+            }
+            "diagonal" => {
+                let n = *self.shape_of(positional.first()?)?.first()?;
+                Some(vec![n, n])
+            }
+            "transpose" => match self.shape_of(positional.first()?)?.as_slice() {
+                [n, m, rest @ ..] => Some([&[*m, *n], rest].concat()),
+                _ => None,
+            },
+            "vector" => {
+                let dims = self.shape_of(positional.first()?)?;
+                Some(vec![dims.iter().product()])
+            }
+            "cross" => Some(vec![3]),
+            "skew" => Some(vec![3, 3]),
+            "outerProduct" => {
+                let n = *self.shape_of(positional.first()?)?.first()?;
+                Some(vec![n, *self.shape_of(positional.get(1)?)?.first()?])
+            }
+            "linspace" => self.sizes(positional.get(2..3)?),
+            "min" | "max" if positional.len() == 1 => Some(Vec::new()),
+            "size" => match positional.len() {
+                1 => Some(vec![self.shape_of(&positional[0])?.len()]),
+                _ => Some(Vec::new()),
+            },
+            "cat" => self.cat_shape(positional),
+            // The functions of numbers are applied element by element (MLS §12.4.6).
+            word if crate::symbolic::function::find(word).is_some() => {
+                let shapes: Option<Vec<Vec<usize>>> =
+                    positional.iter().map(|argument| self.shape_of(argument)).collect();
+                shapes?.into_iter().max_by_key(Vec::len)
+            }
+            _ => None,
+        }
+    }
+
+    fn cat_shape(&mut self, positional: &[Expression]) -> Option<Vec<usize>> {
+        let (dimension, arrays) = positional.split_first()?;
+        let Value::Integer(dimension) = self.flat_value(dimension).ok()? else { return None };
+        let at = usize::try_from(dimension - 1).ok()?;
+        let mut whole: Option<Vec<usize>> = None;
+        for array in arrays {
+            let dims = self.shape_of(array)?;
+            whole = Some(match whole {
+                None => dims,
+                Some(mut whole) => {
+                    *whole.get_mut(at)? += dims.get(at)?;
+                    whole
+                }
+            });
+        }
+        whole
+    }
+
+    fn sizes(&mut self, sizes: &[Expression]) -> Option<Vec<usize>> {
+        sizes
+            .iter()
+            .map(|size| match self.flat_value(size).ok()? {
+                Value::Integer(n) => usize::try_from(n).ok(),
+                _ => None,
+            })
+            .collect()
+    }
+
+    /// The sizes of the first output of a function, which may depend on those of its inputs; more
+    /// dimensions of an argument than of its input are those of a call for each element.
+    fn function_shape(
+        &mut self,
+        function: &crate::eval::Function,
+        arguments: &Arguments,
+    ) -> Option<Vec<usize>> {
+        let output = function.outputs.first()?;
+        let mut dims = Vec::new();
+        for (input, argument) in function.inputs.iter().zip(&arguments.positional) {
+            let given = self.shape_of(argument)?;
+            if given.len() > input.dims.len() {
+                dims = given[..given.len() - input.dims.len()].to_vec();
+                break;
+            }
+        }
+        for dim in &output.dims {
+            let Subscript::Index(size) = dim else { return None };
+            let size = self.with_arguments(function, arguments, size);
+            dims.extend(self.sizes(&[size])?);
+        }
+        Some(dims)
+    }
+
+    /// An expression of a function's inputs with `size(input, i)` and scalar inputs replaced.
+    fn with_arguments(
+        &mut self,
+        function: &crate::eval::Function,
+        arguments: &Arguments,
+        size: &Expression,
+    ) -> Expression {
+        let mut named = arguments.clone();
+        for (input, argument) in function.inputs.iter().zip(&arguments.positional) {
+            let name = Spanned { node: input.name, span: argument.span };
+            named.named.push(NamedArgument { name, value: argument.clone() });
+        }
+        self.substituted(&named, size)
+    }
+
+    fn substituted(&mut self, arguments: &Arguments, e: &Expression) -> Expression {
+        let value_of = |name: Ident| {
+            arguments.named.iter().find(|a| a.name.node == name).map(|a| a.value.clone())
+        };
+        let kind = match &e.kind {
+            ExpressionKind::Reference(reference) => {
+                let found = reference.as_ident().and_then(value_of);
+                return found.unwrap_or_else(|| e.clone());
+            }
+            ExpressionKind::Call { function, arguments: inner } => {
+                let positional: Vec<Expression> =
+                    inner.positional.iter().map(|a| self.substituted(arguments, a)).collect();
+                if function.as_ident().is_some_and(|name| name == "size")
+                    && let Some(dims) = positional.first().and_then(|array| self.shape_of(array))
+                    && let Some(Expression { kind: ExpressionKind::Integer(at), .. }) =
+                        positional.get(1)
+                    && let Some(n) = usize::try_from(at - 1).ok().and_then(|at| dims.get(at))
+                {
+                    return Expression::new(ExpressionKind::Integer(*n as i64), e.span);
+                }
+                let inner = Arguments { positional, ..(**inner).clone() };
+                ExpressionKind::Call { function: function.clone(), arguments: Box::new(inner) }
+            }
+            ExpressionKind::Binary { operator, left, right } => ExpressionKind::Binary {
+                operator: *operator,
+                left: Box::new(self.substituted(arguments, left)),
+                right: Box::new(self.substituted(arguments, right)),
+            },
+            ExpressionKind::Unary { operator, operand } => ExpressionKind::Unary {
+                operator: *operator,
+                operand: Box::new(self.substituted(arguments, operand)),
+            },
+            other => other.clone(),
+        };
+        Expression::new(kind, e.span)
+    }
+}
+
+/// The sizes of `left operator right` (MLS §10.6).
+fn binary_shape(
+    operator: BinaryOperator,
+    left: Vec<usize>,
+    right: Vec<usize>,
+) -> Option<Vec<usize>> {
+    if operator != BinaryOperator::Multiply {
+        return Some(if left.is_empty() { right } else { left });
+    }
+    Some(match (left.as_slice(), right.as_slice()) {
+        ([], _) => right,
+        (_, []) => left,
+        ([_], [_]) => Vec::new(),
+        ([n, _], [_]) => vec![*n],
+        ([_], [_, m]) => vec![*m],
+        ([n, _], [_, m]) => vec![*n, *m],
+        _ => return None,
+    })
+}

@@ -1,0 +1,264 @@
+//! Rodas4: a Rosenbrock method of order 4 with six stages, L-stable and stiffly accurate, for
+//! x' = f, 0 = g.
+//!
+//! With M = diag(I, 0), J = ∂(f, g)/∂y and F = (f, g):
+//!
+//! ```text
+//! (M/(hγ) − J) uᵢ = F(t + αᵢ h, y + Σ aᵢⱼ uⱼ) + M Σ (cᵢⱼ/h) uⱼ + γᵢ h ∂F/∂t,   i = 1 … 6
+//! y₁ = y + Σ a₅ⱼ uⱼ + u₅ + u₆        error u₆
+//! ```
+//!
+//! Nothing is iterated and nothing kept from one step to the next, so events cost no more than a
+//! step. ∂F/∂t is a difference. Between steps a polynomial of order 3 gives y.
+//!
+//! Reference: [Hairer & Wanner 1996](crate::bibliography#hairer-wanner-1996), sections IV.7 and VI.4.
+
+use super::mass_matrix::ShiftedMatrix;
+use super::{Integrator, Problem};
+use crate::registry::Entry;
+use crate::sim::SimErrorKind;
+use crate::sim::norm::{set_weights, weighted_rms};
+
+pub(super) const ENTRY: Entry<dyn Integrator> = Entry {
+    name: "rodas4",
+    aliases: &["rodas", "rosenbrock"],
+    summary: "Rosenbrock method Rodas4, L-stable, order 4, variable step",
+    reference: "hairer-wanner-1996",
+    make: |_| Ok(Box::new(Rodas::default())),
+};
+
+const STAGES: usize = 6;
+const GAMMA: f64 = 0.25;
+const ALPHA: [f64; STAGES] = [0.0, 0.386, 0.21, 0.63, 1.0, 1.0];
+/// Coefficients of h ∂F/∂t.
+const TIME: [f64; STAGES] = [0.25, -0.1043, 0.1035, -0.0362, 0.0, 0.0];
+/// aᵢⱼ; the last two rows differ by u₅ alone.
+const A: [[f64; 4]; 5] = [
+    [0.0, 0.0, 0.0, 0.0],
+    [1.544, 0.0, 0.0, 0.0],
+    [0.9466785280815826, 0.2557011698983284, 0.0, 0.0],
+    [3.314825187068521, 2.896124015972201, 0.9986419139977817, 0.0],
+    [1.221224509226641, 6.019134481288629, 12.53708332932087, -0.687886036105895],
+];
+const C: [[f64; 5]; STAGES] = [
+    [0.0, 0.0, 0.0, 0.0, 0.0],
+    [-5.6688, 0.0, 0.0, 0.0, 0.0],
+    [-2.430093356833875, -0.2063599157091915, 0.0, 0.0, 0.0],
+    [-0.1073529058151375, -9.594562251023355, -20.47028614809616, 0.0, 0.0],
+    [7.496443313967647, -10.24680431464352, -33.99990352819905, 11.7089089320616, 0.0],
+    [
+        8.083246795921522,
+        -7.981132988064893,
+        -31.52159432874371,
+        16.31930543123136,
+        -6.058818238834054,
+    ],
+];
+/// Coefficients of the interpolation.
+const DENSE: [[f64; 5]; 2] = [
+    [
+        10.12623508344586,
+        -7.487995877610167,
+        -34.80091861555747,
+        -7.992771707568823,
+        1.025137723295662,
+    ],
+    [
+        -0.6762803392801253,
+        6.087714651680015,
+        16.43084320892478,
+        24.76722511418386,
+        -6.594389125716872,
+    ],
+];
+/// The local error is kept below this part of the tolerance, so that the global one meets it.
+const SAFETY: f64 = 0.5;
+
+/// The method with its workspace.
+#[derive(Default)]
+struct Rodas {
+    n: usize,
+    n_differential: usize,
+    t: f64,
+    t_old: f64,
+    h: f64,
+    y: Vec<f64>,
+    y_old: Vec<f64>,
+    trial: Vec<f64>,
+    rhs: Vec<f64>,
+    /// F at the start of the step, and its slope in time.
+    first: Vec<f64>,
+    time_slope: Vec<f64>,
+    stages: [Vec<f64>; STAGES],
+    dense: [Vec<f64>; 2],
+    weights: Vec<f64>,
+    matrix: ShiftedMatrix,
+}
+
+impl Rodas {
+    fn resize(&mut self, n: usize) {
+        self.n = n;
+        let single = [
+            &mut self.y,
+            &mut self.y_old,
+            &mut self.trial,
+            &mut self.rhs,
+            &mut self.first,
+            &mut self.time_slope,
+            &mut self.weights,
+        ];
+        for vector in single.into_iter().chain(&mut self.stages).chain(&mut self.dense) {
+            vector.resize(n, 0.0);
+        }
+    }
+
+    /// F, ∂F/∂t and J at the start of a step.
+    fn linearize(&mut self, problem: &mut Problem) -> Result<(), SimErrorKind> {
+        problem.rhs(self.t, &self.y, &mut self.first)?;
+        let delta = (f64::EPSILON * self.t.abs().max(1e-5)).sqrt().min(self.h);
+        problem.rhs(self.t + delta, &self.y, &mut self.time_slope)?;
+        for (slope, first) in self.time_slope.iter_mut().zip(&self.first) {
+            *slope = (*slope - first) / delta;
+        }
+        self.matrix.evaluate(problem, self.t, &self.y)
+    }
+
+    /// Computes all stages with step h; `trial` is y at the end then.
+    fn attempt(&mut self, problem: &mut Problem, h: f64) -> Result<(), SimErrorKind> {
+        self.matrix.factorize(problem, 1.0 / (h * GAMMA), self.n_differential)?;
+        for i in 0..STAGES {
+            if i == 0 {
+                self.rhs.copy_from_slice(&self.first);
+            } else {
+                self.stage_point(i);
+                problem.rhs(self.t + ALPHA[i] * h, &self.trial, &mut self.rhs)?;
+            }
+            let (done, rest) = self.stages.split_at_mut(i);
+            let stage = &mut rest[0];
+            for (k, stage) in stage.iter_mut().enumerate() {
+                let mut sum = self.rhs[k] + TIME[i] * h * self.time_slope[k];
+                if k < self.n_differential {
+                    let before: f64 = done.iter().zip(&C[i]).map(|(u, c)| c * u[k]).sum();
+                    sum += before / h;
+                }
+                *stage = sum;
+            }
+            self.matrix.solve(problem.nominal, stage);
+        }
+        for (trial, last) in self.trial.iter_mut().zip(&self.stages[5]) {
+            *trial += last;
+        }
+        if self.trial.iter().all(|y| y.is_finite()) { Ok(()) } else { Err(SimErrorKind::NotFinite) }
+    }
+
+    fn stage_point(&mut self, i: usize) {
+        for k in 0..self.n {
+            let row = A[i.min(4)].iter().zip(&self.stages);
+            let sum: f64 = row.map(|(a, u)| a * u[k]).sum();
+            let last = if i == 5 { self.stages[4][k] } else { 0.0 };
+            self.trial[k] = self.y[k] + sum + last;
+        }
+    }
+
+    fn error(&mut self, tolerance: f64, nominal: &[f64]) -> f64 {
+        set_weights(SAFETY * tolerance, &self.y, nominal, &mut self.weights);
+        for (weight, y) in self.weights.iter_mut().zip(&self.trial) {
+            *weight = weight.max(SAFETY * tolerance * y.abs());
+        }
+        weighted_rms(&self.stages[5], &self.weights)
+    }
+
+    fn accept(&mut self, t_new: f64) {
+        std::mem::swap(&mut self.y_old, &mut self.y);
+        self.y.copy_from_slice(&self.trial);
+        for (dense, row) in self.dense.iter_mut().zip(&DENSE) {
+            for (k, dense) in dense.iter_mut().enumerate() {
+                *dense = row.iter().zip(&self.stages).map(|(d, u)| d * u[k]).sum();
+            }
+        }
+        (self.t_old, self.t) = (self.t, t_new);
+    }
+}
+
+impl Integrator for Rodas {
+    fn is_explicit(&self) -> bool {
+        false
+    }
+
+    fn restart(&mut self, problem: &mut Problem, t: f64, y: &[f64]) -> Result<(), SimErrorKind> {
+        self.resize(y.len());
+        self.n_differential = problem.system.n_differential();
+        self.matrix.prepare(problem.system.pattern());
+        let is_first = self.h == 0.0 || t <= problem.settings.start;
+        (self.t, self.t_old) = (t, t);
+        self.y.copy_from_slice(y);
+        self.y_old.copy_from_slice(y);
+        self.dense.iter_mut().for_each(|dense| dense.fill(0.0));
+        problem.rhs(t, y, &mut self.first)?;
+        let first = problem.first_step(t, y, &self.first);
+        // Behind an event the step that was good before it is at most ten times too long.
+        self.h = if is_first { first } else { first.max(0.1 * self.h) };
+        Ok(())
+    }
+
+    fn step(&mut self, problem: &mut Problem, limit: f64) -> Result<(), SimErrorKind> {
+        let smallest = problem.smallest_step(self.t);
+        let tolerance = problem.settings.tolerance;
+        self.linearize(problem)?;
+        let mut was_rejected = false;
+        loop {
+            problem.may_continue()?;
+            let remaining = limit - self.t;
+            let reaches_limit = self.h * (1.0 + 1e-9) >= remaining;
+            let h = match reaches_limit {
+                true => remaining,
+                false if 2.0 * self.h > remaining * (1.0 + 1e-9) => 0.5 * remaining,
+                false => self.h,
+            };
+            let (failure, factor) = match self.attempt(problem, h) {
+                Ok(()) => {
+                    let error = self.error(tolerance, problem.nominal).max(1e-10);
+                    let factor = (0.9 * error.powf(-0.25)).clamp(0.2, 6.0);
+                    if error <= 1.0 {
+                        self.accept(if reaches_limit { limit } else { self.t + h });
+                        problem.statistics.steps += 1;
+                        let factor = if was_rejected { factor.min(1.0) } else { factor };
+                        // A step cut short at the limit says little about longer ones.
+                        let next = h * factor;
+                        self.h = if reaches_limit { next.max(self.h) } else { next };
+                        self.h = self.h.min(problem.settings.max_step);
+                        return Ok(());
+                    }
+                    problem.statistics.error_failures += 1;
+                    (SimErrorKind::StepSize, factor)
+                }
+                Err(failure) => {
+                    problem.statistics.newton_failures += 1;
+                    (failure, 0.25)
+                }
+            };
+            was_rejected = true;
+            self.h = h * factor;
+            if self.h < smallest {
+                return Err(failure);
+            }
+        }
+    }
+
+    fn time(&self) -> f64 {
+        self.t
+    }
+
+    fn state(&self) -> &[f64] {
+        &self.y
+    }
+
+    fn interpolate(&self, t: f64, y: &mut [f64]) {
+        let h = self.t - self.t_old;
+        let s = if h > 0.0 { (t - self.t_old) / h } else { 1.0 };
+        for (k, y) in y.iter_mut().enumerate() {
+            let curve = self.dense[0][k] + s * self.dense[1][k];
+            *y = (1.0 - s) * self.y_old[k] + s * (self.y[k] + (1.0 - s) * curve);
+        }
+    }
+}
