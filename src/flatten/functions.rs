@@ -383,6 +383,7 @@ impl Instantiation<'_> {
             }
             Shape::Class(class) => *class,
             Shape::ExternalObject(name) => return Ok(ValueType::ExternalObject(name.clone())),
+            Shape::Function => return Ok(ValueType::Function),
             Shape::Predefined(_) => {
                 return Err(
                     fault!(NOT_SUPPORTED, "external objects are not translated yet").at(span)
