@@ -365,7 +365,7 @@ impl Instantiation<'_> {
 
     /// The predefined type that a long class extends, directly or through others, if it does:
     /// `type T extends Real(…); end T;`, or a class of external objects.
-    fn predefined_base(
+    pub(super) fn predefined_base(
         &mut self,
         id: ScopeId,
         text: &Text,

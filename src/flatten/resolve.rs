@@ -724,6 +724,9 @@ pub(super) fn literal(value: &Value, span: Span) -> Expression {
         Value::Function(function) => {
             ExpressionKind::Reference(ComponentReference::from_name(&function.name, span))
         }
+        Value::External(object) => {
+            ExpressionKind::Reference(ComponentReference::from_name(&object.class, span))
+        }
         Value::Tuple(values) => {
             ExpressionKind::Tuple(values.iter().map(|value| Some(literal(value, span))).collect())
         }
