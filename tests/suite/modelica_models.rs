@@ -205,3 +205,49 @@ fn sampled_systems_step_from_sample_to_sample() {
         ],
     );
 }
+
+/// Matrix exponential of current, speed and integral of the control error; the gear makes one
+/// inertia of two.
+#[test]
+fn a_drive_is_controlled() {
+    ends(
+        "Drive",
+        1e-6,
+        &[
+            ("emf.i", -3.349_315_045_106),
+            ("motor.w", 11.202_929_604_168),
+            ("load.w", 11.202_929_604_168 / 2.0),
+            ("controller.I.y", 4.558_037_702_541),
+        ],
+    );
+}
+
+/// Matrix exponential, the sine being two more states.
+#[test]
+fn a_mass_swings_on_a_spring() {
+    ends(
+        "Oscillator",
+        1e-6,
+        &[
+            ("mass.s", 0.030_417_707_575),
+            ("mass.v", -0.285_420_800_092),
+            ("position.s", 0.030_417_707_575),
+        ],
+    );
+}
+
+/// Matrix exponential from the step on.
+#[test]
+fn two_shafts_swing_against_each_other() {
+    ends(
+        "TwoInertias",
+        1e-6,
+        &[
+            ("first.phi", 0.801_314_202_897),
+            ("first.w", 1.130_950_968_512),
+            ("second.phi", 0.724_342_898_552),
+            ("second.w", 0.934_524_515_744),
+            ("power.power", 2.261_901_937_025),
+        ],
+    );
+}
