@@ -347,6 +347,7 @@ impl Instantiation<'_> {
                 return Ok(ValueType::Enumeration(definition.clone()));
             }
             Shape::Class(class) => *class,
+            Shape::Function => return Ok(ValueType::Function),
             Shape::Predefined(_) | Shape::ExternalObject(_) => {
                 return Err(
                     fault!(NOT_SUPPORTED, "external objects are not translated yet").at(span)

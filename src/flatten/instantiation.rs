@@ -496,7 +496,12 @@ impl<'a> Instantiation<'a> {
         dims: Vec<usize>,
     ) -> Result<MemberState, Diagnostic> {
         let Shape::Class(class) = expanded.shape else {
-            return Err(fault!(TYPE_MISMATCH, "`{}` has no class", declared.name).at(declared.span));
+            return Err(fault!(
+                TYPE_MISMATCH,
+                "`{}` is a function, and only an input of a function can be one",
+                declared.name
+            )
+            .at(declared.span));
         };
         self.check_complete(class, declared.span)?;
         let inherited = self.inherited_by(node, declared, &expanded);

@@ -32,6 +32,7 @@ mod print;
 mod resolve;
 mod scope;
 mod shapes;
+mod specialization;
 mod types;
 mod variables;
 

@@ -316,6 +316,7 @@ impl Instantiation<'_> {
             );
         }
         let arguments = self.with_defaults(&name, arguments, span);
+        let (name, arguments) = self.specialized(name, arguments, span, 0)?;
         let function = ComponentReference::from_name(&name, function.span);
         let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
         Ok(Expression::new(kind, span))

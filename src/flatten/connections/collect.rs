@@ -48,7 +48,7 @@ impl Instantiation<'_> {
         if let Err(error) = self.build_graph(&mut connections) {
             errors.push(error);
         }
-        self.drop_unconnected(root, &connections);
+        self.drop_unconnected(root, &mut connections);
         connections
     }
 

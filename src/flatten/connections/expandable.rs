@@ -225,7 +225,7 @@ impl Instantiation<'_> {
     }
 
     /// Leaves out the components of expandable connectors that no connection names.
-    pub(super) fn drop_unconnected(&mut self, node: NodeId, connections: &Connections) {
+    pub(super) fn drop_unconnected(&mut self, node: NodeId, connections: &mut Connections) {
         let expandable = self.is_expandable(node);
         let Ok(members) = self.members(node) else { return };
         for (name, state) in members {
@@ -236,6 +236,7 @@ impl Instantiation<'_> {
             };
             if expandable && !nodes.iter().any(|one| self.is_connected(*one, connections)) {
                 self.set_state(node, name, MemberState::Absent);
+                nodes.iter().for_each(|one| self.drop_leaves(*one, connections));
                 continue;
             }
             for one in nodes {
@@ -244,12 +245,43 @@ impl Instantiation<'_> {
         }
     }
 
-    /// Whether a connection names a scalar of an instance, or the instance has its own equations.
+    fn drop_leaves(&mut self, node: NodeId, connections: &mut Connections) {
+        if let NodeKind::Variable(_) = self.nodes[node.0].kind {
+            connections.dropped.insert(node);
+            return;
+        }
+        for (_, state) in self.members(node).unwrap_or_default() {
+            match state {
+                MemberState::Single(one) => self.drop_leaves(one, connections),
+                MemberState::Array(_, nodes) => {
+                    nodes.into_iter().for_each(|one| self.drop_leaves(one, connections));
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn is_inside_expandable(&self, leaf: NodeId) -> bool {
+        let mut node = self.nodes[leaf.0].parent;
+        while let Some(id) = node {
+            if self.is_expandable(id) {
+                return true;
+            }
+            node = self.nodes[id.0].parent;
+        }
+        false
+    }
+
+    /// Whether a connection beyond expandable connectors names a scalar of an instance, or the instance has its own equations.
     fn is_connected(&mut self, node: NodeId, connections: &Connections) -> bool {
         if let NodeKind::Variable(leaf) = &self.nodes[node.0].kind {
             let count = self.variables[leaf.variable].0.len();
             let bound = leaf.modifier.binding.is_some();
-            return bound || (0..count).any(|element| connections.has(node, element));
+            return bound
+                || (0..count).any(|element| {
+                    let set = connections.around(node, element);
+                    set.iter().any(|face| !self.is_inside_expandable(face.leaf))
+                });
         }
         let Ok(members) = self.members(node) else { return false };
         members.into_iter().any(|(_, state)| match state {

@@ -15,7 +15,7 @@ use crate::syntax::ast::{
     Arguments, BinaryOperator, ComponentReference, ConnectionPrefix, Equation, EquationKind,
     Expression, ExpressionKind, Subscript, UnaryOperator,
 };
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// A scalar of a connector, seen from one side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -39,6 +39,8 @@ pub(in super::super) struct Connections {
     /// How often each connector stands in a connection.
     counts: FxHashMap<End, i64>,
     pub(super) graph: Graph,
+    /// Variables of expandable connectors that are left out.
+    pub(super) dropped: FxHashSet<NodeId>,
     /// Members of each set by its representative, made when all connections are known.
     members: Vec<Vec<usize>>,
 }
@@ -89,11 +91,12 @@ impl Connections {
         self.counts.get(&end).copied().unwrap_or(0)
     }
 
-    /// Whether a connection names a scalar.
-    pub(super) fn has(&self, leaf: NodeId, element: usize) -> bool {
+    /// All faces that are connected with a scalar, on either side.
+    pub(super) fn around(&self, leaf: NodeId, element: usize) -> Vec<Face> {
         [false, true]
-            .iter()
-            .any(|outside| self.number.contains_key(&Face { leaf, element, outside: *outside }))
+            .into_iter()
+            .flat_map(|outside| self.set_of(Face { leaf, element, outside }))
+            .collect()
     }
 
     /// Lists the members of the sets.
@@ -293,7 +296,14 @@ impl Instantiation<'_> {
             if members.len() < 2 {
                 continue;
             }
-            let faces: Vec<Face> = members.iter().map(|at| connections.faces[*at]).collect();
+            let faces: Vec<Face> = members
+                .iter()
+                .map(|at| connections.faces[*at])
+                .filter(|face| !connections.dropped.contains(&face.leaf))
+                .collect();
+            if faces.is_empty() {
+                continue;
+            }
             let span = connections.spans[root];
             match self.connection_of(faces[0].leaf) {
                 None => self.add_potential_equations(&faces, span, model),

@@ -1,5 +1,5 @@
 // MLS §9.1.3: connections add components to expandable connectors; unconnected ones are left out.
-package expandable
+package expandable_connectors
   expandable connector Bus
     Real unused;
   end Bus;
@@ -26,4 +26,4 @@ package expandable
     connect(sensor.speed, bus.speed);
     connect(bus, inside.bus);
   end Main;
-end expandable;
+end expandable_connectors;
