@@ -297,13 +297,17 @@ fn every_model_is_balanced() {
 #[test]
 #[ignore = "external objects are not translated yet"]
 fn tables_are_read_between_and_behind_their_points() {
-    ends("TimeTables", 1e-6, &[
-        ("lines.y[1]", 1.0),
-        ("lines.y[2]", 4.0),
-        ("steps.y[1]", 9.0),
-        ("square.y[1]", 1.0),
-        ("product.y", 4.0),
-        ("integral[1].y", 3.75),
-        ("integral[2].y", 9.75),
-    ]);
+    ends(
+        "TimeTables",
+        1e-6,
+        &[
+            ("lines.y[1]", 1.0),
+            ("lines.y[2]", 4.0),
+            ("steps.y[1]", 9.0),
+            ("square.y[1]", 1.0),
+            ("product.y", 4.0),
+            ("integral[1].y", 3.75),
+            ("integral[2].y", 9.75),
+        ],
+    );
 }
