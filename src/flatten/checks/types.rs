@@ -1,5 +1,6 @@
-//! Types of scalar expressions, as far as a class tells by itself: conditions are Boolean, and
-//! enumerations are no numbers (MLS §3.5, §4.9.5, §6.7, §8.3.4, §8.3.7).
+//! Types of scalar expressions, as far as a class tells by itself: conditions are Boolean, and both
+//! sides of a relation have one type (MLS §3.5, §4.9.5, §8.3.4, §8.3.7). Bindings and equations are
+//! left to flattening, which knows all types and sizes.
 
 use super::lookup::Type;
 use super::scope::{Component, Scope};
@@ -27,11 +28,10 @@ enum Kind {
     Enumeration(ClassId),
 }
 
-/// Checks the conditions, relations and bindings that a class itself writes.
+/// Checks the conditions and relations that a class itself writes.
 pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     let mut walk = Walk { class, loops: Vec::new(), errors };
     for component in class.components() {
-        walk.binding(&component);
         component.declaration.modification.iter().for_each(|one| walk_modification(&mut walk, one));
         component.declaration.condition.iter().for_each(|one| walk.condition(one));
     }
@@ -91,35 +91,11 @@ impl Walk<'_, '_> {
         }
     }
 
-    /// A scalar is bound to a value of its type.
-    fn binding(&mut self, component: &Component<'_>) {
-        let declaration = component.declaration;
-        let is_scalar = declaration.subscripts.is_empty() && component.clause.subscripts.is_empty();
-        let binding = declaration.modification.as_ref().and_then(|one| one.binding.as_ref());
-        let (true, Some(Binding::Expression(value))) = (is_scalar, binding) else { return };
-        if let (Some(expected), Some(found)) = (kind_of(component), self.kind(value))
-            && expected != found
-        {
-            let message = format!("`{}` is {}", component.name(), self.name(expected));
-            self.mismatch(value, &message, found);
-        }
-    }
-
     fn relation(&mut self, left: &Expression, right: &Expression) {
         if let (Some(a), Some(b)) = (self.kind(left), self.kind(right))
             && a != b
         {
             let message = format!("the other side of the relation is {}", self.name(a));
-            self.mismatch(right, &message, b);
-        }
-    }
-
-    /// Both sides of an equation, or of an assignment, have one type.
-    fn sides(&mut self, left: Option<Kind>, right: &Expression) {
-        if let (Some(a), Some(b)) = (left, self.kind(right))
-            && a != b
-        {
-            let message = format!("the left side is {}", self.name(a));
             self.mismatch(right, &message, b);
         }
     }
@@ -213,7 +189,6 @@ impl Visit for Walk<'_, '_> {
 
     fn equation(&mut self, equation: &Equation) {
         match &equation.kind {
-            EquationKind::Equal { left, right } => self.sides(self.kind(left), right),
             EquationKind::If { branches, .. } => {
                 branches.iter().for_each(|(condition, _)| self.condition(condition));
             }
@@ -228,9 +203,6 @@ impl Visit for Walk<'_, '_> {
 
     fn statement(&mut self, statement: &Statement) {
         match &statement.kind {
-            StatementKind::Assign { target, value } => {
-                self.sides(self.kind_of_reference(target), value);
-            }
             StatementKind::If { branches, .. } => {
                 branches.iter().for_each(|(condition, _)| self.condition(condition));
             }
