@@ -9,9 +9,7 @@ use crate::eval::FunctionBody;
 use crate::fault;
 use crate::name::Name;
 use crate::source::Span;
-use crate::syntax::ast::{
-    Arguments, ComponentReference, Expression, ExpressionKind, Subscript,
-};
+use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind, Subscript};
 
 /// The most calls that one call stands for.
 const MAX_CALLS: usize = 100_000;
