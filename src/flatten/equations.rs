@@ -63,7 +63,11 @@ impl Instantiation<'_> {
         model: &mut FlatModel,
         errors: &mut Vec<Diagnostic>,
     ) -> Result<(), Diagnostic> {
-        let local = Local::default();
+        let initial = matches!(
+            section,
+            Section::Equations { initial: true, .. } | Section::Algorithm { initial: true, .. }
+        );
+        let local = Local { impure: initial, ..Local::default() };
         match section {
             Section::Equations { initial, equations, .. } => {
                 for equation in equations {
@@ -128,9 +132,10 @@ impl Instantiation<'_> {
             }
             EquationKind::When { branches } => {
                 let mut resolved = Vec::with_capacity(branches.len());
+                let acting = Local { impure: true, ..local.clone() };
                 for (condition, body) in branches {
                     let condition = self.resolve(condition, context, local)?;
-                    resolved.push((condition, self.equations(body, context, local)?));
+                    resolved.push((condition, self.equations(body, context, &acting)?));
                 }
                 EquationKind::When { branches: resolved }
             }
@@ -297,8 +302,7 @@ impl Instantiation<'_> {
         };
         let span = index.name.span;
         let range = index.range.as_ref().ok_or_else(|| {
-            fault!(NOT_SUPPORTED, "loops without a range are not translated yet in equations";
-                help: "write the range: `for {} in 1:n loop`", index.name.node)
+            fault!(NOT_SUPPORTED, "the range of `{0}` is not known"; help: "write the range: `for {0} in 1:n loop`", index.name.node)
             .at(span)
         })?;
         let resolved = match self.type_range(range, context, local)? {

@@ -516,7 +516,10 @@ impl Instantiation<'_> {
                 body: self.statements(body, context, local)?,
             },
             StatementKind::When { branches } => {
-                StatementKind::When { branches: self.statement_branches(branches, context, local)? }
+                let acting = Local { impure: true, ..local.clone() };
+                StatementKind::When {
+                    branches: self.statement_branches(branches, context, &acting)?,
+                }
             }
             StatementKind::Break => StatementKind::Break,
             StatementKind::Return => StatementKind::Return,

@@ -37,6 +37,9 @@ pub(super) struct Local {
     pub(super) types: Rc<Vec<(Ident, ValueType)>>,
     /// Whether variables are replaced by their values, which must be constant.
     pub(super) values: bool,
+    /// Whether impure functions may be called: in parameters, initial sections and when-clauses
+    /// (MLS §12.3).
+    pub(super) impure: bool,
     /// Whether names are flat paths, to which protected components are no secret.
     pub(super) flat: bool,
 }
@@ -317,7 +320,11 @@ impl Instantiation<'_> {
         };
         let impure =
             self.functions.get(&name).is_some_and(|f| f.as_ref().is_some_and(|f| f.impure));
-        if impure && !self.in_package(self.node_of(context)) && context != ScopeId::TOP {
+        if impure
+            && !local.impure
+            && !self.in_package(self.node_of(context))
+            && context != ScopeId::TOP
+        {
             return Err(
                 fault!(NOT_SUPPORTED, "`{name}` is impure and cannot be called in a model yet";
                 help: "declare it `pure` if equal arguments always give equal values")
