@@ -1,7 +1,7 @@
 //! Functions made ready to be called: inherited elements collected, names resolved (MLS ch. 12).
 
 use super::errors::{NOT_SUPPORTED, TYPE_MISMATCH, UNKNOWN_CLASS};
-use super::instance::Shape;
+use super::instance::{MemberState, Shape};
 use super::instantiation::Instantiation;
 use super::library::Library;
 use super::lookup::{Predefined, Type};
@@ -18,6 +18,7 @@ use crate::syntax::ast::{
     ExpressionKind, NamedArgument, Purity, Restriction, Section, Statement, StatementKind,
     Subscript,
 };
+use crate::syntax::visit::Visit;
 use indexmap::IndexMap;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -69,8 +70,38 @@ impl Instantiation<'_> {
                 Some(full) => Ok(full),
                 None => Err(fault!(TYPE_MISMATCH, "`{name}` is not a function").at(span)),
             },
-            _ => Ok(self.intrinsic_name(name)),
+            _ => match self.function_of_component(name, context)? {
+                Some(full) => Ok(full),
+                None => Ok(self.intrinsic_name(name)),
+            },
         }
+    }
+
+    /// A function of the class of a component: `component.f` (MLS §5.3.2).
+    fn function_of_component(
+        &mut self,
+        name: &Name,
+        context: ScopeId,
+    ) -> Result<Option<Name>, Diagnostic> {
+        let Some((first, rest)) = name.parts.split_first() else { return Ok(None) };
+        if rest.is_empty() || name.global || !self.has_component(context, *first)? {
+            return Ok(None);
+        }
+        let mut node = self.node_of(context);
+        for (at, part) in name.parts.iter().enumerate() {
+            match self.member(node, *part)?.map(MemberState::seen) {
+                Some(MemberState::Single(next)) => node = next,
+                _ => {
+                    let Some(scope) = self.scope_of(node) else { return Ok(None) };
+                    let found = Some(Type::Class(scope));
+                    return match self.lookup_inside(found, &name.parts[at..])? {
+                        Some(Type::Class(id)) => self.function(id),
+                        _ => Ok(None),
+                    };
+                }
+            }
+        }
+        Ok(None)
     }
 
     /// `Modelica.Math.sin` is `sin` where no library declares it.
@@ -474,7 +505,10 @@ impl Instantiation<'_> {
                 otherwise: self.statements(otherwise, context, local)?,
             },
             StatementKind::For { indices, body } => {
-                let (indices, inner) = self.iterators(indices, context, local)?;
+                let visit =
+                    |uses: &mut dyn Visit| body.iter().for_each(|inner| uses.statement(inner));
+                let indices = self.with_ranges(indices, context, local, &visit)?;
+                let (indices, inner) = self.iterators(&indices, context, local)?;
                 StatementKind::For { indices, body: self.statements(body, context, &inner)? }
             }
             StatementKind::While { condition, body } => StatementKind::While {

@@ -27,6 +27,7 @@ mod modelica_models;
 mod models;
 mod msl;
 mod plot;
+mod reference_problems;
 mod results;
 mod scripts;
 mod session;
