@@ -22,6 +22,9 @@
 //! - **akima-1970** — H. Akima: A new method of interpolation and smooth curve fitting based on
 //!   local procedures. Journal of the ACM 17(4), 1970, 589–602.
 //!
+//! <a id="anderson-1999"></a>
+//! - **anderson-1999** — E. Anderson et al.: LAPACK users' guide. 3rd edition, SIAM, 1999.
+//!
 //! <a id="fritsch-butland-1984"></a>
 //! - **fritsch-butland-1984** — F. N. Fritsch, J. Butland: A method for constructing local monotone
 //!   piecewise cubic interpolants. SIAM Journal on Scientific and Statistical Computing 5(2), 1984,

@@ -14,6 +14,7 @@
 
 mod call;
 pub mod errors;
+mod linear_algebra;
 mod messages;
 mod random;
 mod strings;
@@ -93,8 +94,13 @@ fn with_result(is_there: bool) -> &'static str {
     if is_there { " and a result" } else { "" }
 }
 
-const FAMILIES: &[&[Entry]] =
-    &[tables::ENTRIES, strings::ENTRIES, random::ENTRIES, messages::ENTRIES];
+const FAMILIES: &[&[Entry]] = &[
+    tables::ENTRIES,
+    strings::ENTRIES,
+    random::ENTRIES,
+    linear_algebra::ENTRIES,
+    messages::ENTRIES,
+];
 
 /// The function of this external name.
 ///

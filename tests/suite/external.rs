@@ -453,3 +453,118 @@ fn random_numbers_are_those_of_the_published_algorithms() {
     }
     assert_eq!((state[6], state[7], state[32]), (-2142240766.0, 2.0, 3.0));
 }
+
+#[test]
+fn linear_systems_are_solved_and_factors_say_where_they_fail() {
+    let a = [2.0, 1.0, -1.0, -3.0, -1.0, 2.0, -2.0, 1.0, 2.0];
+    let b = [8.0, -11.0, -3.0];
+    let (n, size, zeros) = (Number(3.0), [3, 3], [0.0; 9]);
+    let column = || Array(&[3], &zeros[..3]);
+    let solve = |a: &[f64]| {
+        let args = [
+            n.clone(),
+            Number(1.0),
+            Array(&size, a),
+            n.clone(),
+            column(),
+            Array(&[3], &b),
+            n.clone(),
+            Number(0.0),
+        ];
+        call("dgesv", &args).expect("an answer").numbers
+    };
+    let done = solve(&a);
+    for (x, expected) in done[15..18].iter().zip([2.0, 3.0, -1.0]) {
+        near(*x, expected);
+    }
+    assert_eq!(done[19], 0.0);
+    assert_eq!(solve(&[1.0, 2.0, 3.0, 2.0, 4.0, 6.0, 1.0, 0.0, 1.0])[19], 3.0);
+    let args = [n.clone(), n.clone(), Array(&size, &a), n.clone(), column(), Number(0.0)];
+    let factors = call("dgetrf", &args).expect("factors").numbers;
+    let (lu, pivots) = (&factors[2..11], &factors[12..15]);
+    let args = [
+        n.clone(),
+        Array(&size, lu),
+        n.clone(),
+        Array(&[3], pivots),
+        column(),
+        n.clone(),
+        Number(0.0),
+    ];
+    let inverse = call("dgetri", &args).expect("an inverse").numbers[1..10].to_vec();
+    for i in 0..3 {
+        for j in 0..3 {
+            let entry: f64 = (0..3).map(|k| a[3 * i + k] * inverse[3 * k + j]).sum();
+            near(entry, f64::from(u8::from(i == j)));
+        }
+    }
+    for (trans, expected) in [("N", [2.0, 3.0, -1.0]), ("T", [2.0, 3.0, -1.0])] {
+        let right: Vec<f64> = (0..3)
+            .map(|i| {
+                let at = |k: usize| if trans == "N" { 3 * i + k } else { 3 * k + i };
+                (0..3).map(|k| a[at(k)] * expected[k]).sum()
+            })
+            .collect();
+        let args = [
+            Text(trans),
+            n.clone(),
+            Number(1.0),
+            Array(&size, lu),
+            n.clone(),
+            Array(&[3], pivots),
+            Array(&[3], &right),
+            n.clone(),
+            Number(0.0),
+        ];
+        let found = call("dgetrs", &args).expect("an answer").numbers;
+        for (x, expected) in found[15..18].iter().zip(expected) {
+            near(*x, expected);
+        }
+    }
+}
+
+#[test]
+fn least_squares_and_singular_values_are_exact() {
+    // The line through (0, 1), (1, 3), (2, 4), (3, 4): 1.5 + t.
+    let a = [1.0, 0.0, 1.0, 1.0, 1.0, 2.0, 1.0, 3.0];
+    let args = [
+        Text("N"),
+        Number(4.0),
+        Number(2.0),
+        Number(1.0),
+        Array(&[4, 2], &a),
+        Number(4.0),
+        Array(&[4], &[1.0, 3.0, 4.0, 4.0]),
+        Number(4.0),
+        Array(&[1], &[0.0]),
+        Number(1.0),
+        Number(0.0),
+    ];
+    let done = call("dgels", &args).expect("a line").numbers;
+    near(done[12], 1.5);
+    near(done[13], 1.0);
+    let args = [
+        Text("N"),
+        Text("N"),
+        Number(2.0),
+        Number(2.0),
+        Array(&[2, 2], &[3.0, 0.0, 4.0, 5.0]),
+        Number(2.0),
+        Array(&[2], &[0.0; 2]),
+        Array(&[2, 2], &[0.0; 4]),
+        Number(2.0),
+        Array(&[2, 2], &[0.0; 4]),
+        Number(2.0),
+        Array(&[1], &[0.0]),
+        Number(1.0),
+        Number(0.0),
+    ];
+    let done = call("dgesvd", &args).expect("values").numbers;
+    near(done[7], 45.0f64.sqrt());
+    near(done[8], 5.0f64.sqrt());
+    let args = [Text("U"), Number(2.0), Array(&[2, 2], &[4.0, 2.0, 2.0, 10.0]), Number(2.0)];
+    let args: Vec<Arg<'_>> = args.into_iter().chain([Number(0.0)]).collect();
+    let done = call("dpotrf", &args).expect("a factor").numbers;
+    assert_eq!(&done[1..3], [2.0, 1.0]);
+    near(done[4], 3.0);
+}

@@ -253,3 +253,42 @@ fn failures_inside_functions_say_why() {
         assert_eq!(failure(functions), expected);
     }
 }
+
+/// A table as an external object, with the derivative that its library declares.
+const TABLE: &str = "package P class Table extends ExternalObject; function constructor \
+    input String name; input Real table[:, :]; input Integer smoothness; output Table id; \
+    external \"C\" id = ModelicaStandardTables_CombiTable1D_init2(name, \"NoName\", table, \
+    size(table, 1), size(table, 2), {2}, 1, smoothness, 2, false); end constructor; \
+    function destructor input Table id; \
+    external \"C\" ModelicaStandardTables_CombiTable1D_close(id); end destructor; end Table; \
+    function value input Table id; input Real u; output Real y; \
+    external \"C\" y = ModelicaStandardTables_CombiTable1D_getValue(id, 1, u); \
+    annotation(derivative = slope); end value; \
+    function slope input Table id; input Real u; input Real du; output Real dy; \
+    external \"C\" dy = ModelicaStandardTables_CombiTable1D_getDerValue(id, 1, u, du); \
+    end slope; \
+    model Main parameter Real k = 3; parameter String name = \"NoName\"; \
+    parameter Table t = Table(if name == \"\" then \"empty\" else name, [0, 0; 1, k; 2, 4], 1); \
+    Real x(start = 1, fixed = true); equation der(x) = value(t, x); end Main; end P;";
+
+#[test]
+fn a_table_is_an_object_that_parameters_make_anew() {
+    let file = parse_stored_definition(SourceId::NONE, TABLE).expect("Modelica");
+    let mut library = Library::new();
+    library.load(&file).expect("a loadable file");
+    let program = compiled(&library).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(program.parameters().len(), 1, "the object is none that can be set");
+    let codes = &program.sorted().dae.functions.codes;
+    assert!(codes.iter().any(|code| code.derivative.is_some()), "the annotation counts");
+    let mut system = program.system();
+    for k in [3.0, 5.0, 3.0] {
+        system.set_parameter(0, k).expect("a parameter");
+        system.initialize(0.0, &mut [1.0]).expect("initial values");
+        let (mut value, mut slope) = ([0.0], [0.0]);
+        for (u, expected, exact) in [(0.5, k / 2.0, k), (1.5, (k + 4.0) / 2.0, 4.0 - k)] {
+            system.rhs(0.0, &[u], &mut value).expect("a value");
+            system.jacobian(0.0, &[u], &mut slope).expect("a slope");
+            assert!((value[0] - expected).abs() < 1e-14 && (slope[0] - exact).abs() < 1e-13);
+        }
+    }
+}

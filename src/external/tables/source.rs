@@ -35,7 +35,7 @@ impl Source {
         let file = call.text(self.file).trim().to_owned();
         let matrix = match file.as_str() {
             "" | NOTHING => self.given(call)?,
-            _ => self.from_file(call, &file)?,
+            _ => self.in_file(call, &file)?,
         };
         if matrix.rows == 0 || matrix.columns < 2 {
             return Err(call.fault(format!(
@@ -65,7 +65,7 @@ impl Source {
         }
     }
 
-    fn from_file(&self, call: &mut Call<'_>, file: &str) -> Result<Matrix, Fault> {
+    fn in_file(&self, call: &mut Call<'_>, file: &str) -> Result<Matrix, Fault> {
         let bytes = call.outside.read(file)?;
         let ending = file.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
         if let ("csv", Some((delimiter, skipped))) = (ending.as_str(), self.csv) {
