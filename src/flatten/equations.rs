@@ -15,6 +15,7 @@ use crate::source::Span;
 use crate::syntax::ast::{
     Equation, EquationKind, Expression, ExpressionKind, ForIndex, ReferencePart, Section,
 };
+use crate::syntax::visit::Visit;
 use crate::value::{ArrayValue, Elements, Value};
 
 /// The most equations that loops are unrolled to.
@@ -258,7 +259,8 @@ impl Instantiation<'_> {
         out: &mut Vec<Equation>,
     ) -> Result<(), Diagnostic> {
         let mut turns = Vec::new();
-        self.turns(indices, context, local, &mut turns)?;
+        let indices = self.loop_ranges(indices, body, context, local)?;
+        self.turns(&indices, context, local, &mut turns)?;
         for turn in turns {
             out.extend(self.equations(body, context, &turn)?);
             if out.len() > MAX_EQUATIONS {
@@ -267,6 +269,18 @@ impl Instantiation<'_> {
             }
         }
         Ok(())
+    }
+
+    /// The loop variables of a loop of equations with their ranges.
+    pub(super) fn loop_ranges(
+        &mut self,
+        indices: &[ForIndex],
+        body: &[Equation],
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Vec<ForIndex>, Diagnostic> {
+        let visit = |uses: &mut dyn Visit| body.iter().for_each(|inner| uses.equation(inner));
+        self.with_ranges(indices, context, local, &visit)
     }
 
     /// What the body of a loop knows in each of its turns.

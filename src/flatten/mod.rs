@@ -20,6 +20,7 @@ mod equations;
 pub mod errors;
 mod flat_model;
 mod functions;
+mod implicit_ranges;
 mod inner_outer;
 mod instance;
 mod instantiation;
@@ -35,6 +36,7 @@ mod shapes;
 mod specialization;
 mod types;
 mod variables;
+mod vectorization;
 
 pub use flat_model::*;
 pub use library::{ClassId, Library, LibraryFiles};
