@@ -295,6 +295,20 @@ fn every_model_is_balanced() {
 }
 
 #[test]
+fn models_of_2005_find_their_names() {
+    ends(
+        "Version2",
+        1e-7,
+        &[
+            ("T0_degC", 26.85),
+            ("body.T", 350.0 - 50.0 * (-0.1_f64).exp()),
+            ("resistor.i", 0.5),
+            ("clock.y", 1.0),
+        ],
+    );
+}
+
+#[test]
 #[ignore = "external objects are not translated yet"]
 fn tables_are_read_between_and_behind_their_points() {
     ends(
