@@ -302,7 +302,8 @@ impl Instantiation<'_> {
         };
         let span = index.name.span;
         let range = index.range.as_ref().ok_or_else(|| {
-            fault!(NOT_SUPPORTED, "the range of `{0}` is not known"; help: "write the range: `for {0} in 1:n loop`", index.name.node)
+            fault!(NOT_SUPPORTED, "the range of `{}` is not known", index.name.node;
+                help: "write the range of the loop, such as `1:n`")
             .at(span)
         })?;
         let resolved = match self.type_range(range, context, local)? {
