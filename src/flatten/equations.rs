@@ -8,11 +8,14 @@ use super::instantiation::Instantiation;
 use super::resolve::{Local, literal};
 use super::scope::ScopeId;
 use crate::diag::Diagnostic;
+use crate::eval::{FunctionBody, ValueType};
 use crate::fault;
 use crate::name::Ident;
+use crate::source::Span;
 use crate::syntax::ast::{
     Equation, EquationKind, Expression, ExpressionKind, ForIndex, ReferencePart, Section,
 };
+use crate::syntax::visit::Visit;
 use crate::value::{ArrayValue, Elements, Value};
 
 /// The most equations that loops are unrolled to.
@@ -60,7 +63,11 @@ impl Instantiation<'_> {
         model: &mut FlatModel,
         errors: &mut Vec<Diagnostic>,
     ) -> Result<(), Diagnostic> {
-        let local = Local::default();
+        let initial = matches!(
+            section,
+            Section::Equations { initial: true, .. } | Section::Algorithm { initial: true, .. }
+        );
+        let local = Local { impure: initial, ..Local::default() };
         match section {
             Section::Equations { initial, equations, .. } => {
                 for equation in equations {
@@ -108,6 +115,9 @@ impl Instantiation<'_> {
                 }
                 let left = self.resolve(left, context, local)?;
                 let right = self.resolve(right, context, local)?;
+                if self.equal_fields(&left, &right, equation.span, local, out) {
+                    return Ok(());
+                }
                 self.check_sides(&left, &right, equation.span)?;
                 EquationKind::Equal { left, right }
             }
@@ -122,9 +132,10 @@ impl Instantiation<'_> {
             }
             EquationKind::When { branches } => {
                 let mut resolved = Vec::with_capacity(branches.len());
+                let acting = Local { impure: true, ..local.clone() };
                 for (condition, body) in branches {
                     let condition = self.resolve(condition, context, local)?;
-                    resolved.push((condition, self.equations(body, context, local)?));
+                    resolved.push((condition, self.equations(body, context, &acting)?));
                 }
                 EquationKind::When { branches: resolved }
             }
@@ -177,6 +188,45 @@ impl Instantiation<'_> {
         Ok(true)
     }
 
+    /// An equation between resolved records, such as results of functions, field by field; `false`
+    /// if the sides are no records.
+    fn equal_fields(
+        &self,
+        left: &Expression,
+        right: &Expression,
+        span: Span,
+        local: &Local,
+        out: &mut Vec<Equation>,
+    ) -> bool {
+        let of_left = self.value_type_of(left, local);
+        let found = match of_left {
+            Some(ValueType::Record(..)) => of_left,
+            _ => self.value_type_of(right, local),
+        };
+        let Some(ValueType::Record(_, fields)) = found else { return false };
+        for name in fields.keys() {
+            let kind = EquationKind::Equal {
+                left: self.field(left, *name),
+                right: self.field(right, *name),
+            };
+            out.push(Equation { kind, comment: Default::default(), span });
+        }
+        true
+    }
+
+    /// A component of a resolved record.
+    fn field(&self, record: &Expression, name: Ident) -> Expression {
+        if let ExpressionKind::Call { function, arguments } = &record.kind
+            && let Some(Some(constructor)) = self.functions.get(&function.name())
+            && constructor.body == FunctionBody::RecordConstructor
+            && let Some(given) = arguments.named.iter().find(|given| given.name.node == name)
+        {
+            return given.value.clone();
+        }
+        let kind = ExpressionKind::Field { base: Box::new(record.clone()), name };
+        Expression::new(kind, record.span)
+    }
+
     /// The components of the record that a reference names; `None` if it names anything else.
     fn record_fields(
         &mut self,
@@ -214,7 +264,8 @@ impl Instantiation<'_> {
         out: &mut Vec<Equation>,
     ) -> Result<(), Diagnostic> {
         let mut turns = Vec::new();
-        self.turns(indices, context, local, &mut turns)?;
+        let indices = self.loop_ranges(indices, body, context, local)?;
+        self.turns(&indices, context, local, &mut turns)?;
         for turn in turns {
             out.extend(self.equations(body, context, &turn)?);
             if out.len() > MAX_EQUATIONS {
@@ -223,6 +274,18 @@ impl Instantiation<'_> {
             }
         }
         Ok(())
+    }
+
+    /// The loop variables of a loop of equations with their ranges.
+    pub(super) fn loop_ranges(
+        &mut self,
+        indices: &[ForIndex],
+        body: &[Equation],
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Vec<ForIndex>, Diagnostic> {
+        let visit = |uses: &mut dyn Visit| body.iter().for_each(|inner| uses.equation(inner));
+        self.with_ranges(indices, context, local, &visit)
     }
 
     /// What the body of a loop knows in each of its turns.
@@ -239,8 +302,8 @@ impl Instantiation<'_> {
         };
         let span = index.name.span;
         let range = index.range.as_ref().ok_or_else(|| {
-            fault!(NOT_SUPPORTED, "loops without a range are not translated yet in equations";
-                help: "write the range: `for {} in 1:n loop`", index.name.node)
+            fault!(NOT_SUPPORTED, "the range of `{}` is not known", index.name.node;
+                help: "write the range of the loop, such as `1:n`")
             .at(span)
         })?;
         let resolved = match self.type_range(range, context, local)? {

@@ -1,22 +1,26 @@
 //! Functions made ready to be called: inherited elements collected, names resolved (MLS ch. 12).
 
 use super::errors::{NOT_SUPPORTED, TYPE_MISMATCH, UNKNOWN_CLASS};
-use super::instance::Shape;
+use super::instance::{MemberState, Shape};
 use super::instantiation::Instantiation;
 use super::library::Library;
 use super::lookup::{Predefined, Type};
+use super::modification::Modifier;
 use super::resolve::Local;
 use super::scope::{ScopeId, Text};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
 use crate::name::{Ident, Name};
-use crate::source::Span;
+use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
-    Argument, CausalityPrefix, ClassSpecifier, ComponentReference, Expression, ExpressionKind,
-    Purity, Restriction, Section, Statement, StatementKind, Subscript,
+    Argument, Arguments, Binding, CausalityPrefix, ClassSpecifier, ComponentReference, Expression,
+    ExpressionKind, NamedArgument, Purity, Restriction, Section, Statement, StatementKind,
+    Subscript,
 };
+use crate::syntax::visit::Visit;
 use indexmap::IndexMap;
+use std::rc::Rc;
 use std::sync::Arc;
 
 /// Packages of the standard library whose functions the language has under bare names too.
@@ -66,8 +70,38 @@ impl Instantiation<'_> {
                 Some(full) => Ok(full),
                 None => Err(fault!(TYPE_MISMATCH, "`{name}` is not a function").at(span)),
             },
-            _ => Ok(self.intrinsic_name(name)),
+            _ => match self.function_of_component(name, context)? {
+                Some(full) => Ok(full),
+                None => Ok(self.intrinsic_name(name)),
+            },
         }
+    }
+
+    /// A function of the class of a component: `component.f` (MLS §5.3.2).
+    fn function_of_component(
+        &mut self,
+        name: &Name,
+        context: ScopeId,
+    ) -> Result<Option<Name>, Diagnostic> {
+        let Some((first, rest)) = name.parts.split_first() else { return Ok(None) };
+        if rest.is_empty() || name.global || !self.has_component(context, *first)? {
+            return Ok(None);
+        }
+        let mut node = self.node_of(context);
+        for (at, part) in name.parts.iter().enumerate() {
+            match self.member(node, *part)?.map(MemberState::seen) {
+                Some(MemberState::Single(next)) => node = next,
+                _ => {
+                    let Some(scope) = self.scope_of(node) else { return Ok(None) };
+                    let found = Some(Type::Class(scope));
+                    return match self.lookup_inside(found, &name.parts[at..])? {
+                        Some(Type::Class(id)) => self.function(id),
+                        _ => Ok(None),
+                    };
+                }
+            }
+        }
+        Ok(None)
     }
 
     /// `Modelica.Math.sin` is `sin` where no library declares it.
@@ -90,12 +124,15 @@ impl Instantiation<'_> {
             Restriction::Function { .. } | Restriction::Record | Restriction::OperatorRecord
         );
         if !is_function {
-            return Ok(None);
+            return self.object_constructor(class);
         }
         // Known by name before its body is read, which may call the function itself.
         let name = self.free_name(&self.text(id).name.clone());
         self.functions.insert(name.clone(), None);
         self.function_names.insert(id, name.clone());
+        if self.is_record(class) {
+            self.record_scopes.insert(name.clone(), class);
+        }
         let function = match self.is_record(class) {
             false => self.ready(&name, class),
             true => self.constructor(&name, class),
@@ -108,6 +145,40 @@ impl Instantiation<'_> {
                 Err(error)
             }
         }
+    }
+
+    /// The function `constructor` of an external object (MLS §12.9.7), which its class stands for.
+    fn object_constructor(&mut self, class: ScopeId) -> Result<Option<Name>, Diagnostic> {
+        let text = self.text(class).clone();
+        let base = self.predefined_base(class, &text)?.map(|(base, _)| base);
+        if !matches!(base, Some(Type::Predefined(Predefined::ExternalObject))) {
+            return Ok(None);
+        }
+        match self.lookup(class, &Name::from(Ident::new("constructor")))? {
+            Some(Type::Class(id)) => self.function(id),
+            _ => Ok(None),
+        }
+    }
+
+    /// Makes the functions of `derivative` annotations ready and writes their full names; those
+    /// that cannot be made ready are left out (MLS §12.7.1).
+    fn derivatives(&mut self, arguments: Vec<Argument>, context: ScopeId) -> Vec<Argument> {
+        let mut kept = Vec::with_capacity(arguments.len());
+        for mut argument in arguments {
+            if let Argument::Element(element) = &mut argument
+                && element.name.node.last().is_some_and(|name| name == "derivative")
+                && let Some(modification) = &mut element.modification
+                && let Some(Binding::Expression(e)) = &mut modification.binding
+                && let ExpressionKind::Reference(reference) = &mut e.kind
+            {
+                match self.function_name(&reference.name(), context, e.span) {
+                    Ok(full) => *reference = ComponentReference::from_name(&full, e.span),
+                    Err(_) => continue,
+                }
+            }
+            kept.push(argument);
+        }
+        kept
     }
 
     /// The name, with a number if another function has it: the same text in other surroundings.
@@ -174,7 +245,12 @@ impl Instantiation<'_> {
         let names: Vec<Ident> = components.iter().map(|c| c.component.name).collect();
         let inputs_of = |c: &Declared| c.causality == Some(CausalityPrefix::Input);
         let read_only = components.iter().filter(|c| inputs_of(c)).map(|c| c.component.name);
-        let local = Local { read_only: read_only.collect(), ..Local::default().with(names) };
+        let types = components.iter().map(|c| (c.component.name, c.component.value_type.clone()));
+        let local = Local {
+            read_only: read_only.collect(),
+            types: Rc::new(types.collect()),
+            ..Local::default().with(names)
+        };
         let (mut inputs, mut outputs, mut locals) = (Vec::new(), Vec::new(), Vec::new());
         for declared in components {
             let list = match declared.causality {
@@ -193,7 +269,8 @@ impl Instantiation<'_> {
         };
         let mut annotations = Vec::new();
         for scope in &lineage {
-            annotations.extend(annotation(self.text(*scope).sections()));
+            let own = annotation(self.text(*scope).sections());
+            annotations.extend(self.derivatives(own, *scope));
         }
         Ok(Function {
             name: name.clone(),
@@ -237,7 +314,7 @@ impl Instantiation<'_> {
     /// The components of a function or record, inherited ones included.
     fn components_of(&mut self, class: ScopeId) -> Result<Vec<Declared>, Diagnostic> {
         let elements = self.elements(class)?;
-        let local = Local::default().with(elements.components.keys().copied());
+        let mut local = Local::default().with(elements.components.keys().copied());
         let is_function = !self.is_record(class);
         let mut components = Vec::with_capacity(elements.components.len());
         for declared in elements.components.values() {
@@ -257,13 +334,16 @@ impl Instantiation<'_> {
                     },
                 });
             }
+            let value_type = self.value_type(&expanded.shape, declared.span)?;
             let bound = expanded.modifier.binding.as_ref();
             let binding = match bound.and_then(|b| b.value.as_ref().map(|value| (value, b.context)))
             {
                 Some((value, written)) => Some(self.resolve(value, written, &local)?),
-                None => None,
+                None => {
+                    self.value_of_fields(&value_type, &expanded.modifier, &local, declared.span)?
+                }
             };
-            let value_type = self.value_type(&expanded.shape, declared.span)?;
+            Rc::make_mut(&mut local.types).push((declared.name, value_type.clone()));
             let causality = declared.type_prefixes.causality.or(expanded.causality);
             if is_function && !declared.protected && causality.is_none() {
                 return Err(fault!(
@@ -288,6 +368,41 @@ impl Instantiation<'_> {
         Ok(components)
     }
 
+    /// The value of a record whose components are given by modifiers: `R r(a = 1, b = 2)`.
+    fn value_of_fields(
+        &mut self,
+        value_type: &ValueType,
+        modifier: &Modifier,
+        local: &Local,
+        span: Span,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let ValueType::Record(record, fields) = value_type else { return Ok(None) };
+        let mut named = Vec::new();
+        for (name, modifier) in &modifier.elements {
+            let Some(bound) = &modifier.binding else { continue };
+            let Some(value) = &bound.value else { continue };
+            let value = self.resolve(value, bound.context, local)?;
+            named.push(NamedArgument { name: Spanned { node: *name, span }, value });
+        }
+        if named.is_empty() {
+            return Ok(None);
+        }
+        let is_given = |name: &Ident| named.iter().any(|argument| argument.name.node == *name);
+        if let Some((name, _)) =
+            fields.iter().find(|(name, field)| !is_given(name) && field.binding.is_none())
+        {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "modifiers give values to some components of `{record}` and none to `{name}`, \
+                 which is not translated yet in functions"
+            )
+            .at(span));
+        }
+        let function = ComponentReference::from_name(record, span);
+        let arguments = Box::new(Arguments { named, ..Arguments::default() });
+        Ok(Some(Expression::new(ExpressionKind::Call { function, arguments }, span)))
+    }
+
     fn value_type(&mut self, shape: &Shape, span: Span) -> Result<ValueType, Diagnostic> {
         let class = match shape {
             Shape::Predefined(Predefined::Real) => return Ok(ValueType::Real),
@@ -298,7 +413,9 @@ impl Instantiation<'_> {
                 return Ok(ValueType::Enumeration(definition.clone()));
             }
             Shape::Class(class) => *class,
-            Shape::Predefined(_) | Shape::ExternalObject(_) => {
+            Shape::ExternalObject(name) => return Ok(ValueType::ExternalObject(name.clone())),
+            Shape::Function => return Ok(ValueType::Function),
+            Shape::Predefined(_) => {
                 return Err(
                     fault!(NOT_SUPPORTED, "external objects are not translated yet").at(span)
                 );
@@ -388,7 +505,10 @@ impl Instantiation<'_> {
                 otherwise: self.statements(otherwise, context, local)?,
             },
             StatementKind::For { indices, body } => {
-                let (indices, inner) = self.iterators(indices, context, local)?;
+                let visit =
+                    |uses: &mut dyn Visit| body.iter().for_each(|inner| uses.statement(inner));
+                let indices = self.with_ranges(indices, context, local, &visit)?;
+                let (indices, inner) = self.iterators(&indices, context, local)?;
                 StatementKind::For { indices, body: self.statements(body, context, &inner)? }
             }
             StatementKind::While { condition, body } => StatementKind::While {
@@ -396,7 +516,10 @@ impl Instantiation<'_> {
                 body: self.statements(body, context, local)?,
             },
             StatementKind::When { branches } => {
-                StatementKind::When { branches: self.statement_branches(branches, context, local)? }
+                let acting = Local { impure: true, ..local.clone() };
+                StatementKind::When {
+                    branches: self.statement_branches(branches, context, &acting)?,
+                }
             }
             StatementKind::Break => StatementKind::Break,
             StatementKind::Return => StatementKind::Return,

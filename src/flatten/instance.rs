@@ -133,6 +133,8 @@ pub(super) enum Shape {
     Predefined(Predefined),
     Enumeration(Arc<EnumerationDefinition>),
     Class(ScopeId),
+    /// A function, which only an input of a function can be (MLS §12.4.2).
+    Function,
     /// An external object (MLS §12.9.7), of the class that extends `ExternalObject`.
     ExternalObject(Name),
 }
@@ -146,8 +148,6 @@ pub(super) struct Leaf {
     pub(super) modifier: Modifier,
     /// `flow` or `stream`.
     pub(super) connection: Option<ConnectionPrefix>,
-    /// `input` or `output`, wherever it stands.
-    pub(super) causality: Option<CausalityPrefix>,
     /// Whether its type is a connector.
     pub(super) connector: bool,
 }
@@ -162,7 +162,7 @@ impl Shape {
             Shape::Predefined(Predefined::String) => BaseType::String,
             Shape::Enumeration(definition) => BaseType::Enumeration(definition.clone()),
             Shape::ExternalObject(name) => BaseType::ExternalObject(name.clone()),
-            Shape::Predefined(_) | Shape::Class(_) => return None,
+            Shape::Predefined(_) | Shape::Function | Shape::Class(_) => return None,
         })
     }
 }

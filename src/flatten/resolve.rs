@@ -1,21 +1,26 @@
 //! Resolves the names in expressions: components become their flat paths, constants of packages
 //! their values, functions their full names (MLS §5.3, §5.6.2).
 
+use super::BaseType;
 use super::errors::{
     NOT_CONSTANT, NOT_SUPPORTED, PROTECTED_ACCESS, SIZE_MISMATCH, TOO_LARGE, UNKNOWN_NAME,
 };
 use super::instance::{MemberState, NodeId, NodeKind};
 use super::instantiation::Instantiation;
+use super::lookup::Type;
 use super::scope::ScopeId;
 use crate::diag::{Diagnostic, suggest};
+use crate::eval::ValueType;
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
     Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, NamedArgument,
-    ReferencePart, Subscript,
+    ReferencePart, Subscript, UnaryOperator,
 };
+use crate::syntax::visit::Visit;
 use crate::value::Value;
+use std::rc::Rc;
 
 /// The deepest nesting of expressions, bindings that lead to one another included.
 const MAX_DEPTH: usize = 400;
@@ -28,8 +33,13 @@ pub(super) struct Local {
     pub(super) names: Vec<(Ident, Option<Expression>)>,
     /// Inputs of a function.
     pub(super) read_only: Vec<Ident>,
+    /// Types of the variables of a function.
+    pub(super) types: Rc<Vec<(Ident, ValueType)>>,
     /// Whether variables are replaced by their values, which must be constant.
     pub(super) values: bool,
+    /// Whether impure functions may be called: in parameters, initial sections and when-clauses
+    /// (MLS §12.3).
+    pub(super) impure: bool,
     /// Whether names are flat paths, to which protected components are no secret.
     pub(super) flat: bool,
 }
@@ -88,15 +98,30 @@ impl Instantiation<'_> {
                 let named = self.named_arguments(named, context, local)?;
                 ExpressionKind::PartialApplication { function, named }
             }
-            ExpressionKind::Unary { operator, operand } => ExpressionKind::Unary {
-                operator: *operator,
-                operand: Box::new(sub(self, operand)?),
-            },
-            ExpressionKind::Binary { operator, left, right } => ExpressionKind::Binary {
-                operator: *operator,
-                left: Box::new(sub(self, left)?),
-                right: Box::new(sub(self, right)?),
-            },
+            ExpressionKind::Unary { operator, operand } => {
+                let operand = sub(self, operand)?;
+                let sign = match operator {
+                    UnaryOperator::Minus | UnaryOperator::ElementwiseMinus => "'-'",
+                    UnaryOperator::Not => "'not'",
+                    UnaryOperator::Plus | UnaryOperator::ElementwisePlus => "'+'",
+                };
+                if let Some(call) = self.overloaded_unary(sign, &operand, local, e.span)? {
+                    return Ok(call);
+                }
+                ExpressionKind::Unary { operator: *operator, operand: Box::new(operand) }
+            }
+            ExpressionKind::Binary { operator, left, right } => {
+                let (left, right) = (sub(self, left)?, sub(self, right)?);
+                let call = self.overloaded_binary(*operator, &left, &right, local, e.span)?;
+                if let Some(call) = call {
+                    return Ok(call);
+                }
+                ExpressionKind::Binary {
+                    operator: *operator,
+                    left: Box::new(left),
+                    right: Box::new(right),
+                }
+            }
             ExpressionKind::If { branches, otherwise } => {
                 return self.if_expression(e.span, branches, otherwise, context, local);
             }
@@ -223,6 +248,9 @@ impl Instantiation<'_> {
                 },
                 None => None,
             };
+            if range.as_ref().and_then(|range| self.type_of(range)) == Some(BaseType::Boolean) {
+                Rc::make_mut(&mut inner.types).push((index.name.node, ValueType::Boolean));
+            }
             resolved.push(ForIndex { name: index.name, range });
             inner.names.push((index.name.node, None));
         }
@@ -244,7 +272,7 @@ impl Instantiation<'_> {
                         Some(values) => values,
                         None => self.resolve(e, context, local)?,
                     };
-                    Ok(Subscript::Index(self.boolean_subscript(index)))
+                    Ok(Subscript::Index(self.boolean_subscript(index, local)))
                 }
             })
             .collect()
@@ -269,7 +297,11 @@ impl Instantiation<'_> {
         {
             return Ok(size);
         }
-        let (iterators, inner) = self.iterators(&arguments.iterators, context, local)?;
+        let visit = |uses: &mut dyn Visit| {
+            arguments.positional.iter().for_each(|argument| uses.expression(argument));
+        };
+        let iterators = self.with_ranges(&arguments.iterators, context, local, &visit)?;
+        let (iterators, inner) = self.iterators(&iterators, context, local)?;
         let arguments = Arguments {
             positional: self.all(&arguments.positional, context, &inner)?,
             named: self.named_arguments(&arguments.named, context, &inner)?,
@@ -280,9 +312,19 @@ impl Instantiation<'_> {
         } else {
             self.function_name(&function.name(), context, function.span)?
         };
+        let name = match self.lookup(context, &function.name())? {
+            Some(Type::Class(class)) => {
+                self.overloaded_constructor(class, &arguments, &inner)?.unwrap_or(name)
+            }
+            _ => name,
+        };
         let impure =
             self.functions.get(&name).is_some_and(|f| f.as_ref().is_some_and(|f| f.impure));
-        if impure && !self.in_package(self.node_of(context)) && context != ScopeId::TOP {
+        if impure
+            && !local.impure
+            && !self.in_package(self.node_of(context))
+            && context != ScopeId::TOP
+        {
             return Err(
                 fault!(NOT_SUPPORTED, "`{name}` is impure and cannot be called in a model yet";
                 help: "declare it `pure` if equal arguments always give equal values")
@@ -290,6 +332,10 @@ impl Instantiation<'_> {
             );
         }
         let arguments = self.with_defaults(&name, arguments, span);
+        let (name, arguments) = self.specialized(name, arguments, span, 0)?;
+        if let Some(calls) = self.vectorized(&name, &arguments, span)? {
+            return Ok(calls);
+        }
         let function = ComponentReference::from_name(&name, function.span);
         let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
         Ok(Expression::new(kind, span))
@@ -684,6 +730,9 @@ pub(super) fn literal(value: &Value, span: Span) -> Expression {
         }
         Value::Function(function) => {
             ExpressionKind::Reference(ComponentReference::from_name(&function.name, span))
+        }
+        Value::External(object) => {
+            ExpressionKind::Reference(ComponentReference::from_name(&object.class, span))
         }
         Value::Tuple(values) => {
             ExpressionKind::Tuple(values.iter().map(|value| Some(literal(value, span))).collect())

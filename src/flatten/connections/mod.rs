@@ -9,9 +9,11 @@
 
 mod collect;
 mod ends;
+mod expandable;
 mod graph;
 mod operators;
 mod sets;
 mod stream;
 
 pub(super) use sets::Connections;
+pub(super) use stream::arranged;
