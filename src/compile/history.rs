@@ -178,3 +178,68 @@ impl System {
         Ok(self.registers[delay.value.outputs[0] as usize])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn recorded(step: f64, count: usize, value: impl Fn(f64) -> f64) -> History {
+        let mut history = History::default();
+        history.start(0.0, value(0.0));
+        (1..=count).for_each(|i| history.push(step * i as f64, value(step * i as f64)));
+        history
+    }
+
+    #[test]
+    fn before_the_start_everything_was_as_at_the_start() {
+        let history = recorded(0.1, 10, |t| 3.0 + t);
+        assert_eq!(history.value(-1.0), 3.0);
+        assert_eq!(history.next_jump(), Some(0.0));
+    }
+
+    #[test]
+    fn cubics_are_exact_within_a_piece() {
+        let cubic = |t: f64| 1.0 - 2.0 * t + 0.5 * t * t - t * t * t;
+        let mut history = recorded(0.3, 20, cubic);
+        history.advance(0.0);
+        for t in [0.0, 0.05, 1.234, 5.99, 6.0] {
+            assert!((history.value(t) - cubic(t)).abs() < 1e-11, "at {t}");
+        }
+    }
+
+    #[test]
+    fn a_jump_is_passed_when_time_comes_to_it() {
+        let mut history = recorded(0.1, 10, |_| 1.0);
+        let at = 0.1 * 10.0;
+        history.push(at, 5.0);
+        history.push(at, 5.0);
+        history.push(2.0, 5.0);
+        history.advance(0.0);
+        assert_eq!(history.next_jump(), Some(at));
+        assert_eq!(history.value(at), 1.0);
+        history.advance(at);
+        assert_eq!(history.next_jump(), None);
+        assert_eq!(history.value(at), 5.0);
+    }
+
+    #[test]
+    fn what_is_far_behind_is_forgotten() {
+        let mut history = recorded(0.01, 10_000, f64::sin);
+        for i in 0..99 {
+            history.advance(f64::from(i));
+        }
+        assert!(history.times.len() < 400, "{}", history.times.len());
+        assert!((history.value(98.5) - 98.5f64.sin()).abs() < 1e-8);
+    }
+
+    #[test]
+    fn points_close_together_do_not_spoil_the_cubic() {
+        let mut history = History::default();
+        history.start(0.0, 0.0);
+        for t in [1e-9, 2e-9, 3e-9, 0.1, 0.2, 0.3f64] {
+            history.push(t, t.sin());
+        }
+        history.advance(0.0);
+        assert!((history.value(0.05) - 0.05f64.sin()).abs() < 1e-4);
+    }
+}

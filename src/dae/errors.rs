@@ -39,7 +39,7 @@ crate::codes! {
     /// A binding of a constant, an array size or a start value that is no number.
     NO_CONSTANT_VALUE = "no-constant-value":
         "## What it means\nA range, a subscript or a size in an equation must be known when the model is compiled, and this one is not.\n\n\
-         ## Example\n`x[n]` where `n` is a variable.\n\n\
+         ## Example\n`fill(0.0, n)` where `n` is a variable, or `x[n]` where it varies between events.\n\n\
          ## What to do\nUse a constant, or a parameter that is `final` or has `annotation(Evaluate = true)`.",
     /// Start values that are not fixed are taken as if they were.
     MISSING_INITIAL_CONDITION = "missing-initial-condition":

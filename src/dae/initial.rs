@@ -141,9 +141,11 @@ fn model_equations(dae: &mut Dae) -> Numbered {
     system
 }
 
+/// `pre(v)` and v.
+type Remembered = (VarId, VarId);
+
 /// `pre(v)` of discrete variables with v, those with fixed start values first.
-#[allow(clippy::type_complexity)]
-fn previous_values(dae: &Dae) -> (Vec<(VarId, VarId)>, Vec<(VarId, VarId)>) {
+fn previous_values(dae: &Dae) -> (Vec<Remembered>, Vec<Remembered>) {
     of_kind(dae, |kind| matches!(kind, Kind::Previous(_)))
         .into_iter()
         .filter_map(|v| match dae.variable(v).kind {
