@@ -3,7 +3,7 @@
 //! Where two variables with derivatives are one, so are their derivatives: this reduces the index of
 //! rigid connections without differentiating anything.
 
-use super::model::{Dae, Equation, Kind, StateSelect, Variable};
+use super::model::{Dae, Equation, Kind, Variable};
 use super::sorted::Alias;
 use crate::source::Span;
 use crate::symbolic::{Expr, Node, Pool, VarId, substitute};
@@ -158,11 +158,7 @@ fn merge_attributes(dae: &mut Dae, aliases: &[Option<Alias>]) {
         let start = start.map(|e| if alias.negated { dae.pool.neg(e) } else { e });
         let kept = &mut dae.variables[alias.of.0 as usize];
         kept.nominal = kept.nominal.or(nominal);
-        kept.state_select = match kept.state_select {
-            StateSelect::Default => state_select,
-            other if state_select == StateSelect::Default => other,
-            other => other.max(state_select),
-        };
+        kept.state_select = kept.state_select.merged_with(state_select);
         if fixed && kept.fixed && start != kept.start {
             let (left, zero) = (dae.pool.variable(alias.of), dae.pool.constant(0.0));
             dae.initial_equations.push(Equation { left, right: start.unwrap_or(zero), span });

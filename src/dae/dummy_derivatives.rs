@@ -183,9 +183,20 @@ impl Level<'_> {
         self.var_to_origin[variable].expect("only derivatives are asked for")
     }
 
+    /// What is asked for a variable is asked for its derivatives too: the choice of speeds decides
+    /// that of positions.
     fn wish(&self, dae: &Dae, variable: usize) -> Wish {
-        let origin = dae.variable(self.chains.variables[self.origin(variable)]);
-        (origin.state_select, origin.fixed, origin.start.is_some())
+        let first = self.origin(variable);
+        let mut wish: Wish = (StateSelect::Default, false, false);
+        let mut next = Some(first);
+        while let Some(origin) = next {
+            let origin_of = dae.variable(self.chains.variables[origin]);
+            wish.0 = wish.0.merged_with(origin_of.state_select);
+            wish.1 |= origin_of.fixed;
+            wish.2 |= origin_of.start.is_some();
+            next = self.var_to_origin[origin];
+        }
+        wish
     }
 
     fn choose(&self, dae: &mut Dae, values: &[f64]) -> Result<Choice, Diagnostic> {

@@ -106,6 +106,17 @@ pub enum StateSelect {
     Always,
 }
 
+impl StateSelect {
+    /// What two wishes for one variable come to: the stronger of those that are none.
+    pub fn merged_with(self, other: StateSelect) -> StateSelect {
+        match (self, other) {
+            (StateSelect::Default, other) => other,
+            (one, StateSelect::Default) => one,
+            (one, other) => one.max(other),
+        }
+    }
+}
+
 /// What part a variable plays.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {

@@ -147,13 +147,12 @@ fn stiff_van_der_pol() {
 
 #[test]
 fn stiff_test_set_problems_reach_their_reference_solutions() {
-    let van_der_pol = [1.706_167_732_170_469, -0.892_809_701_024_812_5];
-    let robertson = [0.715_827_068_7, 0.918_553_476_4e-5, 0.284_163_745_7];
+    type Case = (fn() -> TestProblem, f64, &'static [f64], f64);
     // Problem, end, reference, error allowed in tolerances.
-    let table: [(fn() -> TestProblem, f64, &[f64], f64); 4] = [
-        (problems::robertson, 40.0, &robertson, 5.0),
+    let table: [Case; 4] = [
+        (problems::robertson, 40.0, &[0.715_827_068_7, 0.918_553_476_4e-5, 0.284_163_745_7], 5.0),
         (problems::hires, 321.8122, &problems::HIRES_END, 50.0),
-        (problems::van_der_pol, 2.0, &van_der_pol, 20.0),
+        (problems::van_der_pol, 2.0, &[1.706_167_732_170_469, -0.892_809_701_024_812_5], 20.0),
         (problems::oregonator, 360.0, &problems::OREGONATOR_END, 100.0),
     ];
     for method in ["dassl", "rodas4", "radau"] {
