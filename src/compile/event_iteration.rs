@@ -224,6 +224,11 @@ impl System {
                 *slot = self.registers[variable.0 as usize];
             }
             if let Err(failure) = self.solve(stage) {
+                // The branch may be the wrong one: relations of what was solved before it tell.
+                if pass + 1 < MAX_ROUNDS && self.update_relations(t) {
+                    any = true;
+                    continue;
+                }
                 let failure = self.refine(failure);
                 return Err(failure);
             }

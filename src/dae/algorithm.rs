@@ -317,7 +317,9 @@ impl Builder<'_> {
         let Some(((condition, body), rest)) = branches.split_first() else {
             return self.statements(otherwise, loops);
         };
+        let asserted = self.dae.assertions.len();
         let condition = self.statement_lowering(loops).scalar(condition)?;
+        self.guard_new_assertions(asserted);
         if let Some(known) = self.dae.pool.as_constant(condition) {
             return match known != 0.0 {
                 true => self.statements(body, loops),

@@ -52,6 +52,8 @@ pub(super) struct Builder<'a> {
     pub(super) execution: Execution,
     /// More than zero where a reference means the variable, not the value it has in an algorithm.
     pub(super) raw: usize,
+    /// How many assertions there were when the branches of if-expressions began.
+    pub(super) asserted: Vec<usize>,
 }
 
 /// The scalar system of a flat model.
@@ -78,6 +80,7 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         assigned: FxHashSet::default(),
         execution: Execution::default(),
         raw: 0,
+        asserted: Vec::new(),
     };
     builder.declare();
     builder.find_discrete();
@@ -435,7 +438,7 @@ impl<'a> Builder<'a> {
     /// Assertions in a branch hold only where it is taken.
     pub(super) fn guard_assertions(&mut self, from: usize, condition: Expr) {
         let not = self.dae.pool.not(condition);
-        for assertion in &mut self.dae.assertions[from..] {
+        for assertion in self.dae.assertions.iter_mut().skip(from) {
             assertion.condition = self.dae.pool.or(not, assertion.condition);
         }
     }

@@ -40,7 +40,10 @@ impl Builder<'_> {
     fn target_scalars(&mut self, target: &ComponentReference) -> Vec<VarId> {
         let expression =
             ast::Expression::new(ExpressionKind::Reference(target.clone()), target.span);
-        if let Ok(value) = Lowering::new(self).lower(&expression) {
+        let asserted = self.dae.assertions.len();
+        let lowered = Lowering::new(self).lower(&expression);
+        self.dae.assertions.truncate(asserted);
+        if let Ok(value) = lowered {
             let mut scalars = Vec::new();
             value.append_scalars(&mut scalars);
             return scalars.into_iter().filter_map(|e| self.dae.pool.as_variable(e)).collect();

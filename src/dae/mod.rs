@@ -69,7 +69,7 @@ pub const PASSES: &[(&str, &str)] = &[
 /// Sorts a flat model.
 pub fn sort(flat: &FlatModel) -> Result<SortedDae, Diagnostic> {
     let mut dae = build::build(flat)?;
-    zero_inputs(&mut dae);
+    zero_inputs(&mut dae, flat);
     let parameters = parameters::order_parameters(&mut dae)?;
     let mut aliases = alias_elimination::eliminate_aliases(&mut dae);
     discrete::separate_discrete(&mut dae, &aliases)?;
@@ -100,14 +100,18 @@ pub fn sort(flat: &FlatModel) -> Result<SortedDae, Diagnostic> {
 }
 
 /// An input at the top level without a binding has its start value, which is zero by default.
-fn zero_inputs(dae: &mut Dae) {
-    let bound: std::collections::BTreeSet<VarId> =
-        dae.equations.iter().filter_map(|e| dae.pool.as_variable(e.left)).collect();
+fn zero_inputs(dae: &mut Dae, flat: &FlatModel) {
+    let is_bound = |name: &str| {
+        let whole = name.strip_suffix(']').and_then(|name| name.rsplit_once('['));
+        let declared = flat.variables.get(name);
+        let declared = declared.or_else(|| flat.variables.get(whole?.0));
+        declared.is_some_and(|variable| variable.binding.is_some())
+    };
     for position in 0..dae.variables.len() {
         let variable = &dae.variables[position];
         if variable.causality == Some(crate::syntax::ast::CausalityPrefix::Input)
             && matches!(variable.kind, Kind::Unknown | Kind::Discrete)
-            && !bound.contains(&VarId(position as u32))
+            && !is_bound(&variable.name)
         {
             let zero = dae.pool.constant(0.0);
             let right = variable.start.unwrap_or(zero);

@@ -4,7 +4,7 @@ use super::build::{Builder, scalar_of_nothing};
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::index_reduction::derivative_of;
 use super::lowering::{Array, Binary, Branch, Lowered, Operator, Target, Unary};
-use super::model::{Homotopy, Kind, Relation};
+use super::model::{Assertion, Homotopy, Kind, Relation};
 use crate::diag::Diagnostic;
 use crate::eval::Function;
 use crate::fault;
@@ -95,22 +95,39 @@ impl Target for Builder<'_> {
     }
 
     fn begin_if(&mut self, condition: Expr) -> Branch<Expr> {
+        self.asserted.push(self.dae.assertions.len());
         Branch { condition, values: Vec::new() }
     }
 
     fn begin_else(&mut self, branch: &mut Branch<Expr>, values: &[Expr]) {
         branch.values = values.to_vec();
+        let from = self.asserted.pop().unwrap_or(usize::MAX);
+        self.guard_assertions(from, branch.condition);
+        self.asserted.push(self.dae.assertions.len());
     }
 
     fn end_if(&mut self, branch: Branch<Expr>, values: &[Expr]) -> Vec<Expr> {
+        let from = self.asserted.pop().unwrap_or(usize::MAX);
+        let not = self.dae.pool.not(branch.condition);
+        self.guard_assertions(from, not);
         let pairs = branch.values.iter().zip(values);
         pairs.map(|(a, b)| self.dae.pool.if_then_else(branch.condition, *a, *b)).collect()
     }
 
-    fn element(&mut self, _: &[Expr], _: Expr, span: Span) -> Result<Expr, Diagnostic> {
-        Err(fault!(NO_CONSTANT_VALUE, "this subscript must be known when the model is compiled";
-            help: "use a constant, or a parameter that is `final` or has `annotation(Evaluate = true)`")
-        .at(span))
+    fn element(
+        &mut self,
+        elements: &[Expr],
+        position: Expr,
+        span: Span,
+    ) -> Result<Expr, Diagnostic> {
+        if self.varies(position) || elements.is_empty() {
+            return Err(fault!(NO_CONSTANT_VALUE,
+                "this subscript must be known when the model is compiled, or be discrete";
+                help: "use a constant, or a parameter that is `final` or has `annotation(Evaluate = true)`")
+            .at(span));
+        }
+        self.subscript_assertion(elements.len(), position, span);
+        Ok(self.chosen(elements, 0, position))
     }
 
     fn reference(
@@ -224,6 +241,32 @@ impl Target for Builder<'_> {
 }
 
 impl Builder<'_> {
+    /// One of the elements, the first of which has the position `first`: by halves.
+    fn chosen(&mut self, elements: &[Expr], first: usize, position: Expr) -> Expr {
+        if elements.iter().all(|element| *element == elements[0]) {
+            return elements[0];
+        }
+        let half = elements.len() / 2;
+        let middle = self.dae.pool.constant((first + half) as f64);
+        let below = self.dae.pool.relation(RelationOperator::Less, position, middle);
+        let low = self.chosen(&elements[..half], first, position);
+        let high = self.chosen(&elements[half..], first + half, position);
+        self.dae.pool.if_then_else(below, low, high)
+    }
+
+    /// A position from 0 lies inside its array.
+    fn subscript_assertion(&mut self, size: usize, position: Expr, span: Span) {
+        let pool = &mut self.dae.pool;
+        let (zero, size) = (pool.constant(0.0), pool.constant(size as f64));
+        let below = pool.relation(RelationOperator::Less, position, size);
+        let above = pool.relation(RelationOperator::GreaterEqual, position, zero);
+        let condition = pool.and(above, below);
+        if self.dae.assertions.last().is_none_or(|last| last.condition != condition) {
+            let message = "a subscript lies outside its array".into();
+            self.dae.assertions.push(Assertion { condition, message, is_error: true, span });
+        }
+    }
+
     /// Whether an expression is made of parameters and numbers alone.
     pub(super) fn is_parametric(&self, a: Expr) -> bool {
         let fixed =

@@ -14,7 +14,7 @@ use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
-    ComponentReference, Expression, ExpressionKind, ReferencePart, VariabilityPrefix,
+    ComponentReference, Expression, ExpressionKind, ReferencePart, Restriction, VariabilityPrefix,
 };
 use crate::value::{ArrayValue, Value};
 use indexmap::IndexSet;
@@ -225,8 +225,33 @@ impl Instantiation<'_> {
                 return self.walk(node, &path[at..], reference, context, local);
             }
             found = self.lookup_inside(found, &[part.name])?;
+            if at + 1 == path.len()
+                && let Some(function) = self.function_reference(found, reference.span)?
+            {
+                return Ok(function);
+            }
+        }
+        if path.is_empty()
+            && let Some(function) = self.function_reference(found, reference.span)?
+        {
+            return Ok(function);
         }
         Err(self.unknown_name(reference, context))
+    }
+
+    /// The name of a function, to be passed to another one (MLS §12.4.2).
+    fn function_reference(
+        &mut self,
+        found: Option<Type>,
+        span: Span,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let Some(Type::Class(class)) = found else { return Ok(None) };
+        if !matches!(self.text(class).restriction(), Restriction::Function { .. }) {
+            return Ok(None);
+        }
+        let Some(name) = self.function(class)? else { return Ok(None) };
+        let reference = ComponentReference::from_name(&name, span);
+        Ok(Some(Expression::new(ExpressionKind::Reference(reference), span)))
     }
 
     /// Whether a class has a component of this name, itself or inherited.

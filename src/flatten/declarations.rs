@@ -335,6 +335,10 @@ impl Instantiation<'_> {
                         expanded.modifier = own.overridden_by(outer, name)?;
                         found = base;
                     }
+                    None if matches!(text.restriction(), Restriction::Function { .. }) => {
+                        expanded.shape = Shape::Function;
+                        return Ok(expanded);
+                    }
                     None => {
                         check_component_class(&text, specifier)?;
                         let own = defaults.overridden_by(around, name)?;
@@ -488,7 +492,7 @@ fn language_enumeration(name: &str, literals: &[&str]) -> Arc<EnumerationDefinit
 
 fn check_component_class(text: &Text, specifier: &TypeSpecifier) -> Result<(), Diagnostic> {
     match text.restriction() {
-        Restriction::Package | Restriction::Function { .. } | Restriction::Operator => {
+        Restriction::Package | Restriction::Operator => {
             Err(fault!(TYPE_MISMATCH, "`{}` cannot be the type of a component", text.name)
                 .at(specifier.span))
         }

@@ -8,8 +8,10 @@ use super::instantiation::Instantiation;
 use super::resolve::{Local, literal};
 use super::scope::ScopeId;
 use crate::diag::Diagnostic;
+use crate::eval::{FunctionBody, ValueType};
 use crate::fault;
 use crate::name::Ident;
+use crate::source::Span;
 use crate::syntax::ast::{
     Equation, EquationKind, Expression, ExpressionKind, ForIndex, ReferencePart, Section,
 };
@@ -108,6 +110,9 @@ impl Instantiation<'_> {
                 }
                 let left = self.resolve(left, context, local)?;
                 let right = self.resolve(right, context, local)?;
+                if self.equal_fields(&left, &right, equation.span, local, out) {
+                    return Ok(());
+                }
                 self.check_sides(&left, &right, equation.span)?;
                 EquationKind::Equal { left, right }
             }
@@ -175,6 +180,45 @@ impl Instantiation<'_> {
             self.equation(&one, context, local, out)?;
         }
         Ok(true)
+    }
+
+    /// An equation between resolved records, such as results of functions, field by field; `false`
+    /// if the sides are no records.
+    fn equal_fields(
+        &self,
+        left: &Expression,
+        right: &Expression,
+        span: Span,
+        local: &Local,
+        out: &mut Vec<Equation>,
+    ) -> bool {
+        let of_left = self.value_type_of(left, local);
+        let found = match of_left {
+            Some(ValueType::Record(..)) => of_left,
+            _ => self.value_type_of(right, local),
+        };
+        let Some(ValueType::Record(_, fields)) = found else { return false };
+        for name in fields.keys() {
+            let kind = EquationKind::Equal {
+                left: self.field(left, *name),
+                right: self.field(right, *name),
+            };
+            out.push(Equation { kind, comment: Default::default(), span });
+        }
+        true
+    }
+
+    /// A component of a resolved record.
+    fn field(&self, record: &Expression, name: Ident) -> Expression {
+        if let ExpressionKind::Call { function, arguments } = &record.kind
+            && let Some(Some(constructor)) = self.functions.get(&function.name())
+            && constructor.body == FunctionBody::RecordConstructor
+            && let Some(given) = arguments.named.iter().find(|given| given.name.node == name)
+        {
+            return given.value.clone();
+        }
+        let kind = ExpressionKind::Field { base: Box::new(record.clone()), name };
+        Expression::new(kind, record.span)
     }
 
     /// The components of the record that a reference names; `None` if it names anything else.

@@ -5,18 +5,21 @@ use super::instance::Shape;
 use super::instantiation::Instantiation;
 use super::library::Library;
 use super::lookup::{Predefined, Type};
+use super::modification::Modifier;
 use super::resolve::Local;
 use super::scope::{ScopeId, Text};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
 use crate::name::{Ident, Name};
-use crate::source::Span;
+use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
-    Argument, CausalityPrefix, ClassSpecifier, ComponentReference, Expression, ExpressionKind,
-    Purity, Restriction, Section, Statement, StatementKind, Subscript,
+    Argument, Arguments, CausalityPrefix, ClassSpecifier, ComponentReference, Expression,
+    ExpressionKind, NamedArgument, Purity, Restriction, Section, Statement, StatementKind,
+    Subscript,
 };
 use indexmap::IndexMap;
+use std::rc::Rc;
 use std::sync::Arc;
 
 /// Packages of the standard library whose functions the language has under bare names too.
@@ -96,6 +99,9 @@ impl Instantiation<'_> {
         let name = self.free_name(&self.text(id).name.clone());
         self.functions.insert(name.clone(), None);
         self.function_names.insert(id, name.clone());
+        if self.is_record(class) {
+            self.record_scopes.insert(name.clone(), class);
+        }
         let function = match self.is_record(class) {
             false => self.ready(&name, class),
             true => self.constructor(&name, class),
@@ -174,7 +180,12 @@ impl Instantiation<'_> {
         let names: Vec<Ident> = components.iter().map(|c| c.component.name).collect();
         let inputs_of = |c: &Declared| c.causality == Some(CausalityPrefix::Input);
         let read_only = components.iter().filter(|c| inputs_of(c)).map(|c| c.component.name);
-        let local = Local { read_only: read_only.collect(), ..Local::default().with(names) };
+        let types = components.iter().map(|c| (c.component.name, c.component.value_type.clone()));
+        let local = Local {
+            read_only: read_only.collect(),
+            types: Rc::new(types.collect()),
+            ..Local::default().with(names)
+        };
         let (mut inputs, mut outputs, mut locals) = (Vec::new(), Vec::new(), Vec::new());
         for declared in components {
             let list = match declared.causality {
@@ -237,7 +248,7 @@ impl Instantiation<'_> {
     /// The components of a function or record, inherited ones included.
     fn components_of(&mut self, class: ScopeId) -> Result<Vec<Declared>, Diagnostic> {
         let elements = self.elements(class)?;
-        let local = Local::default().with(elements.components.keys().copied());
+        let mut local = Local::default().with(elements.components.keys().copied());
         let is_function = !self.is_record(class);
         let mut components = Vec::with_capacity(elements.components.len());
         for declared in elements.components.values() {
@@ -257,13 +268,16 @@ impl Instantiation<'_> {
                     },
                 });
             }
+            let value_type = self.value_type(&expanded.shape, declared.span)?;
             let bound = expanded.modifier.binding.as_ref();
             let binding = match bound.and_then(|b| b.value.as_ref().map(|value| (value, b.context)))
             {
                 Some((value, written)) => Some(self.resolve(value, written, &local)?),
-                None => None,
+                None => {
+                    self.value_of_fields(&value_type, &expanded.modifier, &local, declared.span)?
+                }
             };
-            let value_type = self.value_type(&expanded.shape, declared.span)?;
+            Rc::make_mut(&mut local.types).push((declared.name, value_type.clone()));
             let causality = declared.type_prefixes.causality.or(expanded.causality);
             if is_function && !declared.protected && causality.is_none() {
                 return Err(fault!(
@@ -288,6 +302,41 @@ impl Instantiation<'_> {
         Ok(components)
     }
 
+    /// The value of a record whose components are given by modifiers: `R r(a = 1, b = 2)`.
+    fn value_of_fields(
+        &mut self,
+        value_type: &ValueType,
+        modifier: &Modifier,
+        local: &Local,
+        span: Span,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let ValueType::Record(record, fields) = value_type else { return Ok(None) };
+        let mut named = Vec::new();
+        for (name, modifier) in &modifier.elements {
+            let Some(bound) = &modifier.binding else { continue };
+            let Some(value) = &bound.value else { continue };
+            let value = self.resolve(value, bound.context, local)?;
+            named.push(NamedArgument { name: Spanned { node: *name, span }, value });
+        }
+        if named.is_empty() {
+            return Ok(None);
+        }
+        let is_given = |name: &Ident| named.iter().any(|argument| argument.name.node == *name);
+        if let Some((name, _)) =
+            fields.iter().find(|(name, field)| !is_given(name) && field.binding.is_none())
+        {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "modifiers give values to some components of `{record}` and none to `{name}`, \
+                 which is not translated yet in functions"
+            )
+            .at(span));
+        }
+        let function = ComponentReference::from_name(record, span);
+        let arguments = Box::new(Arguments { named, ..Arguments::default() });
+        Ok(Some(Expression::new(ExpressionKind::Call { function, arguments }, span)))
+    }
+
     fn value_type(&mut self, shape: &Shape, span: Span) -> Result<ValueType, Diagnostic> {
         let class = match shape {
             Shape::Predefined(Predefined::Real) => return Ok(ValueType::Real),
@@ -298,6 +347,7 @@ impl Instantiation<'_> {
                 return Ok(ValueType::Enumeration(definition.clone()));
             }
             Shape::Class(class) => *class,
+            Shape::Function => return Ok(ValueType::Function),
             Shape::Predefined(_) | Shape::ExternalObject(_) => {
                 return Err(
                     fault!(NOT_SUPPORTED, "external objects are not translated yet").at(span)

@@ -133,6 +133,8 @@ pub(super) enum Shape {
     Predefined(Predefined),
     Enumeration(Arc<EnumerationDefinition>),
     Class(ScopeId),
+    /// A function, which only an input of a function can be (MLS §12.4.2).
+    Function,
     /// An external object (MLS §12.9.7), of the class that extends `ExternalObject`.
     ExternalObject(Name),
 }
@@ -162,7 +164,7 @@ impl Shape {
             Shape::Predefined(Predefined::String) => BaseType::String,
             Shape::Enumeration(definition) => BaseType::Enumeration(definition.clone()),
             Shape::ExternalObject(name) => BaseType::ExternalObject(name.clone()),
-            Shape::Predefined(_) | Shape::Class(_) => return None,
+            Shape::Predefined(_) | Shape::Function | Shape::Class(_) => return None,
         })
     }
 }

@@ -23,7 +23,9 @@ use crate::eval::Function;
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
-use crate::syntax::ast::{Expression, ExpressionKind, Restriction, Subscript, VariabilityPrefix};
+use crate::syntax::ast::{
+    CausalityPrefix, Expression, ExpressionKind, Restriction, Subscript, VariabilityPrefix,
+};
 use crate::value::Value;
 use indexmap::{IndexMap, IndexSet};
 use rustc_hash::FxHashMap;
@@ -58,6 +60,8 @@ pub(super) struct Instantiation<'a> {
     pub(super) functions: IndexMap<Name, Option<Arc<Function>>>,
     /// The names under which functions are known.
     pub(super) function_names: FxHashMap<ScopeId, Name>,
+    /// The classes of records by the names of their constructors.
+    pub(super) record_scopes: FxHashMap<Name, ScopeId>,
     /// The instance of the model.
     pub(super) root_node: NodeId,
     pub(super) warnings: Vec<Diagnostic>,
@@ -100,6 +104,7 @@ impl<'a> Instantiation<'a> {
             renaming: 0,
             functions: IndexMap::new(),
             function_names: FxHashMap::default(),
+            record_scopes: FxHashMap::default(),
             root_node: NodeId(0),
             warnings: Vec::new(),
             connections: None,
@@ -335,7 +340,7 @@ impl<'a> Instantiation<'a> {
         built.map(Some)
     }
 
-    fn set_state(&mut self, node: NodeId, name: Ident, state: MemberState) {
+    pub(super) fn set_state(&mut self, node: NodeId, name: Ident, state: MemberState) {
         if let NodeKind::Composite(composite) = &mut self.nodes[node.0].kind
             && let Some(member) =
                 composite.members.as_mut().and_then(|members| members.get_mut(&name))
@@ -491,7 +496,12 @@ impl<'a> Instantiation<'a> {
         dims: Vec<usize>,
     ) -> Result<MemberState, Diagnostic> {
         let Shape::Class(class) = expanded.shape else {
-            return Err(fault!(TYPE_MISMATCH, "`{}` has no class", declared.name).at(declared.span));
+            return Err(fault!(
+                TYPE_MISMATCH,
+                "`{}` is a function, and only an input of a function can be one",
+                declared.name
+            )
+            .at(declared.span));
         };
         self.check_complete(class, declared.span)?;
         let inherited = self.inherited_by(node, declared, &expanded);
@@ -556,6 +566,9 @@ impl<'a> Instantiation<'a> {
         self.count(scalars, declared.span)?;
         let inherited = self.inherited_by(node, declared, &expanded);
         let top_level = self.nodes[node.0].path.is_empty();
+        // Nobody outside can give a protected input its value: it is determined inside.
+        let is_inner_input =
+            inherited.protected && inherited.causality == Some(CausalityPrefix::Input);
         let name: Arc<str> = self.path_of(node, declared.name).into();
         let discrete = base != BaseType::Real;
         let default = if discrete { Variability::Discrete } else { Variability::Continuous };
@@ -564,7 +577,7 @@ impl<'a> Instantiation<'a> {
             base,
             dims,
             variability: inherited.variability.unwrap_or(default).min(default),
-            causality: inherited.causality.filter(|_| top_level),
+            causality: inherited.causality.filter(|_| top_level && !is_inner_input),
             is_final: inherited.is_final,
             protected: inherited.protected,
             evaluate: declared.evaluate,

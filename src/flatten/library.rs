@@ -133,7 +133,8 @@ impl Library {
     }
 
     /// Adds the classes of a file, or a package from its folder, without reading more than their
-    /// heads now. Returns their full names.
+    /// heads now; they belong to the package `around`, if the file says nothing else. Returns their
+    /// full names.
     ///
     /// # Errors
     /// The file cannot be read, has no class, or is within a package that is not loaded.
@@ -141,6 +142,7 @@ impl Library {
         &mut self,
         files: &Arc<dyn LibraryFiles>,
         path: &Path,
+        around: &Name,
     ) -> Result<Vec<Name>, Diagnostic> {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let stem = name.strip_suffix(".mo").unwrap_or(&name).to_owned();
@@ -150,12 +152,15 @@ impl Library {
             false => Entry { file: path.to_owned(), folder: None, stem },
         };
         let file = entry.heads(files.as_ref())?;
-        let parent = self.package_around(&file)?;
+        let parent = match &file.within {
+            Some(_) => self.package_around(&file)?,
+            None => self.find(around),
+        };
         if file.classes.is_empty() {
             return Err(fault!(UNKNOWN_CLASS, "there is no class in this file").at(file.span));
         }
         if entry.folder.is_some() {
-            self.meet_folder(&entry, &file);
+            self.meet_folder(parent, &entry, &file);
         }
         let mut names = Vec::new();
         for (class, origin) in entry.classes(files, &file) {

@@ -26,11 +26,13 @@ mod instantiation;
 mod library;
 mod lookup;
 mod modification;
+mod overloading;
 mod own_sizes;
 mod print;
 mod resolve;
 mod scope;
 mod shapes;
+mod specialization;
 mod types;
 mod variables;
 

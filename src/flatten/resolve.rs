@@ -6,16 +6,19 @@ use super::errors::{
 };
 use super::instance::{MemberState, NodeId, NodeKind};
 use super::instantiation::Instantiation;
+use super::lookup::Type;
 use super::scope::ScopeId;
 use crate::diag::{Diagnostic, suggest};
+use crate::eval::ValueType;
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
     Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, NamedArgument,
-    ReferencePart, Subscript,
+    ReferencePart, Subscript, UnaryOperator,
 };
 use crate::value::Value;
+use std::rc::Rc;
 
 /// The deepest nesting of expressions, bindings that lead to one another included.
 const MAX_DEPTH: usize = 400;
@@ -28,6 +31,8 @@ pub(super) struct Local {
     pub(super) names: Vec<(Ident, Option<Expression>)>,
     /// Inputs of a function.
     pub(super) read_only: Vec<Ident>,
+    /// Types of the variables of a function.
+    pub(super) types: Rc<Vec<(Ident, ValueType)>>,
     /// Whether variables are replaced by their values, which must be constant.
     pub(super) values: bool,
     /// Whether names are flat paths, to which protected components are no secret.
@@ -88,15 +93,30 @@ impl Instantiation<'_> {
                 let named = self.named_arguments(named, context, local)?;
                 ExpressionKind::PartialApplication { function, named }
             }
-            ExpressionKind::Unary { operator, operand } => ExpressionKind::Unary {
-                operator: *operator,
-                operand: Box::new(sub(self, operand)?),
-            },
-            ExpressionKind::Binary { operator, left, right } => ExpressionKind::Binary {
-                operator: *operator,
-                left: Box::new(sub(self, left)?),
-                right: Box::new(sub(self, right)?),
-            },
+            ExpressionKind::Unary { operator, operand } => {
+                let operand = sub(self, operand)?;
+                let sign = match operator {
+                    UnaryOperator::Minus | UnaryOperator::ElementwiseMinus => "'-'",
+                    UnaryOperator::Not => "'not'",
+                    UnaryOperator::Plus | UnaryOperator::ElementwisePlus => "'+'",
+                };
+                if let Some(call) = self.overloaded_unary(sign, &operand, local, e.span)? {
+                    return Ok(call);
+                }
+                ExpressionKind::Unary { operator: *operator, operand: Box::new(operand) }
+            }
+            ExpressionKind::Binary { operator, left, right } => {
+                let (left, right) = (sub(self, left)?, sub(self, right)?);
+                let call = self.overloaded_binary(*operator, &left, &right, local, e.span)?;
+                if let Some(call) = call {
+                    return Ok(call);
+                }
+                ExpressionKind::Binary {
+                    operator: *operator,
+                    left: Box::new(left),
+                    right: Box::new(right),
+                }
+            }
             ExpressionKind::If { branches, otherwise } => {
                 return self.if_expression(e.span, branches, otherwise, context, local);
             }
@@ -280,6 +300,12 @@ impl Instantiation<'_> {
         } else {
             self.function_name(&function.name(), context, function.span)?
         };
+        let name = match self.lookup(context, &function.name())? {
+            Some(Type::Class(class)) => {
+                self.overloaded_constructor(class, &arguments, &inner)?.unwrap_or(name)
+            }
+            _ => name,
+        };
         let impure =
             self.functions.get(&name).is_some_and(|f| f.as_ref().is_some_and(|f| f.impure));
         if impure && !self.in_package(self.node_of(context)) && context != ScopeId::TOP {
@@ -290,6 +316,7 @@ impl Instantiation<'_> {
             );
         }
         let arguments = self.with_defaults(&name, arguments, span);
+        let (name, arguments) = self.specialized(name, arguments, span, 0)?;
         let function = ComponentReference::from_name(&name, function.span);
         let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
         Ok(Expression::new(kind, span))

@@ -9,7 +9,7 @@ use crate::fault;
 use crate::flatten::Library;
 use crate::flatten::errors::UNKNOWN_CLASS;
 use crate::name::{Ident, Name};
-use crate::source::{SourceId, Span};
+use crate::source::{SourceId, Span, Spanned};
 use crate::syntax;
 use crate::syntax::ast::{
     ClassDefinition, ClassSpecifier, ComponentReference, Element, Expression, ExpressionKind,
@@ -133,8 +133,8 @@ impl Session {
         if !self.world.is_dir(path) {
             return self.load_file(path);
         }
-        self.load_package_around(path)?;
-        let names = self.load_library(path)?;
+        let around = self.package_around(path)?;
+        let names = self.load_library(path, &around)?;
         self.ask_library(|library| {
             let problems = names.iter().flat_map(|name| library.read_all(name));
             let problems: Vec<Diagnostic> = problems.collect();
@@ -142,17 +142,27 @@ impl Session {
         })
     }
 
-    /// The package at the top that a folder or file belongs to, if it is not loaded: the outermost
-    /// of the folders around it that are packages.
-    fn load_package_around(&mut self, path: &Path) -> Result<(), Vec<Diagnostic>> {
+    /// The package that a file or folder belongs to by its place; the outermost package around it
+    /// is loaded. The empty name if no package is around.
+    fn package_around(&mut self, path: &Path) -> Result<Name, Vec<Diagnostic>> {
         let is_package = |folder: &&Path| self.world.exists(&folder.join("package.mo"));
-        let Some(root) = path.ancestors().skip(1).take_while(is_package).last() else {
-            return Ok(());
-        };
-        if self.classes.files.values().any(|file| file == root) {
-            return Ok(());
+        let folders: Vec<&Path> = path.ancestors().skip(1).take_while(is_package).collect();
+        let Some(root) = folders.last() else { return Ok(Name::default()) };
+        if !self.classes.files.values().any(|file| file == root) {
+            self.load_library(root, &Name::default())?;
         }
-        self.load_library(root).map(|_| ())
+        let mut name = Name::default();
+        for folder in folders.into_iter().rev() {
+            let (source, text) = self
+                .library_texts()
+                .read(&folder.join("package.mo"))
+                .at(self.call)
+                .map_err(|error| vec![error])?;
+            let package = syntax::parse_stored_definition_lazily(source, &text);
+            let package = package.map_err(|error| vec![error])?;
+            name.parts.extend(package.classes.first().map(|class| class.name.node));
+        }
+        Ok(name)
     }
 
     fn load_file(&mut self, path: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {
@@ -163,11 +173,12 @@ impl Session {
     }
 
     /// Loads a package from its folder; its classes are read when they are needed.
-    fn load_library(&mut self, folder: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {
+    fn load_library(&mut self, folder: &Path, around: &Name) -> Result<Vec<Name>, Vec<Diagnostic>> {
         self.classes.changed();
         let texts = self.library_texts();
         let one = |error: Diagnostic| vec![error];
-        let names = self.ask_library(|library| library.load_lazily(&texts, folder).map_err(one))?;
+        let names =
+            self.ask_library(|library| library.load_lazily(&texts, folder, around).map_err(one))?;
         self.note_files(&names, folder);
         self.supply_units(&names).map_err(one)?;
         self.note_versions(&names);
@@ -192,12 +203,13 @@ impl Session {
         text: &str,
         path: Option<&Path>,
     ) -> Result<Vec<Name>, Vec<Diagnostic>> {
-        let file = syntax::parse_all_of_stored_definition(source, text)?;
+        let mut file = syntax::parse_all_of_stored_definition(source, text)?;
         self.classes.changed();
+        let around = path.map_or(Ok(Name::default()), |path| self.package_around(path))?;
+        if !around.parts.is_empty() && file.within.is_none() {
+            file.within = Some(Spanned { node: around, span: Span::new(source, 0, 0) });
+        }
         if let Some(package) = file.within.as_ref().and_then(|within| within.node.first()) {
-            if let (Some(path), false) = (path, self.classes.library.contains(&package.into())) {
-                self.load_package_around(path)?;
-            }
             self.autoload_class(package)?;
         }
         let names = self.ask_library(|library| library.load(&file).map_err(|error| vec![error]))?;
@@ -220,7 +232,9 @@ impl Session {
             return Ok(false);
         }
         match self.search_class(name) {
-            Some(path) if self.world.is_dir(&path) => self.load_library(&path).map(|_| true),
+            Some(path) if self.world.is_dir(&path) => {
+                self.load_library(&path, &Name::default()).map(|_| true)
+            }
             Some(path) => self.load_file(&path).map(|_| true),
             None => {
                 self.classes.nowhere.insert(name);
@@ -271,6 +285,7 @@ impl Session {
         self.classes.changed();
         self.classes.library = Library::new();
         self.classes.files.clear();
+        self.classes.versions.clear();
         self.models.forget();
     }
 

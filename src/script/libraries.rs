@@ -208,7 +208,7 @@ impl Session {
         let path = Path::new(models::FOLDER).join("Modelica").join("SIunits.mo");
         let texts = self.library_texts();
         if texts.is_file(&path) {
-            self.classes.library.load_lazily(&texts, &path)?;
+            self.classes.library.load_lazily(&texts, &path, &modelica)?;
         }
         Ok(())
     }

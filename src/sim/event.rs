@@ -33,18 +33,19 @@ impl CrossingSearch {
         }
     }
 
-    /// Takes the signs at (t, y) as those to be changed.
+    /// Takes the signs at (t, y) as those to be changed; whether they are others than before.
     pub(super) fn start(
         &mut self,
         problem: &mut Problem,
         t: f64,
         y: &[f64],
-    ) -> Result<(), Failure> {
+    ) -> Result<bool, Failure> {
         problem.system.crossings(t, y, &mut self.left)?;
+        let changed = self.changed(&self.left);
         for (sign_of, z) in self.signs.iter_mut().zip(&self.left) {
             *sign_of = sign(*z);
         }
-        Ok(())
+        Ok(changed)
     }
 
     /// The end of the bracket of the first event in (`a`, `b`], with y there; `None` if no sign

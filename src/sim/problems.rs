@@ -184,12 +184,63 @@ pub(super) fn robertson() -> TestProblem {
     problem
 }
 
-/// Van der Pol's equation with ε = 1e-6, x(0) = (2, −0.66); at t = 2:
+/// Van der Pol's equation with ε = 1e-6, x(0) = (2, 0); at t = 2:
 /// (0.1706167732170469e1, −0.8928097010248125) (test set of Bari).
 pub(super) fn van_der_pol() -> TestProblem {
-    TestProblem::new(&[2.0, -0.66], 2, |_, y, _, out| {
+    TestProblem::new(&[2.0, 0.0], 2, |_, y, _, out| {
         out[0] = y[1];
         out[1] = ((1.0 - y[0] * y[0]) * y[1] - y[0]) / 1e-6;
+    })
+}
+
+/// Chemistry of eight species (HIRES); the values at t = 321.8122 are [`HIRES_END`].
+pub(super) fn hires() -> TestProblem {
+    let start = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0057];
+    let mut problem = TestProblem::new(&start, 8, |_, y, _, out| {
+        out[0] = -1.71 * y[0] + 0.43 * y[1] + 8.32 * y[2] + 0.0007;
+        out[1] = 1.71 * y[0] - 8.75 * y[1];
+        out[2] = -10.03 * y[2] + 0.43 * y[3] + 0.035 * y[4];
+        out[3] = 8.32 * y[1] + 1.71 * y[2] - 1.12 * y[3];
+        out[4] = -1.745 * y[4] + 0.43 * y[5] + 0.43 * y[6];
+        let bound = 280.0 * y[5] * y[7];
+        out[5] = -bound + 0.69 * y[3] + 1.71 * y[4] - 0.43 * y[5] + 0.69 * y[6];
+        out[6] = bound - 1.81 * y[6];
+        out[7] = -out[6];
+    });
+    problem.nominal = vec![1e-3; 8];
+    problem
+}
+
+/// Test set of Bari.
+pub(super) const HIRES_END: [f64; 8] = [
+    0.7371312573325668e-3,
+    0.1442485726316185e-3,
+    0.5888729740967575e-4,
+    0.1175651343283149e-2,
+    0.2386356198831331e-2,
+    0.6238968252742796e-2,
+    0.2849998395185769e-2,
+    0.2850001604814231e-2,
+];
+
+/// The Oregonator of Field and Noyes; at t = 360: [`OREGONATOR_END`].
+pub(super) fn oregonator() -> TestProblem {
+    TestProblem::new(&[1.0, 2.0, 3.0], 3, |_, y, _, out| {
+        out[0] = 77.27 * (y[1] + y[0] * (1.0 - 8.375e-6 * y[0] - y[1]));
+        out[1] = (y[2] - (1.0 + y[0]) * y[1]) / 77.27;
+        out[2] = 0.161 * (y[0] - y[2]);
+    })
+}
+
+/// Test set of Bari.
+pub(super) const OREGONATOR_END: [f64; 3] =
+    [0.1000814870318523e1, 0.1228178521549917e4, 0.1320554942846706e3];
+
+/// A source x = sin t behind 100 Ω and a diode: 0 = (10 x − v)/100 − 1e-9 (exp(v/0.025) − 1).
+pub(super) fn diode() -> TestProblem {
+    TestProblem::new(&[0.0, 0.0], 1, |t, y, _, out| {
+        out[0] = t.cos();
+        out[1] = (10.0 * y[0] - y[1]) / 100.0 - 1e-9 * ((y[1] / 0.025).exp() - 1.0);
     })
 }
 

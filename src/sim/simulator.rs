@@ -200,7 +200,7 @@ impl Run<'_> {
         self.integrator.restart(&mut self.problem, self.t, self.y)
     }
 
-    fn start_crossings(&mut self) -> Result<(), SimErrorKind> {
+    fn start_crossings(&mut self) -> Result<bool, SimErrorKind> {
         self.crossings.start(&mut self.problem, self.t, self.y).map_err(SimErrorKind::Evaluation)
     }
 
@@ -229,7 +229,7 @@ impl Run<'_> {
                     self.record_before(event)?;
                     self.remember(begin, event)?;
                     self.problem.statistics.state_events += 1;
-                    let after = self.handle_event(event)?;
+                    let after = self.handle_event(event, true)?;
                     if after != After::Resume || event >= end {
                         return Ok(after);
                     }
@@ -238,7 +238,7 @@ impl Run<'_> {
                     self.record_before(end)?;
                     self.remember(begin, end)?;
                     self.problem.statistics.time_events += 1;
-                    return self.handle_event(end);
+                    return self.handle_event(end, false);
                 }
                 None => {
                     self.record_before(end)?;
@@ -298,8 +298,10 @@ impl Run<'_> {
         self.problem.system.remember(t, self.y).map_err(SimErrorKind::Evaluation)
     }
 
-    /// Handles the event at `t`, where y is; records both sides of it.
-    fn handle_event(&mut self, t: f64) -> Result<After, SimErrorKind> {
+    /// Handles the event at `t`, where y is; records both sides of it. An event that a sign has
+    /// told, but that the variables do not confirm, comes from the error of the interpolation: the
+    /// integrator starts anew from the variables then.
+    fn handle_event(&mut self, t: f64, told_by_sign: bool) -> Result<After, SimErrorKind> {
         self.t = t;
         self.watch_for_chattering()?;
         self.record()?;
@@ -317,8 +319,11 @@ impl Run<'_> {
             EventOutcome::Terminate => return Ok(After::Terminated),
             EventOutcome::Continue { y_changed: true } | EventOutcome::Again => self.restart()?,
             EventOutcome::Continue { y_changed: false } => {
-                self.start_crossings()?;
-                return Ok(After::Resume);
+                let confirmed = self.start_crossings()?;
+                if confirmed || !told_by_sign {
+                    return Ok(After::Resume);
+                }
+                self.integrator.restart(&mut self.problem, self.t, self.y)?;
             }
         }
         Ok(After::Restarted)

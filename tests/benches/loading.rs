@@ -68,7 +68,8 @@ fn cold_start(criterion: &mut Criterion) {
             let files: Arc<dyn LibraryFiles> = Arc::new(Disk::default());
             let mut library = Library::new();
             for name in ["Modelica", "ModelicaServices", "Complex.mo"] {
-                library.load_lazily(&files, &folder.join(name)).expect("the library is there");
+                let loaded = library.load_lazily(&files, &folder.join(name), &Name::default());
+                loaded.expect("the library is there");
             }
             // Whether the model can be translated is of no interest here, only what is read.
             let answer = flatten::flatten(&library, &model, &[]);

@@ -1,10 +1,16 @@
-// MLS §5.4, §7.4: what is not translated yet says so at its place.
+// MLS §7.4: what is not translated yet says so at its place.
 package refused
-  model Inner
-    inner outer Real t = 1;
-  end Inner;
+  connector Pin
+    Real v;
+    flow Real i;
+  end Pin;
+  model Base
+    Pin a;
+    Pin b;
+  equation
+    connect(a, b);
+  end Base;
   model Main
-    inner Real t = 1;
-    Inner i;
+    extends Base(break connect(a, b));
   end Main;
 end refused;

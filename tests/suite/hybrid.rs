@@ -488,3 +488,28 @@ fn initial_selects_what_holds_at_the_start() {
     near(run.at("y", 0.0), 3.0, 1e-12);
     near(run.last("x"), 4.0, 1e-9);
 }
+
+#[test]
+fn a_discrete_subscript_chooses_an_element() {
+    let text = "model T constant Integer table[2, 3] = [1, 2, 3; 10, 20, 30]; Integer i(start = 1); Integer j(start = 1);
+        Real x[3] = {time, 2*time, 3*time}; Integer n = table[j, i]; Real y = x[i];
+        equation when sample(1, 1) then i = pre(i) + 1; j = 3 - pre(j); end when; end T;";
+    let run = simulated(text, 2.9);
+    for (t, n, y) in [(0.58, 1.0, 0.58), (1.16, 20.0, 2.32), (2.9, 3.0, 8.7)] {
+        near(run.at("n", t), n, 0.0);
+        near(run.at("y", t), y, 1e-9);
+    }
+    let (program, _, _, ended) = attempt(text, 3.5);
+    let error = ended.expect_err("there is no fourth element");
+    near(error.time, 3.0, 1e-12);
+    assert_eq!(program.explain(&error).code.slug, "assertion-failed");
+}
+
+#[test]
+fn assertions_of_functions_hold_in_the_branch_taken_only() {
+    let text = "model B function root input Real x; output Real y; algorithm assert(x >= 0, \"negative\"); y := sqrt(x); end root;
+        Real x = 1 - time; Real y = if x > 0 then root(x) else -root(-x); end B;";
+    let run = simulated(text, 2.0);
+    near(run.at("y", 0.4), 0.6f64.sqrt(), 1e-12);
+    near(run.last("y"), -1.0, 1e-12);
+}

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 /// The flat model of the last class of a text.
 pub(crate) fn flat(text: &str) -> FlatModel {
-    let mut sources = SourceMap::default();
+    let sources = SourceMap::default();
     let source = sources.add("test.mo", text);
     let file = parse_stored_definition(source, text).expect("Modelica");
     let mut library = Library::new();

@@ -126,3 +126,82 @@ fn linear_systems_answer_a_step() {
         ],
     );
 }
+
+/// The four diodes as piecewise linear resistors, their node found by bisection at every time.
+#[test]
+fn a_bridge_rectifies() {
+    ends("Rectifier", 1e-6, &[("capacitor.v", 7.777_337_295)]);
+}
+
+/// Exponentials from switch to switch.
+#[test]
+fn a_heater_is_switched() {
+    let (mut t, mut room, mut on) = (0.0, 288.15, true);
+    loop {
+        let (limit, goal): (f64, f64) = if on { (293.65, 323.15) } else { (292.65, 273.15) };
+        let next = t - 100.0 * ((limit - goal) / (room - goal)).ln();
+        if next > 60.0 {
+            room = goal + (room - goal) * (-(60.0 - t) / 100.0_f64).exp();
+            break;
+        }
+        (t, room, on) = (next, limit, !on);
+    }
+    let power = if on { 500.0 } else { 0.0 };
+    ends("Thermostat", 1e-6, &[("room.T", room), ("power.y", power)]);
+}
+
+/// Exponentials from switch to switch, with all four resistances.
+#[test]
+fn a_current_goes_over_to_a_diode() {
+    let (on, off): (f64, f64) = (1e-3, 1e-6);
+    let conductance = 1.0 / on + off;
+    let after = |i: f64, time: f64, source: f64| {
+        let resistance = 2.0 + 1.0 / conductance;
+        let last = 12.0 * source / conductance / resistance;
+        last + (i - last) * (-resistance / 0.01 * time).exp()
+    };
+    let i = after(after(after(after(0.0, 5e-3, 1.0 / on), 5e-3, off), 5e-3, 1.0 / on), 3e-3, off);
+    ends("Switches", 1e-6, &[("inductor.i", i)]);
+}
+
+#[test]
+fn sources_give_their_signals() {
+    let t: f64 = 2.15;
+    ends(
+        "Signals",
+        1e-6,
+        &[
+            ("constant_.y", 3.0),
+            ("step.y", 3.0),
+            ("ramp.y", 3.3),
+            ("sine.y", 1.0 + 2.0 * (2.0 * PI * 0.3 * 1.95 + 0.4).sin()),
+            ("cosine.y", (2.0 * PI * 0.3 * t).cos()),
+            ("expSine.y", (-0.5 * t).exp() * (2.0 * PI * 0.7 * t).sin()),
+            ("exponentials.y", (1.0 - (-2.5_f64).exp()) * (-(t - 0.6) / 0.4).exp()),
+            ("pulse.y", 1.0),
+            ("sawTooth.y", 2.0 * 0.65 / 0.7),
+            ("trapezoid.y", 0.0),
+            ("clock.y", 2.25),
+            ("pulses.y", -t + 2.0 * (4.0 * 0.15 + 0.05)),
+            ("teeth.y", 2.0 * 0.7 + 0.65 * 0.65 / 0.7),
+            ("trapezoids.y", 2.0 * 2.0 * (0.05 + 0.2 + 0.15)),
+        ],
+    );
+}
+
+#[test]
+fn sampled_systems_step_from_sample_to_sample() {
+    ends(
+        "Sampled",
+        1e-9,
+        &[
+            ("sampler.y", 0.7),
+            ("hold.y", 0.7),
+            ("delay_.y", 0.7),
+            ("transferFunction.y", 1.003_125),
+            ("triggered.y", 0.42),
+            ("timer.y", 0.33),
+            ("above.y", 1.0),
+        ],
+    );
+}

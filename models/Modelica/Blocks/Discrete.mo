@@ -57,7 +57,6 @@ package Discrete "Sampled systems"
     extends Interfaces.DiscreteSISO;
     output Real x[size(a, 1) - 1](each start = 0, each fixed = true) "states: the samples before";
   protected
-    parameter Integer nb = size(b, 1) "coefficients of the numerator";
     parameter Integer na = size(a, 1) "coefficients of the denominator";
     discrete Real x1(start = 0, fixed = true) "new state";
     discrete Real xext[na](each start = 0, each fixed = true) "new and old states";
@@ -66,7 +65,7 @@ package Discrete "Sampled systems"
       x1 = (u - a[2:na]*pre(x))/a[1];
       xext = cat(1, {x1}, pre(x));
       x = xext[1:na - 1];
-      y = cat(1, zeros(na - nb), b)*xext;
+      y = cat(1, zeros(size(a, 1) - size(b, 1)), b)*xext;
     end when;
   end TransferFunction;
 

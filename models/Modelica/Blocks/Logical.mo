@@ -259,7 +259,11 @@ package Logical "Truth values, comparisons and switches"
     parameter String message = "" "text of the error";
     parameter AssertionLevel assertionLevel = AssertionLevel.error "error or warning";
   equation
-    assert(u, message, assertionLevel);
+    if assertionLevel == AssertionLevel.error then
+      assert(u, message);
+    else
+      assert(u, message, AssertionLevel.warning);
+    end if;
   end AssertCondition;
 
   block TerminateSimulation "The end of the simulation where a condition becomes true"

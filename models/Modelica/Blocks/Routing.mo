@@ -51,7 +51,7 @@ package Routing "Signals put together and taken apart"
 
   block ExtractSignal "Some elements of a vector"
     extends Interfaces.MIMO;
-    parameter Integer extract[nout] = 1:nout "indices of the elements";
+    parameter Integer extract[nout] = 1:nout "indices of the elements" annotation(Evaluate = true);
   equation
     for i in 1:nout loop
       y[i] = u[extract[i]];

@@ -305,11 +305,6 @@ package Strings "Functions of texts; characters are counted from 1"
   algorithm
     Streams.error("Error at character " + String(index) + " of \"" + string + "\": " + message);
   end syntaxError;
-  annotation(Documentation(info = "<html>
-<p>A function that scans skips white space and reads what is behind it; where something else is
-there, it is an error.</p>
-</html>"));
-
   package Advanced "Scanning without errors: the next character is the first one where nothing is found"
     extends Modelica.Icons.FunctionsPackage;
 
@@ -359,4 +354,8 @@ there, it is an error.</p>
     external "C" nextIndex = ModelicaStrings_skipWhiteSpace(string, startIndex);
     end skipWhiteSpace;
   end Advanced;
+  annotation(Documentation(info = "<html>
+<p>A function that scans skips white space and reads what is behind it; where something else is
+there, it is an error.</p>
+</html>"));
 end Strings;

@@ -7,6 +7,7 @@
 mod access;
 mod behaviour;
 mod compatibility;
+mod connectors;
 mod elements;
 mod imports;
 mod lookup;
@@ -46,6 +47,7 @@ pub(super) fn check_class(library: &Library, class: ClassId) -> Vec<Diagnostic> 
 fn check_one(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     elements::check(class, errors);
     restrictions::check(class, errors);
+    connectors::check(class, errors);
     operators::check(class, errors);
     prefixes::check(class, errors);
     imports::check(class, errors);

@@ -11,8 +11,8 @@ use crate::flatten::library::ClassId;
 use crate::flatten::lookup::Predefined;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
-    BinaryOperator, Binding, ClassSpecifier, ComponentReference, Equation, EquationKind,
-    Expression, ExpressionKind, Section, Statement, StatementKind, UnaryOperator,
+    BinaryOperator, ClassSpecifier, ComponentReference, Equation, EquationKind, Expression,
+    ExpressionKind, Section, Statement, StatementKind, UnaryOperator,
 };
 use crate::syntax::visit::{
     Visit, walk_equation, walk_expression, walk_modification, walk_statement,

@@ -17,6 +17,16 @@ use crate::syntax::ast::{
 };
 use crate::value::Value;
 
+/// A `connect` equation in one instance.
+pub(super) struct Connect {
+    pub(super) left: ComponentReference,
+    pub(super) right: ComponentReference,
+    pub(super) context: ScopeId,
+    /// Values of loop variables.
+    pub(super) local: Local,
+    pub(super) span: Span,
+}
+
 impl Instantiation<'_> {
     /// All connections below an instance, as sets; errors are added to the list.
     pub(in super::super) fn connections(
@@ -25,10 +35,20 @@ impl Instantiation<'_> {
         errors: &mut Vec<Diagnostic>,
     ) -> Connections {
         let mut connections = Connections::default();
-        self.collect_connections(root, &mut connections, errors);
+        let mut connects = Vec::new();
+        self.collect_connections(root, &mut connections, &mut connects, errors);
+        if let Err(error) = self.expand_connectors(&connects) {
+            errors.push(error);
+        }
+        for connect in &connects {
+            if let Err(error) = self.connect(connect, &mut connections) {
+                errors.push(error);
+            }
+        }
         if let Err(error) = self.build_graph(&mut connections) {
             errors.push(error);
         }
+        self.drop_unconnected(root, &mut connections);
         connections
     }
 
@@ -36,6 +56,7 @@ impl Instantiation<'_> {
         &mut self,
         node: NodeId,
         connections: &mut Connections,
+        connects: &mut Vec<Connect>,
         errors: &mut Vec<Diagnostic>,
     ) {
         let Some(scope) = self.scope_of(node) else { return };
@@ -48,7 +69,7 @@ impl Instantiation<'_> {
                 _ => Vec::new(),
             };
             for one in nodes {
-                self.collect_connections(one, connections, errors);
+                self.collect_connections(one, connections, connects, errors);
             }
         }
         for context in elements.lineage.iter().copied() {
@@ -60,7 +81,7 @@ impl Instantiation<'_> {
                 for equation in equations {
                     let local = Local::default();
                     if let Err(error) =
-                        self.collect_equation(equation, context, &local, connections)
+                        self.collect_equation(equation, context, &local, connections, connects)
                     {
                         errors.push(error);
                     }
@@ -75,13 +96,21 @@ impl Instantiation<'_> {
         context: ScopeId,
         local: &Local,
         connections: &mut Connections,
+        connects: &mut Vec<Connect>,
     ) -> Result<(), Diagnostic> {
         if !is_about_connections(equation) {
             return Ok(());
         }
         match &equation.kind {
             EquationKind::Connect { left, right } => {
-                self.connect(left, right, equation.span, context, local, connections)
+                connects.push(Connect {
+                    left: left.clone(),
+                    right: right.clone(),
+                    context,
+                    local: local.clone(),
+                    span: equation.span,
+                });
+                Ok(())
             }
             EquationKind::Call(call) => self.graph_statement(call, context, local, connections),
             EquationKind::For { indices, body } => {
@@ -89,7 +118,7 @@ impl Instantiation<'_> {
                 self.turns(indices, context, local, &mut turns)?;
                 for turn in turns {
                     for inner in body {
-                        self.collect_equation(inner, context, &turn, connections)?;
+                        self.collect_equation(inner, context, &turn, connections, connects)?;
                     }
                 }
                 Ok(())
@@ -108,7 +137,7 @@ impl Instantiation<'_> {
                     }
                 };
                 for inner in chosen {
-                    self.collect_equation(inner, context, local, connections)?;
+                    self.collect_equation(inner, context, local, connections, connects)?;
                 }
                 Ok(())
             }
@@ -122,15 +151,13 @@ impl Instantiation<'_> {
 
     fn connect(
         &mut self,
-        left: &ComponentReference,
-        right: &ComponentReference,
-        span: Span,
-        context: ScopeId,
-        local: &Local,
+        connect: &Connect,
         connections: &mut Connections,
     ) -> Result<(), Diagnostic> {
-        let left_ends = self.ends(left, context, local)?;
-        let right_ends = self.ends(right, context, local)?;
+        let Connect { left, right, context, local, span } = connect;
+        let span = *span;
+        let left_ends = self.ends(left, *context, local)?;
+        let right_ends = self.ends(right, *context, local)?;
         // Connections with a component whose condition is false are removed (MLS §4.4.5).
         let (Some(left_ends), Some(right_ends)) = (left_ends, right_ends) else { return Ok(()) };
         if left_ends.dims != right_ends.dims {

@@ -9,6 +9,7 @@
 
 mod collect;
 mod ends;
+mod expandable;
 mod graph;
 mod operators;
 mod sets;

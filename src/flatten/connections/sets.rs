@@ -15,7 +15,7 @@ use crate::syntax::ast::{
     Arguments, BinaryOperator, ComponentReference, ConnectionPrefix, Equation, EquationKind,
     Expression, ExpressionKind, Subscript, UnaryOperator,
 };
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// A scalar of a connector, seen from one side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -39,6 +39,8 @@ pub(in super::super) struct Connections {
     /// How often each connector stands in a connection.
     counts: FxHashMap<End, i64>,
     pub(super) graph: Graph,
+    /// Variables of expandable connectors that are left out.
+    pub(super) dropped: FxHashSet<NodeId>,
     /// Members of each set by its representative, made when all connections are known.
     members: Vec<Vec<usize>>,
 }
@@ -87,6 +89,14 @@ impl Connections {
     /// How many connections name a connector (`cardinality`, MLS §3.7.4.3).
     pub(super) fn cardinality(&self, end: End) -> i64 {
         self.counts.get(&end).copied().unwrap_or(0)
+    }
+
+    /// All faces that are connected with a scalar, on either side.
+    pub(super) fn around(&self, leaf: NodeId, element: usize) -> Vec<Face> {
+        [false, true]
+            .into_iter()
+            .flat_map(|outside| self.set_of(Face { leaf, element, outside }))
+            .collect()
     }
 
     /// Lists the members of the sets.
@@ -154,6 +164,9 @@ impl Instantiation<'_> {
         span: Span,
         connections: &mut Connections,
     ) -> Result<(), Diagnostic> {
+        if self.is_expandable(one) != self.is_expandable(other) {
+            return Err(self.unlike(End::Composite(one), End::Composite(other), span));
+        }
         let left = self.connectable(one)?;
         let right = self.connectable(other)?;
         let missing = |from: &[(Ident, MemberState)], to: &[(Ident, MemberState)]| {
@@ -283,7 +296,14 @@ impl Instantiation<'_> {
             if members.len() < 2 {
                 continue;
             }
-            let faces: Vec<Face> = members.iter().map(|at| connections.faces[*at]).collect();
+            let faces: Vec<Face> = members
+                .iter()
+                .map(|at| connections.faces[*at])
+                .filter(|face| !connections.dropped.contains(&face.leaf))
+                .collect();
+            if faces.is_empty() {
+                continue;
+            }
             let span = connections.spans[root];
             match self.connection_of(faces[0].leaf) {
                 None => self.add_potential_equations(&faces, span, model),

@@ -16,6 +16,9 @@ use indexmap::IndexMap;
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
+/// Packages inside each other whose folders are still looked into.
+const MAX_FOLDERS: usize = 20;
+
 impl Library {
     /// A class, read now if it was not; nobody is told of its problems.
     pub(super) fn read(&self, id: ClassId) -> &Class {
@@ -88,6 +91,10 @@ impl Library {
 
     /// Adds the classes beside a `package.mo`. A file that `package.order` lists is not opened.
     fn add_folder(&self, id: ClassId, class: &mut Class, folder: &Folder) {
+        if class.name.parts.len() > MAX_FOLDERS {
+            // A link that leads back would make the package one without end.
+            return;
+        }
         let order = folder.order().unwrap_or_default();
         let place: FxHashMap<Ident, usize> =
             order.iter().enumerate().map(|(at, name)| (Ident::new(name), at)).collect();
@@ -149,9 +156,17 @@ impl Library {
         self.meet_name(library, entry, file, name);
     }
 
-    /// Notes a library's folder whose name, without its version, is not that of the package.
-    pub(super) fn meet_folder(&self, entry: &Entry, file: &StoredDefinition) {
-        let library = file.classes.first().map(|class| class.name.node);
+    /// Notes a package's folder whose name, without a version, is not that of the package.
+    pub(super) fn meet_folder(
+        &self,
+        parent: Option<ClassId>,
+        entry: &Entry,
+        file: &StoredDefinition,
+    ) {
+        let library = match parent {
+            Some(parent) => self.slot(parent).name.first(),
+            None => file.classes.first().map(|class| class.name.node),
+        };
         let name = entry.stem.split(' ').next().unwrap_or_default();
         self.meet_name(library, entry, file, Ident::new(name));
     }

@@ -91,7 +91,9 @@ end openModelFile;
 fn open_model_file(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let (model, path): (String, String) = (args.take("modelName")?, args.take("path")?);
     if path.is_empty() {
-        return Ok(is_loaded(session, &Name::parse(&model)).into());
+        let (model, version) = (Name::parse(&model), args.take::<String>("version")?);
+        session.want_version(&model, vec![version]);
+        return Ok(is_loaded(session, &model).into());
     }
     let loaded = session.load_path(Path::new(&path));
     Ok(session.or_report_all(loaded).is_some().into())

@@ -38,6 +38,9 @@ const MAX_ORDER: usize = 5;
 const KAPPA: [f64; 6] = [0.0, -0.1850, -1.0 / 9.0, -0.0823, -0.0415, 0.0];
 const GAMMA: [f64; 6] = [0.0, 1.0, 1.5, 11.0 / 6.0, 25.0 / 12.0, 137.0 / 60.0];
 const MAX_ITERATIONS: usize = 4;
+const MAX_FULL_ITERATIONS: usize = 20;
+/// Failures of one step after which the past is forgotten and Newton's method may take its time.
+const MOST_FAILURES: usize = 4;
 /// The local error is kept below this part of the tolerance, so that the global one meets it.
 const SAFETY: f64 = 0.25;
 /// The corrector's error relative to the local error allowed.
@@ -255,11 +258,16 @@ impl Bdf {
         problem: &mut Problem,
         t_new: f64,
         c: f64,
+        full: bool,
     ) -> Result<Corrected, SimErrorKind> {
         self.y.copy_from_slice(&self.predicted);
         self.correction.fill(0.0);
         let mut last = f64::INFINITY;
-        for iteration in 1..=MAX_ITERATIONS {
+        for iteration in 1..=if full { MAX_FULL_ITERATIONS } else { MAX_ITERATIONS } {
+            if full && iteration > 1 {
+                self.iteration.evaluate(problem, t_new, &self.y)?;
+                self.iteration.factorize(problem, c, self.n_differential)?;
+            }
             problem.rhs(t_new, &self.y, &mut self.rhs)?;
             for i in 0..self.n {
                 self.delta[i] = if i < self.n_differential {
@@ -270,7 +278,7 @@ impl Bdf {
             }
             self.iteration.solve(problem.nominal, &mut self.delta);
             let norm = weighted_rms(&self.delta, &self.weights);
-            if !norm.is_finite() || norm > 2.0 * last {
+            if !norm.is_finite() || (norm > 2.0 * last && !full) {
                 return Ok(Corrected::Slow);
             }
             if iteration > 1 {
@@ -280,7 +288,10 @@ impl Bdf {
                 self.y[i] += self.delta[i];
                 self.correction[i] += self.delta[i];
             }
-            if norm * self.rate.min(1.0) <= NEWTON_TOLERANCE {
+            // With an old Jacobian a small first step tells nothing about stiff and algebraic
+            // equations.
+            let is_trusted = iteration > 1 || self.iteration.is_current;
+            if is_trusted && norm * self.rate.min(1.0) <= NEWTON_TOLERANCE {
                 return Ok(Corrected::Converged(iteration));
             }
             last = norm;
@@ -289,7 +300,13 @@ impl Bdf {
     }
 
     /// Solves the corrector, if need be with a new Jacobian. Returns the number of iterations.
-    fn correct(&mut self, problem: &mut Problem, t_new: f64) -> Result<usize, SimErrorKind> {
+    /// `full` evaluates the Jacobian in every iteration, and there may be more of them.
+    fn correct(
+        &mut self,
+        problem: &mut Problem,
+        t_new: f64,
+        full: bool,
+    ) -> Result<usize, SimErrorKind> {
         let c = self.h / alpha(self.order);
         if self.iterations > 2 && self.iteration.factorized_for != Some(c) {
             self.iteration.is_evaluated = false;
@@ -302,7 +319,7 @@ impl Bdf {
                 self.iteration.factorize(problem, c, self.n_differential)?;
                 self.rate = 1.0;
             }
-            match self.iterate(problem, t_new, c)? {
+            match self.iterate(problem, t_new, c, full)? {
                 Corrected::Converged(iterations) => {
                     self.iterations = iterations;
                     return Ok(iterations);
@@ -367,6 +384,22 @@ fn binomials(order: usize, factor: f64) -> [[f64; MAX_ORDER + 1]; MAX_ORDER + 1]
     matrix
 }
 
+impl Bdf {
+    /// Begins anew from where it is, with order 1 and the step at hand: what came before does not
+    /// tell what comes.
+    fn forget(&mut self, problem: &mut Problem) -> Result<(), SimErrorKind> {
+        problem.rhs(self.t, &self.differences[0], &mut self.rhs)?;
+        self.order = 1;
+        self.equal_steps = 0;
+        self.fresh = true;
+        self.differences[1..].iter_mut().for_each(|difference| difference.fill(0.0));
+        for i in 0..self.n_differential {
+            self.differences[1][i] = self.h * self.rhs[i];
+        }
+        Ok(())
+    }
+}
+
 impl Integrator for Bdf {
     fn is_explicit(&self) -> bool {
         false
@@ -397,12 +430,13 @@ impl Integrator for Bdf {
         let tolerance = SAFETY * problem.settings.tolerance;
         set_weights(tolerance, &self.differences[0], problem.nominal, &mut self.weights);
         self.adapt(problem);
+        let mut failures = 0;
         loop {
             problem.may_continue()?;
             let reaches_limit = self.approach(limit);
             let t_new = if reaches_limit { limit } else { self.t + self.h };
             self.predict();
-            let (failure, factor) = match self.correct(problem, t_new) {
+            let (failure, factor) = match self.correct(problem, t_new, failures >= MOST_FAILURES) {
                 Ok(iterations) => {
                     let budget = 2.0 * MAX_ITERATIONS as f64 + 1.0;
                     self.safety = 0.9 * budget / (budget - 1.0 + iterations as f64);
@@ -425,6 +459,10 @@ impl Integrator for Bdf {
                 return Err(failure);
             }
             self.rescale(self.h * factor);
+            failures += 1;
+            if failures == MOST_FAILURES {
+                self.forget(problem)?;
+            }
         }
     }
 

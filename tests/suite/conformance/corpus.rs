@@ -36,7 +36,7 @@ impl Corpus {
     pub(crate) fn load(root: &Path) -> Corpus {
         let mut paths = Vec::new();
         collect(root, &mut paths);
-        let (mut library, mut sources) = (Library::new(), SourceMap::default());
+        let (mut library, sources) = (Library::new(), SourceMap::default());
         let files = paths
             .iter()
             .map(|path| {

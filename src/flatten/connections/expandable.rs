@@ -1,0 +1,295 @@
+//! Expandable connectors (MLS §9.1.3): they get the components that connections name, and connected
+//! ones get those of each other; components that nothing connects are left out.
+
+use super::super::errors::INVALID_CONNECTION;
+use super::super::instance::{Declaration, Member, MemberState, NodeId, NodeKind};
+use super::super::instantiation::Instantiation;
+use super::super::modification::Modifier;
+use super::super::scope::ScopeId;
+use super::collect::Connect;
+use super::ends::{End, Ends};
+use super::sets::Connections;
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::name::Ident;
+use crate::syntax::ast::{
+    ComponentReference, ElementPrefixes, Expression, ExpressionKind, ReferencePart, Restriction,
+    Subscript,
+};
+use crate::value::Value;
+use indexmap::IndexMap;
+use std::sync::Arc;
+
+/// How often components may be passed on between connected connectors.
+const MAX_ROUNDS: usize = 100;
+
+/// A component that an expandable connector does not have yet.
+struct Undeclared {
+    connector: NodeId,
+    part: ReferencePart,
+}
+
+impl Instantiation<'_> {
+    /// Adds to all expandable connectors what connections ask of them.
+    pub(super) fn expand_connectors(&mut self, connects: &[Connect]) -> Result<(), Diagnostic> {
+        let mut links: Vec<(NodeId, NodeId)> = Vec::new();
+        for round in 0..MAX_ROUNDS {
+            let mut wanted: IndexMap<(NodeId, Ident), Declaration> = IndexMap::new();
+            for connect in connects {
+                let one = self.undeclared(&connect.left, connect)?;
+                let other = self.undeclared(&connect.right, connect)?;
+                match (one, other) {
+                    (Some(new), None) => self.want(new, &connect.right, connect, &mut wanted)?,
+                    (None, Some(new)) => self.want(new, &connect.left, connect, &mut wanted)?,
+                    (None, None) if round == 0 => self.link(connect, &mut links)?,
+                    _ => {}
+                }
+            }
+            let mut changed = !wanted.is_empty();
+            for ((node, _), declaration) in wanted {
+                self.add_member(node, declaration);
+            }
+            for (one, other) in &links {
+                changed |= self.pass_on(*one, *other) | self.pass_on(*other, *one);
+            }
+            if !changed {
+                return Ok(());
+            }
+        }
+        Ok(())
+    }
+
+    pub(super) fn is_expandable(&self, node: NodeId) -> bool {
+        self.scope_of(node).is_some_and(|scope| {
+            scope != ScopeId::TOP
+                && self.text(scope).restriction() == Restriction::ExpandableConnector
+        })
+    }
+
+    /// The component that a reference would add to an expandable connector.
+    fn undeclared(
+        &mut self,
+        reference: &ComponentReference,
+        connect: &Connect,
+    ) -> Result<Option<Undeclared>, Diagnostic> {
+        let Some((last, before)) = reference.parts.split_last() else { return Ok(None) };
+        if before.is_empty() {
+            return Ok(None);
+        }
+        let holder = ComponentReference { parts: before.to_vec(), ..reference.clone() };
+        // Any error is told when the connection itself is made.
+        let Ok(Some(Ends { ends, .. })) = self.ends(&holder, connect.context, &connect.local)
+        else {
+            return Ok(None);
+        };
+        let [End::Composite(connector)] = ends.as_slice() else { return Ok(None) };
+        let known = self.declaration_of(*connector, last.name).is_some();
+        if known || !self.is_expandable(*connector) {
+            return Ok(None);
+        }
+        Ok(Some(Undeclared { connector: *connector, part: last.clone() }))
+    }
+
+    /// Notes the component that a connection adds: of the type of what it is connected with.
+    fn want(
+        &mut self,
+        new: Undeclared,
+        partner: &ComponentReference,
+        connect: &Connect,
+        wanted: &mut IndexMap<(NodeId, Ident), Declaration>,
+    ) -> Result<(), Diagnostic> {
+        let Ok(Some(ends)) = self.ends(partner, connect.context, &connect.local) else {
+            return Ok(());
+        };
+        let Some(end) = ends.ends.first() else { return Ok(()) };
+        let (End::Composite(node) | End::Scalar(node, _)) = *end;
+        let name = partner.parts[partner.parts.len() - 1].name;
+        let holder = self.nodes[node.0].parent;
+        let Some(model) = holder.and_then(|holder| self.declaration_of(holder, name)) else {
+            return Ok(());
+        };
+        let mut sizes = Vec::new();
+        for subscript in &new.part.subscripts {
+            sizes.push(self.place_of(subscript, connect)?);
+        }
+        sizes.extend(&ends.dims);
+        let key = (new.connector, new.part.name);
+        if let Some(known) = wanted.get(&key) {
+            for (size, (subscript, _)) in sizes.iter_mut().zip(&known.dims) {
+                if let Subscript::Index(Expression { kind: ExpressionKind::Integer(n), .. }) =
+                    subscript
+                {
+                    *size = (*size).max(*n as usize);
+                }
+            }
+        }
+        let span = connect.span;
+        let dim = |size: usize| {
+            let kind = ExpressionKind::Integer(size as i64);
+            (Subscript::Index(Expression::new(kind, span)), ScopeId::TOP)
+        };
+        let declaration = Declaration {
+            name: new.part.name,
+            dims: sizes.into_iter().map(dim).collect(),
+            modifier: Modifier::default(),
+            condition: None,
+            prefixes: ElementPrefixes::default(),
+            protected: false,
+            span,
+            ..(*model).clone()
+        };
+        wanted.insert(key, declaration);
+        Ok(())
+    }
+
+    fn place_of(&mut self, subscript: &Subscript, connect: &Connect) -> Result<usize, Diagnostic> {
+        let Subscript::Index(index) = subscript else {
+            return Err(fault!(
+                INVALID_CONNECTION,
+                "the size of a new component of an expandable connector must be known"
+            )
+            .at(connect.span));
+        };
+        let resolved = self.resolve(index, connect.context, &connect.local)?;
+        match self.flat_value(&resolved)? {
+            Value::Integer(n) if n > 0 => Ok(n as usize),
+            _ => Err(fault!(INVALID_CONNECTION, "a positive Integer is needed").at(index.span)),
+        }
+    }
+
+    /// Notes that two expandable connectors are connected.
+    fn link(
+        &mut self,
+        connect: &Connect,
+        links: &mut Vec<(NodeId, NodeId)>,
+    ) -> Result<(), Diagnostic> {
+        let one = self.ends(&connect.left, connect.context, &connect.local);
+        let other = self.ends(&connect.right, connect.context, &connect.local);
+        let (Ok(Some(one)), Ok(Some(other))) = (one, other) else { return Ok(()) };
+        for pair in one.ends.iter().zip(&other.ends) {
+            if let (End::Composite(a), End::Composite(b)) = pair
+                && self.is_expandable(*a)
+                && self.is_expandable(*b)
+            {
+                links.push((*a, *b));
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives one connector the components of another; `true` if it had not all of them. Expandable
+    /// connectors inside are passed on to each other as well.
+    fn pass_on(&mut self, from: NodeId, to: NodeId) -> bool {
+        let Ok(members) = self.members(from) else { return false };
+        let mut changed = false;
+        for (name, state) in members {
+            if matches!(state, MemberState::Absent) {
+                continue;
+            }
+            let Some(declaration) = self.declaration_of(from, name) else { continue };
+            if self.declaration_of(to, name).is_none() {
+                self.add_member(to, (*declaration).clone());
+                changed = true;
+            } else if let (Ok(Some(MemberState::Single(a))), Ok(Some(MemberState::Single(b)))) =
+                (self.member(from, name), self.member(to, name))
+                && self.is_expandable(a)
+                && self.is_expandable(b)
+            {
+                changed |= self.pass_on(a, b);
+            }
+        }
+        changed
+    }
+
+    fn add_member(&mut self, node: NodeId, declaration: Declaration) {
+        let name = declaration.name;
+        let member = Member { declaration: Arc::new(declaration), state: MemberState::Pending };
+        if let NodeKind::Composite(composite) = &mut self.nodes[node.0].kind
+            && let Some(members) = &mut composite.members
+        {
+            members.insert(name, member);
+        }
+        // What is wrong with it is found again when it is connected.
+        let _ = self.member(node, name).map(|state| self.complete_added(state));
+    }
+
+    fn complete_added(&mut self, state: Option<MemberState>) {
+        let nodes = match state {
+            Some(MemberState::Single(one)) => vec![one],
+            Some(MemberState::Array(_, nodes)) => nodes,
+            _ => Vec::new(),
+        };
+        for node in nodes {
+            let _ = self.complete(node);
+        }
+    }
+
+    /// Leaves out the components of expandable connectors that no connection names.
+    pub(super) fn drop_unconnected(&mut self, node: NodeId, connections: &mut Connections) {
+        let expandable = self.is_expandable(node);
+        let Ok(members) = self.members(node) else { return };
+        for (name, state) in members {
+            let nodes = match &state {
+                MemberState::Single(one) => vec![*one],
+                MemberState::Array(_, nodes) => nodes.clone(),
+                _ => continue,
+            };
+            if expandable && !nodes.iter().any(|one| self.is_connected(*one, connections)) {
+                self.set_state(node, name, MemberState::Absent);
+                nodes.iter().for_each(|one| self.drop_leaves(*one, connections));
+                continue;
+            }
+            for one in nodes {
+                self.drop_unconnected(one, connections);
+            }
+        }
+    }
+
+    fn drop_leaves(&mut self, node: NodeId, connections: &mut Connections) {
+        if let NodeKind::Variable(_) = self.nodes[node.0].kind {
+            connections.dropped.insert(node);
+            return;
+        }
+        for (_, state) in self.members(node).unwrap_or_default() {
+            match state {
+                MemberState::Single(one) => self.drop_leaves(one, connections),
+                MemberState::Array(_, nodes) => {
+                    nodes.into_iter().for_each(|one| self.drop_leaves(one, connections));
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn is_inside_expandable(&self, leaf: NodeId) -> bool {
+        let mut node = self.nodes[leaf.0].parent;
+        while let Some(id) = node {
+            if self.is_expandable(id) {
+                return true;
+            }
+            node = self.nodes[id.0].parent;
+        }
+        false
+    }
+
+    /// Whether a connection beyond expandable connectors names a scalar of an instance, or the instance has its own equations.
+    fn is_connected(&mut self, node: NodeId, connections: &Connections) -> bool {
+        if let NodeKind::Variable(leaf) = &self.nodes[node.0].kind {
+            let count = self.variables[leaf.variable].0.len();
+            let bound = leaf.modifier.binding.is_some();
+            return bound
+                || (0..count).any(|element| {
+                    let set = connections.around(node, element);
+                    set.iter().any(|face| !self.is_inside_expandable(face.leaf))
+                });
+        }
+        let Ok(members) = self.members(node) else { return false };
+        members.into_iter().any(|(_, state)| match state {
+            MemberState::Single(one) => self.is_connected(one, connections),
+            MemberState::Array(_, nodes) => {
+                nodes.into_iter().any(|one| self.is_connected(one, connections))
+            }
+            _ => false,
+        })
+    }
+}

@@ -1,0 +1,288 @@
+//! Overloaded operators of operator records (MLS ch. 14): an operation on records becomes a call of
+//! the one function of its operator that fits the operands.
+
+use super::BaseType;
+use super::errors::TYPE_MISMATCH;
+use super::instantiation::Instantiation;
+use super::lookup::Type;
+use super::resolve::Local;
+use super::scope::ScopeId;
+use crate::diag::Diagnostic;
+use crate::eval::{Function, FunctionComponent, ValueType};
+use crate::fault;
+use crate::name::{Ident, Name};
+use crate::source::Span;
+use crate::syntax::ast::{
+    Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, Restriction,
+};
+use std::sync::Arc;
+
+impl Instantiation<'_> {
+    /// `left operator right` as a call, if one of the operands is a record.
+    pub(super) fn overloaded_binary(
+        &mut self,
+        operator: BinaryOperator,
+        left: &Expression,
+        right: &Expression,
+        local: &Local,
+        span: Span,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let types = (self.value_type_of(left, local), self.value_type_of(right, local));
+        let records: Vec<Name> =
+            [&types.0, &types.1].into_iter().filter_map(|t| record_name(t.as_ref())).collect();
+        if records.is_empty() {
+            return Ok(None);
+        }
+        let sign = sign(operator);
+        let both = [left.clone(), right.clone()];
+        for record in &records {
+            if let Some(call) = self.operator_call(record, sign, &both, local, span)? {
+                return Ok(Some(call));
+            }
+        }
+        // One operand may be converted by a constructor of the other's record (MLS §14.3).
+        for record in &records {
+            for at in 0..2 {
+                let given = [types.0.as_ref(), types.1.as_ref()][at];
+                if record_name(given).as_ref() == Some(record) {
+                    continue;
+                }
+                let one = std::slice::from_ref(&both[at]);
+                let Some(converted) =
+                    self.operator_call(record, "'constructor'", one, local, span)?
+                else {
+                    continue;
+                };
+                let mut operands = both.clone();
+                operands[at] = converted;
+                if let Some(call) = self.operator_call(record, sign, &operands, local, span)? {
+                    return Ok(Some(call));
+                }
+            }
+        }
+        let record = &records[0];
+        Err(fault!(TYPE_MISMATCH, "`{record}` has no operator `{}` for these operands", sign)
+            .at(span))
+    }
+
+    /// `-operand` as a call, if the operand is a record.
+    pub(super) fn overloaded_unary(
+        &mut self,
+        sign: &str,
+        operand: &Expression,
+        local: &Local,
+        span: Span,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let operand_type = self.value_type_of(operand, local);
+        let Some(record) = record_name(operand_type.as_ref()) else { return Ok(None) };
+        match self.operator_call(&record, sign, std::slice::from_ref(operand), local, span)? {
+            Some(call) => Ok(Some(call)),
+            None => Err(fault!(TYPE_MISMATCH, "`{record}` has no unary operator {sign}").at(span)),
+        }
+    }
+
+    /// The constructor of an operator record that fits resolved arguments; `None` if it has none,
+    /// or none that fits, and the record's own constructor is meant.
+    pub(super) fn overloaded_constructor(
+        &mut self,
+        class: ScopeId,
+        arguments: &Arguments,
+        local: &Local,
+    ) -> Result<Option<Name>, Diagnostic> {
+        if self.text(class).restriction() != Restriction::OperatorRecord {
+            return Ok(None);
+        }
+        for (name, function) in self.operator_functions(class, "'constructor'")? {
+            if self.fits_call(&function, arguments, local) {
+                return Ok(Some(name));
+            }
+        }
+        Ok(None)
+    }
+
+    fn operator_call(
+        &mut self,
+        record: &Name,
+        sign: &str,
+        operands: &[Expression],
+        local: &Local,
+        span: Span,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let Some(class) = self.record_scopes.get(record).copied() else { return Ok(None) };
+        let arguments = Arguments { positional: operands.to_vec(), ..Arguments::default() };
+        for (name, function) in self.operator_functions(class, sign)? {
+            if self.fits_call(&function, &arguments, local) {
+                let function = ComponentReference::from_name(&name, span);
+                let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
+                return Ok(Some(Expression::new(kind, span)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The functions of an operator, made ready: itself, or those inside it.
+    fn operator_functions(
+        &mut self,
+        class: ScopeId,
+        sign: &str,
+    ) -> Result<Vec<(Name, Arc<Function>)>, Diagnostic> {
+        let Some(nested) = self.find_class(class, Ident::new(sign))? else { return Ok(Vec::new()) };
+        let Type::Class(operator) = self.instance(&nested)? else { return Ok(Vec::new()) };
+        let mut scopes = vec![operator];
+        if self.text(operator).restriction() == Restriction::Operator {
+            scopes.clear();
+            let id = self.text(operator).id;
+            let names: Vec<Ident> = id.map_or(Vec::new(), |id| {
+                self.library.class(id).children().map(|(name, _)| name).collect()
+            });
+            for name in names {
+                if let Some(inner) = self.find_class(operator, name)?
+                    && let Type::Class(scope) = self.instance(&inner)?
+                {
+                    scopes.push(scope);
+                }
+            }
+        }
+        let mut functions = Vec::with_capacity(scopes.len());
+        for scope in scopes {
+            if let Some(name) = self.function(scope)?
+                && let Some(Some(function)) = self.functions.get(&name)
+            {
+                functions.push((name, function.clone()));
+            }
+        }
+        Ok(functions)
+    }
+
+    /// Whether a call with these arguments can be one of the function, without conversions but
+    /// that from Integer to Real.
+    fn fits_call(&self, function: &Function, arguments: &Arguments, local: &Local) -> bool {
+        if arguments.positional.len() > function.inputs.len() {
+            return false;
+        }
+        let mut given = vec![false; function.inputs.len()];
+        for (at, argument) in arguments.positional.iter().enumerate() {
+            given[at] = true;
+            if !self.fits_input(&function.inputs[at], argument, local) {
+                return false;
+            }
+        }
+        for argument in &arguments.named {
+            let at = function.inputs.iter().position(|input| input.name == argument.name.node);
+            let Some(at) = at.filter(|at| !given[*at]) else { return false };
+            given[at] = true;
+            if !self.fits_input(&function.inputs[at], &argument.value, local) {
+                return false;
+            }
+        }
+        function.inputs.iter().zip(given).all(|(input, given)| given || input.binding.is_some())
+    }
+
+    fn fits_input(&self, input: &FunctionComponent, argument: &Expression, local: &Local) -> bool {
+        let found = self.value_type_of(argument, local);
+        match (&input.value_type, found) {
+            (ValueType::Record(wanted, _), Some(ValueType::Record(found, _))) => *wanted == found,
+            (ValueType::Record(..), _) | (_, Some(ValueType::Record(..))) => false,
+            (ValueType::Real, Some(ValueType::Real | ValueType::Integer)) => true,
+            (wanted, Some(found)) => *wanted == found,
+            // What the text does not tell is a number in practice.
+            (wanted, None) => matches!(wanted, ValueType::Real | ValueType::Integer),
+        }
+    }
+
+    /// The type of a resolved expression, records included; `None` where its text does not tell.
+    pub(super) fn value_type_of(&self, e: &Expression, local: &Local) -> Option<ValueType> {
+        match &e.kind {
+            ExpressionKind::Call { function, .. } => {
+                if let Some(Some(function)) = self.functions.get(&function.name()) {
+                    let output = function.outputs.first()?;
+                    return output.dims.is_empty().then(|| output.value_type.clone());
+                }
+                self.type_of(e).map(plain)
+            }
+            ExpressionKind::Reference(reference) => {
+                let mut parts = reference.parts.iter();
+                let first = parts.next()?;
+                match local.types.iter().find(|(name, _)| *name == first.name) {
+                    Some((_, found)) => {
+                        let mut found = found.clone();
+                        for part in parts {
+                            let ValueType::Record(_, fields) = &found else { return None };
+                            found = fields.get(&part.name)?.value_type.clone();
+                        }
+                        Some(found)
+                    }
+                    None => self.type_of(e).map(plain),
+                }
+            }
+            ExpressionKind::If { otherwise, .. } => self.value_type_of(otherwise, local),
+            ExpressionKind::Field { base, name } => match self.value_type_of(base, local)? {
+                ValueType::Record(_, fields) => Some(fields.get(name)?.value_type.clone()),
+                _ => None,
+            },
+            ExpressionKind::Unary { operand, .. } => self.value_type_of(operand, local),
+            ExpressionKind::Binary { operator, left, right } if is_arithmetic(*operator) => {
+                match (self.value_type_of(left, local)?, self.value_type_of(right, local)?) {
+                    (ValueType::Integer, ValueType::Integer) => Some(ValueType::Integer),
+                    (
+                        ValueType::Real | ValueType::Integer,
+                        ValueType::Real | ValueType::Integer,
+                    ) => Some(ValueType::Real),
+                    _ => None,
+                }
+            }
+            _ => self.type_of(e).map(plain),
+        }
+    }
+}
+
+fn plain(base: BaseType) -> ValueType {
+    match base {
+        BaseType::Real => ValueType::Real,
+        BaseType::Integer => ValueType::Integer,
+        BaseType::Boolean => ValueType::Boolean,
+        BaseType::String => ValueType::String,
+        BaseType::Enumeration(definition) => ValueType::Enumeration(definition),
+        BaseType::ExternalObject(_) => ValueType::Any,
+    }
+}
+
+fn record_name(found: Option<&ValueType>) -> Option<Name> {
+    match found {
+        Some(ValueType::Record(name, _)) => Some(name.clone()),
+        _ => None,
+    }
+}
+
+fn is_arithmetic(operator: BinaryOperator) -> bool {
+    use BinaryOperator as Op;
+    matches!(
+        operator,
+        Op::Add
+            | Op::Subtract
+            | Op::Multiply
+            | Op::ElementwiseAdd
+            | Op::ElementwiseSubtract
+            | Op::ElementwiseMultiply
+    )
+}
+
+/// The name of an operator's class.
+fn sign(operator: BinaryOperator) -> &'static str {
+    use BinaryOperator as Op;
+    match operator {
+        Op::Add | Op::ElementwiseAdd => "'+'",
+        Op::Subtract | Op::ElementwiseSubtract => "'-'",
+        Op::Multiply | Op::ElementwiseMultiply => "'*'",
+        Op::Divide | Op::ElementwiseDivide => "'/'",
+        Op::Power | Op::ElementwisePower => "'^'",
+        Op::Equal => "'=='",
+        Op::NotEqual => "'<>'",
+        Op::Less => "'<'",
+        Op::LessEqual => "'<='",
+        Op::Greater => "'>'",
+        Op::GreaterEqual => "'>='",
+        Op::And => "'and'",
+        Op::Or => "'or'",
+    }
+}

@@ -1,0 +1,253 @@
+//! Functions as arguments (MLS §12.4.2): a call that passes functions becomes a call of a copy of
+//! the called function in which they are written out, with what a partial application binds as
+//! further inputs.
+
+use super::errors::TYPE_MISMATCH;
+use super::instantiation::Instantiation;
+use crate::diag::Diagnostic;
+use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
+use crate::fault;
+use crate::name::{Ident, Name};
+use crate::source::{Span, Spanned};
+use crate::syntax::ast::{
+    Arguments, ComponentReference, Expression, ExpressionKind, NamedArgument,
+};
+use crate::syntax::visit::{Rewrite, rewrite_expression};
+use std::sync::Arc;
+
+/// How deep copies may need copies of other functions.
+const MAX_DEPTH: usize = 50;
+
+/// What is passed for an input that is a function.
+#[derive(Debug, Clone)]
+struct Passed {
+    /// The input.
+    input: Ident,
+    function: Name,
+    /// What a partial application binds: inputs of the passed function with their values.
+    bound: Vec<NamedArgument>,
+}
+
+impl Instantiation<'_> {
+    /// The function and the arguments of a call without functions among the arguments. A call
+    /// inside a function that passes on an input of its own stays until that function is copied.
+    pub(super) fn specialized(
+        &mut self,
+        name: Name,
+        arguments: Arguments,
+        span: Span,
+        depth: usize,
+    ) -> Result<(Name, Arguments), Diagnostic> {
+        let Some(Some(function)) = self.functions.get(&name).cloned() else {
+            return Ok((name, arguments));
+        };
+        let takes = |input: &FunctionComponent| input.value_type == ValueType::Function;
+        if !function.inputs.iter().any(takes) {
+            return Ok((name, arguments));
+        }
+        let mut passed = Vec::new();
+        let mut left = Arguments { positional: Vec::new(), ..arguments.clone() };
+        left.named.retain(|argument| {
+            !function.inputs.iter().any(|i| takes(i) && i.name == argument.name.node)
+        });
+        for (at, input) in function.inputs.iter().enumerate() {
+            let positional = arguments.positional.get(at);
+            if !takes(input) {
+                left.positional.extend(positional.cloned());
+                continue;
+            }
+            let named = || arguments.named.iter().find(|a| a.name.node == input.name);
+            let Some(value) = positional.or_else(|| named().map(|a| &a.value)) else {
+                return Err(fault!(
+                    TYPE_MISMATCH,
+                    "`{name}` needs a function for its input `{}`",
+                    input.name
+                )
+                .at(span));
+            };
+            match self.passed(input.name, value)? {
+                Some(one) => passed.push(one),
+                None => return Ok((name, arguments)),
+            }
+        }
+        if depth > MAX_DEPTH {
+            return Err(fault!(TYPE_MISMATCH, "`{name}` passes functions without end").at(span));
+        }
+        for one in &passed {
+            for bound in &one.bound {
+                let argument = Spanned { node: input_name(one.input, bound.name.node), span };
+                left.named.push(NamedArgument { name: argument, value: bound.value.clone() });
+            }
+        }
+        let copy = self.copy_of(&name, &function, &passed, span, depth)?;
+        Ok((copy, left))
+    }
+
+    /// The function that an argument names; `None` for a variable of a function.
+    fn passed(&self, input: Ident, value: &Expression) -> Result<Option<Passed>, Diagnostic> {
+        let (function, bound) = match &value.kind {
+            ExpressionKind::Reference(reference) => (reference.name(), Vec::new()),
+            ExpressionKind::PartialApplication { function, named } => {
+                (function.clone(), named.clone())
+            }
+            _ => {
+                return Err(
+                    fault!(TYPE_MISMATCH, "a function is needed for `{input}`").at(value.span)
+                );
+            }
+        };
+        if !self.functions.contains_key(&function) {
+            return Ok(None);
+        }
+        Ok(Some(Passed { input, function, bound }))
+    }
+
+    /// A copy of a function for what is passed to it, made once.
+    fn copy_of(
+        &mut self,
+        name: &Name,
+        function: &Function,
+        passed: &[Passed],
+        span: Span,
+        depth: usize,
+    ) -> Result<Name, Diagnostic> {
+        let mut key = name.last().map_or("", Ident::as_str).trim_matches('\'').to_owned();
+        for one in passed {
+            key.push_str(&format!("({}", one.function));
+            for bound in &one.bound {
+                key.push_str(&format!(", {}", bound.name.node));
+            }
+            key.push(')');
+        }
+        let copy = name.parent().child(Ident::new(&format!("'{key}'")));
+        if self.functions.contains_key(&copy) {
+            return Ok(copy);
+        }
+        self.functions.insert(copy.clone(), None);
+        let mut made = function.clone();
+        made.name = copy.clone();
+        made.inputs.retain(|input| input.value_type != ValueType::Function);
+        for one in passed {
+            made.inputs.extend(self.bound_inputs(one, span)?);
+        }
+        let mut writing = Writing { tree: self, passed, depth, error: None };
+        for component in made.inputs.iter_mut().chain(&mut made.outputs).chain(&mut made.locals) {
+            if let Some(binding) = &mut component.binding {
+                writing.expression(binding);
+            }
+        }
+        if let FunctionBody::Algorithm(statements) = &mut made.body {
+            statements.iter_mut().for_each(|statement| writing.statement(statement));
+        }
+        if let Some(error) = writing.error {
+            return Err(error);
+        }
+        self.functions.insert(copy.clone(), Some(Arc::new(made)));
+        Ok(copy)
+    }
+
+    /// The inputs that a copy has for what a partial application binds.
+    fn bound_inputs(
+        &self,
+        passed: &Passed,
+        span: Span,
+    ) -> Result<Vec<FunctionComponent>, Diagnostic> {
+        let Some(Some(function)) = self.functions.get(&passed.function) else {
+            return Ok(Vec::new());
+        };
+        passed
+            .bound
+            .iter()
+            .map(|bound| {
+                let own = function.inputs.iter().find(|input| input.name == bound.name.node);
+                let own = own.ok_or_else(|| {
+                    fault!(
+                        TYPE_MISMATCH,
+                        "`{}` has no input `{}`",
+                        passed.function,
+                        bound.name.node
+                    )
+                    .at(span)
+                })?;
+                let name = input_name(passed.input, own.name);
+                Ok(FunctionComponent { name, binding: None, ..own.clone() })
+            })
+            .collect()
+    }
+}
+
+/// The input of a copy for one that a partial application binds.
+fn input_name(input: Ident, bound: Ident) -> Ident {
+    Ident::new(&format!("'{input}.{bound}'"))
+}
+
+/// Writes passed functions in the place of the inputs that they are passed for.
+struct Writing<'w, 'a> {
+    tree: &'w mut Instantiation<'a>,
+    passed: &'w [Passed],
+    depth: usize,
+    error: Option<Diagnostic>,
+}
+
+impl Writing<'_, '_> {
+    fn bound(&self, one: &Passed, span: Span) -> Vec<NamedArgument> {
+        let argument = |bound: &NamedArgument| {
+            let name = Name::from(input_name(one.input, bound.name.node));
+            let reference = ComponentReference::from_name(&name, span);
+            let value = Expression::new(ExpressionKind::Reference(reference), span);
+            NamedArgument { name: bound.name, value }
+        };
+        one.bound.iter().map(argument).collect()
+    }
+
+    fn input(&self, reference: &ComponentReference) -> Option<&Passed> {
+        let name = reference.as_ident()?;
+        self.passed.iter().find(|one| one.input == name)
+    }
+}
+
+impl Rewrite for Writing<'_, '_> {
+    fn expression(&mut self, e: &mut Expression) {
+        rewrite_expression(self, e);
+        let span = e.span;
+        let replaced = match &mut e.kind {
+            ExpressionKind::Reference(reference) => self.input(reference).map(|one| {
+                let named = self.bound(one, span);
+                match named.is_empty() {
+                    true => ExpressionKind::Reference(ComponentReference::from_name(
+                        &one.function,
+                        span,
+                    )),
+                    false => {
+                        ExpressionKind::PartialApplication { function: one.function.clone(), named }
+                    }
+                }
+            }),
+            ExpressionKind::Call { function, arguments } => {
+                if let Some(one) = self.input(function) {
+                    let bound = self.bound(one, span);
+                    *function = ComponentReference::from_name(&one.function, span);
+                    arguments.named.extend(bound);
+                }
+                let called = self.tree.specialized(
+                    function.name(),
+                    (**arguments).clone(),
+                    span,
+                    self.depth + 1,
+                );
+                match called {
+                    Ok((name, left)) => {
+                        *function = ComponentReference::from_name(&name, span);
+                        **arguments = left;
+                    }
+                    Err(error) => self.error = Some(error),
+                }
+                None
+            }
+            _ => None,
+        };
+        if let Some(kind) = replaced {
+            e.kind = kind;
+        }
+    }
+}
