@@ -6,7 +6,7 @@ use gapilib::source::SourceMap;
 use gapilib::syntax::parse_stored_definition;
 
 fn library(text: &str) -> Library {
-    let mut sources = SourceMap::default();
+    let sources = SourceMap::default();
     let source = sources.add("test.mo", text);
     let mut library = Library::new();
     for class in parse_stored_definition(source, text).expect("Modelica").classes {
@@ -163,6 +163,17 @@ fn equations_and_statements_stand_where_they_may() {
         &format!("{pins} model M C a[2]; Integer n = 2; equation connect(a[1], a[n]); end M;"),
         code,
     );
+}
+
+#[test]
+fn connections_join_connectors_that_fit() {
+    let code = "invalid-connection";
+    refused("model M Real x = 1; Real y; equation connect(x, y); end M;", code);
+    let connectors = "connector A input Real x; Real e; flow Real f; end A; connector B Real x; Real e; flow Real f; flow Real g; end B;";
+    refused(&format!("{connectors} model M A a; B b; equation connect(a, b); end M;"), code);
+    let connectors =
+        "connector A parameter Real x = 1; end A; connector B constant Real x = 1; end B;";
+    refused(&format!("{connectors} model M A a; B b; equation connect(a, b); end M;"), code);
 }
 
 #[test]

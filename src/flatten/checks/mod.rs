@@ -7,6 +7,7 @@
 mod access;
 mod behaviour;
 mod compatibility;
+mod connections;
 mod connectors;
 mod elements;
 mod imports;
@@ -52,6 +53,7 @@ fn check_one(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     prefixes::check(class, errors);
     imports::check(class, errors);
     behaviour::check(class, errors);
+    connections::check(class, errors);
     access::check(class, errors);
     modifications::check(class, errors);
     usage::check(class, errors);
