@@ -2,6 +2,7 @@
 
 mod architecture;
 mod bad_input;
+mod checks;
 mod cli;
 mod compat;
 mod compliance;

@@ -7,6 +7,8 @@
 mod access;
 mod behaviour;
 mod compatibility;
+mod connections;
+mod connectors;
 mod elements;
 mod imports;
 mod lookup;
@@ -46,10 +48,12 @@ pub(super) fn check_class(library: &Library, class: ClassId) -> Vec<Diagnostic> 
 fn check_one(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     elements::check(class, errors);
     restrictions::check(class, errors);
+    connectors::check(class, errors);
     operators::check(class, errors);
     prefixes::check(class, errors);
     imports::check(class, errors);
     behaviour::check(class, errors);
+    connections::check(class, errors);
     access::check(class, errors);
     modifications::check(class, errors);
     usage::check(class, errors);

@@ -6,7 +6,7 @@ use crate::fault;
 use crate::flatten::errors::CLASS_RESTRICTION;
 use crate::source::Span;
 use crate::syntax::ast::{
-    CausalityPrefix, Element, Restriction, Section, TypePrefixes, VariabilityPrefix, Visibility,
+    CausalityPrefix, Element, Restriction, Section, VariabilityPrefix, Visibility,
 };
 
 /// Checks the own contents of a class against its keyword.
@@ -152,16 +152,8 @@ fn has_acausal_variable(connector: Scope<'_>) -> bool {
     }
     let Some(target) = target else { return connector.predefined().is_some() };
     target.lineage().into_iter().flat_map(Scope::components).any(|component| {
-        !component.is_fixed() && !has_direction(&component) && is_predefined(&component)
+        !component.is_fixed() && !component.has_direction() && is_predefined(&component)
     })
-}
-
-/// Whether a component or its type is declared input or output.
-fn has_direction(component: &Component<'_>) -> bool {
-    let directed = |prefixes: &TypePrefixes| prefixes.causality.is_some();
-    let of_type =
-        || component.class().is_some_and(|class| class.unaliased().1.iter().any(directed));
-    directed(&component.clause.type_prefixes) || of_type()
 }
 
 fn is_predefined(component: &Component<'_>) -> bool {

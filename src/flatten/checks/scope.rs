@@ -238,6 +238,13 @@ impl<'a> Component<'a> {
         fixed(&self.clause.type_prefixes) || of_type()
     }
 
+    /// Whether it, or its type, is declared input or output.
+    pub(super) fn has_direction(&self) -> bool {
+        let directed = |prefixes: &TypePrefixes| prefixes.causality.is_some();
+        let of_type = || self.class().is_some_and(|class| class.unaliased().1.iter().any(directed));
+        directed(&self.clause.type_prefixes) || of_type()
+    }
+
     /// Its name.
     pub(super) fn name(&self) -> Ident {
         self.declaration.name.node

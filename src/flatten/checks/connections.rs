@@ -1,0 +1,106 @@
+//! What `connect` equations name (MLS §9.1, §9.3): connectors whose variables of one name have the
+//! same variability and both a direction or both none.
+
+use super::lookup::Type;
+use super::scope::{Component, Scope};
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::flatten::errors::INVALID_CONNECTION;
+use crate::source::Span;
+use crate::syntax::ast::{
+    ComponentReference, Equation, EquationKind, Restriction, Section, VariabilityPrefix,
+};
+use crate::syntax::visit::{Visit, walk_equation};
+
+/// Checks the `connect` equations that a class itself writes.
+pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+    let mut walk = Walk { class, errors };
+    for section in class.sections() {
+        if let Section::Equations { equations, .. } = section {
+            equations.iter().for_each(|equation| walk.equation(equation));
+        }
+    }
+}
+
+struct Walk<'a, 'e> {
+    class: Scope<'a>,
+    errors: &'e mut Vec<Diagnostic>,
+}
+
+impl Visit for Walk<'_, '_> {
+    fn equation(&mut self, equation: &Equation) {
+        let EquationKind::Connect { left, right } = &equation.kind else {
+            return walk_equation(self, equation);
+        };
+        let wrong = self.no_connector(left).or_else(|| self.no_connector(right));
+        self.errors.extend(wrong.or_else(|| self.mismatch(left, right, equation.span)));
+    }
+}
+
+impl Walk<'_, '_> {
+    /// A reference to a variable, a record or a model.
+    fn no_connector(&self, reference: &ComponentReference) -> Option<Diagnostic> {
+        let path = self.class.path(reference)?;
+        let in_expandable = path.iter().any(|one| {
+            one.class().is_some_and(|class| class.restriction() == Restriction::ExpandableConnector)
+        });
+        let component = path.last().filter(|_| !in_expandable)?;
+        let in_connector = matches!(
+            component.owner.restriction(),
+            Restriction::Connector | Restriction::ExpandableConnector
+        );
+        let is_connector = match component.meaning()? {
+            Type::Predefined(_) => false,
+            Type::Class(class) => !matches!(
+                component.owner.of(class).restriction(),
+                Restriction::Type | Restriction::Record | Restriction::Model | Restriction::Block
+            ),
+        };
+        (!is_connector && !in_connector).then(|| {
+            fault!(INVALID_CONNECTION, "`{}` is no connector", component.name();
+                help: "connect connectors; write an equation for variables")
+            .at(reference.span)
+        })
+    }
+
+    fn mismatch(
+        &self,
+        left: &ComponentReference,
+        right: &ComponentReference,
+        span: Span,
+    ) -> Option<Diagnostic> {
+        let (a, b) = (self.class.component_at(left)?, self.class.component_at(right)?);
+        let (a, b) = (a.class()?, b.class()?);
+        let is_plain = |class: Scope<'_>| class.restriction() == Restriction::Connector;
+        if a.class == b.class || !is_plain(a) || !is_plain(b) {
+            return None;
+        }
+        a.lineage().into_iter().flat_map(Scope::components).find_map(|one| {
+            let other = b.component(one.name())?;
+            let reason = if fixed(&one) != fixed(&other) {
+                "one of them is fixed otherwise than the other"
+            } else if is_variable(&one) && one.has_direction() != other.has_direction() {
+                "only one of them is input or output"
+            } else {
+                return None;
+            };
+            Some(
+                fault!(INVALID_CONNECTION, "`{}` of both connectors cannot be connected: {reason}",
+                    one.name();
+                    help: "connect connectors of one class, or of classes with the same prefixes")
+                .at(span),
+            )
+        })
+    }
+}
+
+/// `constant` or `parameter`, by itself or its type.
+fn fixed(component: &Component<'_>) -> Option<VariabilityPrefix> {
+    let own = component.clause.type_prefixes.variability;
+    own.filter(|variability| *variability != VariabilityPrefix::Discrete)
+}
+
+/// Whether it is of a predefined type, rather than a connector with variables of its own.
+fn is_variable(component: &Component<'_>) -> bool {
+    component.class().is_none_or(|class| class.predefined().is_some())
+}

@@ -1,0 +1,150 @@
+//! What a connector class must hold together (MLS §9.3.1, §15.1).
+
+use super::lookup::Type;
+use super::scope::{Component, Scope};
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::flatten::errors::CLASS_RESTRICTION;
+use crate::syntax::ast::{ConnectionPrefix, Expression, ExpressionKind, Restriction, Subscript};
+
+/// The deepest nesting of records and connectors that is counted.
+const MAX_DEPTH: usize = 20;
+
+/// Scalar variables of a connector by what they do in a connection.
+#[derive(Default)]
+struct Count {
+    potential: usize,
+    flow: usize,
+    stream: usize,
+}
+
+/// Checks a connector class: as many flow variables as potential variables, and one scalar flow
+/// variable beside stream variables.
+pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+    let is_long = !class.sections().is_empty();
+    if class.restriction() != Restriction::Connector || !is_long || class.definition().partial {
+        return;
+    }
+    let mut count = Count::default();
+    if add(class, 1, None, 0, &mut count).is_none() {
+        return;
+    }
+    let span = class.definition().name.span;
+    let name = class.name();
+    if count.stream > 0 && count.flow != 1 {
+        errors.push(
+            fault!(CLASS_RESTRICTION, "the connector `{name}` has stream variables and {} flow variables instead of one", count.flow;
+                help: "declare one scalar flow variable; streams are carried by it")
+            .at(span),
+        );
+    } else if count.flow != count.potential && !is_simple(&count) {
+        errors.push(
+            fault!(CLASS_RESTRICTION, "the connector `{name}` has {} flow variables and {} potential variables",
+                count.flow, count.potential;
+                help: "declare as many of the ones as of the others, or give the rest the prefix `input` or `output`")
+            .at(span),
+        );
+    }
+}
+
+/// A connector of potential variables alone is an old one for signals; it is balanced by what uses
+/// it.
+fn is_simple(count: &Count) -> bool {
+    count.flow == 0
+}
+
+/// Counts the scalar variables of a class without a direction; `None` where a size or a class is
+/// not known from its text.
+fn add(
+    class: Scope<'_>,
+    times: usize,
+    outer: Option<ConnectionPrefix>,
+    depth: usize,
+    count: &mut Count,
+) -> Option<()> {
+    if depth > MAX_DEPTH {
+        return None;
+    }
+    for base in class.lineage() {
+        let bases = base.library.declared_bases(base.class).len();
+        if bases != base.library.class(base.class).extends.len() {
+            return None;
+        }
+        for component in base.components() {
+            add_component(&component, times, outer, depth, count)?;
+        }
+    }
+    Some(())
+}
+
+fn add_component(
+    component: &Component<'_>,
+    times: usize,
+    outer: Option<ConnectionPrefix>,
+    depth: usize,
+    count: &mut Count,
+) -> Option<()> {
+    let prefixes = component.clause.type_prefixes;
+    let is_open =
+        component.clause.prefixes.replaceable || component.declaration.condition.is_some();
+    if is_open {
+        return None;
+    }
+    if component.is_fixed() || prefixes.causality.is_some() {
+        return Some(());
+    }
+    let sizes = component.clause.subscripts.iter().chain(&component.declaration.subscripts);
+    let times = sizes.map(literal).try_fold(times, |all, size| all.checked_mul(size?))?;
+    let connection = prefixes.connection.or(outer);
+    let class = match component.meaning()? {
+        Type::Predefined(_) => None,
+        Type::Class(class) => Some(component.owner.of(class)),
+    };
+    let Some(class) = class else { return count.add(connection, times) };
+    let (target, short) = class.unaliased();
+    let is_plain = short.iter().all(|one| one.causality.is_none() && one.connection.is_none());
+    let is_open = class.is_replaceable() || super::compatibility::dimensions(class) > 0;
+    if !is_plain || is_open || equality_constraint(class) {
+        return None;
+    }
+    if class.predefined().is_some() || class.is_enumeration() {
+        return count.add(connection, times);
+    }
+    match target?.restriction() {
+        Restriction::Record | Restriction::Connector => {
+            add(target?, times, connection, depth + 1, count)
+        }
+        Restriction::OperatorRecord => count.add(connection, times),
+        _ => None,
+    }
+}
+
+impl Count {
+    fn add(&mut self, connection: Option<ConnectionPrefix>, times: usize) -> Option<()> {
+        let number = match connection {
+            Some(ConnectionPrefix::Flow) => &mut self.flow,
+            Some(ConnectionPrefix::Stream) => &mut self.stream,
+            None => &mut self.potential,
+        };
+        *number = number.checked_add(times)?;
+        Some(())
+    }
+}
+
+/// Overdetermined types count less than their variables (MLS §9.4).
+fn equality_constraint(class: Scope<'_>) -> bool {
+    let declares = |class: Scope<'_>| {
+        let mut names = class.class_elements().map(|(_, nested)| nested.class.name.node);
+        names.any(|name| name.as_str() == "equalityConstraint")
+    };
+    class.lineage().into_iter().any(declares)
+}
+
+fn literal(subscript: &Subscript) -> Option<usize> {
+    match subscript {
+        Subscript::Index(Expression { kind: ExpressionKind::Integer(size), .. }) => {
+            usize::try_from(*size).ok()
+        }
+        _ => None,
+    }
+}

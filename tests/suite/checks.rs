@@ -1,0 +1,265 @@
+//! Rules that classes keep or break by their text: what is refused, and what is not.
+
+use gapilib::flatten::{Library, check, flatten};
+use gapilib::name::Name;
+use gapilib::source::SourceMap;
+use gapilib::syntax::parse_stored_definition;
+
+fn library(text: &str) -> Library {
+    let sources = SourceMap::default();
+    let source = sources.add("test.mo", text);
+    let mut library = Library::new();
+    for class in parse_stored_definition(source, text).expect("Modelica").classes {
+        library.define(&class).expect("loads");
+    }
+    library
+}
+
+/// The codes of what is wrong with the class `M` and those that take part in it.
+#[track_caller]
+fn refused(text: &str, code: &str) {
+    let errors =
+        flatten(&library(text), &Name::parse("M"), &[]).expect_err("the model is accepted");
+    let codes: Vec<&str> = errors.iter().map(|error| error.code.slug).collect();
+    assert!(codes.contains(&code), "{codes:?}");
+}
+
+#[track_caller]
+fn accepted(text: &str) {
+    if let Err(errors) = flatten(&library(text), &Name::parse("M"), &[]) {
+        panic!("{errors:?}");
+    }
+}
+
+#[test]
+fn specialized_classes_contain_what_they_may() {
+    let code = "class-restriction";
+    refused("record R Real x; algorithm x := 1; end R; model M R r; end M;", code);
+    refused("record R Real x; protected Real y; end R; model M R r(x = 1); end M;", code);
+    refused("record R output Real x; end R; model M R r(x = 1); end M;", code);
+    refused("connector C outer Real x; end C; model M C c; end M;", code);
+    refused("model A end A; record R A a; end R; model M R r; end M;", code);
+    refused("package P Real x = 1; end P; model M Real y = P.x; end M;", code);
+    refused(
+        "connector C Real e; flow Real f; end C; block B C c; end B; model M B b; end M;",
+        code,
+    );
+    refused(
+        "connector C Real e; Real g; flow Real f; end C; model M C c(e = 1, g = 2); end M;",
+        code,
+    );
+    refused("connector C Real e; flow Real f[2]; stream Real s; end C; model M C c; end M;", code);
+    refused("type T extends Real; Real x; end T; model M T t; end M;", code);
+    accepted("record R Real x; Integer n; end R; model M R r(x = 1, n = 2); end M;");
+    accepted("connector U = input Real; block B U u; end B; model M B b(u = 1); end M;");
+}
+
+#[test]
+fn prefixes_fit_what_they_stand_before() {
+    let code = "illegal-prefix";
+    refused("model A Real x = 1; end A; model M parameter A a; end M;", code);
+    refused("connector C flow Boolean f; Boolean e; end C; model M C c; end M;", code);
+    refused("model M stream Real s = 1; end M;", code);
+    refused("connector C Real e = 1; end C; model M constant C c; end M;", code);
+    refused("model M input parameter Real p = 1; end M;", code);
+    refused(
+        "connector C input Real x; Real e; flow Real f; end C; model M output C c; end M;",
+        code,
+    );
+}
+
+#[test]
+fn names_are_free_and_different() {
+    refused("model M Real Integer = 1; end M;", "reserved-name");
+    refused("model M type E = enumeration(a, start); E e = E.a; end M;", "reserved-name");
+    refused("model M type E = enumeration(a, b, a); E e = E.a; end M;", "duplicate-element");
+    refused("model M Real x = 1; model x end x; end M;", "duplicate-element");
+    refused("type x = Real; model M x x = 1; end M;", "duplicate-element");
+}
+
+#[test]
+fn what_is_extended_can_be() {
+    let code = "illegal-extends";
+    refused("model M replaceable model A Real x = 1; end A; extends A; end M;", code);
+    refused("type T = Real[2]; model M extends T; Real y = 1; end M;", code);
+    refused(
+        "operator record R Real x; end R; record S extends R; end S; model M S s; end M;",
+        code,
+    );
+}
+
+#[test]
+fn imports_name_one_public_element_of_a_package() {
+    let packages = "package P constant Real a = 1; protected constant Real c = 3; end P; package Q constant Real a = 2; end Q;";
+    refused(
+        &format!("{packages} model M import P.a; import Q.a; Real x = a; end M;"),
+        "illegal-import",
+    );
+    refused(
+        &format!("{packages} model M import P.*; import Q.*; Real x = a; end M;"),
+        "illegal-import",
+    );
+    refused(&format!("{packages} model M import P.c; Real x = c; end M;"), "protected-access");
+    refused(
+        "model A model B Real x = 1; end B; end A; model M import A.B; B b; end M;",
+        "illegal-import",
+    );
+    accepted(&format!("{packages} model M import P.a; import b = Q.a; Real x = a + b; end M;"));
+    accepted(&format!("{packages} model M import P.a; import P.a; Real x = a; end M;"));
+}
+
+#[test]
+fn names_with_dots_look_into_packages() {
+    refused(
+        "model A Real x = 1; model B Real y = 2; end B; end A; model M A.B b; end M;",
+        "illegal-access",
+    );
+    refused(
+        "partial package P constant Real a = 1; end P; model M Real x = P.a; end M;",
+        "illegal-access",
+    );
+    refused(
+        "package P protected constant Real a = 1; end P; model M Real x = P.a; end M;",
+        "protected-access",
+    );
+    accepted(
+        "model A Real x = 1; encapsulated model B Real y = 2; end B; end A; model M A.B b; end M;",
+    );
+}
+
+#[test]
+fn equations_and_statements_stand_where_they_may() {
+    let code = "misplaced-equation";
+    refused(
+        "model M Real x; equation when time > 1 then when time > 2 then x = 1; end when; end when; end M;",
+        code,
+    );
+    refused(
+        "model M Real x; Real y; equation x + y = 1; when time > 1 then 2*x = 3; end when; end M;",
+        code,
+    );
+    refused("model M Real x; algorithm x := 1; break; end M;", code);
+    refused("model M Real x; algorithm x := 1; return; end M;", code);
+    refused("model M parameter Real p = 1; algorithm p := 2; end M;", code);
+    refused(
+        "function f input Real x; output Real y; algorithm y := der(x); end f; model M Real x = f(time); end M;",
+        code,
+    );
+    refused("record R Real x = time; end R; model M R r; end M;", code);
+    let pins = "connector C Real e; flow Real f; end C;";
+    refused(
+        &format!(
+            "{pins} model M C a; C b; equation when time > 1 then connect(a, b); end when; end M;"
+        ),
+        code,
+    );
+    refused(
+        &format!(
+            "{pins} model M C a; C b; equation if time > 1 then connect(a, b); end if; end M;"
+        ),
+        code,
+    );
+    refused(
+        &format!("{pins} model M C a[2]; Integer n = 2; equation connect(a[1], a[n]); end M;"),
+        code,
+    );
+}
+
+#[test]
+fn connections_join_connectors_that_fit() {
+    let code = "invalid-connection";
+    refused("model M Real x = 1; Real y; equation connect(x, y); end M;", code);
+    let connectors = "connector A input Real x; Real e; flow Real f; end A; connector B Real x; Real e; flow Real f; flow Real g; end B;";
+    refused(&format!("{connectors} model M A a; B b; equation connect(a, b); end M;"), code);
+    let connectors =
+        "connector A parameter Real x = 1; end A; connector B constant Real x = 1; end B;";
+    refused(&format!("{connectors} model M A a; B b; equation connect(a, b); end M;"), code);
+}
+
+#[test]
+fn conditional_components_are_only_connected() {
+    refused("model M Real x if true; equation x = 1; end M;", "conditional-component");
+    accepted("model M parameter Boolean on = true; Real x = 1 if on; end M;");
+}
+
+#[test]
+fn operators_get_what_they_ask_for() {
+    let code = "illegal-argument";
+    refused("model M Integer n = 1; Real x = der(n); end M;", code);
+    refused(
+        "model M parameter Real p = 1; equation when time > 1 then reinit(p, 2); end when; end M;",
+        code,
+    );
+    refused("model M Real x = delay(time, 2, 1); end M;", code);
+    refused("model M Real x = delay(time, time); end M;", code);
+    refused(
+        "model M connector C Real e; flow Real f; end C; C c; Real x = inStream(c.e); end M;",
+        code,
+    );
+}
+
+#[test]
+fn conditions_are_boolean_and_enumerations_no_numbers() {
+    let code = "type-mismatch";
+    refused("model M equation assert(1, \"no\"); end M;", code);
+    refused("model M parameter Integer i = 1; Real x = if i then 1 else 2; end M;", code);
+    refused("model M type E = enumeration(a, b); Boolean x = E.a == 1; end M;", code);
+    refused(
+        "model M type E = enumeration(a); type F = enumeration(a); Boolean x = E.a == F.a; end M;",
+        code,
+    );
+}
+
+#[test]
+fn redeclarations_fit_what_they_replace() {
+    let code = "illegal-redeclaration";
+    let classes = "model A Real x = 1; end A; model B Real x = 2; Real y = 3; end B;";
+    refused(&format!("{classes} model C A a; end C; model M C c(redeclare B a); end M;"), code);
+    refused(
+        &format!("{classes} model C replaceable B b; end C; model M C c(redeclare A b); end M;"),
+        code,
+    );
+    refused(&format!("{classes} model M replaceable A a constrainedby B; end M;"), code);
+    refused(
+        &format!(
+            "{classes} model C replaceable B b; end C; model D extends C(redeclare B b); end D; model M D d(redeclare A b); end M;"
+        ),
+        code,
+    );
+    refused(
+        "model C protected replaceable Real x = 1; end C; model M extends C; redeclare Real x = 2; end M;",
+        code,
+    );
+    refused(
+        "model C replaceable constant Real x = 1; end C; model M C c(redeclare Real x = 2); end M;",
+        code,
+    );
+    refused(
+        "model C protected parameter Real p = 1; end C; model M C c(p = 2); end M;",
+        "protected-access",
+    );
+    accepted(&format!(
+        "{classes} model C replaceable A a; end C; model M C c(redeclare B a); end M;"
+    ));
+}
+
+#[test]
+fn operator_functions_have_the_inputs_of_their_operators() {
+    let record = |function: &str| {
+        format!("operator record R Real a; {function} end R; model M R r(a = 1); end M;")
+    };
+    let plus = "encapsulated operator function '+' import R; input R x; output R y; algorithm y := x; end '+';";
+    refused(&record(plus), "illegal-operator");
+    let zero = "encapsulated operator function '0' output Real y; algorithm y := 0; end '0';";
+    refused(&record(zero), "illegal-operator");
+}
+
+#[test]
+fn classes_that_nobody_uses_are_checked_alone() {
+    let library = library("package P record R Real x; equation x = 1; end R; end P;");
+    assert_eq!(check(&library, &Name::parse("P")), []);
+    let errors = check(&library, &Name::parse("P.R"));
+    assert_eq!(errors.len(), 1);
+    assert_eq!(errors[0].code.slug, "class-restriction");
+    assert_eq!(check(&library, &Name::parse("P.S")), []);
+}
