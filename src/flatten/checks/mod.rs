@@ -6,6 +6,7 @@
 
 mod access;
 mod behaviour;
+mod compatibility;
 mod elements;
 mod imports;
 mod lookup;
@@ -16,6 +17,7 @@ mod participants;
 mod prefixes;
 mod restrictions;
 mod scope;
+mod types;
 mod usage;
 mod variability;
 
@@ -51,6 +53,7 @@ fn check_one(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     access::check(class, errors);
     modifications::check(class, errors);
     usage::check(class, errors);
+    types::check(class, errors);
 }
 
 /// A restriction as the messages call it.

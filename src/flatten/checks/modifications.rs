@@ -1,6 +1,7 @@
 //! What modifications may reach, and which classes may be replaced (MLS §4.1, §7.3.1).
 
 use super::access::{self, element};
+use super::compatibility::{Lack, dimensions, lack};
 use super::lookup::Type;
 use super::scope::Scope;
 use crate::diag::Diagnostic;
@@ -9,8 +10,8 @@ use crate::flatten::errors::ILLEGAL_REDECLARATION;
 use crate::name::Ident;
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
-    Argument, ClassDefinition, ClassSpecifier, ComponentClause, Element, ElementPrefixes,
-    RedeclaredElement, VariabilityPrefix, Visibility,
+    Argument, ClassDefinition, ClassSpecifier, ComponentClause, Constraint, Element,
+    ElementPrefixes, RedeclaredElement, VariabilityPrefix, Visibility,
 };
 
 /// The most base classes in a row that are followed.
@@ -25,6 +26,7 @@ pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
         redeclarations(class.parent().unwrap_or(class), base, &short.modification, errors);
     }
     for (visibility, element) in class.elements() {
+        errors.extend(unfit_declaration(class, element));
         match element {
             Element::Extends(extends) => {
                 let Some(base) = class.class_named(&extends.base.name) else { continue };
@@ -61,6 +63,8 @@ struct Inherited<'a> {
     replaceable: bool,
     constant: bool,
     visibility: Visibility,
+    /// What replaces it must be compatible with this class.
+    constraint: Option<Scope<'a>>,
 }
 
 /// The element of a class as it can be redeclared from outside.
@@ -69,44 +73,131 @@ fn inherited(class: Scope<'_>, name: Ident, depth: usize) -> Option<Inherited<'_
         return None;
     }
     for (visibility, element) in class.elements() {
-        let (prefixes, variability, kind) = match element {
+        let (prefixes, variability, kind, constraint) = match element {
             Element::Component(clause) if clause.components.iter().any(|c| c.name.node == name) => {
                 let kind = class.meaning(&clause.type_specifier.name);
-                (clause.prefixes, clause.type_prefixes.variability, kind)
+                let constraint = clause.constraint.as_ref().map(|constraint| &constraint.target);
+                let constraint = constraint.unwrap_or(&clause.type_specifier);
+                let variability = clause.type_prefixes.variability;
+                (clause.prefixes, variability, kind, class.class_named(&constraint.name))
             }
             Element::Class(nested) if nested.class.name.node == name => {
-                (nested.prefixes, None, None)
+                let constraint = nested.constraint.as_ref().map(|one| one.target.name.clone());
+                let constraint = constraint.unwrap_or_else(|| name.into());
+                (nested.prefixes, None, None, class.class_named(&constraint))
             }
             _ => continue,
         };
         let constant = variability == Some(VariabilityPrefix::Constant);
         let replaceable = prefixes.replaceable;
-        return Some(Inherited { holder: class, kind, replaceable, constant, visibility });
+        return Some(Inherited {
+            holder: class,
+            kind,
+            replaceable,
+            constant,
+            visibility,
+            constraint,
+        });
     }
     if let ClassSpecifier::Short(short) = &class.definition().specifier {
-        let base = class.parent()?.class_named(&short.target.name)?;
-        return modified(inherited(base, name, depth + 1)?, &short.modification, name);
+        let outside = class.parent()?;
+        let base = outside.class_named(&short.target.name)?;
+        return modified(outside, inherited(base, name, depth + 1)?, &short.modification, name);
     }
     class.elements().find_map(|(_, element)| {
         let Element::Extends(extends) = element else { return None };
         let base = class.class_named(&extends.base.name).filter(|b| b.class != class.class)?;
-        modified(inherited(base, name, depth + 1)?, &extends.modification, name)
+        modified(class, inherited(base, name, depth + 1)?, &extends.modification, name)
     })
 }
 
-/// An element behind the modification of a base class: a redeclaration decides anew whether it is
-/// replaceable.
+/// An element behind the modification of a base class, written in a class: a redeclaration decides
+/// anew whether it is replaceable, and may constrain it further.
 fn modified<'a>(
-    element: Inherited<'a>,
+    writer: Scope<'a>,
+    mut element: Inherited<'a>,
     arguments: &[Argument],
     name: Ident,
 ) -> Option<Inherited<'a>> {
-    let redeclared = arguments.iter().find_map(|argument| {
-        let Argument::Redeclaration(redeclaration) = argument else { return None };
+    for argument in arguments {
+        let Argument::Redeclaration(redeclaration) = argument else { continue };
         let (own, _, prefixes) = declared(&redeclaration.element)?;
-        (own == name).then_some(prefixes.replaceable)
-    });
-    Some(Inherited { replaceable: redeclared.unwrap_or(element.replaceable), ..element })
+        if own == name {
+            element.replaceable = prefixes.replaceable;
+            if let Some(constraint) = constraint(&redeclaration.element) {
+                element.constraint = writer.class_named(&constraint.target.name);
+            }
+        }
+    }
+    Some(element)
+}
+
+fn constraint(element: &RedeclaredElement) -> Option<&Constraint> {
+    match element {
+        RedeclaredElement::Class(nested) => nested.constraint.as_ref(),
+        RedeclaredElement::Component(clause) => clause.constraint.as_ref(),
+    }
+}
+
+/// The class that a redeclaration, written in a class, puts in the place of another.
+fn replacement<'a>(writer: Scope<'a>, element: &RedeclaredElement) -> Option<Scope<'a>> {
+    match element {
+        RedeclaredElement::Component(clause) => writer.class_named(&clause.type_specifier.name),
+        RedeclaredElement::Class(nested) => match &nested.class.specifier {
+            ClassSpecifier::Short(short) => writer.class_named(&short.target.name),
+            _ => None,
+        },
+    }
+}
+
+/// A replacement, and its own constraint, are compatible with the constraint of what is replaced
+/// (MLS §7.3.2).
+fn incompatible(
+    writer: Scope<'_>,
+    element: &RedeclaredElement,
+    expected: Option<Scope<'_>>,
+    name: Ident,
+    span: Span,
+) -> Option<Diagnostic> {
+    let expected = expected?;
+    let own = constraint(element).and_then(|one| writer.class_named(&one.target.name));
+    let candidates = [replacement(writer, element), own];
+    candidates.into_iter().flatten().find_map(|candidate| {
+        let Lack(reason) = lack(candidate, expected)?;
+        Some(unfit(name, expected, &reason, span))
+    })
+}
+
+fn unfit(name: Ident, expected: Scope<'_>, reason: &str, span: Span) -> Diagnostic {
+    fault!(ILLEGAL_REDECLARATION, "`{name}` does not fit its constraint `{}`: {reason}", expected.name();
+        help: "use a class that has the public components of the constraint")
+    .at(span)
+}
+
+/// What a replaceable element is declared as fits its own constraint.
+fn unfit_declaration(class: Scope<'_>, element: &Element) -> Option<Diagnostic> {
+    let (written, constraint, name) = match element {
+        Element::Component(clause) => {
+            let written = class.class_named(&clause.type_specifier.name)?;
+            (written, clause.constraint.as_ref()?, clause.components.first()?.name)
+        }
+        Element::Class(nested) => {
+            let name = nested.class.name;
+            let written = class.own_class(name.node)?;
+            let base = match &written.definition().specifier {
+                ClassSpecifier::Short(short) => class.class_named(&short.target.name)?,
+                _ => written,
+            };
+            (base, nested.constraint.as_ref()?, name)
+        }
+        _ => return None,
+    };
+    let expected = class.class_named(&constraint.target.name)?;
+    if written.predefined().is_some() && dimensions(written) != dimensions(expected) {
+        return Some(unfit(name.node, expected, "the numbers of dimensions differ", name.span));
+    }
+    let Lack(reason) = lack(written, expected)?;
+    Some(unfit(name.node, expected, &reason, name.span))
 }
 
 /// Name, place and prefixes of what a redeclaration declares.
@@ -139,7 +230,10 @@ fn redeclarations(
             RedeclaredElement::Class(_) => None,
         };
         if let Some(element) = inherited(class, name, 0) {
-            errors.extend(not_replaceable(&element, name, kind, span));
+            let wrong = not_replaceable(&element, name, kind, span);
+            errors.extend(wrong.or_else(|| {
+                incompatible(writer, &redeclaration.element, element.constraint, name, span)
+            }));
         }
     }
 }
@@ -154,7 +248,7 @@ fn redeclared(
     let element = class.elements().find_map(|(_, element)| {
         let Element::Extends(extends) = element else { return None };
         let base = class.class_named(&extends.base.name).filter(|b| b.class != class.class)?;
-        modified(inherited(base, name.node, 0)?, &extends.modification, name.node)
+        modified(class, inherited(base, name.node, 0)?, &extends.modification, name.node)
     })?;
     not_replaceable(&element, name.node, kind, name.span).or_else(|| {
         let (now, then) = match (visibility, element.visibility) {

@@ -94,6 +94,11 @@ impl<'a> Scope<'a> {
         })
     }
 
+    /// The class of a name that it declares itself.
+    pub(super) fn own_class(self, name: Ident) -> Option<Scope<'a>> {
+        self.library.class(self.class).child(name).map(|class| self.of(class))
+    }
+
     /// Itself and all classes that it extends or is short for.
     pub(super) fn lineage(self) -> Vec<Scope<'a>> {
         let mut seen = FxHashSet::default();
@@ -192,11 +197,23 @@ impl<'a> Scope<'a> {
         })
     }
 
+    /// The enumeration that it is, by itself or through others.
+    pub(super) fn enumeration(self) -> Option<Scope<'a>> {
+        let is_enumeration = |class: &Scope<'a>| {
+            matches!(class.definition().specifier, ClassSpecifier::Enumeration(_))
+        };
+        self.lineage().into_iter().find(is_enumeration)
+    }
+
     /// Whether it is an enumeration, by itself or through others.
     pub(super) fn is_enumeration(self) -> bool {
-        self.lineage()
-            .into_iter()
-            .any(|class| matches!(class.definition().specifier, ClassSpecifier::Enumeration(_)))
+        self.enumeration().is_some()
+    }
+
+    /// Whether it, or a class around it, is declared replaceable.
+    pub(super) fn is_replaceable(self) -> bool {
+        std::iter::successors(Some(self), |class| class.parent())
+            .any(|class| self.library.class(class.class).prefixes().replaceable)
     }
 }
 

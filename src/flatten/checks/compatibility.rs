@@ -1,0 +1,95 @@
+//! Whether a class can stand where another one is expected (MLS §6.4), as both are declared. Where
+//! a class is not wholly known, it can.
+
+use super::lookup::Type;
+use super::scope::{Component, Scope};
+use crate::name::Ident;
+use crate::syntax::ast::{ClassSpecifier, Restriction, Visibility};
+
+/// The deepest nesting of components that is compared.
+const MAX_DEPTH: usize = 20;
+
+/// What a class lacks to be compatible with another.
+pub(super) struct Lack(pub(super) String);
+
+/// What a class lacks to stand where `expected` is expected.
+pub(super) fn lack(candidate: Scope<'_>, expected: Scope<'_>) -> Option<Lack> {
+    lack_within(candidate, expected, 0)
+}
+
+fn lack_within(candidate: Scope<'_>, expected: Scope<'_>, depth: usize) -> Option<Lack> {
+    let is_function =
+        |class: Scope<'_>| matches!(class.restriction(), Restriction::Function { .. });
+    let lineage = candidate.lineage();
+    let derives = lineage.iter().any(|class| class.class == expected.class);
+    if depth > MAX_DEPTH || derives || is_function(expected) || is_function(candidate) {
+        return None;
+    }
+    if !is_known(candidate) || !is_known(expected) {
+        return None;
+    }
+    if let Some(kind) = expected.predefined() {
+        let same = candidate.predefined() == Some(kind);
+        return (!same).then(|| Lack(format!("`{}` is of another type", candidate.name())));
+    }
+    for wanted in expected.lineage().into_iter().flat_map(Scope::components) {
+        if wanted.visibility == Visibility::Public {
+            let found = candidate.component(wanted.name());
+            if let Some(lack) = component_lack(candidate, found, &wanted, depth) {
+                return Some(lack);
+            }
+        }
+    }
+    None
+}
+
+fn component_lack(
+    candidate: Scope<'_>,
+    found: Option<Component<'_>>,
+    wanted: &Component<'_>,
+    depth: usize,
+) -> Option<Lack> {
+    let name = wanted.name();
+    let Some(found) = found.filter(|found| found.visibility == Visibility::Public) else {
+        return Some(Lack(format!("`{}` has no public component `{name}`", candidate.name())));
+    };
+    match (found.meaning()?, wanted.meaning()?) {
+        (Type::Predefined(a), Type::Predefined(b)) => (a != b).then(|| other_type(candidate, name)),
+        (Type::Class(a), Type::Class(b)) => {
+            lack_within(found.owner.of(a), wanted.owner.of(b), depth + 1)
+        }
+        (Type::Class(class), Type::Predefined(kind))
+        | (Type::Predefined(kind), Type::Class(class)) => {
+            let class = candidate.of(class);
+            let differs = is_known(class) && class.predefined() != Some(kind);
+            differs.then(|| other_type(candidate, name))
+        }
+    }
+}
+
+fn other_type(class: Scope<'_>, name: Ident) -> Lack {
+    Lack(format!("`{name}` of `{}` is of another type", class.name()))
+}
+
+/// Whether a class and all that it extends are found, and none is replaceable.
+fn is_known(class: Scope<'_>) -> bool {
+    class.lineage().into_iter().all(|class| {
+        let bases = class.library.declared_bases(class.class).len();
+        let written = match &class.definition().specifier {
+            ClassSpecifier::Short(_) => 1,
+            ClassSpecifier::Long(_) => class.library.class(class.class).extends.len(),
+            _ => return true,
+        };
+        bases == written || class.predefined().is_some()
+    })
+}
+
+/// The number of dimensions that a type itself has, through short classes.
+pub(super) fn dimensions(class: Scope<'_>) -> usize {
+    let short =
+        class.lineage().into_iter().filter_map(|class| match &class.definition().specifier {
+            ClassSpecifier::Short(short) => Some(short.subscripts.len()),
+            _ => None,
+        });
+    short.sum()
+}

@@ -1,0 +1,252 @@
+//! Types of scalar expressions, as far as a class tells by itself: conditions are Boolean, and both
+//! sides of a relation have one type (MLS §3.5, §4.9.5, §8.3.4, §8.3.7). Bindings and equations are
+//! left to flattening, which knows all types and sizes.
+
+use super::lookup::Type;
+use super::scope::{Component, Scope};
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::flatten::errors::TYPE_MISMATCH;
+use crate::flatten::library::ClassId;
+use crate::flatten::lookup::Predefined;
+use crate::name::{Ident, Name};
+use crate::syntax::ast::{
+    BinaryOperator, ClassSpecifier, ComponentReference, Equation, EquationKind, Expression,
+    ExpressionKind, Section, Statement, StatementKind, UnaryOperator,
+};
+use crate::syntax::visit::{
+    Visit, walk_equation, walk_expression, walk_modification, walk_statement,
+};
+
+/// The type of an expression.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// Real or Integer.
+    Number,
+    Boolean,
+    String,
+    Enumeration(ClassId),
+}
+
+/// Checks the conditions and relations that a class itself writes.
+pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+    let mut walk = Walk { class, loops: Vec::new(), errors };
+    for component in class.components() {
+        component.declaration.modification.iter().for_each(|one| walk_modification(&mut walk, one));
+        component.declaration.condition.iter().for_each(|one| walk.condition(one));
+    }
+    for section in class.sections() {
+        match section {
+            Section::Equations { equations, .. } => {
+                equations.iter().for_each(|equation| walk.equation(equation));
+            }
+            Section::Algorithm { statements, .. } => {
+                statements.iter().for_each(|statement| walk.statement(statement));
+            }
+            _ => {}
+        }
+    }
+}
+
+struct Walk<'a, 'e> {
+    class: Scope<'a>,
+    /// The loop variables met; what they are is not looked at.
+    loops: Vec<Ident>,
+    errors: &'e mut Vec<Diagnostic>,
+}
+
+impl Walk<'_, '_> {
+    fn mismatch(&mut self, expression: &Expression, expected: &str, found: Kind) {
+        let message = format!("{expected}, and this is {}", self.name(found));
+        self.errors.push(fault!(TYPE_MISMATCH, "{message}").at(expression.span));
+    }
+
+    fn name(&self, kind: Kind) -> String {
+        match kind {
+            Kind::Number => "a number".to_owned(),
+            Kind::Boolean => "a Boolean".to_owned(),
+            Kind::String => "a String".to_owned(),
+            Kind::Enumeration(class) => {
+                format!("of the enumeration `{}`", self.class.of(class).name())
+            }
+        }
+    }
+
+    fn condition(&mut self, condition: &Expression) {
+        if let Some(kind) = self.kind(condition).filter(|kind| *kind != Kind::Boolean) {
+            self.mismatch(condition, "a condition must be Boolean", kind);
+        }
+        self.expression(condition);
+    }
+
+    fn assertion(&mut self, call: &Expression) {
+        let ExpressionKind::Call { function, arguments } = &call.kind else { return };
+        let is_assert = !function.global
+            && function.parts.len() == 1
+            && function.parts[0].name.as_str() == "assert";
+        if let (true, Some(condition)) = (is_assert, arguments.positional.first())
+            && let Some(kind) = self.kind(condition).filter(|kind| *kind != Kind::Boolean)
+        {
+            self.mismatch(condition, "the condition of `assert` must be Boolean", kind);
+        }
+    }
+
+    fn relation(&mut self, left: &Expression, right: &Expression) {
+        if let (Some(a), Some(b)) = (self.kind(left), self.kind(right))
+            && a != b
+        {
+            let message = format!("the other side of the relation is {}", self.name(a));
+            self.mismatch(right, &message, b);
+        }
+    }
+
+    /// The type of an expression, where the class tells.
+    fn kind(&self, expression: &Expression) -> Option<Kind> {
+        match &expression.kind {
+            ExpressionKind::Real(_) | ExpressionKind::Integer(_) => Some(Kind::Number),
+            ExpressionKind::Boolean(_) => Some(Kind::Boolean),
+            ExpressionKind::String(_) => Some(Kind::String),
+            ExpressionKind::Reference(reference) => self.kind_of_reference(reference),
+            ExpressionKind::Unary { operator: UnaryOperator::Not, .. } => Some(Kind::Boolean),
+            ExpressionKind::Binary { operator, left, right } => {
+                let both = [self.kind(left)?, self.kind(right)?];
+                match operator {
+                    _ if is_relation(*operator) || is_logical(*operator) => Some(Kind::Boolean),
+                    BinaryOperator::Add
+                    | BinaryOperator::Subtract
+                    | BinaryOperator::Multiply
+                    | BinaryOperator::Divide => (both == [Kind::Number; 2]).then_some(Kind::Number),
+                    _ => None,
+                }
+            }
+            ExpressionKind::Call { function, .. } => self.kind_of_call(function),
+            _ => None,
+        }
+    }
+
+    fn kind_of_call(&self, function: &ComponentReference) -> Option<Kind> {
+        let [name] = function.parts.as_slice() else { return None };
+        let is_declared = self.class.class_named(&name.name.into()).is_some();
+        let is_event = ["initial", "terminal", "edge", "change"].contains(&name.name.as_str());
+        (is_event && !is_declared && !function.global).then_some(Kind::Boolean)
+    }
+
+    fn kind_of_reference(&self, reference: &ComponentReference) -> Option<Kind> {
+        if reference.parts.iter().any(|part| !part.subscripts.is_empty()) {
+            return None;
+        }
+        let first = reference.parts[0].name;
+        if !reference.global && self.loops.contains(&first) {
+            return None;
+        }
+        if !reference.global && super::names::is_component(self.class, first) {
+            let path = self.class.path(reference)?;
+            let is_scalar = |one: &Component<'_>| {
+                one.declaration.subscripts.is_empty() && one.clause.subscripts.is_empty()
+            };
+            return path.iter().all(is_scalar).then(|| path.last().and_then(kind_of))?;
+        }
+        self.literal(reference)
+    }
+
+    /// The enumeration of a literal `E.a`.
+    fn literal(&self, reference: &ComponentReference) -> Option<Kind> {
+        let parts: Vec<Ident> = reference.parts.iter().map(|part| part.name).collect();
+        let (last, path) = parts.split_last()?;
+        let name = Name { global: reference.global, parts: path.to_vec() };
+        let enumeration = self.class.class_named(&name)?.enumeration()?;
+        let ClassSpecifier::Enumeration(literals) = &enumeration.definition().specifier else {
+            return None;
+        };
+        let is_literal = literals.literals.iter().flatten().any(|one| one.name.node == *last);
+        is_literal.then_some(Kind::Enumeration(enumeration.class))
+    }
+}
+
+impl Visit for Walk<'_, '_> {
+    fn expression(&mut self, expression: &Expression) {
+        match &expression.kind {
+            ExpressionKind::Binary { operator, left, right } if is_relation(*operator) => {
+                self.relation(left, right);
+            }
+            ExpressionKind::If { branches, .. } => {
+                for (condition, _) in branches {
+                    if let Some(kind) = self.kind(condition).filter(|kind| *kind != Kind::Boolean) {
+                        self.mismatch(condition, "a condition must be Boolean", kind);
+                    }
+                }
+            }
+            ExpressionKind::Comprehension { indices, .. } => {
+                self.loops.extend(indices.iter().map(|index| index.name.node));
+            }
+            ExpressionKind::Call { arguments, .. } => {
+                self.loops.extend(arguments.iterators.iter().map(|index| index.name.node));
+            }
+            _ => {}
+        }
+        walk_expression(self, expression);
+    }
+
+    fn equation(&mut self, equation: &Equation) {
+        match &equation.kind {
+            EquationKind::If { branches, .. } => {
+                branches.iter().for_each(|(condition, _)| self.condition(condition));
+            }
+            EquationKind::For { indices, .. } => {
+                self.loops.extend(indices.iter().map(|index| index.name.node));
+            }
+            EquationKind::Call(call) => self.assertion(call),
+            _ => {}
+        }
+        walk_equation(self, equation);
+    }
+
+    fn statement(&mut self, statement: &Statement) {
+        match &statement.kind {
+            StatementKind::If { branches, .. } => {
+                branches.iter().for_each(|(condition, _)| self.condition(condition));
+            }
+            StatementKind::While { condition, .. } => self.condition(condition),
+            StatementKind::For { indices, .. } => {
+                self.loops.extend(indices.iter().map(|index| index.name.node));
+            }
+            StatementKind::Call(call) => self.assertion(call),
+            _ => {}
+        }
+        walk_statement(self, statement);
+    }
+}
+
+/// The type that a component is declared of, if a scalar one; none if it can be redeclared.
+fn kind_of(component: &Component<'_>) -> Option<Kind> {
+    let prefixes = component.clause.prefixes;
+    if prefixes.replaceable || prefixes.outer {
+        return None;
+    }
+    let (predefined, class) = match component.meaning()? {
+        Type::Predefined(predefined) => (Some(predefined), None),
+        Type::Class(class) => {
+            let class = component.owner.of(class);
+            if super::compatibility::dimensions(class) > 0 || class.is_replaceable() {
+                return None;
+            }
+            (class.predefined(), class.enumeration())
+        }
+    };
+    match (predefined, class) {
+        (Some(Predefined::Real | Predefined::Integer), _) => Some(Kind::Number),
+        (Some(Predefined::Boolean), _) => Some(Kind::Boolean),
+        (Some(Predefined::String), _) => Some(Kind::String),
+        (None, Some(enumeration)) => Some(Kind::Enumeration(enumeration.class)),
+        _ => None,
+    }
+}
+
+fn is_relation(operator: BinaryOperator) -> bool {
+    use BinaryOperator::{Equal, Greater, GreaterEqual, Less, LessEqual, NotEqual};
+    matches!(operator, Equal | NotEqual | Less | LessEqual | Greater | GreaterEqual)
+}
+
+fn is_logical(operator: BinaryOperator) -> bool {
+    matches!(operator, BinaryOperator::And | BinaryOperator::Or)
+}
