@@ -10,11 +10,11 @@ use crate::flatten::Library;
 use crate::flatten::errors::UNKNOWN_CLASS;
 use crate::name::{Ident, Name};
 use crate::source::{SourceId, Span, Spanned};
-use crate::syntax;
 use crate::syntax::ast::{
     ClassDefinition, ClassSpecifier, ComponentReference, Element, Expression, ExpressionKind,
     Section, Subscript,
 };
+use crate::syntax::{self, Outline};
 use crate::value::Value;
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -151,18 +151,16 @@ impl Session {
         if !self.classes.files.values().any(|file| file == root) {
             self.load_library(root, &Name::default())?;
         }
-        let mut name = Name::default();
-        for folder in folders.into_iter().rev() {
-            let (source, text) = self
-                .library_texts()
-                .read(&folder.join("package.mo"))
-                .at(self.call)
-                .map_err(|error| vec![error])?;
-            let package = syntax::parse_stored_definition_lazily(source, &text);
-            let package = package.map_err(|error| vec![error])?;
-            name.parts.extend(package.classes.first().map(|class| class.name.node));
-        }
-        Ok(name)
+        let names = folders.iter().rev().map_while(|folder| self.package_in(folder));
+        Ok(Name::new(names.collect::<Vec<_>>()))
+    }
+
+    /// The name of the package that a folder holds.
+    fn package_in(&self, folder: &Path) -> Option<Ident> {
+        let bytes = self.world.read(&folder.join("package.mo")).ok()?;
+        let (text, _) = syntax::decode(&bytes);
+        let package = Outline::of(&text)?.classes.into_iter().next()?;
+        Some(Ident::new(&text[package.name]))
     }
 
     fn load_file(&mut self, path: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {
