@@ -839,8 +839,8 @@ fn is_boolean(e: &Expression) -> bool {
 /// The literals of a range of Booleans (MLS §10.4.3).
 fn booleans(start: &Expression, stop: &Expression) -> Vec<Expression> {
     let is_in = |truth: &bool| {
-        let below = matches!(start.kind, ExpressionKind::Boolean(from) if from > *truth);
-        let above = matches!(stop.kind, ExpressionKind::Boolean(to) if *truth > to);
+        let below = matches!(start.kind, ExpressionKind::Boolean(true)) && !*truth;
+        let above = matches!(stop.kind, ExpressionKind::Boolean(false)) && *truth;
         !below && !above
     };
     let literal = |truth| Expression::new(ExpressionKind::Boolean(truth), start.span.to(stop.span));

@@ -309,7 +309,6 @@ fn models_of_2005_find_their_names() {
 }
 
 #[test]
-#[ignore = "external objects are not translated yet"]
 fn tables_are_read_between_and_behind_their_points() {
     ends(
         "TimeTables",
