@@ -18,6 +18,34 @@
 //!   random-number package with many long streams and substreams. Operations Research 50(6), 2002,
 //!   1073–1075.
 //!
+//! <a id="akima-1970"></a>
+//! - **akima-1970** — H. Akima: A new method of interpolation and smooth curve fitting based on
+//!   local procedures. Journal of the ACM 17(4), 1970, 589–602.
+//!
+//! <a id="anderson-1999"></a>
+//! - **anderson-1999** — E. Anderson et al.: LAPACK users' guide. 3rd edition, SIAM, 1999.
+//!
+//! <a id="fritsch-butland-1984"></a>
+//! - **fritsch-butland-1984** — F. N. Fritsch, J. Butland: A method for constructing local monotone
+//!   piecewise cubic interpolants. SIAM Journal on Scientific and Statistical Computing 5(2), 1984,
+//!   300–304.
+//!
+//! <a id="steffen-1990"></a>
+//! - **steffen-1990** — M. Steffen: A simple method for monotonic interpolation in one dimension.
+//!   Astronomy and Astrophysics 239, 1990, 443–450.
+//!
+//! <a id="vigna-2016"></a>
+//! - **vigna-2016** — S. Vigna: An experimental exploration of Marsaglia's xorshift generators,
+//!   scrambled. ACM Transactions on Mathematical Software 42(4), 2016.
+//!
+//! <a id="vigna-2017"></a>
+//! - **vigna-2017** — S. Vigna: Further scramblings of Marsaglia's xorshift generators. Journal of
+//!   Computational and Applied Mathematics 315, 2017, 175–181.
+//!
+//! <a id="griewank-2008"></a>
+//! - **griewank-2008** — A. Griewank, A. Walther: Evaluating derivatives: principles and techniques
+//!   of algorithmic differentiation. 2nd edition, SIAM, 2008.
+//!
 //! <a id="larminie-dicks-2000"></a>
 //! - **larminie-dicks-2000** — J. Larminie, A. Dicks: Fuel cell systems explained. Wiley, 2000.
 //!

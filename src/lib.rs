@@ -48,6 +48,8 @@
 //! - [`syntax`]: the grammar of classes and scripts, trees, printing;
 //! - [`value`], [`eval`]: values and their operations; expressions, statements, functions;
 //! - [`symbolic`], [`graph`]: scalar expressions; matching, sorting, tearing;
+//! - [`external`]: functions that libraries declare `external`, in Rust;
+//! - [`bytecode`]: functions that loop and branch, as instructions;
 //! - [`flatten`], [`dae`], [`compile`]: from a class to a program that evaluates itself;
 //! - [`sim`]: integrators, events, trajectories; knows nothing of Modelica;
 //! - [`ga`], [`identify`]: the genetic algorithm; populations of simulations, and what they tell;
@@ -62,9 +64,11 @@ pub mod name;
 pub mod registry;
 pub mod source;
 
+pub mod bytecode;
 pub mod compile;
 pub mod dae;
 pub mod eval;
+pub mod external;
 pub mod flatten;
 pub mod ga;
 pub mod graph;

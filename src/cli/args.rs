@@ -147,7 +147,7 @@ pub(super) struct SimulateArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  gapi check models
+  gapi check models/CaseStudies
   gapi check models --model CaseStudies.PolarizationCurve
   gapi check --library ~/libraries --model Modelica.Blocks.Examples.PID_Controller")]
 pub(super) struct CheckArgs {

@@ -22,6 +22,9 @@ const MAX_ROUNDS: usize = 100;
 /// Relative distance of times that are one.
 const AT_ONCE: f64 = 1e-12;
 
+/// Relative difference of Reals that solving a loop again may make.
+const ROUNDING: f64 = 1e-10;
+
 /// Whether two times are the same but for rounding.
 pub(super) fn same_time(a: f64, b: f64) -> bool {
     (a - b).abs() <= AT_ONCE * a.abs().max(b.abs())
@@ -116,7 +119,9 @@ impl System {
         for previous in &self.program.events.previous {
             let value = self.registers[previous.of.0 as usize];
             let slot = &mut self.registers[previous.register as usize];
-            if previous.discrete && *slot != value {
+            let rounding =
+                if previous.exact { 0.0 } else { ROUNDING * value.abs().max(slot.abs()) };
+            if previous.discrete && (*slot - value).abs() > rounding {
                 changed = true;
                 self.unstable = previous.of.0;
             }

@@ -4,6 +4,7 @@ use super::lower::Registers;
 use super::program::{Outputs, Step, compile_outputs};
 use super::tape::Register;
 use crate::dae::{Assignment, Equation, Kind, SortedDae};
+use crate::flatten::BaseType;
 use crate::symbolic::{Expr, Pool, VarId, linear_in};
 
 /// The part of a program that acts at events alone.
@@ -49,6 +50,8 @@ pub(super) struct Previous {
     pub(super) register: Register,
     /// Whether event iteration goes on until both are equal.
     pub(super) discrete: bool,
+    /// Whether every difference counts, not only one that is more than rounding.
+    pub(super) exact: bool,
     /// Whether it must be computed from the states before an event.
     pub(super) computed: bool,
 }
@@ -110,8 +113,9 @@ pub(super) fn compile_events(
     let previous = all.clone().filter_map(|v| match dae.variable(v).kind {
         Kind::Previous(of) => {
             let discrete = dae.variable(of).kind == Kind::Discrete;
+            let exact = dae.variable(of).base != BaseType::Real;
             let computed = !discrete && !sorted.states.contains(&of);
-            Some(Previous { of, register: v.0, discrete, computed })
+            Some(Previous { of, register: v.0, discrete, exact, computed })
         }
         _ => None,
     });

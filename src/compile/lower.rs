@@ -1,23 +1,31 @@
 //! Symbolic expressions become instructions, common subexpressions computed once.
 
-use super::tape::{Instruction, Register, Tape};
+use super::tape::{Call, Instruction, Register, Tape};
+use crate::bytecode::Functions;
 use crate::symbolic::function::Value;
 use crate::symbolic::{Expr, Node, Pool, VarId};
 use rustc_hash::FxHashMap;
+use std::sync::Arc;
 
 /// The registers of a program: one for every variable, then constants and temporaries.
 #[derive(Debug, Clone)]
 pub(super) struct Registers {
     next: Register,
     constants: FxHashMap<u64, Register>,
+    functions: Arc<Functions>,
     /// Registers with their values.
     pub(super) values: Vec<(Register, f64)>,
 }
 
 impl Registers {
-    pub(super) fn new(n_variables: usize) -> Registers {
+    pub(super) fn new(n_variables: usize, functions: Arc<Functions>) -> Registers {
         let next = n_variables as Register;
-        Registers { next, constants: FxHashMap::default(), values: Vec::new() }
+        Registers { next, constants: FxHashMap::default(), functions, values: Vec::new() }
+    }
+
+    /// The functions that tapes on these registers call.
+    pub(super) fn functions(&self) -> &Arc<Functions> {
+        &self.functions
     }
 
     pub(super) fn len(&self) -> usize {
@@ -25,8 +33,13 @@ impl Registers {
     }
 
     fn fresh(&mut self) -> Register {
-        self.next += 1;
-        self.next - 1
+        self.row(1)
+    }
+
+    /// New registers that follow each other.
+    fn row(&mut self, n: usize) -> Register {
+        self.next += n as Register;
+        self.next - n as Register
     }
 
     fn constant(&mut self, value: f64) -> Register {
@@ -40,6 +53,9 @@ impl Registers {
     }
 }
 
+/// A call: function, inputs that it is differentiated for, arguments.
+type CallKey = (u32, Box<[u32]>, Box<[Expr]>);
+
 /// Writes one tape.
 pub(super) struct TapeBuilder<'a> {
     pool: &'a Pool,
@@ -48,6 +64,10 @@ pub(super) struct TapeBuilder<'a> {
     known: FxHashMap<Expr, Register>,
     /// Keys of `known` in the order they came, to forget what a branch computed.
     log: Vec<Expr>,
+    /// First registers of the results of calls.
+    calls: FxHashMap<CallKey, Register>,
+    /// Keys of `calls` in the order they came.
+    call_log: Vec<CallKey>,
     /// Registers of variables that are not in their own.
     moved: FxHashMap<VarId, Register>,
 }
@@ -60,6 +80,8 @@ impl<'a> TapeBuilder<'a> {
             tape: Tape::default(),
             known: FxHashMap::default(),
             log: Vec::new(),
+            calls: FxHashMap::default(),
+            call_log: Vec::new(),
             moved: FxHashMap::default(),
         }
     }
@@ -118,6 +140,12 @@ impl<'a> TapeBuilder<'a> {
                 let condition = of(condition);
                 return self.branches(condition, *a, *b);
             }
+            Node::Call { function, output, arguments } => {
+                return output + self.call((*function, Box::new([]), arguments.clone()));
+            }
+            Node::CallDerivative { function, output, inputs, arguments } => {
+                return output + self.call((*function, inputs.clone(), arguments.clone()));
+            }
             _ => {}
         }
         let d = self.registers.fresh();
@@ -149,14 +177,32 @@ impl<'a> TapeBuilder<'a> {
                     }
                 }
             }
-            Node::Constant(_) | Node::Variable(_) | Node::If(..) => {
-                unreachable!("returned above")
-            }
-            Node::Call { .. } | Node::CallDerivative { .. } => {
-                unreachable!("user functions are inlined when the equations are read")
-            }
+            Node::Constant(_)
+            | Node::Variable(_)
+            | Node::If(..)
+            | Node::Call { .. }
+            | Node::CallDerivative { .. } => unreachable!("returned above"),
         };
         self.tape.code.push(instruction);
+        d
+    }
+
+    /// A call, once for all its outputs; returns the first register of its results.
+    fn call(&mut self, key: CallKey) -> Register {
+        if let Some(known) = self.calls.get(&key) {
+            return *known;
+        }
+        let (function, inputs, arguments) = &key;
+        let d = self.registers.row(self.registers.functions.n_outputs(*function));
+        self.tape.code.push(Instruction::Call { call: self.tape.calls.len() as u32 });
+        self.tape.calls.push(Call {
+            function: *function,
+            inputs: inputs.clone(),
+            arguments: arguments.iter().map(|a| self.known[a]).collect(),
+            d,
+        });
+        self.call_log.push(key.clone());
+        self.calls.insert(key, d);
         d
     }
 
@@ -176,11 +222,14 @@ impl<'a> TapeBuilder<'a> {
 
     /// What a branch computes is not known behind it.
     fn branch(&mut self, d: Register, value: Expr) {
-        let before = self.log.len();
+        let (before, calls) = (self.log.len(), self.call_log.len());
         let a = self.emit(value);
         self.tape.code.push(Instruction::Move { d, a });
         for expr in self.log.drain(before..) {
             self.known.remove(&expr);
+        }
+        for key in self.call_log.drain(calls..) {
+            self.calls.remove(&key);
         }
     }
 }

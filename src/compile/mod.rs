@@ -8,6 +8,7 @@ mod history;
 mod jacobian;
 mod least_squares;
 mod lower;
+mod memory;
 mod newton;
 mod program;
 mod selection;

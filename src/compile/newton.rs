@@ -10,6 +10,7 @@
 //! nearest to the start values is taken; later it is an error.
 
 use super::least_squares::LeastSquares;
+use super::memory::Memory;
 use super::program::CompiledLoop;
 use super::system::run;
 use crate::sim::{Equations, Failure, Newton, NewtonFailure};
@@ -44,7 +45,7 @@ impl LoopSolver {
     pub(super) fn solve(
         &mut self,
         torn: &CompiledLoop,
-        r: &mut [f64],
+        r: &mut Memory,
         initial: bool,
     ) -> Result<(), Failure> {
         for (value, unknown) in self.guess.iter_mut().zip(&torn.unknowns) {
@@ -97,7 +98,7 @@ impl LoopSolver {
 /// A loop evaluated in the registers.
 struct Evaluation<'a> {
     torn: &'a CompiledLoop,
-    r: &'a mut [f64],
+    r: &'a mut Memory,
 }
 
 impl Evaluation<'_> {

@@ -6,6 +6,7 @@ use super::jacobian::differentiate_sequence;
 use super::lower::{Registers, TapeBuilder};
 use super::system::System;
 use super::tape::{Register, Tape};
+use crate::bytecode::{self, Reason};
 use crate::dae::{Assignment, Block, Kind, SortedDae, Variable};
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::fault;
@@ -194,7 +195,7 @@ impl Program {
             iteration.extend(&torn.iteration);
             residuals.extend(torn.residuals.iter().map(|(residual, _)| *residual));
         }
-        let mut registers = Registers::new(n);
+        let mut registers = Registers::new(n, sorted.dae.functions.clone());
         let observed: Vec<VarId> = (0..n as u32)
             .map(VarId)
             .filter(|v| sorted.dae.is_solved_for(*v) && sorted.aliases[v.0 as usize].is_none())
@@ -527,6 +528,17 @@ impl Program {
                     .at(self.place(place)),
                     None => fault!(DOMAIN_ERROR, "{what} {when}").at(self.place(place)),
                 }
+            }
+            Failure::Function { function, at, reason } => {
+                let reason = Reason::ALL.get(usize::from(reason)).copied();
+                let reason = reason.unwrap_or(Reason::NotFinite);
+                let failure = bytecode::Failure { function, at, reason };
+                let (words, span) = self.sorted.dae.functions.explain(&failure);
+                let code = match reason {
+                    Reason::Assertion => ASSERTION_FAILED,
+                    _ => DOMAIN_ERROR,
+                };
+                fault!(code, "{words} ({when})").at(span)
             }
             Failure::Assertion { assertion } => {
                 let dae = &self.sorted.dae;
@@ -864,6 +876,7 @@ fn variables(sorted: &SortedDae, observed: &[VarId]) -> Vec<VariableInfo> {
         let access = match v.kind {
             Kind::Time => Access::Time,
             Kind::Constant(value) => Access::Constant(value),
+            Kind::Parameter { .. } if matches!(v.base, BaseType::ExternalObject(_)) => continue,
             Kind::Parameter { .. } | Kind::Solved => Access::Parameter,
             Kind::Frozen | Kind::Text | Kind::Previous(_) | Kind::Signal | Kind::Delayed => {
                 continue;

@@ -8,6 +8,7 @@
 //!
 //! Reference: [Mattsson & Söderlind 1993](crate::bibliography#mattsson-soderlind-1993), section 4.
 
+use super::memory::Memory;
 use super::program::CompiledSelection;
 use super::system::run;
 use crate::sim::{DenseLu, Failure};
@@ -47,7 +48,7 @@ impl Choice {
     }
 
     /// Returns to the first choice.
-    pub(super) fn reset(&mut self, selection: &CompiledSelection, r: &mut [f64]) {
+    pub(super) fn reset(&mut self, selection: &CompiledSelection, r: &mut Memory) {
         self.states.clone_from(&selection.chosen);
         let others = (0..selection.candidates.len()).filter(|c| !selection.chosen.contains(c));
         self.determined.clear();
@@ -59,7 +60,7 @@ impl Choice {
     pub(super) fn quality(
         &mut self,
         selection: &CompiledSelection,
-        r: &mut [f64],
+        r: &mut Memory,
     ) -> Result<f64, Failure> {
         self.evaluate(selection, r)?;
         Ok(match self.largest_change() {
@@ -72,7 +73,7 @@ impl Choice {
     pub(super) fn improve(
         &mut self,
         selection: &CompiledSelection,
-        r: &mut [f64],
+        r: &mut Memory,
     ) -> Result<bool, Failure> {
         self.evaluate(selection, r)?;
         let largest = self.largest_change();
@@ -96,7 +97,7 @@ impl Choice {
         Ok(true)
     }
 
-    fn evaluate(&mut self, selection: &CompiledSelection, r: &mut [f64]) -> Result<(), Failure> {
+    fn evaluate(&mut self, selection: &CompiledSelection, r: &mut Memory) -> Result<(), Failure> {
         run(&selection.jacobian.tape, r)?;
         let k = self.nominal.len();
         let entries = self.jacobian.iter_mut().zip(&selection.jacobian.outputs).enumerate();
@@ -166,7 +167,7 @@ impl Choice {
     }
 
     /// Writes weights and states.
-    fn write(&self, selection: &CompiledSelection, r: &mut [f64]) {
+    fn write(&self, selection: &CompiledSelection, r: &mut Memory) {
         for ((chosen, weights), state) in
             self.states.iter().zip(&selection.weights).zip(&selection.states)
         {

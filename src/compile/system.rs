@@ -2,7 +2,7 @@
 
 use super::event_iteration::{Clock, Stage, either, same_time};
 use super::history::History;
-use super::lower::Registers;
+use super::memory::Memory;
 use super::newton::LoopSolver;
 use super::program::{Access, Outputs, Program, Step, compile_outputs, resolved};
 use super::selection::Choice;
@@ -25,7 +25,7 @@ const SMALLEST_HOMOTOPY_STEP: f64 = 1e-5;
 #[derive(Debug, Clone)]
 pub struct System {
     pub(super) program: Arc<Program>,
-    pub(super) registers: Vec<f64>,
+    pub(super) registers: Memory,
     /// Values set from outside, by number of the parameter.
     set: Vec<Option<f64>>,
     observed: Option<Outputs>,
@@ -57,7 +57,7 @@ pub struct System {
 
 impl System {
     pub(super) fn new(program: Arc<Program>) -> System {
-        let registers = blank(&program.registers);
+        let registers = Memory::new(&program.registers);
         let n = program.sorted.states.len() + program.iteration.len();
         let mut system = System {
             registers,
@@ -127,10 +127,7 @@ impl System {
             .collect();
         let mut registers = program.registers.clone();
         let observed = compile_outputs(&pool, &mut registers, &program.sequence, &outputs);
-        self.registers.resize(registers.len(), 0.0);
-        for (register, value) in &registers.values {
-            self.registers[*register as usize] = *value;
-        }
+        self.registers.extend(&registers);
         self.observed = Some(observed);
     }
 
@@ -175,7 +172,7 @@ impl System {
     /// A domain failure where an assertion does not hold is the assertion's.
     pub(super) fn refine(&mut self, failure: Failure) -> Failure {
         match failure {
-            Failure::Domain { .. } => self.violated().unwrap_or(failure),
+            Failure::Domain { .. } | Failure::Function { .. } => self.violated().unwrap_or(failure),
             other => other,
         }
     }
@@ -193,6 +190,7 @@ impl System {
 
     fn evaluate_parameters(&mut self) -> Result<(), Failure> {
         let program = self.program.clone();
+        self.registers.calls.clear_objects();
         let mut tunable = 0;
         // Slots of set values first: tapes run in order of dependence, not of declaration.
         let mut given: Vec<(VarId, f64)> = Vec::new();
@@ -540,7 +538,7 @@ impl DaeSystem for System {
 }
 
 /// Runs code and copies its results.
-fn read(code: &Outputs, registers: &mut [f64], out: &mut [f64]) -> Result<(), Failure> {
+fn read(code: &Outputs, registers: &mut Memory, out: &mut [f64]) -> Result<(), Failure> {
     run(&code.tape, registers)?;
     for (value, register) in out.iter_mut().zip(&code.outputs) {
         *value = registers[*register as usize];
@@ -549,11 +547,21 @@ fn read(code: &Outputs, registers: &mut [f64], out: &mut [f64]) -> Result<(), Fa
 }
 
 /// Runs a tape; a failure says which operation of which equation.
-pub(super) fn run(tape: &Tape, registers: &mut [f64]) -> Result<(), Failure> {
+pub(super) fn run(tape: &Tape, registers: &mut Memory) -> Result<(), Failure> {
     tape.run(registers).map_err(|at| {
         let code = match tape.code[at as usize] {
             Instruction::Unary { id, .. } | Instruction::Binary { id, .. } => {
                 function::functions().position(|(known, _)| known == id).map_or(0xff, |n| n + 2)
+            }
+            Instruction::Call { .. } => {
+                if let Some(failure) = registers.calls.failure {
+                    return Failure::Function {
+                        function: failure.function,
+                        at: failure.at,
+                        reason: failure.reason as u8,
+                    };
+                }
+                0
             }
             Instruction::Pow { .. } => 1,
             _ => 0,
@@ -563,21 +571,13 @@ pub(super) fn run(tape: &Tape, registers: &mut [f64]) -> Result<(), Failure> {
     })
 }
 
-fn blank(registers: &Registers) -> Vec<f64> {
-    let mut values = vec![0.0; registers.len()];
-    for (register, value) in &registers.values {
-        values[*register as usize] = *value;
-    }
-    values
-}
-
 /// Values of all variables that parameters have by default; NaN where none can be computed.
 pub(super) fn default_values(program: &Program) -> Vec<f64> {
-    let mut registers = blank(&program.registers);
+    let mut registers = Memory::new(&program.registers);
     for (parameter, tape) in &program.parameter_tapes {
         if tape.run(&mut registers).is_err() {
             registers[parameter.0 as usize] = f64::NAN;
         }
     }
-    registers
+    registers.registers
 }

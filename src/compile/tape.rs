@@ -1,6 +1,7 @@
 //! Instructions on registers. A jump skips what is not needed, so that a branch that is not taken
 //! is never evaluated.
 
+use super::memory::Memory;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::FunctionId;
 
@@ -10,34 +11,108 @@ pub(super) type Register = u32;
 /// One instruction; `d` is the register written.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Instruction {
-    Move { d: Register, a: Register },
-    Neg { d: Register, a: Register },
-    Not { d: Register, a: Register },
-    Add { d: Register, a: Register, b: Register },
-    Sub { d: Register, a: Register, b: Register },
-    Mul { d: Register, a: Register, b: Register },
-    Div { d: Register, a: Register, b: Register },
-    Pow { d: Register, a: Register, b: Register },
-    And { d: Register, a: Register, b: Register },
-    Or { d: Register, a: Register, b: Register },
-    Relation { operator: RelationOperator, d: Register, a: Register, b: Register },
-    Unary { id: FunctionId, d: Register, a: Register, function: fn(f64) -> f64 },
-    Binary { id: FunctionId, d: Register, a: Register, b: Register, function: fn(f64, f64) -> f64 },
-    JumpUnless { a: Register, target: u32 },
-    Jump { target: u32 },
+    Move {
+        d: Register,
+        a: Register,
+    },
+    Neg {
+        d: Register,
+        a: Register,
+    },
+    Not {
+        d: Register,
+        a: Register,
+    },
+    Add {
+        d: Register,
+        a: Register,
+        b: Register,
+    },
+    Sub {
+        d: Register,
+        a: Register,
+        b: Register,
+    },
+    Mul {
+        d: Register,
+        a: Register,
+        b: Register,
+    },
+    Div {
+        d: Register,
+        a: Register,
+        b: Register,
+    },
+    Pow {
+        d: Register,
+        a: Register,
+        b: Register,
+    },
+    And {
+        d: Register,
+        a: Register,
+        b: Register,
+    },
+    Or {
+        d: Register,
+        a: Register,
+        b: Register,
+    },
+    Relation {
+        operator: RelationOperator,
+        d: Register,
+        a: Register,
+        b: Register,
+    },
+    Unary {
+        id: FunctionId,
+        d: Register,
+        a: Register,
+        function: fn(f64) -> f64,
+    },
+    Binary {
+        id: FunctionId,
+        d: Register,
+        a: Register,
+        b: Register,
+        function: fn(f64, f64) -> f64,
+    },
+    /// The call of this number in the tape.
+    Call {
+        call: u32,
+    },
+    JumpUnless {
+        a: Register,
+        target: u32,
+    },
+    Jump {
+        target: u32,
+    },
+}
+
+/// A call of a function: its scalar outputs, or their derivatives for some inputs, are written to
+/// registers in a row.
+#[derive(Debug, Clone)]
+pub(super) struct Call {
+    pub(super) function: u32,
+    pub(super) inputs: Box<[u32]>,
+    pub(super) arguments: Box<[Register]>,
+    pub(super) d: Register,
 }
 
 /// A sequence of instructions.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Tape {
     pub(super) code: Vec<Instruction>,
+    pub(super) calls: Vec<Call>,
     /// First instruction of every origin, ascending.
     pub(super) origins: Vec<(u32, u32)>,
 }
 
 impl Tape {
     /// Runs it; on failure the number of the instruction without a finite value.
-    pub(super) fn run(&self, r: &mut [f64]) -> Result<(), u32> {
+    pub(super) fn run(&self, memory: &mut Memory) -> Result<(), u32> {
+        let Memory { registers: r, calls } = memory;
         let mut at = 0usize;
         while let Some(instruction) = self.code.get(at) {
             at += 1;
@@ -75,6 +150,10 @@ impl Tape {
                 }
                 Instruction::Binary { d, a, b, function, .. } => {
                     finite(r, d, r_of(a, b, function), at)?;
+                }
+                Instruction::Call { call } => {
+                    let call = &self.calls[call as usize];
+                    calls.run(call, r).map_err(|_| at as u32 - 1)?;
                 }
                 Instruction::JumpUnless { a, target } => {
                     if r[a as usize] == 0.0 {

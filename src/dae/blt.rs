@@ -76,6 +76,9 @@ pub(super) fn solve_block(
     let mut solutions: FxHashMap<(usize, usize), Expr> = FxHashMap::default();
     for (row, equation) in local.iter().enumerate() {
         for unknown in graph.unknowns(row) {
+            if !may_determine(dae, *equation, members[*unknown], members) {
+                continue;
+            }
             if let Some(value) = explicit(dae, *equation, members[*unknown]) {
                 solutions.insert((row, *unknown), value);
             }
@@ -102,6 +105,16 @@ pub(super) fn solve_block(
         Some(solved) => Block::Linear(solved),
         None => Block::Loop(torn),
     })
+}
+
+/// Within a loop a discrete variable has the value of its own equation, so that it keeps its value
+/// exactly where no when-clause acts.
+fn may_determine(dae: &Dae, equation: Equation, variable: VarId, members: &[VarId]) -> bool {
+    let is_discrete = |v: VarId| dae.variable(v).kind == Kind::Discrete;
+    match dae.pool.as_variable(equation.left) {
+        Some(own) if is_discrete(own) && members.contains(&own) => own == variable,
+        _ => !is_discrete(variable),
+    }
 }
 
 /// The value of a variable by one equation, if it can be had without dividing by what may be zero.

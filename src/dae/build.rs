@@ -13,6 +13,9 @@ use crate::syntax::ast::{self, EquationKind, Expression, ExpressionKind};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
+/// Stands for a text that is not known when compiling.
+pub(super) const UNKNOWN_TEXT: &str = "…";
+
 /// Largest number of scalar equations.
 const MAX_EQUATIONS: usize = 2_000_000;
 
@@ -35,7 +38,11 @@ pub(super) struct Builder<'a> {
     pub(super) relations: FxHashMap<(crate::symbolic::RelationOperator, Expr, Expr), VarId>,
     /// How deep calls of user functions are nested, and how many statements they may still run.
     pub(super) calls: usize,
+    pub(super) inlined: usize,
+    /// How many statements of algorithms may still be carried out.
     pub(super) statements: usize,
+    /// Functions that cannot be expressions.
+    pub(super) functions: super::function::Instances,
     /// Whether initial equations are being read.
     pub(super) initial: bool,
     /// Whether the body of a when-clause is being read.
@@ -72,6 +79,8 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         relations: FxHashMap::default(),
         calls: 0,
         statements: super::inline::MAX_STATEMENTS,
+        inlined: 0,
+        functions: super::function::Instances::default(),
         initial: false,
         in_when: false,
         branches: 0,
@@ -99,6 +108,7 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
     for statements in &flat.initial_algorithms {
         builder.algorithm(statements)?;
     }
+    builder.dae.functions = Arc::new(builder.functions.finish());
     Ok(builder.dae)
 }
 
@@ -160,7 +170,8 @@ impl<'a> Builder<'a> {
                 continue;
             }
             let first = self.first[position].0 as usize;
-            let is_parameter = variable.variability <= Variability::Parameter;
+            let is_parameter = variable.variability <= Variability::Parameter
+                || matches!(variable.base, BaseType::ExternalObject(_));
             if let Some(binding) = &variable.binding {
                 let array = self.sized(binding, &variable.dims)?;
                 for (at, element) in array.elements.into_iter().enumerate() {
@@ -552,6 +563,8 @@ fn declared(variable: &flatten::Variable, position: usize) -> Variable {
     };
     let kind = match (&variable.base, variable.variability) {
         (BaseType::String, _) => Kind::Text,
+        // Its constructor runs once, before the simulation.
+        (BaseType::ExternalObject(_), _) => Kind::Parameter { tunable: false },
         (_, Variability::Constant | Variability::Parameter) => {
             Kind::Parameter { tunable: variable.is_tunable() }
         }

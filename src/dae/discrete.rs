@@ -115,11 +115,13 @@ fn statement_targets<'a>(
     }
 }
 
-/// Moves the equations that determine discrete variables to those of events.
+/// Moves the equations that determine discrete variables to those of events, and drops previous
+/// values that nothing uses.
 pub(super) fn separate_discrete(
     dae: &mut Dae,
     aliases: &[Option<Alias>],
 ) -> Result<(), Diagnostic> {
+    drop_unused_previous(dae);
     let given: std::collections::BTreeSet<VarId> =
         dae.events.equations.iter().filter_map(|e| dae.pool.as_variable(e.left)).collect();
     let open: Vec<VarId> = (0..dae.variables.len() as u32)
@@ -165,6 +167,27 @@ pub(super) fn separate_discrete(
         dae.events.equations.push(Equation { left, right, span: equation.span });
     }
     Ok(())
+}
+
+fn drop_unused_previous(dae: &mut Dae) {
+    let mut used = vec![false; dae.variables.len()];
+    let pool = &dae.pool;
+    let mut mark = |e: Expr| pool.variables(e).iter().for_each(|v| used[v.0 as usize] = true);
+    for equation in dae.equations.iter().chain(&dae.initial_equations) {
+        mark(equation.left);
+        mark(equation.right);
+    }
+    for relation in &dae.relations {
+        mark(relation.left);
+        mark(relation.right);
+    }
+    dae.assertions.iter().for_each(|assertion| mark(assertion.condition));
+    dae.events.for_each_expression(|e| mark(*e));
+    for (variable, used) in dae.variables.iter_mut().zip(used) {
+        if matches!(variable.kind, Kind::Previous(_)) && !used {
+            variable.kind = Kind::Signal;
+        }
+    }
 }
 
 fn check_constant_between_events(

@@ -365,3 +365,33 @@ fn eliminate(rows: &mut [Vec<(f64, bool)>], pivot: usize, column: usize) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PLAIN: Wish = (StateSelect::Default, false, false);
+    const PREFERRED: Wish = (StateSelect::Prefer, false, false);
+
+    #[test]
+    fn the_least_wanted_columns_are_taken_while_they_are_regular() {
+        let known = |values: &[f64]| values.iter().map(|v| (*v, true)).collect::<Vec<_>>();
+        let rows = vec![known(&[1.0, 2.0, 1.0]), known(&[2.0, 4.0, 3.0])];
+        // The first two columns are parallel.
+        let wishes = [PLAIN, PLAIN, PREFERRED];
+        assert_eq!(pivots(rows.clone(), &wishes, false), Some(vec![1, 2]));
+        assert_eq!(pivots(vec![known(&[0.0, 0.0])], &[PLAIN, PLAIN], false), None);
+        assert!(!is_wanted(&[1, 2], &wishes));
+        assert!(is_wanted(&[0, 1], &wishes));
+    }
+
+    #[test]
+    fn known_pivots_are_told_from_those_that_may_vanish() {
+        let rows = vec![vec![(2.0, false), (1.0, true)]];
+        assert_eq!(pivots(rows.clone(), &[PLAIN, PLAIN], false), Some(vec![0]));
+        assert_eq!(pivots(rows, &[PLAIN, PLAIN], true), Some(vec![1]));
+        // What is left of a known entry after a varying one was subtracted is not known.
+        let rows = vec![vec![(1.0, true), (0.5, false)], vec![(1.0, true), (1.0, true)]];
+        assert_eq!(pivots(rows, &[PLAIN, PLAIN], true), None);
+    }
+}

@@ -22,10 +22,13 @@ use crate::syntax::ast::{
 };
 use std::sync::Arc;
 
-/// Most statements that all calls of a model may run.
+/// Most statements that one call may run where it cannot be compiled.
 pub(super) const MAX_STATEMENTS: usize = 1_000_000;
 /// Deepest nesting of calls.
 const MAX_CALLS: usize = 40;
+
+/// Most statements that one call may run where it can be compiled instead.
+pub(super) const MAX_INLINED: usize = 2_000;
 
 /// How a sequence of statements ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,6 +55,7 @@ pub(super) fn inline(
         return refuse("is impure and cannot be used in equations");
     }
     if builder.calls >= MAX_CALLS {
+        builder.inlined = 0;
         return refuse("calls itself without an end that is known when compiling");
     }
     builder.calls += 1;
@@ -145,8 +149,8 @@ impl Call<'_, '_> {
     }
 
     fn statement(&mut self, s: &Statement, loops: &mut Loops) -> Result<Flow, Diagnostic> {
-        self.builder.statements = self.builder.statements.saturating_sub(1);
-        if self.builder.statements == 0 {
+        self.builder.inlined = self.builder.inlined.saturating_sub(1);
+        if self.builder.inlined == 0 {
             return Err(fault!(
                 NOT_SUPPORTED,
                 "functions in equations run more than {MAX_STATEMENTS} statements"
@@ -185,8 +189,8 @@ impl Call<'_, '_> {
                         Flow::Break => break,
                         Flow::Return => return Ok(Flow::Return),
                     }
-                    self.builder.statements = self.builder.statements.saturating_sub(1);
-                    if self.builder.statements == 0 {
+                    self.builder.inlined = self.builder.inlined.saturating_sub(1);
+                    if self.builder.inlined == 0 {
                         return Err(fault!(NOT_SUPPORTED, "this loop has no end").at(s.span));
                     }
                 }
@@ -420,7 +424,7 @@ fn check_rank(
 }
 
 /// The shape of an output or local, its sizes given by the components before it.
-fn component_shape<T: Target>(
+pub(super) fn component_shape<T: Target>(
     lowering: &mut Lowering<'_, T>,
     component: &FunctionComponent,
 ) -> Result<Shape, Diagnostic> {
@@ -445,9 +449,11 @@ fn component_shape<T: Target>(
             };
             Ok(Shape::Record(fields.iter().map(shape).collect::<Result<_, Diagnostic>>()?))
         }
-        ValueType::Real | ValueType::Integer | ValueType::Boolean | ValueType::Enumeration(_) => {
-            Ok(Shape::Array(dims))
-        }
+        ValueType::Real
+        | ValueType::Integer
+        | ValueType::Boolean
+        | ValueType::Enumeration(_)
+        | ValueType::ExternalObject(_) => Ok(Shape::Array(dims)),
         _ => Err(fault!(
             NOT_SUPPORTED,
             "`{}` is of a type that functions in equations cannot have",
@@ -536,7 +542,7 @@ impl Target for Call<'_, '_> {
         arguments: Vec<Lowered<Expr>>,
         span: Span,
     ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
-        inline(self.builder, function, arguments, span)
+        super::function::call(self.builder, function, arguments, span)
     }
 
     fn operator(

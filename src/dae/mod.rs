@@ -16,8 +16,7 @@
 //! `pre(v) = v` (MLS §8.5).
 //!
 //! Not handled yet, and refused with `not-supported`: `delay` by a time that varies,
-//! `spatialDistribution`, statements whose loops depend on variables, functions whose loops or
-//! returns depend on variables.
+//! `spatialDistribution`, statements whose loops depend on variables.
 
 mod algorithm;
 mod alias_elimination;
@@ -28,6 +27,7 @@ mod dummy_derivatives;
 mod dynamic_states;
 pub mod errors;
 mod events;
+mod function;
 mod homotopy;
 mod index_reduction;
 mod initial;

@@ -1,6 +1,7 @@
 //! The system of equations: scalar, first order (MLS appendix B). Data only.
 
 use super::events::Events;
+use crate::bytecode::Functions;
 use crate::diag::Diagnostic;
 use crate::flatten::{BaseType, Experiment, Variability};
 use crate::source::Span;
@@ -23,6 +24,8 @@ pub struct Dae {
     pub initial_equations: Vec<Equation>,
     /// What must hold.
     pub assertions: Vec<Assertion>,
+    /// Functions that expressions call.
+    pub functions: Arc<Functions>,
     /// Relations that switch at events only.
     pub relations: Vec<Relation>,
     /// What else happens at events.
@@ -175,7 +178,7 @@ pub struct Relation {
 }
 
 /// Sizes of an argument.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Shape {
     /// A scalar (no sizes) or an array.
     Array(Vec<usize>),

@@ -1,9 +1,9 @@
 //! Lowering into the symbolic expressions of a [`Dae`](super::model::Dae).
 
-use super::build::{Builder, scalar_of_nothing};
+use super::build::{Builder, Folding, UNKNOWN_TEXT, scalar_of_nothing};
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::index_reduction::derivative_of;
-use super::lowering::{Array, Binary, Branch, Lowered, Operator, Target, Unary};
+use super::lowering::{Array, Binary, Branch, Lowered, Lowering, Operator, Target, Unary};
 use super::model::{Assertion, Homotopy, Kind, Relation};
 use crate::diag::Diagnostic;
 use crate::eval::Function;
@@ -114,6 +114,10 @@ impl Target for Builder<'_> {
         pairs.map(|(a, b)| self.dae.pool.if_then_else(branch.condition, *a, *b)).collect()
     }
 
+    fn settle(&mut self, condition: Expr) -> Option<f64> {
+        self.settled(condition).ok().flatten()
+    }
+
     fn element(
         &mut self,
         elements: &[Expr],
@@ -143,7 +147,7 @@ impl Target for Builder<'_> {
             return self.record(path).ok_or_else(|| self.unresolved(path, reference.span));
         };
         if variable.base == BaseType::String {
-            return Ok(Lowered::Text("…".into()));
+            return Ok(Lowered::Text(self.text(position)));
         }
         if variable.variability <= Variability::Parameter {
             self.fold(position)?;
@@ -170,7 +174,7 @@ impl Target for Builder<'_> {
         arguments: Vec<Lowered<Expr>>,
         span: Span,
     ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
-        super::inline::inline(self, function, arguments, span)
+        super::function::call(self, function, arguments, span)
     }
 
     fn operator(
@@ -241,6 +245,23 @@ impl Target for Builder<'_> {
 }
 
 impl Builder<'_> {
+    /// The text that a variable is bound to, [`UNKNOWN_TEXT`] if that is not known.
+    fn text(&mut self, position: usize) -> Arc<str> {
+        let flat = self.flat;
+        let unknown = || Arc::from(UNKNOWN_TEXT);
+        let Some(binding) = &flat.variables[position].binding else { return unknown() };
+        if self.folding[position] == Folding::InProgress {
+            return unknown();
+        }
+        let before = std::mem::replace(&mut self.folding[position], Folding::InProgress);
+        let lowered = Lowering::new(self).lower(binding);
+        self.folding[position] = before;
+        match lowered {
+            Ok(Lowered::Text(text)) => text,
+            _ => unknown(),
+        }
+    }
+
     /// One of the elements, the first of which has the position `first`: by halves.
     fn chosen(&mut self, elements: &[Expr], first: usize, position: Expr) -> Expr {
         if elements.iter().all(|element| *element == elements[0]) {

@@ -57,10 +57,11 @@ pub(super) struct Call;
 impl Call {
     pub(super) fn new(name: &impl std::fmt::Display) -> Result<Call, Fault> {
         let calls = CALLS.get();
-        if calls >= MAX_CALLS || !has_room() {
+        // Less than all, so that it is a call that has no room and not an expression in it.
+        if calls >= MAX_CALLS || !has_room(BYTES.get() / 8 * 7) {
             return Err(fault!(
                 RECURSION_LIMIT,
-                "`{name}` is called inside {calls} other calls, which is too deep";
+                "`{name}` is called inside too many other calls";
                 help: "check the condition that ends the recursion"
             ));
         }
@@ -77,14 +78,14 @@ impl Drop for Call {
 
 /// Whether an expression may nest one level deeper.
 pub(super) fn check_nesting() -> Result<(), Fault> {
-    if has_room() {
+    if has_room(BYTES.get()) {
         return Ok(());
     }
     Err(Fault::new(RECURSION_LIMIT, "the expression is nested too deeply"))
 }
 
-fn has_room() -> bool {
-    BASE.get().is_none_or(|base| base.abs_diff(stack_address()) < BYTES.get())
+fn has_room(bytes: usize) -> bool {
+    BASE.get().is_none_or(|base| base.abs_diff(stack_address()) < bytes)
 }
 
 #[inline(never)]

@@ -1,12 +1,9 @@
 //! Executing a function: its components, its algorithm, its outputs (MLS §12.4).
 
-use super::errors::EXTERNAL_FUNCTION;
 use super::variable::Variable;
-use super::{Evaluator, Function, FunctionBody, Scope, ValueType, depth, intrinsics};
+use super::{Evaluator, Function, FunctionBody, Scope, ValueType, depth};
 use crate::diag::{At, Diagnostic};
-use crate::fault;
 use crate::source::Span;
-use crate::syntax::ast::External;
 use crate::value::{RecordValue, Value};
 use indexmap::IndexMap;
 use std::sync::Arc;
@@ -51,7 +48,7 @@ impl Evaluator<'_> {
         }
         match &function.body {
             FunctionBody::RecordConstructor => return self.constructed(function),
-            FunctionBody::External(external) => return self.external(function, external),
+            FunctionBody::External(external) => self.external(function, external)?,
             FunctionBody::Algorithm(statements) => {
                 for component in function.outputs.iter().chain(&function.locals) {
                     self.prepare(component.name)?;
@@ -70,27 +67,6 @@ impl Evaluator<'_> {
                 None => Err(self.scope.unknown(output.name).at(output.span)),
             })
             .collect()
-    }
-
-    /// A function of the language itself, which `external "builtin"` stands for (MLS §12.9).
-    fn external(
-        &mut self,
-        function: &Function,
-        external: &External,
-    ) -> Result<Vec<Value>, Diagnostic> {
-        let called = external.function.as_ref().map(|name| name.node);
-        let intrinsic = called.and_then(|name| intrinsics::find(name.as_str()));
-        if let (Some("builtin"), Some(intrinsic)) = (external.language.as_deref(), intrinsic) {
-            let arguments: Result<Vec<Value>, Diagnostic> =
-                external.arguments.iter().map(|argument| self.expression(argument)).collect();
-            return Ok(vec![intrinsic.call(&arguments?).at(external.span)?]);
-        }
-        let fault = fault!(
-            EXTERNAL_FUNCTION,
-            "`{}` is an external function, which the program cannot call", function.name;
-            help: "write its algorithm in Modelica"
-        );
-        Err(fault.at(external.span))
     }
 
     /// The record made of the inputs (MLS §12.6).

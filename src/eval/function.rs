@@ -89,6 +89,8 @@ pub enum ValueType {
     Enumeration(Arc<EnumerationDefinition>),
     /// A record: its full name and its components, each with its dimensions.
     Record(Name, Arc<IndexMap<Ident, FunctionComponent>>),
+    /// A class derived from `ExternalObject` (MLS §12.9.7).
+    ExternalObject(Name),
     /// A function given as an argument.
     Function,
     /// The name of a class, not evaluated (built-ins only).

@@ -83,6 +83,12 @@ pub trait Host {
         Vec::new()
     }
 
+    /// Who answers external functions that want files or the screen; without anyone they are
+    /// refused.
+    fn outside(&mut self) -> Option<&mut dyn crate::external::Outside> {
+        None
+    }
+
     /// Told before each turn of an outermost loop of a script, not of a function: `turn` counts
     /// from 0, `turns` is `None` in a `while` loop.
     fn loop_turn(&mut self, turn: usize, turns: Option<usize>) {

@@ -13,6 +13,7 @@ mod depth;
 pub mod errors;
 mod execution;
 mod expression;
+mod external;
 mod flow;
 mod function;
 mod host;

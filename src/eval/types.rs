@@ -84,6 +84,7 @@ impl ValueType {
             ValueType::String => "String".into(),
             ValueType::Enumeration(definition) => definition.name.to_string(),
             ValueType::Record(name, _) => name.to_string(),
+            ValueType::ExternalObject(name) => name.to_string(),
             ValueType::Function => "function".into(),
             ValueType::TypeName => "TypeName".into(),
             ValueType::VariableName => "VariableName".into(),
@@ -102,6 +103,11 @@ impl ValueType {
             | (ValueType::Function, value @ Value::Function(_))
             | (ValueType::TypeName, value @ Value::TypeName(_))
             | (ValueType::VariableName, value @ Value::VariableName(_)) => Ok(value),
+            (ValueType::ExternalObject(class), Value::External(object))
+                if *class == object.class =>
+            {
+                Ok(Value::External(object))
+            }
             (ValueType::Real, Value::Integer(value)) => Ok(Value::Real(value as f64)),
             (ValueType::Enumeration(definition), Value::Enumeration(value))
                 if *definition == value.definition =>

@@ -226,11 +226,13 @@ impl Instantiation<'_> {
         let name = component.name.node;
         let outer = self.scope(context).modifier.elements.get(&name).cloned().unwrap_or_default();
         let redeclaration = outer.redeclaration.clone();
+        let defaults = constraining(clause, redeclaration.as_ref(), context)?;
         let mut own = match (&redeclaration, &clause.constraint) {
-            (Some(_), Some(constraint)) => {
-                Modifier::of_arguments(&constraint.modification, context)?
+            (Some(_), Some(_)) => defaults,
+            _ => {
+                let own = Modifier::new(component.modification.as_ref(), false, context)?;
+                defaults.overridden_by(own, name)?
             }
-            _ => Modifier::new(component.modification.as_ref(), false, context)?,
         };
         let declared_final = clause.prefixes.is_final;
         own.is_final = declared_final;
@@ -363,7 +365,7 @@ impl Instantiation<'_> {
 
     /// The predefined type that a long class extends, directly or through others, if it does:
     /// `type T extends Real(…); end T;`, or a class of external objects.
-    fn predefined_base(
+    pub(super) fn predefined_base(
         &mut self,
         id: ScopeId,
         text: &Text,
@@ -419,15 +421,43 @@ impl Instantiation<'_> {
 impl Declaration {
     /// Whether both declare the same, as two base classes may (MLS §7.1).
     fn is_same(&self, other: &Declaration) -> bool {
-        let plain = |one: &Declaration| {
-            one.modifier.is_empty() && one.dims.is_empty() && one.condition.is_none()
-        };
+        let plain = |one: &Declaration| one.dims.is_empty() && one.condition.is_none();
         self.type_specifier.name == other.type_specifier.name
             && self.prefixes == other.prefixes
             && self.type_prefixes == other.type_prefixes
+            && self.modifier.is_same(&other.modifier)
             && plain(self)
             && plain(other)
     }
+}
+
+/// The modifiers of the constraining clauses: of the declaration, and of redeclarations that stand
+/// under the last one (MLS §7.3.2).
+fn constraining(
+    clause: &ComponentClause,
+    redeclaration: Option<&Redeclaration>,
+    context: ScopeId,
+) -> Result<Modifier, Diagnostic> {
+    let mut modifier = match &clause.constraint {
+        Some(constraint) => Modifier::of_arguments(&constraint.modification, context)?,
+        None => Modifier::default(),
+    };
+    let mut under = Vec::new();
+    let mut next = redeclaration.and_then(|redeclaration| redeclaration.over.as_deref());
+    while let Some(one) = next {
+        under.push(one);
+        next = one.over.as_deref();
+    }
+    for one in under.into_iter().rev() {
+        let Replacement::Component(clause) = &one.replacement else { continue };
+        let Some(constraint) = &clause.constraint else { continue };
+        let more = Modifier::of_arguments(&constraint.modification, one.context)?;
+        modifier = match clause.components.first() {
+            Some(component) => modifier.overridden_by(more, component.name.node)?,
+            None => modifier,
+        };
+    }
+    Ok(modifier)
 }
 
 /// Puts the type, the prefixes and the dimensions of a redeclaration in the place of the declared

@@ -8,9 +8,15 @@ use super::lookup::{Predefined, Type};
 use super::resolve::Local;
 use super::scope::ScopeId;
 use crate::diag::Diagnostic;
+use crate::eval::ValueType;
 use crate::fault;
 use crate::source::Span;
-use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind, Subscript};
+use crate::syntax::ast::{
+    Arguments, ClassSpecifier, ComponentReference, Expression, ExpressionKind, Subscript,
+};
+
+/// How many short classes a type may lead through.
+const MAX_CHAIN: usize = 100;
 
 impl Instantiation<'_> {
     /// All values of the type that an expression names, as a vector; `None` if it names none.
@@ -28,7 +34,7 @@ impl Instantiation<'_> {
             return Ok(None);
         }
         let Some(found) = self.lookup(context, &reference.name())? else { return Ok(None) };
-        if found == Type::Predefined(Predefined::Boolean) {
+        if self.is_boolean(found)? {
             let truth = |truth| Expression::new(ExpressionKind::Boolean(truth), e.span);
             let both = ExpressionKind::Array(vec![truth(false), truth(true)]);
             return Ok(Some(Expression::new(both, e.span)));
@@ -39,9 +45,23 @@ impl Instantiation<'_> {
         Ok(Some(Expression::new(ExpressionKind::Array(ordinals), e.span)))
     }
 
+    /// Whether a type is Boolean, through short classes.
+    fn is_boolean(&mut self, mut found: Type) -> Result<bool, Diagnostic> {
+        for _ in 0..MAX_CHAIN {
+            let Type::Class(id) = found else {
+                return Ok(found == Type::Predefined(Predefined::Boolean));
+            };
+            let text = self.text(id).clone();
+            let ClassSpecifier::Short(short) = &text.definition.specifier else { break };
+            let parent = self.scope(id).parent.unwrap_or(ScopeId::TOP);
+            found = self.lookup_type(parent, &short.target)?;
+        }
+        Ok(false)
+    }
+
     /// Subscripts of Boolean as places: `false` is the first (MLS §10.5).
-    pub(super) fn boolean_subscript(&self, index: Expression) -> Expression {
-        if self.type_of(&index) != Some(BaseType::Boolean) {
+    pub(super) fn boolean_subscript(&self, index: Expression, local: &Local) -> Expression {
+        if self.value_type_of(&index, local) != Some(ValueType::Boolean) {
             return index;
         }
         let span = index.span;
@@ -49,7 +69,8 @@ impl Instantiation<'_> {
         match index.kind {
             ExpressionKind::Boolean(truth) => place(1 + i64::from(truth)),
             ExpressionKind::Array(elements) => {
-                let places = elements.into_iter().map(|e| self.boolean_subscript(e)).collect();
+                let places =
+                    elements.into_iter().map(|e| self.boolean_subscript(e, local)).collect();
                 Expression::new(ExpressionKind::Array(places), span)
             }
             _ => {

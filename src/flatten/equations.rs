@@ -15,6 +15,7 @@ use crate::source::Span;
 use crate::syntax::ast::{
     Equation, EquationKind, Expression, ExpressionKind, ForIndex, ReferencePart, Section,
 };
+use crate::syntax::visit::Visit;
 use crate::value::{ArrayValue, Elements, Value};
 
 /// The most equations that loops are unrolled to.
@@ -62,7 +63,11 @@ impl Instantiation<'_> {
         model: &mut FlatModel,
         errors: &mut Vec<Diagnostic>,
     ) -> Result<(), Diagnostic> {
-        let local = Local::default();
+        let initial = matches!(
+            section,
+            Section::Equations { initial: true, .. } | Section::Algorithm { initial: true, .. }
+        );
+        let local = Local { impure: initial, ..Local::default() };
         match section {
             Section::Equations { initial, equations, .. } => {
                 for equation in equations {
@@ -127,9 +132,10 @@ impl Instantiation<'_> {
             }
             EquationKind::When { branches } => {
                 let mut resolved = Vec::with_capacity(branches.len());
+                let acting = Local { impure: true, ..local.clone() };
                 for (condition, body) in branches {
                     let condition = self.resolve(condition, context, local)?;
-                    resolved.push((condition, self.equations(body, context, local)?));
+                    resolved.push((condition, self.equations(body, context, &acting)?));
                 }
                 EquationKind::When { branches: resolved }
             }
@@ -258,7 +264,8 @@ impl Instantiation<'_> {
         out: &mut Vec<Equation>,
     ) -> Result<(), Diagnostic> {
         let mut turns = Vec::new();
-        self.turns(indices, context, local, &mut turns)?;
+        let indices = self.loop_ranges(indices, body, context, local)?;
+        self.turns(&indices, context, local, &mut turns)?;
         for turn in turns {
             out.extend(self.equations(body, context, &turn)?);
             if out.len() > MAX_EQUATIONS {
@@ -267,6 +274,18 @@ impl Instantiation<'_> {
             }
         }
         Ok(())
+    }
+
+    /// The loop variables of a loop of equations with their ranges.
+    pub(super) fn loop_ranges(
+        &mut self,
+        indices: &[ForIndex],
+        body: &[Equation],
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Vec<ForIndex>, Diagnostic> {
+        let visit = |uses: &mut dyn Visit| body.iter().for_each(|inner| uses.equation(inner));
+        self.with_ranges(indices, context, local, &visit)
     }
 
     /// What the body of a loop knows in each of its turns.
@@ -283,8 +302,8 @@ impl Instantiation<'_> {
         };
         let span = index.name.span;
         let range = index.range.as_ref().ok_or_else(|| {
-            fault!(NOT_SUPPORTED, "loops without a range are not translated yet in equations";
-                help: "write the range: `for {} in 1:n loop`", index.name.node)
+            fault!(NOT_SUPPORTED, "the range of `{}` is not known", index.name.node;
+                help: "write the range of the loop, such as `1:n`")
             .at(span)
         })?;
         let resolved = match self.type_range(range, context, local)? {

@@ -1,7 +1,7 @@
 //! Functions made ready to be called: inherited elements collected, names resolved (MLS ch. 12).
 
 use super::errors::{NOT_SUPPORTED, TYPE_MISMATCH, UNKNOWN_CLASS};
-use super::instance::Shape;
+use super::instance::{MemberState, Shape};
 use super::instantiation::Instantiation;
 use super::library::Library;
 use super::lookup::{Predefined, Type};
@@ -14,10 +14,11 @@ use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
-    Argument, Arguments, CausalityPrefix, ClassSpecifier, ComponentReference, Expression,
+    Argument, Arguments, Binding, CausalityPrefix, ClassSpecifier, ComponentReference, Expression,
     ExpressionKind, NamedArgument, Purity, Restriction, Section, Statement, StatementKind,
     Subscript,
 };
+use crate::syntax::visit::Visit;
 use indexmap::IndexMap;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -69,8 +70,38 @@ impl Instantiation<'_> {
                 Some(full) => Ok(full),
                 None => Err(fault!(TYPE_MISMATCH, "`{name}` is not a function").at(span)),
             },
-            _ => Ok(self.intrinsic_name(name)),
+            _ => match self.function_of_component(name, context)? {
+                Some(full) => Ok(full),
+                None => Ok(self.intrinsic_name(name)),
+            },
         }
+    }
+
+    /// A function of the class of a component: `component.f` (MLS §5.3.2).
+    fn function_of_component(
+        &mut self,
+        name: &Name,
+        context: ScopeId,
+    ) -> Result<Option<Name>, Diagnostic> {
+        let Some((first, rest)) = name.parts.split_first() else { return Ok(None) };
+        if rest.is_empty() || name.global || !self.has_component(context, *first)? {
+            return Ok(None);
+        }
+        let mut node = self.node_of(context);
+        for (at, part) in name.parts.iter().enumerate() {
+            match self.member(node, *part)?.map(MemberState::seen) {
+                Some(MemberState::Single(next)) => node = next,
+                _ => {
+                    let Some(scope) = self.scope_of(node) else { return Ok(None) };
+                    let found = Some(Type::Class(scope));
+                    return match self.lookup_inside(found, &name.parts[at..])? {
+                        Some(Type::Class(id)) => self.function(id),
+                        _ => Ok(None),
+                    };
+                }
+            }
+        }
+        Ok(None)
     }
 
     /// `Modelica.Math.sin` is `sin` where no library declares it.
@@ -93,7 +124,7 @@ impl Instantiation<'_> {
             Restriction::Function { .. } | Restriction::Record | Restriction::OperatorRecord
         );
         if !is_function {
-            return Ok(None);
+            return self.object_constructor(class);
         }
         // Known by name before its body is read, which may call the function itself.
         let name = self.free_name(&self.text(id).name.clone());
@@ -114,6 +145,40 @@ impl Instantiation<'_> {
                 Err(error)
             }
         }
+    }
+
+    /// The function `constructor` of an external object (MLS §12.9.7), which its class stands for.
+    fn object_constructor(&mut self, class: ScopeId) -> Result<Option<Name>, Diagnostic> {
+        let text = self.text(class).clone();
+        let base = self.predefined_base(class, &text)?.map(|(base, _)| base);
+        if !matches!(base, Some(Type::Predefined(Predefined::ExternalObject))) {
+            return Ok(None);
+        }
+        match self.lookup(class, &Name::from(Ident::new("constructor")))? {
+            Some(Type::Class(id)) => self.function(id),
+            _ => Ok(None),
+        }
+    }
+
+    /// Makes the functions of `derivative` annotations ready and writes their full names; those
+    /// that cannot be made ready are left out (MLS §12.7.1).
+    fn derivatives(&mut self, arguments: Vec<Argument>, context: ScopeId) -> Vec<Argument> {
+        let mut kept = Vec::with_capacity(arguments.len());
+        for mut argument in arguments {
+            if let Argument::Element(element) = &mut argument
+                && element.name.node.last().is_some_and(|name| name == "derivative")
+                && let Some(modification) = &mut element.modification
+                && let Some(Binding::Expression(e)) = &mut modification.binding
+                && let ExpressionKind::Reference(reference) = &mut e.kind
+            {
+                match self.function_name(&reference.name(), context, e.span) {
+                    Ok(full) => *reference = ComponentReference::from_name(&full, e.span),
+                    Err(_) => continue,
+                }
+            }
+            kept.push(argument);
+        }
+        kept
     }
 
     /// The name, with a number if another function has it: the same text in other surroundings.
@@ -204,7 +269,8 @@ impl Instantiation<'_> {
         };
         let mut annotations = Vec::new();
         for scope in &lineage {
-            annotations.extend(annotation(self.text(*scope).sections()));
+            let own = annotation(self.text(*scope).sections());
+            annotations.extend(self.derivatives(own, *scope));
         }
         Ok(Function {
             name: name.clone(),
@@ -347,8 +413,9 @@ impl Instantiation<'_> {
                 return Ok(ValueType::Enumeration(definition.clone()));
             }
             Shape::Class(class) => *class,
+            Shape::ExternalObject(name) => return Ok(ValueType::ExternalObject(name.clone())),
             Shape::Function => return Ok(ValueType::Function),
-            Shape::Predefined(_) | Shape::ExternalObject(_) => {
+            Shape::Predefined(_) => {
                 return Err(
                     fault!(NOT_SUPPORTED, "external objects are not translated yet").at(span)
                 );
@@ -438,7 +505,10 @@ impl Instantiation<'_> {
                 otherwise: self.statements(otherwise, context, local)?,
             },
             StatementKind::For { indices, body } => {
-                let (indices, inner) = self.iterators(indices, context, local)?;
+                let visit =
+                    |uses: &mut dyn Visit| body.iter().for_each(|inner| uses.statement(inner));
+                let indices = self.with_ranges(indices, context, local, &visit)?;
+                let (indices, inner) = self.iterators(&indices, context, local)?;
                 StatementKind::For { indices, body: self.statements(body, context, &inner)? }
             }
             StatementKind::While { condition, body } => StatementKind::While {
@@ -446,7 +516,10 @@ impl Instantiation<'_> {
                 body: self.statements(body, context, local)?,
             },
             StatementKind::When { branches } => {
-                StatementKind::When { branches: self.statement_branches(branches, context, local)? }
+                let acting = Local { impure: true, ..local.clone() };
+                StatementKind::When {
+                    branches: self.statement_branches(branches, context, &acting)?,
+                }
             }
             StatementKind::Break => StatementKind::Break,
             StatementKind::Return => StatementKind::Return,

@@ -148,8 +148,6 @@ pub(super) struct Leaf {
     pub(super) modifier: Modifier,
     /// `flow` or `stream`.
     pub(super) connection: Option<ConnectionPrefix>,
-    /// `input` or `output`, wherever it stands.
-    pub(super) causality: Option<CausalityPrefix>,
     /// Whether its type is a connector.
     pub(super) connector: bool,
 }

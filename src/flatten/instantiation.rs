@@ -592,7 +592,6 @@ impl<'a> Instantiation<'a> {
             variable: self.variables.len(),
             modifier: expanded.modifier,
             connection: inherited.connection,
-            causality: inherited.causality,
             connector: expanded.connector,
         };
         let id = NodeId(self.nodes.len());

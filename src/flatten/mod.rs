@@ -1,13 +1,17 @@
 //! Instantiation and flattening: a class of the library becomes a flat model (MLS §5.6).
 //!
-//! The steps in order: find the class, instantiate it and all its components (§5.6.1), resolve
-//! bindings and attributes, then the equations (§5.6.2), and compare the number of equations with
+//! The steps in order: find the class and check the classes that take part by their texts, build
+//! the instance tree (§5.6.1), form the connection sets (ch. 9), resolve equations, bindings and
+//! attributes (§5.6.2), add the equations of connections, and compare the number of equations with
 //! that of unknowns (§4.8).
 //!
-//! Not translated yet, each refused with `unsupported-language`: connectors and connections
-//! (ch. 9), inner and outer (§5.4), redeclarations (§7.3), `break` in extends clauses (§7.4),
-//! stream connectors (ch. 15), overloaded operators (ch. 14), loops over implicit ranges in
-//! equations (§11.2.2.1), impure functions in models (§12.3).
+//! Names are looked up in *scopes*: classes with the modifiers and redeclarations that reach them
+//! and the scope in which their text stands (`scope`). A base class is a scope of its own that
+//! shares the instance of the derived class.
+//!
+//! Not translated, each refused with `unsupported-language` at its place: `break connect` in
+//! extends clauses (§7.4), impure functions in models (§12.3), clocked expressions (ch. 16) and
+//! state machines (ch. 17).
 
 mod balance;
 mod checks;
@@ -20,6 +24,7 @@ mod equations;
 pub mod errors;
 mod flat_model;
 mod functions;
+mod implicit_ranges;
 mod inner_outer;
 mod instance;
 mod instantiation;
@@ -35,6 +40,7 @@ mod shapes;
 mod specialization;
 mod types;
 mod variables;
+mod vectorization;
 
 pub use flat_model::*;
 pub use library::{ClassId, Library, LibraryFiles};

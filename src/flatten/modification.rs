@@ -12,6 +12,7 @@ use crate::syntax::ast::{
     Argument, Binding, ClassElement, ComponentClause, ComponentDeclaration, ElementRedeclaration,
     Expression, Modification, RedeclaredElement,
 };
+use crate::syntax::print;
 use indexmap::IndexMap;
 use std::sync::Arc;
 
@@ -183,6 +184,23 @@ impl Modifier {
         let entry = self.elements.entry(name).or_default();
         entry.redeclaration = Some(redeclaration);
         entry.span = Some(span);
+    }
+
+    /// Whether both are written alike, wherever they stand.
+    pub(super) fn is_same(&self, other: &Modifier) -> bool {
+        let value = |one: &Modifier| {
+            one.binding.as_ref().map(|bound| bound.value.as_ref().map(print::expression))
+        };
+        let elements = || {
+            self.elements.iter().all(|(name, modifier)| {
+                other.elements.get(name).is_some_and(|other| modifier.is_same(other))
+            })
+        };
+        value(self) == value(other)
+            && self.redeclaration.is_none()
+            && other.redeclaration.is_none()
+            && self.elements.len() == other.elements.len()
+            && elements()
     }
 
     /// Whether it changes nothing.

@@ -1,6 +1,7 @@
 //! Resolves the names in expressions: components become their flat paths, constants of packages
 //! their values, functions their full names (MLS §5.3, §5.6.2).
 
+use super::BaseType;
 use super::errors::{
     NOT_CONSTANT, NOT_SUPPORTED, PROTECTED_ACCESS, SIZE_MISMATCH, TOO_LARGE, UNKNOWN_NAME,
 };
@@ -17,6 +18,7 @@ use crate::syntax::ast::{
     Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, NamedArgument,
     ReferencePart, Subscript, UnaryOperator,
 };
+use crate::syntax::visit::Visit;
 use crate::value::Value;
 use std::rc::Rc;
 
@@ -35,6 +37,9 @@ pub(super) struct Local {
     pub(super) types: Rc<Vec<(Ident, ValueType)>>,
     /// Whether variables are replaced by their values, which must be constant.
     pub(super) values: bool,
+    /// Whether impure functions may be called: in parameters, initial sections and when-clauses
+    /// (MLS §12.3).
+    pub(super) impure: bool,
     /// Whether names are flat paths, to which protected components are no secret.
     pub(super) flat: bool,
 }
@@ -243,6 +248,9 @@ impl Instantiation<'_> {
                 },
                 None => None,
             };
+            if range.as_ref().and_then(|range| self.type_of(range)) == Some(BaseType::Boolean) {
+                Rc::make_mut(&mut inner.types).push((index.name.node, ValueType::Boolean));
+            }
             resolved.push(ForIndex { name: index.name, range });
             inner.names.push((index.name.node, None));
         }
@@ -264,7 +272,7 @@ impl Instantiation<'_> {
                         Some(values) => values,
                         None => self.resolve(e, context, local)?,
                     };
-                    Ok(Subscript::Index(self.boolean_subscript(index)))
+                    Ok(Subscript::Index(self.boolean_subscript(index, local)))
                 }
             })
             .collect()
@@ -289,7 +297,11 @@ impl Instantiation<'_> {
         {
             return Ok(size);
         }
-        let (iterators, inner) = self.iterators(&arguments.iterators, context, local)?;
+        let visit = |uses: &mut dyn Visit| {
+            arguments.positional.iter().for_each(|argument| uses.expression(argument));
+        };
+        let iterators = self.with_ranges(&arguments.iterators, context, local, &visit)?;
+        let (iterators, inner) = self.iterators(&iterators, context, local)?;
         let arguments = Arguments {
             positional: self.all(&arguments.positional, context, &inner)?,
             named: self.named_arguments(&arguments.named, context, &inner)?,
@@ -308,7 +320,11 @@ impl Instantiation<'_> {
         };
         let impure =
             self.functions.get(&name).is_some_and(|f| f.as_ref().is_some_and(|f| f.impure));
-        if impure && !self.in_package(self.node_of(context)) && context != ScopeId::TOP {
+        if impure
+            && !local.impure
+            && !self.in_package(self.node_of(context))
+            && context != ScopeId::TOP
+        {
             return Err(
                 fault!(NOT_SUPPORTED, "`{name}` is impure and cannot be called in a model yet";
                 help: "declare it `pure` if equal arguments always give equal values")
@@ -317,6 +333,9 @@ impl Instantiation<'_> {
         }
         let arguments = self.with_defaults(&name, arguments, span);
         let (name, arguments) = self.specialized(name, arguments, span, 0)?;
+        if let Some(calls) = self.vectorized(&name, &arguments, span)? {
+            return Ok(calls);
+        }
         let function = ComponentReference::from_name(&name, function.span);
         let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
         Ok(Expression::new(kind, span))
@@ -711,6 +730,9 @@ pub(super) fn literal(value: &Value, span: Span) -> Expression {
         }
         Value::Function(function) => {
             ExpressionKind::Reference(ComponentReference::from_name(&function.name, span))
+        }
+        Value::External(object) => {
+            ExpressionKind::Reference(ComponentReference::from_name(&object.class, span))
         }
         Value::Tuple(values) => {
             ExpressionKind::Tuple(values.iter().map(|value| Some(literal(value, span))).collect())

@@ -8,7 +8,7 @@ use super::instantiation::{ATTRIBUTES, Instantiation, picked};
 use super::modification::Bound;
 use super::resolve::{Local, literal};
 use super::types::type_name;
-use super::{Attribute, BaseType, Variable};
+use super::{Attribute, BaseType, Variability, Variable};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
@@ -73,7 +73,8 @@ impl Instantiation<'_> {
     fn finished(&mut self, leaf: &Leaf) -> Result<Variable, Diagnostic> {
         let mut variable = self.variables[leaf.variable].0.clone();
         if let Some(bound) = &leaf.modifier.binding {
-            variable.binding = self.bound(bound)?;
+            let impure = variable.variability <= Variability::Parameter;
+            variable.binding = self.bound(bound, impure)?;
         }
         if let Some(binding) = variable.binding.take() {
             check_literal(&binding, &variable.base, &variable)?;
@@ -87,7 +88,7 @@ impl Instantiation<'_> {
             let modifier = leaf.modifier.elements.iter().find(|(known, _)| **known == name);
             let Some((_, modifier)) = modifier else { continue };
             let Some(bound) = &modifier.binding else { continue };
-            if let Some(value) = self.bound(bound)? {
+            if let Some(value) = self.bound(bound, false)? {
                 let value = if DECIDED.contains(&name) { self.decided(value)? } else { value };
                 let attribute = Attribute { value, is_final: modifier.is_final };
                 variable.attributes.insert(name, attribute);
@@ -104,11 +105,11 @@ impl Instantiation<'_> {
         Ok(literal(&self.flat_value(&value)?, value.span))
     }
 
-    fn bound(&mut self, bound: &Bound) -> Result<Option<Expression>, Diagnostic> {
+    fn bound(&mut self, bound: &Bound, impure: bool) -> Result<Option<Expression>, Diagnostic> {
         let Some(value) = &bound.value else { return Ok(None) };
         self.check_elements(value, bound)?;
         let value = picked(value.clone(), &bound.indices);
-        self.resolve(&value, bound.context, &Local::default()).map(Some)
+        self.resolve(&value, bound.context, &Local { impure, ..Local::default() }).map(Some)
     }
 }
 
@@ -118,7 +119,8 @@ impl Instantiation<'_> {
         if bound.indices.is_empty() {
             return Ok(());
         }
-        let whole = self.resolve(value, bound.context, &Local::default())?;
+        let whole =
+            self.resolve(value, bound.context, &Local { impure: true, ..Local::default() })?;
         let wanted = bound.indices.len();
         match self.rank_of(&whole) {
             Some(found) if found < wanted => Err(fault!(

@@ -10,6 +10,7 @@ pub fn all() -> Vec<Code> {
         crate::syntax::errors::CODES,
         crate::value::errors::CODES,
         crate::eval::errors::CODES,
+        crate::external::errors::CODES,
         crate::mat::errors::CODES,
         crate::results::errors::CODES,
         crate::flatten::errors::CODES,

@@ -5,10 +5,12 @@ use super::builtins::{self, BuiltinId, Failure};
 use super::errors::INTERRUPTED;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::eval::{self, Callee, Function, FunctionBody, Host, Scope};
+use crate::external::Outside;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::ComponentReference;
 use crate::value::Value;
+use std::path::Path;
 use std::sync::Arc;
 
 impl Host for Session {
@@ -46,6 +48,10 @@ impl Host for Session {
                     .unwrap_or_else(|| Fault::new(super::errors::SCRIPT_ERROR, "failed").at(span)))
             }
         }
+    }
+
+    fn outside(&mut self) -> Option<&mut dyn Outside> {
+        Some(self)
     }
 
     /// Commands that run scripts work among the variables of the caller.
@@ -119,6 +125,24 @@ impl Host for Session {
             true => Some(Fault::new(INTERRUPTED, "interrupted")),
             false => None,
         }
+    }
+}
+
+/// External functions read files and print as commands do; the clock is not theirs, so that a
+/// script gives the same numbers in every run.
+impl Outside for Session {
+    fn read(&mut self, path: &str) -> Result<Vec<u8>, Fault> {
+        self.read_bytes(Path::new(path))
+    }
+
+    fn print(&mut self, text: &str) -> Result<(), Fault> {
+        Session::print(self, &format!("{text}\n"));
+        Ok(())
+    }
+
+    fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {
+        let path = self.expanded(Path::new(path));
+        Ok(self.world.exists(&path).then(|| self.world.is_dir(&path)))
     }
 }
 

@@ -9,6 +9,15 @@ pub enum Failure {
         /// What the system can explain.
         place: u32,
     },
+    /// A function of the model failed: numbers that the system can explain.
+    Function {
+        /// Which function.
+        function: u32,
+        /// Where in it.
+        at: u32,
+        /// Why.
+        reason: u8,
+    },
     /// An `assert` of level error does not hold.
     Assertion {
         /// Which one.

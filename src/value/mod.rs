@@ -5,6 +5,7 @@ mod array;
 mod cast;
 pub mod construct;
 pub mod errors;
+mod external_object;
 pub mod format;
 mod index;
 pub mod ops;
@@ -17,6 +18,7 @@ mod tests;
 
 pub use array::{ArrayValue, Elements, MAX_ELEMENTS, element_count, sizes};
 pub use cast::{FromValue, IntoValue, RealMatrix};
+pub use external_object::ExternalObject;
 pub use index::Index;
 pub use path::Step;
 pub use record::RecordValue;
@@ -47,6 +49,8 @@ pub enum Value {
     VariableName(Arc<str>),
     /// A function, perhaps with some arguments given (MLS §12.4.2).
     Function(FunctionValue),
+    /// An external object.
+    External(ExternalObject),
     /// The outputs of a call: none, or several. Never one.
     Tuple(Vec<Value>),
 }
@@ -121,6 +125,7 @@ impl Value {
             Value::TypeName(_) => "TypeName".into(),
             Value::VariableName(_) => "VariableName".into(),
             Value::Function(_) => "function".into(),
+            Value::External(object) => object.class.to_string(),
             Value::Tuple(values) if values.is_empty() => "no value".into(),
             Value::Tuple(_) => "several values".into(),
         }

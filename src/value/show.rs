@@ -77,6 +77,7 @@ impl Writer {
             Value::TypeName(name) => self.push(name),
             Value::VariableName(name) => self.push(name),
             Value::Function(function) => self.push(format_args!("function {}", function.name)),
+            Value::External(object) => self.push(format_args!("object {}", object.class)),
             Value::Tuple(values) => self.separated(values.iter(), |writer, v| writer.value(v)),
         }
     }

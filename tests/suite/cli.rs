@@ -51,6 +51,36 @@ fn version_and_help() {
     assert_eq!(gapi(&here, &["walk"]).0, 2);
 }
 
+/// The small standard library is part of the program; one that the user names takes its place.
+#[test]
+fn models_find_their_library_anywhere() {
+    let here = folder(&[(
+        "Circuit.mo",
+        "model Circuit
+          Modelica.Electrical.Analog.Sources.ConstantVoltage source(V = 6);
+          Modelica.Electrical.Analog.Basic.Resistor resistor(R = 2);
+          Modelica.Electrical.Analog.Basic.Ground ground;
+        equation
+          connect(source.p, resistor.p);
+          connect(source.n, resistor.n);
+          connect(source.n, ground.p);
+        end Circuit;",
+    )]);
+    let simulate = ["simulate", "Circuit.mo", "--model", "Circuit", "--output", "out.csv"];
+    let (code, _, errors) = gapi(&here, &[&simulate[..], &["--stop-time", "1"]].concat());
+    assert_eq!((code, errors.as_str()), (0, ""));
+    let table = fs::read_to_string(here.path().join("out.csv")).unwrap();
+    let column = table.lines().next().unwrap().split(',').position(|n| n == "\"resistor.i\"");
+    let last = table.lines().last().unwrap().split(',').nth(column.unwrap()).unwrap();
+    assert_eq!(last, "3.0");
+
+    fs::create_dir(here.path().join("mine")).unwrap();
+    fs::write(here.path().join("mine/Modelica.mo"), "package Modelica end Modelica;").unwrap();
+    let (code, _, errors) = gapi(&here, &[&simulate[..], &["--library", "mine"]].concat());
+    assert_ne!(code, 0);
+    assert!(errors.contains("Modelica.Electrical"), "{errors}");
+}
+
 #[test]
 fn exit_codes_follow_the_strictness() {
     let here = folder(&[("good.mos", "print(\"one\")\n"), ("bad.mos", "a = b\nprint(\"on\")\n")]);

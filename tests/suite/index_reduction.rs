@@ -313,3 +313,52 @@ fn a_choice_that_the_user_makes_or_that_never_fails_stays() {
           der(u) = -F*x; der(v) = -F*y - 9.81; end Angle;";
     assert_eq!(Run::of(angle, 2.0).states(), ["phi", "w"]);
 }
+
+proptest::proptest! {
+    #![proptest_config(proptest::prelude::ProptestConfig {
+        rng_seed: proptest::test_runner::RngSeed::Fixed(7),
+        ..proptest::prelude::ProptestConfig::with_cases(16)
+    })]
+
+    /// A train of gears is one inertia on a spring.
+    #[test]
+    fn trains_of_gears_oscillate_as_one_inertia(
+        gears in proptest::collection::vec((0.3f64..3.0, 0.2f64..5.0, proptest::bool::ANY), 1..6),
+        wanted in 0usize..6,
+    ) {
+        let n = gears.len() + 1;
+        let ratios: Vec<f64> =
+            gears.iter().map(|(ratio, _, reversed)| if *reversed { -ratio } else { *ratio }).collect();
+        let list = |values: &[f64]| {
+            let texts: Vec<String> = values.iter().map(|v| format!("{v:?}")).collect();
+            format!("{{{}}}", texts.join(", "))
+        };
+        let inertias: Vec<f64> = std::iter::once(1.0).chain(gears.iter().map(|g| g.1)).collect();
+        let wishes: Vec<&str> =
+            (0..n).map(|i| if i == wanted { "StateSelect.prefer" } else { "StateSelect.default" }).collect();
+        let text = format!(
+            "model Train parameter Real J[{n}] = {}; parameter Real r[{}] = {}; parameter Real k = 4;
+               Real phi[{n}](stateSelect = {{{}}}); Real w[{n}]; Real a[{n}]; Real b[{n}];
+             equation
+               for i in 1:{n} loop der(phi[i]) = w[i]; J[i]*der(w[i]) = a[i] - b[i]; end for;
+               for i in 1:{n}-1 loop phi[i] = r[i]*phi[i+1]; a[i+1] = r[i]*b[i]; end for;
+               a[1] = -k*phi[1]; b[{n}] = 0;
+             initial equation phi[1] = 1; w[1] = 0; end Train;",
+            list(&inertias), n - 1, list(&ratios), wishes.join(", ")
+        );
+        let run = Run::of(&text, 2.0);
+        proptest::prop_assert_eq!(run.states().len(), 2);
+        if wanted < n {
+            let name = format!("phi[{}]", wanted + 1);
+            proptest::prop_assert!(run.states().contains(&name.as_str()));
+        }
+        let mut whole = 1.0;
+        let mut transmission = 1.0;
+        for (ratio, inertia) in ratios.iter().zip(&inertias[1..]) {
+            transmission /= ratio;
+            whole += inertia * transmission * transmission;
+        }
+        let omega = (4.0f64 / whole).sqrt();
+        run.follows("phi[1]", 1e-5, |t| (omega * t).cos());
+    }
+}

@@ -24,6 +24,9 @@ impl<T: Target> Lowering<'_, T> {
         span: Span,
     ) -> Result<Array<T::Scalar>, Diagnostic> {
         let choices = self.choices(&a.dims, subscripts, span)?;
+        if self.target.chooses() && choices.iter().any(|c| matches!(c, Choice::Computed(_))) {
+            return self.target.subscripted(&a, choices, span);
+        }
         let mut current = a;
         // From the last dimension to the first, so that positions of the others stay.
         for (dimension, choice) in choices.into_iter().enumerate().rev() {

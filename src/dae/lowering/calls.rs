@@ -93,6 +93,22 @@ impl<T: Target> Lowering<'_, T> {
             let fields = user.inputs.iter().map(|i| i.name).zip(values).collect();
             return Ok(vec![Lowered::Record(fields)]);
         }
+        if let FunctionBody::External(clause) = &user.body
+            && let [output] = user.outputs.as_slice()
+            && output.dims.is_empty()
+            && let Some(id) = clause.function.as_ref().and_then(|n| function::find(n.node.as_str()))
+            && id.get().arity() == values.len()
+        {
+            // A library declares a function of the language again.
+            let mut scalars = Vec::with_capacity(values.len());
+            for value in &values {
+                value.append_scalars(&mut scalars);
+            }
+            if scalars.len() == values.len() {
+                let value = self.target.apply(id, &scalars, self.live, span)?;
+                return Ok(vec![Lowered::scalar(value)]);
+            }
+        }
         self.target.call(user, values, span)
     }
 

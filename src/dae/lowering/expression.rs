@@ -164,6 +164,16 @@ impl<T: Target> Lowering<'_, T> {
         first.append_scalars(&mut scalars);
         self.target.begin_else(&mut branch, &scalars);
         let second = self.if_expression(rest, otherwise, span)?;
+        if let (Lowered::Text(a), Lowered::Text(b)) = (&first, &second) {
+            self.target.end_if(branch, &[]);
+            if a == b {
+                return Ok(first);
+            }
+            return match self.target.settle(condition) {
+                Some(holds) => Ok(if holds != 0.0 { first } else { second }),
+                None => Err(fault!(NOT_SUPPORTED, "texts that depend on conditions").at(span)),
+            };
+        }
         let shape = match (first.shape(), second.shape()) {
             (Some(a), Some(b)) if a == b => a,
             (Some(_), Some(_)) => {

@@ -76,6 +76,30 @@ pub(crate) trait Target {
         position: Self::Scalar,
         span: Span,
     ) -> Result<Self::Scalar, Diagnostic>;
+    /// The value of a condition that texts depend on, which cannot change from here on; `None` if
+    /// it is not known.
+    fn settle(&mut self, condition: Self::Scalar) -> Option<f64> {
+        let _ = condition;
+        None
+    }
+    /// Whether the right operand of `and` and `or` is computed only where it decides.
+    fn short_circuits(&self) -> bool {
+        false
+    }
+    /// Whether [`Target::subscripted`] chooses elements at positions that are not known yet.
+    fn chooses(&self) -> bool {
+        false
+    }
+    /// Elements that subscripts choose, where [`Target::chooses`].
+    fn subscripted(
+        &mut self,
+        array: &Array<Self::Scalar>,
+        choices: Vec<Choice<Self::Scalar>>,
+        span: Span,
+    ) -> Result<Array<Self::Scalar>, Diagnostic> {
+        let _ = (array, choices);
+        Err(fault!(NO_CONSTANT_VALUE, "this subscript must be known").at(span))
+    }
     /// The scalars that a reference without its last subscripts stands for.
     fn reference(
         &mut self,
@@ -206,6 +230,20 @@ impl<S: Copy> Lowered<S> {
                 Some(Shape::Record(fields.iter().map(shape).collect::<Option<_>>()?))
             }
             Lowered::Text(_) => None,
+        }
+    }
+
+    /// The same with every scalar replaced.
+    pub(crate) fn map<R: Copy>(&self, replace: &mut impl FnMut(S) -> R) -> Lowered<R> {
+        match self {
+            Lowered::Array(array) => Lowered::Array(Array {
+                dims: array.dims.clone(),
+                elements: array.elements.iter().map(|element| replace(*element)).collect(),
+            }),
+            Lowered::Record(fields) => {
+                Lowered::Record(fields.iter().map(|(n, f)| (*n, f.map(replace))).collect())
+            }
+            Lowered::Text(text) => Lowered::Text(text.clone()),
         }
     }
 

@@ -28,7 +28,18 @@ impl<T: Target> Lowering<'_, T> {
         {
             return Ok(Lowered::Text(format!("{a}{b}").into()));
         }
-        let (a, b) = (self.array(left)?, self.array(right)?);
+        let a = match self.lower(left)? {
+            Lowered::Text(a) => return self.compare_texts(operator, &a, right, span),
+            Lowered::Array(a) => a,
+            Lowered::Record(_) => self.array(left)?,
+        };
+        if matches!(operator, BinaryOperator::And | BinaryOperator::Or)
+            && a.dims.is_empty()
+            && self.target.short_circuits()
+        {
+            return self.short_circuit(operator, a.elements[0], right);
+        }
+        let b = self.array(right)?;
         let array = match operator {
             BinaryOperator::Add => self.same_size(Binary::Add, a, b, span)?,
             BinaryOperator::Subtract => self.same_size(Binary::Sub, a, b, span)?,
@@ -59,6 +70,60 @@ impl<T: Target> Lowering<'_, T> {
             BinaryOperator::NotEqual => self.compare(RelationOperator::NotEqual, a, b, span)?,
         };
         Ok(Lowered::Array(array))
+    }
+
+    /// `a and b` as `if a then b else false`, `a or b` as `if a then true else b`.
+    fn short_circuit(
+        &mut self,
+        operator: BinaryOperator,
+        a: T::Scalar,
+        right: &Expression,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let is_and = operator == BinaryOperator::And;
+        if let Some(known) = self.target.as_constant(a) {
+            return match (known != 0.0) == is_and {
+                true => Ok(Lowered::scalar(self.scalar(right)?)),
+                false => Ok(Lowered::scalar(a)),
+            };
+        }
+        let decided = self.target.constant(f64::from(u8::from(!is_and)));
+        let mut branch = self.target.begin_if(a);
+        let first = if is_and { self.scalar(right)? } else { decided };
+        self.target.begin_else(&mut branch, &[first]);
+        let second = if is_and { decided } else { self.scalar(right)? };
+        let values = self.target.end_if(branch, &[second]);
+        Ok(Lowered::scalar(values[0]))
+    }
+
+    /// A relation of two texts that are known.
+    fn compare_texts(
+        &mut self,
+        operator: BinaryOperator,
+        a: &str,
+        right: &Expression,
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let unknown = crate::dae::build::UNKNOWN_TEXT;
+        let b = match self.lower(right)? {
+            Lowered::Text(b) if a != unknown && &*b != unknown => b,
+            _ => {
+                return Err(
+                    fault!(NOT_SUPPORTED, "a text that is not known when compiling").at(span)
+                );
+            }
+        };
+        let holds = match operator {
+            BinaryOperator::Equal => a == &*b,
+            BinaryOperator::NotEqual => a != &*b,
+            BinaryOperator::Less => a < &*b,
+            BinaryOperator::LessEqual => a <= &*b,
+            BinaryOperator::Greater => a > &*b,
+            BinaryOperator::GreaterEqual => a >= &*b,
+            _ => {
+                return Err(fault!(NOT_SUPPORTED, "this operator takes no texts").at(span));
+            }
+        };
+        Ok(Lowered::scalar(self.target.constant(f64::from(u8::from(holds)))))
     }
 
     /// The text of an expression made of string literals, `None` for numbers.

@@ -11,6 +11,7 @@ use super::ends::{End, Ends};
 use super::sets::Connections;
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{
     Arguments, ComponentReference, Equation, EquationKind, Expression, ExpressionKind, Section,
@@ -115,7 +116,8 @@ impl Instantiation<'_> {
             EquationKind::Call(call) => self.graph_statement(call, context, local, connections),
             EquationKind::For { indices, body } => {
                 let mut turns = Vec::new();
-                self.turns(indices, context, local, &mut turns)?;
+                let indices = self.loop_ranges(indices, body, context, local)?;
+                self.turns(&indices, context, local, &mut turns)?;
                 for turn in turns {
                     for inner in body {
                         self.collect_equation(inner, context, &turn, connections, connects)?;
@@ -189,7 +191,7 @@ impl Instantiation<'_> {
         connections: &mut Connections,
     ) -> Result<(), Diagnostic> {
         let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(()) };
-        let name = function.name().to_string();
+        let name = Name::new(function.name().parts).to_string();
         let Some(first) = self.overdetermined_argument(arguments, 0, context, local)? else {
             return Ok(());
         };

@@ -16,3 +16,4 @@ mod sets;
 mod stream;
 
 pub(super) use sets::Connections;
+pub(super) use stream::arranged;

@@ -229,7 +229,11 @@ fn sum(so_far: Option<Expression>, term: Expression) -> Expression {
 }
 
 /// Values as an array of these sizes; a single one without dimensions.
-fn arranged(mut values: Vec<Expression>, dims: &[usize], span: Span) -> Expression {
+pub(in super::super) fn arranged(
+    mut values: Vec<Expression>,
+    dims: &[usize],
+    span: Span,
+) -> Expression {
     let Some((size, inner)) = dims.split_first() else {
         return match values.len() {
             1 => values.remove(0),

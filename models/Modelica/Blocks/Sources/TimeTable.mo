@@ -19,27 +19,26 @@ protected
     output Real end_ "time of the point behind, or infinity";
   protected
     Integer n = size(table, 1) "number of points";
-    Integer i "point behind the time";
+    constant Real tolerance = 1e-13 "relative error of the time";
   algorithm
     assert(n > 0, "the table is empty");
-    i := n + 1;
+    a := table[1, 2];
+    b := 0;
     end_ := Modelica.Constants.inf;
-    for k in n:-1:1 loop
-      if table[k, 1] > x + 1e-13*abs(x) then
-        i := k;
-        end_ := table[k, 1];
+    for k in 1:n - 1 loop
+      if k == 1 or x >= table[k, 1] - tolerance*abs(x) then
+        if table[k + 1, 1] > table[k, 1] then
+          b := (table[k + 1, 2] - table[k, 2])/(table[k + 1, 1] - table[k, 1]);
+          a := table[k, 2] - b*table[k, 1];
+        else
+          b := 0;
+          a := table[k + 1, 2];
+        end if;
+        end_ := table[k + 1, 1];
       end if;
     end for;
-    i := max(2, min(i, n));
-    if n == 1 then
-      b := 0;
-      a := table[1, 2];
-    elseif table[i, 1] > table[i - 1, 1] then
-      b := (table[i, 2] - table[i - 1, 2])/(table[i, 1] - table[i - 1, 1]);
-      a := table[i - 1, 2] - b*table[i - 1, 1];
-    else
-      b := 0;
-      a := table[i, 2];
+    if x >= table[n, 1] - tolerance*abs(x) then
+      end_ := Modelica.Constants.inf;
     end if;
   end segment;
 

@@ -49,7 +49,8 @@ package Sources "Sources of signals"
 
   block Sine "A sine"
     parameter Real amplitude = 1 "amplitude";
-    parameter SI.Frequency f(start = 1) "frequency";
+    parameter SI.Frequency f = freqHz "frequency";
+    parameter SI.Frequency freqHz = 1 "frequency, by its name until version 3";
     parameter SI.Angle phase = 0 "phase at the start time";
     parameter Boolean continuous = false "before the start time the output keeps its first value";
     extends Interfaces.SignalSource;
@@ -60,7 +61,8 @@ package Sources "Sources of signals"
 
   block Cosine "A cosine"
     parameter Real amplitude = 1 "amplitude";
-    parameter SI.Frequency f(start = 1) "frequency";
+    parameter SI.Frequency f = freqHz "frequency";
+    parameter SI.Frequency freqHz = 1 "frequency, by its name until version 3";
     parameter SI.Angle phase = 0 "phase at the start time";
     parameter Boolean continuous = false "before the start time the output keeps its first value";
     extends Interfaces.SignalSource;
@@ -83,7 +85,8 @@ package Sources "Sources of signals"
 
   block ExpSine "A sine that dies away"
     parameter Real amplitude = 1 "amplitude at the start time";
-    parameter SI.Frequency f(start = 2) "frequency";
+    parameter SI.Frequency f = freqHz "frequency";
+    parameter SI.Frequency freqHz = 2 "frequency, by its name until version 3";
     parameter SI.Angle phase = 0 "phase at the start time";
     parameter SI.Damping damping(start = 1) "damping";
     extends Interfaces.SignalSource;

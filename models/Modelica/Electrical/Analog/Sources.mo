@@ -58,7 +58,8 @@ package Sources "Sources of voltage and current"
   model SineVoltage "Sine: voltage"
     parameter SI.Voltage V(start = 1) "amplitude";
     parameter SI.Angle phase = 0 "phase at the start time";
-    parameter SI.Frequency f(start = 1) "frequency";
+    parameter SI.Frequency f = freqHz "frequency";
+    parameter SI.Frequency freqHz = 1 "frequency, by its name until version 3";
     extends Interfaces.VoltageSource(redeclare Modelica.Blocks.Sources.Sine signalSource(
       final amplitude = V, final f = f, final phase = phase));
   end SineVoltage;
@@ -66,14 +67,16 @@ package Sources "Sources of voltage and current"
   model CosineVoltage "Cosine: voltage"
     parameter SI.Voltage V(start = 1) "amplitude";
     parameter SI.Angle phase = 0 "phase at the start time";
-    parameter SI.Frequency f(start = 1) "frequency";
+    parameter SI.Frequency f = freqHz "frequency";
+    parameter SI.Frequency freqHz = 1 "frequency, by its name until version 3";
     extends Interfaces.VoltageSource(redeclare Modelica.Blocks.Sources.Cosine signalSource(
       final amplitude = V, final f = f, final phase = phase));
   end CosineVoltage;
 
   model ExpSineVoltage "Sine that dies away: voltage"
     parameter SI.Voltage V(start = 1) "amplitude at the start time";
-    parameter SI.Frequency f(start = 2) "frequency";
+    parameter SI.Frequency f = freqHz "frequency";
+    parameter SI.Frequency freqHz = 2 "frequency, by its name until version 3";
     parameter SI.Angle phase = 0 "phase at the start time";
     parameter SI.Damping damping(start = 1) "damping";
     extends Interfaces.VoltageSource(redeclare Modelica.Blocks.Sources.ExpSine signalSource(
@@ -137,7 +140,8 @@ package Sources "Sources of voltage and current"
   model SineCurrent "Sine: current"
     parameter SI.Current I(start = 1) "amplitude";
     parameter SI.Angle phase = 0 "phase at the start time";
-    parameter SI.Frequency f(start = 1) "frequency";
+    parameter SI.Frequency f = freqHz "frequency";
+    parameter SI.Frequency freqHz = 1 "frequency, by its name until version 3";
     extends Interfaces.CurrentSource(redeclare Modelica.Blocks.Sources.Sine signalSource(
       final amplitude = I, final f = f, final phase = phase));
   end SineCurrent;
@@ -145,14 +149,16 @@ package Sources "Sources of voltage and current"
   model CosineCurrent "Cosine: current"
     parameter SI.Current I(start = 1) "amplitude";
     parameter SI.Angle phase = 0 "phase at the start time";
-    parameter SI.Frequency f(start = 1) "frequency";
+    parameter SI.Frequency f = freqHz "frequency";
+    parameter SI.Frequency freqHz = 1 "frequency, by its name until version 3";
     extends Interfaces.CurrentSource(redeclare Modelica.Blocks.Sources.Cosine signalSource(
       final amplitude = I, final f = f, final phase = phase));
   end CosineCurrent;
 
   model ExpSineCurrent "Sine that dies away: current"
     parameter SI.Current I(start = 1) "amplitude at the start time";
-    parameter SI.Frequency f(start = 2) "frequency";
+    parameter SI.Frequency f = freqHz "frequency";
+    parameter SI.Frequency freqHz = 2 "frequency, by its name until version 3";
     parameter SI.Angle phase = 0 "phase at the start time";
     parameter SI.Damping damping(start = 1) "damping";
     extends Interfaces.CurrentSource(redeclare Modelica.Blocks.Sources.ExpSine signalSource(

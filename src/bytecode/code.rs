@@ -1,0 +1,168 @@
+//! Instructions and the functions made of them. Data only.
+
+use super::elementary::Elementary;
+use super::failure::{Failure, Reason};
+use crate::external::{Entry, Slot};
+use crate::source::Span;
+use crate::symbolic::RelationOperator;
+use std::sync::Arc;
+
+/// A register of a frame.
+pub type Register = u32;
+
+/// One instruction; `d` is the register written, `a` and `b` are read.
+#[derive(Debug, Clone, Copy)]
+#[allow(missing_docs, reason = "the fields are the registers named above")]
+pub enum Instruction {
+    /// A number.
+    Constant { d: Register, value: f64 },
+    /// `n` registers without value.
+    Unassign { d: Register, n: u32 },
+    /// `n` registers from others.
+    Move { d: Register, a: Register, n: u32 },
+    /// `-a`
+    Neg { d: Register, a: Register },
+    /// `not a`
+    Not { d: Register, a: Register },
+    /// `a + b`
+    Add { d: Register, a: Register, b: Register },
+    /// `a - b`
+    Sub { d: Register, a: Register, b: Register },
+    /// `a * b`
+    Mul { d: Register, a: Register, b: Register },
+    /// `a / b`
+    Div { d: Register, a: Register, b: Register },
+    /// `a ^ b`
+    Pow { d: Register, a: Register, b: Register },
+    /// 1 if the relation holds, otherwise 0.
+    Relation { operator: RelationOperator, d: Register, a: Register, b: Register },
+    /// A function of one argument.
+    Unary { function: &'static Elementary, d: Register, a: Register },
+    /// A function of two arguments.
+    Binary { function: &'static Elementary, d: Register, a: Register, b: Register },
+    /// The offset of a subscript (from 1, at most `size`) times `stride` is added to `d`.
+    Offset { d: Register, subscript: Register, size: u32, stride: u32 },
+    /// The register `base` plus an offset.
+    Load { d: Register, base: Register, offset: Register },
+    /// To the register `base` plus an offset.
+    Store { base: Register, offset: Register, a: Register },
+    /// The number of turns of a loop over `start : step : stop`, three registers from `range` on.
+    Turns { d: Register, range: Register },
+    /// On to another instruction.
+    Jump { target: u32 },
+    /// On to another instruction unless `a` holds.
+    JumpUnless { a: Register, target: u32 },
+    /// Another function: its inputs are copied from `a` on, its outputs to `d` and on.
+    Call { function: u32, d: Register, a: Register },
+    /// The external function of this number.
+    External { external: u32 },
+    /// Fails if one of `n` registers has no value.
+    Check { a: Register, n: u32 },
+    /// Fails unless `a` holds.
+    Assert { a: Register, message: u32 },
+}
+
+/// A function for arguments of known sizes.
+#[derive(Debug, Clone, Default)]
+pub struct Code {
+    /// Full name of the function.
+    pub name: Arc<str>,
+    /// What it does; it ends behind the last instruction.
+    pub instructions: Vec<Instruction>,
+    /// Number of scalars of the inputs, which stand first in the frame.
+    pub n_inputs: u32,
+    /// The first register of the outputs, which stand in a row.
+    pub outputs: Register,
+    /// Number of scalars of the outputs.
+    pub n_outputs: u32,
+    /// Number of registers.
+    pub frame: u32,
+    /// Registers with their numbers.
+    pub constants: Vec<(Register, f64)>,
+    /// Texts of assertions.
+    pub messages: Vec<Arc<str>>,
+    /// Texts that external functions take.
+    pub texts: Vec<Arc<str>>,
+    /// External functions.
+    pub externals: Vec<ExternalCall>,
+    /// First instruction of every place, ascending.
+    pub places: Vec<(u32, Span)>,
+    /// A function for its derivative, `annotation(derivative = …)` (MLS §12.7.1).
+    pub derivative: Option<Derivative>,
+}
+
+/// A call of an external function; slots are registers of the frame.
+#[derive(Clone)]
+pub struct ExternalCall {
+    /// The function.
+    pub entry: &'static Entry,
+    /// Its arguments.
+    pub arguments: Vec<Slot>,
+    /// Its result.
+    pub result: Option<Slot>,
+}
+
+impl std::fmt::Debug for ExternalCall {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ExternalCall").field("name", &self.entry.name).finish_non_exhaustive()
+    }
+}
+
+/// A function that computes the derivatives of another.
+#[derive(Debug, Clone)]
+pub struct Derivative {
+    /// Its code: inputs are those of the function, followed by derivatives of inputs.
+    pub function: u32,
+    /// The inputs of the function whose derivatives follow.
+    pub tangents: Vec<u32>,
+    /// Inputs whose derivatives must be zero (`zeroDerivative`).
+    pub zero: Vec<u32>,
+    /// The output of `function` that is the derivative of each output; `None` for outputs that
+    /// have none (Integers).
+    pub outputs: Vec<Option<u32>>,
+}
+
+/// All functions of a model; calls name them by position.
+#[derive(Debug, Clone, Default)]
+pub struct Functions {
+    /// The functions.
+    pub codes: Vec<Code>,
+}
+
+impl Functions {
+    /// Number of scalars that a call of a function returns.
+    pub fn n_outputs(&self, function: u32) -> usize {
+        self.codes[function as usize].n_outputs as usize
+    }
+
+    /// A failure in words, with its place.
+    pub fn explain(&self, failure: &Failure) -> (String, Span) {
+        let Some(code) = self.codes.get(failure.function as usize) else {
+            return (failure.reason.words().to_owned(), Span::NONE);
+        };
+        let position = code.places.partition_point(|(first, _)| *first <= failure.at);
+        let span = position.checked_sub(1).map_or(Span::NONE, |at| code.places[at].1);
+        let words = match (failure.reason, code.instructions.get(failure.at as usize)) {
+            (Reason::Assertion, Some(Instruction::Assert { message, .. })) => {
+                return (code.messages[*message as usize].to_string(), span);
+            }
+            (
+                Reason::NotFinite,
+                Some(Instruction::Unary { function, .. } | Instruction::Binary { function, .. }),
+            ) => {
+                let function = function.id.get();
+                let why = function.domain.map_or("the result is not finite", |d| d.words);
+                format!("`{}` has no value: {why}", function.name)
+            }
+            (Reason::NotFinite, Some(Instruction::Div { .. })) => {
+                "a division by zero or an overflow of a division".to_owned()
+            }
+            (Reason::External, Some(Instruction::External { external })) => {
+                let name = code.externals[*external as usize].entry.name;
+                format!("the external function `{name}` has no result")
+            }
+            (reason, _) => reason.words().to_owned(),
+        };
+        (format!("{words} in the function `{}`", code.name), span)
+    }
+}

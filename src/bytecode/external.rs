@@ -1,0 +1,129 @@
+//! Calls of external functions: values alone, or their differences.
+
+use super::code::{Code, ExternalCall};
+use super::failure::Reason;
+use super::number::{Dual, Number};
+use crate::external::{Call, Kind, Object};
+
+/// Runs an external function on numbers with derivatives, or without.
+pub trait RunExternal: Number {
+    /// Reads and writes the frame `r` of `code`.
+    fn run_external(
+        code: &Code,
+        call: &ExternalCall,
+        r: &mut [Self],
+        externals: &mut Externals,
+    ) -> Result<(), Reason>;
+}
+
+/// What external functions need besides their arguments.
+#[derive(Clone, Default)]
+pub struct Externals {
+    /// Objects by handle.
+    pub(super) objects: Vec<Object>,
+    /// What the last one that failed said.
+    pub(super) message: String,
+    scratch: Vec<f64>,
+}
+
+impl std::fmt::Debug for Externals {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Externals").field("objects", &self.objects.len()).finish_non_exhaustive()
+    }
+}
+
+impl RunExternal for f64 {
+    fn run_external(
+        code: &Code,
+        call: &ExternalCall,
+        r: &mut [f64],
+        externals: &mut Externals,
+    ) -> Result<(), Reason> {
+        let mut written = Vec::new();
+        let mut arguments = Call {
+            name: call.entry.name,
+            arguments: &call.arguments,
+            result: call.result.as_ref(),
+            numbers: r,
+            texts: &code.texts,
+            written: &mut written,
+            objects: &mut externals.objects,
+            outside: &mut (),
+        };
+        (call.entry.run)(&mut arguments).map_err(|fault| {
+            externals.message = fault.message;
+            Reason::External
+        })
+    }
+}
+
+impl RunExternal for Dual<f64> {
+    /// The derivative in the direction of the arguments, from the values at both sides.
+    fn run_external(
+        code: &Code,
+        call: &ExternalCall,
+        r: &mut [Self],
+        externals: &mut Externals,
+    ) -> Result<(), Reason> {
+        let n = code.frame as usize;
+        let (mut size, mut speed) = (0.0f64, 0.0f64);
+        for register in call.registers() {
+            let Dual { v, d } = r[register];
+            if !v.is_nan() {
+                (size, speed) = (size.max(v.abs()), speed.max(d.abs()));
+            }
+        }
+        let mut scratch = std::mem::take(&mut externals.scratch);
+        let mut at = |step: f64| {
+            scratch.clear();
+            scratch.extend(r[..n].iter().map(|x| x.v + if step == 0.0 { 0.0 } else { step * x.d }));
+            f64::run_external(code, call, &mut scratch, externals)
+                .map(|()| call.registers().map(|register| scratch[register]).collect::<Vec<_>>())
+        };
+        let values = at(0.0)?;
+        let slopes = match speed {
+            0.0 => vec![0.0; values.len()],
+            _ => {
+                let step = f64::EPSILON.cbrt() * size.max(1e-3) / speed;
+                let (ahead, behind) = (at(step)?, at(-step)?);
+                ahead.iter().zip(&behind).map(|(a, b)| (a - b) / (2.0 * step)).collect()
+            }
+        };
+        externals.scratch = scratch;
+        for ((register, v), d) in call.registers().zip(values).zip(slopes) {
+            r[register] = Dual { v, d };
+        }
+        Ok(())
+    }
+}
+
+impl RunExternal for Dual<Dual<f64>> {
+    /// Only where nothing depends on what is differentiated for.
+    fn run_external(
+        code: &Code,
+        call: &ExternalCall,
+        r: &mut [Self],
+        externals: &mut Externals,
+    ) -> Result<(), Reason> {
+        let still = |x: &Self| x.v.d == 0.0 && x.d.v == 0.0 && x.d.d == 0.0;
+        if !call.registers().all(|register| still(&r[register])) {
+            return Err(Reason::Derivative);
+        }
+        let mut values: Vec<f64> = r[..code.frame as usize].iter().map(|x| x.value()).collect();
+        f64::run_external(code, call, &mut values, externals)?;
+        for register in call.registers() {
+            r[register] = Number::constant(values[register]);
+        }
+        Ok(())
+    }
+}
+
+impl ExternalCall {
+    /// All registers of numbers, those of the result last.
+    fn registers(&self) -> impl Iterator<Item = usize> {
+        let slots = self.arguments.iter().chain(&self.result);
+        slots
+            .filter(|slot| slot.kind != Kind::Text)
+            .flat_map(|slot| slot.first as usize..slot.first as usize + slot.len())
+    }
+}

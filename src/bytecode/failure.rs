@@ -1,0 +1,66 @@
+//! Why a function failed: numbers, explained by [`Functions::explain`](super::Functions::explain).
+
+/// Why and where a function failed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Failure {
+    /// Which code.
+    pub function: u32,
+    /// Which instruction.
+    pub at: u32,
+    /// What happened there.
+    pub reason: Reason,
+}
+
+/// What happened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Reason {
+    /// An operation without a finite value.
+    NotFinite,
+    /// A variable without value is used or returned.
+    Unassigned,
+    /// A subscript outside its array.
+    Subscript,
+    /// An `assert` that does not hold, or a call that ends the simulation.
+    Assertion,
+    /// A loop's range without end.
+    Range,
+    /// Too many instructions in one call.
+    Budget,
+    /// Calls nested too deep.
+    Depth,
+    /// An external function has no result; the machine knows why.
+    External,
+    /// The derivative does not exist or is not finite.
+    Derivative,
+}
+
+impl Reason {
+    /// All of them, in the order of their numbers.
+    pub const ALL: [Reason; 9] = [
+        Reason::NotFinite,
+        Reason::Unassigned,
+        Reason::Subscript,
+        Reason::Assertion,
+        Reason::Range,
+        Reason::Budget,
+        Reason::Depth,
+        Reason::External,
+        Reason::Derivative,
+    ];
+
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Reason::NotFinite => "an operation has no finite value",
+            Reason::Unassigned => "a variable has no value",
+            Reason::Subscript => "a subscript lies outside its array",
+            Reason::Assertion => "an assertion does not hold",
+            Reason::Range => "the range of a loop has no end",
+            Reason::Budget => "a loop does not end",
+            Reason::Depth => "calls are nested too deep",
+            Reason::External => "an external function has no result",
+            Reason::Derivative => "the derivative is not finite",
+        }
+    }
+}

@@ -1,0 +1,450 @@
+//! Runs functions on a stack that is kept between calls.
+
+use super::code::{Code, Derivative, Functions, Instruction};
+use super::external::{Externals, RunExternal};
+use super::failure::{Failure, Reason};
+use super::number::{Dual, Number};
+
+/// Most instructions of one call from outside.
+const MAX_INSTRUCTIONS: u64 = 20_000_000;
+/// Deepest nesting of calls.
+const MAX_CALLS: usize = 2_000;
+/// Largest number of registers of all frames.
+const MAX_STACK: usize = 20_000_000;
+/// Most turns of a loop.
+const MAX_TURNS: f64 = 1e15;
+
+/// Runs functions; every thread has its own.
+#[derive(Debug, Clone, Default)]
+pub struct Machine {
+    stacks: Stacks,
+    /// Callers, innermost last.
+    callers: Vec<Caller>,
+    slopes: Vec<f64>,
+    externals: Externals,
+    budget: u64,
+}
+
+/// Frames of all calls, for each kind of number.
+#[derive(Debug, Clone, Default)]
+pub struct Stacks {
+    pub(super) values: Vec<f64>,
+    pub(super) first: Vec<Dual<f64>>,
+    pub(super) second: Vec<Dual<Dual<f64>>>,
+}
+
+/// Where to go on when a function ends.
+#[derive(Debug, Clone, Copy)]
+struct Caller {
+    function: u32,
+    at: u32,
+    base: u32,
+    results: u32,
+}
+
+impl Machine {
+    /// Forgets all external objects.
+    pub fn clear_objects(&mut self) {
+        self.externals.objects.clear();
+    }
+
+    /// What the external function said that failed last.
+    pub fn message(&self) -> &str {
+        &self.externals.message
+    }
+
+    /// Calls a function; returns its scalar outputs.
+    pub fn call(
+        &mut self,
+        functions: &Functions,
+        function: u32,
+        arguments: impl Iterator<Item = f64>,
+    ) -> Result<&[f64], Failure> {
+        self.prepare::<f64>(functions, function, arguments);
+        self.run::<f64>(functions, function)?;
+        let code = &functions.codes[function as usize];
+        Ok(&self.stacks.values[code.outputs as usize..][..code.n_outputs as usize])
+    }
+
+    /// The partial derivatives of all scalar outputs for one input, or for two.
+    ///
+    /// # Errors
+    /// [`Reason::Derivative`] for derivatives of a higher order, and those that are not finite.
+    pub fn partial(
+        &mut self,
+        functions: &Functions,
+        function: u32,
+        inputs: &[u32],
+        arguments: impl Iterator<Item = f64>,
+    ) -> Result<&[f64], Failure> {
+        let code = &functions.codes[function as usize];
+        let outputs = code.outputs as usize..(code.outputs + code.n_outputs) as usize;
+        self.slopes.clear();
+        match *inputs {
+            [x] => {
+                let seed = |(at, v): (usize, f64)| Dual { v, d: unit(at, x) };
+                self.prepare(functions, function, arguments.enumerate().map(seed));
+                self.run::<Dual<f64>>(functions, function)?;
+                self.slopes.extend(self.stacks.first[outputs].iter().map(|output| output.d));
+            }
+            [x, y] => {
+                let seed = |(at, v): (usize, f64)| Dual {
+                    v: Dual { v, d: unit(at, x) },
+                    d: Dual { v: unit(at, y), d: 0.0 },
+                };
+                self.prepare(functions, function, arguments.enumerate().map(seed));
+                self.run::<Dual<Dual<f64>>>(functions, function)?;
+                self.slopes.extend(self.stacks.second[outputs].iter().map(|output| output.d.d));
+            }
+            _ => return Err(Failure { function, at: 0, reason: Reason::Derivative }),
+        }
+        match self.slopes.iter().all(|slope| slope.is_finite()) {
+            true => Ok(&self.slopes),
+            false => Err(Failure { function, at: 0, reason: Reason::Derivative }),
+        }
+    }
+
+    /// The first frame, with the arguments.
+    fn prepare<T: Number>(
+        &mut self,
+        functions: &Functions,
+        function: u32,
+        arguments: impl Iterator<Item = T>,
+    ) {
+        let code = &functions.codes[function as usize];
+        let stack = T::stack(&mut self.stacks);
+        grow(stack, code.frame as usize);
+        for (register, argument) in stack[..code.n_inputs as usize].iter_mut().zip(arguments) {
+            *register = argument;
+        }
+        self.callers.clear();
+        self.budget = MAX_INSTRUCTIONS;
+    }
+
+    /// Runs a function whose frame stands at the bottom of the stack.
+    fn run<T: Differentiate>(
+        &mut self,
+        functions: &Functions,
+        function: u32,
+    ) -> Result<(), Failure> {
+        let mut stack = std::mem::take(T::stack(&mut self.stacks));
+        let code = &functions.codes[function as usize];
+        let mut result = Ok(false);
+        if let Some(derivative) = &code.derivative {
+            let (arguments, results) = (0..code.n_inputs as usize, code.outputs as usize);
+            let stack = &mut stack;
+            result =
+                T::differentiate(self, functions, function, derivative, stack, arguments, results);
+        }
+        if matches!(result, Ok(false)) {
+            result = self.run_at(functions, function, 0, &mut stack).map(|()| true);
+        }
+        *T::stack(&mut self.stacks) = stack;
+        result.map(|_| ())
+    }
+
+    /// Runs a function on a stack of its own, while others run on numbers of another kind.
+    fn nested<T: Differentiate>(
+        &mut self,
+        functions: &Functions,
+        function: u32,
+        arguments: &[T],
+    ) -> Result<Vec<T>, Failure> {
+        let code = &functions.codes[function as usize];
+        let mut stack = std::mem::take(T::stack(&mut self.stacks));
+        grow(&mut stack, code.frame as usize);
+        stack[..arguments.len()].copy_from_slice(arguments);
+        let result = self.run_at(functions, function, 0, &mut stack);
+        let outputs = stack[code.outputs as usize..][..code.n_outputs as usize].to_vec();
+        *T::stack(&mut self.stacks) = stack;
+        result.map(|()| outputs)
+    }
+
+    fn run_at<T: Differentiate>(
+        &mut self,
+        functions: &Functions,
+        mut function: u32,
+        mut base: usize,
+        stack: &mut Vec<T>,
+    ) -> Result<(), Failure> {
+        let outermost = self.callers.len();
+        let mut code = &functions.codes[function as usize];
+        enter(code, stack, base);
+        let mut at = 0usize;
+        loop {
+            match execute(code, &mut at, &mut stack[base..], &mut self.budget) {
+                Ok(None) => {
+                    let outputs = base + code.outputs as usize;
+                    let outputs = outputs..outputs + code.n_outputs as usize;
+                    if self.callers.len() == outermost {
+                        return Ok(());
+                    }
+                    let Some(caller) = self.callers.pop() else { return Ok(()) };
+                    stack.copy_within(outputs, (caller.base + caller.results) as usize);
+                    (function, at, base) =
+                        (caller.function, caller.at as usize, caller.base as usize);
+                    code = &functions.codes[function as usize];
+                }
+                Ok(Some(Wanted::External(external))) => {
+                    let external = &code.externals[external as usize];
+                    T::run_external(code, external, &mut stack[base..], &mut self.externals)
+                        .map_err(|reason| Failure { function, at: at as u32 - 1, reason })?;
+                }
+                Ok(Some(Wanted::Call(call))) => {
+                    let callee = &functions.codes[call.function as usize];
+                    let next = base + code.frame as usize;
+                    let here = |reason| Failure { function, at: at as u32 - 1, reason };
+                    if self.callers.len() >= MAX_CALLS || next + callee.frame as usize > MAX_STACK {
+                        return Err(here(Reason::Depth));
+                    }
+                    grow(stack, next + callee.frame as usize);
+                    let first = base + call.arguments as usize;
+                    if let Some(derivative) = &callee.derivative {
+                        let arguments = first..first + callee.n_inputs as usize;
+                        let results = base + call.results as usize;
+                        if T::differentiate(
+                            self,
+                            functions,
+                            call.function,
+                            derivative,
+                            stack,
+                            arguments,
+                            results,
+                        )? {
+                            continue;
+                        }
+                    }
+                    stack.copy_within(first..first + callee.n_inputs as usize, next);
+                    self.callers.push(Caller {
+                        function,
+                        at: at as u32,
+                        base: base as u32,
+                        results: call.results,
+                    });
+                    (function, at, base) = (call.function, 0, next);
+                    code = callee;
+                    enter(code, stack, base);
+                }
+                Err(reason) => {
+                    return Err(Failure { function, at: at as u32 - 1, reason });
+                }
+            }
+        }
+    }
+}
+
+/// What a function wants its machine to do.
+enum Wanted {
+    Call(Call),
+    External(u32),
+}
+
+/// A call that a function wants.
+struct Call {
+    function: u32,
+    arguments: u32,
+    results: u32,
+}
+
+/// Numbers whose derivatives another function may compute.
+trait Differentiate: RunExternal {
+    /// Calls a function with its derivative function, from and to the stack; whether this is
+    /// possible.
+    fn differentiate(
+        machine: &mut Machine,
+        functions: &Functions,
+        function: u32,
+        derivative: &Derivative,
+        stack: &mut [Self],
+        arguments: std::ops::Range<usize>,
+        results: usize,
+    ) -> Result<bool, Failure>;
+}
+
+impl Differentiate for f64 {
+    fn differentiate(
+        _: &mut Machine,
+        _: &Functions,
+        _: u32,
+        _: &Derivative,
+        _: &mut [f64],
+        _: std::ops::Range<usize>,
+        _: usize,
+    ) -> Result<bool, Failure> {
+        Ok(false)
+    }
+}
+
+impl<T: Differentiate> Differentiate for Dual<T>
+where
+    Dual<T>: RunExternal,
+{
+    fn differentiate(
+        machine: &mut Machine,
+        functions: &Functions,
+        function: u32,
+        derivative: &Derivative,
+        stack: &mut [Self],
+        arguments: std::ops::Range<usize>,
+        results: usize,
+    ) -> Result<bool, Failure> {
+        let given: Vec<Self> = stack[arguments].to_vec();
+        if derivative.zero.iter().any(|input| !given[*input as usize].d.is_zero()) {
+            return Ok(false);
+        }
+        let values: Vec<T> = given.iter().map(|x| x.v).collect();
+        let mut extended = values.clone();
+        extended.extend(derivative.tangents.iter().map(|input| given[*input as usize].d));
+        let values = machine.nested(functions, function, &values)?;
+        let slopes = machine.nested(functions, derivative.function, &extended)?;
+        for (at, (v, slope)) in values.into_iter().zip(&derivative.outputs).enumerate() {
+            let d = slope.map_or(T::constant(0.0), |slope| slopes[slope as usize]);
+            stack[results + at] = Dual { v, d };
+        }
+        Ok(true)
+    }
+}
+
+fn unit(at: usize, input: u32) -> f64 {
+    f64::from(u8::from(at == input as usize))
+}
+
+fn grow<T: Number>(stack: &mut Vec<T>, size: usize) {
+    if stack.len() < size {
+        stack.resize(size, T::constant(f64::NAN));
+    }
+}
+
+fn enter<T: Number>(code: &Code, stack: &mut [T], base: usize) {
+    for (register, value) in &code.constants {
+        stack[base + *register as usize] = T::constant(*value);
+    }
+}
+
+/// Runs instructions of one frame up to the end or to a call; `at` is behind the last one run.
+fn execute<T: Number>(
+    code: &Code,
+    at: &mut usize,
+    r: &mut [T],
+    budget: &mut u64,
+) -> Result<Option<Wanted>, Reason> {
+    let truth = |holds: bool| T::constant(f64::from(u8::from(holds)));
+    while let Some(instruction) = code.instructions.get(*at) {
+        *at += 1;
+        match *instruction {
+            Instruction::Constant { d, value } => r[d as usize] = T::constant(value),
+            Instruction::Unassign { d, n } => {
+                r[d as usize..(d + n) as usize].fill(T::constant(f64::NAN));
+            }
+            Instruction::Move { d, a, n: 1 } => r[d as usize] = r[a as usize],
+            Instruction::Move { d, a, n } => {
+                r.copy_within(a as usize..(a + n) as usize, d as usize);
+            }
+            Instruction::Neg { d, a } => r[d as usize] = r[a as usize].neg(),
+            Instruction::Not { d, a } => r[d as usize] = truth(!decided(r[a as usize])?),
+            Instruction::Add { d, a, b } => r[d as usize] = r[a as usize].add(r[b as usize]),
+            Instruction::Sub { d, a, b } => r[d as usize] = r[a as usize].sub(r[b as usize]),
+            Instruction::Mul { d, a, b } => r[d as usize] = r[a as usize].mul(r[b as usize]),
+            Instruction::Div { d, a, b } => {
+                r[d as usize] = finite(r[a as usize].div(r[b as usize]))?;
+            }
+            Instruction::Pow { d, a, b } => {
+                r[d as usize] = finite(r[a as usize].pow(r[b as usize]))?;
+            }
+            Instruction::Relation { operator, d, a, b } => {
+                let (a, b) = (r[a as usize].value(), r[b as usize].value());
+                if a.is_nan() || b.is_nan() {
+                    return Err(Reason::Unassigned);
+                }
+                r[d as usize] = truth(operator.holds(a, b));
+            }
+            Instruction::Unary { function, d, a } => {
+                r[d as usize] = finite(r[a as usize].unary(function))?;
+            }
+            Instruction::Binary { function, d, a, b } => {
+                r[d as usize] = finite(r[a as usize].binary(r[b as usize], function))?;
+            }
+            Instruction::Offset { d, subscript, size, stride } => {
+                let subscript = r[subscript as usize].value();
+                if !(1.0..=f64::from(size)).contains(&subscript) || subscript.fract() != 0.0 {
+                    return Err(Reason::Subscript);
+                }
+                let offset = (subscript - 1.0) * f64::from(stride);
+                r[d as usize] = r[d as usize].add(T::constant(offset));
+            }
+            Instruction::Load { d, base, offset } => {
+                r[d as usize] = r[base as usize + r[offset as usize].value() as usize];
+            }
+            Instruction::Store { base, offset, a } => {
+                let position = base as usize + r[offset as usize].value() as usize;
+                r[position] = r[a as usize];
+            }
+            Instruction::Turns { d, range } => {
+                let of = |at: u32| r[(range + at) as usize].value();
+                r[d as usize] = T::constant(turns(of(0), of(1), of(2))?);
+            }
+            Instruction::Jump { target } => {
+                spend(budget, *at, target as usize)?;
+                *at = target as usize;
+            }
+            Instruction::JumpUnless { a, target } => {
+                if !decided(r[a as usize])? {
+                    spend(budget, *at, target as usize)?;
+                    *at = target as usize;
+                }
+            }
+            Instruction::Call { function, d, a } => {
+                spend(budget, *at, 0)?;
+                return Ok(Some(Wanted::Call(Call { function, arguments: a, results: d })));
+            }
+            Instruction::External { external } => {
+                return Ok(Some(Wanted::External(external)));
+            }
+            Instruction::Check { a, n } => {
+                if r[a as usize..(a + n) as usize].iter().any(|value| value.value().is_nan()) {
+                    return Err(Reason::Unassigned);
+                }
+            }
+            Instruction::Assert { a, .. } => {
+                if !decided(r[a as usize])? {
+                    return Err(Reason::Assertion);
+                }
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// Takes the instructions between a jump back and its target from the budget.
+fn spend(budget: &mut u64, from: usize, to: usize) -> Result<(), Reason> {
+    let cost = from.saturating_sub(to) as u64 + 1;
+    *budget = budget.checked_sub(cost).ok_or(Reason::Budget)?;
+    Ok(())
+}
+
+fn decided<T: Number>(condition: T) -> Result<bool, Reason> {
+    match condition.value() {
+        value if value.is_nan() => Err(Reason::Unassigned),
+        value => Ok(value != 0.0),
+    }
+}
+
+/// A result that must be finite; NaN from an operand without value is that operand's fault.
+fn finite<T: Number>(result: T) -> Result<T, Reason> {
+    match result.value().is_finite() {
+        true => Ok(result),
+        false => Err(Reason::NotFinite),
+    }
+}
+
+/// The number of turns over `start : step : stop` (MLS §10.4.3).
+fn turns(start: f64, step: f64, stop: f64) -> Result<f64, Reason> {
+    if start.is_nan() || step.is_nan() || stop.is_nan() {
+        return Err(Reason::Unassigned);
+    }
+    let count = ((stop - start) / step * (1.0 + f64::EPSILON)).floor() + 1.0;
+    match count.is_finite() && count < MAX_TURNS {
+        true => Ok(count.max(0.0)),
+        false => Err(Reason::Range),
+    }
+}

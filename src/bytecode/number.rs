@@ -1,0 +1,180 @@
+//! Numbers that instructions compute with.
+
+use super::elementary::Elementary;
+use super::machine::Stacks;
+
+/// A number with its derivatives, or without.
+pub trait Number: Copy {
+    /// Without a slope.
+    fn constant(value: f64) -> Self;
+    /// The number alone.
+    fn value(self) -> f64;
+    /// Whether the number and all derivatives are zero.
+    fn is_zero(self) -> bool;
+    /// `-a`
+    fn neg(self) -> Self;
+    /// `a + b`
+    fn add(self, b: Self) -> Self;
+    /// `a - b`
+    fn sub(self, b: Self) -> Self;
+    /// `a * b`
+    fn mul(self, b: Self) -> Self;
+    /// `a / b`
+    fn div(self, b: Self) -> Self;
+    /// `a ^ b`
+    fn pow(self, b: Self) -> Self;
+    /// A function of one argument.
+    fn unary(self, function: &Elementary) -> Self;
+    /// A function of two arguments.
+    fn binary(self, b: Self, function: &Elementary) -> Self;
+    /// The stack of a machine for such numbers.
+    fn stack(stacks: &mut Stacks) -> &mut Vec<Self>;
+}
+
+impl Number for f64 {
+    fn constant(value: f64) -> f64 {
+        value
+    }
+
+    fn value(self) -> f64 {
+        self
+    }
+
+    fn is_zero(self) -> bool {
+        self == 0.0
+    }
+
+    fn neg(self) -> f64 {
+        -self
+    }
+
+    fn add(self, b: f64) -> f64 {
+        self + b
+    }
+
+    fn sub(self, b: f64) -> f64 {
+        self - b
+    }
+
+    fn mul(self, b: f64) -> f64 {
+        self * b
+    }
+
+    fn div(self, b: f64) -> f64 {
+        self / b
+    }
+
+    fn pow(self, b: f64) -> f64 {
+        self.powf(b)
+    }
+
+    fn unary(self, function: &Elementary) -> f64 {
+        function.value.of(&[self])
+    }
+
+    fn binary(self, b: f64, function: &Elementary) -> f64 {
+        function.value.of(&[self, b])
+    }
+
+    fn stack(stacks: &mut Stacks) -> &mut Vec<f64> {
+        &mut stacks.values
+    }
+}
+
+/// A number `v` with its derivative `d` in one direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dual<T> {
+    /// The number.
+    pub v: T,
+    /// Its derivative.
+    pub d: T,
+}
+
+impl<T: Number> Dual<T>
+where
+    Dual<T>: Number,
+{
+    /// With the slope that a chain of one factor gives; a slope of zero hides an infinite factor.
+    fn chained(v: T, factor: impl FnOnce() -> T, inner: T) -> Dual<T> {
+        let d = if inner.is_zero() { T::constant(0.0) } else { factor().mul(inner) };
+        Dual { v, d }
+    }
+}
+
+/// The arithmetic of dual numbers over numbers with this stack.
+macro_rules! dual {
+    ($inner:ty, $stack:ident) => {
+        impl Number for Dual<$inner> {
+            fn constant(value: f64) -> Self {
+                Dual { v: Number::constant(value), d: Number::constant(0.0) }
+            }
+
+            fn value(self) -> f64 {
+                self.v.value()
+            }
+
+            fn is_zero(self) -> bool {
+                self.v.is_zero() && self.d.is_zero()
+            }
+
+            fn neg(self) -> Self {
+                Dual { v: self.v.neg(), d: self.d.neg() }
+            }
+
+            fn add(self, b: Self) -> Self {
+                Dual { v: self.v.add(b.v), d: self.d.add(b.d) }
+            }
+
+            fn sub(self, b: Self) -> Self {
+                Dual { v: self.v.sub(b.v), d: self.d.sub(b.d) }
+            }
+
+            fn mul(self, b: Self) -> Self {
+                Dual { v: self.v.mul(b.v), d: self.d.mul(b.v).add(self.v.mul(b.d)) }
+            }
+
+            /// (a/b)′ = (a′ − (a/b) b′) / b
+            fn div(self, b: Self) -> Self {
+                let v = self.v.div(b.v);
+                Dual { v, d: self.d.sub(v.mul(b.d)).div(b.v) }
+            }
+
+            /// (a^b)′ = b a^(b−1) a′ + a^b log(a) b′, the second term 0 where a is 0.
+            fn pow(self, b: Self) -> Self {
+                let v = self.v.pow(b.v);
+                let one = Number::constant(1.0);
+                let base = match b.v.is_zero() {
+                    true => Number::constant(0.0),
+                    false => Self::chained(v, || b.v.mul(self.v.pow(b.v.sub(one))), self.d).d,
+                };
+                let exponent = match self.v.value() == 0.0 {
+                    true => Number::constant(0.0),
+                    false => {
+                        let logarithm = || v.mul(self.v.unary(Elementary::logarithm()));
+                        Self::chained(v, logarithm, b.d).d
+                    }
+                };
+                Dual { v, d: base.add(exponent) }
+            }
+
+            fn unary(self, function: &Elementary) -> Self {
+                let v = self.v.unary(function);
+                Self::chained(v, || function.slope(0, &[self.v]), self.d)
+            }
+
+            fn binary(self, b: Self, function: &Elementary) -> Self {
+                let v = self.v.binary(b.v, function);
+                let first = Self::chained(v, || function.slope(0, &[self.v, b.v]), self.d);
+                let second = Self::chained(v, || function.slope(1, &[self.v, b.v]), b.d);
+                Dual { v, d: first.d.add(second.d) }
+            }
+
+            fn stack(stacks: &mut Stacks) -> &mut Vec<Self> {
+                &mut stacks.$stack
+            }
+        }
+    };
+}
+
+dual!(f64, first);
+dual!(Dual<f64>, second);

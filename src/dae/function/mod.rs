@@ -1,0 +1,93 @@
+//! User functions become [`bytecode`](crate::bytecode) where they cannot become expressions: loops,
+//! exits and subscripts that depend on variables, recursion, bodies too big to be repeated at every
+//! call (MLS ch. 11, 12).
+//!
+//! A function is compiled once for every combination of sizes of its arguments. Where a size
+//! depends on the value of an Integer input, it is compiled for that value, which must be known.
+//! Loops stay loops; only a loop whose body needs sizes that change from turn to turn is unrolled.
+
+mod derivative;
+mod emitter;
+mod external;
+mod instances;
+mod place;
+mod statements;
+mod target;
+
+pub(super) use instances::Instances;
+
+use super::build::Builder;
+use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
+use super::inline::{MAX_INLINED, MAX_STATEMENTS, inline};
+use super::lowering::Lowered;
+use crate::diag::Diagnostic;
+use crate::eval::Function;
+use crate::source::Span;
+use crate::symbolic::Expr;
+use std::sync::Arc;
+
+/// The outputs of a call in an equation: expressions where its statements can be carried out on
+/// expressions, else calls of its code.
+pub(super) fn call(
+    builder: &mut Builder<'_>,
+    function: &Arc<Function>,
+    arguments: Vec<Lowered<Expr>>,
+    span: Span,
+) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+    let outermost = builder.calls == 0;
+    if outermost {
+        builder.inlined = MAX_INLINED;
+    }
+    let asserted = builder.dae.assertions.len();
+    let error = match inline(builder, function, arguments.clone(), span) {
+        Err(e) if e.code == NOT_SUPPORTED || e.code == NO_CONSTANT_VALUE => e,
+        result => return result,
+    };
+    let too_big = builder.inlined == 0;
+    if too_big && !outermost {
+        return Err(error);
+    }
+    builder.dae.assertions.truncate(asserted);
+    match compiled_call(builder, function, arguments.clone(), span) {
+        Err(_) if too_big => {
+            builder.inlined = MAX_STATEMENTS;
+            inline(builder, function, arguments, span)
+        }
+        result => result,
+    }
+}
+
+/// Expressions that call the code of a function.
+fn compiled_call(
+    builder: &mut Builder<'_>,
+    function: &Arc<Function>,
+    arguments: Vec<Lowered<Expr>>,
+    span: Span,
+) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+    let pool = &builder.dae.pool;
+    let known: Vec<Lowered<Option<f64>>> =
+        arguments.iter().map(|a| a.map(&mut |e| pool.as_constant(e))).collect();
+    let instance = builder.functions.instance(builder.flat, function, &known, span)?;
+    let mut scalars = Vec::new();
+    for (argument, passed) in arguments.iter().zip(&instance.passed) {
+        if *passed {
+            argument.append_scalars(&mut scalars);
+        }
+    }
+    let numbers: Option<Vec<f64>> = match instance.folds {
+        true => scalars.iter().map(|e| pool.as_constant(*e)).collect(),
+        false => None,
+    };
+    let folded = numbers.and_then(|numbers| builder.functions.evaluate(&instance, &numbers));
+    let pool = &mut builder.dae.pool;
+    let mut results = Vec::new();
+    match folded {
+        Some(values) => results.extend(values.into_iter().map(|value| pool.constant(value))),
+        None => {
+            let n: usize = instance.outputs.iter().map(|shape| shape.len()).sum();
+            results.extend((0..n as u32).map(|at| pool.call(instance.code, at, &scalars)));
+        }
+    }
+    let mut results = results.into_iter();
+    Ok(instance.outputs.iter().map(|s| Lowered::from_scalars(s, &mut results)).collect())
+}

@@ -1,0 +1,314 @@
+//! Components: their declaration (MLS §12.4.4) and assignment to them.
+
+use super::emitter::Operand;
+use super::instances::Argument;
+use super::statements::{Body, Loops, elements};
+use crate::bytecode::{Instruction, Register};
+use crate::dae::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
+use crate::dae::inline::component_shape;
+use crate::dae::lowering::{Array, Choice, Lowered, Lowering, size_fault};
+use crate::dae::model::Shape;
+use crate::diag::Diagnostic;
+use crate::eval::FunctionComponent;
+use crate::fault;
+use crate::name::Ident;
+use crate::source::Span;
+use crate::syntax::ast::{ComponentReference, Statement, StatementKind, Subscript};
+use rustc_hash::FxHashSet;
+
+impl Body<'_, '_> {
+    /// Inputs, outputs and locals; returns the shapes of the outputs.
+    pub(super) fn declare(
+        &mut self,
+        arguments: &[Argument],
+        statements: &[Statement],
+        span: Span,
+    ) -> Result<Vec<Shape>, Diagnostic> {
+        let function = self.function.clone();
+        for (input, argument) in function.inputs.iter().zip(arguments) {
+            self.input(input.name, argument);
+        }
+        for input in &function.inputs {
+            self.check_input(input, span)?;
+        }
+        let mut assigned = FxHashSet::default();
+        collect_assigned(statements, &mut assigned);
+        let mut shapes = vec![None; function.outputs.len()];
+        let outputs = function.outputs.iter().enumerate().map(|(at, output)| (Some(at), output));
+        let locals = function.locals.iter().map(|local| (None, local));
+        // A size or binding may need a component that is declared further down.
+        let mut waiting: Vec<(Option<usize>, &FunctionComponent)> = outputs.chain(locals).collect();
+        while !waiting.is_empty() {
+            let before = waiting.len();
+            let mut first_error = None;
+            let mut later = Vec::new();
+            for (output, component) in waiting {
+                let checkpoint = self.emitter.checkpoint();
+                match self.component(component, &assigned) {
+                    Ok((shape, value)) => {
+                        if let Some(at) = output {
+                            shapes[at] = Some(shape);
+                        }
+                        self.locals.push((component.name, value));
+                    }
+                    Err(e) if e.code == UNRESOLVED_REFERENCE => {
+                        self.emitter.rollback(checkpoint);
+                        first_error = first_error.or(Some(e));
+                        later.push((output, component));
+                    }
+                    Err(e) => return Err(e),
+                }
+            }
+            waiting = later;
+            if let Some(e) = first_error
+                && waiting.len() == before
+            {
+                return Err(e);
+            }
+        }
+        Ok(shapes.into_iter().flatten().collect())
+    }
+
+    /// An output or local variable: its shape, and its registers or number.
+    fn component(
+        &mut self,
+        component: &FunctionComponent,
+        assigned: &FxHashSet<Ident>,
+    ) -> Result<(Shape, Lowered<Operand>), Diagnostic> {
+        self.emitter.place(component.span);
+        self.emitter.open();
+        let bound = match &component.binding {
+            Some(binding) => Some((self.lowering(&Vec::new()).lower(binding)?, binding.span)),
+            None => None,
+        };
+        let is_open = component.dims.iter().any(|dim| matches!(dim, Subscript::All(_)));
+        let shape = match bound.as_ref().and_then(|(bound, _)| bound.shape()) {
+            Some(shape) if is_open => shape,
+            _ => component_shape(&mut self.lowering(&Vec::new()), component)?,
+        };
+        if let Some((bound, span)) = &bound
+            && bound.shape().as_ref() != Some(&shape)
+        {
+            return Err(fault!(
+                ARRAY_MISMATCH,
+                "the value of `{}` has another size",
+                component.name
+            )
+            .at(*span));
+        }
+        let mut scalars = Vec::new();
+        if let Some((bound, _)) = bound {
+            bound.append_scalars(&mut scalars);
+            let is_known = scalars.iter().all(|s| matches!(s, Operand::Constant(_)));
+            if is_known && !assigned.contains(&component.name) {
+                self.emitter.close();
+                return Ok((shape, bound));
+            }
+        }
+        let n = shape.len() as u32;
+        let first = self.emitter.permanent(n);
+        match scalars.is_empty() {
+            true => self.emitter.emit(Instruction::Unassign { d: first, n }),
+            false => self.emitter.copy(first, &scalars),
+        }
+        self.emitter.close();
+        let value = Lowered::from_scalars(&shape, &mut (first..).map(Operand::Register));
+        Ok((shape, value))
+    }
+
+    /// Its number of dimensions, and its sizes as far as they are known.
+    fn check_input(&mut self, input: &FunctionComponent, span: Span) -> Result<(), Diagnostic> {
+        let Some(Array { dims, .. }) = self.local(&[input.name]).and_then(|v| elements(v)) else {
+            return Ok(());
+        };
+        let dims = dims.clone();
+        let name = &self.function.name;
+        if dims.len() != input.dims.len() {
+            return Err(fault!(
+                ARRAY_MISMATCH,
+                "the argument `{}` of `{name}` has {} dimensions instead of {}",
+                input.name,
+                dims.len(),
+                input.dims.len()
+            )
+            .at(span));
+        }
+        for (subscript, size) in input.dims.iter().zip(dims) {
+            let Subscript::Index(declared) = subscript else { continue };
+            let Ok(declared) = Lowering::new(self).known_size(declared) else { continue };
+            if declared != size {
+                let fault = size_fault(&[declared], &[size]);
+                return Err(fault.at(span).related(input.span, "this input"));
+            }
+        }
+        Ok(())
+    }
+
+    /// `target := value`
+    pub(super) fn assign(
+        &mut self,
+        target: &ComponentReference,
+        value: Lowered<Operand>,
+        loops: &Loops,
+    ) -> Result<(), Diagnostic> {
+        let Some((last, path)) = target.parts.split_last() else { return Ok(()) };
+        if path.iter().any(|part| !part.subscripts.is_empty()) {
+            return Err(fault!(NOT_SUPPORTED, "an array of records").at(target.span));
+        }
+        let names: Vec<Ident> = path.iter().chain([last]).map(|part| part.name).collect();
+        let place = self.local(&names).cloned().ok_or_else(|| {
+            fault!(UNRESOLVED_REFERENCE, "there is no variable `{}`", target.name()).at(target.span)
+        })?;
+        let mut scalars = Vec::new();
+        value.append_scalars(&mut scalars);
+        if last.subscripts.is_empty() {
+            if place.shape().is_none() || place.shape() != value.shape() {
+                return Err(fault!(
+                    ARRAY_MISMATCH,
+                    "the value of `{}` has another size",
+                    target.name()
+                )
+                .at(target.span));
+            }
+            let mut places = Vec::new();
+            place.append_scalars(&mut places);
+            if let Some(Operand::Register(first)) = places.first().copied() {
+                let scalars = self.unaliased(first, places.len(), scalars);
+                self.emitter.copy(first, &scalars);
+            }
+            return Ok(());
+        }
+        let (Some(array), Some(value)) = (elements(&place), elements(&value)) else {
+            return Err(fault!(NOT_SUPPORTED, "subscripts of a record").at(target.span));
+        };
+        let choices = self.lowering(loops).choices(&array.dims, &last.subscripts, target.span)?;
+        let chosen = self.chosen(&array.dims, choices, target.span)?;
+        if chosen.positions.len() != value.elements.len() {
+            return Err(fault!(
+                ARRAY_MISMATCH,
+                "{} elements are assigned to {}",
+                value.elements.len(),
+                chosen.positions.len()
+            )
+            .at(target.span));
+        }
+        let Some(Operand::Register(first)) = array.elements.first().copied() else {
+            return Ok(());
+        };
+        let scalars = self.unaliased(first, array.elements.len(), scalars);
+        for (position, element) in chosen.positions.iter().zip(scalars) {
+            let base = first + *position as Register;
+            match chosen.offset {
+                None => self.emitter.copy(base, &[element]),
+                Some(offset) => {
+                    let a = self.emitter.register(element);
+                    self.emitter.emit(Instruction::Store { base, offset, a });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Values to be written to `n` registers from `first` on: copies, if several of them are read
+    /// from there at other places.
+    fn unaliased(&mut self, first: Register, n: usize, values: Vec<Operand>) -> Vec<Operand> {
+        let inside = |operand: &Operand| match operand {
+            Operand::Register(at) => (first..first + n as Register).contains(at),
+            Operand::Constant(_) => false,
+        };
+        if values.len() < 2 || !values.iter().any(inside) {
+            return values;
+        }
+        let copy = self.emitter.copies(&values);
+        (copy..).take(values.len()).map(Operand::Register).collect()
+    }
+
+    /// What subscripts choose: row-major positions, all moved by a computed offset.
+    pub(super) fn chosen(
+        &mut self,
+        dims: &[usize],
+        choices: Vec<Choice<Operand>>,
+        span: Span,
+    ) -> Result<Chosen, Diagnostic> {
+        let mut positions = vec![0];
+        let mut kept = Vec::new();
+        let mut offset = None;
+        let mut choices = choices.into_iter();
+        for (dimension, size) in dims.iter().enumerate() {
+            let stride: usize = dims[dimension + 1..].iter().product();
+            let chosen: Vec<usize> = match choices.next() {
+                Some(Choice::Known { positions, keeps }) => {
+                    kept.extend(keeps.then_some(positions.len()));
+                    positions
+                }
+                Some(Choice::Computed(subscript)) => {
+                    self.emitter.place(span);
+                    let subscript = self.emitter.register(subscript);
+                    let d = match offset {
+                        Some(d) => d,
+                        None => {
+                            let d = self.emitter.block(1);
+                            self.emitter.emit(Instruction::Constant { d, value: 0.0 });
+                            d
+                        }
+                    };
+                    let (size, stride) = (*size as u32, stride as u32);
+                    self.emitter.emit(Instruction::Offset { d, subscript, size, stride });
+                    offset = Some(d);
+                    vec![0]
+                }
+                None => {
+                    kept.push(*size);
+                    (0..*size).collect()
+                }
+            };
+            let step = |at: &usize| chosen.iter().map(|c| at + c * stride).collect::<Vec<_>>();
+            positions = positions.iter().flat_map(step).collect();
+        }
+        Ok(Chosen { positions, offset, dims: kept })
+    }
+
+    pub(super) fn local(&self, names: &[Ident]) -> Option<&Lowered<Operand>> {
+        let (first, rest) = names.split_first()?;
+        let mut place = &self.locals.iter().find(|(name, _)| name == first)?.1;
+        for name in rest {
+            let Lowered::Record(fields) = place else { return None };
+            place = &fields.iter().find(|(field, _)| field == name)?.1;
+        }
+        Some(place)
+    }
+}
+
+/// Elements of an array that subscripts choose.
+pub(super) struct Chosen {
+    /// Row-major positions, before the offset.
+    pub(super) positions: Vec<usize>,
+    /// The register of the offset that computed subscripts make.
+    pub(super) offset: Option<Register>,
+    /// Sizes of what is chosen.
+    pub(super) dims: Vec<usize>,
+}
+
+/// The variables that statements assign to.
+fn collect_assigned(statements: &[Statement], found: &mut FxHashSet<Ident>) {
+    let first = |target: &ComponentReference| target.parts.first().map(|part| part.name);
+    for statement in statements {
+        match &statement.kind {
+            StatementKind::Assign { target, .. } => found.extend(first(target)),
+            StatementKind::MultiAssign { targets, .. } => {
+                found.extend(targets.iter().flatten().filter_map(first));
+            }
+            StatementKind::If { branches, otherwise } => {
+                branches.iter().for_each(|(_, body)| collect_assigned(body, found));
+                collect_assigned(otherwise, found);
+            }
+            StatementKind::For { body, .. } | StatementKind::While { body, .. } => {
+                collect_assigned(body, found);
+            }
+            StatementKind::When { branches } => {
+                branches.iter().for_each(|(_, body)| collect_assigned(body, found));
+            }
+            StatementKind::Call(_) | StatementKind::Break | StatementKind::Return => {}
+        }
+    }
+}

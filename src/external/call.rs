@@ -1,0 +1,196 @@
+//! The arguments of one call.
+
+use super::errors::{EXTERNAL_FAILED, EXTERNAL_OUTSIDE};
+use crate::diag::Fault;
+use crate::fault;
+use std::any::Any;
+use std::sync::Arc;
+
+/// An external object: it does not change once it is made.
+pub type Object = Arc<dyn Any + Send + Sync>;
+
+/// What a slot holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Numbers at a position of [`Call::numbers`].
+    Number,
+    /// The text at a position of [`Call::texts`].
+    Text,
+    /// The object whose handle stands at a position of [`Call::numbers`].
+    Object,
+}
+
+/// An argument or a result: where it stands.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Slot {
+    /// What it holds.
+    pub kind: Kind,
+    /// Its position.
+    pub first: u32,
+    /// Its sizes; none for a scalar.
+    pub dims: Box<[u32]>,
+}
+
+impl Slot {
+    /// Whether it is what a letter of a signature stands for.
+    pub(super) fn fits(&self, letter: char) -> bool {
+        match letter {
+            'n' | 'N' => self.kind == Kind::Number && self.dims.is_empty(),
+            'a' | 'A' => self.kind == Kind::Number && !self.dims.is_empty(),
+            't' | 'T' => self.kind == Kind::Text && self.dims.is_empty(),
+            'o' => self.kind == Kind::Object,
+            _ => false,
+        }
+    }
+
+    /// Number of scalars.
+    pub fn len(&self) -> usize {
+        self.dims.iter().map(|n| *n as usize).product()
+    }
+
+    /// Whether there are no scalars.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// Answers requests to the outside world; refuses all of them by default.
+pub trait Outside {
+    /// The content of a file.
+    fn read(&mut self, path: &str) -> Result<Vec<u8>, Fault> {
+        Err(refused(&format!("to read the file `{path}`")))
+    }
+
+    /// Takes a line for the user.
+    fn print(&mut self, text: &str) -> Result<(), Fault> {
+        let _ = text;
+        Err(refused("to print"))
+    }
+
+    /// Whether a path is a file (`Some(false)`) or a folder (`Some(true)`), if it exists.
+    fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {
+        Err(refused(&format!("to look for `{path}`")))
+    }
+
+    /// Seconds since 1970, UTC.
+    fn clock(&mut self) -> Result<f64, Fault> {
+        Err(refused("to know the time"))
+    }
+}
+
+/// Refuses everything.
+impl Outside for () {}
+
+fn refused(what: &str) -> Fault {
+    fault!(EXTERNAL_OUTSIDE, "an external function wants {what}, which is not granted here")
+}
+
+/// A call: positions of its arguments and what stands there.
+pub struct Call<'a> {
+    /// The external name.
+    pub name: &'static str,
+    /// The arguments in the order of the call.
+    pub arguments: &'a [Slot],
+    /// The result.
+    pub result: Option<&'a Slot>,
+    /// All numbers.
+    pub numbers: &'a mut [f64],
+    /// All texts; arguments are read here.
+    pub texts: &'a [Arc<str>],
+    /// Texts written, with their positions.
+    pub written: &'a mut Vec<(u32, Arc<str>)>,
+    /// All objects, by handle.
+    pub objects: &'a mut Vec<Object>,
+    /// Who answers requests to the outside world.
+    pub outside: &'a mut dyn Outside,
+}
+
+/// Reads and writes arguments by their position in the call. [`Entry::check`](super::Entry::check)
+/// has made sure that they are of the right kinds.
+impl Call<'_> {
+    /// A fault of this function.
+    pub(super) fn fault(&self, reason: impl std::fmt::Display) -> Fault {
+        fault!(EXTERNAL_FAILED, "`{}`: {reason}", self.name)
+    }
+
+    /// A number.
+    pub(super) fn number(&self, argument: usize) -> f64 {
+        self.numbers[self.arguments[argument].first as usize]
+    }
+
+    /// A whole number.
+    pub(super) fn whole(&self, argument: usize) -> i64 {
+        self.number(argument) as i64
+    }
+
+    /// A truth value.
+    pub(super) fn truth(&self, argument: usize) -> bool {
+        self.number(argument) != 0.0
+    }
+
+    /// A text.
+    pub(super) fn text(&self, argument: usize) -> &str {
+        &self.texts[self.arguments[argument].first as usize]
+    }
+
+    /// The numbers of an array, row-major.
+    pub(super) fn array(&self, argument: usize) -> &[f64] {
+        let slot = &self.arguments[argument];
+        &self.numbers[slot.first as usize..][..slot.len()]
+    }
+
+    /// The sizes of an array.
+    pub(super) fn dims(&self, argument: usize) -> &[u32] {
+        &self.arguments[argument].dims
+    }
+
+    /// The numbers of an array to be written.
+    pub(super) fn array_mut(&mut self, argument: usize) -> &mut [f64] {
+        let slot = &self.arguments[argument];
+        &mut self.numbers[slot.first as usize..][..slot.len()]
+    }
+
+    /// An object of a certain type.
+    pub(super) fn object<T: Any + Send + Sync>(&self, argument: usize) -> Result<&T, Fault> {
+        let handle = self.number(argument);
+        let object = match handle >= 0.0 && handle.fract() == 0.0 {
+            true => self.objects.get(handle as usize),
+            false => None,
+        };
+        object
+            .and_then(|object| object.downcast_ref())
+            .ok_or_else(|| self.fault("the object is none that this function takes"))
+    }
+
+    /// Writes a number.
+    pub(super) fn set(&mut self, argument: usize, value: f64) {
+        self.numbers[self.arguments[argument].first as usize] = value;
+    }
+
+    /// Writes a text.
+    pub(super) fn set_text(&mut self, argument: usize, text: &str) {
+        self.written.push((self.arguments[argument].first, text.into()));
+    }
+
+    /// Gives the result.
+    pub(super) fn give(&mut self, value: f64) -> Result<(), Fault> {
+        if let Some(result) = self.result {
+            self.numbers[result.first as usize] = value;
+        }
+        Ok(())
+    }
+
+    /// Gives a text as result.
+    pub(super) fn give_text(&mut self, text: &str) -> Result<(), Fault> {
+        if let Some(result) = self.result {
+            self.written.push((result.first, text.into()));
+        }
+        Ok(())
+    }
+
+    /// Gives a new object as result.
+    pub(super) fn give_object<T: Any + Send + Sync>(&mut self, object: T) -> Result<(), Fault> {
+        self.objects.push(Arc::new(object));
+        self.give((self.objects.len() - 1) as f64)
+    }
+}

@@ -1,0 +1,105 @@
+//! `ModelicaError`, `ModelicaInternal_*` and `ModelicaIO_*`: messages and files, through
+//! [`Outside`](super::Outside).
+//!
+//! Not handled, and refused by name: what changes files and folders, the environment, the clock in
+//! parts.
+
+use super::Entry;
+use super::call::Call;
+use crate::diag::Fault;
+
+pub(super) const ENTRIES: &[Entry] = &[
+    Entry::pure("ModelicaError", "t", error),
+    Entry::impure("ModelicaMessage", "t", message),
+    Entry::impure("ModelicaWarning", "t", message),
+    Entry::impure("ModelicaInternal_print", "tt", print),
+    Entry::impure("ModelicaInternal_readLine", "tnN->t", read_line),
+    Entry::impure("ModelicaInternal_countLines", "t->n", count_lines),
+    Entry::impure("ModelicaInternal_stat", "t->n", stat),
+    Entry::pure("ModelicaStreams_closeFile", "t", nothing),
+    Entry::impure("ModelicaIO_readMatrixSizes", "ttA", matrix_sizes),
+    Entry::impure("ModelicaIO_readRealMatrix", "ttAnnn", real_matrix),
+];
+
+fn error(call: &mut Call<'_>) -> Result<(), Fault> {
+    Err(crate::fault!(super::errors::EXTERNAL_FAILED, "{}", call.text(0).trim_end()))
+}
+
+fn nothing(_: &mut Call<'_>) -> Result<(), Fault> {
+    Ok(())
+}
+
+fn message(call: &mut Call<'_>) -> Result<(), Fault> {
+    let text = call.texts[call.arguments[0].first as usize].clone();
+    call.outside.print(text.trim_end_matches('\n'))
+}
+
+fn print(call: &mut Call<'_>) -> Result<(), Fault> {
+    if !call.text(1).is_empty() {
+        return Err(call.fault("printing to a file is not supported"));
+    }
+    message(call)
+}
+
+/// The content of the file that an argument names.
+fn content(call: &mut Call<'_>, argument: usize) -> Result<String, Fault> {
+    let path = call.text(argument).to_owned();
+    let bytes = call.outside.read(&path)?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+fn read_line(call: &mut Call<'_>) -> Result<(), Fault> {
+    let content = content(call, 0)?;
+    let number = usize::try_from(call.whole(1) - 1);
+    let line = number.ok().and_then(|number| content.lines().nth(number));
+    call.set(2, f64::from(u8::from(line.is_none())));
+    call.give_text(line.unwrap_or_default())
+}
+
+fn count_lines(call: &mut Call<'_>) -> Result<(), Fault> {
+    let lines = content(call, 0)?.lines().count();
+    call.give(lines as f64)
+}
+
+/// `Modelica.Utilities.Types.FileType`: no file, regular file, directory.
+fn stat(call: &mut Call<'_>) -> Result<(), Fault> {
+    let path = call.text(0).to_owned();
+    let kind = match call.outside.is_folder(&path)? {
+        None => 1.0,
+        Some(false) => 2.0,
+        Some(true) => 3.0,
+    };
+    call.give(kind)
+}
+
+fn matrix(call: &mut Call<'_>) -> Result<crate::mat::Matrix, Fault> {
+    let path = call.text(0).to_owned();
+    let bytes = call.outside.read(&path)?;
+    crate::mat::read(&bytes)?.matrix(call.text(1)).cloned()
+}
+
+fn matrix_sizes(call: &mut Call<'_>) -> Result<(), Fault> {
+    let matrix = matrix(call)?;
+    match call.array_mut(2) {
+        [rows, columns] => [*rows, *columns] = [matrix.rows as f64, matrix.columns as f64],
+        _ => return Err(call.fault("the sizes are written to a vector of two elements")),
+    }
+    Ok(())
+}
+
+fn real_matrix(call: &mut Call<'_>) -> Result<(), Fault> {
+    let matrix = matrix(call)?;
+    if *call.dims(2) != [matrix.rows as u32, matrix.columns as u32] {
+        return Err(call.fault(format!(
+            "the matrix `{}` has {} rows and {} columns",
+            call.text(1),
+            matrix.rows,
+            matrix.columns
+        )));
+    }
+    let columns = matrix.columns;
+    for (position, element) in call.array_mut(2).iter_mut().enumerate() {
+        *element = matrix.get(position / columns, position % columns);
+    }
+    Ok(())
+}

@@ -1,0 +1,119 @@
+//! Functions that Modelica libraries declare `external`, in Rust, under their external names (MLS
+//! §12.9): the same for the interpreter and for compiled functions.
+//!
+//! ```text
+//! external "C" y = ModelicaStandardTables_CombiTable1D_getValue(tableID, icol, u);
+//!              │                │                                       │
+//!        Call::result       find(name)                           Call::arguments
+//! ```
+//!
+//! Numbers are `f64` (Integers exact up to 2⁵³, Booleans 0 and 1), arrays row-major whatever the
+//! language of the call says. External objects (MLS §12.9.7) are values of this module, named by
+//! handles; they do not change once they are made. An external name that is not here is refused by
+//! whoever calls it.
+
+mod call;
+pub mod errors;
+mod linear_algebra;
+mod messages;
+mod random;
+mod strings;
+mod tables;
+
+pub use call::{Call, Kind, Object, Outside, Slot};
+
+use crate::diag::Fault;
+use errors::EXTERNAL_CALL;
+
+/// What an external function is implemented by.
+pub type Native = fn(&mut Call<'_>) -> Result<(), Fault>;
+
+/// A function that is external in Modelica.
+pub struct Entry {
+    /// Its external name.
+    pub name: &'static str,
+    /// One letter an argument: `n` number, `a` array of numbers, `t` text, `o` object; capital
+    /// letters for those that are written to. `->` and a letter if it has a result.
+    pub signature: &'static str,
+    /// Whether equal arguments give equal results, and nothing else happens.
+    pub pure: bool,
+    /// What it does.
+    pub run: Native,
+}
+
+impl Entry {
+    /// A function without effects.
+    const fn pure(name: &'static str, signature: &'static str, run: Native) -> Entry {
+        Entry { name, signature, pure: true, run }
+    }
+
+    /// A function with effects.
+    const fn impure(name: &'static str, signature: &'static str, run: Native) -> Entry {
+        Entry { name, signature, pure: false, run }
+    }
+
+    /// Whether the arguments and the result are of the kinds that the function wants.
+    pub fn check(&self, arguments: &[Slot], result: Option<&Slot>) -> Result<(), Fault> {
+        let (wanted, wanted_result) = match self.signature.split_once("->") {
+            Some((wanted, result)) => (wanted, result.chars().next()),
+            None => (self.signature, None),
+        };
+        if wanted.len() != arguments.len() || wanted_result.is_some() != result.is_some() {
+            return Err(crate::fault!(
+                EXTERNAL_CALL,
+                "the external function `{}` is called with {} arguments{}, not with {}{}",
+                self.name,
+                arguments.len(),
+                with_result(result.is_some()),
+                wanted.len(),
+                with_result(wanted_result.is_some())
+            ));
+        }
+        for (position, (letter, slot)) in wanted.chars().zip(arguments).enumerate() {
+            if !slot.fits(letter) {
+                return Err(crate::fault!(
+                    EXTERNAL_CALL,
+                    "argument {} of the external function `{}` is of another kind",
+                    position + 1,
+                    self.name
+                ));
+            }
+        }
+        match (wanted_result, result) {
+            (Some(letter), Some(slot)) if !slot.fits(letter) => Err(crate::fault!(
+                EXTERNAL_CALL,
+                "the result of the external function `{}` is of another kind",
+                self.name
+            )),
+            _ => Ok(()),
+        }
+    }
+}
+
+fn with_result(is_there: bool) -> &'static str {
+    if is_there { " and a result" } else { "" }
+}
+
+const FAMILIES: &[&[Entry]] = &[
+    tables::ENTRIES,
+    strings::ENTRIES,
+    random::ENTRIES,
+    linear_algebra::ENTRIES,
+    messages::ENTRIES,
+];
+
+/// The function of this external name.
+///
+/// ```
+/// let entry = gapilib::external::find("ModelicaStrings_length").expect("it is there");
+/// assert_eq!(entry.signature, "t->n");
+/// assert!(gapilib::external::find("my_own_c_function").is_none());
+/// ```
+pub fn find(name: &str) -> Option<&'static Entry> {
+    FAMILIES.iter().flat_map(|family| family.iter()).find(|entry| entry.name == name)
+}
+
+/// All external names.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    FAMILIES.iter().flat_map(|family| family.iter()).map(|entry| entry.name)
+}

@@ -1,0 +1,146 @@
+//! A function of one variable through the points of a table.
+
+use super::spline::Spline;
+
+/// How points are connected; the order of `Modelica.Blocks.Types.Smoothness`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Smoothness {
+    Linear,
+    Constant,
+    Spline(Spline),
+}
+
+impl Smoothness {
+    pub(super) fn from_ordinal(ordinal: i64) -> Option<Smoothness> {
+        Some(match ordinal {
+            1 => Smoothness::Linear,
+            2 => Smoothness::Spline(Spline::Akima),
+            3 => Smoothness::Constant,
+            4 => Smoothness::Spline(Spline::FritschButland),
+            5 => Smoothness::Spline(Spline::Steffen),
+            6 => Smoothness::Spline(Spline::ModifiedAkima),
+            _ => return None,
+        })
+    }
+}
+
+/// What lies beyond the points; the order of `Modelica.Blocks.Types.Extrapolation`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Extrapolation {
+    Hold,
+    LastTwoPoints,
+    Periodic,
+    Refused,
+}
+
+impl Extrapolation {
+    pub(super) fn from_ordinal(ordinal: i64) -> Option<Extrapolation> {
+        Some(match ordinal {
+            1 => Extrapolation::Hold,
+            2 => Extrapolation::LastTwoPoints,
+            3 => Extrapolation::Periodic,
+            4 => Extrapolation::Refused,
+            _ => return None,
+        })
+    }
+}
+
+/// Where a number stands among abscissae.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Place {
+    /// In the interval of this number, at this abscissa (which differs from the number asked for
+    /// in periodic tables).
+    Inside(usize, f64),
+    /// Before the first point.
+    Before(f64),
+    /// Behind the last point.
+    Behind(f64),
+}
+
+/// Places `u` among abscissae that do not decrease; `None` where extrapolation is refused. An
+/// abscissa belongs to the interval that it begins; the last one to the last interval.
+pub(super) fn place(x: &[f64], extrapolation: Extrapolation, u: f64) -> Option<Place> {
+    let (Some(first), Some(last)) = (x.first().copied(), x.last().copied()) else { return None };
+    let inside = |u: f64| {
+        let interval = x.partition_point(|x| *x <= u).saturating_sub(1);
+        Place::Inside(interval.min(x.len().saturating_sub(2)), u)
+    };
+    if (first..=last).contains(&u) {
+        return Some(inside(u));
+    }
+    match extrapolation {
+        Extrapolation::Periodic if last > first && u.is_finite() => {
+            let period = last - first;
+            let within = u - ((u - first) / period).floor() * period;
+            Some(inside(within.clamp(first, last)))
+        }
+        Extrapolation::Refused => None,
+        _ if u < first => Some(Place::Before(u)),
+        _ => Some(Place::Behind(u)),
+    }
+}
+
+/// One column of a table over its first.
+#[derive(Debug, Clone)]
+pub(super) struct Curve {
+    y: Vec<f64>,
+    smoothness: Smoothness,
+    slopes: Vec<f64>,
+}
+
+impl Curve {
+    /// Through points whose abscissae do not decrease; for splines they increase strictly.
+    pub(super) fn new(x: &[f64], y: Vec<f64>, smoothness: Smoothness) -> Curve {
+        let slopes = match smoothness {
+            Smoothness::Spline(spline) if x.len() > 1 => spline.slopes(x, &y),
+            _ => Vec::new(),
+        };
+        Curve { y, smoothness, slopes }
+    }
+
+    /// Value, first and second derivative.
+    pub(super) fn at(&self, x: &[f64], extrapolation: Extrapolation, place: Place) -> [f64; 3] {
+        let n = x.len();
+        if n == 1 {
+            return [self.y[0], 0.0, 0.0];
+        }
+        let (interval, end, u) = match place {
+            Place::Inside(interval, u) => return self.inside(x, interval, u),
+            Place::Before(u) => (0, 0, u),
+            Place::Behind(u) => (n - 2, n - 1, u),
+        };
+        if extrapolation == Extrapolation::Hold {
+            return [self.y[end], 0.0, 0.0];
+        }
+        let [_, slope, _] = self.inside(x, interval, x[end]);
+        [self.y[end] + slope * (u - x[end]), slope, 0.0]
+    }
+
+    /// The segment of an interval, continued where `u` is not in it.
+    pub(super) fn inside(&self, x: &[f64], interval: usize, u: f64) -> [f64; 3] {
+        let i = interval;
+        let (h, s) = (x[i + 1] - x[i], u - x[i]);
+        let (y0, y1) = (self.y[i], self.y[i + 1]);
+        match self.smoothness {
+            // The last point has a value of its own.
+            Smoothness::Constant if i + 2 == x.len() && u >= x[i + 1] => [y1, 0.0, 0.0],
+            Smoothness::Constant => [y0, 0.0, 0.0],
+            _ if h == 0.0 => [y1, 0.0, 0.0],
+            Smoothness::Linear => {
+                let slope = (y1 - y0) / h;
+                let value = if u == x[i + 1] { y1 } else { y0 + slope * s };
+                [value, slope, 0.0]
+            }
+            Smoothness::Spline(_) => {
+                let (d0, d1) = (self.slopes[i], self.slopes[i + 1]);
+                let m = (y1 - y0) / h;
+                let (c2, c3) = ((3.0 * m - 2.0 * d0 - d1) / h, (d0 + d1 - 2.0 * m) / (h * h));
+                [
+                    y0 + s * (d0 + s * (c2 + s * c3)),
+                    d0 + s * (2.0 * c2 + 3.0 * s * c3),
+                    2.0 * c2 + 6.0 * s * c3,
+                ]
+            }
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! Slopes of cubic Hermite splines through points with strictly increasing abscissae.
+//!
+//! References: [Akima 1970](crate::bibliography#akima-1970),
+//! [Fritsch & Butland 1984](crate::bibliography#fritsch-butland-1984),
+//! [Steffen 1990](crate::bibliography#steffen-1990).
+
+/// How slopes are chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Spline {
+    /// Akima's weights.
+    Akima,
+    /// Akima's weights with the mean slopes added, so that flat parts do not overshoot.
+    ModifiedAkima,
+    /// The weighted harmonic mean of Fritsch and Butland; keeps monotonicity.
+    FritschButland,
+    /// Steffen's limited parabola; keeps monotonicity.
+    Steffen,
+}
+
+impl Spline {
+    /// The slope at every point; at least two points.
+    pub(super) fn slopes(self, x: &[f64], y: &[f64]) -> Vec<f64> {
+        let h: Vec<f64> = x.windows(2).map(|x| x[1] - x[0]).collect();
+        let m: Vec<f64> = y.windows(2).zip(&h).map(|(y, h)| (y[1] - y[0]) / h).collect();
+        if m.len() == 1 {
+            return vec![m[0]; 2];
+        }
+        match self {
+            Spline::Akima => akima(&m, |a, b| (b - a).abs()),
+            Spline::ModifiedAkima => akima(&m, |a, b| (b - a).abs() + (b + a).abs() / 2.0),
+            Spline::FritschButland => {
+                inner_and_ends(&h, &m, fritsch_butland, |d, m, inner| {
+                    match m * inner <= 0.0 && d.abs() > 3.0 * m.abs() {
+                        true => 3.0 * m,
+                        false => d,
+                    }
+                })
+            }
+            Spline::Steffen => {
+                inner_and_ends(
+                    &h,
+                    &m,
+                    steffen,
+                    |d, m, _| {
+                        if d.abs() > 2.0 * m.abs() { 2.0 * m } else { d }
+                    },
+                )
+            }
+        }
+    }
+}
+
+/// (w₁ m₋ + w₂ m₊)/(w₁ + w₂) with weights of the neighbours' slopes; the four slopes beyond the
+/// ends continue the last two linearly.
+fn akima(m: &[f64], weight: fn(f64, f64) -> f64) -> Vec<f64> {
+    let n = m.len();
+    let mut all = vec![0.0; n + 4];
+    all[2..n + 2].copy_from_slice(m);
+    all[1] = 2.0 * all[2] - all[3];
+    all[0] = 2.0 * all[1] - all[2];
+    all[n + 2] = 2.0 * all[n + 1] - all[n];
+    all[n + 3] = 2.0 * all[n + 2] - all[n + 1];
+    let slope = |m: &[f64]| {
+        let (before, behind) = (weight(m[2], m[3]), weight(m[0], m[1]));
+        match before + behind {
+            0.0 => (m[1] + m[2]) / 2.0,
+            sum => (before * m[1] + behind * m[2]) / sum,
+        }
+    };
+    all.windows(4).map(slope).collect()
+}
+
+/// Slopes between two intervals, and at the ends those of the parabola through the last three
+/// points: none where it turns, otherwise limited by `limit(slope, last secant, the one before)`.
+fn inner_and_ends(
+    h: &[f64],
+    m: &[f64],
+    inner: fn([f64; 2], [f64; 2]) -> f64,
+    limit: fn(f64, f64, f64) -> f64,
+) -> Vec<f64> {
+    let n = m.len();
+    let end = |h: [f64; 2], m: [f64; 2]| {
+        let share = h[0] / (h[0] + h[1]);
+        let slope = m[0] * (1.0 + share) - m[1] * share;
+        if slope * m[0] <= 0.0 { 0.0 } else { limit(slope, m[0], m[1]) }
+    };
+    let mut slopes = vec![end([h[0], h[1]], [m[0], m[1]])];
+    slopes.extend((1..n).map(|i| inner([h[i - 1], h[i]], [m[i - 1], m[i]])));
+    slopes.push(end([h[n - 1], h[n - 2]], [m[n - 1], m[n - 2]]));
+    slopes
+}
+
+fn fritsch_butland(h: [f64; 2], m: [f64; 2]) -> f64 {
+    if m[0] * m[1] <= 0.0 {
+        return 0.0;
+    }
+    let (a, b) = (2.0 * h[1] + h[0], h[1] + 2.0 * h[0]);
+    (a + b) / (a / m[0] + b / m[1])
+}
+
+fn steffen(h: [f64; 2], m: [f64; 2]) -> f64 {
+    let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
+    let parabola = (m[0] * h[1] + m[1] * h[0]) / (h[0] + h[1]);
+    let limit = m[0].abs().min(m[1].abs()).min(0.5 * parabola.abs());
+    (sign(m[0]) + sign(m[1])) * limit
+}

@@ -1,0 +1,107 @@
+//! Calls of functions with arrays where scalars are expected: one call for each element
+//! (MLS §12.4.6).
+
+use super::errors::SIZE_MISMATCH;
+use super::instantiation::{Instantiation, indices_of};
+use super::resolve::subscripted;
+use crate::diag::Diagnostic;
+use crate::eval::FunctionBody;
+use crate::fault;
+use crate::name::Name;
+use crate::source::Span;
+use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind, Subscript};
+
+/// The most calls that one call stands for.
+const MAX_CALLS: usize = 100_000;
+
+impl Instantiation<'_> {
+    /// A call with resolved arguments as an array of calls; `None` if it is one call.
+    pub(super) fn vectorized(
+        &mut self,
+        name: &Name,
+        arguments: &Arguments,
+        span: Span,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let Some(Some(function)) = self.functions.get(name).cloned() else { return Ok(None) };
+        if !arguments.iterators.is_empty()
+            || function.body == FunctionBody::RecordConstructor
+            || function.outputs.len() != 1
+        {
+            return Ok(None);
+        }
+        let mut dims: Option<Vec<usize>> = None;
+        let mut spread = (vec![false; arguments.positional.len()], Vec::new());
+        for (at, argument) in arguments.positional.iter().enumerate() {
+            let Some(input) = function.inputs.get(at) else { break };
+            if let Some(extra) = self.extra_dims(argument, input.dims.len()) {
+                merge(&mut dims, extra, name, argument.span)?;
+                spread.0[at] = true;
+            }
+        }
+        for argument in &arguments.named {
+            let input = function.inputs.iter().find(|input| input.name == argument.name.node);
+            let extra = input.and_then(|i| self.extra_dims(&argument.value, i.dims.len()));
+            spread.1.push(extra.is_some());
+            if let Some(extra) = extra {
+                merge(&mut dims, extra, name, argument.value.span)?;
+            }
+        }
+        let Some(dims) = dims else { return Ok(None) };
+        let count: usize = dims.iter().product();
+        if count > MAX_CALLS {
+            return Err(fault!(SIZE_MISMATCH, "`{name}` would be called {count} times").at(span));
+        }
+        let calls = (0..count).map(|at| {
+            let element = |value: &Expression, is_spread: bool| match is_spread {
+                false => value.clone(),
+                true => {
+                    let literal = |index: usize| {
+                        let kind = ExpressionKind::Integer(index as i64);
+                        Subscript::Index(Expression::new(kind, span))
+                    };
+                    let subscripts = indices_of(at, &dims).into_iter().map(literal).collect();
+                    subscripted(value.clone(), subscripts, span)
+                }
+            };
+            let mut one = arguments.clone();
+            for (value, is_spread) in one.positional.iter_mut().zip(&spread.0) {
+                *value = element(value, *is_spread);
+            }
+            for (argument, is_spread) in one.named.iter_mut().zip(&spread.1) {
+                argument.value = element(&argument.value, *is_spread);
+            }
+            let function = ComponentReference::from_name(name, span);
+            Expression::new(ExpressionKind::Call { function, arguments: Box::new(one) }, span)
+        });
+        let calls = calls.collect();
+        Ok(Some(super::connections::arranged(calls, &dims, span)))
+    }
+
+    /// The sizes that an argument has beyond those of its input, if it has more.
+    fn extra_dims(&mut self, argument: &Expression, wanted: usize) -> Option<Vec<usize>> {
+        if self.rank_of(argument).is_some_and(|rank| rank <= wanted) {
+            return None;
+        }
+        let dims = self.shape_of(argument)?;
+        (dims.len() > wanted).then(|| dims[..dims.len() - wanted].to_vec())
+    }
+}
+
+fn merge(
+    dims: &mut Option<Vec<usize>>,
+    extra: Vec<usize>,
+    name: &Name,
+    span: Span,
+) -> Result<(), Diagnostic> {
+    match dims {
+        Some(known) if *known != extra => Err(fault!(
+            SIZE_MISMATCH,
+            "`{name}` is called for each element of arrays of different sizes"
+        )
+        .at(span)),
+        _ => {
+            *dims = Some(extra);
+            Ok(())
+        }
+    }
+}

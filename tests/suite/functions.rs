@@ -1,0 +1,294 @@
+//! Functions that run as bytecode in models: their values are those of the interpreter, their
+//! derivatives those of its differences.
+
+use gapilib::compile::{Program, System};
+use gapilib::dae::sort;
+use gapilib::diag::Diagnostic;
+use gapilib::eval::{Arguments, Callee, Function, Host, call_function};
+use gapilib::flatten::{Library, flatten};
+use gapilib::name::Name;
+use gapilib::sim::{DaeSystem, Failure, Settings, simulate};
+use gapilib::source::{SourceId, Span};
+use gapilib::syntax::{ast::ComponentReference, parse_stored_definition};
+use gapilib::value::Value;
+use indexmap::IndexMap;
+use proptest::prelude::*;
+use std::sync::Arc;
+
+/// Functions `f` of a Real `u` and an Integer `n` with a Real output `y`; `{h}` is this interface.
+const CORPUS: &[(&str, &str)] = &[
+    (
+        "a while loop with an exit",
+        "function f {h} protected Integer k = 0; algorithm y := 1; while true loop \
+         y := y - (y^3 - u^2 - 1)/(3*y^2); k := k + 1; if k > 40 + n then break; end if; \
+         end while; end f;",
+    ),
+    (
+        "a return inside two loops",
+        "function f {h} algorithm y := 0; for i in 1:10 loop for j in 1:i loop \
+         y := y + u*i/j; if y > 5 + n then return; end if; end for; end for; y := -u; end f;",
+    ),
+    (
+        "subscripts that are computed",
+        "function f {h} protected Real a[3, 4]; Integer at; algorithm for i in 1:3 loop \
+         for j in 1:4 loop a[i, j] := sin(i*u) + j; end for; end for; \
+         at := 1 + integer(mod(abs(u), 3)); a[at, 2] := a[at, 2]^2; \
+         a[at, :] := a[at, {4, 3, 2, 1}]; a[:, 3] := 2*a[:, at]; y := sum(a[at, :]) + a[3, at]; \
+         end f;",
+    ),
+    (
+        "recursion",
+        "function f {h} algorithm if n <= 0 then y := u; elseif n == 1 then y := u*u; else \
+         y := f(u/2, n - 1) + sin(f(u, n - 2)); end if; end f;",
+    ),
+    (
+        "vectors of any size and their search",
+        "function find input Real x[:]; input Real y[size(x, 1)]; input Real u; output Real v; \
+         output Integer at; algorithm at := 1; while at < size(x, 1) - 1 and u > x[at + 1] loop \
+         at := at + 1; end while; \
+         v := y[at] + (y[at + 1] - y[at])*(u - x[at])/(x[at + 1] - x[at]); end find; \
+         function f {h} protected Real v; Integer at; algorithm \
+         (v, at) := find({-2, -0.5, 0, 1, 3}, {1, 4, 2, n, 3}, u); y := v*at; end f;",
+    ),
+    (
+        "records in and out",
+        "record R Real a; Real b[2]; end R; function g input R r; input Integer n; output R s; \
+         algorithm s := r; for k in 1:n loop s.a := s.a*r.b[1]; s.b[2] := s.b[2] + s.a; end for; \
+         end g; function f {h} protected R r; algorithm r := g(R(u, {cos(u), 2}), n); \
+         y := r.a + r.b[2]; end f;",
+    ),
+    (
+        "sizes that depend on a known argument",
+        "function powers input Real u; input Integer m; output Real p[m]; algorithm p[1] := u; \
+         for i in 2:m loop p[i] := p[i - 1]*u; end for; end powers; \
+         function f {h} protected Integer k = 0; algorithm y := 0; while k < n loop k := k + 1; \
+         y := y + sum(powers(u/3, 4)); end while; end f;",
+    ),
+    (
+        "slices that change from turn to turn",
+        "function f {h} protected Real v[4] = {u, 2, 3*u, n}; Real s = 0; algorithm \
+         for i in 1:4 loop s := s + sum(v[i:4])*i; if s > 40 then break; end if; end for; \
+         y := s; end f;",
+    ),
+    (
+        "conditions that guard each other",
+        "function f {h} protected Real v[3] = {1, 2, u}; Integer i = 1; algorithm \
+         while i <= 3 and v[min(i, 3)] > 0 loop i := i + 1; end while; \
+         y := if i > 3 or v[i] < -1 then i*u else u^2; end f;",
+    ),
+    (
+        "powers, roots and quotients",
+        "function f {h} protected Integer k = 0; algorithm y := 1 + u^2; while k < n loop \
+         y := sqrt(y)^1.5/(1 + exp(-u)) + log(y) + atan2(y, u) + max(y, u)^k; k := k + 1; \
+         end while; end f;",
+    ),
+    (
+        "loops over elements and backwards",
+        "function f {h} protected Real e; algorithm y := 0; for x in {u, n, 2.5} loop \
+         for i in 5:-2:n loop y := y + x*i; if y > 100 then return; end if; end for; end for; \
+         for x in 0.5:0.25:1 + u^2 loop y := y + x; end for; end f;",
+    ),
+    (
+        "values that swap places",
+        "function f {h} protected Real v[3] = {1, u, n}; Integer k = 0; algorithm \
+         while k < n loop v := {v[3], v[1] + u, v[2]}; (v[1], v[2]) := swap(v[1], v[2]); \
+         k := k + 1; end while; y := v*{1, 10, 100}; end f; function swap input Real a; \
+         input Real b; output Real c; output Real d; algorithm c := b; d := a; end swap;",
+    ),
+];
+
+const INTERFACE: &str = "input Real u; input Integer n; output Real y;";
+
+/// The classes of a text around `package P`.
+fn library(functions: &str) -> Library {
+    let functions = functions.replace("{h}", INTERFACE);
+    let text = format!(
+        "package P {functions} model Main Real x(start = 1, fixed = true); \
+         parameter Integer n = 2; equation der(x) = f(x, n); end Main; end P;"
+    );
+    let file = parse_stored_definition(SourceId::NONE, &text).expect("Modelica");
+    let mut library = Library::new();
+    library.load(&file).expect("a loadable file");
+    library
+}
+
+fn compiled(library: &Library) -> Result<Arc<Program>, Diagnostic> {
+    let flat = flatten(library, &Name::parse("P.Main"), &[])
+        .map_err(|errors| errors.into_iter().next().expect("an error"))?;
+    Program::compile(sort(&flat.model)?)
+}
+
+/// f(u, n) and ∂f/∂u as the model computes them.
+fn of_model(system: &mut System, u: f64, n: i64) -> Result<(f64, f64), Failure> {
+    system.set_parameter(0, n as f64).expect("a parameter");
+    let (mut value, mut slope) = ([0.0], [0.0]);
+    system.initialize(0.0, &mut [0.0])?;
+    system.rhs(0.0, &[u], &mut value)?;
+    system.jacobian(0.0, &[u], &mut slope)?;
+    Ok((value[0], slope[0]))
+}
+
+/// Answers calls among the functions of a library.
+struct Functions(IndexMap<Name, Arc<Function>>);
+
+impl Host for Functions {
+    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
+        Ok(self.0.get(name).cloned().map(Callee::Function))
+    }
+
+    fn call_builtin(
+        &mut self,
+        header: &Arc<Function>,
+        _: Vec<Value>,
+        _: Span,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        panic!("`{}` is no command", header.name)
+    }
+
+    fn variable(&mut self, _: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
+        Ok(None)
+    }
+}
+
+/// f(u, n) as the interpreter computes it.
+fn interpreted(library: &Library, u: f64, n: i64) -> f64 {
+    let name = Name::parse("P.f");
+    let functions = library.function(&name).expect("ready").expect("declared");
+    let function = functions[&name].clone();
+    let positional = vec![Value::Real(u), Value::Integer(n)];
+    let arguments = Arguments { positional, ..Arguments::default() };
+    let outputs = call_function(&function, arguments, Span::NONE, &mut Functions(functions));
+    match outputs.expect("a value").as_slice() {
+        [Value::Real(value), ..] => *value,
+        other => panic!("{other:?} is no number"),
+    }
+}
+
+#[test]
+fn values_and_slopes_are_those_of_the_interpreter() {
+    for (what, functions) in CORPUS {
+        let library = library(functions);
+        let program = compiled(&library).unwrap_or_else(|e| panic!("{what}: {e}"));
+        assert!(!program.sorted().dae.functions.codes.is_empty(), "{what} is no bytecode");
+        let mut system = program.system();
+        for n in 0..5 {
+            for u in [-1.7, -0.6, 0.37, 0.9, 2.3] {
+                let (value, slope) = of_model(&mut system, u, n)
+                    .unwrap_or_else(|e| panic!("{what}: {e:?} at u = {u}, n = {n}"));
+                let expected = interpreted(&library, u, n);
+                assert!(
+                    (value - expected).abs() <= 1e-12 * expected.abs().max(1.0),
+                    "{what}: {value} instead of {expected} at u = {u}, n = {n}"
+                );
+                let h = 1e-5;
+                let difference =
+                    (interpreted(&library, u + h, n) - interpreted(&library, u - h, n)) / (2.0 * h);
+                assert!(
+                    (slope - difference).abs() <= 1e-6 * difference.abs().max(1.0),
+                    "{what}: slope {slope} instead of {difference} at u = {u}, n = {n}"
+                );
+            }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 32, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_arguments_give_the_values_of_the_interpreter(
+        which in 0..CORPUS.len(), u in -3.0f64..3.0, n in 0i64..6
+    ) {
+        let library = library(CORPUS[which].1);
+        let program = compiled(&library).expect("it compiles");
+        let (value, _) = of_model(&mut program.system(), u, n).expect("a value");
+        let expected = interpreted(&library, u, n);
+        prop_assert!((value - expected).abs() <= 1e-12 * expected.abs().max(1.0));
+    }
+}
+
+/// What ends a simulation of `der(x) = f(x, n)`.
+fn failure(functions: &str) -> String {
+    let program = compiled(&library(functions)).expect("it compiles");
+    let result = simulate(&mut program.system(), &Settings { stop: 1.0, ..Settings::default() });
+    let error = result.expect_err("the simulation fails");
+    let diagnostic = program.explain(&error);
+    format!("{}: {}", diagnostic.code.slug, diagnostic.message)
+}
+
+#[test]
+fn failures_inside_functions_say_why() {
+    let cases = [
+        (
+            "function f {h} algorithm y := 1; while y < n loop y := y + u; end while; \
+             assert(y < 2, \"too large\"); end f;",
+            "assertion-failed: too large (at t = 0)",
+        ),
+        (
+            "function f {h} protected Real v[2] = {u, u}; Integer i = n; algorithm \
+             while i > 0 loop y := v[i + 1]; i := i - 1; end while; end f;",
+            "domain-error: a subscript lies outside its array in the function `P.f` (at t = 0)",
+        ),
+        (
+            "function f {h} algorithm if u > 5 then y := 1; return; end if; \
+             while u > 5 loop y := 2; end while; end f;",
+            "domain-error: a variable has no value in the function `P.f` (at t = 0)",
+        ),
+        (
+            "function f {h} protected Integer k = 0; algorithm y := u; while k < n loop \
+             y := log(-y); k := k + 1; end while; end f;",
+            "domain-error: `log` has no value: the argument must be positive in the function \
+             `P.f` (at t = 0)",
+        ),
+        (
+            "function f {h} algorithm y := f(u, n + 1); end f;",
+            "domain-error: calls are nested too deep in the function `P.f` (at t = 0)",
+        ),
+        (
+            "function f {h} algorithm y := u; while y > 0 loop y := y + 1; end while; end f;",
+            "domain-error: a loop does not end in the function `P.f` (at t = 0)",
+        ),
+    ];
+    for (functions, expected) in cases {
+        assert_eq!(failure(functions), expected);
+    }
+}
+
+/// A table as an external object, with the derivative that its library declares.
+const TABLE: &str = "package P class Table extends ExternalObject; function constructor \
+    input String name; input Real table[:, :]; input Integer smoothness; output Table id; \
+    external \"C\" id = ModelicaStandardTables_CombiTable1D_init2(name, \"NoName\", table, \
+    size(table, 1), size(table, 2), {2}, 1, smoothness, 2, false); end constructor; \
+    function destructor input Table id; \
+    external \"C\" ModelicaStandardTables_CombiTable1D_close(id); end destructor; end Table; \
+    function value input Table id; input Real u; output Real y; \
+    external \"C\" y = ModelicaStandardTables_CombiTable1D_getValue(id, 1, u); \
+    annotation(derivative = slope); end value; \
+    function slope input Table id; input Real u; input Real du; output Real dy; \
+    external \"C\" dy = ModelicaStandardTables_CombiTable1D_getDerValue(id, 1, u, du); \
+    end slope; \
+    model Main parameter Real k = 3; parameter String name = \"NoName\"; \
+    parameter Table t = Table(if name == \"\" then \"empty\" else name, [0, 0; 1, k; 2, 4], 1); \
+    Real x(start = 1, fixed = true); equation der(x) = value(t, x); end Main; end P;";
+
+#[test]
+fn a_table_is_an_object_that_parameters_make_anew() {
+    let file = parse_stored_definition(SourceId::NONE, TABLE).expect("Modelica");
+    let mut library = Library::new();
+    library.load(&file).expect("a loadable file");
+    let program = compiled(&library).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(program.parameters().len(), 1, "the object is none that can be set");
+    let codes = &program.sorted().dae.functions.codes;
+    assert!(codes.iter().any(|code| code.derivative.is_some()), "the annotation counts");
+    let mut system = program.system();
+    for k in [3.0, 5.0, 3.0] {
+        system.set_parameter(0, k).expect("a parameter");
+        system.initialize(0.0, &mut [1.0]).expect("initial values");
+        let (mut value, mut slope) = ([0.0], [0.0]);
+        for (u, expected, exact) in [(0.5, k / 2.0, k), (1.5, (k + 4.0) / 2.0, 4.0 - k)] {
+            system.rhs(0.0, &[u], &mut value).expect("a value");
+            system.jacobian(0.0, &[u], &mut slope).expect("a slope");
+            assert!((value[0] - expected).abs() < 1e-14 && (slope[0] - exact).abs() < 1e-13);
+        }
+    }
+}
