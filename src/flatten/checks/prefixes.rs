@@ -166,7 +166,7 @@ fn prefixed_element(
         }
         seen.push(class.class);
         let (_, prefixes) = class.unaliased();
-        for prefix in prefixes.into_iter().filter(|prefix| clashes(*prefix)) {
+        if let Some(prefix) = prefixes.into_iter().find(|prefix| clashes(*prefix)) {
             return Some((class.name().to_string(), flow_or_direction(prefix)?));
         }
         for component in class.lineage().into_iter().flat_map(Scope::components) {
