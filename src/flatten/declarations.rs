@@ -44,6 +44,8 @@ pub(super) struct Expanded {
     pub(super) causality: Option<CausalityPrefix>,
     pub(super) connection: Option<ConnectionPrefix>,
     pub(super) connector: bool,
+    /// The class that the type names, if it is not predefined.
+    pub(super) class: Option<ScopeId>,
 }
 
 impl Instantiation<'_> {
@@ -290,6 +292,7 @@ impl Instantiation<'_> {
             causality: None,
             connection: None,
             connector: false,
+            class: None,
         };
         for _ in 0..MAX_DEPTH {
             let id = match found {
@@ -299,6 +302,7 @@ impl Instantiation<'_> {
                 }
                 Type::Class(id) => id,
             };
+            expanded.class.get_or_insert(id);
             let text = self.text(id).clone();
             let name = text.definition.name.node;
             let scope = self.scope(id);

@@ -1,15 +1,14 @@
-//! Inputs that a call leaves out and whose defaults refer to other inputs (MLS §12.4.1): the
-//! default with the call's own arguments in place of the inputs is written into the call.
+//! Inputs that a call leaves out and whose defaults refer to other inputs or, in a function with a
+//! modifier, to variables of the model (MLS §12.4.1): the default with the call's own arguments in
+//! place of the inputs is written into the call.
 
 use super::instantiation::Instantiation;
 use super::resolve::subscripted;
 use crate::eval::Function;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
-use crate::syntax::ast::{
-    Arguments, ComponentReference, Expression, ExpressionKind, NamedArgument,
-};
-use crate::syntax::visit::{Rewrite, Visit, rewrite_expression, walk_reference};
+use crate::syntax::ast::{Arguments, Expression, ExpressionKind, NamedArgument};
+use crate::syntax::visit::{Rewrite, Visit, rewrite_expression, walk_expression};
 
 impl Instantiation<'_> {
     /// The arguments of a call with such defaults added.
@@ -25,7 +24,7 @@ impl Instantiation<'_> {
         }
         for input in &function.inputs {
             let Some(default) = &input.binding else { continue };
-            if given(function, &arguments, input.name).is_some() || !mentions(default, function) {
+            if given(function, &arguments, input.name).is_some() || !has_references(default) {
                 continue;
             }
             let mut value = default.clone();
@@ -44,17 +43,19 @@ fn given<'e>(function: &Function, arguments: &'e Arguments, name: Ident) -> Opti
     arguments.positional.get(at).or_else(|| named().map(|argument| &argument.value))
 }
 
-fn mentions(default: &Expression, function: &Function) -> bool {
-    struct Mentions<'f>(&'f Function, bool);
-    impl Visit for Mentions<'_> {
-        fn reference(&mut self, reference: &ComponentReference) {
-            self.1 |= self.0.inputs.iter().any(|input| reference.parts[0].name == input.name);
-            walk_reference(self, reference);
+/// Whether a default needs other inputs, or variables of the model from which a modifier of the
+/// function took it; constants are values by now.
+fn has_references(default: &Expression) -> bool {
+    struct References(bool);
+    impl Visit for References {
+        fn expression(&mut self, e: &Expression) {
+            self.0 |= matches!(e.kind, ExpressionKind::Reference(_));
+            walk_expression(self, e);
         }
     }
-    let mut search = Mentions(function, false);
+    let mut search = References(false);
     search.expression(default);
-    search.1
+    search.0
 }
 
 /// Puts the arguments of a call in place of the inputs.
@@ -70,7 +71,7 @@ impl Rewrite for Substitution<'_> {
         let Some((first, rest)) = reference.parts.split_first() else { return };
         let default = || {
             let input = self.function.inputs.iter().find(|input| input.name == first.name)?;
-            input.binding.as_ref().filter(|default| !mentions(default, self.function))
+            input.binding.as_ref().filter(|default| !has_references(default))
         };
         let argument = given(self.function, self.arguments, first.name).or_else(default);
         let Some(argument) = argument else { return };

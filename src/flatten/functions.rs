@@ -338,6 +338,10 @@ impl Instantiation<'_> {
             let bound = expanded.modifier.binding.as_ref();
             let binding = match bound.and_then(|b| b.value.as_ref().map(|value| (value, b.context)))
             {
+                // What a modifier gives from outside does not see the function's own names.
+                Some((value, written)) if !elements.lineage.contains(&written) => {
+                    Some(self.resolve(value, written, &Local::default())?)
+                }
                 Some((value, written)) => Some(self.resolve(value, written, &local)?),
                 None => {
                     self.value_of_fields(&value_type, &expanded.modifier, &local, declared.span)?

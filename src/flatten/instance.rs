@@ -150,6 +150,8 @@ pub(super) struct Leaf {
     pub(super) connection: Option<ConnectionPrefix>,
     /// Whether its type is a connector.
     pub(super) connector: bool,
+    /// The class of its type, if that is not predefined.
+    pub(super) class: Option<ScopeId>,
 }
 
 impl Shape {

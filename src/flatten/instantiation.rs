@@ -593,6 +593,7 @@ impl<'a> Instantiation<'a> {
             modifier: expanded.modifier,
             connection: inherited.connection,
             connector: expanded.connector,
+            class: expanded.class,
         };
         let id = NodeId(self.nodes.len());
         if !self.in_package(node) {

@@ -7,7 +7,7 @@ use super::errors::{CYCLIC_CLASS, TOO_LARGE, TYPE_MISMATCH, UNKNOWN_ELEMENT};
 use super::instance::NodeId;
 use super::instantiation::Instantiation;
 use super::library::ClassId;
-use super::lookup::{Predefined, Type};
+use super::lookup::Type;
 use super::modification::{Modifier, Redeclaration, Replacement};
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
@@ -284,10 +284,8 @@ impl Instantiation<'_> {
                         TypeSpecifier { name: extended.text.name.clone(), span: text.span() };
                     bases.push(self.base(id, base, own, outer.clone(), &specifier)?);
                 }
-                // An external object has no elements to inherit either.
-                if let Some((Type::Predefined(Predefined::ExternalObject), _)) =
-                    self.predefined_base(id, &text)?
-                {
+                // A type made of a predefined one and an external object have none either.
+                if let Some((Type::Predefined(_), _)) = self.predefined_base(id, &text)? {
                     return Ok(bases.into());
                 }
                 for (_, element) in text.elements() {

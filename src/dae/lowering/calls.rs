@@ -232,6 +232,20 @@ impl<T: Target> Lowering<'_, T> {
                 }
                 _ => return Err(fault!(ARRAY_MISMATCH, "`cross` takes two vectors").at(span)),
             },
+            "outerProduct" => match plain {
+                [a, b] => {
+                    let (a, b) = (self.array(a)?, self.array(b)?);
+                    self.outer_product(&a, &b, span)?
+                }
+                _ => {
+                    return Err(fault!(ARRAY_MISMATCH, "`outerProduct` takes two vectors").at(span));
+                }
+            },
+            "skew" => {
+                let a = one(self)?;
+                self.skew(&a, span)?
+            }
+            "symmetric" => symmetric(one(self)?, span)?,
             "Real" | "Integer" | "Boolean" if plain.len() == 1 => one(self)?,
             _ => return Ok(None),
         };
@@ -372,6 +386,35 @@ impl<T: Target> Lowering<'_, T> {
         Ok(Array::vector(elements))
     }
 
+    /// The matrix of all products of two vectors (MLS §10.3.5).
+    fn outer_product(
+        &mut self,
+        a: &Array<T::Scalar>,
+        b: &Array<T::Scalar>,
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        let (&[rows], &[columns]) = (a.dims.as_slice(), b.dims.as_slice()) else {
+            return Err(fault!(ARRAY_MISMATCH, "`outerProduct` takes two vectors").at(span));
+        };
+        let product = |this: &mut Self, at: usize| {
+            let (i, j) = (at / columns.max(1), at % columns.max(1));
+            this.target.binary(Binary::Mul, a.elements[i], b.elements[j])
+        };
+        let elements = (0..rows * columns).map(|at| product(self, at)).collect();
+        Ok(Array { dims: vec![rows, columns], elements })
+    }
+
+    /// The matrix whose product with `y` is `cross(a, y)` (MLS §10.3.5).
+    fn skew(&mut self, a: &Array<T::Scalar>, span: Span) -> Result<Array<T::Scalar>, Diagnostic> {
+        let &[x, y, z] = a.elements.as_slice() else {
+            return Err(fault!(ARRAY_MISMATCH, "`skew` takes a vector of three elements").at(span));
+        };
+        let zero = self.target.constant(0.0);
+        let mut minus = |e| self.target.binary(Binary::Sub, zero, e);
+        let (nx, ny, nz) = (minus(x), minus(y), minus(z));
+        Ok(Array { dims: vec![3, 3], elements: vec![zero, nz, y, z, zero, nx, ny, x, zero] })
+    }
+
     /// A function of the table, element by element (MLS §12.4.6).
     fn table_function(
         &mut self,
@@ -414,6 +457,22 @@ impl<T: Target> Lowering<'_, T> {
         }
         Ok(Lowered::Array(Array { dims, elements }))
     }
+}
+
+/// The upper triangle of a matrix, mirrored (MLS §10.3.5).
+fn symmetric<S: Copy>(a: Array<S>, span: Span) -> Result<Array<S>, Diagnostic> {
+    let &[rows, columns] = a.dims.as_slice() else {
+        return Err(fault!(ARRAY_MISMATCH, "`symmetric` takes a square matrix").at(span));
+    };
+    if rows != columns {
+        return Err(fault!(ARRAY_MISMATCH, "`symmetric` takes a square matrix").at(span));
+    }
+    let mirrored = |at: usize| {
+        let (i, j) = (at / columns, at % columns);
+        a.elements[i.min(j) * columns + i.max(j)]
+    };
+    let elements = (0..a.elements.len()).map(mirrored).collect();
+    Ok(Array { dims: vec![rows, columns], elements })
 }
 
 fn transposed<S: Copy>(a: Array<S>, span: Span) -> Result<Array<S>, Diagnostic> {

@@ -8,6 +8,7 @@ use super::super::instantiation::Instantiation;
 use super::super::lookup::Type;
 use super::super::resolve::{Local, flat_reference};
 use super::super::scope::ScopeId;
+use super::ends::End;
 use super::sets::Connections;
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -186,7 +187,15 @@ impl Instantiation<'_> {
     pub(super) fn build_graph(&mut self, connections: &mut Connections) -> Result<(), Diagnostic> {
         let kept = connections.graph.span();
         for edge in kept {
-            self.pair_members(edge.nodes.0, edge.nodes.1, edge.outside, edge.span, connections)?;
+            let (one, other) = edge.nodes;
+            match self.scalars_of(one).zip(self.scalars_of(other)) {
+                Some((ones, others)) => {
+                    for (a, b) in ones.into_iter().zip(others) {
+                        self.pair(a, b, edge.outside, edge.span, connections)?;
+                    }
+                }
+                None => self.pair_members(one, other, edge.outside, edge.span, connections)?,
+            }
         }
         connections.close();
         Ok(())
@@ -194,12 +203,26 @@ impl Instantiation<'_> {
 
     /// Whether the class of a component declares itself redundant.
     pub(super) fn is_overdetermined(&mut self, node: NodeId) -> Result<bool, Diagnostic> {
-        let NodeKind::Composite(composite) = &self.nodes[node.0].kind else { return Ok(false) };
-        let (class, connector) = (composite.class, composite.connector);
-        if connector || !self.is_record(class) {
-            return Ok(false);
-        }
+        let Some(class) = self.redundant_class(node) else { return Ok(false) };
         Ok(self.find_class(class, Ident::new(EQUALITY_CONSTRAINT))?.is_some())
+    }
+
+    /// The class of a record or of a variable, which may be redundant.
+    fn redundant_class(&self, node: NodeId) -> Option<ScopeId> {
+        match &self.nodes[node.0].kind {
+            NodeKind::Composite(composite) => {
+                let class = composite.class;
+                (!composite.connector && self.is_record(class)).then_some(class)
+            }
+            NodeKind::Variable(leaf) => leaf.class.filter(|_| !leaf.connector),
+        }
+    }
+
+    /// The scalars of a variable; `None` for an instance with components.
+    fn scalars_of(&self, node: NodeId) -> Option<Vec<End>> {
+        let NodeKind::Variable(leaf) = &self.nodes[node.0].kind else { return None };
+        let count = self.variables[leaf.variable].0.len();
+        Some((0..count).map(|element| End::Scalar(node, element)).collect())
     }
 
     /// `0 = equalityConstraint(a, b)` for every connection outside the tree.
@@ -217,7 +240,7 @@ impl Instantiation<'_> {
 
     fn constraint_equation(&mut self, edge: &Edge) -> Result<Equation, Diagnostic> {
         let span = edge.span;
-        let class = self.composite_of(edge.nodes.0).map_or(ScopeId::TOP, |c| c.class);
+        let class = self.redundant_class(edge.nodes.0).unwrap_or(ScopeId::TOP);
         let invalid = || {
             fault!(INVALID_CONNECTION, "`{EQUALITY_CONSTRAINT}` of this record is no function")
                 .at(span)

@@ -184,6 +184,13 @@ impl Instantiation<'_> {
             let Some((_, counterpart)) = right.iter().find(|(known, _)| *known == name) else {
                 continue;
             };
+            if let (MemberState::Single(a), MemberState::Single(b)) = (&state, counterpart)
+                && self.is_redundant_variable(*a)?
+                && self.is_redundant_variable(*b)?
+            {
+                connections.graph.connect(*a, *b, outside, span);
+                continue;
+            }
             let (ends, partners) = (self.ends_of(&state), self.ends_of(counterpart));
             if ends.len() != partners.len() {
                 let (a, b) = (&self.nodes[one.0].path, &self.nodes[other.0].path);
@@ -207,6 +214,11 @@ impl Instantiation<'_> {
             .into_iter()
             .filter(|(_, state)| matches!(state, MemberState::Single(_) | MemberState::Array(..)))
             .collect())
+    }
+
+    fn is_redundant_variable(&mut self, node: NodeId) -> Result<bool, Diagnostic> {
+        let is_variable = matches!(self.nodes[node.0].kind, NodeKind::Variable(_));
+        Ok(is_variable && self.is_overdetermined(node)?)
     }
 
     fn ends_of(&self, state: &MemberState) -> Vec<End> {
