@@ -1,8 +1,9 @@
 //! User functions become expressions: statements are carried out on symbolic values, loops of known
 //! length unrolled, branches merged into if-expressions (MLS ch. 11, §12.4).
 //!
-//! Refused with `not-supported`: external and impure functions; `while`, `break`, `return` and
-//! subscripts that depend on variables; recursion that does not end when compiling.
+//! Not possible for external and impure functions, for `while`, `break`, `return` and subscripts
+//! that depend on variables, and for recursion that does not end when compiling: such calls are left
+//! to the bytecode of `function`, which refuses impure functions.
 
 use super::build::{Builder, message_text};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
