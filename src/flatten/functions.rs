@@ -420,9 +420,11 @@ impl Instantiation<'_> {
             Shape::ExternalObject(name) => return Ok(ValueType::ExternalObject(name.clone())),
             Shape::Function => return Ok(ValueType::Function),
             Shape::Predefined(_) => {
-                return Err(
-                    fault!(NOT_SUPPORTED, "external objects are not translated yet").at(span)
-                );
+                return Err(fault!(
+                    TYPE_MISMATCH,
+                    "a component of a function needs a type with values"
+                )
+                .at(span));
             }
         };
         let name = self.record_constructor(class, span)?;

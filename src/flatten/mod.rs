@@ -10,8 +10,9 @@
 //! shares the instance of the derived class.
 //!
 //! Not translated, each refused with `unsupported-language` at its place: `break connect` in
-//! extends clauses (§7.4), impure functions in models (§12.3), clocked expressions (ch. 16) and
-//! state machines (ch. 17).
+//! extends clauses (§7.4), impure functions outside parameters, initial sections and when-clauses
+//! (§12.3). Clocked expressions (ch. 16), state machines (ch. 17) and the partial application of a
+//! function that is itself an input (§12.4.2) end as names that nothing declares.
 
 mod balance;
 mod checks;
