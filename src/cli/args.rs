@@ -59,6 +59,8 @@ pub(super) enum Colour {
 pub(super) enum Command {
     /// Run a script
     Run(RunArgs),
+    /// Watch the genetic algorithm of a script step by step
+    Teach(TeachArgs),
     /// Simulate a model
     Simulate(SimulateArgs),
     /// Check Modelica files, or one model down to its sorted equations
@@ -94,6 +96,9 @@ pub(super) struct RunArgs {
     /// Write every statement with its answer to a file
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub transcript: Option<PathBuf>,
+    /// Record what the genetic algorithm did, for `gapi teach`
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub trace: Option<PathBuf>,
     /// Show errors only
     #[arg(long, short)]
     pub quiet: bool,
@@ -103,6 +108,28 @@ pub(super) struct RunArgs {
     /// End with exit code 0 whatever happened
     #[arg(long)]
     pub lenient: bool,
+}
+
+/// Arguments of `gapi teach`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi teach scripts/GAPILib.mos
+  gapi teach scripts/GAPILib.mos --generation 100 --count 2
+  gapi run my.mos --trace my.trace && gapi teach my.trace")]
+pub(super) struct TeachArgs {
+    /// A script (.mos), which is run first, or a trace that `gapi run --trace` has written
+    #[arg(value_name = "SCRIPT|TRACE", value_hint = ValueHint::FilePath)]
+    pub input: PathBuf,
+    /// The generation to begin with
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
+    pub generation: usize,
+    /// How many generations to show
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
+    pub count: usize,
+    /// Folder for the results and the trace of the run
+    #[arg(long, default_value = "results", value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
 }
 
 /// Arguments of `gapi simulate`.
@@ -192,6 +219,10 @@ Example:
 pub(super) struct CompletionsArgs {
     /// The shell
     pub shell: clap_complete::Shell,
+}
+
+fn at_least_one(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|&number| number > 0).ok_or_else(|| "expected 1, 2, ...".to_owned())
 }
 
 fn name_and_value(text: &str) -> Result<(String, f64), String> {

@@ -8,6 +8,7 @@ mod explain;
 mod run;
 mod session;
 mod simulate;
+mod teach;
 mod terminal;
 mod world;
 
@@ -40,6 +41,7 @@ pub fn main() -> ExitCode {
 fn dispatch(cli: &Cli) -> ExitCode {
     match &cli.command {
         Command::Run(arguments) => run::run(arguments, &cli.global),
+        Command::Teach(arguments) => teach::teach(arguments, &cli.global),
         Command::Explain(arguments) => explain::explain(arguments),
         Command::Completions(arguments) => completions::completions(arguments),
         Command::Simulate(arguments) => simulate::simulate(arguments, &cli.global),

@@ -5,6 +5,7 @@ use super::session;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use crate::script::{Echo, Options, Session, Strictness, Transcript};
+use crate::source::Span;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -23,6 +24,9 @@ pub(super) fn run(arguments: &RunArgs, global: &Global) -> ExitCode {
     let mut session = session::open(global, world).with_options(options(arguments));
     if arguments.transcript.is_some() {
         session.transcript = Some(Transcript::default());
+    }
+    if let Some(fault) = arguments.trace.as_deref().and_then(|path| session.trace_to(path).err()) {
+        return session::failed(&mut session, vec![fault.at(Span::NONE)]);
     }
     let status = session.run_file(&arguments.script);
     match write_transcript(&mut session, arguments.transcript.as_deref()) {

@@ -3,13 +3,13 @@
 
 use super::builtins::Failure;
 use super::world::Progress;
-use super::{Session, simulation};
+use super::{Session, simulation, tracing};
 use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::ga::Genomes;
 use crate::identify::errors::{BAD_DATA, DATA_SIZES_DIFFER};
 use crate::identify::{
-    CompiledModel, Evaluator, FitPoint, Measurement, Outcome, Question, Recorder, Simulated,
+    CompiledModel, Evaluator, FitPoint, Measurement, Outcome, Question, Recorder, Simulated, Study,
     Uncertainty, deviations,
 };
 use crate::mat::{self, MatFile};
@@ -107,9 +107,26 @@ impl Session {
         let revision = self.classes.revision();
         let identification = self.identification();
         identification.recorder.evaluated(evaluator.study(), evaluator.x(), genomes, &simulated);
+        let study = evaluator.study().clone();
         identification.prepared = Some((request, revision, evaluator));
+        self.trace_simulation(&study, genomes, &simulated)?;
         self.show_progress();
         Ok(simulated)
+    }
+
+    fn trace_simulation(
+        &mut self,
+        study: &Study,
+        genomes: &Genomes,
+        simulated: &Simulated,
+    ) -> Result<(), Fault> {
+        self.traced(|tracer, place| {
+            let failed = simulated.failures.iter().enumerate();
+            let failures =
+                failed.filter_map(|(k, why)| Some((k as u32, why.as_ref()?.to_string())));
+            let subject = tracing::subject(study);
+            tracer.simulated(place, &subject, genomes.values(), failures.collect());
+        })
     }
 
     fn prepare(&mut self, request: &Request) -> Result<Evaluator, Failure> {
