@@ -60,6 +60,8 @@ pub(super) enum Colour {
 pub(super) enum Command {
     /// Run a script
     Run(RunArgs),
+    /// Identify parameters as a problem file says
+    Identify(IdentifyArgs),
     /// Simulate a model
     Simulate(SimulateArgs),
     /// Check Modelica files, or one model down to its sorted equations
@@ -108,6 +110,54 @@ pub(super) struct RunArgs {
     /// End with exit code 0 whatever happened
     #[arg(long)]
     pub lenient: bool,
+}
+
+/// Arguments of `gapi identify`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi identify scripts/problems/polarization.toml
+  gapi identify scripts/problems/polarization.toml --out fit1 --threads 2
+  gapi identify my.toml --resume               go on after Ctrl-C, a crash or a power cut
+  gapi identify my.toml --watch settings.toml  change settings while it runs
+
+A problem file:
+  model = \"CaseStudies.PolarizationCurve(i_max = 1.46)\"
+  [parameters]
+  A = { min = 0.01, max = 0.1 }
+  R = { min = 0.01, max = 1, scale = \"log\" }
+  [[experiment]]
+  data = \"curve.csv\"
+  x = \"i\"
+  outputs = { V = \"V\" }
+
+Exit code: 0 if all went well, 1 if an error happened, 2 for a wrong command line, 130 if
+interrupted.")]
+pub(super) struct IdentifyArgs {
+    /// The problem (.toml)
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub problem: PathBuf,
+    /// Folder for results, figures and the checkpoint
+    #[arg(long, default_value = "results", value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
+    /// Threads to use [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Go on from the checkpoint in the folder
+    #[arg(long, conflicts_with = "fresh")]
+    pub resume: bool,
+    /// Discard the checkpoint in the folder
+    #[arg(long)]
+    pub fresh: bool,
+    /// End after so many evaluations
+    #[arg(long, value_name = "N")]
+    pub evaluations: Option<u64>,
+    /// A file with settings (name = number) that may change while it runs
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub watch: Option<PathBuf>,
+    /// Show errors only
+    #[arg(long, short)]
+    pub quiet: bool,
 }
 
 /// Arguments of `gapi simulate`.

@@ -6,6 +6,7 @@ mod check;
 mod compare;
 mod completions;
 mod explain;
+mod identify;
 mod run;
 mod session;
 mod simulate;
@@ -42,6 +43,7 @@ pub fn main() -> ExitCode {
 fn dispatch(cli: &Cli) -> ExitCode {
     match &cli.command {
         Command::Run(arguments) => run::run(arguments, &cli.global),
+        Command::Identify(arguments) => identify::identify(arguments, &cli.global),
         Command::Explain(arguments) => explain::explain(arguments),
         Command::Completions(arguments) => completions::completions(arguments),
         Command::Simulate(arguments) => simulate::simulate(arguments, &cli.global),
