@@ -5,10 +5,16 @@ mod args;
 mod check;
 mod completions;
 mod explain;
+mod help;
+mod limits;
+mod parsing;
+mod repl;
 mod run;
+mod scratch;
 mod session;
 mod simulate;
 mod terminal;
+mod test;
 mod world;
 
 use crate::script::with_stack;
@@ -40,6 +46,9 @@ pub fn main() -> ExitCode {
 fn dispatch(cli: &Cli) -> ExitCode {
     match &cli.command {
         Command::Run(arguments) => run::run(arguments, &cli.global),
+        Command::Test(arguments) => test::test(arguments, &cli.global),
+        Command::Repl(arguments) => repl::repl(arguments, &cli.global),
+        Command::Help(arguments) => help::help(arguments),
         Command::Explain(arguments) => explain::explain(arguments),
         Command::Completions(arguments) => completions::completions(arguments),
         Command::Simulate(arguments) => simulate::simulate(arguments, &cli.global),
