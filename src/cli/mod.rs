@@ -3,6 +3,7 @@
 
 mod args;
 mod check;
+mod compare;
 mod completions;
 mod explain;
 mod help;
@@ -14,7 +15,11 @@ mod scratch;
 mod session;
 mod simulate;
 mod terminal;
+<<<<<<< HEAD
 mod test;
+=======
+mod verify;
+>>>>>>> main
 mod world;
 
 use crate::script::with_stack;
@@ -53,6 +58,8 @@ fn dispatch(cli: &Cli) -> ExitCode {
         Command::Completions(arguments) => completions::completions(arguments),
         Command::Simulate(arguments) => simulate::simulate(arguments, &cli.global),
         Command::Check(arguments) => check::check(arguments, &cli.global),
+        Command::Compare(arguments) => compare::compare(arguments, &cli.global),
+        Command::Verify(arguments) => verify::verify(arguments, &cli.global),
         Command::Flatten(arguments) => check::flatten(arguments, &cli.global),
     }
 }
