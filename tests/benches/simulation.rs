@@ -59,7 +59,7 @@ fn shipped(class: &str) -> Arc<Program> {
 }
 
 /// A function that simulates once.
-fn run(program: &Arc<Program>, observed: &[&str], stop: f64) -> impl FnMut() -> f64 {
+fn run(program: &Arc<Program>, observed: &[&str], stop: f64) -> impl FnMut() -> f64 + use<> {
     let observed: Vec<usize> =
         observed.iter().map(|name| program.find_variable(name).expect("declared")).collect();
     let mut system = program.system();
