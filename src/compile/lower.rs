@@ -1,5 +1,6 @@
 //! Symbolic expressions become instructions, common subexpressions computed once.
 
+use super::hoist::{Hoisted, Hoisting};
 use super::tape::{Call, Instruction, Register, Tape};
 use crate::bytecode::Functions;
 use crate::symbolic::function::Value;
@@ -15,12 +16,20 @@ pub(super) struct Registers {
     functions: Arc<Functions>,
     /// Registers with their values.
     pub(super) values: Vec<(Register, f64)>,
+    /// What is computed once a simulation.
+    pub(super) hoisted: Hoisted,
 }
 
 impl Registers {
     pub(super) fn new(n_variables: usize, functions: Arc<Functions>) -> Registers {
         let next = n_variables as Register;
-        Registers { next, constants: FxHashMap::default(), functions, values: Vec::new() }
+        Registers {
+            next,
+            constants: FxHashMap::default(),
+            functions,
+            values: Vec::new(),
+            hoisted: Hoisted::default(),
+        }
     }
 
     /// The functions that tapes on these registers call.
@@ -32,7 +41,7 @@ impl Registers {
         self.next as usize
     }
 
-    fn fresh(&mut self) -> Register {
+    pub(super) fn fresh(&mut self) -> Register {
         self.row(1)
     }
 
@@ -49,6 +58,7 @@ impl Registers {
         let register = self.fresh();
         self.constants.insert(value.to_bits(), register);
         self.values.push((register, value));
+        self.hoisted.fix(register);
         register
     }
 }
@@ -70,6 +80,10 @@ pub(super) struct TapeBuilder<'a> {
     call_log: Vec<CallKey>,
     /// Registers of variables that are not in their own.
     moved: FxHashMap<VarId, Register>,
+    hoisting: Hoisting,
+    /// How many branches are around what is written.
+    depth: u32,
+    origin: u32,
 }
 
 impl<'a> TapeBuilder<'a> {
@@ -83,7 +97,16 @@ impl<'a> TapeBuilder<'a> {
             calls: FxHashMap::default(),
             call_log: Vec::new(),
             moved: FxHashMap::default(),
+            hoisting: Hoisting::Never,
+            depth: 0,
+            origin: u32::MAX,
         }
+    }
+
+    /// Computes what parameters determine once a simulation.
+    pub(super) fn hoisting(mut self, hoisting: Hoisting) -> TapeBuilder<'a> {
+        self.hoisting = hoisting;
+        self
     }
 
     pub(super) fn finish(self) -> Tape {
@@ -93,6 +116,7 @@ impl<'a> TapeBuilder<'a> {
     /// What follows comes from this equation.
     pub(super) fn origin(&mut self, origin: u32) {
         self.tape.origins.push((self.tape.code.len() as u32, origin));
+        self.origin = origin;
     }
 
     /// `variable := value`, kept in whatever register holds the value.
@@ -148,7 +172,7 @@ impl<'a> TapeBuilder<'a> {
             }
             _ => {}
         }
-        let d = self.registers.fresh();
+        let d = self.registers.len() as Register;
         let instruction = match node {
             Node::Neg(a) => Instruction::Neg { d, a: of(a) },
             Node::Not(a) => Instruction::Not { d, a: of(a) },
@@ -183,8 +207,14 @@ impl<'a> TapeBuilder<'a> {
             | Node::Call { .. }
             | Node::CallDerivative { .. } => unreachable!("returned above"),
         };
-        self.tape.code.push(instruction);
-        d
+        let in_branch = self.depth > 0;
+        match self.registers.hoist(instruction, self.hoisting, in_branch, self.origin) {
+            Some(hoisted) => hoisted,
+            None => {
+                self.tape.code.push(instruction);
+                self.registers.fresh()
+            }
+        }
     }
 
     /// A call, once for all its outputs; returns the first register of its results.
@@ -223,7 +253,9 @@ impl<'a> TapeBuilder<'a> {
     /// What a branch computes is not known behind it.
     fn branch(&mut self, d: Register, value: Expr) {
         let (before, calls) = (self.log.len(), self.call_log.len());
+        self.depth += 1;
         let a = self.emit(value);
+        self.depth -= 1;
         self.tape.code.push(Instruction::Move { d, a });
         for expr in self.log.drain(before..) {
             self.known.remove(&expr);

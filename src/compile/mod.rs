@@ -5,6 +5,7 @@ pub mod errors;
 mod event_iteration;
 mod events;
 mod history;
+mod hoist;
 mod jacobian;
 mod least_squares;
 mod lower;

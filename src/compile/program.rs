@@ -2,6 +2,7 @@
 
 use super::errors::*;
 use super::events::{CompiledRounding, Events, compile_events, linear_in_time};
+use super::hoist::Hoisting;
 use super::jacobian::differentiate_sequence;
 use super::lower::{Registers, TapeBuilder};
 use super::system::System;
@@ -196,6 +197,11 @@ impl Program {
             residuals.extend(torn.residuals.iter().map(|(residual, _)| *residual));
         }
         let mut registers = Registers::new(n, sorted.dae.functions.clone());
+        for (variable, info) in (0u32..).zip(&sorted.dae.variables) {
+            if matches!(info.kind, Kind::Parameter { .. } | Kind::Constant(_)) {
+                registers.hoisted.fix(variable);
+            }
+        }
         let observed: Vec<VarId> = (0..n as u32)
             .map(VarId)
             .filter(|v| sorted.dae.is_solved_for(*v) && sorted.aliases[v.0 as usize].is_none())
@@ -222,7 +228,7 @@ impl Program {
             outputs.push(resolved(&mut pool, &sorted, derivative));
         }
         outputs.extend(&residuals);
-        let rhs = compile_outputs(&pool, &mut registers, &sequence, &outputs);
+        let rhs = compile_continuous(&pool, &mut registers, &sequence, &outputs, Hoisting::Certain);
 
         let columns: Vec<VarId> = sorted.states.iter().chain(&iteration).copied().collect();
         let needed = slice(&pool, &sequence, &outputs);
@@ -243,7 +249,8 @@ impl Program {
                 equation: *equation,
             })
             .collect();
-        let jacobian = compile_outputs(&pool, &mut registers, &extended, &entries);
+        let jacobian =
+            compile_continuous(&pool, &mut registers, &extended, &entries, Hoisting::Total);
 
         let mut relations = Vec::new();
         let mut relation_sides = Vec::new();
@@ -290,7 +297,8 @@ impl Program {
                 time.1 = *register;
             }
         }
-        let crossings = compile_outputs(&pool, &mut registers, &sequence, &differences);
+        let crossings =
+            compile_continuous(&pool, &mut registers, &sequence, &differences, Hoisting::Total);
 
         let selections = sorted.selections.iter().map(|selection| {
             let entries: Vec<Expr> = selection.jacobian.iter().flatten().copied().collect();
@@ -306,7 +314,13 @@ impl Program {
         let selections = selections.collect();
 
         let observed_expressions: Vec<Expr> = observed.iter().map(|v| pool.variable(*v)).collect();
-        let observe = compile_outputs(&pool, &mut registers, &sequence, &observed_expressions);
+        let observe = compile_continuous(
+            &pool,
+            &mut registers,
+            &sequence,
+            &observed_expressions,
+            Hoisting::Total,
+        );
         let assertions = sorted
             .dae
             .assertions
@@ -314,7 +328,16 @@ impl Program {
             .enumerate()
             .filter(|(_, assertion)| assertion.is_error)
             .map(|(at, assertion)| {
-                (at, compile_outputs(&pool, &mut registers, &sequence, &[assertion.condition]))
+                (
+                    at,
+                    compile_continuous(
+                        &pool,
+                        &mut registers,
+                        &sequence,
+                        &[assertion.condition],
+                        Hoisting::Total,
+                    ),
+                )
             })
             .collect();
 
@@ -741,8 +764,19 @@ pub(super) fn compile_outputs(
     sequence: &[Assignment],
     outputs: &[Expr],
 ) -> Outputs {
+    compile_continuous(pool, registers, sequence, outputs, Hoisting::Never)
+}
+
+/// The same for code that runs when the parameters have their values.
+pub(super) fn compile_continuous(
+    pool: &Pool,
+    registers: &mut Registers,
+    sequence: &[Assignment],
+    outputs: &[Expr],
+    hoisting: Hoisting,
+) -> Outputs {
     let needed = slice(pool, sequence, outputs);
-    let mut builder = TapeBuilder::new(pool, registers);
+    let mut builder = TapeBuilder::new(pool, registers).hoisting(hoisting);
     for assignment in &needed {
         builder.origin(assignment.equation as u32);
         builder.define(assignment.variable, assignment.value);
