@@ -7,6 +7,7 @@ mod events;
 mod history;
 mod jacobian;
 mod least_squares;
+mod linear_system;
 mod lower;
 mod memory;
 mod newton;
