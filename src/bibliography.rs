@@ -109,6 +109,10 @@
 //! - **nocedal-wright-2006** — J. Nocedal, S. J. Wright: Numerical optimization. Second edition,
 //!   Springer, 2006.
 //!
+//! <a id="golub-van-loan-2013"></a>
+//! - **golub-van-loan-2013** — G. H. Golub, C. F. Van Loan: Matrix computations. Fourth edition,
+//!   Johns Hopkins University Press, 2013.
+//!
 //! <a id="goldberg-1989"></a>
 //! - **goldberg-1989** — D. E. Goldberg: Genetic algorithms in search, optimization and machine
 //!   learning. Addison-Wesley, 1989.

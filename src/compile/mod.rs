@@ -8,6 +8,7 @@ mod history;
 mod hoist;
 mod jacobian;
 mod least_squares;
+mod linear_system;
 mod lower;
 mod memory;
 mod newton;

@@ -16,7 +16,7 @@ use crate::sim::{Failure, Pattern, SimError, SimErrorKind};
 use crate::source::Span;
 use crate::symbolic::{Expr, Pool, VarId, function};
 use crate::syntax::ast::CausalityPrefix;
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -219,13 +219,15 @@ impl Program {
             }
         }
 
+        let mut derivatives: FxHashMap<VarId, VarId> = FxHashMap::default();
+        for (v, variable) in (0..).map(VarId).zip(&sorted.dae.variables) {
+            if let Kind::Derivative(of) = variable.kind {
+                derivatives.entry(of).or_insert(v);
+            }
+        }
         let mut outputs: Vec<Expr> = Vec::new();
         for state in &sorted.states {
-            let derivative = (0..n as u32)
-                .map(VarId)
-                .find(|v| sorted.dae.variable(*v).kind == Kind::Derivative(*state));
-            let derivative = derivative.expect("a state is a variable with a derivative");
-            outputs.push(resolved(&mut pool, &sorted, derivative));
+            outputs.push(resolved(&mut pool, &sorted, derivatives[state]));
         }
         outputs.extend(&residuals);
         let rhs = compile_continuous(&pool, &mut registers, &sequence, &outputs, Hoisting::Certain);

@@ -24,6 +24,7 @@ mod index_reduction;
 mod initialization;
 mod lazy_reading;
 mod libraries;
+mod linear_loops;
 mod mat;
 mod modelica;
 mod modelica_models;
