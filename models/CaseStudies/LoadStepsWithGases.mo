@@ -11,5 +11,9 @@ equation
   connect(act_layer1.exa2, col_cat1.exa1);
   connect(load.p, col_mem1.exa2);
   connect(load.n, col_cat1.exa2);
-  annotation(experiment(StartTime = 0, StopTime = 25, Interval = 0.1, Tolerance = 1e-4));
+  annotation(
+    experiment(StartTime = 0, StopTime = 25, Interval = 0.1, Tolerance = 1e-4),
+    Documentation(info = "<html>
+<p>The same cell as <a href=\"modelica://CaseStudies.LoadSteps\">LoadSteps</a>, of the layers of FuelCellLib.</p>
+</html>"));
 end LoadStepsWithGases;

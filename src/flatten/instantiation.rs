@@ -35,7 +35,7 @@ use std::sync::Arc;
 
 /// The most scalar variables, the most components and the deepest nesting that are built.
 const MAX_SCALARS: usize = 2_000_000;
-const MAX_INSTANCES: usize = 100_000;
+const MAX_INSTANCES: usize = 1_000_000;
 const MAX_DEPTH: usize = 60;
 
 /// The attributes of the predefined types (MLS §4.9).
