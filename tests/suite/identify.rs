@@ -34,7 +34,7 @@ fn value(result: &Value, name: &str) -> f64 {
 #[test]
 fn the_shipped_problem_reaches_the_best_known_sum_of_squares() {
     let folder = tempfile::tempdir().unwrap();
-    let problem = project().join("scripts/problems/polarization.toml");
+    let problem = project("scripts/problems/polarization.toml");
     let (code, text) = run(folder.path(), &[problem.to_str().unwrap(), "--out", "out"]);
     assert_eq!(code, 0, "{text}");
     let result = result(folder.path(), "out");
