@@ -1,5 +1,6 @@
 //! What a running system writes to: its registers, and the machine that runs its functions.
 
+use super::linear_system::LinearSystem;
 use super::lower::Registers;
 use super::tape::Call;
 use crate::bytecode::{Failure, Functions, Machine};
@@ -11,6 +12,7 @@ use std::sync::Arc;
 pub(super) struct Memory {
     pub(super) registers: Vec<f64>,
     pub(super) calls: Calls,
+    pub(super) systems: Vec<LinearSystem>,
 }
 
 /// Runs calls of functions.
@@ -30,7 +32,7 @@ impl Memory {
             machine: Machine::default(),
             failure: None,
         };
-        let mut memory = Memory { registers: Vec::new(), calls };
+        let mut memory = Memory { registers: Vec::new(), calls, systems: Vec::new() };
         memory.extend(registers);
         memory
     }
@@ -38,6 +40,8 @@ impl Memory {
     /// More registers, with their constants.
     pub(super) fn extend(&mut self, registers: &Registers) {
         self.registers.resize(registers.len(), 0.0);
+        let known = self.systems.len();
+        self.systems.extend(registers.systems()[known..].iter().map(|n| LinearSystem::new(*n)));
         for (register, value) in &registers.values {
             self.registers[*register as usize] = *value;
         }

@@ -2,9 +2,10 @@
 
 use super::event_iteration::{Clock, Stage, either, same_time};
 use super::history::History;
+use super::hoist::Hoisting;
 use super::memory::Memory;
 use super::newton::LoopSolver;
-use super::program::{Access, Outputs, Program, Step, compile_outputs, resolved};
+use super::program::{Access, Outputs, Program, Step, compile_continuous, resolved};
 use super::selection::Choice;
 use super::tape::{Instruction, Tape};
 use crate::dae::Homotopy;
@@ -126,7 +127,8 @@ impl System {
             })
             .collect();
         let mut registers = program.registers.clone();
-        let observed = compile_outputs(&pool, &mut registers, &program.sequence, &outputs);
+        let observed =
+            compile_continuous(&pool, &mut registers, &program.sequence, &outputs, Hoisting::Known);
         self.registers.extend(&registers);
         self.observed = Some(observed);
     }
@@ -210,6 +212,7 @@ impl System {
                 None => run(tape, &mut self.registers)?,
             }
         }
+        run(&program.registers.hoisted.tape, &mut self.registers)?;
         run(&program.time_rests, &mut self.registers)?;
         for (switch, relation) in self.switches.iter_mut().zip(&program.relations) {
             *switch = relation

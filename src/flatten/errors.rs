@@ -81,6 +81,9 @@ codes! {
     /// A class that is balanced only together with others.
     UNBALANCED_CLASS = "unbalanced-class":
         "## What it means\n\nA class that takes part in the model has other numbers of equations and of unknowns by itself, where its connectors promise one equation for each flow variable and each input (MLS §4.8). The model as a whole is balanced, so that it can be simulated; but the class cannot be used in another place. Libraries from before Modelica 3 do not know the rule; the warning comes once for each library.\n\n## Example\n\n```modelica\nmodel A\n  Real x;\nend A;\nmodel M\n  A a;\nequation\n  a.x = 1;\nend M;\n```\n\n## What to do\n\nGive the class the equations for its own variables, or declare as an input what others determine.",
+    /// Units that do not fit.
+    INCONSISTENT_UNITS = "inconsistent-units":
+        "## What it means\n\nThe operands of a sum or a relation, the sides of an equation, or a variable and its value have units of different dimensions (MLS ch. 19). Only what has a unit is looked at, and factors such as that of `kPa` are not: numbers, `time` and variables without `unit` fit everything. The model is simulated all the same; a library in old Modelica is told once.\n\n## Example\n\n```modelica\nmodel M\n  Real v(unit = \"m/s\") = 1;\n  Real a(unit = \"m/s2\") = v;\nend M;\n```\n\n## What to do\n\nCorrect the equation or the unit.",
     /// A number of equations other than that of unknowns.
     UNBALANCED_MODEL = "unbalanced-model":
         "## What it means\n\nA model has not as many equations as unknowns (MLS §4.8).\n\n## Example\n\n```modelica\nmodel M\n  Real x;\n  Real y;\nequation\n  x = 1;\nend M;\n```\n\n## What to do\n\nAdd the equations that are missing, or remove those that are too many.",

@@ -353,6 +353,11 @@ impl Library {
         std::mem::take(&mut *locked(&self.missing))
     }
 
+    /// Whether a library was written for an old Modelica, as far as its habits show.
+    pub(super) fn is_old(&self, library: Ident) -> bool {
+        self.habits.is_old(library)
+    }
+
     pub(super) fn root(&self, name: Ident) -> Option<ClassId> {
         let found = self.roots.get(&name).copied();
         if found.is_none() {

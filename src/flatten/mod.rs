@@ -40,6 +40,7 @@ mod scope;
 mod shapes;
 mod specialization;
 mod types;
+mod units;
 mod variables;
 mod vectorization;
 
@@ -147,13 +148,15 @@ fn flattened(
     if !errors.is_empty() {
         return Err(distinct(errors));
     }
-    let classes = tree.local_balances(&connections, &model);
+    let classes = tree.local_balances(&connections, &model).map_err(distinct)?;
+    let unit_warnings = tree.unit_warnings(&model);
     let mut warnings = tree.warnings;
     for (name, function) in tree.functions {
         model.functions.extend(function.map(|function| (name, function)));
     }
     balance::check(&model, &classes).map_err(one)?;
     warnings.extend(balance::warnings(&classes));
+    warnings.extend(unit_warnings);
     let balance = classes.into_iter().find(|class| class.path.is_empty());
     Ok(Flattened { model, balance, warnings: distinct(warnings) })
 }

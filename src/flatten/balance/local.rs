@@ -7,10 +7,13 @@
 //! left out.
 
 use super::super::connections::{Connections, Edge, Face};
+use super::super::errors::INVALID_CONNECTION;
 use super::super::instance::{Leaf, MemberState, NodeId, NodeKind};
 use super::super::instantiation::Instantiation;
 use super::super::{BaseType, FlatModel, Variability, Variable};
 use super::{plural, size, targets};
+use crate::diag::Diagnostic;
+use crate::fault;
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{CausalityPrefix, ConnectionPrefix, Restriction};
@@ -101,7 +104,7 @@ impl Instantiation<'_> {
         &mut self,
         connections: &Connections,
         model: &FlatModel,
-    ) -> Vec<LocalBalance> {
+    ) -> Result<Vec<LocalBalance>, Vec<Diagnostic>> {
         let mut counts = IndexMap::new();
         let mut owners = FxHashMap::default();
         counts.insert(self.root_node, Counts::default());
@@ -116,14 +119,17 @@ impl Instantiation<'_> {
                 None => count.unclear = true,
             }
         }
-        self.count_connections(connections, &mut counts, &owners);
+        let errors = self.count_connections(connections, &mut counts, &owners);
+        if !errors.is_empty() {
+            return Err(errors);
+        }
         for redundant in connections.graph.nodes() {
             if let Some(owner) = owners.get(&redundant) {
                 self.mark_unclear(*owner, &mut counts);
             }
         }
         let clear = counts.into_iter().filter(|(_, count)| !count.unclear);
-        clear.filter_map(|(node, count)| self.local_balance(node, &count)).collect()
+        Ok(clear.filter_map(|(node, count)| self.local_balance(node, &count)).collect())
     }
 
     fn local_balance(&self, node: NodeId, count: &Counts) -> Option<LocalBalance> {
@@ -260,7 +266,7 @@ impl Instantiation<'_> {
         connections: &Connections,
         counts: &mut IndexMap<NodeId, Counts>,
         owners: &FxHashMap<NodeId, NodeId>,
-    ) {
+    ) -> Vec<Diagnostic> {
         let mut of_class: IndexMap<NodeId, Vec<Edge>> = IndexMap::new();
         for edge in &connections.edges {
             let Some(context) = owners.get(&edge.context).copied() else { continue };
@@ -281,10 +287,12 @@ impl Instantiation<'_> {
                 _ => of_class.entry(context).or_default().push(edge.clone()),
             }
         }
+        let mut errors = Vec::new();
         for (context, edges) in of_class {
             let sets = super::sets::of_edges(&edges);
             let Some(count) = counts.get_mut(&context) else { continue };
             for set in sets {
+                errors.extend(self.two_sources(&set, context, &edges, owners));
                 let outside = set.iter().filter(|face| face.outside).count();
                 match self.connection_of(set[0].leaf) {
                     None => count.equations += self.potential_equations(&set),
@@ -296,6 +304,38 @@ impl Instantiation<'_> {
                 }
             }
         }
+        errors
+    }
+
+    /// A connection set of a class has one source of a signal at most: an output of a component, or
+    /// an input of the class itself (MLS §9.3).
+    fn two_sources(
+        &self,
+        set: &[Face],
+        context: NodeId,
+        edges: &[Edge],
+        owners: &FxHashMap<NodeId, NodeId>,
+    ) -> Option<Diagnostic> {
+        let is_source = |face: &&Face| {
+            let NodeKind::Variable(leaf) = &self.nodes[face.leaf.0].kind else { return false };
+            let is_own = owners.get(&face.leaf) == Some(&context);
+            match leaf.causality {
+                Some(CausalityPrefix::Input) => {
+                    is_own && !self.variables[leaf.variable].0.protected
+                }
+                Some(CausalityPrefix::Output) => !is_own,
+                None => false,
+            }
+        };
+        let mut sources = set.iter().filter(is_source);
+        let (one, other) = (sources.next()?, sources.next()?);
+        let edge = edges.iter().find(|edge| edge.faces.contains(other))?;
+        let [one, other] = [one, other].map(|face| &self.nodes[face.leaf.0].path);
+        Some(
+            fault!(INVALID_CONNECTION, "`{one}` and `{other}` are connected and both are sources";
+                help: "connect an output of a component, or an input of the class, to inputs")
+            .at(edge.span),
+        )
     }
 
     fn potential_equations(&self, set: &[Face]) -> usize {

@@ -33,6 +33,7 @@ pub(in super::super) struct Edge {
     /// The instance whose class writes the connection.
     pub(in super::super) context: NodeId,
     pub(in super::super) faces: [Face; 2],
+    pub(in super::super) span: Span,
 }
 
 /// All connection sets of a model.
@@ -271,7 +272,7 @@ impl Instantiation<'_> {
         };
         let faces = [face(one), face(other)];
         let context = connections.context;
-        connections.edges.extend(context.map(|context| Edge { context, faces }));
+        connections.edges.extend(context.map(|context| Edge { context, faces, span }));
         connections.join(faces[0], faces[1], span);
         Ok(())
     }
