@@ -292,6 +292,7 @@ pub(super) struct IdentifyArgs {
 Examples:
   gapi simulate models --model CaseStudies.PolarizationCurve --output curve.csv
   gapi simulate Decay.mo --model Decay --stop-time 5 --intervals 50 --set k=2
+  gapi simulate Decay.mo --model Decay --stats --plot x --figure x.svg
 
 What the command line does not say comes from the model's experiment annotation.")]
 pub(super) struct SimulateArgs {
@@ -322,6 +323,15 @@ pub(super) struct SimulateArgs {
     /// Where the trajectories go; the ending decides the format
     #[arg(long, short, value_name = "FILE.mat|.csv", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
+    /// Print what the simulation cost
+    #[arg(long)]
+    pub stats: bool,
+    /// Draw a variable over time, in the terminal or as --figure says (repeatable)
+    #[arg(long, value_name = "VARIABLE")]
+    pub plot: Vec<String>,
+    /// Where the drawing of --plot goes
+    #[arg(long, value_name = "FILE.svg", requires = "plot", value_hint = ValueHint::FilePath)]
+    pub figure: Option<PathBuf>,
 }
 
 /// Arguments of `gapi check`.
@@ -405,7 +415,7 @@ pub(super) struct VerifyArgs {
     #[arg(long, value_name = "E", default_value_t = TUBE_TOLERANCE)]
     pub tolerance: f64,
     /// Seconds that a case may take
-    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = positive)]
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = budget)]
     pub budget: f64,
     /// Threads to use [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
@@ -436,7 +446,7 @@ pub(super) struct CompletionsArgs {
     pub shell: clap_complete::Shell,
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+fn budget(text: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
     let is_good = number > 0.0 && number <= 1e9;
     if is_good { Ok(number) } else { Err("expected a positive number".to_owned()) }

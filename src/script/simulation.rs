@@ -16,6 +16,7 @@ use crate::{bail, dae, fault, syntax};
 use indexmap::IndexMap;
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
 
 /// A model ready to be simulated.
 #[derive(Debug)]
@@ -81,6 +82,8 @@ pub struct Wishes {
     pub method: Option<String>,
     /// Step of a fixed-step integrator, seconds.
     pub fixed_step: Option<f64>,
+    /// Where the time reached is told, as the bits of an `f64`.
+    pub reached: Option<Arc<AtomicU64>>,
 }
 
 /// A simulation that reached its end, or what was computed until it failed.
@@ -253,6 +256,7 @@ pub fn simulate(
     let call = session.call;
     let mut settings = settings(&model.program.experiment(), wishes).at(call)?;
     settings.cancel = session.world.interrupt_flag();
+    settings.reached = wishes.reached.clone();
     let (changed, mut system) = prepared(session, model)?;
     let model = changed.as_deref().unwrap_or(model);
     let mut trajectory = Trajectory::default();

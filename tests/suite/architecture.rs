@@ -52,8 +52,8 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
-            "script", "identify", "compile", "results", "plot", "models", "registry", "name",
-            "source", "diag",
+            "script", "identify", "compile", "results", "plot", "sim", "models", "registry",
+            "name", "source", "diag",
         ],
     ),
 ];

@@ -325,3 +325,21 @@ fn libraries_are_verified_against_collections() {
     assert_eq!(gapi(&here, &good).0, 0);
     assert_eq!(gapi(&here, &["verify", "Lib.mo", "--references", "nowhere"]).0, 1);
 }
+
+#[test]
+fn simulations_tell_their_cost_and_draw() {
+    let here = folder(&[("Decay.mo", DECAY)]);
+    let arguments = ["simulate", "Decay.mo", "--model", "Decay", "--stats", "--plot", "x"];
+    let (code, out, said) = gapi(&here, &arguments);
+    assert_eq!((code, &*said), (0, ""));
+    assert!(out.contains("accepted steps") && out.contains("factorizations"), "{out}");
+    assert!(out.contains("   1.0000e0 │") && out.contains("1 s"), "{out}");
+    let (code, out, _) = gapi(&here, &[&arguments[..], &["--figure", "x.svg"]].concat());
+    assert_eq!(code, 0);
+    assert!(out.contains("figure: x.svg"), "{out}");
+    let svg = fs::read_to_string(here.path().join("x.svg")).unwrap();
+    assert!(svg.starts_with("<svg") || svg.contains("<svg"), "{svg}");
+    let wrong = ["simulate", "Decay.mo", "--model", "Decay", "--plot", "y"];
+    let (code, _, said) = gapi(&here, &wrong);
+    assert!(code == 1 && said.contains("[unknown-result-variable]"), "{said}");
+}
