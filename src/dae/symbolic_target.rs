@@ -222,6 +222,10 @@ impl Target for Builder<'_> {
         pool.if_then_else(active, between, actual)
     }
 
+    fn resources(&self) -> crate::external::Resources {
+        self.flat.resources.clone()
+    }
+
     fn derivative(&mut self, a: Expr, span: Span) -> Result<Expr, Diagnostic> {
         if self.is_parametric(a) {
             return Ok(self.dae.pool.constant(0.0));

@@ -12,7 +12,7 @@ impl Session {
     /// The file or directory that a script means: relative to the working directory, else to the
     /// folders of the scripts being run, innermost first. `None` if it is nowhere.
     pub fn find_file(&self, path: &Path) -> Option<PathBuf> {
-        let path = self.expanded(path);
+        let path = expanded(path);
         let folders = self.frames.iter().rev().map(|frame| frame.folder.join(&path));
         std::iter::once(self.world.absolute(&path))
             .chain(folders.map(|candidate| super::world::normalized(&candidate)))
@@ -68,15 +68,15 @@ impl Session {
         let name = path.file_name()?.to_string_lossy().into_owned();
         crate::diag::suggest::did_you_mean(&name, entries.iter().map(String::as_str))
     }
+}
 
-    /// Windows' separators, `modelica://` and `file://` in a path.
-    pub(super) fn expanded(&self, path: &Path) -> PathBuf {
-        let text = path.to_string_lossy();
-        let text = text.strip_prefix("file://").unwrap_or(&text);
-        match text.contains('\\') {
-            true => PathBuf::from(text.replace('\\', "/")),
-            false => PathBuf::from(text),
-        }
+/// A path without `file://` and Windows' separators.
+pub(super) fn expanded(path: &Path) -> PathBuf {
+    let text = path.to_string_lossy();
+    let text = text.strip_prefix("file://").unwrap_or(&text);
+    match text.contains('\\') {
+        true => PathBuf::from(text.replace('\\', "/")),
+        false => PathBuf::from(text),
     }
 }
 

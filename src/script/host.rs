@@ -5,7 +5,7 @@ use super::builtins::{self, BuiltinId, Failure};
 use super::errors::INTERRUPTED;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::eval::{self, Callee, Function, FunctionBody, Host, Scope};
-use crate::external::Outside;
+use crate::external::{Outside, Random};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::ComponentReference;
@@ -132,7 +132,8 @@ impl Host for Session {
 /// script gives the same numbers in every run.
 impl Outside for Session {
     fn read(&mut self, path: &str) -> Result<Vec<u8>, Fault> {
-        self.read_bytes(Path::new(path))
+        let path = self.resource(path)?;
+        self.read_bytes(&path)
     }
 
     fn print(&mut self, text: &str) -> Result<(), Fault> {
@@ -140,8 +141,12 @@ impl Outside for Session {
         Ok(())
     }
 
+    fn random(&mut self) -> Result<&mut Random, Fault> {
+        Ok(&mut self.random)
+    }
+
     fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {
-        let path = self.expanded(Path::new(path));
+        let path = super::files::expanded(Path::new(path));
         Ok(self.world.exists(&path).then(|| self.world.is_dir(&path)))
     }
 }

@@ -20,6 +20,7 @@ mod host;
 mod identification;
 mod libraries;
 mod messages;
+mod resources;
 mod scripts;
 mod session;
 pub mod simulation;

@@ -174,7 +174,7 @@ impl Session {
     }
 
     fn search_script(&mut self, folder: &Path, name: &str) -> Result<PathBuf, Fault> {
-        let plain = self.expanded(Path::new(name));
+        let plain = super::files::expanded(Path::new(name));
         let mut with_ending = plain.clone().into_os_string();
         with_ending.push(".mos");
         let with_ending = PathBuf::from(with_ending);

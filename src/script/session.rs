@@ -7,6 +7,7 @@ use super::scripts::{Frame, ParsedScripts};
 use super::simulation::{Models, Translated};
 use super::world::World;
 use super::{Messages, Transcript};
+use crate::external::Random;
 use crate::diag::{Code, Diagnostic, Fault, render};
 use crate::eval::Scope;
 use crate::name::{Ident, Name};
@@ -133,6 +134,8 @@ pub struct Session {
     pub(super) callees: Callees,
     /// The turn of the outermost loop being run, and how many there are.
     pub(super) loop_turn: Option<(usize, Option<usize>)>,
+    /// The hidden state of `Modelica.Math.Random.Utilities.impureRandom`.
+    pub(super) random: Random,
     extensions: HashMap<TypeId, Box<dyn Any>>,
     at_end: Vec<AtEnd>,
 }
@@ -164,6 +167,7 @@ impl Session {
             models: Models::default(),
             callees: Callees::default(),
             loop_turn: None,
+            random: Random::default(),
             extensions: HashMap::new(),
             at_end: Vec::new(),
         }

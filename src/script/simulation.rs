@@ -132,6 +132,8 @@ pub fn flat_model(session: &mut Session, problem: &str) -> Result<FlatModel, Vec
         syntax::parse_class_with_modification(source, problem).map_err(|error| vec![error])?;
     session.autoload(&name)?;
     loop {
+        let resources = session.resources_for(&name);
+        session.classes.library.set_resources(resources);
         match session.ask_library(|library| flatten::flatten(library, &name, &modification)) {
             Ok(flattened) => {
                 flattened.warnings.into_iter().for_each(|warning| session.report(warning));

@@ -209,7 +209,7 @@ impl Session {
 
     /// Changes the working directory.
     pub(super) fn go_to(&mut self, path: &str) -> Result<(), Fault> {
-        let path = self.expanded(Path::new(path));
+        let path = super::files::expanded(Path::new(path));
         let changed = self.world.set_current_dir(&path);
         changed.map_err(|error| super::files::cannot("change to", &path, &error))
     }

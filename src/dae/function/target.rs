@@ -273,6 +273,10 @@ impl Target for Body<'_, '_> {
         })
     }
 
+    fn resources(&self) -> crate::external::Resources {
+        self.flat.resources.clone()
+    }
+
     fn derivative(&mut self, _: Operand, span: Span) -> Result<Operand, Diagnostic> {
         Err(fault!(NOT_SUPPORTED, "`der` in a function").at(span))
     }

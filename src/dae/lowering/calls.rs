@@ -109,6 +109,9 @@ impl<T: Target> Lowering<'_, T> {
                 return Ok(vec![Lowered::scalar(value)]);
             }
         }
+        if let Some(outputs) = self.text_call(user, &values, span)? {
+            return Ok(outputs);
+        }
         self.target.call(user, values, span)
     }
 
