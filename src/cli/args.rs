@@ -1,5 +1,6 @@
 //! The command line's grammar.
 
+use crate::results::TUBE_TOLERANCE;
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
@@ -65,6 +66,10 @@ pub(super) enum Command {
     Check(CheckArgs),
     /// Print a model as flat Modelica
     Flatten(FlattenArgs),
+    /// Compare results with reference results
+    Compare(CompareArgs),
+    /// Check a library against a collection of reference results
+    Verify(VerifyArgs),
     /// Explain a diagnostic's code
     Explain(ExplainArgs),
     /// Print shell completions
@@ -173,6 +178,67 @@ pub(super) struct FlattenArgs {
     pub model: String,
 }
 
+/// Arguments of `gapi compare`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi compare result.mat reference.csv
+  gapi compare result.csv reference.csv --signals comparisonSignals.txt --tolerance 0.001
+
+A signal agrees where it stays inside the tube that a rectangle sweeps along the reference. Half of
+its sides are the tolerance times the reference's extent in time and in value.
+
+Exit code: 0 if all signals agree, 1 if one does not or a file cannot be read.")]
+pub(super) struct CompareArgs {
+    /// The results (.mat or .csv)
+    #[arg(value_name = "RESULT", value_hint = ValueHint::FilePath)]
+    pub result: PathBuf,
+    /// The reference results (.mat or .csv)
+    #[arg(value_name = "REFERENCE", value_hint = ValueHint::FilePath)]
+    pub reference: PathBuf,
+    /// A file that names the signals to compare, one a line [default: all of the reference]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub signals: Option<PathBuf>,
+    /// Half width and half height of the tube, relative to the reference's extent
+    #[arg(long, value_name = "E", default_value_t = TUBE_TOLERANCE)]
+    pub tolerance: f64,
+}
+
+/// Arguments of `gapi verify`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi verify --library ~/libraries --references ~/references
+  gapi verify Decay.mo --references references --filter Decay --output table.json
+
+A case is a folder of the collection that holds NAME.csv with the folder's own name, and perhaps
+comparisonSignals.txt; its path below the collection is the name of the model.
+
+Exit code: 0 if every case that has a reference agrees, 1 otherwise.")]
+pub(super) struct VerifyArgs {
+    /// Modelica files, or folders with packages, beside those of --library
+    #[arg(value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    pub files: Vec<PathBuf>,
+    /// The collection of reference results
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub references: PathBuf,
+    /// Only models whose names contain this text
+    #[arg(long, value_name = "TEXT")]
+    pub filter: Option<String>,
+    /// Half width and half height of the tubes, relative to the reference's extent
+    #[arg(long, value_name = "E", default_value_t = TUBE_TOLERANCE)]
+    pub tolerance: f64,
+    /// Seconds that a case may take
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = positive)]
+    pub budget: f64,
+    /// Threads to use [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Where the table goes besides (repeatable); the ending decides the format
+    #[arg(long, short, value_name = "FILE.json|.csv", value_hint = ValueHint::FilePath)]
+    pub output: Vec<PathBuf>,
+}
+
 /// Arguments of `gapi explain`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -192,6 +258,12 @@ Example:
 pub(super) struct CompletionsArgs {
     /// The shell
     pub shell: clap_complete::Shell,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
+    let is_good = number > 0.0 && number <= 1e9;
+    if is_good { Ok(number) } else { Err("expected a positive number".to_owned()) }
 }
 
 fn name_and_value(text: &str) -> Result<(String, f64), String> {

@@ -3,12 +3,14 @@
 
 mod args;
 mod check;
+mod compare;
 mod completions;
 mod explain;
 mod run;
 mod session;
 mod simulate;
 mod terminal;
+mod verify;
 mod world;
 
 use crate::script::with_stack;
@@ -44,6 +46,8 @@ fn dispatch(cli: &Cli) -> ExitCode {
         Command::Completions(arguments) => completions::completions(arguments),
         Command::Simulate(arguments) => simulate::simulate(arguments, &cli.global),
         Command::Check(arguments) => check::check(arguments, &cli.global),
+        Command::Compare(arguments) => compare::compare(arguments, &cli.global),
+        Command::Verify(arguments) => verify::verify(arguments, &cli.global),
         Command::Flatten(arguments) => check::flatten(arguments, &cli.global),
     }
 }

@@ -77,7 +77,7 @@ codes! {
         "## What it means\n\nAn equation or a statement stands where it cannot: a when-clause inside another one or in a function (MLS §8.3.5.2, §12.2), `connect` in a when-clause or under a condition that changes during the simulation (§9.1), `break` outside of a loop (§11.2.4), `return` outside of a function (§11.2.5).\n\n## Example\n\n```modelica\nwhen x > 1 then\n  when y > 1 then\n    n = pre(n) + 1;\n  end when;\nend when;\n```\n\n## What to do\n\nMove it to a place where it can stand; conditions of nested when-clauses can be combined.",
     /// A part of the language that is not built yet.
     NOT_SUPPORTED = "unsupported-language":
-        "## What it means\n\nThe text is Modelica, and this program does not translate that part of the language yet. The message names it.\n\n## Example\n\n`inStream(port.h_outflow)`\n\n## What to do\n\nWrite the model without it.",
+        "## What it means\n\nThe text is Modelica, and this program does not translate that part of the language yet. The message names it.\n\n## Example\n\n`Real x = tick();`, where `tick` is an impure function\n\n## What to do\n\nWrite the model without it.",
     /// A number of equations other than that of unknowns.
     UNBALANCED_MODEL = "unbalanced-model":
         "## What it means\n\nA model has not as many equations as unknowns (MLS §4.8).\n\n## Example\n\n```modelica\nmodel M\n  Real x;\n  Real y;\nequation\n  x = 1;\nend M;\n```\n\n## What to do\n\nAdd the equations that are missing, or remove those that are too many.",

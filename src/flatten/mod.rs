@@ -9,9 +9,8 @@
 //! and the scope in which their text stands (`scope`). A base class is a scope of its own that
 //! shares the instance of the derived class.
 //!
-//! Not translated, each refused with `unsupported-language` at its place: `break connect` in
-//! extends clauses (§7.4), impure functions outside parameters, initial sections and when-clauses
-//! (§12.3). Clocked expressions (ch. 16), state machines (ch. 17) and the partial application of a
+//! Not translated, each refused with `unsupported-language` at its place: impure functions
+//! outside parameters, initial sections and when-clauses (§12.3). Clocked expressions (ch. 16), state machines (ch. 17) and the partial application of a
 //! function that is itself an input (§12.4.2) end as names that nothing declares.
 
 mod balance;
@@ -20,6 +19,7 @@ mod connections;
 mod constants;
 mod declarations;
 mod defaults;
+mod deselection;
 mod enumerations;
 mod equations;
 pub mod errors;

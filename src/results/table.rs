@@ -77,6 +77,17 @@ impl ResultTable {
             .help_if(suggest::did_you_mean(name, self.names())))
     }
 
+    /// The values of the variable of this name, blanks in names aside, one per point in time.
+    pub(super) fn column_like(&self, name: &str) -> Option<Vec<f64>> {
+        let is_same = |other: &str| {
+            let letters = |text: &'_ str| text.replace(char::is_whitespace, "");
+            other == name || letters(other) == letters(name)
+        };
+        let exact = self.series.iter().position(|series| series.name == name);
+        let index = exact.or_else(|| self.series.iter().position(|s| is_same(&s.name)))?;
+        Some(self.expand(index))
+    }
+
     /// The values of the variable at this place, one per point in time.
     pub(super) fn expand(&self, index: usize) -> Vec<f64> {
         let (target, sign) = self.resolve(index);

@@ -27,6 +27,7 @@ pub mod simulation;
 mod statements;
 mod transcript;
 mod variables;
+pub mod verification;
 pub mod world;
 
 pub use messages::Messages;

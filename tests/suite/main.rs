@@ -12,6 +12,7 @@ mod external;
 mod flat_class;
 mod flattening;
 mod flattening_properties;
+mod fuel_cells;
 mod functions;
 mod gapilib;
 mod grammar;

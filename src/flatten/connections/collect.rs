@@ -103,6 +103,9 @@ impl Instantiation<'_> {
             return Ok(());
         }
         match &equation.kind {
+            EquationKind::Connect { left, right } if self.is_deselected(context, left, right) => {
+                Ok(())
+            }
             EquationKind::Connect { left, right } => {
                 connects.push(Connect {
                     left: left.clone(),
