@@ -24,6 +24,7 @@ mod initialization;
 mod lazy_reading;
 mod libraries;
 mod mat;
+mod model_files;
 mod modelica;
 mod modelica_models;
 mod models;

@@ -11,6 +11,7 @@ mod emitter;
 mod external;
 mod instances;
 mod place;
+mod single_assignment;
 mod statements;
 mod target;
 

@@ -1,12 +1,13 @@
 //! `ModelicaStandardTables_*`: the tables of `Modelica.Blocks` (interface of versions 3.2 to 4).
 //!
-//! Not handled: tables defined by a C function `usertab`; splines on grids; time tables with
-//! repeated abscissae and splines.
+//! Not handled: tables defined by a C function `usertab`. Splines need abscissae that increase
+//! strictly, as in the standard library.
 
 mod curve;
 mod one;
 mod source;
 mod spline;
+mod surface;
 mod time;
 mod two;
 
