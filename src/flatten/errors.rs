@@ -78,6 +78,9 @@ codes! {
     /// A part of the language that is not built yet.
     NOT_SUPPORTED = "unsupported-language":
         "## What it means\n\nThe text is Modelica, and this program does not translate that part of the language yet. The message names it.\n\n## Example\n\n`Real x = tick();`, where `tick` is an impure function\n\n## What to do\n\nWrite the model without it.",
+    /// A class that is balanced only together with others.
+    UNBALANCED_CLASS = "unbalanced-class":
+        "## What it means\n\nA class that takes part in the model has other numbers of equations and of unknowns by itself, where its connectors promise one equation for each flow variable and each input (MLS §4.8). The model as a whole is balanced, so that it can be simulated; but the class cannot be used in another place. Libraries from before Modelica 3 do not know the rule; the warning comes once for each library.\n\n## Example\n\n```modelica\nmodel A\n  Real x;\nend A;\nmodel M\n  A a;\nequation\n  a.x = 1;\nend M;\n```\n\n## What to do\n\nGive the class the equations for its own variables, or declare as an input what others determine.",
     /// A number of equations other than that of unknowns.
     UNBALANCED_MODEL = "unbalanced-model":
         "## What it means\n\nA model has not as many equations as unknowns (MLS §4.8).\n\n## Example\n\n```modelica\nmodel M\n  Real x;\n  Real y;\nequation\n  x = 1;\nend M;\n```\n\n## What to do\n\nAdd the equations that are missing, or remove those that are too many.",

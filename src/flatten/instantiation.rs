@@ -1,6 +1,7 @@
 //! Builds the instance tree (MLS §5.6.1), component by component as they are needed: a parameter
 //! that gives a size may be declared behind the array that it sizes.
 
+use super::balance::Written;
 use super::connections::Connections;
 use super::constants::Read;
 use super::declarations::Expanded;
@@ -69,6 +70,8 @@ pub(super) struct Instantiation<'a> {
     pub(super) warnings: Vec<Diagnostic>,
     /// All connections, as soon as the tree is whole.
     pub(super) connections: Option<Rc<Connections>>,
+    /// Which equations each instance wrote, in the order of the flat model.
+    pub(super) written: Vec<Written>,
     /// Variables whose values shaped the model.
     pub(super) structural: IndexSet<usize>,
     /// Values found so far with the variables that they need; `None` while one is being found.
@@ -111,6 +114,7 @@ impl<'a> Instantiation<'a> {
             model_name: Ident::new(""),
             warnings: Vec::new(),
             connections: None,
+            written: Vec::new(),
             structural: IndexSet::new(),
             values: FxHashMap::default(),
             read: Read::new(),
@@ -595,6 +599,7 @@ impl<'a> Instantiation<'a> {
             variable: self.variables.len(),
             modifier: expanded.modifier,
             connection: inherited.connection,
+            causality: inherited.causality,
             connector: expanded.connector,
             class: expanded.class,
         };

@@ -43,6 +43,7 @@ mod types;
 mod variables;
 mod vectorization;
 
+pub use balance::LocalBalance;
 pub use flat_model::*;
 pub use library::{ClassId, Library, LibraryFiles};
 
@@ -68,6 +69,8 @@ const STACK: usize = 256 << 20;
 pub struct Flattened {
     /// The model.
     pub model: FlatModel,
+    /// The unknowns and equations of the class by itself (MLS §4.8), where they can be told.
+    pub balance: Option<LocalBalance>,
     /// Warnings.
     pub warnings: Vec<Diagnostic>,
 }
@@ -146,11 +149,15 @@ fn flattened(
     if !errors.is_empty() {
         return Err(distinct(errors));
     }
+    let classes = tree.local_balances(&connections, &model);
+    let mut warnings = tree.warnings;
     for (name, function) in tree.functions {
         model.functions.extend(function.map(|function| (name, function)));
     }
-    balance::check(&model).map_err(one)?;
-    Ok(Flattened { model, warnings: distinct(tree.warnings) })
+    balance::check(&model, &classes).map_err(one)?;
+    warnings.extend(balance::warnings(&classes));
+    let balance = classes.into_iter().find(|class| class.path.is_empty());
+    Ok(Flattened { model, balance, warnings: distinct(warnings) })
 }
 
 /// The errors without those that say the same of the same place, as those of the elements of an

@@ -275,7 +275,9 @@ impl Instantiation<'_> {
                 let base = self.lookup_type(parent, &short.target)?;
                 let modifier = self.scope(id).modifier.clone();
                 // A type made of a predefined one has no elements to inherit.
-                if let Type::Class(_) = base {
+                if let Type::Class(class) = base
+                    && self.text(class).restriction() != Restriction::Type
+                {
                     bases.push(self.base(id, base, own, modifier, &short.target)?);
                 }
             }

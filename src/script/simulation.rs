@@ -127,6 +127,14 @@ pub fn translated(
 /// # Errors
 /// Everything that is wrong with it.
 pub fn flat_model(session: &mut Session, problem: &str) -> Result<FlatModel, Vec<Diagnostic>> {
+    flattened(session, problem).map(|flattened| flattened.model)
+}
+
+/// As [`flat_model`], with the local balance; warnings are reported.
+pub(super) fn flattened(
+    session: &mut Session,
+    problem: &str,
+) -> Result<flatten::Flattened, Vec<Diagnostic>> {
     let source = session.sources.add("problem", problem);
     let (name, modification) =
         syntax::parse_class_with_modification(source, problem).map_err(|error| vec![error])?;
@@ -136,8 +144,8 @@ pub fn flat_model(session: &mut Session, problem: &str) -> Result<FlatModel, Vec
         session.classes.library.set_resources(resources);
         match session.ask_library(|library| flatten::flatten(library, &name, &modification)) {
             Ok(flattened) => {
-                flattened.warnings.into_iter().for_each(|warning| session.report(warning));
-                return Ok(flattened.model);
+                flattened.warnings.iter().for_each(|warning| session.report(warning.clone()));
+                return Ok(flattened);
             }
             Err(errors) => {
                 if !session.load_wanted()? {

@@ -163,6 +163,24 @@ fn check_flatten_explain_completions() {
     assert_eq!(gapi(&here, &["check", "missing.mo"]).0, 1);
 }
 
+/// A component with open connectors is no system by itself; its local balance is told (MLS §4.8).
+#[test]
+fn a_lone_component_is_balanced() {
+    let text = "connector Pin Real v; flow Real i; end Pin;
+        connector In = input Real;
+        model Resistor
+          Pin p, n; In R; Real v;
+        equation
+          v = p.v - n.v; v = R*p.i; p.i + n.i = 0;
+        end Resistor;";
+    let here = folder(&[("Resistor.mo", text)]);
+    let (code, out, _) = gapi(&here, &["check", "Resistor.mo", "--model", "Resistor"]);
+    let balance =
+        "balanced: 6 unknowns, 6 equations with 2 flow variables of connectors and 1 input";
+    assert!(code == 0 && out.contains(balance), "{out}");
+    assert_eq!(gapi(&here, &["check", "Resistor.mo"]).0, 0);
+}
+
 #[test]
 fn colours_are_as_asked() {
     let here = folder(&[("bad.mos", "a = b\n")]);

@@ -26,6 +26,8 @@ pub(super) const FAMILY: Family = Family {
 struct Plots {
     drawn: usize,
     last_results: Option<String>,
+    /// What `plotArray` and `plotScatter` draw on: drawn already when it has series.
+    vectors: Option<Figure>,
 }
 
 /// Notes the result file that plots take where they name none.
@@ -115,7 +117,9 @@ fn create_plot(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
         bottom_title: args.take("bottomTitle")?,
         logarithmic: [args.take("logX")?, args.take("logY")?],
     };
-    if !drawing.names.is_empty() {
+    if drawing.names.is_empty() {
+        session.extension::<Plots>().vectors = Some(drawing.empty_figure());
+    } else {
         draw_trajectories(session, drawing)?;
     }
     Ok(Value::Integer(id.max(1)))
@@ -170,7 +174,8 @@ end removePlots;
 "#;
 
 fn remove_plots(session: &mut Session, _: Args) -> Result<Value, Failure> {
-    session.extension::<Plots>().drawn = 0;
+    let plots = session.extension::<Plots>();
+    (plots.drawn, plots.vectors) = (0, None);
     Ok(true.into())
 }
 
@@ -185,6 +190,26 @@ struct Drawing {
     left_title: String,
     bottom_title: String,
     logarithmic: [bool; 2],
+}
+
+impl Drawing {
+    /// The titles and axes, with nothing drawn.
+    fn empty_figure(self) -> Figure {
+        let axis = |label: &str, logarithmic: bool| {
+            if logarithmic { Axis::logarithmic(label, "") } else { Axis::linear(label, "") }
+        };
+        let [log_x, log_y] = self.logarithmic;
+        Figure {
+            panels: vec![Panel {
+                x: axis(&self.bottom_title, log_x),
+                y: axis(&self.left_title, log_y),
+                height: 300.0,
+                zero_line: false,
+                series: Vec::new(),
+            }],
+            title: self.title,
+        }
+    }
 }
 
 fn draw_trajectories(session: &mut Session, drawing: Drawing) -> Result<(), Fault> {
@@ -232,6 +257,7 @@ fn draw_trajectories(session: &mut Session, drawing: Drawing) -> Result<(), Faul
             series,
         }],
     };
+    session.extension::<Plots>().vectors = None;
     write(session, &figure)
 }
 
@@ -241,17 +267,21 @@ fn draw_vectors(session: &mut Session, mut args: Args, mark: Mark) -> Result<Val
     if x.len() != y.len() {
         bail!(BAD_ARGUMENT, "`x` has {} values and `y` has {}", x.len(), y.len());
     }
-    let figure = Figure {
-        title: String::new(),
-        panels: vec![Panel {
-            x: Axis::linear("", ""),
-            y: Axis::linear("", &unit),
-            height: 300.0,
-            zero_line: false,
-            series: vec![Series { name: legend, x, y, mark, colour: 1 }],
-        }],
-    };
+    let erase: bool = args.take("erase")?;
+    let plots = session.extension::<Plots>();
+    let begun = plots.vectors.take().filter(|figure| !erase || figure.panels[0].series.is_empty());
+    let mut figure = begun.unwrap_or_else(|| Drawing::default().empty_figure());
+    let series = &mut figure.panels[0].series;
+    if !series.is_empty() {
+        plots.drawn -= 1;
+    }
+    let colour = series.len() + 1;
+    series.push(Series { name: legend, x, y, mark, colour });
+    if !unit.is_empty() {
+        figure.panels[0].y.unit = unit;
+    }
     write(session, &figure)?;
+    session.extension::<Plots>().vectors = Some(figure);
     Ok(true.into())
 }
 

@@ -1,6 +1,13 @@
-//! Compares the number of equations with that of unknowns (MLS §4.8).
+//! Compares the number of equations with that of unknowns (MLS §4.8): of the whole model, and of
+//! each class by itself.
 
-use super::errors::UNBALANCED_MODEL;
+mod local;
+mod sets;
+
+pub use local::LocalBalance;
+pub(super) use local::Written;
+
+use super::errors::{UNBALANCED_CLASS, UNBALANCED_MODEL};
 use super::{FlatModel, Variability};
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -11,9 +18,12 @@ use crate::syntax::ast::{
 };
 use std::collections::BTreeSet;
 
+/// The most classes that one message names.
+const MAX_CLASSES: usize = 3;
+
 /// An error if the numbers differ. Where the size of an equation cannot be told from its text, the
 /// model is left to the matching of equations and unknowns.
-pub(super) fn check(model: &FlatModel) -> Result<(), Diagnostic> {
+pub(super) fn check(model: &FlatModel, classes: &[LocalBalance]) -> Result<(), Diagnostic> {
     let unknowns: usize = model
         .variables
         .values()
@@ -30,7 +40,7 @@ pub(super) fn check(model: &FlatModel) -> Result<(), Diagnostic> {
     });
     let mut equations: usize = bindings.map(super::Variable::len).sum();
     for equation in &model.equations {
-        match size(equation, model) {
+        match size(equation, &mut |e| dims(e, model)) {
             Some(count) => equations += count,
             None => return Ok(()),
         }
@@ -56,7 +66,35 @@ pub(super) fn check(model: &FlatModel) -> Result<(), Diagnostic> {
         fault!(UNBALANCED_MODEL, "`{name}` has {few} but {many}";
             help: "remove equations, or declare the unknowns that they determine")
     };
-    Err(fault.at(model.span.unwrap_or(Span::NONE)))
+    let mut error = fault.at(model.span.unwrap_or(Span::NONE));
+    for class in unbalanced(classes).filter(|class| !class.path.is_empty()).take(MAX_CLASSES) {
+        error = error.related(class.span, format!("{} (`{}`)", class.finding(), class.path));
+    }
+    Err(error)
+}
+
+/// Warnings about classes that are not balanced by themselves though the model is: their parts
+/// make up for each other. One for each library, as older ones do not know the rule, and about a
+/// part rather than about what holds it.
+pub(super) fn warnings(classes: &[LocalBalance]) -> Vec<Diagnostic> {
+    let mut told = BTreeSet::new();
+    let mut found: Vec<&LocalBalance> = unbalanced(classes).collect();
+    found.reverse();
+    found
+        .into_iter()
+        .filter(|class| told.insert(class.class.first().map(|name| name.to_string())))
+        .map(|class| {
+            let finding = class.finding();
+            fault!(UNBALANCED_CLASS, "{finding}").at(class.span).warning()
+        })
+        .collect()
+}
+
+/// The classes with other numbers of equations than of unknowns, each once.
+fn unbalanced(classes: &[LocalBalance]) -> impl Iterator<Item = &LocalBalance> {
+    let mut seen = BTreeSet::new();
+    let wrong = classes.iter().filter(|class| !class.is_balanced());
+    wrong.filter(move |class| seen.insert(class.class.to_string()))
 }
 
 fn plural(count: usize, noun: &str) -> String {
@@ -64,23 +102,25 @@ fn plural(count: usize, noun: &str) -> String {
 }
 
 /// Number of scalar equations; `None` if it cannot be told from the text.
-fn size(equation: &Equation, model: &FlatModel) -> Option<usize> {
+fn size(
+    equation: &Equation,
+    dims: &mut dyn FnMut(&Expression) -> Option<Vec<usize>>,
+) -> Option<usize> {
     match &equation.kind {
-        EquationKind::Equal { left, right } => match (dims(left, model), dims(right, model)) {
-            (Some(dims), _) | (None, Some(dims)) => Some(dims.iter().product()),
-            (None, None) => None,
+        EquationKind::Equal { left, right } => match &left.kind {
+            ExpressionKind::Tuple(outputs) => {
+                let outputs = outputs.iter().flatten();
+                outputs.map(|output| Some(dims(output)?.iter().product::<usize>())).sum()
+            }
+            _ => Some(dims(left).or_else(|| dims(right))?.iter().product()),
         },
-        EquationKind::If { branches, .. } => {
-            branches.first().and_then(|(_, body)| sum(body, model))
+        EquationKind::If { branches, .. } | EquationKind::When { branches } => {
+            let (_, body) = branches.first()?;
+            body.iter().map(|equation| size(equation, dims)).sum()
         }
-        EquationKind::When { branches } => branches.first().and_then(|(_, body)| sum(body, model)),
         EquationKind::Call(_) => Some(0),
         EquationKind::For { .. } | EquationKind::Connect { .. } => None,
     }
-}
-
-fn sum(equations: &[Equation], model: &FlatModel) -> Option<usize> {
-    equations.iter().map(|equation| size(equation, model)).sum()
 }
 
 /// The sizes of an expression where its text shows them.
