@@ -64,6 +64,11 @@ impl Calls {
         self.next_instant();
     }
 
+    /// What the external function said that failed last.
+    pub(super) fn message(&self) -> &str {
+        self.machine.message()
+    }
+
     /// Impure calls have new values from here on.
     pub(super) fn next_instant(&mut self) {
         self.impure.clear();
@@ -79,9 +84,8 @@ impl Calls {
             return Ok(());
         }
         let arguments: Vec<u64> = call.arguments.iter().map(|a| r[*a as usize].to_bits()).collect();
-        let is_known = |known: &&ImpureCall| {
-            known.function == call.function && known.arguments == arguments
-        };
+        let is_known =
+            |known: &&ImpureCall| known.function == call.function && known.arguments == arguments;
         if let Some(known) = self.impure.iter().find(is_known) {
             r[call.d as usize..][..n].copy_from_slice(&known.results);
             return Ok(());

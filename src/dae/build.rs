@@ -13,7 +13,7 @@ use crate::syntax::ast::{self, EquationKind, Expression, ExpressionKind};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
-/// Stands for a text that is not known when compiling.
+/// Stands for a text, or a part of one, that is not known when compiling; messages show it.
 pub(super) const UNKNOWN_TEXT: &str = "…";
 
 /// Largest number of scalar equations.

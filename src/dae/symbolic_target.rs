@@ -200,7 +200,6 @@ impl Target for Builder<'_> {
             | "inStream"
             | "actualStream"
             | "getInstanceName"
-            | "String"
             | "previous"
             | "hold" => {
                 return Some(Err(fault!(NOT_SUPPORTED, "`{name}` is not supported yet").at(span)));

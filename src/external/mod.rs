@@ -13,7 +13,10 @@
 //! whoever calls it.
 
 mod call;
+mod eigenvectors;
 pub mod errors;
+mod fourier;
+mod householder;
 mod linear_algebra;
 mod messages;
 mod objects;
@@ -25,8 +28,8 @@ mod tables;
 pub use call::{Call, Kind, Object, Outside, Slot};
 pub use objects::Objects;
 pub use random::Random;
-pub use tables::names_a_file;
 pub use resources::{Contents, Provide, Resources};
+pub use tables::names_a_file;
 
 use crate::diag::Fault;
 use errors::EXTERNAL_CALL;
@@ -132,6 +135,8 @@ const FAMILIES: &[&[Entry]] = &[
     strings::ENTRIES,
     random::ENTRIES,
     linear_algebra::ENTRIES,
+    householder::ENTRIES,
+    fourier::ENTRIES,
     messages::ENTRIES,
 ];
 

@@ -135,6 +135,8 @@ fn impure_random(call: &mut Call<'_>) -> Result<(), Fault> {
     };
     match bits {
         Some(bits) => call.give(unit(bits)),
-        None => Err(call.fault("`initializeImpureRandom` was not called before, or with another id")),
+        None => {
+            Err(call.fault("`initializeImpureRandom` was not called before, or with another id"))
+        }
     }
 }

@@ -30,7 +30,8 @@ impl Session {
         let packages = self.classes.packages();
         let own = model.first().and_then(|top| packages.get(&top));
         if let Some(own) = own {
-            let folder = if own.extension().is_some_and(|e| e == "mo") { own.parent() } else { None };
+            let folder =
+                if own.extension().is_some_and(|e| e == "mo") { own.parent() } else { None };
             folders.push(folder.unwrap_or(own).to_path_buf());
         }
         let files = self.world.files();

@@ -33,6 +33,14 @@ pub(super) fn refusal(function: &Function) -> Option<String> {
     }
 }
 
+/// Whether a function does nothing but to fail with a message, which may be unknown in parts.
+pub(super) fn is_message(function: &Function) -> bool {
+    match &function.body {
+        FunctionBody::External(clause) => external_name(function, clause) == "ModelicaError",
+        _ => false,
+    }
+}
+
 /// Whether external objects go in or out: such a call is not the number that it returns.
 pub(super) fn handles_objects(function: &Function) -> bool {
     function.inputs.iter().chain(&function.outputs).any(is_object)

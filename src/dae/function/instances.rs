@@ -2,6 +2,7 @@
 
 use super::statements::Body;
 use crate::bytecode::{Code, Functions, Instruction, Machine};
+use crate::dae::build::UNKNOWN_TEXT;
 use crate::dae::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use crate::dae::lowering::Lowered;
 use crate::dae::model::Shape;
@@ -236,7 +237,9 @@ fn signature(
             ValueType::Integer | ValueType::Boolean | ValueType::Enumeration(_)
         );
         list.push(match argument {
-            Lowered::Text(text) if &**text == crate::dae::build::UNKNOWN_TEXT => {
+            Lowered::Text(text)
+                if text.contains(UNKNOWN_TEXT) && !super::external::is_message(function) =>
+            {
                 return Err(fault!(
                     NOT_SUPPORTED,
                     "the text for `{}` of `{}` must be known when the model is compiled",

@@ -23,7 +23,9 @@ fn count(statements: &[Statement], counts: &mut FxHashMap<Ident, usize>) {
     for statement in statements {
         match &statement.kind {
             StatementKind::Assign { target, .. } => one(target),
-            StatementKind::MultiAssign { targets, .. } => targets.iter().flatten().for_each(&mut one),
+            StatementKind::MultiAssign { targets, .. } => {
+                targets.iter().flatten().for_each(&mut one)
+            }
             _ => {}
         }
     }

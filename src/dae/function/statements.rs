@@ -1,8 +1,8 @@
 //! Declarations and statements of a function being compiled (MLS ch. 11, §12.4).
 
 use super::emitter::{Emitter, Operand};
-use super::single_assignment::assigned_once;
 use super::instances::{Argument, Instances, MAX_INSTRUCTIONS};
+use super::single_assignment::assigned_once;
 use crate::bytecode::{Code, Instruction, Register};
 use crate::dae::build::message_text;
 use crate::dae::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED_REFERENCE};

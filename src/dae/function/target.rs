@@ -264,7 +264,6 @@ impl Target for Body<'_, '_> {
             | "inStream"
             | "actualStream"
             | "getInstanceName"
-            | "String"
             | "previous"
             | "hold" => {
                 Err(fault!(NOT_SUPPORTED, "`{name}` in a function of an equation").at(span))

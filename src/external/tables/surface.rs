@@ -29,13 +29,9 @@ impl Basis {
         let h = x[low + 1] - x[low];
         let t = (u - x[low]) / h;
         let s = 1.0 - t;
-        let value = [s * s * (1.0 + 2.0 * t), h * t * s * s, t * t * (3.0 - 2.0 * t), -h * t * t * s];
-        let first = [
-            -6.0 * t * s / h,
-            s * (1.0 - 3.0 * t),
-            6.0 * t * s / h,
-            t * (3.0 * t - 2.0),
-        ];
+        let value =
+            [s * s * (1.0 + 2.0 * t), h * t * s * s, t * t * (3.0 - 2.0 * t), -h * t * t * s];
+        let first = [-6.0 * t * s / h, s * (1.0 - 3.0 * t), 6.0 * t * s / h, t * (3.0 * t - 2.0)];
         let second = [
             (12.0 * t - 6.0) / (h * h),
             (6.0 * t - 4.0) / h,
@@ -52,7 +48,8 @@ impl Surface {
         let (rows, columns) = (x.len(), y.len());
         let column = |j: usize| (0..rows).map(|i| z[i * columns + j]).collect::<Vec<f64>>();
         let by_x: Vec<Line> = (0..columns).map(|j| Line::new(x, &column(j))).collect();
-        let by_y: Vec<Line> = (0..rows).map(|i| Line::new(y, &z[i * columns..][..columns])).collect();
+        let by_y: Vec<Line> =
+            (0..rows).map(|i| Line::new(y, &z[i * columns..][..columns])).collect();
         let mixed = mixed_secants(x, y, z);
         let mut nodes = Vec::with_capacity(z.len());
         for i in 0..rows {
@@ -70,7 +67,14 @@ impl Surface {
     }
 
     /// A derivative of orders `p` and `q`, at most 2 each.
-    pub(super) fn derivative(&self, columns: usize, a: &Basis, b: &Basis, p: usize, q: usize) -> f64 {
+    pub(super) fn derivative(
+        &self,
+        columns: usize,
+        a: &Basis,
+        b: &Basis,
+        p: usize,
+        q: usize,
+    ) -> f64 {
         let (wa, wb) = (&a.weights[p], &b.weights[q]);
         let corner = |i: usize, wa: &[f64], j: usize, wb: &[f64]| {
             let [z, zx, zy, zxy] = self.nodes[i * columns + j];
