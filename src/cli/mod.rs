@@ -6,10 +6,17 @@ mod check;
 mod compare;
 mod completions;
 mod explain;
+mod help;
+mod identify;
+mod limits;
+mod parsing;
+mod repl;
 mod run;
+mod scratch;
 mod session;
 mod simulate;
 mod terminal;
+mod test;
 mod verify;
 mod world;
 
@@ -42,6 +49,10 @@ pub fn main() -> ExitCode {
 fn dispatch(cli: &Cli) -> ExitCode {
     match &cli.command {
         Command::Run(arguments) => run::run(arguments, &cli.global),
+        Command::Identify(arguments) => identify::identify(arguments, &cli.global),
+        Command::Test(arguments) => test::test(arguments, &cli.global),
+        Command::Repl(arguments) => repl::repl(arguments, &cli.global),
+        Command::Help(arguments) => help::help(arguments),
         Command::Explain(arguments) => explain::explain(arguments),
         Command::Completions(arguments) => completions::completions(arguments),
         Command::Simulate(arguments) => simulate::simulate(arguments, &cli.global),

@@ -88,6 +88,7 @@ impl ValueType {
             ValueType::Function => "function".into(),
             ValueType::TypeName => "TypeName".into(),
             ValueType::VariableName => "VariableName".into(),
+            ValueType::Expression => "expression".into(),
             ValueType::Any => "value".into(),
         }
     }
@@ -102,7 +103,9 @@ impl ValueType {
             | (ValueType::String, value @ Value::String(_))
             | (ValueType::Function, value @ Value::Function(_))
             | (ValueType::TypeName, value @ Value::TypeName(_))
-            | (ValueType::VariableName, value @ Value::VariableName(_)) => Ok(value),
+            | (ValueType::VariableName | ValueType::Expression, value @ Value::VariableName(_)) => {
+                Ok(value)
+            }
             (ValueType::ExternalObject(class), Value::External(object))
                 if *class == object.class =>
             {

@@ -136,6 +136,26 @@ impl ResultTable {
         }
     }
 
+    /// The variables whose names are wanted; aliases of others take their values with them.
+    #[must_use]
+    pub fn only(&self, wanted: impl Fn(&str) -> bool) -> ResultTable {
+        let kept = self.series.iter().enumerate().filter(|(_, series)| wanted(&series.name));
+        let series = kept.map(|(index, series)| {
+            let values = match &series.values {
+                Values::Alias { of, .. } => match self.series[*of].values {
+                    Values::Constant(_) => {
+                        Values::Constant(self.expand(index).first().copied().unwrap_or(0.0))
+                    }
+                    _ => Values::Trajectory(self.expand(index)),
+                },
+                values => values.clone(),
+            };
+            Series { values, ..series.clone() }
+        });
+        let time = self.time.clone();
+        ResultTable { time_name: self.time_name.clone(), time, series: series.collect() }
+    }
+
     /// A fault unless the table is what its documentation promises.
     pub fn check(&self) -> Result<(), Fault> {
         let points = self.time.len();

@@ -278,6 +278,11 @@ impl Session {
         self.classes.library.define(class).map(|_| ())
     }
 
+    /// Whether a class comes from a folder, so that its parts are read when they are needed.
+    pub(super) fn is_lazy(&self, name: &Name) -> bool {
+        self.classes.files.get(name).is_some_and(|path| self.world.is_dir(path))
+    }
+
     /// Removes a class; whether there was one.
     pub(super) fn remove_class(&mut self, name: &Name) -> bool {
         self.classes.changed();

@@ -146,7 +146,7 @@ impl Outside for Session {
     }
 
     fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {
-        let path = super::files::expanded(Path::new(path));
+        let path = self.expanded(Path::new(path));
         Ok(self.world.exists(&path).then(|| self.world.is_dir(&path)))
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Session;
 use super::errors::FILE_ERROR;
-use super::files::{cannot, expanded};
+use super::files::{cannot, plain};
 use super::world::{Files, normalized};
 use crate::diag::Fault;
 use crate::external::{Provide, Resources};
@@ -44,7 +44,7 @@ impl ModelFiles {
         if let Some(uri) = name.strip_prefix("modelica://") {
             return self.in_package(name, uri);
         }
-        let path = expanded(Path::new(name.trim()));
+        let path = plain(name.trim());
         let candidates = || self.folders.iter().map(|folder| normalized(&folder.join(&path)));
         let exists = |path: &PathBuf| self.files.is_file(path) || self.has_entries(path);
         candidates().find(exists).or_else(|| candidates().next()).ok_or_else(|| missing(name))

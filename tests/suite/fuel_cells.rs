@@ -175,14 +175,16 @@ fn load_steps_have_the_reference_voltages() {
     );
 }
 
-/// With moving gases and on a finer mesh.
+/// The layers of `FuelCellLib`, with moving gases, on a finer mesh; and the same without gases.
 #[test]
 fn load_steps_with_gases_have_the_reference_voltages() {
+    let times = [(2.0, 1.060301), (5.2, 0.995846), (6.0, 0.905662), (7.0, 0.890621)];
+    follows("CaseStudies.LoadSteps(n = 20)", 0.1, &times);
     follows(
-        "CaseStudies.LoadSteps(gases = true, act_layer1(n = 20, da = 11e-6/21), \
+        "CaseStudies.LoadStepsWithGases(act_layer1(n = 20, da = 11e-6/21), \
          mem_layer1(n = 20, da = 110e-6/21))",
         0.1,
-        &[(2.0, 1.060301), (5.2, 0.995846), (6.0, 0.905662), (7.0, 0.890621)],
+        &times,
     );
 }
 

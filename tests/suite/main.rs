@@ -19,6 +19,7 @@ mod grammar;
 mod hybrid;
 mod identification;
 mod identified_models;
+mod identify;
 mod index_reduction;
 mod initialization;
 mod lazy_reading;

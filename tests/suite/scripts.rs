@@ -27,7 +27,8 @@ fn columns(path: &Path, names: [&str; 2]) -> [Vec<f64>; 2] {
 
 #[test]
 fn matrices_and_tables_hold_the_same_data() {
-    let tables = shipped::files("scripts/data", "csv");
+    let mut tables = shipped::files("scripts/data", "csv");
+    tables.retain(|table| table.parent() != Some(&shipped::project("scripts/data/stacks")));
     assert_eq!(tables.len(), 42 + 2 + 4, "measured curves and twins");
     for table in tables {
         let header = std::fs::read_to_string(&table).unwrap();

@@ -17,8 +17,8 @@ model ActiveLayer "Active layer of n + 1 control volumes"
   inner parameter Units.TafelSlope B = 0.150 "Tafel slope, natural logarithm";
   inner parameter Units.Pressure poa = 1e5 "pressure of oxygen that Aioref belongs to";
   inner parameter Units.CapacitanceDensity cdl = 10.12 "double layer, for each um of layer";
-  ProtonFace protons "face of the membrane";
-  ElectronFace electrons "face of the diffusion layer";
+  Currents.ProtonFace protons "face of the membrane";
+  Currents.ElectronFace electrons "face of the diffusion layer";
   ActiveElement first(g1 = 0) "half element at the membrane";
   ActiveVolume c[properties.n + 1] "control volumes";
   ActiveElement e[properties.n] "elements between them";

@@ -2,6 +2,7 @@ within CaseStudies;
 package Water "Layers of a cell in which the membrane takes up water and the pores of the cathode flood"
   import Units = FuelCellLib.Units;
   import F = FuelCellLib.Basics.F;
+  import Charge = CaseStudies.Currents.Charge;
 
   connector Gas "What fills the pores"
     Units.Pressure p(start = 1e5) "oxygen";
@@ -16,18 +17,6 @@ package Water "Layers of a cell in which the membrane takes up water and the por
     Real lambda(start = 3, final unit = "1", nominal = 10) "water per sulfonic group, mol/mol";
     flow Units.molarF J(nominal = 1e-4) "water";
   end Ionomer;
-
-  connector Charge "Protons and electrons"
-    Units.Potential ve "potential of the protons";
-    Units.Potential delta(start = 1) "potential of the electrons over that of the protons";
-    flow Units.CurrentDensity ion "current of the protons";
-    flow Units.CurrentDensity total "current of both";
-    annotation(Documentation(info = "<html>
-<p>Voltage and total current in place of the electrons' own: no control volume takes up total current,
-so it is one variable for the whole layer, and the voltage is what the double layers store. The
-potentials then follow one by one, without a system of equations.</p>
-</html>"));
-  end Charge;
 
   record Properties "What all layers of a cell share"
     parameter Integer n(min = 1) = 10 "elements in each layer, which has n + 1 control volumes" annotation(Evaluate = true);

@@ -1,4 +1,4 @@
-within CaseStudies.Water;
+within CaseStudies.Currents;
 model ElectronFace "Face that lets electrons pass and no protons"
   FuelCellLib.Basics.terminal pin "electrons";
   Charge charge "layer";

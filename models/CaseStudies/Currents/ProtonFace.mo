@@ -1,4 +1,4 @@
-within CaseStudies.Water;
+within CaseStudies.Currents;
 model ProtonFace "Face that lets protons pass and no electrons"
   FuelCellLib.Basics.terminal ion "protons";
   Charge charge "layer";
