@@ -22,8 +22,16 @@
 //! - **akima-1970** — H. Akima: A new method of interpolation and smooth curve fitting based on
 //!   local procedures. Journal of the ACM 17(4), 1970, 589–602.
 //!
+//! <a id="akima-1974"></a>
+//! - **akima-1974** — H. Akima: A method of bivariate interpolation and smooth surface fitting
+//!   based on local procedures. Communications of the ACM 17(1), 1974, 18–20.
+//!
 //! <a id="anderson-1999"></a>
 //! - **anderson-1999** — E. Anderson et al.: LAPACK users' guide. 3rd edition, SIAM, 1999.
+//!
+//! <a id="cooley-tukey-1965"></a>
+//! - **cooley-tukey-1965** — J. W. Cooley, J. W. Tukey: An algorithm for the machine calculation of
+//!   complex Fourier series. Mathematics of Computation 19(90), 1965, 297–301.
 //!
 //! <a id="fritsch-butland-1984"></a>
 //! - **fritsch-butland-1984** — F. N. Fritsch, J. Butland: A method for constructing local monotone

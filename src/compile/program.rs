@@ -5,6 +5,7 @@ use super::events::{CompiledRounding, Events, compile_events, linear_in_time};
 use super::hoist::Hoisting;
 use super::jacobian::differentiate_sequence;
 use super::lower::{Registers, TapeBuilder};
+use super::memory::Memory;
 use super::system::System;
 use super::tape::{Register, Tape};
 use crate::bytecode::{self, Reason};
@@ -558,7 +559,10 @@ impl Program {
                 let reason = Reason::ALL.get(usize::from(reason)).copied();
                 let reason = reason.unwrap_or(Reason::NotFinite);
                 let failure = bytecode::Failure { function, at, reason };
-                let (words, span) = self.sorted.dae.functions.explain(&failure);
+                let (mut words, span) = self.sorted.dae.functions.explain(&failure);
+                if let Some(message) = self.external_message(failure) {
+                    words = format!("{words}: {message}");
+                }
                 let code = match reason {
                     Reason::Assertion => ASSERTION_FAILED,
                     _ => DOMAIN_ERROR,
@@ -592,6 +596,20 @@ impl Program {
             }
             Failure::EventIteration { variable } => self.explain_iteration(variable, when),
         }
+    }
+
+    /// Why an external function has no result, if it fails with the default parameters too.
+    fn external_message(&self, failure: bytecode::Failure) -> Option<String> {
+        if failure.reason != Reason::External {
+            return None;
+        }
+        let mut memory = Memory::new(&self.registers);
+        for (_, tape) in &self.parameter_tapes {
+            if tape.run(&mut memory).is_err() && memory.calls.failure == Some(failure) {
+                return Some(memory.calls.message().to_owned());
+            }
+        }
+        None
     }
 
     fn explain_iteration(&self, variable: u32, when: &str) -> Diagnostic {

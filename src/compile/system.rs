@@ -192,7 +192,7 @@ impl System {
 
     fn evaluate_parameters(&mut self) -> Result<(), Failure> {
         let program = self.program.clone();
-        self.registers.calls.clear_objects();
+        self.registers.calls.restart();
         let mut tunable = 0;
         // Slots of set values first: tapes run in order of dependence, not of declaration.
         let mut given: Vec<(VarId, f64)> = Vec::new();
@@ -492,6 +492,7 @@ impl DaeSystem for System {
 
     fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
         self.load(t, y);
+        self.registers.calls.next_instant();
         let mut outcome = self.event(t)?;
         if self.improve_choices()? {
             outcome = either(outcome, EventOutcome::Continue { y_changed: true });

@@ -65,6 +65,8 @@ pub(super) struct Instantiation<'a> {
     pub(super) record_scopes: FxHashMap<Name, ScopeId>,
     /// The instance of the model.
     pub(super) root_node: NodeId,
+    /// The simple name of its class.
+    pub(super) model_name: Ident,
     pub(super) warnings: Vec<Diagnostic>,
     /// All connections, as soon as the tree is whole.
     pub(super) connections: Option<Rc<Connections>>,
@@ -109,6 +111,7 @@ impl<'a> Instantiation<'a> {
             function_names: FxHashMap::default(),
             record_scopes: FxHashMap::default(),
             root_node: NodeId(0),
+            model_name: Ident::new(""),
             warnings: Vec::new(),
             connections: None,
             written: Vec::new(),

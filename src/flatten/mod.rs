@@ -128,12 +128,14 @@ fn flattened(
     }
     tree.check_complete(id, text.span()).map_err(one)?;
     let modifier = Modifier::of_arguments(modification, ScopeId::TOP).map_err(one)?;
+    tree.model_name = text.name.last().unwrap_or(tree.model_name);
     let root = tree.model(id, modifier).map_err(one)?;
     tree.complete(root).map_err(distinct)?;
     let mut model = FlatModel {
         name: text.name.to_string(),
         description: described(&text.definition),
         experiment: experiment(&text.definition),
+        resources: library.resources().clone(),
         span: Some(text.span()),
         ..FlatModel::default()
     };

@@ -59,6 +59,12 @@ impl Classes {
         self.nowhere.clear();
     }
 
+    /// The files or folders of all classes at the top level.
+    pub(super) fn packages(&self) -> BTreeMap<Ident, PathBuf> {
+        let own = |(name, path): (&Name, &PathBuf)| Some((name.first()?, path.clone()));
+        self.files.iter().filter_map(own).collect()
+    }
+
     /// The file or folder of a class at the top level.
     pub(super) fn file_of(&self, name: &Name) -> Option<&PathBuf> {
         self.files.get(name)

@@ -74,8 +74,7 @@ impl Session {
     /// Windows' separators, `file://` and `$NAME` at the beginning of a path. A variable that is
     /// not set or not readable stays as it is.
     pub(super) fn expanded(&self, path: &Path) -> PathBuf {
-        let text = path.to_string_lossy();
-        let text = text.strip_prefix("file://").unwrap_or(&text).replace('\\', "/");
+        let text = plain(&path.to_string_lossy());
         let Some(rest) = text.strip_prefix('$') else { return PathBuf::from(text) };
         let (name, rest) = rest.split_once('/').unwrap_or((rest, ""));
         match self.environment_variable(name.trim_matches(['{', '}'])) {
@@ -83,6 +82,11 @@ impl Session {
             _ => PathBuf::from(text),
         }
     }
+}
+
+/// A path without `file://` and Windows' separators.
+pub(super) fn plain(path: &str) -> String {
+    path.strip_prefix("file://").unwrap_or(path).replace('\\', "/")
 }
 
 /// The fault of a file that the system does not let us use.

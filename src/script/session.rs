@@ -9,6 +9,7 @@ use super::world::World;
 use super::{Messages, Permissions, Transcript};
 use crate::diag::{Code, Diagnostic, Fault, render};
 use crate::eval::Scope;
+use crate::external::Random;
 use crate::name::{Ident, Name};
 use crate::source::{SourceMap, Span};
 use crate::value::Value;
@@ -145,6 +146,8 @@ pub struct Session {
     pub(super) callees: Callees,
     /// The turn of the outermost loop being run, and how many there are.
     pub(super) loop_turn: Option<(usize, Option<usize>)>,
+    /// The hidden state of `Modelica.Math.Random.Utilities.impureRandom`.
+    pub(super) random: Random,
     extensions: HashMap<TypeId, Box<dyn Any>>,
     at_end: Vec<AtEnd>,
 }
@@ -180,6 +183,7 @@ impl Session {
             models: Models::default(),
             callees: Callees::default(),
             loop_turn: None,
+            random: Random::default(),
             extensions: HashMap::new(),
             at_end: Vec::new(),
         }

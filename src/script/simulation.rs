@@ -175,6 +175,8 @@ pub(super) fn flattened(
         syntax::parse_class_with_modification(source, problem).map_err(|error| vec![error])?;
     session.autoload(&name)?;
     loop {
+        let resources = session.resources_for(&name);
+        session.classes.library.set_resources(resources);
         match session.ask_library(|library| flatten::flatten(library, &name, &modification)) {
             Ok(flattened) => {
                 flattened.warnings.iter().for_each(|warning| session.report(warning.clone()));

@@ -26,6 +26,7 @@ mod lazy_reading;
 mod libraries;
 mod linear_loops;
 mod mat;
+mod model_files;
 mod modelica;
 mod modelica_models;
 mod models;
