@@ -1,10 +1,7 @@
 //! The command line's grammar.
 
-<<<<<<< HEAD
-use crate::script::{Dialect, Options, Permissions};
-=======
 use crate::results::TUBE_TOLERANCE;
->>>>>>> main
+use crate::script::{Dialect, Options, Permissions};
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
@@ -169,13 +166,6 @@ impl Freedom {
         });
         let permissions = Permissions { write: self.allow_write, system: self.allow_system };
         Options { dialect, permissions, ..Options::default() }
-    }
-}
-
-fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(number) if number > 0.0 && number.is_finite() => Ok(number),
-        _ => Err("expected a positive number".to_owned()),
     }
 }
 

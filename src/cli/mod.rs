@@ -15,11 +15,8 @@ mod scratch;
 mod session;
 mod simulate;
 mod terminal;
-<<<<<<< HEAD
 mod test;
-=======
 mod verify;
->>>>>>> main
 mod world;
 
 use crate::script::with_stack;
