@@ -31,6 +31,8 @@ mod msl;
 mod plot;
 mod reference_problems;
 mod results;
+mod script_fuzzing;
+mod script_tests;
 mod scripts;
 mod session;
 mod shipped;
