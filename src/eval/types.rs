@@ -117,6 +117,13 @@ impl ValueType {
             {
                 Ok(Value::Enumeration(value))
             }
+            // In the functions of loaded classes literals are ordinals.
+            (ValueType::Enumeration(definition), Value::Integer(ordinal))
+                if (1..=definition.literals.len() as i64).contains(&ordinal) =>
+            {
+                let definition = definition.clone();
+                Ok(Value::Enumeration(EnumerationValue { definition, ordinal }))
+            }
             (ValueType::Record(..), Value::Record(record)) => {
                 self.convert_record(record).map(Value::Record)
             }

@@ -15,7 +15,7 @@ use crate::syntax::ast::{
     Section, Subscript,
 };
 use crate::syntax::{self, Outline};
-use crate::value::Value;
+use crate::value::{EnumerationDefinition, EnumerationValue, Value};
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -359,11 +359,27 @@ impl Session {
             if candidate.parts.len() < 2 || !self.class_exists(&candidate.parent()) {
                 continue;
             }
+            if let Some(literal) = self.enumeration_literal(&candidate) {
+                return Ok(Some(literal));
+            }
             if let Some(value) = self.package_constant(&candidate)? {
                 return Ok(Some(value));
             }
         }
         Ok(None)
+    }
+
+    /// A literal of a loaded enumeration.
+    fn enumeration_literal(&self, name: &Name) -> Option<Value> {
+        let owner = name.parent();
+        let class = self.classes.library.definition(&owner)?;
+        let ClassSpecifier::Enumeration(enumeration) = &class.specifier else { return None };
+        let literals: Vec<Ident> =
+            enumeration.literals.iter().flatten().map(|literal| literal.name.node).collect();
+        let at = literals.iter().position(|literal| Some(*literal) == name.last())?;
+        let name = Name::new(owner.parts.iter().copied());
+        let definition = Arc::new(EnumerationDefinition { name, literals });
+        Some(Value::Enumeration(EnumerationValue { definition, ordinal: at as i64 + 1 }))
     }
 
     /// Asks the library through a function whose output is the constant: it knows the scopes of

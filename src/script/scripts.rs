@@ -282,6 +282,11 @@ fn dialect_of(kind: &InteractiveKind) -> Option<Dialect> {
         .positional
         .first()
         .is_some_and(|first| matches!(&first.kind, ExpressionKind::Reference(_)));
+    match function.parts.first()?.name.as_str() {
+        "OpenModelica" => return Some(Dialect::OpenModelica),
+        "DymolaCommands" => return Some(Dialect::Dymola),
+        _ => {}
+    }
     match function.as_ident()?.as_str() {
         "loadModel"
         | "getErrorString"

@@ -17,7 +17,7 @@ end Decay;
 ";
 
 /// A working directory with these files.
-fn folder(files: &[(&str, &str)]) -> TempDir {
+pub(crate) fn folder(files: &[(&str, &str)]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in files {
         fs::write(folder.path().join(name), text).unwrap();
@@ -32,7 +32,7 @@ fn command(folder: &Path, arguments: &[&str]) -> Command {
 }
 
 /// What a run left: exit code, standard output, standard error.
-fn gapi(folder: &TempDir, arguments: &[&str]) -> (i32, String, String) {
+pub(crate) fn gapi(folder: &TempDir, arguments: &[&str]) -> (i32, String, String) {
     let Output { status, stdout, stderr } = command(folder.path(), arguments).output().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
     (status.code().expect("ended by itself"), text(stdout), text(stderr))
@@ -43,9 +43,19 @@ fn version_and_help() {
     let here = folder(&[]);
     let (code, out, _) = gapi(&here, &["--version"]);
     assert_eq!((code, out.trim()), (0, concat!("gapi ", env!("CARGO_PKG_VERSION"))));
-    for name in
-        ["run", "simulate", "check", "flatten", "compare", "verify", "explain", "completions"]
-    {
+    for name in [
+        "run",
+        "test",
+        "repl",
+        "help",
+        "simulate",
+        "check",
+        "flatten",
+        "compare",
+        "verify",
+        "explain",
+        "completions",
+    ] {
         let (code, out, _) = gapi(&here, &[name, "--help"]);
         assert_eq!(code, 0);
         assert!(out.contains("Example") && out.contains(&format!("  gapi {name} ")), "{out}");

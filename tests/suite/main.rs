@@ -34,6 +34,8 @@ mod msl;
 mod plot;
 mod reference_problems;
 mod results;
+mod script_fuzzing;
+mod script_tests;
 mod scripts;
 mod session;
 mod shipped;

@@ -238,11 +238,26 @@ impl Tube {
 
     /// The least and largest value of the reference near a time.
     fn bounds(&self, time: f64) -> (f64, f64) {
-        let from = self.time.partition_point(|t| *t < time - self.delta).saturating_sub(1);
-        let to = self.time.partition_point(|t| *t <= time + self.delta) + 1;
-        self.values[from..to.min(self.values.len())]
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)))
+        let (from, to) = (time - self.delta, time + self.delta);
+        let first = self.time.partition_point(|t| *t < from);
+        let last = self.time.partition_point(|t| *t <= to);
+        let inside = self.values[first..last].iter().copied();
+        inside
+            .chain([self.at(from), self.at(to)])
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)))
+    }
+
+    /// The reference at a time, held constant outside.
+    fn at(&self, time: f64) -> f64 {
+        let after = self.time.partition_point(|t| *t <= time);
+        match (after.checked_sub(1), self.time.get(after)) {
+            (Some(before), Some(next)) => {
+                let share = (time - self.time[before]) / (next - self.time[before]);
+                self.values[before] + share * (self.values[after] - self.values[before])
+            }
+            (Some(last), None) => self.values[last],
+            (None, _) => self.values.first().copied().unwrap_or(f64::NAN),
+        }
     }
 }
 
