@@ -143,7 +143,7 @@ pub(super) struct Freedom {
     #[arg(long)]
     pub allow_system: bool,
     /// Stop after so many seconds
-    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time_limit: Option<f64>,
     /// Stop when the program takes more memory (MiB); Linux only
     #[arg(long, value_name = "MIB", value_parser = clap::value_parser!(u32).range(1..))]
@@ -415,7 +415,7 @@ pub(super) struct VerifyArgs {
     #[arg(long, value_name = "E", default_value_t = TUBE_TOLERANCE)]
     pub tolerance: f64,
     /// Seconds that a case may take
-    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = budget)]
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     pub budget: f64,
     /// Threads to use [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
@@ -446,7 +446,7 @@ pub(super) struct CompletionsArgs {
     pub shell: clap_complete::Shell,
 }
 
-fn budget(text: &str) -> Result<f64, String> {
+fn seconds(text: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
     let is_good = number > 0.0 && number <= 1e9;
     if is_good { Ok(number) } else { Err("expected a positive number".to_owned()) }
