@@ -16,7 +16,7 @@ model LoadSteps "Voltage of a fuel cell under steps of its load"
   final inner parameter Units.Potential Eoc = Eref - 0.9e-3*(T - 298) +
     8.31446*T/(2*FuelCellLib.Basics.F)*log(pH2/1e5*sqrt(P/1e5)/(PWG/1e5)) "open circuit voltage";
   Currents.ActiveLayer active(n = n, h = 11e-6/(n + 1), ks = ks, cdl = Cdl) "active layer, 11 um";
-  Modelica.Electrical.Analog.Basic.Resistor membrane(R = Lmem/kp) "membrane, Ohm.m2";
+  Modelica.Electrical.Analog.Basic.Resistor membrane(R = Lmem/kp/FuelCellLib.Basics.area) "membrane";
   Modelica.Electrical.Analog.Basic.Ground anode "anode, without a loss";
   FuelCellLib.Basics.Loads.Cycle_Load load(R_inf = R_inf, R_sup = R_sup) "R_sup from 0, R_inf from 5, R_sup from 12, R_inf from 20 s";
   output Units.Potential V "cell voltage";

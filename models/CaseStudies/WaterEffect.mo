@@ -18,7 +18,7 @@ model WaterEffect "Slow effect of water on the voltage of a fuel cell at a const
   Water.ActiveLayer active(h = 11/(n + 1)*da_act);
   Water.DiffusionLayer diffusion(h = 11/(n + 1)*1e-5, Xs = Xs);
   Water.Channel channel;
-  Modelica.Electrical.Analog.Basic.Resistor load(R = Rload);
+  Modelica.Electrical.Analog.Basic.Resistor load(R = Rload/FuelCellLib.Basics.area);
   output Units.Potential V "cell voltage";
 equation
   V = load.n.v;

@@ -11,7 +11,7 @@ model PoreElement "Gases and liquid water between two points of a porous layer"
   parameter Units.factor g1 = 0.5 "length on the side of gas1, in h" annotation(Evaluate = true);
   parameter Units.factor g2 = 0.5 "length on the side of gas2, in h" annotation(Evaluate = true);
 protected
-  final parameter Real k(final unit = "mol.s/(kg.m3)") = eps/(tau^2*properties.RT*(g1 + g2)*h);
+  final parameter Real k(final unit = "mol.s2/(kg.m3)") = eps/(tau^2*properties.RT*(g1 + g2)*h);
   final parameter Real kO = k/(1/properties.Db + 1/D1co) "conductance of dry pores for oxygen";
   final parameter Real kW = k/(1/properties.Db + 1/D2co) "conductance of dry pores for vapour";
   Units.factor free "share of the diffusion that the liquid leaves";

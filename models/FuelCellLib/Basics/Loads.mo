@@ -6,7 +6,7 @@ package Loads "Resistances that change with time"
     extends Modelica.Electrical.Analog.Interfaces.OnePort;
     Units.AreaResistance R "resistance";
   equation
-    v = R*i;
+    v = R/area*i;
   end Load;
 
   model Step_Load "One step of the resistance"

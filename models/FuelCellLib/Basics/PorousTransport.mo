@@ -16,7 +16,7 @@ partial model PorousTransport "Gases, liquid water and electrons in a porous lay
   final parameter Units.c_diff D12ref = D12o*(T/Tref)^1.5 "binary diffusion at pAref";
   Units.factor theta "free pores by tortuosity";
   Units.Pressure p "oxygen of the element";
-  Units.Pressure DpA(nominal = 1) "binary diffusion coefficient times pressure, Pa.m2/s";
+  Real DpA(final unit = "Pa.m2/s", nominal = 1) "binary diffusion coefficient times pressure";
 equation
   p = if corrections.mesh then g1*exa1.p + (1 - g1)*exa2.p elseif noEvent(exa1.j > 0) then exa1.p else exa2.p;
   theta = theta_o*(1 - Xs/XsTransport);

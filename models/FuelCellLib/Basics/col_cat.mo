@@ -6,7 +6,7 @@ model col_cat "Collector of the cathode: what the gas channel holds, and the ter
   outer parameter Units.Temp_K T;
   outer parameter Units.Potential Eref;
   outer parameter Units.Pressure pH2;
-  outer Units.Potential Eoc;
+  Units.Potential Eoc "open circuit voltage";
   parameter Units.Pressure P = 1e5 "pressure of oxygen";
   parameter Units.Pressure PWG = 1e5 "pressure of water vapour";
   parameter Units.Wload XS = 0 "liquid water per solid";

@@ -5,7 +5,7 @@ partial model Cell "Membrane, catalytic layer, collectors and what they share"
   inner parameter Units.Temp_K T = 340 "temperature at the collectors";
   inner parameter Units.Potential Eref = 1.1 "reference of the open circuit voltage";
   inner parameter Units.Pressure pH2 = 1e5 "pressure of hydrogen";
-  inner Units.Potential Eoc "open circuit voltage";
+  inner Units.Potential Eoc = col_cat1.Eoc "open circuit voltage";
   Layer1D.mem_layer mem_layer1 "membrane";
   Layer1D.act_layer act_layer1 "catalytic layer";
   Basics.col_mem col_mem1 "anode";
