@@ -5,7 +5,7 @@ use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, parsing, session};
 use crate::script::{Echo, Options, Session, Strictness, Transcript};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Runs the script and returns its exit code.
@@ -56,7 +56,7 @@ fn options(arguments: &RunArgs) -> Options {
 fn write_transcript(
     session: &mut Session,
     path: Option<&Path>,
-    start: &PathBuf,
+    start: &Path,
 ) -> Result<(), String> {
     let (Some(path), Some(transcript)) = (path, &session.transcript) else { return Ok(()) };
     let text = without_folders(&transcript.to_string(), start, &session.world.output_dir());

@@ -17,7 +17,7 @@ pub(super) const ENTRIES: &[Entry] =
 fn real_transform(call: &mut Call<'_>) -> Result<(), Fault> {
     let signal: Vec<Complex<f64>> = call.array(0).iter().map(|u| Complex::new(*u, 0.0)).collect();
     let n = signal.len();
-    if n == 0 || n % 2 != 0 {
+    if n == 0 || !n.is_multiple_of(2) {
         return call.give(1.0);
     }
     let frequencies = n / 2 + 1;
@@ -42,7 +42,7 @@ fn real_transform(call: &mut Call<'_>) -> Result<(), Fault> {
 /// The transform of every `stride`-th value of `signal`, as many as `out` has room for.
 fn transform(signal: &[Complex<f64>], stride: usize, out: &mut [Complex<f64>]) {
     let n = out.len();
-    let Some(p) = (2..=n).find(|p| n % p == 0) else {
+    let Some(p) = (2..=n).find(|p| n.is_multiple_of(*p)) else {
         out[0] = signal[0];
         return;
     };

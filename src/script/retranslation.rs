@@ -119,7 +119,7 @@ fn changed_problem(model: &Translated, changes: &Changes) -> Result<String, Vec<
     let parsed = syntax::parse_class_with_modification(SourceId::NONE, &model.problem);
     let (class, mut arguments) = parsed.map_err(|error| vec![error])?;
     for (path, value) in &changes.values {
-        let parts: Vec<Ident> = Name::parse(path).parts.iter().copied().collect();
+        let parts: Vec<Ident> = Name::parse(path).parts.to_vec();
         merge(&mut arguments, &parts, &literal(model, path, *value));
     }
     let modification = Modification { arguments, binding: None, span: Span::NONE };

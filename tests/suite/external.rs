@@ -833,7 +833,7 @@ fn a_signal_is_transformed_for_every_even_number_of_values() {
             -2.0434668895846757,
             0.4982147506853503,
             -2.526466697852003,
-            3.141592653589793,
+            std::f64::consts::PI,
         ],
     ];
     let (result, found) = transform(&signal);

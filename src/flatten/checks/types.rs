@@ -106,11 +106,8 @@ impl Walk<'_, '_> {
     }
 
     fn numeric(&mut self, operand: &Expression, needed: &str) {
-        match self.kind(operand) {
-            Some(kind @ (Kind::Boolean | Kind::Enumeration(_))) => {
-                self.mismatch(operand, needed, kind);
-            }
-            _ => {}
+        if let Some(kind @ (Kind::Boolean | Kind::Enumeration(_))) = self.kind(operand) {
+            self.mismatch(operand, needed, kind);
         }
     }
 

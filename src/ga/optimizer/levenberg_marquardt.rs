@@ -140,7 +140,7 @@ impl Descent {
         let free: Vec<usize> = (0..n)
             .filter(|&j| self.scales[j] > 0.0)
             .filter(|&j| {
-                !(self.x[j] <= 0.0 && gradient[j] > 0.0) && !(self.x[j] >= 1.0 && gradient[j] < 0.0)
+                !(self.x[j] <= 0.0 && gradient[j] > 0.0 || self.x[j] >= 1.0 && gradient[j] < 0.0)
             })
             .collect();
         loop {

@@ -122,18 +122,18 @@ impl Search {
     /// Trials that are not worse replace their parents; what made them better is remembered.
     fn select(&mut self, trials: &Genomes, fitness: &[f64]) {
         let mut successes: Vec<(f64, f64, f64)> = Vec::new();
-        for k in 0..trials.len() {
-            if fitness[k] > self.fitness[k] {
+        for (k, &trial) in fitness.iter().enumerate() {
+            if trial > self.fitness[k] {
                 continue;
             }
-            if fitness[k] < self.fitness[k] {
-                let gain = (self.fitness[k] - fitness[k]).min(f64::MAX);
+            if trial < self.fitness[k] {
+                let gain = (self.fitness[k] - trial).min(f64::MAX);
                 let (step, rate) = self.drawn[k];
                 successes.push((gain, step, rate));
                 self.archive.push(self.population.row(k).to_vec());
             }
             self.population.row_mut(k).copy_from_slice(trials.row(k));
-            self.fitness[k] = fitness[k];
+            self.fitness[k] = trial;
         }
         self.trim_archive();
         self.remember(&successes);

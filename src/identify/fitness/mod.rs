@@ -15,7 +15,7 @@ use crate::registry::Entry;
 
 /// Compares one simulation with the measurement.
 pub trait Fitness: Send + Sync {
-    /// [`FAILED_FITNESS`](crate::ga::FAILED_FITNESS) where a simulated value is not a number. Every
+    /// [`FAILED_FITNESS`] where a simulated value is not a number. Every
     /// difference counts times its weight; all slices have the same length.
     fn fitness(&self, simulated: &[f64], measured: &[f64], weights: &[f64]) -> f64;
 

@@ -274,7 +274,8 @@ impl Run {
         if !has_failed(fitness[k]) && fitness[k] < best {
             let values = self.problem.values(self.batch.row(k));
             self.best = Some(Best { values, fitness: fitness[k] });
-            if !(fitness[k] > self.reference - IMPROVEMENT * self.reference.abs()) {
+            let is_first = self.reference.is_infinite();
+            if is_first || fitness[k] <= self.reference - IMPROVEMENT * self.reference.abs() {
                 self.last_gain = self.generations();
                 self.reference = fitness[k];
             }

@@ -280,7 +280,7 @@ fn modified(
     element: &str,
     value: &str,
 ) -> Result<(), Failure> {
-    let path: Vec<Ident> = Name::parse(element).parts.iter().copied().collect();
+    let path: Vec<Ident> = Name::parse(element).parts.to_vec();
     let binding = syntax::parse_expression(SourceId::NONE, &value[1..])
         .map_err(|error| Fault::new(BAD_ARGUMENT, error.message.clone()))?;
     let shown = class.to_string();
