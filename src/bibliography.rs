@@ -22,8 +22,16 @@
 //! - **akima-1970** — H. Akima: A new method of interpolation and smooth curve fitting based on
 //!   local procedures. Journal of the ACM 17(4), 1970, 589–602.
 //!
+//! <a id="akima-1974"></a>
+//! - **akima-1974** — H. Akima: A method of bivariate interpolation and smooth surface fitting
+//!   based on local procedures. Communications of the ACM 17(1), 1974, 18–20.
+//!
 //! <a id="anderson-1999"></a>
 //! - **anderson-1999** — E. Anderson et al.: LAPACK users' guide. 3rd edition, SIAM, 1999.
+//!
+//! <a id="cooley-tukey-1965"></a>
+//! - **cooley-tukey-1965** — J. W. Cooley, J. W. Tukey: An algorithm for the machine calculation of
+//!   complex Fourier series. Mathematics of Computation 19(90), 1965, 297–301.
 //!
 //! <a id="fritsch-butland-1984"></a>
 //! - **fritsch-butland-1984** — F. N. Fritsch, J. Butland: A method for constructing local monotone
@@ -109,6 +117,10 @@
 //! - **nocedal-wright-2006** — J. Nocedal, S. J. Wright: Numerical optimization. Second edition,
 //!   Springer, 2006.
 //!
+//! <a id="golub-van-loan-2013"></a>
+//! - **golub-van-loan-2013** — G. H. Golub, C. F. Van Loan: Matrix computations. Fourth edition,
+//!   Johns Hopkins University Press, 2013.
+//!
 //! <a id="goldberg-1989"></a>
 //! - **goldberg-1989** — D. E. Goldberg: Genetic algorithms in search, optimization and machine
 //!   learning. Addison-Wesley, 1989.
@@ -116,3 +128,52 @@
 //! <a id="walter-pronzato-1997"></a>
 //! - **walter-pronzato-1997** — É. Walter, L. Pronzato: Identification of parametric models from
 //!   experimental data. Springer, 1997.
+//!
+//! <a id="deb-agrawal-1995"></a>
+//! - **deb-agrawal-1995** — K. Deb, R. B. Agrawal: Simulated binary crossover for continuous search
+//!   space. Complex Systems 9(2), 1995, 115–148.
+//!
+//! <a id="deb-agrawal-1999"></a>
+//! - **deb-agrawal-1999** — K. Deb, S. Agrawal: A niched-penalty approach for constraint handling in
+//!   genetic algorithms. Artificial Neural Nets and Genetic Algorithms, Springer, 1999, 235–243.
+//!
+//! <a id="deb-2002"></a>
+//! - **deb-2002** — K. Deb, A. Pratap, S. Agarwal, T. Meyarivan: A fast and elitist multiobjective
+//!   genetic algorithm: NSGA-II. IEEE Transactions on Evolutionary Computation 6(2), 2002, 182–197.
+//!
+//! <a id="mckay-1979"></a>
+//! - **mckay-1979** — M. D. McKay, R. J. Beckman, W. J. Conover: A comparison of three methods for
+//!   selecting values of input variables in the analysis of output from a computer code.
+//!   Technometrics 21(2), 1979, 239–245.
+//!
+//! <a id="tanabe-fukunaga-2014"></a>
+//! - **tanabe-fukunaga-2014** — R. Tanabe, A. S. Fukunaga: Improving the search performance of SHADE
+//!   using linear population size reduction. IEEE Congress on Evolutionary Computation, 2014,
+//!   1658–1665.
+//!
+//! <a id="hansen-2016"></a>
+//! - **hansen-2016** — N. Hansen: The CMA evolution strategy: a tutorial. arXiv:1604.00772, 2016.
+//!
+//! <a id="auger-hansen-2005"></a>
+//! - **auger-hansen-2005** — A. Auger, N. Hansen: A restart CMA evolution strategy with increasing
+//!   population size. IEEE Congress on Evolutionary Computation, 2005, 1769–1776.
+//!
+//! <a id="nielsen-1999"></a>
+//! - **nielsen-1999** — H. B. Nielsen: Damping parameter in Marquardt's method. Report
+//!   IMM-REP-1999-05, Technical University of Denmark, 1999.
+//!
+//! <a id="gao-han-2012"></a>
+//! - **gao-han-2012** — F. Gao, L. Han: Implementing the Nelder-Mead simplex algorithm with adaptive
+//!   parameters. Computational Optimization and Applications 51(1), 2012, 259–277.
+//!
+//! <a id="wald-wolfowitz-1940"></a>
+//! - **wald-wolfowitz-1940** — A. Wald, J. Wolfowitz: On a test whether two samples are from the same
+//!   population. Annals of Mathematical Statistics 11(2), 1940, 147–162.
+//!
+//! <a id="morris-1991"></a>
+//! - **morris-1991** — M. D. Morris: Factorial sampling plans for preliminary computational
+//!   experiments. Technometrics 33(2), 1991, 161–174.
+//!
+//! <a id="huber-1964"></a>
+//! - **huber-1964** — P. J. Huber: Robust estimation of a location parameter. Annals of Mathematical
+//!   Statistics 35(1), 1964, 73–101.

@@ -2,7 +2,7 @@
 
 use super::elementary::Elementary;
 use super::failure::{Failure, Reason};
-use crate::external::{Entry, Slot};
+use crate::external::{Contents, Entry, Objects, Slot};
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
 use std::sync::Arc;
@@ -87,6 +87,9 @@ pub struct Code {
     pub externals: Vec<ExternalCall>,
     /// First instruction of every place, ascending.
     pub places: Vec<(u32, Span)>,
+    /// Whether equal arguments may give different results: it has a hidden state. Calls have one
+    /// more argument, the number of the place where they are written.
+    pub impure: bool,
     /// A function for its derivative, `annotation(derivative = …)` (MLS §12.7.1).
     pub derivative: Option<Derivative>,
 }
@@ -127,6 +130,10 @@ pub struct Derivative {
 pub struct Functions {
     /// The functions.
     pub codes: Vec<Code>,
+    /// Files that external functions read.
+    pub files: Contents,
+    /// External objects made so far.
+    pub objects: Objects,
 }
 
 impl Functions {

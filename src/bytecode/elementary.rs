@@ -114,8 +114,11 @@ impl Slope {
                 Node::And(a, b) => truth(get(a).value() != 0.0 && get(b).value() != 0.0),
                 Node::Or(a, b) => truth(get(a).value() != 0.0 || get(b).value() != 0.0),
                 Node::Not(a) => truth(get(a).value() == 0.0),
-                Node::Call { .. } | Node::CallDerivative { .. } => {
-                    unreachable!("functions of the table call no user function")
+                Node::Call { .. }
+                | Node::CallDerivative { .. }
+                | Node::List(_)
+                | Node::Solution { .. } => {
+                    unreachable!("functions of the table call nothing and solve nothing")
                 }
             };
         }

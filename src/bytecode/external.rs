@@ -1,14 +1,16 @@
 //! Calls of external functions: values alone, or their differences.
 
-use super::code::{Code, ExternalCall};
+use super::code::{Code, ExternalCall, Functions};
 use super::failure::Reason;
 use super::number::{Dual, Number};
-use crate::external::{Call, Kind, Object};
+use crate::diag::Fault;
+use crate::external::{Call, Contents, Kind, Object, Outside, Random};
 
 /// Runs an external function on numbers with derivatives, or without.
 pub trait RunExternal: Number {
-    /// Reads and writes the frame `r` of `code`.
+    /// Reads and writes the frame `r` of `code`, one of `functions`.
     fn run_external(
+        functions: &Functions,
         code: &Code,
         call: &ExternalCall,
         r: &mut [Self],
@@ -21,6 +23,8 @@ pub trait RunExternal: Number {
 pub struct Externals {
     /// Objects by handle.
     pub(super) objects: Vec<Object>,
+    /// The hidden state.
+    random: Random,
     /// What the last one that failed said.
     pub(super) message: String,
     scratch: Vec<f64>,
@@ -32,8 +36,33 @@ impl std::fmt::Debug for Externals {
     }
 }
 
+/// What a simulation has of the outside world.
+struct Granted<'a> {
+    files: &'a Contents,
+    random: &'a mut Random,
+}
+
+impl Outside for Granted<'_> {
+    fn read(&mut self, path: &str) -> Result<Vec<u8>, Fault> {
+        self.files.read(path)
+    }
+
+    fn random(&mut self) -> Result<&mut Random, Fault> {
+        Ok(self.random)
+    }
+}
+
+impl Externals {
+    /// Forgets the objects and the hidden state.
+    pub(super) fn restart(&mut self) {
+        self.objects.clear();
+        self.random = Random::default();
+    }
+}
+
 impl RunExternal for f64 {
     fn run_external(
+        functions: &Functions,
         code: &Code,
         call: &ExternalCall,
         r: &mut [f64],
@@ -48,9 +77,13 @@ impl RunExternal for f64 {
             texts: &code.texts,
             written: &mut written,
             objects: &mut externals.objects,
-            outside: &mut (),
+            outside: &mut Granted { files: &functions.files, random: &mut externals.random },
         };
-        (call.entry.run)(&mut arguments).map_err(|fault| {
+        let done = match call.entry.makes_object() {
+            true => functions.objects.remember(&mut arguments, call.entry.run),
+            false => (call.entry.run)(&mut arguments),
+        };
+        done.map_err(|fault| {
             externals.message = fault.message;
             Reason::External
         })
@@ -60,6 +93,7 @@ impl RunExternal for f64 {
 impl RunExternal for Dual<f64> {
     /// The derivative in the direction of the arguments, from the values at both sides.
     fn run_external(
+        functions: &Functions,
         code: &Code,
         call: &ExternalCall,
         r: &mut [Self],
@@ -77,7 +111,7 @@ impl RunExternal for Dual<f64> {
         let mut at = |step: f64| {
             scratch.clear();
             scratch.extend(r[..n].iter().map(|x| x.v + if step == 0.0 { 0.0 } else { step * x.d }));
-            f64::run_external(code, call, &mut scratch, externals)
+            f64::run_external(functions, code, call, &mut scratch, externals)
                 .map(|()| call.registers().map(|register| scratch[register]).collect::<Vec<_>>())
         };
         let values = at(0.0)?;
@@ -100,6 +134,7 @@ impl RunExternal for Dual<f64> {
 impl RunExternal for Dual<Dual<f64>> {
     /// Only where nothing depends on what is differentiated for.
     fn run_external(
+        functions: &Functions,
         code: &Code,
         call: &ExternalCall,
         r: &mut [Self],
@@ -110,7 +145,7 @@ impl RunExternal for Dual<Dual<f64>> {
             return Err(Reason::Derivative);
         }
         let mut values: Vec<f64> = r[..code.frame as usize].iter().map(|x| x.value()).collect();
-        f64::run_external(code, call, &mut values, externals)?;
+        f64::run_external(functions, code, call, &mut values, externals)?;
         for register in call.registers() {
             r[register] = Number::constant(values[register]);
         }

@@ -43,9 +43,9 @@ struct Caller {
 }
 
 impl Machine {
-    /// Forgets all external objects.
-    pub fn clear_objects(&mut self) {
-        self.externals.objects.clear();
+    /// Forgets all external objects and the hidden state of random numbers.
+    pub fn restart(&mut self) {
+        self.externals.restart();
     }
 
     /// What the external function said that failed last.
@@ -187,8 +187,10 @@ impl Machine {
                 }
                 Ok(Some(Wanted::External(external))) => {
                     let external = &code.externals[external as usize];
-                    T::run_external(code, external, &mut stack[base..], &mut self.externals)
-                        .map_err(|reason| Failure { function, at: at as u32 - 1, reason })?;
+                    let here = |reason| Failure { function, at: at as u32 - 1, reason };
+                    let frame = &mut stack[base..];
+                    T::run_external(functions, code, external, frame, &mut self.externals)
+                        .map_err(here)?;
                 }
                 Ok(Some(Wanted::Call(call))) => {
                     let callee = &functions.codes[call.function as usize];

@@ -1,5 +1,7 @@
 //! The command line's grammar.
 
+use crate::results::TUBE_TOLERANCE;
+use crate::script::{Dialect, Options, Permissions};
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Args, Parser, Subcommand, ValueEnum, ValueHint};
 use std::path::PathBuf;
@@ -23,6 +25,7 @@ Examples:
 #[derive(Debug, Parser)]
 #[command(name = "gapi", version, styles = STYLES, after_help = EXAMPLES)]
 #[command(propagate_version = true, subcommand_required = true, arg_required_else_help = true)]
+#[command(disable_help_subcommand = true)]
 pub(super) struct Cli {
     /// What to do
     #[command(subcommand)]
@@ -61,12 +64,24 @@ pub(super) enum Command {
     Run(RunArgs),
     /// Watch the genetic algorithm of a script step by step
     Teach(TeachArgs),
+    /// Identify parameters as a problem file says
+    Identify(IdentifyArgs),
+    /// Run scripts and compare what they answer with what is recorded
+    Test(TestArgs),
+    /// Type statements and see their answers
+    Repl(ReplArgs),
+    /// Explain a command of scripts, or print the ledger of compatibility
+    Help(HelpArgs),
     /// Simulate a model
     Simulate(SimulateArgs),
     /// Check Modelica files, or one model down to its sorted equations
     Check(CheckArgs),
     /// Print a model as flat Modelica
     Flatten(FlattenArgs),
+    /// Compare results with reference results
+    Compare(CompareArgs),
+    /// Check a library against a collection of reference results
+    Verify(VerifyArgs),
     /// Explain a diagnostic's code
     Explain(ExplainArgs),
     /// Print shell completions
@@ -80,13 +95,14 @@ Examples:
   gapi run scripts/GAPILib.mos
   gapi run scripts/twin/GAPILib.mos --out twin --threads 1
   gapi run my.mos --transcript my.txt --quiet --strict
+  gapi run --parse-only scripts
 
 Exit code: 0 if all went well, 1 if an error happened that the script did not read,
 2 for a wrong command line, 130 if interrupted.")]
 pub(super) struct RunArgs {
     /// The script (.mos)
-    #[arg(value_hint = ValueHint::FilePath)]
-    pub script: PathBuf,
+    #[arg(value_hint = ValueHint::FilePath, required_unless_present = "parse_only")]
+    pub script: Option<PathBuf>,
     /// Folder for results and figures
     #[arg(long, default_value = "results", value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: PathBuf,
@@ -102,12 +118,177 @@ pub(super) struct RunArgs {
     /// Show errors only
     #[arg(long, short)]
     pub quiet: bool,
+    /// Show statements and answers as the dialect's tool does
+    #[arg(long, conflicts_with = "quiet")]
+    pub echo: bool,
     /// Stop at the first error
     #[arg(long, conflicts_with = "lenient")]
     pub strict: bool,
     /// End with exit code 0 whatever happened
     #[arg(long)]
     pub lenient: bool,
+    /// Read the scripts in these files and folders without running them
+    #[arg(long, value_name = "PATH", num_args = 1.., conflicts_with = "script")]
+    pub parse_only: Vec<PathBuf>,
+    /// What scripts may do
+    #[command(flatten)]
+    pub freedom: Freedom,
+}
+
+/// How scripts are read, and what they may do.
+#[derive(Debug, Args, Clone)]
+pub(super) struct Freedom {
+    /// Whose habits scripts follow [default: recognised from the script]
+    #[arg(long, value_enum, value_name = "NAME")]
+    pub dialect: Option<DialectName>,
+    /// Let scripts write and remove files outside of the working, script and output folders
+    #[arg(long)]
+    pub allow_write: bool,
+    /// Let scripts run programs and read all environment variables
+    #[arg(long)]
+    pub allow_system: bool,
+    /// Stop after so many seconds
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub time_limit: Option<f64>,
+    /// Stop when the program takes more memory (MiB); Linux only
+    #[arg(long, value_name = "MIB", value_parser = clap::value_parser!(u32).range(1..))]
+    pub memory_limit: Option<u32>,
+}
+
+/// A dialect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum DialectName {
+    /// Dymola's
+    Dymola,
+    /// OpenModelica's
+    Openmodelica,
+}
+
+impl Freedom {
+    /// What the session's options say of it.
+    pub(super) fn options(&self) -> Options {
+        let dialect = self.dialect.map(|name| match name {
+            DialectName::Dymola => Dialect::Dymola,
+            DialectName::Openmodelica => Dialect::OpenModelica,
+        });
+        let permissions = Permissions { write: self.allow_write, system: self.allow_system };
+        Options { dialect, permissions, ..Options::default() }
+    }
+}
+
+/// Arguments of `gapi test`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A script is compared with the transcript NAME.mos.snap beside it, or with the lines between
+`// Result:` and `// endResult` in it. Files that it writes are kept in memory.
+
+Examples:
+  gapi test scripts
+  gapi test tests/my.mos --accept
+  gapi test --review
+  gapi test --junit report.xml
+
+Exit code: 0 if all agree, 1 if one does not or has nothing to be compared with, 2 for a wrong
+command line.")]
+pub(super) struct TestArgs {
+    /// Scripts, and folders that hold scripts
+    #[arg(default_value = ".", value_hint = ValueHint::AnyPath)]
+    pub paths: Vec<PathBuf>,
+    /// Write the transcripts anew
+    #[arg(long, conflicts_with = "review")]
+    pub accept: bool,
+    /// Ask for each difference whether the new transcript is right
+    #[arg(long)]
+    pub review: bool,
+    /// Write a report that build servers read
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub junit: Option<PathBuf>,
+    /// What scripts may do
+    #[command(flatten)]
+    pub freedom: Freedom,
+}
+
+/// Arguments of `gapi repl`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi repl
+  gapi repl --dialect openmodelica --library ~/libraries
+
+`:help` lists the commands of the prompt.")]
+pub(super) struct ReplArgs {
+    /// Folder for results and figures
+    #[arg(long, default_value = "results", value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
+    /// A script to run first
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub script: Option<PathBuf>,
+    /// What scripts may do
+    #[command(flatten)]
+    pub freedom: Freedom,
+}
+
+/// Arguments of `gapi help`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi help simulateModel
+  gapi help --compat
+  gapi help --compat dymola")]
+pub(super) struct HelpArgs {
+    /// A command of scripts; without it, all are listed
+    pub name: Option<String>,
+    /// What other tools' scripts may expect: supported, partial, absent, and the difference
+    #[arg(long, value_enum, value_name = "DIALECT", num_args = 0..=1)]
+    pub compat: Option<Option<DialectName>>,
+}
+
+/// Arguments of `gapi identify`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi identify scripts/problems/polarization.toml
+  gapi identify scripts/problems/polarization.toml --out fit1 --threads 2
+  gapi identify my.toml --resume               go on after Ctrl-C, a crash or a power cut
+  gapi identify my.toml --watch settings.toml  change settings while it runs
+
+A problem file:
+  model = \"CaseStudies.PolarizationCurve(i_max = 1.46)\"
+  [parameters]
+  A = { min = 0.01, max = 0.1 }
+  R = { min = 0.01, max = 1, scale = \"log\" }
+  [[experiment]]
+  data = \"curve.csv\"
+  x = \"i\"
+  outputs = { V = \"V\" }
+
+Exit code: 0 if all went well, 1 if an error happened, 2 for a wrong command line, 130 if
+interrupted.")]
+pub(super) struct IdentifyArgs {
+    /// The problem (.toml)
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub problem: PathBuf,
+    /// Folder for results, figures and the checkpoint
+    #[arg(long, default_value = "results", value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
+    /// Threads to use [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Go on from the checkpoint in the folder
+    #[arg(long, conflicts_with = "fresh")]
+    pub resume: bool,
+    /// Discard the checkpoint in the folder
+    #[arg(long)]
+    pub fresh: bool,
+    /// End after so many evaluations
+    #[arg(long, value_name = "N")]
+    pub evaluations: Option<u64>,
+    /// A file with settings (name = number) that may change while it runs
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub watch: Option<PathBuf>,
+    /// Show errors only
+    #[arg(long, short)]
+    pub quiet: bool,
 }
 
 /// Arguments of `gapi teach`.
@@ -138,6 +319,7 @@ pub(super) struct TeachArgs {
 Examples:
   gapi simulate models --model CaseStudies.PolarizationCurve --output curve.csv
   gapi simulate Decay.mo --model Decay --stop-time 5 --intervals 50 --set k=2
+  gapi simulate Decay.mo --model Decay --stats --plot x --figure x.svg
 
 What the command line does not say comes from the model's experiment annotation.")]
 pub(super) struct SimulateArgs {
@@ -168,6 +350,15 @@ pub(super) struct SimulateArgs {
     /// Where the trajectories go; the ending decides the format
     #[arg(long, short, value_name = "FILE.mat|.csv", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
+    /// Print what the simulation cost
+    #[arg(long)]
+    pub stats: bool,
+    /// Draw a variable over time, in the terminal or as --figure says (repeatable)
+    #[arg(long, value_name = "VARIABLE")]
+    pub plot: Vec<String>,
+    /// Where the drawing of --plot goes
+    #[arg(long, value_name = "FILE.svg", requires = "plot", value_hint = ValueHint::FilePath)]
+    pub figure: Option<PathBuf>,
 }
 
 /// Arguments of `gapi check`.
@@ -200,6 +391,67 @@ pub(super) struct FlattenArgs {
     pub model: String,
 }
 
+/// Arguments of `gapi compare`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi compare result.mat reference.csv
+  gapi compare result.csv reference.csv --signals comparisonSignals.txt --tolerance 0.001
+
+A signal agrees where it stays inside the tube that a rectangle sweeps along the reference. Half of
+its sides are the tolerance times the reference's extent in time and in value.
+
+Exit code: 0 if all signals agree, 1 if one does not or a file cannot be read.")]
+pub(super) struct CompareArgs {
+    /// The results (.mat or .csv)
+    #[arg(value_name = "RESULT", value_hint = ValueHint::FilePath)]
+    pub result: PathBuf,
+    /// The reference results (.mat or .csv)
+    #[arg(value_name = "REFERENCE", value_hint = ValueHint::FilePath)]
+    pub reference: PathBuf,
+    /// A file that names the signals to compare, one a line [default: all of the reference]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub signals: Option<PathBuf>,
+    /// Half width and half height of the tube, relative to the reference's extent
+    #[arg(long, value_name = "E", default_value_t = TUBE_TOLERANCE)]
+    pub tolerance: f64,
+}
+
+/// Arguments of `gapi verify`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi verify --library ~/libraries --references ~/references
+  gapi verify Decay.mo --references references --filter Decay --output table.json
+
+A case is a folder of the collection that holds NAME.csv with the folder's own name, and perhaps
+comparisonSignals.txt; its path below the collection is the name of the model.
+
+Exit code: 0 if every case that has a reference agrees, 1 otherwise.")]
+pub(super) struct VerifyArgs {
+    /// Modelica files, or folders with packages, beside those of --library
+    #[arg(value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    pub files: Vec<PathBuf>,
+    /// The collection of reference results
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub references: PathBuf,
+    /// Only models whose names contain this text
+    #[arg(long, value_name = "TEXT")]
+    pub filter: Option<String>,
+    /// Half width and half height of the tubes, relative to the reference's extent
+    #[arg(long, value_name = "E", default_value_t = TUBE_TOLERANCE)]
+    pub tolerance: f64,
+    /// Seconds that a case may take
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
+    pub budget: f64,
+    /// Threads to use [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Where the table goes besides (repeatable); the ending decides the format
+    #[arg(long, short, value_name = "FILE.json|.csv", value_hint = ValueHint::FilePath)]
+    pub output: Vec<PathBuf>,
+}
+
 /// Arguments of `gapi explain`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -223,6 +475,12 @@ pub(super) struct CompletionsArgs {
 
 fn at_least_one(text: &str) -> Result<usize, String> {
     text.parse().ok().filter(|&number| number > 0).ok_or_else(|| "expected 1, 2, ...".to_owned())
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
+    let is_good = number > 0.0 && number <= 1e9;
+    if is_good { Ok(number) } else { Err("expected a positive number".to_owned()) }
 }
 
 fn name_and_value(text: &str) -> Result<(String, f64), String> {

@@ -3,13 +3,22 @@
 
 mod args;
 mod check;
+mod compare;
 mod completions;
 mod explain;
+mod help;
+mod identify;
+mod limits;
+mod parsing;
+mod repl;
 mod run;
+mod scratch;
 mod session;
 mod simulate;
 mod teach;
 mod terminal;
+mod test;
+mod verify;
 mod world;
 
 use crate::script::with_stack;
@@ -42,10 +51,16 @@ fn dispatch(cli: &Cli) -> ExitCode {
     match &cli.command {
         Command::Run(arguments) => run::run(arguments, &cli.global),
         Command::Teach(arguments) => teach::teach(arguments, &cli.global),
+        Command::Identify(arguments) => identify::identify(arguments, &cli.global),
+        Command::Test(arguments) => test::test(arguments, &cli.global),
+        Command::Repl(arguments) => repl::repl(arguments, &cli.global),
+        Command::Help(arguments) => help::help(arguments),
         Command::Explain(arguments) => explain::explain(arguments),
         Command::Completions(arguments) => completions::completions(arguments),
         Command::Simulate(arguments) => simulate::simulate(arguments, &cli.global),
         Command::Check(arguments) => check::check(arguments, &cli.global),
+        Command::Compare(arguments) => compare::compare(arguments, &cli.global),
+        Command::Verify(arguments) => verify::verify(arguments, &cli.global),
         Command::Flatten(arguments) => check::flatten(arguments, &cli.global),
     }
 }

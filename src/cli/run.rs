@@ -1,9 +1,9 @@
 //! `gapi run SCRIPT`: runs a script.
 
 use super::args::{Global, RunArgs};
-use super::session;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
+use super::{limits, parsing, session};
 use crate::script::{Echo, Options, Session, Strictness, Transcript};
 use crate::source::Span;
 use std::path::Path;
@@ -11,6 +11,9 @@ use std::process::ExitCode;
 
 /// Runs the script and returns its exit code.
 pub(super) fn run(arguments: &RunArgs, global: &Global) -> ExitCode {
+    let Some(script) = &arguments.script else {
+        return parsing::parse_only(&arguments.parse_only);
+    };
     let terminal = Terminal::new(global.color, arguments.quiet);
     let threads = arguments.threads.map(usize::from);
     let world = match SystemWorld::new(terminal, &arguments.out, threads) {
@@ -21,15 +24,21 @@ pub(super) fn run(arguments: &RunArgs, global: &Global) -> ExitCode {
         }
     };
     world.catch_interrupts();
+    let (flag, reason) = world.stopping();
+    if let Err(message) = limits::watch(&arguments.freedom, flag, reason) {
+        terminal::eprint(&format!("error: {message}\n"));
+        return ExitCode::from(2);
+    }
     let mut session = session::open(global, world).with_options(options(arguments));
+    let start = session.world.current_dir();
     if arguments.transcript.is_some() {
         session.transcript = Some(Transcript::default());
     }
     if let Some(fault) = arguments.trace.as_deref().and_then(|path| session.trace_to(path).err()) {
         return session::failed(&mut session, vec![fault.at(Span::NONE)]);
     }
-    let status = session.run_file(&arguments.script);
-    match write_transcript(&mut session, arguments.transcript.as_deref()) {
+    let status = session.run_file(script);
+    match write_transcript(&mut session, arguments.transcript.as_deref(), &start) {
         Ok(()) => ExitCode::from(status.code),
         Err(message) => {
             terminal::eprint(&message);
@@ -44,14 +53,29 @@ fn options(arguments: &RunArgs) -> Options {
         (_, true) => Strictness::Lenient,
         _ => Strictness::Usual,
     };
-    Options { dialect: None, echo: Echo::Usual, strictness }
+    let echo = if arguments.echo { Echo::Everything } else { Echo::Usual };
+    Options { echo, strictness, ..arguments.freedom.options() }
 }
 
-fn write_transcript(session: &mut Session, path: Option<&Path>) -> Result<(), String> {
+fn write_transcript(
+    session: &mut Session,
+    path: Option<&Path>,
+    start: &Path,
+) -> Result<(), String> {
     let (Some(path), Some(transcript)) = (path, &session.transcript) else { return Ok(()) };
-    let text = transcript.to_string();
+    let text = without_folders(&transcript.to_string(), start, &session.world.output_dir());
     session
         .world
-        .write(path, text.as_bytes())
+        .write(&start.join(path), text.as_bytes())
         .map_err(|error| format!("error: `{}` cannot be written: {error}\n", path.display()))
+}
+
+/// A transcript does not tell where it was made.
+pub(super) fn without_folders(text: &str, start: &Path, output: &Path) -> String {
+    let output = crate::script::world::normalized(output);
+    let text = text.replace(&*output.to_string_lossy(), "<output>");
+    match start.parent() {
+        Some(_) => text.replace(&*start.to_string_lossy(), "<start>"),
+        None => text,
+    }
 }

@@ -6,11 +6,12 @@ use super::world::SystemWorld;
 use crate::diag::Diagnostic;
 use crate::name::Name;
 use crate::script::Session;
+use crate::script::world::World;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// A session in the system's world with the user's library folders.
-pub(super) fn open(global: &Global, world: SystemWorld) -> Session {
+pub(super) fn open(global: &Global, world: impl World + 'static) -> Session {
     let mut session = Session::new(Box::new(world));
     for folder in library_folders(global) {
         session.add_library_dir(&folder);

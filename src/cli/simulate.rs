@@ -2,16 +2,29 @@
 
 use super::args::{Global, SimulateArgs};
 use super::session;
+use super::terminal::Terminal;
 use crate::diag::{Diagnostic, Fault};
+use crate::plot::{self, Axis, Figure, Mark, Panel};
 use crate::results::{self, ResultTable};
 use crate::script::Session;
 use crate::script::simulation::{self, Simulated, Wishes};
+use crate::script::world::Progress;
+use crate::sim::Statistics;
 use crate::source::Span;
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, mpsc};
+use std::time::Duration;
 
 /// Most variables whose last values are shown when no file is asked for.
 const SHOWN: usize = 30;
+
+/// Size of a drawing in the terminal, characters and lines.
+const CHART: (usize, usize) = (64, 12);
+
+/// Time between two drawings of the progress bar.
+const REDRAWN: Duration = Duration::from_millis(100);
 
 /// Simulates and writes the trajectories, or shows the last values.
 pub(super) fn simulate(arguments: &SimulateArgs, global: &Global) -> ExitCode {
@@ -19,13 +32,17 @@ pub(super) fn simulate(arguments: &SimulateArgs, global: &Global) -> ExitCode {
         Ok((session, _)) => session,
         Err(code) => return code,
     };
-    match run(&mut session, arguments) {
+    match run(&mut session, arguments, global) {
         Ok(()) => ExitCode::SUCCESS,
         Err(errors) => session::failed(&mut session, errors),
     }
 }
 
-fn run(session: &mut Session, arguments: &SimulateArgs) -> Result<(), Vec<Diagnostic>> {
+fn run(
+    session: &mut Session,
+    arguments: &SimulateArgs,
+    global: &Global,
+) -> Result<(), Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
     let format = match &arguments.output {
         Some(path) => Some(results::format_of_file(&path.to_string_lossy()).map_err(one)?),
@@ -35,18 +52,61 @@ fn run(session: &mut Session, arguments: &SimulateArgs) -> Result<(), Vec<Diagno
     for (name, value) in &arguments.set {
         session.set_parameter(name, *value).map_err(one)?;
     }
-    let simulated =
-        simulation::simulate(session, &model, &wishes(arguments)).map_err(|error| vec![error])?;
+    let wishes = wishes(arguments);
+    let settings = simulation::settings(&model.program.experiment(), &wishes).map_err(one)?;
+    let span = (settings.start, settings.stop);
+    let simulated = with_progress(span, wishes, global, |wishes| {
+        simulation::simulate(session, &model, &wishes).map_err(|error| vec![error])
+    })?;
     session.print(&summary(&arguments.model, &simulated));
+    if arguments.stats {
+        session.print(&statistics(&simulated.statistics));
+    }
+    if !arguments.plot.is_empty() {
+        draw(session, arguments, &simulated.table).map_err(one)?;
+    }
     match (&arguments.output, format) {
         (Some(path), Some(format)) => {
             let bytes = format.write(&simulated.table).map_err(one)?;
             session.write_file(path, &bytes).map_err(one)?;
             session.print(&written(path));
         }
+        _ if !arguments.plot.is_empty() => {}
         _ => session.print(&last_values(&simulated.table).map_err(one)?),
     }
     Ok(())
+}
+
+/// Simulates beside a thread that shows how far it is, by simulated time.
+fn with_progress<T>(
+    (start, stop): (f64, f64),
+    wishes: Wishes,
+    global: &Global,
+    simulate: impl FnOnce(Wishes) -> T,
+) -> T {
+    let reached = Arc::new(AtomicU64::new(start.to_bits()));
+    let wishes = Wishes { reached: Some(reached.clone()), ..wishes };
+    let (stopped, is_stopped) = mpsc::channel::<()>();
+    std::thread::scope(|scope| {
+        scope.spawn(move || {
+            let mut terminal = Terminal::new(global.color, false);
+            while is_stopped.recv_timeout(REDRAWN) == Err(mpsc::RecvTimeoutError::Timeout) {
+                let share =
+                    (f64::from_bits(reached.load(Ordering::Relaxed)) - start) / (stop - start);
+                terminal.progress(&Progress {
+                    label: "simulating".to_owned(),
+                    // Never all of it: what is written behind the last point takes time as well.
+                    done: (share * 1000.0).clamp(0.0, 999.0) as u64,
+                    total: 1000,
+                    ..Progress::default()
+                });
+            }
+            terminal.finish_progress();
+        });
+        let simulated = simulate(wishes);
+        drop(stopped);
+        simulated
+    })
 }
 
 fn wishes(arguments: &SimulateArgs) -> Wishes {
@@ -74,6 +134,55 @@ fn summary(model: &str, simulated: &Simulated) -> String {
         s.jacobian_evaluations,
         s.state_events + s.time_events
     )
+}
+
+fn statistics(s: &Statistics) -> String {
+    let rows = [
+        ("accepted steps", s.steps),
+        ("steps rejected by the error test", s.error_failures),
+        ("steps rejected by the corrector", s.newton_failures),
+        ("right-hand sides", s.rhs_evaluations),
+        ("Jacobians", s.jacobian_evaluations),
+        ("factorizations", s.factorizations),
+        ("state events", s.state_events),
+        ("time events", s.time_events),
+    ];
+    rows.iter().map(|(name, count)| format!("  {name:34}{count:>10}\n")).collect()
+}
+
+/// Draws variables over time, one panel each.
+fn draw(session: &mut Session, arguments: &SimulateArgs, table: &ResultTable) -> Result<(), Fault> {
+    let panels = arguments.plot.iter().map(|name| panel(table, name));
+    let figure =
+        Figure { title: arguments.model.clone(), panels: panels.collect::<Result<_, _>>()? };
+    match &arguments.figure {
+        Some(path) => {
+            session.write_file(path, figure.svg().as_bytes())?;
+            session.print(&format!("figure: {}\n", path.display()));
+        }
+        None => session.print(&figure.text(CHART.0, CHART.1)),
+    }
+    Ok(())
+}
+
+fn panel(table: &ResultTable, name: &str) -> Result<Panel, Fault> {
+    let y = table.column(name)?;
+    let unit = table.series.iter().find(|series| series.name == name);
+    let unit = unit.map_or("", |series| &series.unit);
+    let line = plot::Series {
+        name: name.to_owned(),
+        x: table.time.clone(),
+        y,
+        mark: Mark::Line,
+        colour: 0,
+    };
+    Ok(Panel {
+        x: Axis::linear("time", "s"),
+        y: Axis::linear(name, unit),
+        height: 200.0,
+        zero_line: false,
+        series: vec![line],
+    })
 }
 
 fn written(path: &Path) -> String {

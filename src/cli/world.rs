@@ -1,8 +1,10 @@
 //! The world of a real run: disk, clock, environment, terminal, Ctrl-C.
 
+use super::limits::Reason;
 use super::terminal::Terminal;
 use crate::models;
 use crate::script::world::{Files, Progress, Stamp, World};
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -19,6 +21,7 @@ pub(super) struct SystemWorld {
     threads: usize,
     started: Instant,
     interrupt: Arc<AtomicBool>,
+    reason: Reason,
 }
 
 impl SystemWorld {
@@ -37,7 +40,13 @@ impl SystemWorld {
             threads: threads.unwrap_or(available).max(1),
             started: Instant::now(),
             interrupt: Arc::default(),
+            reason: Reason::default(),
         })
+    }
+
+    /// What stops the run when it is set, and why it was.
+    pub(super) fn stopping(&self) -> (Arc<AtomicBool>, Reason) {
+        (Arc::clone(&self.interrupt), Arc::clone(&self.reason))
     }
 
     /// Makes Ctrl-C ask the run to stop; a second one ends the process at once.
@@ -171,6 +180,25 @@ impl World for SystemWorld {
 
     fn interrupt_flag(&self) -> Option<Arc<AtomicBool>> {
         Some(Arc::clone(&self.interrupt))
+    }
+
+    fn stop_reason(&self) -> Option<String> {
+        self.reason.get().cloned()
+    }
+
+    fn run_command(
+        &mut self,
+        command: &str,
+        environment: &BTreeMap<String, String>,
+    ) -> io::Result<(i32, Vec<u8>)> {
+        let (shell, flag) = if cfg!(windows) { ("cmd", "/C") } else { ("sh", "-c") };
+        let output = std::process::Command::new(shell)
+            .args([flag, command])
+            .current_dir(&self.current)
+            .envs(environment)
+            .stderr(std::process::Stdio::inherit())
+            .output()?;
+        Ok((output.status.code().unwrap_or(-1), output.stdout))
     }
 
     fn threads(&self) -> usize {

@@ -2,9 +2,9 @@
 //! on symbolic expressions.
 
 use crate::dae::Assignment;
-use crate::symbolic::{Expr, Pool, VarId, derivative};
+use crate::symbolic::{Expr, Node, Pool, VarId, derivative, differentiate};
 use rustc_hash::FxHashMap;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Assignments of derivatives and where each entry is found.
 pub(super) struct Differentiated {
@@ -28,9 +28,18 @@ pub(super) fn differentiate_sequence(
         slopes.insert(*variable, BTreeMap::from([(column, one)]));
     }
     let mut extended = Vec::new();
+    let mut solved = Solved::default();
     for assignment in sequence {
         extended.push((assignment.variable, assignment.value, assignment.equation));
-        let mut row = chain(pool, assignment.value, &slopes);
+        let mut row = match *pool.node(assignment.value) {
+            Node::Solution { matrix, right, output, .. } => {
+                let columns = solved.entry((matrix, right)).or_insert_with(|| {
+                    chain_by_column(pool, assignment.value, [matrix, right], &slopes)
+                });
+                of_unknown(pool, columns, output)
+            }
+            _ => chain(pool, assignment.value, &slopes),
+        };
         for slope in row.values_mut() {
             let simple = pool.as_constant(*slope).is_some() || pool.as_variable(*slope).is_some();
             if !simple {
@@ -44,6 +53,19 @@ pub(super) fn differentiate_sequence(
     }
     let rows = outputs.iter().map(|output| chain(pool, *output, &slopes)).collect();
     Differentiated { sequence: extended, rows }
+}
+
+/// Slopes of an unknown of linear systems by columns, by matrix and right side.
+type Solved = FxHashMap<(Expr, Expr), BTreeMap<usize, Expr>>;
+
+/// The slopes of another unknown of the same system.
+fn of_unknown(
+    pool: &mut Pool,
+    columns: &BTreeMap<usize, Expr>,
+    output: u32,
+) -> BTreeMap<usize, Expr> {
+    let slopes = columns.iter();
+    slopes.map(|(column, slope)| (*column, pool.other_unknown(*slope, output))).collect()
 }
 
 /// Σ ∂e/∂w · ∂w/∂column over the variables w of e.
@@ -66,6 +88,26 @@ fn chain(
             };
             row.insert(*column, sum);
         }
+    }
+    row.retain(|_, slope| pool.as_constant(*slope) != Some(0.0));
+    row
+}
+
+/// The same for an unknown of a linear system, which depends on many variables: along every column
+/// the system is differentiated once.
+fn chain_by_column(
+    pool: &mut Pool,
+    e: Expr,
+    system: [Expr; 2],
+    slopes: &FxHashMap<VarId, BTreeMap<usize, Expr>>,
+) -> BTreeMap<usize, Expr> {
+    let of = |v: VarId| slopes.get(&v).into_iter().flat_map(|row| row.keys().copied());
+    let variables = system.map(|list| pool.variables(list));
+    let columns: BTreeSet<usize> = variables.iter().flatten().flat_map(|v| of(*v)).collect();
+    let mut row = BTreeMap::new();
+    for column in columns {
+        let seed = |v: VarId| slopes.get(&v).and_then(|row| row.get(&column)).copied();
+        row.insert(column, differentiate(pool, e, &seed));
     }
     row.retain(|_, slope| pool.as_constant(*slope) != Some(0.0));
     row

@@ -1,5 +1,7 @@
 //! Symbolic expressions become instructions, common subexpressions computed once.
 
+use super::hoist::{Hoisted, Hoisting};
+use super::linear_system::LinearSolve;
 use super::tape::{Call, Instruction, Register, Tape};
 use crate::bytecode::Functions;
 use crate::symbolic::function::Value;
@@ -13,14 +15,40 @@ pub(super) struct Registers {
     next: Register,
     constants: FxHashMap<u64, Register>,
     functions: Arc<Functions>,
+    /// Workspaces of linear systems by matrix, and their sizes.
+    workspaces: FxHashMap<Expr, u32>,
+    systems: Vec<usize>,
     /// Registers with their values.
     pub(super) values: Vec<(Register, f64)>,
+    /// What is computed once a simulation.
+    pub(super) hoisted: Hoisted,
 }
 
 impl Registers {
     pub(super) fn new(n_variables: usize, functions: Arc<Functions>) -> Registers {
         let next = n_variables as Register;
-        Registers { next, constants: FxHashMap::default(), functions, values: Vec::new() }
+        Registers {
+            next,
+            constants: FxHashMap::default(),
+            functions,
+            workspaces: FxHashMap::default(),
+            systems: Vec::new(),
+            values: Vec::new(),
+            hoisted: Hoisted::default(),
+        }
+    }
+
+    /// Sizes of the linear systems that tapes on these registers solve.
+    pub(super) fn systems(&self) -> &[usize] {
+        &self.systems
+    }
+
+    /// The workspace for a matrix of n rows. Tapes that share it factorise the matrix anew.
+    fn workspace(&mut self, matrix: Expr, n: usize) -> u32 {
+        *self.workspaces.entry(matrix).or_insert_with(|| {
+            self.systems.push(n);
+            self.systems.len() as u32 - 1
+        })
     }
 
     /// The functions that tapes on these registers call.
@@ -32,7 +60,7 @@ impl Registers {
         self.next as usize
     }
 
-    fn fresh(&mut self) -> Register {
+    pub(super) fn fresh(&mut self) -> Register {
         self.row(1)
     }
 
@@ -49,12 +77,21 @@ impl Registers {
         let register = self.fresh();
         self.constants.insert(value.to_bits(), register);
         self.values.push((register, value));
+        self.hoisted.fix(register);
         register
     }
 }
 
-/// A call: function, inputs that it is differentiated for, arguments.
-type CallKey = (u32, Box<[u32]>, Box<[Expr]>);
+/// What has several results.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+enum Several {
+    /// A call: function, inputs that it is differentiated for, arguments.
+    Call(u32, Box<[u32]>, Box<[Expr]>),
+    /// The factors of a matrix, which are in its workspace.
+    Factors(Expr),
+    /// The solution of a linear system: matrix, right side, whether it is a derivative.
+    Solution(Expr, Expr, bool),
+}
 
 /// Writes one tape.
 pub(super) struct TapeBuilder<'a> {
@@ -64,12 +101,16 @@ pub(super) struct TapeBuilder<'a> {
     known: FxHashMap<Expr, Register>,
     /// Keys of `known` in the order they came, to forget what a branch computed.
     log: Vec<Expr>,
-    /// First registers of the results of calls.
-    calls: FxHashMap<CallKey, Register>,
-    /// Keys of `calls` in the order they came.
-    call_log: Vec<CallKey>,
+    /// First registers of what has several results.
+    several: FxHashMap<Several, Register>,
+    /// Keys of `several` in the order they came.
+    several_log: Vec<Several>,
     /// Registers of variables that are not in their own.
     moved: FxHashMap<VarId, Register>,
+    hoisting: Hoisting,
+    /// How many branches are around what is written.
+    depth: u32,
+    origin: u32,
 }
 
 impl<'a> TapeBuilder<'a> {
@@ -80,10 +121,19 @@ impl<'a> TapeBuilder<'a> {
             tape: Tape::default(),
             known: FxHashMap::default(),
             log: Vec::new(),
-            calls: FxHashMap::default(),
-            call_log: Vec::new(),
+            several: FxHashMap::default(),
+            several_log: Vec::new(),
             moved: FxHashMap::default(),
+            hoisting: Hoisting::Never,
+            depth: 0,
+            origin: u32::MAX,
         }
+    }
+
+    /// Computes what parameters determine once a simulation.
+    pub(super) fn hoisting(mut self, hoisting: Hoisting) -> TapeBuilder<'a> {
+        self.hoisting = hoisting;
+        self
     }
 
     pub(super) fn finish(self) -> Tape {
@@ -93,6 +143,7 @@ impl<'a> TapeBuilder<'a> {
     /// What follows comes from this equation.
     pub(super) fn origin(&mut self, origin: u32) {
         self.tape.origins.push((self.tape.code.len() as u32, origin));
+        self.origin = origin;
     }
 
     /// `variable := value`, kept in whatever register holds the value.
@@ -141,14 +192,19 @@ impl<'a> TapeBuilder<'a> {
                 return self.branches(condition, *a, *b);
             }
             Node::Call { function, output, arguments } => {
-                return output + self.call((*function, Box::new([]), arguments.clone()));
+                return output + self.call(*function, Box::new([]), arguments.clone());
             }
             Node::CallDerivative { function, output, inputs, arguments } => {
-                return output + self.call((*function, inputs.clone(), arguments.clone()));
+                return output + self.call(*function, inputs.clone(), arguments.clone());
+            }
+            // Its entries are read where it is used.
+            Node::List(_) => return 0,
+            Node::Solution { matrix, right, output, is_slope } => {
+                return output + self.solution(*matrix, *right, *is_slope);
             }
             _ => {}
         }
-        let d = self.registers.fresh();
+        let d = self.registers.len() as Register;
         let instruction = match node {
             Node::Neg(a) => Instruction::Neg { d, a: of(a) },
             Node::Not(a) => Instruction::Not { d, a: of(a) },
@@ -181,29 +237,67 @@ impl<'a> TapeBuilder<'a> {
             | Node::Variable(_)
             | Node::If(..)
             | Node::Call { .. }
-            | Node::CallDerivative { .. } => unreachable!("returned above"),
+            | Node::CallDerivative { .. }
+            | Node::List(_)
+            | Node::Solution { .. } => unreachable!("returned above"),
         };
-        self.tape.code.push(instruction);
-        d
+        let in_branch = self.depth > 0;
+        match self.registers.hoist(instruction, self.hoisting, in_branch, self.origin) {
+            Some(hoisted) => hoisted,
+            None => {
+                self.tape.code.push(instruction);
+                self.registers.fresh()
+            }
+        }
     }
 
     /// A call, once for all its outputs; returns the first register of its results.
-    fn call(&mut self, key: CallKey) -> Register {
-        if let Some(known) = self.calls.get(&key) {
+    fn call(&mut self, function: u32, inputs: Box<[u32]>, arguments: Box<[Expr]>) -> Register {
+        let key = Several::Call(function, inputs.clone(), arguments.clone());
+        if let Some(known) = self.several.get(&key) {
             return *known;
         }
-        let (function, inputs, arguments) = &key;
-        let d = self.registers.row(self.registers.functions.n_outputs(*function));
+        let d = self.registers.row(self.registers.functions.n_outputs(function));
         self.tape.code.push(Instruction::Call { call: self.tape.calls.len() as u32 });
-        self.tape.calls.push(Call {
-            function: *function,
-            inputs: inputs.clone(),
-            arguments: arguments.iter().map(|a| self.known[a]).collect(),
-            d,
-        });
-        self.call_log.push(key.clone());
-        self.calls.insert(key, d);
+        let arguments = arguments.iter().map(|a| self.known[a]).collect();
+        self.tape.calls.push(Call { function, inputs, arguments, d });
+        self.remember(key, d);
         d
+    }
+
+    /// The solution of a linear system, once for all unknowns; returns the register of the first.
+    fn solution(&mut self, matrix: Expr, right: Expr, is_slope: bool) -> Register {
+        let key = Several::Solution(matrix, right, is_slope);
+        if let Some(known) = self.several.get(&key) {
+            return *known;
+        }
+        let right: Box<[Register]> =
+            self.pool.entries(right).iter().map(|entry| self.known[entry]).collect();
+        let d = self.registers.row(right.len());
+        let system = self.registers.workspace(matrix, right.len());
+        let entries = match self.several.contains_key(&Several::Factors(matrix)) {
+            true => None,
+            false => {
+                self.remember(Several::Factors(matrix), 0);
+                Some(self.entries(matrix))
+            }
+        };
+        self.tape.code.push(Instruction::Solve { solve: self.tape.solves.len() as u32 });
+        self.tape.solves.push(LinearSolve { system, entries, right, d, is_slope });
+        self.remember(key, d);
+        d
+    }
+
+    /// The entries of a matrix that are not always zero.
+    fn entries(&self, matrix: Expr) -> Box<[(u32, Register)]> {
+        let entries = self.pool.entries(matrix).into_iter().enumerate();
+        let nonzero = entries.filter(|(_, e)| self.pool.as_constant(*e) != Some(0.0));
+        nonzero.map(|(place, entry)| (place as u32, self.known[&entry])).collect()
+    }
+
+    fn remember(&mut self, key: Several, d: Register) {
+        self.several_log.push(key.clone());
+        self.several.insert(key, d);
     }
 
     fn branches(&mut self, condition: Register, a: Expr, b: Expr) -> Register {
@@ -222,14 +316,16 @@ impl<'a> TapeBuilder<'a> {
 
     /// What a branch computes is not known behind it.
     fn branch(&mut self, d: Register, value: Expr) {
-        let (before, calls) = (self.log.len(), self.call_log.len());
+        let (before, several) = (self.log.len(), self.several_log.len());
+        self.depth += 1;
         let a = self.emit(value);
+        self.depth -= 1;
         self.tape.code.push(Instruction::Move { d, a });
         for expr in self.log.drain(before..) {
             self.known.remove(&expr);
         }
-        for key in self.call_log.drain(calls..) {
-            self.calls.remove(&key);
+        for key in self.several_log.drain(several..) {
+            self.several.remove(&key);
         }
     }
 }

@@ -1,5 +1,6 @@
 //! What a running system writes to: its registers, and the machine that runs its functions.
 
+use super::linear_system::LinearSystem;
 use super::lower::Registers;
 use super::tape::Call;
 use crate::bytecode::{Failure, Functions, Machine};
@@ -11,6 +12,7 @@ use std::sync::Arc;
 pub(super) struct Memory {
     pub(super) registers: Vec<f64>,
     pub(super) calls: Calls,
+    pub(super) systems: Vec<LinearSystem>,
 }
 
 /// Runs calls of functions.
@@ -18,8 +20,20 @@ pub(super) struct Memory {
 pub(super) struct Calls {
     functions: Arc<Functions>,
     machine: Machine,
+    /// Calls of impure functions at this instant: an event iteration repeats them, and their values
+    /// stay.
+    impure: Vec<ImpureCall>,
     /// Why the last call failed.
     pub(super) failure: Option<Failure>,
+}
+
+/// An impure call that was carried out.
+#[derive(Debug, Clone)]
+struct ImpureCall {
+    function: u32,
+    /// The bits of the arguments, the last of which is the place of the call.
+    arguments: Vec<u64>,
+    results: Vec<f64>,
 }
 
 impl Memory {
@@ -28,9 +42,10 @@ impl Memory {
         let calls = Calls {
             functions: registers.functions().clone(),
             machine: Machine::default(),
+            impure: Vec::new(),
             failure: None,
         };
-        let mut memory = Memory { registers: Vec::new(), calls };
+        let mut memory = Memory { registers: Vec::new(), calls, systems: Vec::new() };
         memory.extend(registers);
         memory
     }
@@ -38,6 +53,8 @@ impl Memory {
     /// More registers, with their constants.
     pub(super) fn extend(&mut self, registers: &Registers) {
         self.registers.resize(registers.len(), 0.0);
+        let known = self.systems.len();
+        self.systems.extend(registers.systems()[known..].iter().map(|n| LinearSystem::new(*n)));
         for (register, value) in &registers.values {
             self.registers[*register as usize] = *value;
         }
@@ -45,12 +62,45 @@ impl Memory {
 }
 
 impl Calls {
-    /// Forgets the external objects, which parameters make anew.
-    pub(super) fn clear_objects(&mut self) {
-        self.machine.clear_objects();
+    /// Before parameters are evaluated: a simulation knows nothing of the one before.
+    pub(super) fn restart(&mut self) {
+        self.machine.restart();
+        self.next_instant();
+    }
+
+    /// What the external function said that failed last.
+    pub(super) fn message(&self) -> &str {
+        self.machine.message()
+    }
+
+    /// Impure calls have new values from here on.
+    pub(super) fn next_instant(&mut self) {
+        self.impure.clear();
     }
 
     pub(super) fn run(&mut self, call: &Call, r: &mut [f64]) -> Result<(), Failure> {
+        if !self.functions.codes[call.function as usize].impure {
+            return self.run_anew(call, r);
+        }
+        let n = self.functions.n_outputs(call.function);
+        if !call.inputs.is_empty() {
+            r[call.d as usize..][..n].fill(0.0);
+            return Ok(());
+        }
+        let arguments: Vec<u64> = call.arguments.iter().map(|a| r[*a as usize].to_bits()).collect();
+        let is_known =
+            |known: &&ImpureCall| known.function == call.function && known.arguments == arguments;
+        if let Some(known) = self.impure.iter().find(is_known) {
+            r[call.d as usize..][..n].copy_from_slice(&known.results);
+            return Ok(());
+        }
+        self.run_anew(call, r)?;
+        let results = r[call.d as usize..][..n].to_vec();
+        self.impure.push(ImpureCall { function: call.function, arguments, results });
+        Ok(())
+    }
+
+    fn run_anew(&mut self, call: &Call, r: &mut [f64]) -> Result<(), Failure> {
         let arguments = call.arguments.iter().map(|a| r[*a as usize]);
         let results = match call.inputs.is_empty() {
             true => self.machine.call(&self.functions, call.function, arguments),

@@ -2,8 +2,10 @@
 
 use super::errors::*;
 use super::events::{CompiledRounding, Events, compile_events, linear_in_time};
+use super::hoist::Hoisting;
 use super::jacobian::differentiate_sequence;
 use super::lower::{Registers, TapeBuilder};
+use super::memory::Memory;
 use super::system::System;
 use super::tape::{Register, Tape};
 use crate::bytecode::{self, Reason};
@@ -15,7 +17,7 @@ use crate::sim::{Failure, Pattern, SimError, SimErrorKind};
 use crate::source::Span;
 use crate::symbolic::{Expr, Pool, VarId, function};
 use crate::syntax::ast::CausalityPrefix;
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -196,6 +198,11 @@ impl Program {
             residuals.extend(torn.residuals.iter().map(|(residual, _)| *residual));
         }
         let mut registers = Registers::new(n, sorted.dae.functions.clone());
+        for (variable, info) in (0u32..).zip(&sorted.dae.variables) {
+            if matches!(info.kind, Kind::Parameter { .. } | Kind::Constant(_)) {
+                registers.hoisted.fix(variable);
+            }
+        }
         let observed: Vec<VarId> = (0..n as u32)
             .map(VarId)
             .filter(|v| sorted.dae.is_solved_for(*v) && sorted.aliases[v.0 as usize].is_none())
@@ -213,16 +220,18 @@ impl Program {
             }
         }
 
+        let mut derivatives: FxHashMap<VarId, VarId> = FxHashMap::default();
+        for (v, variable) in (0..).map(VarId).zip(&sorted.dae.variables) {
+            if let Kind::Derivative(of) = variable.kind {
+                derivatives.entry(of).or_insert(v);
+            }
+        }
         let mut outputs: Vec<Expr> = Vec::new();
         for state in &sorted.states {
-            let derivative = (0..n as u32)
-                .map(VarId)
-                .find(|v| sorted.dae.variable(*v).kind == Kind::Derivative(*state));
-            let derivative = derivative.expect("a state is a variable with a derivative");
-            outputs.push(resolved(&mut pool, &sorted, derivative));
+            outputs.push(resolved(&mut pool, &sorted, derivatives[state]));
         }
         outputs.extend(&residuals);
-        let rhs = compile_outputs(&pool, &mut registers, &sequence, &outputs);
+        let rhs = compile_continuous(&pool, &mut registers, &sequence, &outputs, Hoisting::Certain);
 
         let columns: Vec<VarId> = sorted.states.iter().chain(&iteration).copied().collect();
         let needed = slice(&pool, &sequence, &outputs);
@@ -243,7 +252,8 @@ impl Program {
                 equation: *equation,
             })
             .collect();
-        let jacobian = compile_outputs(&pool, &mut registers, &extended, &entries);
+        let jacobian =
+            compile_continuous(&pool, &mut registers, &extended, &entries, Hoisting::Total);
 
         let mut relations = Vec::new();
         let mut relation_sides = Vec::new();
@@ -290,7 +300,8 @@ impl Program {
                 time.1 = *register;
             }
         }
-        let crossings = compile_outputs(&pool, &mut registers, &sequence, &differences);
+        let crossings =
+            compile_continuous(&pool, &mut registers, &sequence, &differences, Hoisting::Total);
 
         let selections = sorted.selections.iter().map(|selection| {
             let entries: Vec<Expr> = selection.jacobian.iter().flatten().copied().collect();
@@ -306,7 +317,13 @@ impl Program {
         let selections = selections.collect();
 
         let observed_expressions: Vec<Expr> = observed.iter().map(|v| pool.variable(*v)).collect();
-        let observe = compile_outputs(&pool, &mut registers, &sequence, &observed_expressions);
+        let observe = compile_continuous(
+            &pool,
+            &mut registers,
+            &sequence,
+            &observed_expressions,
+            Hoisting::Total,
+        );
         let assertions = sorted
             .dae
             .assertions
@@ -314,7 +331,16 @@ impl Program {
             .enumerate()
             .filter(|(_, assertion)| assertion.is_error)
             .map(|(at, assertion)| {
-                (at, compile_outputs(&pool, &mut registers, &sequence, &[assertion.condition]))
+                (
+                    at,
+                    compile_continuous(
+                        &pool,
+                        &mut registers,
+                        &sequence,
+                        &[assertion.condition],
+                        Hoisting::Total,
+                    ),
+                )
             })
             .collect();
 
@@ -533,7 +559,10 @@ impl Program {
                 let reason = Reason::ALL.get(usize::from(reason)).copied();
                 let reason = reason.unwrap_or(Reason::NotFinite);
                 let failure = bytecode::Failure { function, at, reason };
-                let (words, span) = self.sorted.dae.functions.explain(&failure);
+                let (mut words, span) = self.sorted.dae.functions.explain(&failure);
+                if let Some(message) = self.external_message(failure) {
+                    words = format!("{words}: {message}");
+                }
                 let code = match reason {
                     Reason::Assertion => ASSERTION_FAILED,
                     _ => DOMAIN_ERROR,
@@ -567,6 +596,20 @@ impl Program {
             }
             Failure::EventIteration { variable } => self.explain_iteration(variable, when),
         }
+    }
+
+    /// Why an external function has no result, if it fails with the default parameters too.
+    fn external_message(&self, failure: bytecode::Failure) -> Option<String> {
+        if failure.reason != Reason::External {
+            return None;
+        }
+        let mut memory = Memory::new(&self.registers);
+        for (_, tape) in &self.parameter_tapes {
+            if tape.run(&mut memory).is_err() && memory.calls.failure == Some(failure) {
+                return Some(memory.calls.message().to_owned());
+            }
+        }
+        None
     }
 
     fn explain_iteration(&self, variable: u32, when: &str) -> Diagnostic {
@@ -741,8 +784,19 @@ pub(super) fn compile_outputs(
     sequence: &[Assignment],
     outputs: &[Expr],
 ) -> Outputs {
+    compile_continuous(pool, registers, sequence, outputs, Hoisting::Never)
+}
+
+/// The same for code that runs when the parameters have their values.
+pub(super) fn compile_continuous(
+    pool: &Pool,
+    registers: &mut Registers,
+    sequence: &[Assignment],
+    outputs: &[Expr],
+    hoisting: Hoisting,
+) -> Outputs {
     let needed = slice(pool, sequence, outputs);
-    let mut builder = TapeBuilder::new(pool, registers);
+    let mut builder = TapeBuilder::new(pool, registers).hoisting(hoisting);
     for assignment in &needed {
         builder.origin(assignment.equation as u32);
         builder.define(assignment.variable, assignment.value);

@@ -2,9 +2,10 @@
 
 use super::event_iteration::{Clock, Stage, either, same_time};
 use super::history::History;
+use super::hoist::Hoisting;
 use super::memory::Memory;
 use super::newton::LoopSolver;
-use super::program::{Access, Outputs, Program, Step, compile_outputs, resolved};
+use super::program::{Access, Outputs, Program, Step, compile_continuous, resolved};
 use super::selection::Choice;
 use super::tape::{Instruction, Tape};
 use crate::dae::Homotopy;
@@ -126,7 +127,8 @@ impl System {
             })
             .collect();
         let mut registers = program.registers.clone();
-        let observed = compile_outputs(&pool, &mut registers, &program.sequence, &outputs);
+        let observed =
+            compile_continuous(&pool, &mut registers, &program.sequence, &outputs, Hoisting::Known);
         self.registers.extend(&registers);
         self.observed = Some(observed);
     }
@@ -190,7 +192,7 @@ impl System {
 
     fn evaluate_parameters(&mut self) -> Result<(), Failure> {
         let program = self.program.clone();
-        self.registers.calls.clear_objects();
+        self.registers.calls.restart();
         let mut tunable = 0;
         // Slots of set values first: tapes run in order of dependence, not of declaration.
         let mut given: Vec<(VarId, f64)> = Vec::new();
@@ -210,6 +212,7 @@ impl System {
                 None => run(tape, &mut self.registers)?,
             }
         }
+        run(&program.registers.hoisted.tape, &mut self.registers)?;
         run(&program.time_rests, &mut self.registers)?;
         for (switch, relation) in self.switches.iter_mut().zip(&program.relations) {
             *switch = relation
@@ -489,6 +492,7 @@ impl DaeSystem for System {
 
     fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
         self.load(t, y);
+        self.registers.calls.next_instant();
         let mut outcome = self.event(t)?;
         if self.improve_choices()? {
             outcome = either(outcome, EventOutcome::Continue { y_changed: true });

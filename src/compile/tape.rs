@@ -1,6 +1,7 @@
 //! Instructions on registers. A jump skips what is not needed, so that a branch that is not taken
 //! is never evaluated.
 
+use super::linear_system::LinearSolve;
 use super::memory::Memory;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::FunctionId;
@@ -81,6 +82,10 @@ pub(super) enum Instruction {
     Call {
         call: u32,
     },
+    /// The linear system of this number in the tape.
+    Solve {
+        solve: u32,
+    },
     JumpUnless {
         a: Register,
         target: u32,
@@ -105,6 +110,7 @@ pub(super) struct Call {
 pub(super) struct Tape {
     pub(super) code: Vec<Instruction>,
     pub(super) calls: Vec<Call>,
+    pub(super) solves: Vec<LinearSolve>,
     /// First instruction of every origin, ascending.
     pub(super) origins: Vec<(u32, u32)>,
 }
@@ -112,7 +118,7 @@ pub(super) struct Tape {
 impl Tape {
     /// Runs it; on failure the number of the instruction without a finite value.
     pub(super) fn run(&self, memory: &mut Memory) -> Result<(), u32> {
-        let Memory { registers: r, calls } = memory;
+        let Memory { registers: r, calls, systems } = memory;
         let mut at = 0usize;
         while let Some(instruction) = self.code.get(at) {
             at += 1;
@@ -154,6 +160,11 @@ impl Tape {
                 Instruction::Call { call } => {
                     let call = &self.calls[call as usize];
                     calls.run(call, r).map_err(|_| at as u32 - 1)?;
+                }
+                Instruction::Solve { solve } => {
+                    let solve = &self.solves[solve as usize];
+                    let system = &mut systems[solve.system as usize];
+                    system.run(solve, r).map_err(|_| at as u32 - 1)?;
                 }
                 Instruction::JumpUnless { a, target } => {
                     if r[a as usize] == 0.0 {

@@ -134,16 +134,18 @@ pub(super) fn explicit(dae: &mut Dae, equation: Equation, variable: VarId) -> Op
     is_safe(dae, solution.divisor).then_some(solution.value)
 }
 
-/// Whether a divisor is a number that is not zero, or made of parameters: where those make it
-/// zero, the division fails with a message rather than giving a wrong value.
-fn is_safe(dae: &Dae, divisor: Expr) -> bool {
-    match dae.pool.as_constant(divisor) {
-        Some(value) => value != 0.0,
-        None => dae
-            .pool
-            .variables(divisor)
-            .iter()
-            .all(|v| matches!(dae.variable(*v).kind, Kind::Parameter { .. })),
+/// Whether a divisor is a number that is not zero, or made of parameters that do not make it zero
+/// by default: where others make it zero, the division fails with a message rather than giving a
+/// wrong value.
+pub(super) fn is_safe(dae: &Dae, divisor: Expr) -> bool {
+    if let Some(value) = dae.pool.as_constant(divisor) {
+        return value != 0.0;
+    }
+    let variables = dae.pool.variables(divisor);
+    let mut kinds = variables.iter().map(|v| dae.variable(*v).kind);
+    kinds.all(|kind| matches!(kind, Kind::Parameter { .. })) && {
+        let value = dae.defaults.of(dae, divisor);
+        value.is_finite() && value != 0.0
     }
 }
 

@@ -13,7 +13,7 @@ use crate::syntax::ast::{self, EquationKind, Expression, ExpressionKind};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
-/// Stands for a text that is not known when compiling.
+/// Stands for a text, or a part of one, that is not known when compiling; messages show it.
 pub(super) const UNKNOWN_TEXT: &str = "…";
 
 /// Largest number of scalar equations.
@@ -43,6 +43,8 @@ pub(super) struct Builder<'a> {
     pub(super) statements: usize,
     /// Functions that cannot be expressions.
     pub(super) functions: super::function::Instances,
+    /// How many calls of impure functions were read.
+    pub(super) impure_calls: u32,
     /// Whether initial equations are being read.
     pub(super) initial: bool,
     /// Whether the body of a when-clause is being read.
@@ -81,6 +83,7 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         statements: super::inline::MAX_STATEMENTS,
         inlined: 0,
         functions: super::function::Instances::default(),
+        impure_calls: 0,
         initial: false,
         in_when: false,
         branches: 0,

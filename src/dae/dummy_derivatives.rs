@@ -18,13 +18,14 @@
 //! Reference: [Mattsson & Söderlind 1993](crate::bibliography#mattsson-soderlind-1993).
 
 use super::blt;
+use super::default_values::DefaultValues;
 use super::dynamic_states::{Candidate, declare_selection};
 use super::model::{Dae, Kind, StateSelect};
 use super::sorted::Selection;
 use crate::diag::Diagnostic;
 use crate::graph::{Bipartite, Matching, blocks, match_equations};
 use crate::source::Span;
-use crate::symbolic::{Expr, VarId, derivative, evaluate};
+use crate::symbolic::{Expr, VarId, derivative};
 use rustc_hash::FxHashMap;
 
 /// A differentiated system; equations and variables are numbered by their place in the lists.
@@ -51,14 +52,10 @@ pub(super) struct ChosenStates {
 const SMALLEST_PIVOT: f64 = 1e-6;
 
 /// The states of a differentiated system.
-pub(super) fn choose_states(
-    dae: &mut Dae,
-    chains: &Chains,
-    parameters: &[VarId],
-) -> Result<ChosenStates, Diagnostic> {
+pub(super) fn choose_states(dae: &mut Dae, chains: &Chains) -> Result<ChosenStates, Diagnostic> {
     let eq_to_origin = inverse(&chains.eq_to_derivative);
     let var_to_origin = inverse(&chains.var_to_derivative);
-    let values = start_values(dae, parameters);
+    let values = start_values(dae);
     let mut is_dummy = vec![false; chains.variables.len()];
     let mut selections = Vec::new();
     for (mut equations, mut variables) in highest_blocks(dae, chains) {
@@ -139,18 +136,17 @@ fn highest_blocks(dae: &Dae, chains: &Chains) -> Vec<(Vec<usize>, Vec<usize>)> {
 }
 
 /// Default parameters and start values, zero where there are none.
-fn start_values(dae: &Dae, parameters: &[VarId]) -> Vec<f64> {
-    let mut values = vec![0.0; dae.variables.len()];
-    for (value, variable) in values.iter_mut().zip(&dae.variables) {
-        if let Kind::Constant(number) = variable.kind {
-            *value = number;
+fn start_values(dae: &Dae) -> DefaultValues {
+    let mut values = dae.defaults.clone();
+    values.grow(dae.variables.len());
+    for variable in (0..dae.variables.len() as u32).map(VarId) {
+        if dae.is_unknown(variable) {
+            let start = dae.variable(variable).start.map_or(0.0, |start| values.of(dae, start));
+            values.set(variable, start);
         }
-    }
-    let starts = (0..dae.variables.len() as u32).map(VarId).filter(|v| dae.is_unknown(*v));
-    let bound = parameters.iter().map(|p| (*p, dae.variable(*p).binding));
-    for (variable, e) in bound.chain(starts.map(|v| (v, dae.variable(v).start))) {
-        let value = e.map_or(0.0, |e| evaluate(&dae.pool, e, &values[..]));
-        values[variable.0 as usize] = if value.is_finite() { value } else { 0.0 };
+        if !values.get(variable).is_finite() {
+            values.set(variable, 0.0);
+        }
     }
     values
 }
@@ -199,14 +195,14 @@ impl Level<'_> {
         wish
     }
 
-    fn choose(&self, dae: &mut Dae, values: &[f64]) -> Result<Choice, Diagnostic> {
+    fn choose(&self, dae: &mut Dae, values: &DefaultValues) -> Result<Choice, Diagnostic> {
         let mut columns = self.variables.clone();
         // Of those that are wanted alike the first declared stays a state.
         columns.sort_by_key(|v| (self.wish(dae, *v), std::cmp::Reverse(self.chains.variables[*v])));
         let wishes: Vec<Wish> = columns.iter().map(|v| self.wish(dae, *v)).collect();
         let jacobian = self.jacobian(dae, &columns);
         let entry = |e: &Option<Expr>| {
-            let value = e.map_or(0.0, |e| evaluate(&dae.pool, e, values));
+            let value = e.map_or(0.0, |e| values.of(dae, e));
             let value = if value.is_finite() { value } else { 0.0 };
             (value, e.is_none_or(|e| is_known(dae, e)))
         };

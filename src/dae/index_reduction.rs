@@ -26,7 +26,6 @@ use rustc_hash::FxHashMap;
 pub(super) fn reduce_index(
     dae: &mut Dae,
     aliases: &mut Vec<Option<Alias>>,
-    parameters: &[VarId],
 ) -> Result<ChosenStates, Diagnostic> {
     let states = differentiated_variables(dae, aliases);
     if is_regular(dae, aliases, &states) {
@@ -51,7 +50,7 @@ pub(super) fn reduce_index(
         negated: system.negated,
         var_to_equation: differentiated.var_to_equation,
     };
-    let chosen = choose_states(dae, &chains, parameters)?;
+    let chosen = choose_states(dae, &chains)?;
     aliases.resize(dae.variables.len(), None);
     Ok(chosen)
 }

@@ -560,6 +560,10 @@ impl Target for Call<'_, '_> {
         }
     }
 
+    fn resources(&self) -> crate::external::Resources {
+        self.builder.flat.resources.clone()
+    }
+
     fn derivative(&mut self, _: Expr, span: Span) -> Result<Expr, Diagnostic> {
         Err(fault!(NOT_SUPPORTED, "`der` in a function").at(span))
     }

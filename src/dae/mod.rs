@@ -3,6 +3,7 @@
 //! ```text
 //! build                every variable a scalar, every relation outside noEvent frozen
 //! order_parameters     bindings in order of dependence
+//! fold_parameters      parameters that cannot be set become numbers
 //! eliminate_aliases    a = b and a = -b become names
 //! separate_discrete    equations of discrete variables become assignments at events
 //! reduce_index         constraints between states differentiated, states chosen
@@ -22,6 +23,7 @@ mod algorithm;
 mod alias_elimination;
 mod blt;
 mod build;
+mod default_values;
 mod discrete;
 mod dummy_derivatives;
 mod dynamic_states;
@@ -44,6 +46,7 @@ mod symbolic_target;
 mod temporal;
 mod when;
 
+pub use default_values::DefaultValues;
 pub use events::*;
 pub use model::*;
 pub use report::report;
@@ -58,6 +61,7 @@ use crate::symbolic::VarId;
 pub const PASSES: &[(&str, &str)] = &[
     ("build", "every variable a scalar, relations outside `noEvent` frozen"),
     ("order_parameters", "bindings of parameters in order of dependence"),
+    ("fold_parameters", "parameters that cannot be set become numbers"),
     ("eliminate_aliases", "`a = b` and `a = -b` become names"),
     ("separate_discrete", "equations of discrete variables become assignments at events"),
     ("reduce_index", "constraints between states differentiated, states chosen"),
@@ -71,9 +75,11 @@ pub fn sort(flat: &FlatModel) -> Result<SortedDae, Diagnostic> {
     let mut dae = build::build(flat)?;
     zero_inputs(&mut dae, flat);
     let parameters = parameters::order_parameters(&mut dae)?;
+    let parameters = default_values::fold_parameters(&mut dae, parameters);
+    dae.defaults = DefaultValues::of_parameters(&dae, &parameters);
     let mut aliases = alias_elimination::eliminate_aliases(&mut dae);
     discrete::separate_discrete(&mut dae, &aliases)?;
-    let chosen = index_reduction::reduce_index(&mut dae, &mut aliases, &parameters)?;
+    let chosen = index_reduction::reduce_index(&mut dae, &mut aliases)?;
     let dummy_derivatives::ChosenStates { states, selections } = chosen;
     when::check_reinits(&dae, &aliases, &states, &selections)?;
     let unknowns = index_reduction::unknowns(&dae, &aliases, &states);

@@ -1,5 +1,6 @@
 //! The system of equations: scalar, first order (MLS appendix B). Data only.
 
+use super::default_values::DefaultValues;
 use super::events::Events;
 use crate::bytecode::Functions;
 use crate::diag::Diagnostic;
@@ -30,6 +31,8 @@ pub struct Dae {
     pub relations: Vec<Relation>,
     /// What else happens at events.
     pub events: Events,
+    /// Values that constants and parameters have by default, once these are in order.
+    pub defaults: DefaultValues,
     /// What leads from the simplified expressions of `homotopy` to the actual ones.
     pub homotopy: Option<Homotopy>,
     /// The `experiment` annotation.

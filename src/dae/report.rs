@@ -1,8 +1,8 @@
 //! The sorted system as text, for `--dump` and snapshots.
 
 use super::model::Kind;
-use super::sorted::{Assignment, Block, SortedDae};
-use crate::symbolic::{Expr, VarId, print};
+use super::sorted::{Assignment, Block, LinearLoop, SortedDae};
+use crate::symbolic::{Expr, Node, VarId, print};
 use std::fmt::Write;
 
 /// Counts, aliases and blocks.
@@ -84,7 +84,11 @@ fn write_block(sorted: &SortedDae, block: &Block, out: &mut String) -> std::fmt:
                 solved.unknowns.iter().map(|v| &*sorted.dae.variable(*v).name).collect();
             let n = solved.assignments.len();
             writeln!(out, "linear loop of {n} solved for {}", names.join(", "))?;
-            solved.assignments.iter().try_for_each(|a| writeln!(out, "  {}", assign(a)))
+            write_matrix(sorted, solved, out)?;
+            let is_written =
+                |a: &&Assignment| !matches!(sorted.dae.pool.node(a.value), Node::Solution { .. });
+            let assignments = solved.assignments.iter().filter(is_written);
+            assignments.into_iter().try_for_each(|a| writeln!(out, "  {}", assign(a)))
         }
         Block::Loop(torn) => {
             let names: Vec<&str> =
@@ -99,6 +103,19 @@ fn write_block(sorted: &SortedDae, block: &Block, out: &mut String) -> std::fmt:
             torn.residuals.iter().try_for_each(|(r, _)| writeln!(out, "  0 = {}", text(sorted, *r)))
         }
     }
+}
+
+/// The rows of a system that is solved by elimination, as `{entries} | right side`.
+fn write_matrix(sorted: &SortedDae, solved: &LinearLoop, out: &mut String) -> std::fmt::Result {
+    let pool = &sorted.dae.pool;
+    let Some(first) = solved.assignments.first() else { return Ok(()) };
+    let Node::Solution { matrix, right, .. } = *pool.node(first.value) else { return Ok(()) };
+    let (entries, rights) = (pool.entries(matrix), pool.entries(right));
+    for (row, right) in entries.chunks(rights.len()).zip(&rights) {
+        let row: Vec<String> = row.iter().map(|e| text(sorted, *e)).collect();
+        writeln!(out, "  {{{}}} | {}", row.join(", "), text(sorted, *right))?;
+    }
+    Ok(())
 }
 
 fn text(sorted: &SortedDae, e: Expr) -> String {

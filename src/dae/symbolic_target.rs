@@ -200,7 +200,6 @@ impl Target for Builder<'_> {
             | "inStream"
             | "actualStream"
             | "getInstanceName"
-            | "String"
             | "previous"
             | "hold" => {
                 return Some(Err(fault!(NOT_SUPPORTED, "`{name}` is not supported yet").at(span)));
@@ -220,6 +219,10 @@ impl Target for Builder<'_> {
         let part = pool.mul(lambda, difference);
         let between = pool.add(simplified, part);
         pool.if_then_else(active, between, actual)
+    }
+
+    fn resources(&self) -> crate::external::Resources {
+        self.flat.resources.clone()
     }
 
     fn derivative(&mut self, a: Expr, span: Span) -> Result<Expr, Diagnostic> {

@@ -44,6 +44,7 @@ impl Evaluator<'_> {
     ) -> Result<Value, Diagnostic> {
         match input.value_type {
             ValueType::TypeName | ValueType::VariableName => self.name_argument(input, argument),
+            ValueType::Expression => Ok(Value::VariableName(print::expression(argument).into())),
             ValueType::Function => self.function_argument(argument),
             _ => self.expression(argument),
         }

@@ -1,6 +1,7 @@
 //! Expressions (MLS ch. 3).
 
 use super::errors::{MISPLACED, WRONG_OUTPUTS};
+use super::scalar::Scalar;
 use super::{Evaluator, depth};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
@@ -85,6 +86,9 @@ impl Evaluator<'_> {
 
     /// A condition: a scalar Boolean.
     pub(super) fn condition(&mut self, expression: &Expression) -> Result<bool, Diagnostic> {
+        if let Some(Scalar::Boolean(value)) = self.scalar(expression) {
+            return Ok(value);
+        }
         match self.expression(expression)? {
             Value::Boolean(value) => Ok(value),
             other => Err(fault!(

@@ -97,6 +97,8 @@ pub enum ValueType {
     TypeName,
     /// The name of a variable, not evaluated (built-ins only).
     VariableName,
+    /// An expression, not evaluated: its text (built-ins only).
+    Expression,
     /// Any value (built-ins only).
     Any,
 }

@@ -20,6 +20,7 @@ mod host;
 mod intrinsics;
 mod iteration;
 mod reference;
+mod scalar;
 mod scope;
 mod special;
 mod statement;

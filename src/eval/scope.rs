@@ -73,7 +73,9 @@ impl Scope {
         given: Vec<Option<Value>>,
         call_span: Span,
     ) -> Scope {
-        Scope { owner: Owner::Function(function), given, call_span, ..Scope::default() }
+        let count = function.inputs.len() + function.outputs.len() + function.locals.len();
+        let variables = IndexMap::with_capacity_and_hasher(count, FxBuildHasher);
+        Scope { variables, owner: Owner::Function(function), given, call_span, ..Scope::default() }
     }
 
     pub(super) fn of_record(

@@ -25,7 +25,10 @@ impl Evaluator<'_> {
     fn statement(&mut self, statement: &Statement) -> Result<Flow, Diagnostic> {
         match &statement.kind {
             StatementKind::Assign { target, value } => {
-                let new = self.expression(value)?;
+                let new = match self.scalar(value) {
+                    Some(scalar) => scalar.into(),
+                    None => self.expression(value)?,
+                };
                 self.assign(target, new, statement.span)?;
             }
             StatementKind::MultiAssign { targets, value } => self.assign_outputs(targets, value)?,

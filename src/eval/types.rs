@@ -88,6 +88,7 @@ impl ValueType {
             ValueType::Function => "function".into(),
             ValueType::TypeName => "TypeName".into(),
             ValueType::VariableName => "VariableName".into(),
+            ValueType::Expression => "expression".into(),
             ValueType::Any => "value".into(),
         }
     }
@@ -102,7 +103,9 @@ impl ValueType {
             | (ValueType::String, value @ Value::String(_))
             | (ValueType::Function, value @ Value::Function(_))
             | (ValueType::TypeName, value @ Value::TypeName(_))
-            | (ValueType::VariableName, value @ Value::VariableName(_)) => Ok(value),
+            | (ValueType::VariableName | ValueType::Expression, value @ Value::VariableName(_)) => {
+                Ok(value)
+            }
             (ValueType::ExternalObject(class), Value::External(object))
                 if *class == object.class =>
             {
@@ -113,6 +116,13 @@ impl ValueType {
                 if *definition == value.definition =>
             {
                 Ok(Value::Enumeration(value))
+            }
+            // In the functions of loaded classes literals are ordinals.
+            (ValueType::Enumeration(definition), Value::Integer(ordinal))
+                if (1..=definition.literals.len() as i64).contains(&ordinal) =>
+            {
+                let definition = definition.clone();
+                Ok(Value::Enumeration(EnumerationValue { definition, ordinal }))
             }
             (ValueType::Record(..), Value::Record(record)) => {
                 self.convert_record(record).map(Value::Record)

@@ -88,6 +88,10 @@ fn outer_sizes(function: &Function, given: &[Option<Value>]) -> Result<Option<Ve
 fn is_vectorized(value_type: &ValueType) -> bool {
     !matches!(
         value_type,
-        ValueType::Any | ValueType::Function | ValueType::TypeName | ValueType::VariableName
+        ValueType::Any
+            | ValueType::Expression
+            | ValueType::Function
+            | ValueType::TypeName
+            | ValueType::VariableName
     )
 }

@@ -1,6 +1,7 @@
 //! The arguments of one call.
 
 use super::errors::{EXTERNAL_FAILED, EXTERNAL_OUTSIDE};
+use super::random::Random;
 use crate::diag::Fault;
 use crate::fault;
 use std::any::Any;
@@ -37,7 +38,7 @@ impl Slot {
         match letter {
             'n' | 'N' => self.kind == Kind::Number && self.dims.is_empty(),
             'a' | 'A' => self.kind == Kind::Number && !self.dims.is_empty(),
-            't' | 'T' => self.kind == Kind::Text && self.dims.is_empty(),
+            't' | 'T' | 'f' => self.kind == Kind::Text && self.dims.is_empty(),
             'o' => self.kind == Kind::Object,
             _ => false,
         }
@@ -72,9 +73,9 @@ pub trait Outside {
         Err(refused(&format!("to look for `{path}`")))
     }
 
-    /// Seconds since 1970, UTC.
-    fn clock(&mut self) -> Result<f64, Fault> {
-        Err(refused("to know the time"))
+    /// The hidden state of the random numbers.
+    fn random(&mut self) -> Result<&mut Random, Fault> {
+        Err(refused("to remember a random number"))
     }
 }
 
@@ -190,7 +191,15 @@ impl Call<'_> {
 
     /// Gives a new object as result.
     pub(super) fn give_object<T: Any + Send + Sync>(&mut self, object: T) -> Result<(), Fault> {
-        self.objects.push(Arc::new(object));
-        self.give((self.objects.len() - 1) as f64)
+        self.give_shared(Arc::new(object));
+        Ok(())
+    }
+
+    /// Gives an object as result that others hold too.
+    pub(super) fn give_shared(&mut self, object: Object) {
+        self.objects.push(object);
+        if let Some(result) = self.result {
+            self.numbers[result.first as usize] = (self.objects.len() - 1) as f64;
+        }
     }
 }

@@ -7,8 +7,9 @@
 
 use super::Entry;
 use super::call::Call;
+use super::eigenvectors::eigenvectors;
 use crate::diag::Fault;
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix};
 
 pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("dgesv", "nnAnAAnN", dgesv),
@@ -21,10 +22,13 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("dgelsy", "nnnAnAnAnNAnN", dgelsy),
     Entry::pure("dgesvd", "ttnnAnAAnAnAnN", dgesvd),
     Entry::pure("dgeev", "ttnAnAAAnAnAnN", dgeev),
+    Entry::pure("dgbsv", "nnnnAnAAnN", dgbsv),
+    Entry::pure("dgecon", "tnannNAAN", dgecon),
+    Entry::pure("dlange", "tnnanA->n", dlange),
 ];
 
 /// A vector or matrix argument; a vector is a column.
-fn matrix(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, Fault> {
+pub(super) fn matrix(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, Fault> {
     let (rows, columns) = match *call.dims(argument) {
         [rows] => (rows as usize, 1),
         [rows, columns] => (rows as usize, columns as usize),
@@ -38,7 +42,7 @@ fn matrix(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, Fault> {
 }
 
 /// Writes the upper left part that fits.
-fn write(call: &mut Call<'_>, argument: usize, matrix: &DMatrix<f64>) {
+pub(super) fn write(call: &mut Call<'_>, argument: usize, matrix: &DMatrix<f64>) {
     let columns = call.dims(argument).get(1).map_or(1, |columns| *columns as usize);
     for (at, element) in call.array_mut(argument).iter_mut().enumerate() {
         let (row, column) = (at / columns, at % columns);
@@ -311,16 +315,99 @@ fn dgesvd(call: &mut Call<'_>) -> Result<(), Fault> {
     Ok(())
 }
 
-/// `(jobvl, jobvr, n, A, lda, wr, wi, VL, ldvl, VR, ldvr, work, lwork, info)`; values alone.
+/// `(jobvl, jobvr, n, A, lda, wr, wi, VL, ldvl, VR, ldvr, work, lwork, info)`; no left vectors.
 fn dgeev(call: &mut Call<'_>) -> Result<(), Fault> {
     let wants = |argument: usize| !call.text(argument).eq_ignore_ascii_case("N");
-    if wants(0) || wants(1) {
-        return Err(call.fault("eigenvectors of unsymmetric matrices are not supported"));
+    if wants(0) {
+        return Err(call.fault("left eigenvectors of unsymmetric matrices are not supported"));
     }
-    let values = square(call, 3)?.complex_eigenvalues();
+    let (a, wants_vectors) = (square(call, 3)?, wants(1));
+    let mut values = a.complex_eigenvalues().as_slice().to_vec();
+    pair(&mut values);
+    if wants_vectors {
+        let vectors = eigenvectors(&a, &values);
+        let vectors = vectors.ok_or_else(|| call.fault("the eigenvectors were not found"))?;
+        write(call, 9, &vectors);
+    }
     let column = |part: Vec<f64>| DMatrix::from_vec(part.len(), 1, part);
     write(call, 5, &column(values.iter().map(|value| value.re).collect()));
     write(call, 6, &column(values.iter().map(|value| value.im).collect()));
     call.set(13, 0.0);
+    Ok(())
+}
+
+/// Conjugate pairs with the positive imaginary part first.
+fn pair(values: &mut [Complex<f64>]) {
+    let mut at = 0;
+    while at + 1 < values.len() {
+        if values[at].im == 0.0 {
+            at += 1;
+            continue;
+        }
+        if values[at].im < 0.0 {
+            values.swap(at, at + 1);
+        }
+        at += 2;
+    }
+}
+
+/// `(n, kl, ku, nrhs, AB, ldab, ipiv, B, ldb, info)`: A(i, j) stands in row kl + ku + i − j.
+fn dgbsv(call: &mut Call<'_>) -> Result<(), Fault> {
+    let (band, mut b) = (matrix(call, 4)?, matrix(call, 7)?);
+    let (n, lower, upper) = (band.ncols(), call.number(1) as usize, call.number(2) as usize);
+    if b.nrows() != n || band.nrows() < 2 * lower + upper + 1 {
+        return Err(call.fault("the band and the right side do not fit"));
+    }
+    let mut a = DMatrix::zeros(n, n);
+    for j in 0..n {
+        for i in j.saturating_sub(upper)..n.min(j + lower + 1) {
+            a[(i, j)] = band[(lower + upper + i - j, j)];
+        }
+    }
+    let (pivots, info) = factorize(&mut a);
+    if info == 0.0 {
+        solve(&a, &pivots, &mut b, false);
+        write(call, 7, &b);
+    }
+    call.set(9, info);
+    Ok(())
+}
+
+/// The norm that a letter names: greatest element, columns, rows, Frobenius.
+fn norm(call: &Call<'_>, letter: &str, a: &DMatrix<f64>) -> Result<f64, Fault> {
+    let greatest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+    let size = |values: &[f64]| values.iter().map(|value| value.abs()).sum::<f64>();
+    Ok(match letter.to_ascii_uppercase().as_str() {
+        "M" => greatest(&mut a.iter().map(|value| value.abs())),
+        "1" | "O" => greatest(&mut a.column_iter().map(|c| size(c.clone_owned().as_slice()))),
+        "I" => greatest(&mut a.row_iter().map(|r| size(r.clone_owned().as_slice()))),
+        "F" | "E" => a.norm(),
+        _ => return Err(call.fault(format!("there is no norm `{letter}`"))),
+    })
+}
+
+/// `(norm, m, n, A, lda, work)`
+fn dlange(call: &mut Call<'_>) -> Result<(), Fault> {
+    let norm = norm(call, call.text(0), &matrix(call, 3)?)?;
+    call.give(norm)
+}
+
+/// `(norm, n, LU, lda, anorm, rcond, work, iwork, info)`; from the inverse, not an estimate. The
+/// interchange of rows changes neither norm of the inverse.
+fn dgecon(call: &mut Call<'_>) -> Result<(), Fault> {
+    let lu = square(call, 2)?;
+    let n = lu.nrows();
+    let pivots: Vec<f64> = (1..=n).map(|k| k as f64).collect();
+    let is_singular = (0..n).any(|k| lu[(k, k)] == 0.0);
+    let rcond = match is_singular || call.number(4) == 0.0 {
+        true => 0.0,
+        false => {
+            let mut inverse = DMatrix::identity(n, n);
+            solve(&lu, &pivots, &mut inverse, false);
+            1.0 / (call.number(4) * norm(call, call.text(0), &inverse)?)
+        }
+    };
+    call.set(5, rcond);
+    call.set(8, 0.0);
     Ok(())
 }

@@ -13,12 +13,12 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry::impure("ModelicaMessage", "t", message),
     Entry::impure("ModelicaWarning", "t", message),
     Entry::impure("ModelicaInternal_print", "tt", print),
-    Entry::impure("ModelicaInternal_readLine", "tnN->t", read_line),
-    Entry::impure("ModelicaInternal_countLines", "t->n", count_lines),
+    Entry::pure("ModelicaInternal_readLine", "fnN->t", read_line),
+    Entry::pure("ModelicaInternal_countLines", "f->n", count_lines),
     Entry::impure("ModelicaInternal_stat", "t->n", stat),
     Entry::pure("ModelicaStreams_closeFile", "t", nothing),
-    Entry::impure("ModelicaIO_readMatrixSizes", "ttA", matrix_sizes),
-    Entry::impure("ModelicaIO_readRealMatrix", "ttAnnn", real_matrix),
+    Entry::pure("ModelicaIO_readMatrixSizes", "ftA", matrix_sizes),
+    Entry::pure("ModelicaIO_readRealMatrix", "ftAnnn", real_matrix),
 ];
 
 fn error(call: &mut Call<'_>) -> Result<(), Fault> {

@@ -9,18 +9,27 @@
 //!
 //! Numbers are `f64` (Integers exact up to 2⁵³, Booleans 0 and 1), arrays row-major whatever the
 //! language of the call says. External objects (MLS §12.9.7) are values of this module, named by
-//! handles; they do not change once they are made. An external name that is not here is refused by
+//! handles; they do not change once they are made. The one hidden state is that of [`Random`]. An external name that is not here is refused by
 //! whoever calls it.
 
 mod call;
+mod eigenvectors;
 pub mod errors;
+mod fourier;
+mod householder;
 mod linear_algebra;
 mod messages;
+mod objects;
 mod random;
+mod resources;
 mod strings;
 mod tables;
 
 pub use call::{Call, Kind, Object, Outside, Slot};
+pub use objects::Objects;
+pub use random::Random;
+pub use resources::{Contents, Provide, Resources};
+pub use tables::names_a_file;
 
 use crate::diag::Fault;
 use errors::EXTERNAL_CALL;
@@ -32,24 +41,51 @@ pub type Native = fn(&mut Call<'_>) -> Result<(), Fault>;
 pub struct Entry {
     /// Its external name.
     pub name: &'static str,
-    /// One letter an argument: `n` number, `a` array of numbers, `t` text, `o` object; capital
-    /// letters for those that are written to. `->` and a letter if it has a result.
+    /// One letter an argument: `n` number, `a` array of numbers, `t` text, `f` text that names a
+    /// file to be read, `o` object; capital letters for those that are written to. `->` and a
+    /// letter if it has a result.
     pub signature: &'static str,
-    /// Whether equal arguments give equal results, and nothing else happens.
-    pub pure: bool,
+    /// What it does besides giving results.
+    pub effect: Effect,
     /// What it does.
     pub run: Native,
+}
+
+/// What calls of a function do besides giving results.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effect {
+    /// Nothing: equal arguments give equal results; files count as unchanged.
+    None,
+    /// They read or change the [hidden state](Random) of the simulation.
+    State,
+    /// They change the outside world, or learn from it what changes by itself.
+    Outside,
 }
 
 impl Entry {
     /// A function without effects.
     const fn pure(name: &'static str, signature: &'static str, run: Native) -> Entry {
-        Entry { name, signature, pure: true, run }
+        Entry { name, signature, effect: Effect::None, run }
     }
 
-    /// A function with effects.
+    /// A function with a hidden state.
+    const fn stateful(name: &'static str, signature: &'static str, run: Native) -> Entry {
+        Entry { name, signature, effect: Effect::State, run }
+    }
+
+    /// A function with effects outside.
     const fn impure(name: &'static str, signature: &'static str, run: Native) -> Entry {
-        Entry { name, signature, pure: false, run }
+        Entry { name, signature, effect: Effect::Outside, run }
+    }
+
+    /// Whether the result is a new object.
+    pub fn makes_object(&self) -> bool {
+        self.signature.ends_with("->o")
+    }
+
+    /// The arguments that name files to be read.
+    pub fn files(&self) -> impl Iterator<Item = usize> {
+        self.signature.char_indices().filter(|(_, letter)| *letter == 'f').map(|(at, _)| at)
     }
 
     /// Whether the arguments and the result are of the kinds that the function wants.
@@ -99,6 +135,8 @@ const FAMILIES: &[&[Entry]] = &[
     strings::ENTRIES,
     random::ENTRIES,
     linear_algebra::ENTRIES,
+    householder::ENTRIES,
+    fourier::ENTRIES,
     messages::ENTRIES,
 ];
 

@@ -1,8 +1,8 @@
 //! `ModelicaRandom_*`: random numbers of [Vigna 2016](crate::bibliography#vigna-2016) and
 //! [Vigna 2017](crate::bibliography#vigna-2017).
 //!
-//! A state is an array of Integers of 32 bits: words of 64 bits, the lower half first. Generators
-//! with a hidden state are refused.
+//! A state is an array of Integers of 32 bits: words of 64 bits, the lower half first. The hidden
+//! state is that of one generator xorshift1024*, [`Random`].
 
 use super::Entry;
 use super::call::Call;
@@ -12,13 +12,23 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaRandom_xorshift64star", "aAN", xorshift64_star),
     Entry::pure("ModelicaRandom_xorshift128plus", "aAN", xorshift128_plus),
     Entry::pure("ModelicaRandom_xorshift1024star", "aAN", xorshift1024_star),
-    Entry::impure("ModelicaRandom_automaticGlobalSeed", "n->n", automatic_global_seed),
+    Entry::pure("ModelicaRandom_automaticGlobalSeed", "n->n", automatic_global_seed),
+    Entry::stateful("ModelicaRandom_setInternalState_xorshift1024star", "ann", set_state),
+    Entry::stateful("ModelicaRandom_impureRandom_xorshift1024star", "n->n", impure_random),
 ];
+
+/// The seed that is chosen where the user leaves the choice: always the same, so that a run can be
+/// repeated.
+const AUTOMATIC_SEED: f64 = 1_873_659_421.0;
+
+/// The hidden state of a simulation: what `initializeImpureRandom` made for `impureRandom`.
+#[derive(Debug, Clone, Default)]
+pub struct Random(Option<(Xorshift1024, f64)>);
 
 /// The words of the state, which has `n` Integers.
 fn words(call: &Call<'_>, n: usize) -> Result<Vec<u64>, Fault> {
     let state = call.array(0);
-    if state.len() != n || call.arguments[1].len() != n {
+    if state.len() != n {
         return Err(call.fault(format!("the state has {} Integers, not {n}", state.len())));
     }
     let half = |value: f64| u64::from(value as i64 as u32);
@@ -64,26 +74,69 @@ fn xorshift128_plus(call: &mut Call<'_>) -> Result<(), Fault> {
 }
 
 /// Sixteen words and the position of the current one.
-fn xorshift1024_star(call: &mut Call<'_>) -> Result<(), Fault> {
-    let mut words = words(call, 33)?;
-    let position = call.array(0)[32];
-    if !(0.0..=15.0).contains(&position) {
-        return Err(call.fault(format!("the state has no position {position}")));
+#[derive(Debug, Clone)]
+struct Xorshift1024 {
+    words: [u64; 16],
+    at: usize,
+}
+
+impl Xorshift1024 {
+    /// From the 33 Integers of an argument.
+    fn of(call: &Call<'_>) -> Result<Xorshift1024, Fault> {
+        let words = words(call, 33)?;
+        let position = call.array(0)[32];
+        match <[u64; 16]>::try_from(words) {
+            Ok(words) if (0.0..=15.0).contains(&position) => {
+                Ok(Xorshift1024 { words, at: position as usize })
+            }
+            _ => Err(call.fault(format!("the state has no position {position}"))),
+        }
     }
-    let mut at = position as usize;
-    let mut a = words[at];
-    at = (at + 1) % 16;
-    let mut b = words[at];
-    b ^= b << 31;
-    b ^= b >> 11;
-    a ^= a >> 30;
-    words[at] = a ^ b;
-    let bits = words[at].wrapping_mul(1_181_783_497_276_652_981);
-    call.array_mut(1)[32] = at as f64;
-    done(call, &words, bits)
+
+    fn next(&mut self) -> u64 {
+        let mut a = self.words[self.at];
+        self.at = (self.at + 1) % 16;
+        let mut b = self.words[self.at];
+        b ^= b << 31;
+        b ^= b >> 11;
+        a ^= a >> 30;
+        self.words[self.at] = a ^ b;
+        self.words[self.at].wrapping_mul(1_181_783_497_276_652_981)
+    }
+}
+
+fn xorshift1024_star(call: &mut Call<'_>) -> Result<(), Fault> {
+    if call.arguments[1].len() != 33 {
+        return Err(call.fault("the new state has not 33 Integers"));
+    }
+    let mut state = Xorshift1024::of(call)?;
+    let bits = state.next();
+    call.array_mut(1)[32] = state.at as f64;
+    done(call, &state.words, bits)
 }
 
 fn automatic_global_seed(call: &mut Call<'_>) -> Result<(), Fault> {
-    let milliseconds = call.outside.clock()? * 1e3;
-    call.give((milliseconds % f64::from(i32::MAX)).floor())
+    call.give(AUTOMATIC_SEED)
+}
+
+/// `(state, size, id)`
+fn set_state(call: &mut Call<'_>) -> Result<(), Fault> {
+    let (state, id) = (Xorshift1024::of(call)?, call.number(2));
+    call.outside.random()?.0 = Some((state, id));
+    Ok(())
+}
+
+/// `(id)`
+fn impure_random(call: &mut Call<'_>) -> Result<(), Fault> {
+    let wanted = call.number(0);
+    let bits = match &mut call.outside.random()?.0 {
+        Some((state, id)) if *id == wanted => Some(state.next()),
+        _ => None,
+    };
+    match bits {
+        Some(bits) => call.give(unit(bits)),
+        None => {
+            Err(call.fault("`initializeImpureRandom` was not called before, or with another id"))
+        }
+    }
 }

@@ -63,8 +63,8 @@ impl Instantiation<'_> {
         for (protected, element) in text.elements() {
             match element {
                 Element::Extends(extends) => {
-                    self.check_extends(&text, extends)?;
                     if let Some(base) = bases.next() {
+                        self.check_deselected(&text, *base, extends)?;
                         self.check_base_kind(&text, *base, extends.span)?;
                         self.inherit(id, *base, protected, &extends.deselected, &mut found)?;
                     }
@@ -113,21 +113,6 @@ impl Instantiation<'_> {
             return Err(
                 fault!(TOO_LARGE, "`{}` has too many base classes", text.name).at(text.span())
             );
-        }
-        Ok(())
-    }
-
-    /// Connections that are deselected are refused; the components must exist (MLS §7.4).
-    fn check_extends(&self, text: &Text, extends: &Extends) -> Result<(), Diagnostic> {
-        for deselected in &extends.deselected {
-            if let Deselection::Connection(..) = deselected {
-                return Err(fault!(
-                    NOT_SUPPORTED,
-                    "`break connect` in an extends clause of `{}` is not translated yet",
-                    text.name
-                )
-                .at(extends.span));
-            }
         }
         Ok(())
     }

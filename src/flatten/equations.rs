@@ -2,6 +2,7 @@
 //! where they must be (MLS §8.3, §8.6).
 
 use super::FlatModel;
+use super::balance::Written;
 use super::errors::{NOT_SUPPORTED, TYPE_MISMATCH};
 use super::instance::{MemberState, NodeId};
 use super::instantiation::Instantiation;
@@ -46,6 +47,7 @@ impl Instantiation<'_> {
                 _ => {}
             }
         }
+        let (equations, algorithms) = (model.equations.len(), model.algorithms.len());
         for context in elements.lineage.iter().copied() {
             let text = self.text(context).clone();
             for section in text.sections() {
@@ -54,6 +56,9 @@ impl Instantiation<'_> {
                 }
             }
         }
+        let equations = equations..model.equations.len();
+        let algorithms = algorithms..model.algorithms.len();
+        self.written.push(Written { node, equations, algorithms });
     }
 
     fn add_section(

@@ -77,7 +77,13 @@ codes! {
         "## What it means\n\nAn equation or a statement stands where it cannot: a when-clause inside another one or in a function (MLS §8.3.5.2, §12.2), `connect` in a when-clause or under a condition that changes during the simulation (§9.1), `break` outside of a loop (§11.2.4), `return` outside of a function (§11.2.5).\n\n## Example\n\n```modelica\nwhen x > 1 then\n  when y > 1 then\n    n = pre(n) + 1;\n  end when;\nend when;\n```\n\n## What to do\n\nMove it to a place where it can stand; conditions of nested when-clauses can be combined.",
     /// A part of the language that is not built yet.
     NOT_SUPPORTED = "unsupported-language":
-        "## What it means\n\nThe text is Modelica, and this program does not translate that part of the language yet. The message names it.\n\n## Example\n\n`inStream(port.h_outflow)`\n\n## What to do\n\nWrite the model without it.",
+        "## What it means\n\nThe text is Modelica, and this program does not translate that part of the language yet. The message names it.\n\n## Example\n\n`Real x = tick();`, where `tick` is an impure function\n\n## What to do\n\nWrite the model without it.",
+    /// A class that is balanced only together with others.
+    UNBALANCED_CLASS = "unbalanced-class":
+        "## What it means\n\nA class that takes part in the model has other numbers of equations and of unknowns by itself, where its connectors promise one equation for each flow variable and each input (MLS §4.8). The model as a whole is balanced, so that it can be simulated; but the class cannot be used in another place. Libraries from before Modelica 3 do not know the rule; the warning comes once for each library.\n\n## Example\n\n```modelica\nmodel A\n  Real x;\nend A;\nmodel M\n  A a;\nequation\n  a.x = 1;\nend M;\n```\n\n## What to do\n\nGive the class the equations for its own variables, or declare as an input what others determine.",
+    /// Units that do not fit.
+    INCONSISTENT_UNITS = "inconsistent-units":
+        "## What it means\n\nThe operands of a sum or a relation, the sides of an equation, or a variable and its value have units of different dimensions (MLS ch. 19). Only what has a unit is looked at, and factors such as that of `kPa` are not: numbers, `time` and variables without `unit` fit everything. The model is simulated all the same; a library in old Modelica is told once.\n\n## Example\n\n```modelica\nmodel M\n  Real v(unit = \"m/s\") = 1;\n  Real a(unit = \"m/s2\") = v;\nend M;\n```\n\n## What to do\n\nCorrect the equation or the unit.",
     /// A number of equations other than that of unknowns.
     UNBALANCED_MODEL = "unbalanced-model":
         "## What it means\n\nA model has not as many equations as unknowns (MLS §4.8).\n\n## Example\n\n```modelica\nmodel M\n  Real x;\n  Real y;\nequation\n  x = 1;\nend M;\n```\n\n## What to do\n\nAdd the equations that are missing, or remove those that are too many.",

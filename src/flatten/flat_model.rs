@@ -9,6 +9,7 @@
 //! [`ast::ExpressionKind::Integer`] ordinals.
 
 use crate::eval::Function;
+use crate::external::Resources;
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{self, CausalityPrefix, Expression, Statement};
@@ -35,6 +36,8 @@ pub struct FlatModel {
     pub initial_algorithms: Vec<Vec<Statement>>,
     /// Functions called, directly and indirectly, by full name.
     pub functions: IndexMap<Name, Arc<Function>>,
+    /// The files that it may use.
+    pub resources: Resources,
     /// The `experiment` annotation.
     pub experiment: Experiment,
     /// Where the class is defined.

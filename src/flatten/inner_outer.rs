@@ -1,7 +1,8 @@
 //! `inner` and `outer` components (MLS §5.4): an outer component is another name of the inner one
 //! of that name in the nearest enclosing instance.
 
-use super::errors::{PARTIAL_CLASS, UNKNOWN_NAME};
+use super::BaseType;
+use super::errors::{PARTIAL_CLASS, TYPE_MISMATCH, UNKNOWN_NAME};
 use super::instance::{Declaration, Member, MemberState, NodeId, NodeKind};
 use super::instantiation::Instantiation;
 use super::modification::Modifier;
@@ -31,11 +32,43 @@ impl Instantiation<'_> {
         while let Some(id) = holder {
             if self.is_inner(id, declared.name) {
                 let state = self.member(id, declared.name)?.map(MemberState::own);
+                if let Some(state) = &state {
+                    self.check_same_type(state, declared)?;
+                }
                 return Ok(MemberState::Outer(Box::new(state.unwrap_or(MemberState::Absent))));
             }
             holder = self.nodes[id.0].parent;
         }
         self.missing_inner(node, declared)
+    }
+
+    /// The inner component must be of a subtype of the outer one's type (MLS §5.4): variables of
+    /// the same predefined type with as many dimensions.
+    fn check_same_type(
+        &mut self,
+        inner: &MemberState,
+        outer: &Declaration,
+    ) -> Result<(), Diagnostic> {
+        let MemberState::Single(node) = inner else { return Ok(()) };
+        let NodeKind::Variable(leaf) = &self.nodes[node.0].kind else { return Ok(()) };
+        let variable = leaf.variable;
+        let expanded = self.expand(outer)?;
+        let variable = &self.variables[variable].0;
+        let rank = outer.dims.len() + expanded.dims.len();
+        let is_same = match (expanded.shape.base(), &variable.base) {
+            (Some(BaseType::Enumeration(one)), BaseType::Enumeration(other)) => {
+                one.literals == other.literals
+            }
+            (Some(one), other) => one == *other,
+            (None, _) => false,
+        };
+        if is_same && rank == variable.dims.len() {
+            return Ok(());
+        }
+        let reason = if is_same { "has other dimensions" } else { "is of another type" };
+        Err(fault!(TYPE_MISMATCH, "the inner `{}` {reason} than the outer one", outer.name)
+            .at(outer.span)
+            .related(variable.span, "the inner one"))
     }
 
     fn is_inner(&self, node: NodeId, name: Ident) -> bool {

@@ -148,6 +148,8 @@ pub(super) struct Leaf {
     pub(super) modifier: Modifier,
     /// `flow` or `stream`.
     pub(super) connection: Option<ConnectionPrefix>,
+    /// `input` or `output`, by itself or from what holds it.
+    pub(super) causality: Option<CausalityPrefix>,
     /// Whether its type is a connector.
     pub(super) connector: bool,
     /// The class of its type, if that is not predefined.

@@ -1,6 +1,7 @@
 //! Builds the instance tree (MLS §5.6.1), component by component as they are needed: a parameter
 //! that gives a size may be declared behind the array that it sizes.
 
+use super::balance::Written;
 use super::connections::Connections;
 use super::constants::Read;
 use super::declarations::Expanded;
@@ -34,7 +35,7 @@ use std::sync::Arc;
 
 /// The most scalar variables, the most components and the deepest nesting that are built.
 const MAX_SCALARS: usize = 2_000_000;
-const MAX_INSTANCES: usize = 100_000;
+const MAX_INSTANCES: usize = 1_000_000;
 const MAX_DEPTH: usize = 60;
 
 /// The attributes of the predefined types (MLS §4.9).
@@ -64,9 +65,13 @@ pub(super) struct Instantiation<'a> {
     pub(super) record_scopes: FxHashMap<Name, ScopeId>,
     /// The instance of the model.
     pub(super) root_node: NodeId,
+    /// The simple name of its class.
+    pub(super) model_name: Ident,
     pub(super) warnings: Vec<Diagnostic>,
     /// All connections, as soon as the tree is whole.
     pub(super) connections: Option<Rc<Connections>>,
+    /// Which equations each instance wrote, in the order of the flat model.
+    pub(super) written: Vec<Written>,
     /// Variables whose values shaped the model.
     pub(super) structural: IndexSet<usize>,
     /// Values found so far with the variables that they need; `None` while one is being found.
@@ -106,8 +111,10 @@ impl<'a> Instantiation<'a> {
             function_names: FxHashMap::default(),
             record_scopes: FxHashMap::default(),
             root_node: NodeId(0),
+            model_name: Ident::new(""),
             warnings: Vec::new(),
             connections: None,
+            written: Vec::new(),
             structural: IndexSet::new(),
             values: FxHashMap::default(),
             read: Read::new(),
@@ -592,6 +599,7 @@ impl<'a> Instantiation<'a> {
             variable: self.variables.len(),
             modifier: expanded.modifier,
             connection: inherited.connection,
+            causality: inherited.causality,
             connector: expanded.connector,
             class: expanded.class,
         };

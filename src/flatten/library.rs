@@ -8,6 +8,7 @@ pub use files::LibraryFiles;
 
 use super::errors::UNKNOWN_CLASS;
 use crate::diag::Diagnostic;
+use crate::external::Resources;
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
@@ -44,6 +45,7 @@ pub struct Library {
     /// The classes that were asked for and could not be read.
     broken: Mutex<IndexSet<ClassId>>,
     habits: Habits,
+    resources: Resources,
 }
 
 /// A clone shares what was read and what either of them reads later. What was asked for in vain is
@@ -57,6 +59,7 @@ impl Clone for Library {
             bases: self.bases.clone(),
             broken: Mutex::default(),
             habits: self.habits.clone(),
+            resources: self.resources.clone(),
         }
     }
 }
@@ -113,6 +116,16 @@ impl Library {
     /// A library without classes.
     pub fn new() -> Library {
         Library::default()
+    }
+
+    /// Says which files models may use.
+    pub fn set_resources(&mut self, resources: Resources) {
+        self.resources = resources;
+    }
+
+    /// The files that models may use.
+    pub fn resources(&self) -> &Resources {
+        &self.resources
     }
 
     /// Adds the classes of a file and returns their full names. An error if the package named by
@@ -351,6 +364,11 @@ impl Library {
     /// files can load them and try again.
     pub fn take_missing(&self) -> BTreeSet<Ident> {
         std::mem::take(&mut *locked(&self.missing))
+    }
+
+    /// Whether a library was written for an old Modelica, as far as its habits show.
+    pub(super) fn is_old(&self, library: Ident) -> bool {
+        self.habits.is_old(library)
     }
 
     pub(super) fn root(&self, name: Ident) -> Option<ClassId> {

@@ -9,9 +9,8 @@
 //! and the scope in which their text stands (`scope`). A base class is a scope of its own that
 //! shares the instance of the derived class.
 //!
-//! Not translated, each refused with `unsupported-language` at its place: `break connect` in
-//! extends clauses (§7.4), impure functions outside parameters, initial sections and when-clauses
-//! (§12.3). Clocked expressions (ch. 16), state machines (ch. 17) and the partial application of a
+//! Not translated, each refused with `unsupported-language` at its place: impure functions
+//! outside parameters, initial sections and when-clauses (§12.3). Clocked expressions (ch. 16), state machines (ch. 17) and the partial application of a
 //! function that is itself an input (§12.4.2) end as names that nothing declares.
 
 mod balance;
@@ -20,6 +19,7 @@ mod connections;
 mod constants;
 mod declarations;
 mod defaults;
+mod deselection;
 mod enumerations;
 mod equations;
 pub mod errors;
@@ -40,9 +40,11 @@ mod scope;
 mod shapes;
 mod specialization;
 mod types;
+mod units;
 mod variables;
 mod vectorization;
 
+pub use balance::LocalBalance;
 pub use flat_model::*;
 pub use library::{ClassId, Library, LibraryFiles};
 
@@ -68,6 +70,8 @@ const STACK: usize = 256 << 20;
 pub struct Flattened {
     /// The model.
     pub model: FlatModel,
+    /// The unknowns and equations of the class by itself (MLS §4.8), where they can be told.
+    pub balance: Option<LocalBalance>,
     /// Warnings.
     pub warnings: Vec<Diagnostic>,
 }
@@ -124,12 +128,14 @@ fn flattened(
     }
     tree.check_complete(id, text.span()).map_err(one)?;
     let modifier = Modifier::of_arguments(modification, ScopeId::TOP).map_err(one)?;
+    tree.model_name = text.name.last().unwrap_or(tree.model_name);
     let root = tree.model(id, modifier).map_err(one)?;
     tree.complete(root).map_err(distinct)?;
     let mut model = FlatModel {
         name: text.name.to_string(),
         description: described(&text.definition),
         experiment: experiment(&text.definition),
+        resources: library.resources().clone(),
         span: Some(text.span()),
         ..FlatModel::default()
     };
@@ -144,11 +150,17 @@ fn flattened(
     if !errors.is_empty() {
         return Err(distinct(errors));
     }
+    let classes = tree.local_balances(&connections, &model).map_err(distinct)?;
+    let unit_warnings = tree.unit_warnings(&model);
+    let mut warnings = tree.warnings;
     for (name, function) in tree.functions {
         model.functions.extend(function.map(|function| (name, function)));
     }
-    balance::check(&model).map_err(one)?;
-    Ok(Flattened { model, warnings: distinct(tree.warnings) })
+    balance::check(&model, &classes).map_err(one)?;
+    warnings.extend(balance::warnings(&classes));
+    warnings.extend(unit_warnings);
+    let balance = classes.into_iter().find(|class| class.path.is_empty());
+    Ok(Flattened { model, balance, warnings: distinct(warnings) })
 }
 
 /// The errors without those that say the same of the same place, as those of the elements of an

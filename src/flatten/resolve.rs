@@ -297,6 +297,13 @@ impl Instantiation<'_> {
         {
             return Ok(size);
         }
+        if function.as_ident().is_some_and(|name| name == "getInstanceName")
+            && context != ScopeId::TOP
+            && !self.in_package(self.node_of(context))
+        {
+            let name = self.instance_name(context);
+            return Ok(Expression::new(ExpressionKind::String(name.into()), span));
+        }
         let visit = |uses: &mut dyn Visit| {
             arguments.positional.iter().for_each(|argument| uses.expression(argument));
         };
@@ -339,6 +346,14 @@ impl Instantiation<'_> {
         let function = ComponentReference::from_name(&name, function.span);
         let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
         Ok(Expression::new(kind, span))
+    }
+
+    /// The class that is simulated, and the path to the instance (MLS §3.7.4.4).
+    fn instance_name(&self, context: ScopeId) -> String {
+        match self.nodes[self.node_of(context).0].path.as_str() {
+            "" => self.model_name.to_string(),
+            path => format!("{}.{path}", self.model_name),
+        }
     }
 
     /// A reference as an expression: `time`, a loop variable, a component or a constant.

@@ -14,8 +14,8 @@ use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
-    ClassDefinition, ClassSpecifier, Element, Extends, Restriction, Section, TypeSpecifier,
-    Visibility,
+    ClassDefinition, ClassSpecifier, Deselection, Element, Extends, Restriction, Section,
+    TypeSpecifier, Visibility,
 };
 use std::rc::Rc;
 use std::sync::Arc;
@@ -105,7 +105,9 @@ pub(super) struct Scope {
     pub(super) modifier: Modifier,
     pub(super) defaults: Modifier,
     /// The class that extends this one here.
-    derived: Option<ScopeId>,
+    pub(super) derived: Option<ScopeId>,
+    /// What the extends clause of that class leaves out of this one.
+    pub(super) deselected: Vec<Deselection>,
     bases: Stage<Rc<[ScopeId]>>,
     elements: Stage<Rc<Elements>>,
 }
@@ -160,6 +162,7 @@ impl Instantiation<'_> {
             modifier,
             defaults,
             derived: None,
+            deselected: Vec::new(),
             bases: Stage::Pending,
             elements: Stage::Pending,
         });
@@ -175,6 +178,7 @@ impl Instantiation<'_> {
             modifier: Modifier::default(),
             defaults: Modifier::default(),
             derived: None,
+            deselected: Vec::new(),
             bases: Stage::Done(Rc::new([])),
             elements: Stage::Done(Rc::default()),
         }
@@ -271,7 +275,9 @@ impl Instantiation<'_> {
                 let base = self.lookup_type(parent, &short.target)?;
                 let modifier = self.scope(id).modifier.clone();
                 // A type made of a predefined one has no elements to inherit.
-                if let Type::Class(_) = base {
+                if let Type::Class(class) = base
+                    && self.text(class).restriction() != Restriction::Type
+                {
                     bases.push(self.base(id, base, own, modifier, &short.target)?);
                 }
             }
@@ -306,7 +312,9 @@ impl Instantiation<'_> {
     ) -> Result<ScopeId, Diagnostic> {
         let base = self.lookup_type(id, &extends.base)?;
         let own = Modifier::of_arguments(&extends.modification, id)?;
-        self.base(id, base, own, outer, &extends.base)
+        let scope = self.base(id, base, own, outer, &extends.base)?;
+        self.scopes[scope.0 as usize].deselected = extends.deselected.clone();
+        Ok(scope)
     }
 
     fn base(

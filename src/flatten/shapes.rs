@@ -13,6 +13,7 @@ use crate::syntax::ast::{
     Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, ForIndex,
     NamedArgument, Subscript,
 };
+use crate::syntax::visit::{Rewrite, rewrite_expression};
 use crate::value::Value;
 
 /// Functions that leave the sizes of their first argument as they are.
@@ -31,6 +32,22 @@ const SAME_SIZES: &[&str] = &[
 
 /// Reductions of arrays to scalars.
 const TO_SCALAR: &[&str] = &["sum", "product", "scalar", "ndims"];
+
+/// Writes a number for every iterator: the sizes of an element do not depend on which.
+struct Iterators<'a>(&'a [ForIndex]);
+
+impl Rewrite for Iterators<'_> {
+    fn expression(&mut self, expression: &mut Expression) {
+        if let ExpressionKind::Reference(reference) = &expression.kind
+            && let Some(name) = reference.as_ident()
+            && self.0.iter().any(|index| name == index.name.node)
+        {
+            expression.kind = ExpressionKind::Integer(1);
+            return;
+        }
+        rewrite_expression(self, expression);
+    }
+}
 
 impl Instantiation<'_> {
     /// The sizes of the value that a binding gives; `None` where its text does not tell them.
@@ -93,10 +110,7 @@ impl Instantiation<'_> {
                 let (left, right) = (self.shape_of(left)?, self.shape_of(right)?);
                 binary_shape(*operator, left, right)
             }
-            ExpressionKind::If { branches, otherwise } => {
-                let value = branches.first().map(|(_, value)| value)?;
-                self.shape_of(value).or_else(|| self.shape_of(otherwise))
-            }
+            ExpressionKind::If { branches, otherwise } => self.choice_shape(branches, otherwise),
             ExpressionKind::Array(elements) => {
                 let inner = match elements.first() {
                     Some(first) => self.shape_of(first)?,
@@ -168,8 +182,32 @@ impl Instantiation<'_> {
         }
         // The last iterator is the outer one (MLS §10.4.1).
         sizes.reverse();
-        sizes.extend(self.shape_of(element)?);
+        let mut element = element.clone();
+        Iterators(indices).expression(&mut element);
+        sizes.extend(self.shape_of(&element)?);
         Some(sizes)
+    }
+
+    /// The sizes of the branches; where they differ, those of the branch that parameters choose.
+    fn choice_shape(
+        &mut self,
+        branches: &[(Expression, Expression)],
+        otherwise: &Expression,
+    ) -> Option<Vec<usize>> {
+        let values = branches.iter().map(|(_, value)| value).chain([otherwise]);
+        let mut shapes: Vec<_> = values.filter_map(|value| self.shape_of(value)).collect();
+        shapes.dedup();
+        if shapes.len() <= 1 {
+            return shapes.pop();
+        }
+        for (condition, value) in branches {
+            match self.flat_value(condition).ok()? {
+                Value::Boolean(true) => return self.shape_of(value),
+                Value::Boolean(false) => {}
+                _ => return None,
+            }
+        }
+        self.shape_of(otherwise)
     }
 
     fn matrix_shape(&mut self, rows: &[Vec<Expression>]) -> Option<Vec<usize>> {
@@ -249,7 +287,9 @@ impl Instantiation<'_> {
             },
             "cat" => self.cat_shape(positional),
             // The functions of numbers are applied element by element (MLS §12.4.6).
-            word if crate::symbolic::function::find(word).is_some() => {
+            word if ["mod", "rem", "div", "min", "max"].contains(&word)
+                || crate::symbolic::function::find(word).is_some() =>
+            {
                 let shapes: Option<Vec<Vec<usize>>> =
                     positional.iter().map(|argument| self.shape_of(argument)).collect();
                 shapes?.into_iter().max_by_key(Vec::len)

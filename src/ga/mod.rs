@@ -18,18 +18,21 @@
 pub mod crossover;
 pub mod errors;
 pub mod mutation;
+pub mod optimizer;
 pub mod sampling;
 pub mod selection;
 pub mod survival;
 
 mod gene;
 mod history;
+mod hypervolume;
 mod individual;
 mod population;
 mod rng;
 
 pub use gene::Gene;
 pub use history::{Generation, History};
+pub use hypervolume::hypervolume;
 pub use individual::{FAILED_FITNESS, Individual, has_failed};
 pub use population::{Genomes, best, order, sort_by_fitness};
 pub use rng::Mrg32k3a;

@@ -119,6 +119,12 @@ impl Mrg32k3a {
         self.step() as f64 * NORM
     }
 
+    /// A number of the standard normal distribution; takes two uniform numbers.
+    pub fn normal(&mut self) -> f64 {
+        let (radius, angle) = (self.uniform(), self.uniform());
+        (-2.0 * radius.ln()).sqrt() * (std::f64::consts::TAU * angle).cos()
+    }
+
     /// The generator `count` streams further on, 2¹²⁷ numbers each.
     #[must_use]
     pub fn stream(&self, count: u64) -> Mrg32k3a {

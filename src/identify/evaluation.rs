@@ -80,7 +80,7 @@ impl Simulated {
 }
 
 /// How the measured points are found on a trajectory.
-enum Plan {
+pub(super) enum Plan {
     /// X depends on time alone: at these times, in the order of the points. Only Y is observed.
     AtTimes(Vec<f64>),
     /// X is simulated along with Y: by interpolation in X.
@@ -365,7 +365,7 @@ fn quantity(model: &dyn Model, name: &str) -> Result<Quantity, Fault> {
 }
 
 /// How the points are found; changes `settings` to what that needs.
-fn plan(
+pub(super) fn plan(
     model: &dyn Model,
     varied: &[String],
     x_name: &str,

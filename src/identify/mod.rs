@@ -3,6 +3,7 @@
 
 pub mod errors;
 pub mod fitness;
+pub mod problem;
 
 mod evaluation;
 #[cfg(test)]

@@ -1,10 +1,11 @@
-//! Figures as SVG: panels with points and lines, linear and logarithmic axes, a legend above the
+//! Figures as SVG, and as text for terminals: panels with points and lines, linear and logarithmic axes, a legend above the
 //! data. The same figure gives the same bytes.
 //!
 //! Text is laid out without font files: widths are estimates for a sans-serif face, used only to
 //! keep labels apart. Colours are the palette of Okabe and Ito, which readers with any kind of
 //! colour vision can tell apart; series also differ in weight and marks.
 
+mod chart;
 mod draw;
 mod figure;
 mod ready;

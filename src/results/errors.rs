@@ -15,4 +15,7 @@ codes! {
     /// A table whose parts do not fit together.
     BAD_RESULT_TABLE = "bad-result-table":
         "## What it means\n\nResults could not be put together for writing: a variable has more or fewer values than there are points in time, time goes back, two variables have one name, or an alias leads nowhere.\n\n## Example\n\n`writeTrajectory(\"out.mat\", {\"time\", \"x\"}, [1, 5; 0, 6])`\n\n## What to do\n\nGive one value per point in time, and points in time that do not decrease.",
+    /// A reference that results cannot be compared with.
+    BAD_REFERENCE = "bad-reference":
+        "## What it means\n\nResults cannot be compared with this reference: it has no points in time, or lacks a signal that is to be compared.\n\n## Example\n\n`gapi compare result.mat reference.csv --signals signals.txt` where `signals.txt` names a variable that `reference.csv` does not hold\n\n## What to do\n\nName signals that the reference holds, or leave the list out: then all of them are compared.",
 }

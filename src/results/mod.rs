@@ -5,12 +5,16 @@
 //! | `mat` | `.mat` | MAT version 4 with the matrices `Aclass`, `name`, `description`, `dataInfo`, `data_1`, `data_2` |
 //! | `csv` | `.csv` | a header line, then one line per point in time |
 
+mod comparison;
 mod csv;
 pub mod errors;
 mod mat;
 mod table;
+mod tube;
 
+pub use comparison::{Agreement, Compared, compare, signals_to_compare};
 pub use table::{ResultTable, Series, Values};
+pub use tube::{Deviation, TUBE_TOLERANCE, Tube};
 
 use crate::diag::Fault;
 use crate::registry::{self, Entry, Options};

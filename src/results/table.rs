@@ -77,6 +77,17 @@ impl ResultTable {
             .help_if(suggest::did_you_mean(name, self.names())))
     }
 
+    /// The values of the variable of this name, blanks in names aside, one per point in time.
+    pub(super) fn column_like(&self, name: &str) -> Option<Vec<f64>> {
+        let is_same = |other: &str| {
+            let letters = |text: &'_ str| text.replace(char::is_whitespace, "");
+            other == name || letters(other) == letters(name)
+        };
+        let exact = self.series.iter().position(|series| series.name == name);
+        let index = exact.or_else(|| self.series.iter().position(|s| is_same(&s.name)))?;
+        Some(self.expand(index))
+    }
+
     /// The values of the variable at this place, one per point in time.
     pub(super) fn expand(&self, index: usize) -> Vec<f64> {
         let (target, sign) = self.resolve(index);
@@ -123,6 +134,26 @@ impl ResultTable {
                 bail!(OUTSIDE_RESULTS, "`{name}` at time {time}: the results {range}")
             }
         }
+    }
+
+    /// The variables whose names are wanted; aliases of others take their values with them.
+    #[must_use]
+    pub fn only(&self, wanted: impl Fn(&str) -> bool) -> ResultTable {
+        let kept = self.series.iter().enumerate().filter(|(_, series)| wanted(&series.name));
+        let series = kept.map(|(index, series)| {
+            let values = match &series.values {
+                Values::Alias { of, .. } => match self.series[*of].values {
+                    Values::Constant(_) => {
+                        Values::Constant(self.expand(index).first().copied().unwrap_or(0.0))
+                    }
+                    _ => Values::Trajectory(self.expand(index)),
+                },
+                values => values.clone(),
+            };
+            Series { values, ..series.clone() }
+        });
+        let time = self.time.clone();
+        ResultTable { time_name: self.time_name.clone(), time, series: series.collect() }
     }
 
     /// A fault unless the table is what its documentation promises.

@@ -32,6 +32,14 @@ pub fn flat_model(session: &mut Session, problem: &str) -> Result<FlatModel, Vec
     simulation::flat_model(session, problem)
 }
 
+/// The local balance (MLS §4.8) of a class that is no system by itself, a component with open
+/// connectors; `None` for any other class.
+pub fn component_balance(session: &mut Session, problem: &str) -> Option<String> {
+    let flattened = simulation::flattened(session, problem).ok()?;
+    let balance = flattened.balance?.of_component()?;
+    Some(format!("{}: {balance}", flattened.model.name))
+}
+
 /// The classes that can be simulated among these and all in them: models and blocks that are not
 /// partial, in order of loading; and how many classes there are.
 pub fn models(session: &mut Session, loaded: &[Name]) -> (Vec<Name>, usize) {

@@ -15,7 +15,7 @@ use crate::syntax::ast::{
     Section, Subscript,
 };
 use crate::syntax::{self, Outline};
-use crate::value::Value;
+use crate::value::{EnumerationDefinition, EnumerationValue, Value};
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -57,6 +57,12 @@ impl Classes {
     pub(super) fn add_directory(&mut self, path: PathBuf) {
         self.directories.push(path);
         self.nowhere.clear();
+    }
+
+    /// The files or folders of all classes at the top level.
+    pub(super) fn packages(&self) -> BTreeMap<Ident, PathBuf> {
+        let own = |(name, path): (&Name, &PathBuf)| Some((name.first()?, path.clone()));
+        self.files.iter().filter_map(own).collect()
     }
 
     /// The file or folder of a class at the top level.
@@ -272,6 +278,11 @@ impl Session {
         self.classes.library.define(class).map(|_| ())
     }
 
+    /// Whether a class comes from a folder, so that its parts are read when they are needed.
+    pub(super) fn is_lazy(&self, name: &Name) -> bool {
+        self.classes.files.get(name).is_some_and(|path| self.world.is_dir(path))
+    }
+
     /// Removes a class; whether there was one.
     pub(super) fn remove_class(&mut self, name: &Name) -> bool {
         self.classes.changed();
@@ -348,11 +359,27 @@ impl Session {
             if candidate.parts.len() < 2 || !self.class_exists(&candidate.parent()) {
                 continue;
             }
+            if let Some(literal) = self.enumeration_literal(&candidate) {
+                return Ok(Some(literal));
+            }
             if let Some(value) = self.package_constant(&candidate)? {
                 return Ok(Some(value));
             }
         }
         Ok(None)
+    }
+
+    /// A literal of a loaded enumeration.
+    fn enumeration_literal(&self, name: &Name) -> Option<Value> {
+        let owner = name.parent();
+        let class = self.classes.library.definition(&owner)?;
+        let ClassSpecifier::Enumeration(enumeration) = &class.specifier else { return None };
+        let literals: Vec<Ident> =
+            enumeration.literals.iter().flatten().map(|literal| literal.name.node).collect();
+        let at = literals.iter().position(|literal| Some(*literal) == name.last())?;
+        let name = Name::new(owner.parts.iter().copied());
+        let definition = Arc::new(EnumerationDefinition { name, literals });
+        Some(Value::Enumeration(EnumerationValue { definition, ordinal: at as i64 + 1 }))
     }
 
     /// Asks the library through a function whose output is the constant: it knows the scopes of

@@ -29,30 +29,56 @@ impl Session {
         if self.options.echo != Echo::Everything && self.is_plain_success(expression, value) {
             return;
         }
-        self.answer(value);
+        match value {
+            Value::Tuple(values) if self.dialect == Dialect::OpenModelica => {
+                self.answer_outputs(expression, values);
+            }
+            value => self.answer(value),
+        }
+    }
+
+    /// Several outputs: OpenModelica shows all of its own commands, the first of other functions.
+    fn answer_outputs(&mut self, expression: &Expression, values: &[Value]) {
+        let is_command = matches!(&expression.kind, ExpressionKind::Call { function, .. }
+            if builtins::find(&function.name(), self.dialect).is_some());
+        match (is_command, values.first()) {
+            (false, Some(first)) => self.answer(first),
+            _ => {
+                let all = values.iter().map(|value| show(value, Style::OpenModelica));
+                let line = format!("({})\n", all.collect::<Vec<_>>().join(","));
+                self.print(&line);
+            }
+        }
     }
 
     /// A first assignment, which Dymola announces; the value, which OpenModelica shows.
     pub(super) fn echo_assignment(&mut self, name: Ident, is_new: bool) {
-        let Some(value) = self.scope.get(name).filter(|_| self.may_echo()) else { return };
-        match (self.dialect, self.options.echo) {
-            (Dialect::OpenModelica, _) => {
-                let value = value.clone();
-                self.answer(&value);
+        match self.dialect {
+            Dialect::OpenModelica if self.may_echo() => {
+                if let Some(value) = self.scope.get(name).cloned() {
+                    self.answer(&value);
+                }
             }
-            (Dialect::Dymola, Echo::Everything) if is_new => {
-                let sizes: Vec<String> = value.dims().iter().map(usize::to_string).collect();
-                let dims = match sizes.is_empty() {
-                    true => String::new(),
-                    false => format!(" [{}]", sizes.join(", ")),
-                };
-                let type_name = value.type_name();
-                let base = type_name.split('[').next().unwrap_or_default();
-                let line = format!("Declaring variable: {base} {name}{dims} ;\n");
-                self.print(&line);
-            }
+            Dialect::Dymola if is_new => self.echo_declaration(name),
             _ => {}
         }
+    }
+
+    /// A variable that an assignment made, as Dymola announces it.
+    pub(super) fn echo_declaration(&mut self, name: Ident) {
+        let wanted = self.dialect == Dialect::Dymola
+            && self.options.echo == Echo::Everything
+            && self.may_echo();
+        let Some(value) = self.scope.get(name).filter(|_| wanted) else { return };
+        let sizes: Vec<String> = value.dims().iter().map(usize::to_string).collect();
+        let dims = match sizes.is_empty() {
+            true => String::new(),
+            false => format!(" [{}]", sizes.join(", ")),
+        };
+        let type_name = value.type_name();
+        let base = type_name.split('[').next().unwrap_or_default();
+        let line = format!("Declaring variable: {base} {name}{dims} ;\n");
+        self.print(&line);
     }
 
     /// The empty line that OpenModelica prints for a statement without a value.
@@ -72,9 +98,7 @@ impl Session {
             self.world.print(&line);
         }
         let style = if style == Style::Dymola { Style::Transcript } else { style };
-        if let Some(transcript) = &mut self.transcript {
-            transcript.answer(&format!("{lead}{}\n", show(value, style)));
-        }
+        self.record(&format!("{lead}{}\n", show(value, style)));
     }
 
     /// Whether a command only says that it succeeded: `true` from an output named `ok`.

@@ -39,9 +39,15 @@ codes! {
     /// The user stopped the script.
     INTERRUPTED = "interrupted":
         "## What it means\n\nThe script was stopped with Ctrl-C.\n\n## Example\n\nCtrl-C during a long run\n\n## What to do\n\nNothing; what had been written until then is kept.",
+    /// A script took more time or memory than it was allowed.
+    LIMIT_REACHED = "limit-reached":
+        "## What it means\n\nThe script took more time or memory than `--time-limit` or `--memory-limit` allow, and was stopped.\n\n## Example\n\n`while true loop end while;` with `--time-limit 1`\n\n## What to do\n\nRaise the limit, or let the script do less. What had been written until then is kept.",
     /// A script raised an error by itself.
     SCRIPT_ERROR = "script-error":
         "## What it means\n\nThe script or a function called `Modelica.Utilities.Streams.error` (or `error`).\n\n## Example\n\n`Modelica.Utilities.Streams.error(\"no data\")`\n\n## What to do\n\nThe message is the author's; it says what is wrong.",
+    /// A structural parameter was given a value (a note).
+    TRANSLATED_AGAIN = "translated-again":
+        "## What it means\n\nA script gave a value to a parameter whose value shapes the equations of the model, such as an array size. It has no slot in the translated model, which is therefore translated again before the next simulation. Said once for each name.\n\n## Example\n\n`n = 5;` for a model with `parameter Integer n = 3; Real x[n];`\n\n## What to do\n\nNothing; in a loop over many values each of them costs a translation.",
     /// An import that names nothing.
     BAD_IMPORT = "bad-import":
         "## What it means\n\nAn import clause of a script names a package or class that is not loaded and is no package of built-in commands.\n\n## Example\n\n`import Modelica.Utilties.Streams;`\n\n## What to do\n\nCorrect the name, or load the library first.",

@@ -34,12 +34,14 @@ impl Session {
 
     /// Writes a file anew, with the directories it lies in.
     pub fn write_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
+        self.may_change(path)?;
         self.make_parents(path)?;
         self.world.write(path, bytes).map_err(|error| cannot("write", path, &error))
     }
 
     /// Writes behind the end of a file.
     pub fn append_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
+        self.may_change(path)?;
         self.make_parents(path)?;
         self.world.append(path, bytes).map_err(|error| cannot("write", path, &error))
     }
@@ -69,15 +71,22 @@ impl Session {
         crate::diag::suggest::did_you_mean(&name, entries.iter().map(String::as_str))
     }
 
-    /// Windows' separators, `modelica://` and `file://` in a path.
+    /// Windows' separators, `file://` and `$NAME` at the beginning of a path. A variable that is
+    /// not set or not readable stays as it is.
     pub(super) fn expanded(&self, path: &Path) -> PathBuf {
-        let text = path.to_string_lossy();
-        let text = text.strip_prefix("file://").unwrap_or(&text);
-        match text.contains('\\') {
-            true => PathBuf::from(text.replace('\\', "/")),
-            false => PathBuf::from(text),
+        let text = plain(&path.to_string_lossy());
+        let Some(rest) = text.strip_prefix('$') else { return PathBuf::from(text) };
+        let (name, rest) = rest.split_once('/').unwrap_or((rest, ""));
+        match self.environment_variable(name.trim_matches(['{', '}'])) {
+            Ok(Some(value)) => PathBuf::from(value).join(rest),
+            _ => PathBuf::from(text),
         }
     }
+}
+
+/// A path without `file://` and Windows' separators.
+pub(super) fn plain(path: &str) -> String {
+    path.strip_prefix("file://").unwrap_or(path).replace('\\', "/")
 }
 
 /// The fault of a file that the system does not let us use.
@@ -95,11 +104,13 @@ pub(super) fn cannot(verb: &str, path: &Path, error: &io::Error) -> Fault {
 impl Session {
     /// Removes a file or an empty directory.
     pub(super) fn remove_file(&mut self, path: &Path) -> Result<(), Fault> {
+        self.may_change(path)?;
         self.world.remove(path).map_err(|error| cannot("remove", path, &error))
     }
 
     /// Makes a directory and the ones it lies in.
     pub(super) fn create_directory(&mut self, path: &Path) -> Result<(), Fault> {
+        self.may_change(path)?;
         self.world.create_dirs(path).map_err(|error| cannot("make", path, &error))
     }
 

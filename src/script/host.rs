@@ -5,7 +5,7 @@ use super::builtins::{self, BuiltinId, Failure};
 use super::errors::INTERRUPTED;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::eval::{self, Callee, Function, FunctionBody, Host, Scope};
-use crate::external::Outside;
+use crate::external::{Outside, Random};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::ComponentReference;
@@ -132,12 +132,17 @@ impl Host for Session {
 /// script gives the same numbers in every run.
 impl Outside for Session {
     fn read(&mut self, path: &str) -> Result<Vec<u8>, Fault> {
-        self.read_bytes(Path::new(path))
+        let path = self.resource(path)?;
+        self.read_bytes(&path)
     }
 
     fn print(&mut self, text: &str) -> Result<(), Fault> {
         Session::print(self, &format!("{text}\n"));
         Ok(())
+    }
+
+    fn random(&mut self) -> Result<&mut Random, Fault> {
+        Ok(&mut self.random)
     }
 
     fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {

@@ -45,6 +45,11 @@ impl Messages {
         last
     }
 
+    /// What a user saw at a prompt has been read; what the script can ask for stays.
+    pub fn forget_unread(&mut self) {
+        self.unread.clear();
+    }
+
     /// Forgets everything.
     pub fn clear(&mut self) {
         self.unread.clear();

@@ -7,19 +7,27 @@
 //!            eval (expressions, flow)  builtins (commands)  simulation (models)
 //! ```
 
+mod along;
 pub mod builtins;
 mod callees;
 pub mod checking;
 mod classes;
 pub mod codes;
+mod continuation;
 mod echo;
 pub mod errors;
+pub mod expectation;
 mod files;
 mod follow_up;
 mod host;
 mod identification;
 mod libraries;
 mod messages;
+pub mod parsing;
+mod permissions;
+pub mod problem;
+mod resources;
+mod retranslation;
 mod scripts;
 mod session;
 pub mod simulation;
@@ -27,9 +35,11 @@ mod statements;
 mod tracing;
 mod transcript;
 mod variables;
+pub mod verification;
 pub mod world;
 
 pub use messages::Messages;
+pub use permissions::Permissions;
 pub use session::{Dialect, Echo, Options, RunStatus, Session, Strictness};
 pub use transcript::{Exchange, Transcript};
 

@@ -1,6 +1,6 @@
 //! Scripts that run scripts: finding them, reading each once, and the trace through them.
 
-use super::errors::{INTERRUPTED, SCRIPT_NOT_FOUND, SCRIPTS_TOO_DEEP};
+use super::errors::{INTERRUPTED, LIMIT_REACHED, SCRIPT_NOT_FOUND, SCRIPTS_TOO_DEEP};
 use super::files::cannot;
 use super::session::Stop;
 use super::world::{Stamp, normalized};
@@ -36,6 +36,9 @@ pub(super) struct ParsedScripts {
 impl Session {
     /// Runs a script from the command line as the outermost one.
     pub fn run_file(&mut self, path: &Path) -> RunStatus {
+        if let Some(folder) = path.parent() {
+            self.trust(folder);
+        }
         let name = path.to_string_lossy().into_owned();
         if let Err(diagnostics) = self.run_named(&name) {
             diagnostics.into_iter().for_each(|diagnostic| self.report(diagnostic));
@@ -151,6 +154,11 @@ impl Session {
     }
 
     fn interrupt(&mut self, span: Span) {
+        if let (None, Some(reason)) = (self.stop, self.world.stop_reason()) {
+            self.stop = Some(Stop::Error);
+            self.report(Fault::new(LIMIT_REACHED, reason).at(span));
+            return;
+        }
         if self.stop.is_none() {
             self.stop = Some(Stop::Interrupt);
             let message = "interrupted; what has been found until now is kept";
@@ -274,6 +282,11 @@ fn dialect_of(kind: &InteractiveKind) -> Option<Dialect> {
         .positional
         .first()
         .is_some_and(|first| matches!(&first.kind, ExpressionKind::Reference(_)));
+    match function.parts.first()?.name.as_str() {
+        "OpenModelica" => return Some(Dialect::OpenModelica),
+        "DymolaCommands" => return Some(Dialect::Dymola),
+        _ => {}
+    }
     match function.as_ident()?.as_str() {
         "loadModel"
         | "getErrorString"

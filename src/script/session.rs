@@ -6,15 +6,17 @@ use super::follow_up::FollowUps;
 use super::scripts::{Frame, ParsedScripts};
 use super::simulation::{Models, Translated};
 use super::world::World;
-use super::{Messages, Transcript};
+use super::{Messages, Permissions, Transcript};
 use crate::diag::{Code, Diagnostic, Fault, render};
 use crate::eval::Scope;
+use crate::external::Random;
 use crate::name::{Ident, Name};
 use crate::source::{SourceMap, Span};
 use crate::value::Value;
 use indexmap::IndexMap;
 use std::any::{Any, TypeId};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Whose habits a script follows where the two tools differ.
@@ -60,6 +62,8 @@ pub struct Options {
     pub echo: Echo,
     /// What an error does.
     pub strictness: Strictness,
+    /// What scripts may do outside.
+    pub permissions: Permissions,
 }
 
 /// How a run ended.
@@ -86,6 +90,9 @@ pub(super) enum Stop {
     /// An error with [`Strictness::Strict`].
     Error,
 }
+
+/// Bytes of answers that the log keeps.
+const MAX_LOG: usize = 4 << 20;
 
 /// Work that is done when the outermost script ends.
 type AtEnd = fn(&mut Session) -> Result<(), Diagnostic>;
@@ -119,6 +126,12 @@ pub struct Session {
     pub(super) stop: Option<Stop>,
     /// Where the command that is being run was called.
     pub(super) call: Span,
+    /// Folders below which files may be written and removed.
+    pub(super) trusted: Vec<PathBuf>,
+    /// Environment variables that scripts set.
+    pub(super) environment: BTreeMap<String, String>,
+    /// What was said and answered so far, for `savelog`.
+    pub(super) log: Transcript,
     /// Names of script variables that were said to be parameters of the model too.
     pub(super) shared: BTreeSet<Ident>,
     /// Commands that said that they have no window.
@@ -133,6 +146,8 @@ pub struct Session {
     pub(super) callees: Callees,
     /// The turn of the outermost loop being run, and how many there are.
     pub(super) loop_turn: Option<(usize, Option<usize>)>,
+    /// The hidden state of `Modelica.Math.Random.Utilities.impureRandom`.
+    pub(super) random: Random,
     extensions: HashMap<TypeId, Box<dyn Any>>,
     at_end: Vec<AtEnd>,
 }
@@ -140,7 +155,11 @@ pub struct Session {
 impl Session {
     /// A session in a world, without variables or classes.
     pub fn new(world: Box<dyn World>) -> Session {
+        let trusted = vec![world.current_dir()];
         Session {
+            trusted,
+            environment: BTreeMap::new(),
+            log: Transcript::default(),
             world,
             sources: SourceMap::default(),
             messages: Messages::default(),
@@ -164,6 +183,7 @@ impl Session {
             models: Models::default(),
             callees: Callees::default(),
             loop_turn: None,
+            random: Random::default(),
             extensions: HashMap::new(),
             at_end: Vec::new(),
         }
@@ -228,9 +248,15 @@ impl Session {
     /// Text for standard output and the transcript.
     pub fn print(&mut self, text: &str) {
         self.world.print(text);
+        self.record(text);
+    }
+
+    /// Notes an answer in the transcript and in the log.
+    pub(super) fn record(&mut self, text: &str) {
         if let Some(transcript) = &mut self.transcript {
             transcript.answer(text);
         }
+        self.log.answer_within(text, MAX_LOG);
     }
 
     /// The one place where a diagnostic is told to the user without ending a statement: it goes to
@@ -241,9 +267,7 @@ impl Session {
             true => self.world.eprint(&render::render(&diagnostic, &self.sources, true)),
             false => self.world.eprint(&plain),
         }
-        if let Some(transcript) = &mut self.transcript {
-            transcript.answer(&plain);
-        }
+        self.record(&plain);
         if diagnostic.is_error() && self.options.strictness == Strictness::Strict {
             self.stop.get_or_insert(Stop::Error);
         }

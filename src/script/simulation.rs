@@ -1,7 +1,9 @@
 //! Models of a session: translated once, simulated many times with other parameters.
 
 use super::Session;
+use super::continuation::Continued;
 use super::errors::{BAD_PARAMETER_VALUE, INTERRUPTED, SHARED_NAME, UNKNOWN_PARAMETER};
+use super::retranslation::{self, Changed, Changes};
 use crate::compile::{Access, Program, System};
 use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::flatten::{self, Experiment, FlatModel, Variability};
@@ -14,6 +16,7 @@ use crate::{bail, dae, fault, syntax};
 use indexmap::IndexMap;
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
 
 /// A model ready to be simulated.
 #[derive(Debug)]
@@ -31,12 +34,34 @@ pub struct Translated {
 pub(super) struct Models {
     known: FxHashMap<String, (u64, Arc<Translated>)>,
     last: Option<Current>,
+    /// Where the last simulation ended.
+    end: Option<End>,
+}
+
+/// The end of a simulation: what a later one may begin with.
+#[derive(Debug, Clone)]
+pub(super) struct End {
+    /// Start and stop time, seconds.
+    pub(super) span: (f64, f64),
+    /// The states.
+    pub(super) states: IndexMap<Arc<str>, f64>,
 }
 
 /// The model translated last, with the values that scripts gave to its parameters.
-struct Current {
+#[derive(Clone)]
+pub(super) struct Current {
     model: Arc<Translated>,
     overrides: IndexMap<usize, f64>,
+    changes: Changes,
+    /// Values that the states have at the start in place of those of the initial equations.
+    imported: IndexMap<Arc<str>, f64>,
+}
+
+impl Current {
+    fn of(model: Arc<Translated>) -> Current {
+        let (overrides, imported) = (IndexMap::new(), IndexMap::new());
+        Current { model, overrides, changes: Changes::default(), imported }
+    }
 }
 
 /// What a simulation is asked for; `None` where the model's experiment annotation, or else the
@@ -57,6 +82,8 @@ pub struct Wishes {
     pub method: Option<String>,
     /// Step of a fixed-step integrator, seconds.
     pub fixed_step: Option<f64>,
+    /// Where the time reached is told, as the bits of an `f64`.
+    pub reached: Option<Arc<AtomicU64>>,
 }
 
 /// A simulation that reached its end, or what was computed until it failed.
@@ -90,7 +117,7 @@ pub fn translate(session: &mut Session, problem: &str) -> Result<Arc<Translated>
     let model = translated(session, problem)?;
     let is_last = session.models.last().is_some_and(|last| Arc::ptr_eq(last, &model));
     if !is_last {
-        session.models.last = Some(Current { model: model.clone(), overrides: IndexMap::new() });
+        session.models.last = Some(Current::of(model.clone()));
     }
     Ok(model)
 }
@@ -109,17 +136,25 @@ pub fn translated(
     {
         return Ok(model.clone());
     }
+    let model = Arc::new(compiled(session, problem)?);
+    // Flattening may have loaded packages, which is what the revision counts.
+    let revision = session.library_revision();
+    session.models.known.insert(problem.to_owned(), (revision, model.clone()));
+    Ok(model)
+}
+
+/// A model, translated whether it has been or not.
+pub(super) fn compiled(
+    session: &mut Session,
+    problem: &str,
+) -> Result<Translated, Vec<Diagnostic>> {
     let flat = flat_model(session, problem)?;
     let sorted = dae::sort(&flat).map_err(|error| vec![error])?;
     let program = Program::compile(sorted).map_err(|error| vec![error])?;
     for warning in program.warnings() {
         session.report(warning.clone());
     }
-    let model = Arc::new(Translated { problem: problem.to_owned(), flat, program });
-    // Flattening may have loaded packages, which is what the revision counts.
-    let revision = session.library_revision();
-    session.models.known.insert(problem.to_owned(), (revision, model.clone()));
-    Ok(model)
+    Ok(Translated { problem: problem.to_owned(), flat, program })
 }
 
 /// Flattens a model, `Class` or `Class(modification)`; packages that it needs are loaded.
@@ -127,15 +162,25 @@ pub fn translated(
 /// # Errors
 /// Everything that is wrong with it.
 pub fn flat_model(session: &mut Session, problem: &str) -> Result<FlatModel, Vec<Diagnostic>> {
+    flattened(session, problem).map(|flattened| flattened.model)
+}
+
+/// As [`flat_model`], with the local balance; warnings are reported.
+pub(super) fn flattened(
+    session: &mut Session,
+    problem: &str,
+) -> Result<flatten::Flattened, Vec<Diagnostic>> {
     let source = session.sources.add("problem", problem);
     let (name, modification) =
         syntax::parse_class_with_modification(source, problem).map_err(|error| vec![error])?;
     session.autoload(&name)?;
     loop {
+        let resources = session.resources_for(&name);
+        session.classes.library.set_resources(resources);
         match session.ask_library(|library| flatten::flatten(library, &name, &modification)) {
             Ok(flattened) => {
-                flattened.warnings.into_iter().for_each(|warning| session.report(warning));
-                return Ok(flattened.model);
+                flattened.warnings.iter().for_each(|warning| session.report(warning.clone()));
+                return Ok(flattened);
             }
             Err(errors) => {
                 if !session.load_wanted()? {
@@ -157,7 +202,7 @@ pub fn unknowns(flat: &FlatModel) -> usize {
 }
 
 /// The diagnostic at the place of the call, if it has none of its own.
-fn placed(diagnostic: Diagnostic, call: Span) -> Diagnostic {
+pub(super) fn placed(diagnostic: Diagnostic, call: Span) -> Diagnostic {
     if diagnostic.span().is_known() || !diagnostic.is_error() {
         return diagnostic;
     }
@@ -213,24 +258,78 @@ pub fn simulate(
     let call = session.call;
     let mut settings = settings(&model.program.experiment(), wishes).at(call)?;
     settings.cancel = session.world.interrupt_flag();
-    let mut system = model.program.system();
-    if let Some(current) = &session.models.last
-        && std::ptr::eq(&*current.model, model)
-    {
-        for (parameter, value) in &current.overrides {
-            system.set_parameter(*parameter, *value).at(call)?;
-        }
-    }
+    settings.reached = wishes.reached.clone();
+    let (changed, mut system) = prepared(session, model)?;
+    let model = changed.as_deref().unwrap_or(model);
     let mut trajectory = Trajectory::default();
     match Simulator::new().run(&mut system, &settings, &mut trajectory) {
         Ok(statistics) => {
-            Ok(Simulated { table: result_table(model, &system, &trajectory), statistics })
+            let table = result_table(model, &system.system, &trajectory);
+            session.models.end = Some(end(model, &settings, &table));
+            Ok(Simulated { table, statistics })
         }
         Err(_) if session.world.interrupted() => {
             Err(Fault::new(INTERRUPTED, "interrupted").at(call))
         }
         Err(error) => Err(model.program.explain(&error)),
     }
+}
+
+/// The model as scripts changed it, if that needed another translation, and its system with all
+/// values that scripts gave.
+fn prepared(
+    session: &mut Session,
+    model: &Translated,
+) -> Result<(Option<Arc<Translated>>, Continued), Diagnostic> {
+    let call = session.call;
+    let untouched = Continued { system: model.program.system(), states: Vec::new() };
+    let Some(mut current) = session.models.last.take() else { return Ok((None, untouched)) };
+    if !std::ptr::eq(&*current.model, model) {
+        session.models.last = Some(current);
+        return Ok((None, untouched));
+    }
+    let changed = match current.changes.is_empty() {
+        true => Ok(current.model.clone()),
+        false => session.changed_model(&current.model.clone(), &mut current.changes),
+    };
+    let system = changed.map(|changed| (with_values(&current, &changed), changed));
+    session.models.last = Some(current);
+    match system {
+        Ok((system, changed)) => Ok((Some(changed), system.at(call)?)),
+        Err(mut errors) => {
+            let last = errors.pop();
+            errors.into_iter().for_each(|error| session.report(error));
+            Err(last.unwrap_or_else(|| Fault::new(BAD_PARAMETER_VALUE, "no model").at(call)))
+        }
+    }
+}
+
+/// The system of a model, with the values of the current one.
+fn with_values(current: &Current, model: &Translated) -> Result<Continued, Fault> {
+    let mut system = model.program.system();
+    for (parameter, value) in &current.overrides {
+        let name = &current.model.program.parameters()[*parameter].name;
+        system.set_parameter(model.program.find_parameter(name)?, *value)?;
+    }
+    let names = state_names(model);
+    let states =
+        names.enumerate().filter_map(|(at, name)| Some((at, *current.imported.get(name)?)));
+    Ok(Continued { states: states.collect(), system })
+}
+
+/// The names of the states, in their order.
+pub(super) fn state_names(model: &Translated) -> impl Iterator<Item = &Arc<str>> {
+    let sorted = model.program.sorted();
+    sorted.states.iter().map(|state| &sorted.dae.variable(*state).name)
+}
+
+fn end(model: &Translated, settings: &Settings, table: &ResultTable) -> End {
+    let last = |name: &Arc<str>| {
+        let column = table.column(name).ok()?;
+        Some((name.clone(), *column.last()?))
+    };
+    let stop = table.time.last().copied().unwrap_or(settings.stop);
+    End { span: (settings.start, stop), states: state_names(model).filter_map(last).collect() }
 }
 
 /// All variables of a simulation.
@@ -284,7 +383,45 @@ impl Session {
                 current.overrides.insert(index, value);
                 Ok(())
             }
-            Err(_) => Err(not_tunable(&current.model, name)),
+            Err(_) => {
+                match retranslation::change(&mut current.changes, &current.model, name, value) {
+                    Some(Changed::Structure) => {
+                        let problem = current.model.problem.clone();
+                        self.note_structural(name, &problem);
+                        Ok(())
+                    }
+                    Some(Changed::Start) => Ok(()),
+                    None => Err(not_tunable(&current.model, name)),
+                }
+            }
+        }
+    }
+
+    /// The model translated last and the values that it has, to be restored.
+    pub(super) fn current_values(&self) -> Option<Current> {
+        self.models.last.clone()
+    }
+
+    /// Takes back what was set since.
+    pub(super) fn restore_values(&mut self, before: Option<Current>) {
+        self.models.last = before;
+    }
+
+    /// A system of the model with the values that scripts gave to it.
+    pub(super) fn system_with_values(&mut self, model: &Translated) -> Result<System, Diagnostic> {
+        Ok(prepared(self, model)?.1.system)
+    }
+
+    /// Where the last simulation ended.
+    pub(super) fn last_end(&self) -> Option<&End> {
+        self.models.end.as_ref()
+    }
+
+    /// Gives the states of the model translated last values at the start of its next simulations,
+    /// whatever its initial equations say; none to take them back.
+    pub(super) fn import_states(&mut self, states: IndexMap<Arc<str>, f64>) {
+        if let Some(current) = &mut self.models.last {
+            current.imported = states;
         }
     }
 
@@ -299,13 +436,19 @@ impl Session {
         if !is_parameter {
             return Ok(());
         }
-        let (tunable, number) = (model.program.find_parameter(name.as_str()), value.as_real());
-        let consequence = match (tunable, number) {
-            (Ok(_), Some(number)) => {
-                self.set_parameter(name.as_str(), number)?;
-                "it is set there as well".to_owned()
-            }
-            _ => format!("there it keeps its value: {}", not_tunable(&model, name.as_str())),
+        let is_tunable = model.program.find_parameter(name.as_str()).is_ok();
+        let number = value.as_real().or(match value {
+            Value::Boolean(value) => Some(f64::from(*value)),
+            _ => None,
+        });
+        let set = match number {
+            Some(number) if is_tunable => self.set_parameter(name.as_str(), number).map(|()| true),
+            Some(number) => Ok(self.set_parameter(name.as_str(), number).is_ok()),
+            None => Ok(false),
+        };
+        let consequence = match set? {
+            true => "it is set there as well".to_owned(),
+            false => format!("there it keeps its value: {}", not_tunable(&model, name.as_str())),
         };
         if self.shared.insert(name) {
             let problem = &model.problem;

@@ -31,9 +31,11 @@ impl Session {
     }
 
     fn begin_exchange(&mut self, span: Span) {
+        let statement = self.sources.text(span);
         if let Some(transcript) = &mut self.transcript {
-            transcript.begin(self.sources.text(span));
+            transcript.begin(statement);
         }
+        self.log.begin(statement);
     }
 
     fn interactive(&mut self, statement: &InteractiveStatement) -> Result<(), Diagnostic> {
@@ -61,7 +63,13 @@ impl Session {
                 }
                 Ok(())
             }
-            StatementKind::MultiAssign { .. } => self.execute(statement),
+            StatementKind::MultiAssign { targets, .. } => {
+                let names = targets.iter().flatten().filter_map(ComponentReference::as_ident);
+                let new: Vec<Ident> = names.filter(|name| !self.scope.contains(*name)).collect();
+                self.execute(statement)?;
+                new.into_iter().for_each(|name| self.echo_declaration(name));
+                Ok(())
+            }
             _ => {
                 self.silent += 1;
                 let done = self.execute(statement);

@@ -16,6 +16,8 @@ pub struct Exchange {
 pub struct Transcript {
     /// The exchanges, in order.
     pub exchanges: Vec<Exchange>,
+    /// Bytes of all answers.
+    size: usize,
 }
 
 impl Transcript {
@@ -24,8 +26,25 @@ impl Transcript {
         self.exchanges.push(Exchange { input: input.to_owned(), answer: String::new() });
     }
 
+    /// The statements alone, each ended by a semicolon.
+    pub fn statements(&self) -> String {
+        let inputs = self.exchanges.iter().filter(|exchange| !exchange.input.is_empty());
+        inputs.map(|exchange| format!("{};\n", exchange.input)).collect()
+    }
+
+    /// As [`Transcript::answer`], until the answers are longer than `limit` bytes.
+    pub fn answer_within(&mut self, text: &str, limit: usize) {
+        if self.size <= limit {
+            self.answer(text);
+            if self.size > limit {
+                self.answer("...\n");
+            }
+        }
+    }
+
     /// Adds to the answer of the current statement.
     pub fn answer(&mut self, text: &str) {
+        self.size += text.len();
         if self.exchanges.is_empty() {
             self.exchanges.push(Exchange::default());
         }

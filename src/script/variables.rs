@@ -2,7 +2,9 @@
 
 use super::Session;
 use super::errors::NO_WINDOW;
-use crate::syntax::ast::ComponentReference;
+use crate::diag::Diagnostic;
+use crate::name::Name;
+use crate::syntax::{self, ast::ComponentReference};
 use crate::value::Value;
 use crate::value::show::{Style, show};
 
@@ -27,8 +29,9 @@ impl Session {
         is_flag
     }
 
-    /// The variables whose names match a pattern, with types and values, in alphabetic order.
-    pub(super) fn listing(&self, pattern: &str) -> String {
+    /// The variables whose names match a pattern, with values and if wanted types, in alphabetic
+    /// order.
+    pub(super) fn listing(&self, pattern: &str, types: bool) -> String {
         let matching = |name: &str| matches(pattern.as_bytes(), name.as_bytes());
         let mut variables: Vec<(&str, &Value)> = self
             .scope
@@ -38,9 +41,49 @@ impl Session {
             .collect();
         variables.sort_by_key(|(name, _)| *name);
         let line = |(name, value): (&str, &Value)| {
-            format!("{} {name} = {};\n", value.type_name(), show(value, Style::Dymola))
+            let shown = show(value, Style::Dymola);
+            match types {
+                true => format!("{} {name} = {shown};\n", value.type_name()),
+                false => format!("{name} = {shown};\n"),
+            }
         };
         variables.into_iter().map(line).collect()
+    }
+
+    /// All variables with types and values.
+    pub fn listed_variables(&self) -> String {
+        self.listing("*", true)
+    }
+
+    /// What can be typed: variables, classes, and the parameters and variables of the model
+    /// translated last.
+    pub fn names_to_complete(&self) -> Vec<String> {
+        let variables = self.scope.iter().map(|(name, _)| name.as_str().to_owned());
+        let mut names: Vec<String> = variables.chain(self.classes.function_names()).collect();
+        if let Some(model) = self.last_model() {
+            names.extend(model.flat.variables.keys().map(|name| name.to_string()));
+        }
+        names
+    }
+
+    /// The value of an expression; `name` stands in diagnostics.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn value_of(&mut self, name: &str, text: &str) -> Result<Value, Diagnostic> {
+        let source = self.sources.add(name, text);
+        let expression = syntax::parse_expression(source, text)?;
+        self.evaluate(&expression)
+    }
+
+    /// The text of a loaded class, or of one that can be.
+    pub fn declaration(&mut self, name: &str) -> Option<String> {
+        let name = Name::parse(name);
+        if !self.class_exists(&name) {
+            return None;
+        }
+        let class = self.library().definition(&name)?;
+        Some(syntax::print::class(&class))
     }
 
     /// Says once that a command has no effect because there is no window.

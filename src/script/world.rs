@@ -84,6 +84,19 @@ pub trait World {
     fn interrupt_flag(&self) -> Option<Arc<AtomicBool>> {
         None
     }
+    /// Why the run has to stop although nobody asked, such as a limit of time.
+    fn stop_reason(&self) -> Option<String> {
+        None
+    }
+    /// Runs a command of the operating system with these environment variables besides its own;
+    /// its exit status and what it printed.
+    fn run_command(
+        &mut self,
+        _command: &str,
+        _environment: &BTreeMap<String, String>,
+    ) -> io::Result<(i32, Vec<u8>)> {
+        Err(io::Error::new(io::ErrorKind::Unsupported, "there is no operating system here"))
+    }
     /// Number of threads to use, at least 1.
     fn threads(&self) -> usize;
     /// Where plots and reports go.

@@ -3,7 +3,7 @@
 use super::integrators::{Integrator, bdf};
 use crate::registry::Entry;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, AtomicU64};
 
 /// What is asked of a simulation.
 #[derive(Clone)]
@@ -29,6 +29,8 @@ pub struct Settings {
     pub max_steps: u64,
     /// Looked at before every step: whoever sets it to true ends the simulation.
     pub cancel: Option<Arc<AtomicBool>>,
+    /// The time recorded last, seconds, as the bits of an `f64`: for whoever shows progress.
+    pub reached: Option<Arc<AtomicU64>>,
 }
 
 /// When to record.
@@ -55,6 +57,7 @@ impl Default for Settings {
             max_step: f64::INFINITY,
             max_steps: 1_000_000,
             cancel: None,
+            reached: None,
         }
     }
 }

@@ -6,6 +6,7 @@ use super::{
     DaeSystem, EventOutcome, Failure, Settings, SimError, SimErrorKind, Statistics, Trajectory,
 };
 use crate::registry::Options;
+use std::sync::atomic::Ordering;
 
 /// So many events in a row within the time below are chattering.
 const MOST_EVENTS_AT_ONCE: u32 = 200;
@@ -57,9 +58,10 @@ impl Simulator {
         settings: &Settings,
         out: &mut Trajectory,
     ) -> Result<Statistics, SimError> {
-        // Explicit methods see no algebraic variables if the system can do without.
+        // Explicit methods see no algebraic variables if the system can do without; and without
+        // states there is nothing to integrate, only equations to solve at every point.
         let is_explicit = integrator(&mut self.integrator, settings).is_explicit();
-        system.solve_loops(is_explicit);
+        system.solve_loops(is_explicit || system.n_differential() == 0);
         let n = system.n_differential() + system.n_algebraic();
         self.resize(system, n);
         system.nominal(&mut self.nominal);
@@ -369,6 +371,9 @@ impl Run<'_> {
         let observed = self.problem.system.observe(self.t, self.y, self.observed);
         observed.map_err(|failure: Failure| SimErrorKind::Evaluation(failure))?;
         self.out.push(self.t, self.observed);
+        if let Some(reached) = &self.problem.settings.reached {
+            reached.store(self.t.to_bits(), Ordering::Relaxed);
+        }
         Ok(())
     }
 }

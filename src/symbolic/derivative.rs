@@ -17,22 +17,33 @@ pub fn derivative(pool: &mut Pool, expr: Expr, variable: VarId) -> Expr {
 /// The total derivative Σ ∂/∂v · v′ where `seed` gives v′, `None` for zero. With v′ = dv/dt it is
 /// d/dt.
 pub fn differentiate(pool: &mut Pool, expr: Expr, seed: &dyn Fn(VarId) -> Option<Expr>) -> Expr {
-    let mut slopes = Slopes { pool, of: FxHashMap::default() };
-    for node in slopes.pool.reachable(&[expr]) {
+    differentiate_all(pool, &[expr], seed)[0]
+}
+
+/// [`differentiate`] for several expressions at once: what they share is differentiated once.
+pub fn differentiate_all(
+    pool: &mut Pool,
+    exprs: &[Expr],
+    seed: &dyn Fn(VarId) -> Option<Expr>,
+) -> Vec<Expr> {
+    let mut slopes = Slopes { pool, of: FxHashMap::default(), rights: FxHashMap::default() };
+    for node in slopes.pool.reachable(exprs) {
         if let Some(slope) = slopes.slope(node, seed) {
             slopes.of.insert(node, slope);
         }
     }
-    match slopes.of.get(&expr) {
-        Some(slope) => *slope,
-        None => pool.constant(0.0),
-    }
+    let of = slopes.of;
+    let zero = pool.constant(0.0);
+    exprs.iter().map(|expr| of.get(expr).copied().unwrap_or(zero)).collect()
 }
 
 /// Derivatives of the nodes done so far; those that are zero are not kept.
 struct Slopes<'a> {
     pool: &'a mut Pool,
     of: FxHashMap<Expr, Expr>,
+    /// Right sides of the derivatives of linear systems, by matrix and right side of these, and
+    /// whether these are derivatives themselves.
+    rights: FxHashMap<(Expr, Expr, bool), Expr>,
 }
 
 impl Slopes<'_> {
@@ -57,6 +68,10 @@ impl Slopes<'_> {
             }
             Node::CallDerivative { function, output, inputs, arguments } => {
                 self.call(function, output, &inputs, &arguments)
+            }
+            Node::List(entries) => return self.list(&entries),
+            Node::Solution { matrix, right, output, is_slope } => {
+                self.solution((matrix, right, is_slope), output)
             }
         };
         slope.filter(|slope| self.pool.as_constant(*slope) != Some(0.0))
@@ -163,5 +178,51 @@ impl Slopes<'_> {
             sum = self.total(sum, Some(term));
         }
         sum
+    }
+
+    fn list(&mut self, entries: &[Expr]) -> Option<Expr> {
+        if entries.iter().all(|entry| self.get(*entry).is_none()) {
+            return None;
+        }
+        let zero = self.pool.constant(0.0);
+        let slopes: Vec<Expr> = entries.iter().map(|e| self.get(*e).unwrap_or(zero)).collect();
+        Some(self.pool.list(&slopes))
+    }
+
+    /// A x = b gives A x′ = b′ − A′ x.
+    fn solution(&mut self, system: (Expr, Expr, bool), output: u32) -> Option<Expr> {
+        let (matrix, right, _) = system;
+        if self.get(matrix).is_none() && self.get(right).is_none() {
+            return None;
+        }
+        let of_slopes = match self.rights.get(&system) {
+            Some(known) => *known,
+            None => {
+                let rights = self.right_of_slopes(system);
+                let list = self.pool.list(&rights);
+                self.rights.insert(system, list);
+                list
+            }
+        };
+        Some(self.pool.any_solution(matrix, of_slopes, output, true))
+    }
+
+    fn right_of_slopes(&mut self, (matrix, right, is_slope): (Expr, Expr, bool)) -> Vec<Expr> {
+        let n = self.pool.entries(right).len();
+        let zero = self.pool.constant(0.0);
+        let mut rights = match self.get(right) {
+            Some(slopes) => self.pool.entries(slopes),
+            None => vec![zero; n],
+        };
+        let Some(slopes) = self.get(matrix) else { return rights };
+        for (at, slope) in self.pool.entries(slopes).into_iter().enumerate() {
+            if self.pool.as_constant(slope) != Some(0.0) {
+                let unknown = (at % n) as u32;
+                let x = self.pool.any_solution(matrix, right, unknown, is_slope);
+                let term = self.pool.mul(slope, x);
+                rights[at / n] = self.pool.sub(rights[at / n], term);
+            }
+        }
+        rights
     }
 }

@@ -30,7 +30,15 @@ impl Environment for [f64] {
 pub fn evaluate<E: Environment + ?Sized>(pool: &Pool, expr: Expr, environment: &E) -> f64 {
     let mut values: FxHashMap<Expr, f64> = FxHashMap::default();
     for node in pool.reachable(&[expr]) {
-        let value = node_value(pool.node(node), environment, |operand| values[&operand]);
+        let get = |operand: Expr| values[&operand];
+        let value = match pool.node(node) {
+            Node::List(_) => f64::NAN,
+            Node::Solution { matrix, right, output, .. } => {
+                let entries = |list: Expr| pool.entries(list).into_iter().map(get).collect();
+                solve_linear(entries(*matrix), entries(*right))[*output as usize]
+            }
+            other => node_value(other, environment, get),
+        };
         values.insert(node, value);
     }
     values[&expr]
@@ -68,5 +76,24 @@ fn node_value<E: Environment + ?Sized>(
             let arguments: Vec<f64> = arguments.iter().map(|a| get(*a)).collect();
             environment.call(*function, *output, inputs, &arguments)
         }
+        Node::List(_) | Node::Solution { .. } => f64::NAN,
     }
+}
+
+/// The solution of A x = b by elimination with row exchanges, A by rows; without a finite value
+/// where A is singular.
+fn solve_linear(mut a: Vec<f64>, mut b: Vec<f64>) -> Vec<f64> {
+    let n = b.len();
+    for k in 0..n {
+        let largest = (k..n).max_by(|i, j| a[i * n + k].abs().total_cmp(&a[j * n + k].abs()));
+        let pivot = largest.unwrap_or(k);
+        (0..n).for_each(|column| a.swap(k * n + column, pivot * n + column));
+        b.swap(k, pivot);
+        for row in (0..n).filter(|row| *row != k) {
+            let factor = a[row * n + k] / a[k * n + k];
+            (k..n).for_each(|column| a[row * n + column] -= factor * a[k * n + column]);
+            b[row] -= factor * b[k];
+        }
+    }
+    (0..n).map(|k| b[k] / a[k * n + k]).collect()
 }

@@ -30,7 +30,7 @@ mod substitute;
 mod tests;
 
 pub use collect::collect_terms;
-pub use derivative::{derivative, differentiate};
+pub use derivative::{derivative, differentiate, differentiate_all};
 pub use evaluate::{Environment, evaluate};
 pub use node::{Arguments, Expr, Node, Number, RelationOperator, VarId};
 pub use pool::Pool;

@@ -164,6 +164,20 @@ pub enum Node {
         /// The scalars of its inputs.
         arguments: Box<[Expr]>,
     },
+    /// Several values, as an operand of [`Node::Solution`] alone.
+    List(Box<[Expr]>),
+    /// An unknown of a system of linear equations A x = b.
+    Solution {
+        /// The list of the entries of A, by rows.
+        matrix: Expr,
+        /// The list of the entries of b.
+        right: Expr,
+        /// Which unknown.
+        output: u32,
+        /// Whether x is the derivative of the solution of another system with the same matrix:
+        /// where this is singular it need not have a solution.
+        is_slope: bool,
+    },
 }
 
 impl Node {
@@ -191,6 +205,11 @@ impl Node {
             }
             Node::Call { arguments, .. } | Node::CallDerivative { arguments, .. } => {
                 arguments.iter().copied().for_each(visit);
+            }
+            Node::List(entries) => entries.iter().copied().for_each(visit),
+            Node::Solution { matrix, right, .. } => {
+                visit(*matrix);
+                visit(*right);
             }
         }
     }

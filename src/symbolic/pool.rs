@@ -48,6 +48,14 @@ impl Pool {
         }
     }
 
+    /// The entries of a list; the expression itself if it is none.
+    pub fn entries(&self, expr: Expr) -> Vec<Expr> {
+        match self.node(expr) {
+            Node::List(entries) => entries.to_vec(),
+            _ => vec![expr],
+        }
+    }
+
     /// A number.
     pub fn constant(&mut self, value: f64) -> Expr {
         self.intern(Node::Constant(Number(value)))

@@ -99,6 +99,10 @@ fn pieces(node: &Node, name: &dyn Fn(VarId) -> String) -> Vec<Piece> {
             let head = format!("f{function}.{output}'{}", inputs.join("'"));
             call(head, arguments.iter().copied())
         }
+        Node::List(entries) => call(String::new(), entries.iter().copied()),
+        Node::Solution { matrix, right, output, .. } => {
+            call(format!("solve.{output}"), [*matrix, *right].into_iter())
+        }
     }
 }
 

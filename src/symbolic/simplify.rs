@@ -230,6 +230,40 @@ impl Pool {
         self.intern(Node::CallDerivative { function, output, inputs, arguments: arguments.into() })
     }
 
+    /// Several values, for [`Pool::solution`].
+    pub fn list(&mut self, entries: &[Expr]) -> Expr {
+        self.intern(Node::List(entries.into()))
+    }
+
+    /// An unknown of A x = b; the list `matrix` holds n × n entries by rows, the list `right` n.
+    pub fn solution(&mut self, matrix: Expr, right: Expr, output: u32) -> Expr {
+        self.any_solution(matrix, right, output, false)
+    }
+
+    /// Another unknown of the system that an expression is an unknown of.
+    pub fn other_unknown(&mut self, solution: Expr, output: u32) -> Expr {
+        match *self.node(solution) {
+            Node::Solution { matrix, right, is_slope, .. } => {
+                self.any_solution(matrix, right, output, is_slope)
+            }
+            _ => solution,
+        }
+    }
+
+    pub(super) fn any_solution(
+        &mut self,
+        matrix: Expr,
+        right: Expr,
+        output: u32,
+        is_slope: bool,
+    ) -> Expr {
+        let zero = |e: &Expr| self.as_constant(*e) == Some(0.0);
+        match self.entries(right).iter().all(zero) {
+            true => self.constant(0.0),
+            false => self.intern(Node::Solution { matrix, right, output, is_slope }),
+        }
+    }
+
     /// The result of an operation on two constants, if it is finite.
     fn fold(&mut self, a: Expr, b: Expr, operation: fn(f64, f64) -> f64) -> Option<Expr> {
         let value = operation(self.as_constant(a)?, self.as_constant(b)?);
@@ -266,6 +300,13 @@ impl Pool {
             Node::CallDerivative { function, output, inputs, arguments } => {
                 let arguments: Vec<Expr> = arguments.iter().map(|a| map(*a)).collect();
                 self.call_derivative(*function, *output, inputs, &arguments)
+            }
+            Node::List(entries) => {
+                let entries: Vec<Expr> = entries.iter().map(|e| map(*e)).collect();
+                self.list(&entries)
+            }
+            Node::Solution { matrix, right, output, is_slope } => {
+                self.any_solution(map(*matrix), map(*right), *output, *is_slope)
             }
         }
     }

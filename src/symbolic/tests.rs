@@ -394,3 +394,31 @@ fn shared_sums_do_not_explode() {
     assert_eq!(collect_terms(&mut pool, expr), expr);
     assert_eq!(evaluate(&pool, expr, &[1.0][..]), 2f64.powi(200));
 }
+
+#[test]
+fn solutions_of_linear_systems_have_values_and_slopes() {
+    let mut pool = Pool::new();
+    let [x, y] = [0, 1].map(|v| pool.variable(VarId(v)));
+    let one = pool.constant(1.0);
+    let sine = pool.function("sin", &[x]);
+    // x u + sin(x) v = 1, u + y v = y
+    let matrix = pool.list(&[x, sine, one, y]);
+    let right = pool.list(&[one, y]);
+    let exact = |x: f64, y: f64| (y - y * x.sin()) / (x * y - x.sin());
+    let u = pool.solution(matrix, right, 0);
+    assert!((evaluate(&pool, u, &[2.0, 3.0][..]) - exact(2.0, 3.0)).abs() < 1e-14);
+    for (at, step) in [(0, [1e-6, 0.0]), (1, [0.0, 1e-6])] {
+        let slope = derivative(&mut pool, u, VarId(at));
+        let difference =
+            (exact(2.0 + step[0], 3.0 + step[1]) - exact(2.0 - step[0], 3.0 - step[1])) / 2e-6;
+        assert!((evaluate(&pool, slope, &[2.0, 3.0][..]) - difference).abs() < 1e-8);
+    }
+    // Of a second derivative too.
+    let slope = derivative(&mut pool, u, VarId(0));
+    let curvature = derivative(&mut pool, slope, VarId(0));
+    let difference = (exact(2.001, 3.0) - 2.0 * exact(2.0, 3.0) + exact(1.999, 3.0)) / 1e-6;
+    assert!((evaluate(&pool, curvature, &[2.0, 3.0][..]) - difference).abs() < 1e-4);
+    let zero = pool.constant(0.0);
+    let nothing = pool.list(&[zero, zero]);
+    assert_eq!(pool.solution(matrix, nothing, 1), zero);
+}

@@ -5,34 +5,14 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use gapilib::flatten::{self, Library, LibraryFiles};
 use gapilib::name::Name;
-use gapilib::source::{SourceId, SourceMap};
 use gapilib::syntax::{self, Outline};
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The files of a disk.
-#[derive(Debug, Default)]
-struct Disk(SourceMap);
-
-impl LibraryFiles for Disk {
-    fn read(&self, path: &Path) -> Result<(SourceId, Arc<str>), gapilib::diag::Fault> {
-        let text: Arc<str> = syntax::decode(&std::fs::read(path).unwrap_or_default()).0.into();
-        Ok((self.0.add(path.display().to_string(), text.clone()), text))
-    }
-
-    fn list(&self, folder: &Path) -> Vec<String> {
-        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-        let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
-        let mut names: Vec<String> = names.collect();
-        names.sort();
-        names
-    }
-
-    fn is_file(&self, path: &Path) -> bool {
-        path.is_file()
-    }
-}
+#[path = "disk.rs"]
+mod disk;
+use disk::Disk;
 
 fn texts(folder: &Path) -> Vec<String> {
     let mut found = Vec::new();

@@ -6,7 +6,6 @@ model types_of_bindings
   parameter Integer m = 4/2;
   parameter Real s = "text";
   parameter Boolean flag = r + 1;
-  parameter E e = n;
   parameter Real fine = n;
   parameter E good = E.b;
 end types_of_bindings;

@@ -25,7 +25,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("syntax", &["source", "name", "diag"]),
     ("eval", &["external", "syntax", "value", "symbolic", "name", "source", "diag"]),
     ("results", &["sim", "mat", "registry", "diag"]),
-    ("flatten", &["syntax", "eval", "value", "symbolic", "name", "source", "diag"]),
+    ("flatten", &["external", "syntax", "eval", "value", "symbolic", "name", "source", "diag"]),
     (
         "dae",
         &[
@@ -53,8 +53,8 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
-            "script", "identify", "teach", "compile", "results", "plot", "models", "registry",
-            "name", "source", "diag",
+            "script", "identify", "teach", "compile", "results", "plot", "sim", "models",
+            "registry", "name", "source", "diag",
         ],
     ),
 ];

@@ -17,7 +17,7 @@ end Decay;
 ";
 
 /// A working directory with these files.
-fn folder(files: &[(&str, &str)]) -> TempDir {
+pub(crate) fn folder(files: &[(&str, &str)]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, text) in files {
         fs::write(folder.path().join(name), text).unwrap();
@@ -32,7 +32,7 @@ fn command(folder: &Path, arguments: &[&str]) -> Command {
 }
 
 /// What a run left: exit code, standard output, standard error.
-fn gapi(folder: &TempDir, arguments: &[&str]) -> (i32, String, String) {
+pub(crate) fn gapi(folder: &TempDir, arguments: &[&str]) -> (i32, String, String) {
     let Output { status, stdout, stderr } = command(folder.path(), arguments).output().unwrap();
     let text = |bytes| String::from_utf8(bytes).unwrap();
     (status.code().expect("ended by itself"), text(stdout), text(stderr))
@@ -43,7 +43,19 @@ fn version_and_help() {
     let here = folder(&[]);
     let (code, out, _) = gapi(&here, &["--version"]);
     assert_eq!((code, out.trim()), (0, concat!("gapi ", env!("CARGO_PKG_VERSION"))));
-    for name in ["run", "simulate", "check", "flatten", "explain", "completions"] {
+    for name in [
+        "run",
+        "test",
+        "repl",
+        "help",
+        "simulate",
+        "check",
+        "flatten",
+        "compare",
+        "verify",
+        "explain",
+        "completions",
+    ] {
         let (code, out, _) = gapi(&here, &[name, "--help"]);
         assert_eq!(code, 0);
         assert!(out.contains("Example") && out.contains(&format!("  gapi {name} ")), "{out}");
@@ -161,6 +173,24 @@ fn check_flatten_explain_completions() {
     assert_eq!(gapi(&here, &["check", "missing.mo"]).0, 1);
 }
 
+/// A component with open connectors is no system by itself; its local balance is told (MLS §4.8).
+#[test]
+fn a_lone_component_is_balanced() {
+    let text = "connector Pin Real v; flow Real i; end Pin;
+        connector In = input Real;
+        model Resistor
+          Pin p, n; In R; Real v;
+        equation
+          v = p.v - n.v; v = R*p.i; p.i + n.i = 0;
+        end Resistor;";
+    let here = folder(&[("Resistor.mo", text)]);
+    let (code, out, _) = gapi(&here, &["check", "Resistor.mo", "--model", "Resistor"]);
+    let balance =
+        "balanced: 6 unknowns, 6 equations with 2 flow variables of connectors and 1 input";
+    assert!(code == 0 && out.contains(balance), "{out}");
+    assert_eq!(gapi(&here, &["check", "Resistor.mo"]).0, 0);
+}
+
 #[test]
 fn colours_are_as_asked() {
     let here = folder(&[("bad.mos", "a = b\n")]);
@@ -236,4 +266,90 @@ fn an_interrupted_identification_writes_what_it_has() {
     for name in ["history.csv", "result.json"] {
         assert!(here.path().join("results").join(name).is_file(), "{name}: {shown}\n{errors}");
     }
+}
+
+/// A reference of the decay with points at 0, 0.1 … 1, computed from its solution at another rate.
+fn reference(rate: f64) -> String {
+    let line =
+        |i: i32| format!("{},{}\n", f64::from(i) / 10.0, (-rate * f64::from(i) / 10.0).exp());
+    format!("\"time\",\"x\"\n{}", (0..=10).map(line).collect::<String>())
+}
+
+#[test]
+fn results_are_compared_with_references() {
+    let (right, wrong) = (reference(1.0), reference(1.1));
+    let here = folder(&[
+        ("Decay.mo", DECAY),
+        ("right.csv", &right),
+        ("wrong.csv", &wrong),
+        ("signals.txt", "time\nx\n"),
+        ("strange.txt", "y\n"),
+    ]);
+    let simulate =
+        |to: &str| gapi(&here, &["simulate", "Decay.mo", "--model", "Decay", "--output", to]);
+    for result in ["result.mat", "result.csv"] {
+        assert_eq!(simulate(result).0, 0);
+        let agrees = gapi(&here, &["compare", result, "right.csv", "--signals", "signals.txt"]);
+        assert_eq!((agrees.0, &*agrees.1), (0, "x  agrees\n1 of 1 signals agree\n"));
+        let (code, out, _) = gapi(&here, &["compare", result, "wrong.csv"]);
+        assert_eq!(code, 1);
+        // The solutions are farthest apart, relative to a tube of equal height, near 1.
+        assert!(out.starts_with("x  differs at ") && out.contains("0 of 1 signals agree"), "{out}");
+        assert_eq!(gapi(&here, &["compare", result, "wrong.csv", "--tolerance", "0.1"]).0, 0);
+    }
+    let (code, _, said) =
+        gapi(&here, &["compare", "result.mat", "right.csv", "--signals", "strange.txt"]);
+    assert!(code == 1 && said.contains("[bad-reference]"), "{said}");
+    assert_eq!(gapi(&here, &["compare", "result.mat", "nowhere.csv"]).0, 1);
+}
+
+#[test]
+fn libraries_are_verified_against_collections() {
+    let here = folder(&[]);
+    let library = "package Lib
+      model Right Real x(start = 1, fixed = true); equation der(x) = -x; end Right;
+      model Wrong Real x(start = 1, fixed = true); equation der(x) = -1.1*x; end Wrong;
+      model Unknown Real x = y; end Unknown;
+      model Alone Real x = time; end Alone;
+    end Lib;";
+    fs::write(here.path().join("Lib.mo"), library).unwrap();
+    for model in ["Right", "Wrong", "Unknown"] {
+        let folder = here.path().join("references/Lib").join(model);
+        fs::create_dir_all(&folder).unwrap();
+        fs::write(folder.join(format!("{model}.csv")), reference(1.0)).unwrap();
+    }
+    let alone = here.path().join("references/Lib/Alone");
+    fs::create_dir_all(&alone).unwrap();
+    fs::write(alone.join("comparisonSignals.txt"), "x\n").unwrap();
+    let arguments = ["verify", "Lib.mo", "--references", "references", "--output", "table.json"];
+    let (code, out, said) = gapi(&here, &[&arguments[..], &["--output", "table.csv"]].concat());
+    assert_eq!((code, &*said), (1, ""));
+    let last = "4 cases: 3 compiled, 3 simulated, 1 agreed, 1 differ, 1 without a reference";
+    assert_eq!(out.lines().last(), Some(last), "{out}");
+    assert!(out.contains("flatten: unknown-name"), "{out}");
+    let json = fs::read_to_string(here.path().join("table.json")).unwrap();
+    assert!(json.contains("\"signal\": \"x\""), "{json}");
+    let csv = fs::read_to_string(here.path().join("table.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 5, "{csv}");
+    let good = [&arguments[..4], &["--filter", "Right"]].concat();
+    assert_eq!(gapi(&here, &good).0, 0);
+    assert_eq!(gapi(&here, &["verify", "Lib.mo", "--references", "nowhere"]).0, 1);
+}
+
+#[test]
+fn simulations_tell_their_cost_and_draw() {
+    let here = folder(&[("Decay.mo", DECAY)]);
+    let arguments = ["simulate", "Decay.mo", "--model", "Decay", "--stats", "--plot", "x"];
+    let (code, out, said) = gapi(&here, &arguments);
+    assert_eq!((code, &*said), (0, ""));
+    assert!(out.contains("accepted steps") && out.contains("factorizations"), "{out}");
+    assert!(out.contains("   1.0000e0 │") && out.contains("1 s"), "{out}");
+    let (code, out, _) = gapi(&here, &[&arguments[..], &["--figure", "x.svg"]].concat());
+    assert_eq!(code, 0);
+    assert!(out.contains("figure: x.svg"), "{out}");
+    let svg = fs::read_to_string(here.path().join("x.svg")).unwrap();
+    assert!(svg.starts_with("<svg") || svg.contains("<svg"), "{svg}");
+    let wrong = ["simulate", "Decay.mo", "--model", "Decay", "--plot", "y"];
+    let (code, _, said) = gapi(&here, &wrong);
+    assert!(code == 1 && said.contains("[unknown-result-variable]"), "{said}");
 }

@@ -62,8 +62,10 @@ fn compliance_cases_are_judged_right() {
         |case| {
             let (library, class) = (corpus.library.clone(), case.class.clone());
             Box::new(move |progress| match class {
-                Ok(class) => run(&library, &class, progress),
-                Err(error) => Err(Failure { stage: Stage::Load, errors: vec![error] }),
+                Ok(class) => run(&library, &class, None, progress),
+                Err(error) => {
+                    Err(Failure { stage: Stage::Load, errors: vec![error], signal: None })
+                }
             })
         },
         BUDGET,

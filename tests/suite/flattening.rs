@@ -25,7 +25,10 @@ fn flattened(path: &Path) -> String {
             if let Err(error) = parse_stored_definition(source, &text) {
                 panic!("the flat text does not parse:\n{}", render(&error, &sources, false));
             }
-            text
+            let warnings = flattened.warnings.iter();
+            let told: String =
+                warnings.map(|one| format!("\n{}", render(one, &sources, false))).collect();
+            text + &told
         }
         Err(errors) => {
             errors.iter().map(|error| render(error, &sources, false)).collect::<Vec<_>>().join("\n")

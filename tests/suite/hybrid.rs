@@ -513,3 +513,87 @@ fn assertions_of_functions_hold_in_the_branch_taken_only() {
     near(run.at("y", 0.4), 0.6f64.sqrt(), 1e-12);
     near(run.last("y"), -1.0, 1e-12);
 }
+
+#[test]
+fn loops_without_states_are_solved_at_every_point() {
+    // G (T - 300) = P(T) with a power that falls with the temperature: the small difference of
+    // large numbers shows whether T was interpolated.
+    let text = "model H Real T(start = 300, nominal = 300); Real p; Real q;
+        equation p = 100*sin(6.283185307179586*time)^2/(1 + 1e-3*(T - 300)); q = 50*(T - 300);
+        p = q; end H;";
+    let run = simulated(text, 1.0);
+    for (time, p) in run.rows.time().iter().zip(run.column("q")) {
+        let power = 100.0 * (std::f64::consts::TAU * time).sin().powi(2);
+        // d (1 + d/1000) = power/50 for the difference d.
+        let d = 500.0 * ((1.0 + 4e-3 * power / 50.0).sqrt() - 1.0);
+        near(p, 50.0 * d, 1e-6);
+    }
+}
+
+#[test]
+fn a_rectifier_with_an_ideal_diode_conducts_at_the_exact_times() {
+    // sin(2 π t) through a diode into a capacitor with a load: conducting until the current
+    // C dv/dt + v/R is zero, then v falls exponentially until the source overtakes it.
+    let text = "model R parameter Real r = 5; parameter Real c = 0.1; Real u = sin(6.283185307179586*time);
+        Real v(start = 0, fixed = true); Real i; Real s; Boolean off = s < 0;
+        equation u - v = if off then s else 1e-3*s; i = if off then 0 else s;
+        c*der(v) = i - v/r; end R;";
+    let run = simulated(text, 3.0);
+    let charged = run.jumps("off");
+    let omega = std::f64::consts::TAU;
+    // The series resistance of 1e-3 shifts the ideal times by its share of the impedances.
+    let begin = 0.5 - (omega * 5.0 * 0.1f64).atan() / omega;
+    near(charged[0], begin, 1e-3);
+    let mut t = 1.0;
+    let decay = |t: f64| (omega * begin).sin() * (-(t - begin) / 0.5).exp();
+    for _ in 0..100 {
+        let f = (omega * t).sin() - decay(t);
+        let slope = omega * (omega * t).cos() + decay(t) / 0.5;
+        t -= f / slope;
+    }
+    near(charged[1], t, 1e-3);
+    assert_eq!(charged.len(), 5, "{charged:?}");
+    near(charged[3] - charged[1], 1.0, 2e-3);
+    near(charged[4] - charged[2], 1.0, 2e-3);
+}
+
+/// Every simulation of many with other parameters ends, or fails with a code, a time and names of
+/// the model; the same program and workspace serve all of them.
+#[test]
+fn many_simulations_end_or_fail_with_a_reason() {
+    let text = "model M parameter Real a = 1; parameter Real b = 1; parameter Real limit = 2;
+        Real x(start = 1, fixed = true); Real y;
+        equation der(x) = a*x - b*x^3; sqrt(y) = x - a; assert(x < limit, \"too large\"); end M;";
+    let program = compiled(text).expect("it compiles");
+    let mut system = program.system();
+    let (mut simulator, mut rows) = (Simulator::new(), Trajectory::default());
+    let settings = Settings { stop: 2.0, output: OutputGrid::Intervals(10), ..Settings::default() };
+    let mut seed = 1u64;
+    let mut random = || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let mut counts = std::collections::BTreeMap::<&str, usize>::new();
+    let runs = std::env::var("GAPILIB_RUNS").ok().and_then(|n| n.parse().ok()).unwrap_or(2000);
+    for _ in 0..runs {
+        for name in ["a", "b", "limit"] {
+            let at = program.find_parameter(name).expect("a parameter");
+            let value = if name == "limit" { 0.5 + 2.0 * random() } else { 4.0 * random() - 2.0 };
+            system.set_parameter(at, value).expect("a number");
+        }
+        let ended = simulator.run(&mut system, &settings, &mut rows);
+        let code = match &ended {
+            Ok(_) => "ended",
+            Err(error) => {
+                let said = program.explain(error);
+                assert!((0.0..=2.0).contains(&error.time), "{}", error.time);
+                assert!(said.message.contains("t = ") || said.message.contains('`'), "{said}");
+                said.code.slug
+            }
+        };
+        *counts.entry(code).or_default() += 1;
+    }
+    assert_eq!(counts.values().sum::<usize>(), runs);
+    assert!(counts.contains_key("ended") && counts.contains_key("assertion-failed"), "{counts:?}");
+    assert!(counts.len() >= 3, "{counts:?}");
+}

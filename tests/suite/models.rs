@@ -23,9 +23,11 @@ fn packages_list_their_classes() {
 /// Every model of `models/CaseStudies` says how long it is to be simulated, and can be.
 #[test]
 fn case_studies_simulate_as_they_say() {
-    for model in
-        ["CaseStudies.PolarizationCurve", "CaseStudies.PolarizationCurve(Ilim = 2, i_max = 1.46)"]
-    {
+    for model in [
+        "CaseStudies.PolarizationCurve",
+        "CaseStudies.PolarizationCurve(Ilim = 2, i_max = 1.46)",
+        "CaseStudies.Stack",
+    ] {
         let script = format!(
             "openModel(\"models/CaseStudies/package.mo\");\nok := simulateModel(\"{model}\");\n"
         );

@@ -1,9 +1,11 @@
 //! The Modelica Standard Library, from the folder that `GAPILIB_MSL` names, which holds `Modelica`,
 //! `ModelicaServices` and `Complex.mo`: every file is parsed, and the examples of the packages that
-//! are promised are translated and simulated. An example counts as right from flattening on.
+//! are promised are translated and simulated. Where `GAPILIB_REFERENCES` names the collection of
+//! reference results (a folder with `Modelica/Blocks/Examples/…`), they are compared with them; an
+//! example without a reference is right when it is simulated.
 
 use crate::conformance::{
-    Corpus, Ended, Ledger, Stage, filter, folder, is_asked_for, judge_all, run, say,
+    Corpus, Ended, Ledger, Reference, Stage, filter, folder, is_asked_for, judge_all, run, say,
 };
 use gapilib::flatten::{self, Library};
 use gapilib::name::Name;
@@ -31,6 +33,9 @@ const PACKAGES: &[&str] = &[
 struct Counts {
     all: usize,
     beyond: [usize; 4],
+    /// With a reference, and in agreement with it.
+    judged: usize,
+    agreed: usize,
 }
 
 const STAGES: [Stage; 4] = [Stage::Flatten, Stage::Sort, Stage::Compile, Stage::Simulate];
@@ -38,6 +43,7 @@ const STAGES: [Stage; 4] = [Stage::Flatten, Stage::Sort, Stage::Compile, Stage::
 #[test]
 fn standard_library_is_read_and_its_examples_are_flattened() {
     let Some(root) = folder("GAPILIB_MSL") else { return };
+    let references = folder("GAPILIB_REFERENCES");
     let corpus = Corpus::load(&root);
     let mut ledger = Ledger::read("msl.toml");
     read_files(&corpus, &mut ledger);
@@ -46,7 +52,11 @@ fn standard_library_is_read_and_its_examples_are_flattened() {
         &examples,
         |example| {
             let (library, class) = (corpus.library.clone(), example.clone());
-            Box::new(move |progress| run(&library, &class, progress))
+            let references = references.clone();
+            Box::new(move |progress| {
+                let reference = references.and_then(|folder| Reference::of(&class, &folder));
+                run(&library, &class, reference.as_ref(), progress)
+            })
         },
         BUDGET,
     );
@@ -54,13 +64,18 @@ fn standard_library_is_read_and_its_examples_are_flattened() {
     for (example, ended) in examples.iter().zip(&ended) {
         let package = package(example).expect("an example lies in a package");
         let (stuck, reason) = stuck(ended);
-        table.entry(package).or_default().count(stuck);
+        let path = references.as_ref().map(|folder| Reference::path(example, folder));
+        let is_judged = path.is_some_and(|path| path.is_file());
+        table.entry(package).or_default().count(stuck, is_judged);
         if let Some(reason) = reason {
             tell(&corpus, example, ended, &reason);
             ledger.note(package, &example.to_string(), reason);
         }
     }
     tell_table(&table);
+    if references.is_none() {
+        ledger.keep(|reason| reason.starts_with("differs:"));
+    }
     ledger.settle(is_worse);
 }
 
@@ -146,16 +161,22 @@ fn stuck(ended: &Ended) -> (Option<Stage>, Option<String>) {
 }
 
 impl Counts {
-    fn count(&mut self, stuck: Option<Stage>) {
+    fn count(&mut self, stuck: Option<Stage>, is_judged: bool) {
         self.all += 1;
+        self.judged += usize::from(is_judged);
+        self.agreed += usize::from(is_judged && stuck.is_none());
         for (beyond, stage) in self.beyond.iter_mut().zip(STAGES) {
             *beyond += usize::from(stuck.is_none_or(|stuck| stuck > stage));
         }
     }
 }
 
-/// Whether an example gets less far than the ledger says.
+/// Whether an example gets less far than the ledger says. A trajectory that is wrong and was not
+/// known to be so is worse than an error.
 fn is_worse(old: &str, new: &str) -> bool {
+    if new.starts_with("differs:") {
+        return !old.starts_with("differs:");
+    }
     let stage = |reason: &str| Stage::named(reason.split(':').next().unwrap_or(""));
     stage(new) < stage(old)
 }
@@ -172,13 +193,15 @@ fn tell(corpus: &Corpus, example: &Name, ended: &Ended, reason: &str) {
 }
 
 fn tell_table(table: &BTreeMap<&str, Counts>) {
-    let heads = ["examples", "flattened", "sorted", "compiled", "simulated"];
+    let heads = ["examples", "flattened", "sorted", "compiled", "simulated", "judged", "agreed"];
     let heads: String = heads.iter().map(|head| format!("{head:>12}")).collect();
     say(&format!("{:34}{heads}", "package"));
     let mut sum = Counts::default();
     for (package, counts) in table {
         say(&row(package, counts));
         sum.all += counts.all;
+        sum.judged += counts.judged;
+        sum.agreed += counts.agreed;
         sum.beyond.iter_mut().zip(counts.beyond).for_each(|(sum, count)| *sum += count);
     }
     say(&row("all", &sum));
@@ -190,5 +213,5 @@ fn row(name: &str, counts: &Counts) -> String {
         format!("{:>12}", format!("{count} {percent:3.0} %"))
     };
     let beyond: String = counts.beyond.iter().map(|count| share(*count)).collect();
-    format!("{name:34}{:>12}{beyond}", counts.all)
+    format!("{name:34}{:>12}{beyond}{:>12}{:>12}", counts.all, counts.judged, counts.agreed)
 }

@@ -73,6 +73,36 @@ fn a_parameter_is_set_without_compiling_again() {
 }
 
 #[test]
+fn what_parameters_determine_follows_them_from_run_to_run() {
+    let program = compiled(
+        "model P parameter Real k = 2; parameter Real n = 0; Real x(start = 3); Real y;
+         equation der(x) = -k/(1 + k)*sqrt(k)*x; y = x*(if n > 0 then k/n else 1 + k); end P;",
+    );
+    let [k, n] = ["k", "n"].map(|name| program.find_parameter(name).unwrap());
+    let mut system = program.system();
+    for (value, divisor) in [(0.5, 0.0), (2.0, 4.0), (1.0, 0.0)] {
+        system.set_parameter(k, value).unwrap();
+        system.set_parameter(n, divisor).unwrap();
+        let trajectory = run(&mut system, 1.0);
+        let x = 3.0 * (-value / (1.0 + value) * value.sqrt()).exp();
+        let factor = if divisor > 0.0 { value / divisor } else { 1.0 + value };
+        near(last(&program, &system, &trajectory, "x"), x, 1e-6);
+        near(last(&program, &system, &trajectory, "y"), x * factor, 1e-6);
+    }
+}
+
+#[test]
+fn what_parameters_make_impossible_fails_with_its_equation() {
+    let program = compiled(
+        "model P parameter Real n = 0; Real x(start = 3); equation der(x) = x + 1/n; end P;",
+    );
+    let error = simulate(&mut program.system(), &Settings::default()).unwrap_err();
+    let diagnostic = program.explain(&error);
+    assert_eq!(diagnostic.code.slug, "domain-error", "{diagnostic:?}");
+    assert_eq!(error.time, 0.0);
+}
+
+#[test]
 fn runs_do_not_depend_on_those_before() {
     let program = compiled(DECAY);
     let mut system = program.system();

@@ -144,7 +144,7 @@ package Files "Files and directories"
   external "C" fileName = ModelicaInternal_temporaryFileName();
   end temporaryFileName;
 
-  impure function loadResource "The path of a file that a URI names"
+  function loadResource "The path of a file that a URI names"
     extends Modelica.Icons.Function;
     input String uri "URI: modelica://Package/path or file:///path, or a path";
     output String fileReference "full path of the file";

@@ -59,6 +59,7 @@ impl Emitter {
             places: self.places,
             texts: self.texts,
             externals: self.externals,
+            impure: false,
             derivative: None,
         }
     }
@@ -86,6 +87,10 @@ impl Emitter {
     pub(super) fn text(&mut self, text: Arc<str>) -> u32 {
         self.texts.push(text);
         self.texts.len() as u32 - 1
+    }
+
+    pub(super) fn text_at(&self, position: u32) -> Arc<str> {
+        self.texts[position as usize].clone()
     }
 
     pub(super) fn external(&mut self, call: ExternalCall) -> u32 {

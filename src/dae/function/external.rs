@@ -1,13 +1,14 @@
 //! External functions of [`external`](crate::external) in functions being compiled (MLS §12.9).
 
 use super::emitter::Operand;
+use super::instances::Instances;
 use super::statements::Body;
 use crate::bytecode::{ExternalCall, Instruction};
 use crate::dae::errors::NOT_SUPPORTED;
 use crate::dae::lowering::{Lowered, Lowering};
 use crate::diag::{At, Diagnostic};
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
-use crate::external::{self, Kind, Slot};
+use crate::external::{self, Effect, Kind, Slot};
 use crate::fault;
 use crate::syntax::ast;
 
@@ -25,10 +26,18 @@ pub(super) fn refusal(function: &Function) -> Option<String> {
         None => {
             Some(format!("is the external function `{name}`, which this program does not have"))
         }
-        Some(entry) if !entry.pure => {
+        Some(entry) if entry.effect == Effect::Outside => {
             Some(format!("is the external function `{name}`, which has effects"))
         }
         Some(_) => None,
+    }
+}
+
+/// Whether a function does nothing but to fail with a message, which may be unknown in parts.
+pub(super) fn is_message(function: &Function) -> bool {
+    match &function.body {
+        FunctionBody::External(clause) => external_name(function, clause) == "ModelicaError",
+        _ => false,
     }
 }
 
@@ -77,6 +86,13 @@ impl Body<'_, '_> {
             None => None,
         };
         entry.check(&arguments, result.as_ref()).at(clause.span)?;
+        for argument in entry.files() {
+            let name = self.emitter.text_at(arguments[argument].first);
+            if external::names_a_file(&name) {
+                let Instances { functions, .. } = &mut *self.instances;
+                functions.files.keep(&name, &self.flat.resources).at(clause.span)?;
+            }
+        }
         let external = self.emitter.external(ExternalCall { entry, arguments, result });
         self.emitter.emit(Instruction::External { external });
         self.emitter.close();

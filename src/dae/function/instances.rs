@@ -2,11 +2,13 @@
 
 use super::statements::Body;
 use crate::bytecode::{Code, Functions, Instruction, Machine};
+use crate::dae::build::UNKNOWN_TEXT;
 use crate::dae::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use crate::dae::lowering::Lowered;
 use crate::dae::model::Shape;
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, ValueType};
+use crate::external::Effect;
 use crate::fault;
 use crate::flatten::FlatModel;
 use crate::name::Name;
@@ -49,6 +51,8 @@ pub(crate) struct Instance {
     pub(super) outputs: Vec<Shape>,
     /// Whether a call with numbers is a number.
     pub(super) folds: bool,
+    /// Whether equal calls may give different results.
+    pub(super) impure: bool,
     /// Which arguments are passed; the others are known.
     pub(super) passed: Vec<bool>,
 }
@@ -56,7 +60,7 @@ pub(crate) struct Instance {
 /// All functions compiled so far.
 #[derive(Debug, Default)]
 pub(crate) struct Instances {
-    functions: Functions,
+    pub(super) functions: Functions,
     /// Whether each function is compiled to its end.
     finished: Vec<bool>,
     known: IndexMap<Signature, Instance>,
@@ -114,13 +118,6 @@ impl Instances {
             FunctionBody::Algorithm(statements) => statements.as_slice(),
             FunctionBody::External(_) | FunctionBody::RecordConstructor => &[],
         };
-        if function.impure {
-            return Err(fault!(
-                NOT_SUPPORTED,
-                "the function `{name}` is impure and cannot be used in equations"
-            )
-            .at(span));
-        }
         if self.depth >= MAX_DEPTH || self.finished.len() >= MAX_INSTANCES {
             return Err(fault!(
                 NOT_SUPPORTED,
@@ -153,16 +150,23 @@ impl Instances {
         let mut body = Body::new(flat, self, function);
         let outputs = body.declare(&signature.arguments, statements, span)?;
         let passed = |a: &Argument| matches!(a, Argument::Shape(_));
-        let instance = Instance {
+        let mut instance = Instance {
             code: body.instances.finished.len() as u32,
             outputs,
-            folds: !super::external::handles_objects(function),
+            folds: !function.impure && !super::external::handles_objects(function),
+            impure: function.impure,
             passed: signature.arguments.iter().map(passed).collect(),
         };
         body.instances.functions.codes.push(Code::default());
         body.instances.finished.push(false);
         body.instances.known.insert(signature.clone(), instance.clone());
         let mut code = body.compile(statements)?;
+        code.impure = function.impure || self.has_effects(&code);
+        if code.impure {
+            instance.folds = false;
+            instance.impure = true;
+            self.known.insert(signature.clone(), instance.clone());
+        }
         code.derivative = self.derivative(flat, function, &signature.arguments, span);
         self.instructions += code.instructions.len();
         if self.instructions > MAX_INSTRUCTIONS {
@@ -186,6 +190,16 @@ impl Instances {
         let mut machine = Machine::default();
         let results = machine.call(&self.functions, instance.code, arguments.iter().copied());
         results.ok().map(<[f64]>::to_vec)
+    }
+
+    /// Whether a function reads or changes the hidden state, itself or by what it calls.
+    fn has_effects(&self, code: &Code) -> bool {
+        let of_call = |instruction: &Instruction| match instruction {
+            Instruction::Call { function, .. } => self.functions.codes[*function as usize].impure,
+            _ => false,
+        };
+        code.externals.iter().any(|call| call.entry.effect == Effect::State)
+            || code.instructions.iter().any(of_call)
     }
 
     /// Whether a function and all that it calls are compiled to their ends.
@@ -223,7 +237,9 @@ fn signature(
             ValueType::Integer | ValueType::Boolean | ValueType::Enumeration(_)
         );
         list.push(match argument {
-            Lowered::Text(text) if &**text == crate::dae::build::UNKNOWN_TEXT => {
+            Lowered::Text(text)
+                if text.contains(UNKNOWN_TEXT) && !super::external::is_message(function) =>
+            {
                 return Err(fault!(
                     NOT_SUPPORTED,
                     "the text for `{}` of `{}` must be known when the model is compiled",

@@ -11,6 +11,7 @@ mod emitter;
 mod external;
 mod instances;
 mod place;
+mod single_assignment;
 mod statements;
 mod target;
 
@@ -74,8 +75,14 @@ fn compiled_call(
             argument.append_scalars(&mut scalars);
         }
     }
+    if instance.impure {
+        // Calls in different places are different calls, though their arguments are the same.
+        let site = builder.impure_calls;
+        builder.impure_calls += 1;
+        scalars.push(builder.dae.pool.constant(f64::from(site)));
+    }
     let numbers: Option<Vec<f64>> = match instance.folds {
-        true => scalars.iter().map(|e| pool.as_constant(*e)).collect(),
+        true => scalars.iter().map(|e| builder.dae.pool.as_constant(*e)).collect(),
         false => None,
     };
     let folded = numbers.and_then(|numbers| builder.functions.evaluate(&instance, &numbers));

@@ -2,12 +2,13 @@
 
 use super::emitter::{Emitter, Operand};
 use super::instances::{Argument, Instances, MAX_INSTRUCTIONS};
+use super::single_assignment::assigned_once;
 use crate::bytecode::{Code, Instruction, Register};
 use crate::dae::build::message_text;
 use crate::dae::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use crate::dae::lowering::{Array, Lowered, Lowering, Target};
 use crate::diag::Diagnostic;
-use crate::eval::{Function, FunctionBody};
+use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
 use crate::flatten::FlatModel;
 use crate::name::Ident;
@@ -31,6 +32,8 @@ pub(super) struct Body<'a, 'f> {
     breaks: Vec<Vec<usize>>,
     returns: Vec<usize>,
     pub(super) n_inputs: u32,
+    /// Variables that are assigned once, whatever happens.
+    known_once: Vec<Ident>,
 }
 
 /// Loop variables, innermost last.
@@ -52,6 +55,7 @@ impl<'a, 'f> Body<'a, 'f> {
             breaks: Vec::new(),
             returns: Vec::new(),
             n_inputs: 0,
+            known_once: Vec::new(),
         }
     }
 
@@ -60,6 +64,7 @@ impl<'a, 'f> Body<'a, 'f> {
         if let FunctionBody::External(clause) = &self.function.clone().body {
             self.external(clause)?;
         }
+        self.known_once = assigned_once(statements);
         self.statements(statements, &mut Vec::new())?;
         for jump in std::mem::take(&mut self.returns) {
             self.emitter.land(jump);
@@ -120,6 +125,9 @@ impl<'a, 'f> Body<'a, 'f> {
         match &s.kind {
             StatementKind::Assign { target, value } => {
                 let value = self.lowering(loops).lower(value)?;
+                if self.becomes_known(target, &value) {
+                    return Ok(());
+                }
                 self.assign(target, value, loops)
             }
             StatementKind::MultiAssign { targets, value } => {
@@ -143,6 +151,31 @@ impl<'a, 'f> Body<'a, 'f> {
             StatementKind::When { .. } => {
                 Err(fault!(NOT_SUPPORTED, "`when` in a function").at(s.span))
             }
+        }
+    }
+
+    /// Whether a local variable is a number from here on, which needs no register.
+    fn becomes_known(&mut self, target: &ComponentReference, value: &Lowered<Operand>) -> bool {
+        let Lowered::Array(array) = value else { return false };
+        let ([Operand::Constant(_)], Some(name)) = (array.elements.as_slice(), target.as_ident())
+        else {
+            return false;
+        };
+        let is_local = |c: &FunctionComponent| {
+            c.name == name && c.dims.is_empty() && !matches!(c.value_type, ValueType::String)
+        };
+        if !array.dims.is_empty()
+            || !self.known_once.contains(&name)
+            || !self.function.locals.iter().any(is_local)
+        {
+            return false;
+        }
+        match self.locals.iter_mut().find(|(local, _)| *local == name) {
+            Some((_, local)) => {
+                *local = value.clone();
+                true
+            }
+            None => false,
         }
     }
 

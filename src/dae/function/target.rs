@@ -264,13 +264,16 @@ impl Target for Body<'_, '_> {
             | "inStream"
             | "actualStream"
             | "getInstanceName"
-            | "String"
             | "previous"
             | "hold" => {
                 Err(fault!(NOT_SUPPORTED, "`{name}` in a function of an equation").at(span))
             }
             _ => return None,
         })
+    }
+
+    fn resources(&self) -> crate::external::Resources {
+        self.flat.resources.clone()
     }
 
     fn derivative(&mut self, _: Operand, span: Span) -> Result<Operand, Diagnostic> {

@@ -3,6 +3,7 @@
 
 use super::arrays::concatenate;
 use super::{Array, Binary, Lowered, Lowering, Operator, Target, placed};
+use crate::dae::build::UNKNOWN_TEXT;
 use crate::dae::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use crate::diag::{Diagnostic, suggest};
 use crate::eval::FunctionBody;
@@ -31,6 +32,9 @@ impl<T: Target> Lowering<'_, T> {
         }
         let text = name.to_string();
         let short = text.strip_prefix('.').unwrap_or(&text);
+        if short == "String" {
+            return Ok(Lowered::Text(UNKNOWN_TEXT.into()));
+        }
         if short == "homotopy" {
             return self.homotopy(arguments, span);
         }
@@ -108,6 +112,9 @@ impl<T: Target> Lowering<'_, T> {
                 let value = self.target.apply(id, &scalars, self.live, span)?;
                 return Ok(vec![Lowered::scalar(value)]);
             }
+        }
+        if let Some(outputs) = self.text_call(user, &values, span)? {
+            return Ok(outputs);
         }
         self.target.call(user, values, span)
     }

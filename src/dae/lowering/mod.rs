@@ -9,6 +9,7 @@ mod expression;
 mod homotopy;
 mod operators;
 mod placed;
+mod texts;
 
 pub(crate) use arrays::Choice;
 pub(crate) use expression::field;
@@ -16,6 +17,7 @@ pub(crate) use expression::field;
 use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::model::Shape;
 use crate::diag::{At, Diagnostic, Fault};
+use crate::external::Resources;
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
@@ -108,6 +110,8 @@ pub(crate) trait Target {
     ) -> Result<Lowered<Self::Scalar>, Diagnostic>;
     /// A user function; `None` if there is none of this name.
     fn function(&self, name: &Name) -> Option<Arc<crate::eval::Function>>;
+    /// The files that the model may use.
+    fn resources(&self) -> Resources;
     /// Calls a user function with all its arguments.
     fn call(
         &mut self,

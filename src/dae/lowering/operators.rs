@@ -1,6 +1,7 @@
 //! Operators on scalars, vectors and matrices (MLS §10.6).
 
 use super::{Array, Binary, Lowered, Lowering, Target, Unary, size_fault};
+use crate::dae::build::UNKNOWN_TEXT;
 use crate::dae::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -23,13 +24,8 @@ impl<T: Target> Lowering<'_, T> {
         right: &Expression,
         span: Span,
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
-        if operator == BinaryOperator::Add
-            && let (Some(a), Some(b)) = (self.text(left)?, self.text(right)?)
-        {
-            return Ok(Lowered::Text(format!("{a}{b}").into()));
-        }
         let a = match self.lower(left)? {
-            Lowered::Text(a) => return self.compare_texts(operator, &a, right, span),
+            Lowered::Text(a) => return self.texts(operator, &a, right, span),
             Lowered::Array(a) => a,
             Lowered::Record(_) => self.array(left)?,
         };
@@ -95,23 +91,23 @@ impl<T: Target> Lowering<'_, T> {
         Ok(Lowered::scalar(values[0]))
     }
 
-    /// A relation of two texts that are known.
-    fn compare_texts(
+    /// Two texts joined, which may be unknown in parts, or a relation of two that are known.
+    fn texts(
         &mut self,
         operator: BinaryOperator,
         a: &str,
         right: &Expression,
         span: Span,
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
-        let unknown = crate::dae::build::UNKNOWN_TEXT;
-        let b = match self.lower(right)? {
-            Lowered::Text(b) if a != unknown && &*b != unknown => b,
-            _ => {
-                return Err(
-                    fault!(NOT_SUPPORTED, "a text that is not known when compiling").at(span)
-                );
-            }
+        let Lowered::Text(b) = self.lower(right)? else {
+            return Err(fault!(ARRAY_MISMATCH, "a text and a number").at(span));
         };
+        if operator == BinaryOperator::Add {
+            return Ok(Lowered::Text(format!("{a}{b}").into()));
+        }
+        if a.contains(UNKNOWN_TEXT) || b.contains(UNKNOWN_TEXT) {
+            return Err(fault!(NOT_SUPPORTED, "a text that is not known when compiling").at(span));
+        }
         let holds = match operator {
             BinaryOperator::Equal => a == &*b,
             BinaryOperator::NotEqual => a != &*b,
@@ -124,21 +120,6 @@ impl<T: Target> Lowering<'_, T> {
             }
         };
         Ok(Lowered::scalar(self.target.constant(f64::from(u8::from(holds)))))
-    }
-
-    /// The text of an expression made of string literals, `None` for numbers.
-    fn text(&mut self, e: &Expression) -> Result<Option<String>, Diagnostic> {
-        use crate::syntax::ast::ExpressionKind;
-        Ok(match &e.kind {
-            ExpressionKind::String(text) => Some(text.to_string()),
-            ExpressionKind::Binary { operator: BinaryOperator::Add, left, right } => {
-                match (self.text(left)?, self.text(right)?) {
-                    (Some(a), Some(b)) => Some(a + &b),
-                    _ => None,
-                }
-            }
-            _ => None,
-        })
     }
 
     fn compare(

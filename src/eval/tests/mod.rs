@@ -5,6 +5,7 @@ mod functions;
 mod host;
 mod intrinsics;
 mod robustness;
+mod scalars;
 mod shipped;
 mod statements;
 

@@ -112,7 +112,13 @@ impl Curve {
         if extrapolation == Extrapolation::Hold {
             return [self.y[end], 0.0, 0.0];
         }
-        let [_, slope, _] = self.inside(x, interval, x[end]);
+        // Steps go on as a line through the last two points.
+        let slope = match self.smoothness {
+            Smoothness::Constant if x[interval] < x[interval + 1] => {
+                (self.y[interval + 1] - self.y[interval]) / (x[interval + 1] - x[interval])
+            }
+            _ => self.inside(x, interval, x[end])[1],
+        };
         [self.y[end] + slope * (u - x[end]), slope, 0.0]
     }
 

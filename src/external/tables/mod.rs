@@ -1,23 +1,26 @@
 //! `ModelicaStandardTables_*`: the tables of `Modelica.Blocks` (interface of versions 3.2 to 4).
 //!
-//! Not handled: tables defined by a C function `usertab`; splines on grids; time tables with
-//! repeated abscissae and splines.
+//! Not handled: tables defined by a C function `usertab`. Splines need abscissae that increase
+//! strictly, as in the standard library.
 
 mod curve;
 mod one;
 mod source;
 mod spline;
+mod surface;
 mod time;
 mod two;
+
+pub use source::names_a_file;
 
 use super::Entry;
 use super::call::Call;
 use crate::diag::Fault;
 
 pub(super) const ENTRIES: &[Entry] = &[
-    Entry::pure("ModelicaStandardTables_CombiTimeTable_init", "ttannnannn->o", time::init),
-    Entry::pure("ModelicaStandardTables_CombiTimeTable_init2", "ttannnannnnnn->o", time::init2),
-    Entry::pure("ModelicaStandardTables_CombiTimeTable_init3", "ttannnannnnnntn->o", time::init3),
+    Entry::pure("ModelicaStandardTables_CombiTimeTable_init", "tfannnannn->o", time::init),
+    Entry::pure("ModelicaStandardTables_CombiTimeTable_init2", "tfannnannnnnn->o", time::init2),
+    Entry::pure("ModelicaStandardTables_CombiTimeTable_init3", "ftannnannnnnntn->o", time::init3),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_close", "o", close),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_getValue", "onnnn->n", time::value),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_getDerValue", "onnnnn->n", time::derivative),
@@ -25,18 +28,18 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaStandardTables_CombiTimeTable_minimumTime", "o->n", time::minimum),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_maximumTime", "o->n", time::maximum),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_nextTimeEvent", "on->n", time::next_event),
-    Entry::pure("ModelicaStandardTables_CombiTable1D_init", "ttannann->o", one::init),
-    Entry::pure("ModelicaStandardTables_CombiTable1D_init2", "ttannannnn->o", one::init2),
-    Entry::pure("ModelicaStandardTables_CombiTable1D_init3", "ttannannnntn->o", one::init3),
+    Entry::pure("ModelicaStandardTables_CombiTable1D_init", "tfannann->o", one::init),
+    Entry::pure("ModelicaStandardTables_CombiTable1D_init2", "tfannannnn->o", one::init2),
+    Entry::pure("ModelicaStandardTables_CombiTable1D_init3", "ftannannnntn->o", one::init3),
     Entry::pure("ModelicaStandardTables_CombiTable1D_close", "o", close),
     Entry::pure("ModelicaStandardTables_CombiTable1D_getValue", "onn->n", one::value),
     Entry::pure("ModelicaStandardTables_CombiTable1D_getDerValue", "onnn->n", one::derivative),
     Entry::pure("ModelicaStandardTables_CombiTable1D_getDer2Value", "onnnn->n", one::second),
     Entry::pure("ModelicaStandardTables_CombiTable1D_minimumAbscissa", "o->n", one::minimum),
     Entry::pure("ModelicaStandardTables_CombiTable1D_maximumAbscissa", "o->n", one::maximum),
-    Entry::pure("ModelicaStandardTables_CombiTable2D_init", "ttannn->o", two::init),
-    Entry::pure("ModelicaStandardTables_CombiTable2D_init2", "ttannnnn->o", two::init2),
-    Entry::pure("ModelicaStandardTables_CombiTable2D_init3", "ttannnnntn->o", two::init3),
+    Entry::pure("ModelicaStandardTables_CombiTable2D_init", "tfannn->o", two::init),
+    Entry::pure("ModelicaStandardTables_CombiTable2D_init2", "tfannnnn->o", two::init2),
+    Entry::pure("ModelicaStandardTables_CombiTable2D_init3", "ftannnnntn->o", two::init3),
     Entry::pure("ModelicaStandardTables_CombiTable2D_close", "o", close),
     Entry::pure("ModelicaStandardTables_CombiTable2D_getValue", "onn->n", two::value),
     Entry::pure("ModelicaStandardTables_CombiTable2D_getDerValue", "onnnn->n", two::derivative),

@@ -29,13 +29,18 @@ pub(super) struct Source {
 /// What stands where no file or no name is given.
 const NOTHING: &str = "NoName";
 
+/// Whether a text given as the name of a file is one.
+pub fn names_a_file(text: &str) -> bool {
+    !matches!(text.trim(), "" | NOTHING)
+}
+
 impl Source {
     /// The matrix, at least one row and two columns, every number finite.
     pub(super) fn read(&self, call: &mut Call<'_>) -> Result<Matrix, Fault> {
-        let file = call.text(self.file).trim().to_owned();
-        let matrix = match file.as_str() {
-            "" | NOTHING => self.given(call)?,
-            _ => self.in_file(call, &file)?,
+        let file = call.text(self.file).to_owned();
+        let matrix = match names_a_file(&file) {
+            true => self.in_file(call, &file)?,
+            false => self.given(call)?,
         };
         if matrix.rows == 0 || matrix.columns < 2 {
             return Err(call.fault(format!(

@@ -26,67 +26,61 @@ impl Spline {
             return vec![m[0]; 2];
         }
         match self {
-            Spline::Akima => akima(&m, |a, b| (b - a).abs()),
+            Spline::Akima => akima(&m, difference),
             Spline::ModifiedAkima => akima(&m, |a, b| (b - a).abs() + (b + a).abs() / 2.0),
-            Spline::FritschButland => {
-                inner_and_ends(&h, &m, fritsch_butland, |d, m, inner| {
-                    match m * inner <= 0.0 && d.abs() > 3.0 * m.abs() {
-                        true => 3.0 * m,
-                        false => d,
-                    }
-                })
-            }
-            Spline::Steffen => {
-                inner_and_ends(
-                    &h,
-                    &m,
-                    steffen,
-                    |d, m, _| {
-                        if d.abs() > 2.0 * m.abs() { 2.0 * m } else { d }
-                    },
-                )
-            }
+            Spline::FritschButland => inner_and_ends(&h, &m, fritsch_butland),
+            Spline::Steffen => inner_and_ends(&h, &m, steffen),
         }
     }
 }
 
-/// (w₁ m₋ + w₂ m₊)/(w₁ + w₂) with weights of the neighbours' slopes; the four slopes beyond the
-/// ends continue the last two linearly.
-fn akima(m: &[f64], weight: fn(f64, f64) -> f64) -> Vec<f64> {
+/// Secants with two more at either end, which continue the last two linearly; a single one is
+/// repeated.
+pub(super) fn extended(m: &[f64]) -> Vec<f64> {
     let n = m.len();
+    if n == 1 {
+        return vec![m[0]; 5];
+    }
     let mut all = vec![0.0; n + 4];
     all[2..n + 2].copy_from_slice(m);
     all[1] = 2.0 * all[2] - all[3];
     all[0] = 2.0 * all[1] - all[2];
     all[n + 2] = 2.0 * all[n + 1] - all[n];
     all[n + 3] = 2.0 * all[n + 2] - all[n + 1];
-    let slope = |m: &[f64]| {
-        let (before, behind) = (weight(m[2], m[3]), weight(m[0], m[1]));
-        match before + behind {
-            0.0 => (m[1] + m[2]) / 2.0,
-            sum => (before * m[1] + behind * m[2]) / sum,
-        }
-    };
-    all.windows(4).map(slope).collect()
+    all
 }
 
-/// Slopes between two intervals, and at the ends those of the parabola through the last three
-/// points: none where it turns, otherwise limited by `limit(slope, last secant, the one before)`.
-fn inner_and_ends(
-    h: &[f64],
-    m: &[f64],
-    inner: fn([f64; 2], [f64; 2]) -> f64,
-    limit: fn(f64, f64, f64) -> f64,
-) -> Vec<f64> {
-    let n = m.len();
-    let end = |h: [f64; 2], m: [f64; 2]| {
-        let share = h[0] / (h[0] + h[1]);
-        let slope = m[0] * (1.0 + share) - m[1] * share;
-        if slope * m[0] <= 0.0 { 0.0 } else { limit(slope, m[0], m[1]) }
+/// The shares in the slope at a point of the secants before and behind it; `m` are the two secants
+/// on either side.
+pub(super) fn shares(m: &[f64], weight: fn(f64, f64) -> f64) -> [f64; 2] {
+    let (before, behind) = (weight(m[2], m[3]), weight(m[0], m[1]));
+    match before + behind {
+        0.0 => [0.5, 0.5],
+        sum => [before / sum, behind / sum],
+    }
+}
+
+/// The difference of two secants.
+pub(super) fn difference(a: f64, b: f64) -> f64 {
+    (b - a).abs()
+}
+
+/// w₋ m₋ + w₊ m₊ with shares by the neighbours' secants.
+fn akima(m: &[f64], weight: fn(f64, f64) -> f64) -> Vec<f64> {
+    let slope = |m: &[f64]| {
+        let [before, behind] = shares(m, weight);
+        before * m[1] + behind * m[2]
     };
-    let mut slopes = vec![end([h[0], h[1]], [m[0], m[1]])];
+    extended(m).windows(4).map(slope).collect()
+}
+
+/// Slopes between two intervals; at the ends those of the first and of the last interval, as in
+/// the standard library.
+fn inner_and_ends(h: &[f64], m: &[f64], inner: fn([f64; 2], [f64; 2]) -> f64) -> Vec<f64> {
+    let n = m.len();
+    let mut slopes = vec![m[0]];
     slopes.extend((1..n).map(|i| inner([h[i - 1], h[i]], [m[i - 1], m[i]])));
-    slopes.push(end([h[n - 1], h[n - 2]], [m[n - 1], m[n - 2]]));
+    slopes.push(m[n - 1]);
     slopes
 }
 

@@ -1,11 +1,13 @@
 //! `CombiTable2D`: a function of two variables on a grid.
 //!
 //! The first column holds the abscissae of the first variable, the first row those of the second.
-//! Piecewise constant and bilinear; splines on grids are refused.
+//! Piecewise constant, bilinear, or smooth by Akima's bivariate interpolation.
 
 use super::curve::{Extrapolation, Place, Smoothness, place};
 use super::one::ordered;
 use super::source::Source;
+use super::spline::Spline;
+use super::surface::{Basis, Surface};
 use crate::diag::Fault;
 use crate::external::call::Call;
 
@@ -16,8 +18,16 @@ struct Table2D {
     y: Vec<f64>,
     /// Row-major over `x`, then `y`.
     z: Vec<f64>,
-    constant: bool,
+    shape: Shape,
     extrapolation: Extrapolation,
+}
+
+/// What lies between the points.
+#[derive(Debug)]
+enum Shape {
+    Steps,
+    Bilinear,
+    Smooth(Surface),
 }
 
 /// `(tableName, fileName, table, nRow, nColumn, smoothness)`
@@ -48,19 +58,110 @@ fn make(call: &mut Call<'_>, source: Source, extrapolation: i64) -> Result<(), F
     let y: Vec<f64> = matrix.values[1..matrix.columns].to_vec();
     ordered(call, &x, "the first column", false)?;
     ordered(call, &y, "the first row", false)?;
-    let constant = match Smoothness::from_ordinal(call.whole(5)) {
-        Some(Smoothness::Constant) => true,
-        Some(Smoothness::Linear) => false,
-        // Two points have one connection.
-        Some(Smoothness::Spline(_)) if x.len() <= 2 && y.len() <= 2 => false,
+    let rows = matrix.values.chunks(matrix.columns).skip(1);
+    let z: Vec<f64> = rows.flat_map(|row| row[1..].iter().copied()).collect();
+    let shape = match Smoothness::from_ordinal(call.whole(5)) {
+        Some(Smoothness::Constant) => Shape::Steps,
+        Some(Smoothness::Linear) => Shape::Bilinear,
+        Some(Smoothness::Spline(Spline::Akima)) => Shape::Smooth(Surface::new(&x, &y, &z)),
         Some(Smoothness::Spline(_)) => {
-            return Err(call.fault("splines on a grid are not supported"));
+            return Err(call.fault("of all splines, a table of two variables takes only Akima's"));
         }
         None => return Err(call.fault(format!("there is no smoothness {}", call.whole(5)))),
     };
-    let rows = matrix.values.chunks(matrix.columns).skip(1);
-    let z = rows.flat_map(|row| row[1..].iter().copied()).collect();
-    call.give_object(Table2D { x, y, z, constant, extrapolation })
+    call.give_object(Table2D { x, y, z, shape, extrapolation })
+}
+
+/// Where one variable stands: an interval, the abscissa in it that is nearest, and how far the
+/// variable is beyond.
+#[derive(Debug, Clone, Copy)]
+struct Position {
+    interval: usize,
+    u: f64,
+    beyond: f64,
+    /// Whether it is held at an end.
+    held: bool,
+}
+
+impl Table2D {
+    fn position(&self, call: &Call<'_>, x: &[f64], u: f64) -> Result<Position, Fault> {
+        let n = x.len();
+        if u.is_nan() {
+            return Err(call.fault("an abscissa is not a number"));
+        }
+        let place = place(x, self.extrapolation, u).ok_or_else(|| {
+            call.fault(format!("{u} lies outside {} to {}, where the table ends", x[0], x[n - 1]))
+        })?;
+        let (interval, end) = match place {
+            Place::Inside(interval, u) => {
+                return Ok(Position { interval, u, beyond: 0.0, held: false });
+            }
+            Place::Before(_) => (0, x[0]),
+            Place::Behind(_) => (n.saturating_sub(2), x[n - 1]),
+        };
+        let held = n == 1 || self.extrapolation == Extrapolation::Hold;
+        let beyond = if held { 0.0 } else { u - end };
+        Ok(Position { interval, u: end, beyond, held })
+    }
+
+    /// Value, both slopes, the mixed derivative, both second derivatives.
+    fn at(&self, a: Position, b: Position) -> [f64; 6] {
+        match &self.shape {
+            Shape::Smooth(surface) => self.smooth(surface, a, b),
+            // Beyond the ends steps go on as bilinear functions.
+            Shape::Steps if a.beyond == 0.0 && b.beyond == 0.0 => {
+                let (i, j) = (step(&self.x, a), step(&self.y, b));
+                [self.z(i, j), 0.0, 0.0, 0.0, 0.0, 0.0]
+            }
+            _ => self.bilinear(a, b),
+        }
+    }
+
+    fn smooth(&self, surface: &Surface, a: Position, b: Position) -> [f64; 6] {
+        let p = Basis::new(&self.x, a.interval, a.u);
+        let q = Basis::new(&self.y, b.interval, b.u);
+        let d = |i: usize, j: usize| surface.derivative(self.y.len(), &p, &q, i, j);
+        let (s, t) = (a.beyond, b.beyond);
+        let mixed = d(1, 1);
+        let free = |held: bool, slope: f64| if held { 0.0 } else { slope };
+        let curved = |position: Position, slope: f64| match position.beyond == 0.0 {
+            true => free(position.held, slope),
+            false => 0.0,
+        };
+        [
+            d(0, 0) + d(1, 0) * s + d(0, 1) * t + mixed * s * t,
+            free(a.held, d(1, 0) + mixed * t),
+            free(b.held, d(0, 1) + mixed * s),
+            free(a.held || b.held, mixed),
+            curved(a, d(2, 0) + d(2, 1) * t),
+            curved(b, d(0, 2) + d(1, 2) * s),
+        ]
+    }
+
+    fn bilinear(&self, a: Position, b: Position) -> [f64; 6] {
+        let (a, b) = (Axis::new(&self.x, a), Axis::new(&self.y, b));
+        let [z00, z10] = [self.z(a.low, b.low), self.z(a.high, b.low)];
+        let [z01, z11] = [self.z(a.low, b.high), self.z(a.high, b.high)];
+        let along = |p: f64, q: f64, share: f64| if share == 1.0 { q } else { p + share * (q - p) };
+        let (near, far) = (along(z00, z10, a.share), along(z01, z11, a.share));
+        [
+            along(near, far, b.share),
+            along(z10 - z00, z11 - z01, b.share) * a.slope,
+            (far - near) * b.slope,
+            (z11 - z01 - z10 + z00) * a.slope * b.slope,
+            0.0,
+            0.0,
+        ]
+    }
+
+    fn z(&self, i: usize, j: usize) -> f64 {
+        self.z[i * self.y.len() + j]
+    }
+}
+
+/// The point whose value holds at a position; the last one has a value of its own.
+fn step(x: &[f64], position: Position) -> usize {
+    if position.u >= x[x.len() - 1] { x.len() - 1 } else { position.interval }
 }
 
 /// One variable's interval, its share of it (beyond 0 and 1 where extrapolated) and the slope of
@@ -73,58 +174,25 @@ struct Axis {
     slope: f64,
 }
 
-impl Table2D {
-    fn axis(&self, call: &Call<'_>, x: &[f64], u: f64) -> Result<Axis, Fault> {
-        let n = x.len();
-        let still = |at: usize| Axis { low: at, high: at, share: 0.0, slope: 0.0 };
-        if u.is_nan() {
-            return Err(call.fault("an abscissa is not a number"));
+impl Axis {
+    fn new(x: &[f64], position: Position) -> Axis {
+        if x.len() == 1 {
+            return Axis { low: 0, high: 0, share: 0.0, slope: 0.0 };
         }
-        let place = place(x, self.extrapolation, u).ok_or_else(|| {
-            call.fault(format!("{u} lies outside {} to {}, where the table ends", x[0], x[n - 1]))
-        })?;
-        if n == 1 {
-            return Ok(still(0));
-        }
-        let (interval, u) = match place {
-            Place::Inside(interval, u) => (interval, u),
-            Place::Before(_) if self.extrapolation == Extrapolation::Hold => return Ok(still(0)),
-            Place::Behind(_) if self.extrapolation == Extrapolation::Hold => {
-                return Ok(still(n - 1));
-            }
-            Place::Before(_) if self.constant => return Ok(still(0)),
-            Place::Behind(_) if self.constant => return Ok(still(n - 1)),
-            Place::Before(u) => (0, u),
-            Place::Behind(u) => (n - 2, u),
-        };
-        if self.constant {
-            return Ok(still(if u >= x[n - 1] { n - 1 } else { interval }));
-        }
-        let slope = 1.0 / (x[interval + 1] - x[interval]);
-        Ok(Axis { low: interval, high: interval + 1, share: (u - x[interval]) * slope, slope })
-    }
-
-    fn z(&self, i: usize, j: usize) -> f64 {
-        self.z[i * self.y.len() + j]
+        let low = position.interval;
+        let slope = 1.0 / (x[low + 1] - x[low]);
+        let share = (position.u + position.beyond - x[low]) * slope;
+        let slope = if position.held { 0.0 } else { slope };
+        Axis { low, high: low + 1, share, slope }
     }
 }
 
-/// Value, both slopes and the mixed derivative at `(table, u1, u2)`.
-fn evaluated(call: &Call<'_>) -> Result<[f64; 4], Fault> {
+/// At `(table, u1, u2)`.
+fn evaluated(call: &Call<'_>) -> Result<[f64; 6], Fault> {
     let table: &Table2D = call.object(0)?;
-    let a = table.axis(call, &table.x, call.number(1))?;
-    let b = table.axis(call, &table.y, call.number(2))?;
-    let [z00, z10] = [table.z(a.low, b.low), table.z(a.high, b.low)];
-    let [z01, z11] = [table.z(a.low, b.high), table.z(a.high, b.high)];
-    let along = |p: f64, q: f64, share: f64| if share == 1.0 { q } else { p + share * (q - p) };
-    let (near, far) = (along(z00, z10, a.share), along(z01, z11, a.share));
-    let mixed = (z11 - z01 - z10 + z00) * a.slope * b.slope;
-    Ok([
-        along(near, far, b.share),
-        along(z10 - z00, z11 - z01, b.share) * a.slope,
-        (far - near) * b.slope,
-        mixed,
-    ])
+    let a = table.position(call, &table.x, call.number(1))?;
+    let b = table.position(call, &table.y, call.number(2))?;
+    Ok(table.at(a, b))
 }
 
 /// `f(u₁, u₂)`
@@ -135,14 +203,15 @@ pub(super) fn value(call: &mut Call<'_>) -> Result<(), Fault> {
 
 /// `f₁ u₁′ + f₂ u₂′`
 pub(super) fn derivative(call: &mut Call<'_>) -> Result<(), Fault> {
-    let [_, first, second, _] = evaluated(call)?;
+    let [_, first, second, ..] = evaluated(call)?;
     call.give(first * call.number(3) + second * call.number(4))
 }
 
-/// `2 f₁₂ u₁′ u₂′ + f₁ u₁″ + f₂ u₂″`
+/// `f₁₁ u₁′² + 2 f₁₂ u₁′ u₂′ + f₂₂ u₂′² + f₁ u₁″ + f₂ u₂″`
 pub(super) fn second(call: &mut Call<'_>) -> Result<(), Fault> {
-    let [_, first, second, mixed] = evaluated(call)?;
-    let quadratic = 2.0 * mixed * call.number(3) * call.number(4);
+    let [_, first, second, mixed, along, across] = evaluated(call)?;
+    let (p, q) = (call.number(3), call.number(4));
+    let quadratic = along * p * p + 2.0 * mixed * p * q + across * q * q;
     call.give(quadratic + first * call.number(5) + second * call.number(6))
 }
 

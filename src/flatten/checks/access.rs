@@ -13,7 +13,7 @@ use crate::syntax::ast::{Restriction, VariabilityPrefix, Visibility};
 pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     for written in names::of(class) {
         let unclear = unqualified(class, &written.name, written.span);
-        errors.extend(unclear.or_else(|| path(class, &written.name, written.span)));
+        errors.extend(unclear.or_else(|| path(class, &written)));
     }
 }
 
@@ -62,7 +62,9 @@ pub(super) fn protected(name: Ident, class: Scope<'_>, span: Span) -> Diagnostic
 }
 
 /// What is wrong with a name whose first part means a class.
-fn path(class: Scope<'_>, name: &Name, span: Span) -> Option<Diagnostic> {
+fn path(class: Scope<'_>, written: &names::Written) -> Option<Diagnostic> {
+    let names::Written { name, span, .. } = written;
+    let span = *span;
     let (first, rest) = name.parts.split_first()?;
     let start = Name { global: name.global, parts: vec![*first] };
     if !name.global && names::is_component(class, *first) {
@@ -71,7 +73,9 @@ fn path(class: Scope<'_>, name: &Name, span: Span) -> Option<Diagnostic> {
     let mut inside = class.class_named(&start)?;
     let mut prefix = start;
     for part in rest {
-        if inside.definition().partial && !class.definition().partial {
+        // A base may lie in a partial package, as in version 4.0.0 of the standard library: nothing
+        // of that package becomes part of a model.
+        if inside.definition().partial && !class.definition().partial && !written.is_base {
             return Some(
                 fault!(ILLEGAL_ACCESS, "`{name}` looks into `{}`, which is partial", inside.name();
                     help: "extend it, and look into the class that extends it")

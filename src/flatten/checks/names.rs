@@ -16,6 +16,8 @@ use crate::syntax::visit::{
 pub(super) struct Written {
     pub(super) name: Name,
     pub(super) span: Span,
+    /// It is the base of an extends clause.
+    pub(super) is_base: bool,
 }
 
 /// All names that a class itself writes, those of loop variables left out. What short classes
@@ -67,7 +69,11 @@ impl Walk {
         match element {
             Element::Import(_) => {}
             Element::Extends(extends) => {
+                let at = self.written.len();
                 self.specifier(&extends.base);
+                if let Some(base) = self.written.get_mut(at) {
+                    base.is_base = true;
+                }
                 self.arguments(&extends.modification);
             }
             Element::Component(clause) => self.clause(clause),
@@ -103,7 +109,7 @@ impl Walk {
 
     fn specifier(&mut self, specifier: &TypeSpecifier) {
         let (name, span) = (specifier.name.clone(), specifier.span);
-        self.written.push(Written { name, span });
+        self.written.push(Written { name, span, is_base: false });
     }
 
     fn subscripts(&mut self, subscripts: &[Subscript]) {
@@ -153,7 +159,7 @@ impl Visit for Walk {
         if reference.global || !self.loops.contains(&reference.parts[0].name) {
             let parts = reference.parts.iter().map(|part| part.name).collect();
             let name = Name { global: reference.global, parts };
-            self.written.push(Written { name, span: reference.span });
+            self.written.push(Written { name, span: reference.span, is_base: false });
         }
     }
 

@@ -11,12 +11,17 @@ use crate::flatten::library::ClassId;
 use crate::flatten::lookup::Predefined;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
-    BinaryOperator, ClassSpecifier, ComponentReference, Equation, EquationKind, Expression,
-    ExpressionKind, Section, Statement, StatementKind, UnaryOperator,
+    BinaryOperator, Binding, ClassSpecifier, ComponentReference, Equation, EquationKind,
+    Expression, ExpressionKind, Section, Statement, StatementKind, UnaryOperator,
 };
 use crate::syntax::visit::{
     Visit, walk_equation, walk_expression, walk_modification, walk_statement,
 };
+
+const NUMERIC_FUNCTIONS: [&str; 18] = [
+    "abs", "sign", "sqrt", "div", "mod", "rem", "sin", "cos", "tan", "asin", "acos", "atan",
+    "sinh", "cosh", "tanh", "exp", "log", "log10",
+];
 
 /// The type of an expression.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,6 +37,7 @@ enum Kind {
 pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     let mut walk = Walk { class, loops: Vec::new(), errors };
     for component in class.components() {
+        walk.binding(&component);
         component.declaration.modification.iter().for_each(|one| walk_modification(&mut walk, one));
         component.declaration.condition.iter().for_each(|one| walk.condition(one));
     }
@@ -68,6 +74,50 @@ impl Walk<'_, '_> {
             Kind::String => "a String".to_owned(),
             Kind::Enumeration(class) => {
                 format!("of the enumeration `{}`", self.class.of(class).name())
+            }
+        }
+    }
+
+    /// Enumerations have only values of their own type, and no other type has them (MLS §4.9.5).
+    fn binding(&mut self, component: &Component<'_>) {
+        let modification = component.declaration.modification.as_ref();
+        let Some(Binding::Expression(value)) = modification.and_then(|one| one.binding.as_ref())
+        else {
+            return;
+        };
+        let (Some(declared), Some(found)) = (kind_of(component), self.kind(value)) else { return };
+        let has_enumeration =
+            [declared, found].iter().any(|kind| matches!(kind, Kind::Enumeration(_)));
+        if has_enumeration && declared != found {
+            let name = component.name();
+            self.mismatch(value, &format!("`{name}` is {}", self.name(declared)), found);
+        }
+    }
+
+    /// Arithmetic is defined for numbers (MLS §10.6), the sum of strings aside.
+    fn operands(&mut self, operator: BinaryOperator, operands: [&Expression; 2]) {
+        use BinaryOperator::{Add, Divide, Multiply, Power, Subtract};
+        if !matches!(operator, Add | Subtract | Multiply | Divide | Power) {
+            return;
+        }
+        for operand in operands {
+            self.numeric(operand, "arithmetic needs numbers");
+        }
+    }
+
+    fn numeric(&mut self, operand: &Expression, needed: &str) {
+        if let Some(kind @ (Kind::Boolean | Kind::Enumeration(_))) = self.kind(operand) {
+            self.mismatch(operand, needed, kind);
+        }
+    }
+
+    /// The functions of numbers (MLS §3.7.1, §3.7.3).
+    fn numeric_call(&mut self, function: &ComponentReference, arguments: &[Expression]) {
+        let [name] = function.parts.as_slice() else { return };
+        let is_declared = self.class.class_named(&name.name.into()).is_some();
+        if !is_declared && NUMERIC_FUNCTIONS.contains(&name.name.as_str()) {
+            for argument in arguments {
+                self.numeric(argument, &format!("`{}` needs a number", name.name));
             }
         }
     }
@@ -169,6 +219,9 @@ impl Visit for Walk<'_, '_> {
             ExpressionKind::Binary { operator, left, right } if is_relation(*operator) => {
                 self.relation(left, right);
             }
+            ExpressionKind::Binary { operator, left, right } => {
+                self.operands(*operator, [left, right]);
+            }
             ExpressionKind::If { branches, .. } => {
                 for (condition, _) in branches {
                     if let Some(kind) = self.kind(condition).filter(|kind| *kind != Kind::Boolean) {
@@ -179,7 +232,8 @@ impl Visit for Walk<'_, '_> {
             ExpressionKind::Comprehension { indices, .. } => {
                 self.loops.extend(indices.iter().map(|index| index.name.node));
             }
-            ExpressionKind::Call { arguments, .. } => {
+            ExpressionKind::Call { function, arguments } => {
+                self.numeric_call(function, &arguments.positional);
                 self.loops.extend(arguments.iterators.iter().map(|index| index.name.node));
             }
             _ => {}

@@ -46,6 +46,7 @@ impl Instantiation<'_> {
                 errors.push(error);
             }
         }
+        connections.context = None;
         if let Err(error) = self.build_graph(&mut connections) {
             errors.push(error);
         }
@@ -103,6 +104,9 @@ impl Instantiation<'_> {
             return Ok(());
         }
         match &equation.kind {
+            EquationKind::Connect { left, right } if self.is_deselected(context, left, right) => {
+                Ok(())
+            }
             EquationKind::Connect { left, right } => {
                 connects.push(Connect {
                     left: left.clone(),
@@ -174,6 +178,7 @@ impl Instantiation<'_> {
             .at(span));
         }
         let sides = (left_ends.outside, right_ends.outside);
+        connections.context = Some(self.node_of(*context));
         for (one, other) in left_ends.ends.iter().zip(&right_ends.ends) {
             connections.count(*one);
             connections.count(*other);

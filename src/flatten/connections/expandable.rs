@@ -59,7 +59,7 @@ impl Instantiation<'_> {
         Ok(())
     }
 
-    pub(super) fn is_expandable(&self, node: NodeId) -> bool {
+    pub(in super::super) fn is_expandable(&self, node: NodeId) -> bool {
         self.scope_of(node).is_some_and(|scope| {
             scope != ScopeId::TOP
                 && self.text(scope).restriction() == Restriction::ExpandableConnector

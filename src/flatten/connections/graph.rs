@@ -34,7 +34,7 @@ struct Edge {
 
 /// The virtual connection graph.
 #[derive(Debug, Default)]
-pub(super) struct Graph {
+pub(in super::super) struct Graph {
     nodes: IndexSet<NodeId>,
     branches: Vec<(NodeId, NodeId)>,
     edges: Vec<Edge>,
@@ -49,6 +49,11 @@ pub(super) struct Graph {
 }
 
 impl Graph {
+    /// The redundant records that take part.
+    pub(in super::super) fn nodes(&self) -> impl Iterator<Item = NodeId> {
+        self.nodes.iter().copied()
+    }
+
     pub(super) fn branch(&mut self, one: NodeId, other: NodeId) {
         self.nodes.extend([one, other]);
         self.branches.push((one, other));

@@ -19,12 +19,21 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 /// A scalar of a connector, seen from one side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) struct Face {
+pub(in super::super) struct Face {
     /// The node of the variable.
-    pub(super) leaf: NodeId,
+    pub(in super::super) leaf: NodeId,
     /// The element of the variable, from 0.
-    pub(super) element: usize,
-    pub(super) outside: bool,
+    pub(in super::super) element: usize,
+    pub(in super::super) outside: bool,
+}
+
+/// Two scalars that a connection joins.
+#[derive(Debug, Clone)]
+pub(in super::super) struct Edge {
+    /// The instance whose class writes the connection.
+    pub(in super::super) context: NodeId,
+    pub(in super::super) faces: [Face; 2],
+    pub(in super::super) span: Span,
 }
 
 /// All connection sets of a model.
@@ -38,7 +47,11 @@ pub(in super::super) struct Connections {
     spans: Vec<Span>,
     /// How often each connector stands in a connection.
     counts: FxHashMap<End, i64>,
-    pub(super) graph: Graph,
+    pub(in super::super) graph: Graph,
+    /// The instance whose connections are being made.
+    pub(super) context: Option<NodeId>,
+    /// What was joined, for the balance of each class.
+    pub(in super::super) edges: Vec<Edge>,
     /// Variables of expandable connectors that are left out.
     pub(super) dropped: FxHashSet<NodeId>,
     /// Members of each set by its representative, made when all connections are known.
@@ -257,11 +270,14 @@ impl Instantiation<'_> {
             element,
             outside: outside && two_faced,
         };
-        connections.join(face(one), face(other), span);
+        let faces = [face(one), face(other)];
+        let context = connections.context;
+        connections.edges.extend(context.map(|context| Edge { context, faces, span }));
+        connections.join(faces[0], faces[1], span);
         Ok(())
     }
 
-    pub(super) fn connection_of(&self, leaf: NodeId) -> Option<ConnectionPrefix> {
+    pub(in super::super) fn connection_of(&self, leaf: NodeId) -> Option<ConnectionPrefix> {
         match &self.nodes[leaf.0].kind {
             NodeKind::Variable(leaf) => leaf.connection,
             NodeKind::Composite(_) => None,

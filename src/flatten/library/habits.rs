@@ -79,6 +79,12 @@ impl Habits {
         let mut met = self.met.lock().unwrap_or_else(PoisonError::into_inner);
         std::mem::take(&mut met.untold)
     }
+
+    /// Whether a library was written for an old Modelica.
+    pub(super) fn is_old(&self, library: Ident) -> bool {
+        let met = self.met.lock().unwrap_or_else(PoisonError::into_inner);
+        met.known.iter().any(|(known, _)| *known == library)
+    }
 }
 
 /// The habits that the sections of a class show.

@@ -1,8 +1,10 @@
 //! Crossover: how parents make children.
 
 mod one_point;
+mod sbx;
 
 pub use one_point::{check_points, cross_adjacent};
+pub use sbx::sbx;
 
 use super::Genomes;
 use crate::registry::Entry;

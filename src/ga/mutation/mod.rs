@@ -1,7 +1,9 @@
 //! Mutation: random changes of genes.
 
+mod polynomial;
 mod uniform;
 
+pub use polynomial::polynomial;
 pub use uniform::{check_factor, mutate_uniform};
 
 use super::{Gene, Genomes};

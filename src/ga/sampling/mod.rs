@@ -1,7 +1,9 @@
 //! Sampling: how random individuals are made.
 
+mod latin_hypercube;
 mod uniform;
 
+pub use latin_hypercube::latin_hypercube;
 pub use uniform::sample_uniform;
 
 use super::{Gene, Genomes, Mrg32k3a};
@@ -14,4 +16,4 @@ pub trait Sampling: Send + Sync {
 }
 
 /// All ways of sampling.
-pub const SAMPLINGS: &[&Entry<dyn Sampling>] = &[&uniform::ENTRY];
+pub const SAMPLINGS: &[&Entry<dyn Sampling>] = &[&uniform::ENTRY, &latin_hypercube::ENTRY];

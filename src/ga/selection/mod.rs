@@ -1,7 +1,9 @@
 //! Selection: who becomes a parent.
 
+mod tournament;
 mod truncation;
 
+pub use tournament::tournament;
 pub use truncation::check_sizes;
 
 use super::Mrg32k3a;

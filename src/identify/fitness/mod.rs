@@ -1,17 +1,88 @@
 //! Fitness functions: how far the simulation is from the measurement; smaller is better.
 
+mod huber;
+mod log_likelihood;
+mod mean_absolute;
+mod normalized;
+mod relative;
+mod root_mean_square;
 mod sum_of_squares;
 
 pub use sum_of_squares::sum_of_squares;
 
+use crate::ga::FAILED_FITNESS;
 use crate::registry::Entry;
 
 /// Compares one simulation with the measurement.
 pub trait Fitness: Send + Sync {
-    /// Zero for equal series; [`FAILED_FITNESS`](crate::ga::FAILED_FITNESS) where a simulated
-    /// value is not a number. Both slices have the same length.
-    fn fitness(&self, simulated: &[f64], measured: &[f64]) -> f64;
+    /// [`FAILED_FITNESS`] where a simulated value is not a number. Every
+    /// difference counts times its weight; all slices have the same length.
+    fn fitness(&self, simulated: &[f64], measured: &[f64], weights: &[f64]) -> f64;
+
+    /// What each difference is multiplied with where the minimum is that of a sum of squares;
+    /// `None` where it is not, so that least squares cannot find it.
+    fn least_squares(&self, measured: &[f64], weights: &[f64]) -> Option<Vec<f64>>;
 }
 
-/// All fitness functions.
-pub const FITNESSES: &[&Entry<dyn Fitness>] = &[&sum_of_squares::ENTRY];
+/// All fitness functions; the first is the default.
+pub const FITNESSES: &[&Entry<dyn Fitness>] = &[
+    &sum_of_squares::ENTRY,
+    &root_mean_square::ENTRY,
+    &normalized::ENTRY,
+    &mean_absolute::ENTRY,
+    &relative::ENTRY,
+    &huber::ENTRY,
+    &log_likelihood::ENTRY,
+];
+
+/// Weighted differences, measured less simulated.
+fn differences<'a>(
+    simulated: &'a [f64],
+    measured: &'a [f64],
+    weights: &'a [f64],
+) -> impl Iterator<Item = f64> + 'a {
+    simulated.iter().zip(measured).zip(weights).map(|((s, m), w)| w * (m - s))
+}
+
+/// NaN and what is too large become the fitness of a failed simulation.
+fn checked(value: f64) -> f64 {
+    if value < FAILED_FITNESS { value } else { FAILED_FITNESS }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registry::{self, Options};
+
+    fn fitness(name: &str, simulated: &[f64], measured: &[f64], weights: &[f64]) -> f64 {
+        let entry = registry::find("fitness function", FITNESSES, name).unwrap();
+        let fitness = (entry.make)(&mut Options::default()).unwrap();
+        fitness.fitness(simulated, measured, weights)
+    }
+
+    #[test]
+    fn each_has_the_value_of_its_formula() {
+        let (simulated, measured, weights) = ([1.0, 2.0, 5.0], [1.0, 4.0, 2.0], [1.0, 0.5, 1.0]);
+        // Weighted differences: 0, 1, -3.
+        for (name, expected) in [
+            ("sse", 10.0),
+            ("rmse", (10.0_f64 / 3.0).sqrt()),
+            ("nrmse", (10.0_f64 / 3.0).sqrt() / 3.0),
+            ("mae", 4.0 / 3.0),
+            ("relative", (0.25_f64.powi(2) + 1.5_f64.powi(2)) / 3.0),
+            ("huber", 0.5 + 1.345 * (3.0 - 0.5 * 1.345)),
+            ("log_likelihood", 1.5 * ((2.0 * std::f64::consts::PI * 10.0 / 3.0).ln() + 1.0)),
+        ] {
+            let found = fitness(name, &simulated, &measured, &weights);
+            assert!((found - expected).abs() < 1e-12, "{name}: {found} instead of {expected}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_a_number_is_a_failure() {
+        for entry in FITNESSES {
+            let found = fitness(entry.name, &[f64::NAN, 1.0], &[1.0, 2.0], &[1.0, 1.0]);
+            assert_eq!(found, FAILED_FITNESS, "{}", entry.name);
+        }
+    }
+}

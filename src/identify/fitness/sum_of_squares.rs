@@ -1,15 +1,15 @@
-//! Σ (yⱼ − ŷⱼ)².
+//! Σ (wⱼ (yⱼ − ŷⱼ))².
 //!
 //! Reference: [Rubio et al. 2006](crate::bibliography#rubio-2006), equation (1).
 
-use super::Fitness;
+use super::{Fitness, checked, differences};
 use crate::ga::FAILED_FITNESS;
 use crate::registry::Entry;
 
 /// The table entry.
 pub(super) const ENTRY: Entry<dyn Fitness> = Entry {
     name: "sum_of_squares",
-    aliases: &["sse"],
+    aliases: &["sse", "wsse"],
     summary: "sum of the squared differences",
     reference: "rubio-2006",
     make: |_| Ok(Box::new(SumOfSquares)),
@@ -18,8 +18,12 @@ pub(super) const ENTRY: Entry<dyn Fitness> = Entry {
 struct SumOfSquares;
 
 impl Fitness for SumOfSquares {
-    fn fitness(&self, simulated: &[f64], measured: &[f64]) -> f64 {
-        sum_of_squares(simulated, measured)
+    fn fitness(&self, simulated: &[f64], measured: &[f64], weights: &[f64]) -> f64 {
+        checked(differences(simulated, measured, weights).map(|d| d * d).sum())
+    }
+
+    fn least_squares(&self, _: &[f64], weights: &[f64]) -> Option<Vec<f64>> {
+        Some(weights.to_vec())
     }
 }
 

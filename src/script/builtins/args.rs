@@ -25,6 +25,11 @@ impl Args {
         self.header.name.last().map_or("", |name| name.as_str())
     }
 
+    /// What the header says the command does.
+    pub fn description(&self) -> &str {
+        self.header.description.as_deref().unwrap_or_default()
+    }
+
     /// The names of the inputs, in order.
     pub fn names(&self) -> impl Iterator<Item = &'static str> {
         self.header.inputs.iter().map(|input| input.name.as_str())

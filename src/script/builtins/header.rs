@@ -10,7 +10,7 @@ use crate::syntax::ast::{
 };
 
 /// The function that a header declares. Types other than the predefined ones stand for
-/// themselves: `TypeName`, `VariableName`, and `Any` for whatever is given.
+/// themselves: `TypeName`, `VariableName`, `Expression`, and `Any` for whatever is given.
 pub(super) fn function(class: &ClassDefinition) -> Function {
     let mut function = Function {
         name: Name::from(class.name.node),
@@ -73,6 +73,7 @@ fn value_type(clause: &ComponentClause) -> ValueType {
         Some("String") => ValueType::String,
         Some("TypeName") => ValueType::TypeName,
         Some("VariableName") => ValueType::VariableName,
+        Some("Expression") => ValueType::Expression,
         _ => ValueType::Any,
     }
 }

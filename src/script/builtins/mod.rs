@@ -2,15 +2,22 @@
 //! header in Modelica and implemented in Rust beside it, one file per family.
 
 mod args;
+mod classes;
+mod comparison;
 mod conversion;
+mod extended;
 mod files;
 mod gapilib;
 mod header;
+mod initial;
+mod linearization;
 mod loading;
 mod matrices;
 mod messages;
 mod openmodelica;
 mod plotting;
+mod refused;
+mod regular;
 mod results;
 mod scanning;
 mod scripts;
@@ -19,6 +26,7 @@ mod simulation;
 mod streams;
 mod strings;
 mod system;
+mod upgrade;
 mod windows;
 
 pub use args::Args;
@@ -85,16 +93,25 @@ pub struct Family {
 /// All families. Where a bare name occurs more than once, the session's dialect decides, then the
 /// order here.
 pub static FAMILIES: &[&Family] = &[
+    &classes::FAMILY,
+    &comparison::FAMILY,
     &conversion::FAMILY,
+    &extended::FAMILY,
     &files::FAMILY,
     &files::OPENMODELICA,
     &gapilib::FAMILY,
+    &initial::FAMILY,
+    &linearization::FAMILY,
+    &linearization::OPENMODELICA,
     &loading::FAMILY,
     &loading::OPENMODELICA,
     &matrices::FAMILY,
     &messages::FAMILY,
     &openmodelica::FAMILY,
     &plotting::FAMILY,
+    &plotting::OPENMODELICA,
+    &refused::FAMILY,
+    &regular::FAMILY,
     &results::FAMILY,
     &results::OPENMODELICA,
     &scripts::FAMILY,
@@ -107,6 +124,7 @@ pub static FAMILIES: &[&Family] = &[
     &system::FAMILY,
     &system::DYMOLA,
     &system::OPENMODELICA,
+    &upgrade::FAMILY,
     &windows::FAMILY,
     // Last: its names are short words that other families use too.
     &strings::FAMILY,
@@ -216,6 +234,28 @@ pub(super) fn is_package(package: &str) -> bool {
 /// The bare names of all commands, sorted.
 pub fn names() -> Vec<&'static str> {
     let mut names: Vec<&'static str> = TABLE.iter().map(|known| known.builtin.name()).collect();
+    names.sort_unstable();
+    names.dedup();
+    names
+}
+
+/// The declarations of the commands of this name, one for each dialect that has its own.
+pub fn declarations(name: &str) -> Vec<String> {
+    let last = name.rsplit('.').next().unwrap_or(name);
+    let found = BY_NAME.get(last).map_or(&[][..], Vec::as_slice);
+    let text = |at: &usize| TABLE[*at].builtin.header.replace(" annotation(optional = true)", "");
+    found.iter().map(|at| text(at).trim().to_owned()).collect()
+}
+
+/// The inputs of the commands of this name.
+pub fn inputs(name: &str) -> Vec<&'static str> {
+    let last = name.rsplit('.').next().unwrap_or(name);
+    let found = BY_NAME.get(last).map_or(&[][..], Vec::as_slice).iter();
+    let mut names: Vec<&'static str> = found
+        .flat_map(|at| {
+            BuiltinId(*at).function().inputs.iter().map(|i| i.name.as_str()).collect::<Vec<_>>()
+        })
+        .collect();
     names.sort_unstable();
     names.dedup();
     names

@@ -2,13 +2,15 @@
 
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
-use crate::diag::Diagnostic;
+use crate::diag::{At, Diagnostic, Fault};
+use crate::fault;
 use crate::name::{Ident, Name};
 use crate::script::errors::BAD_ARGUMENT;
 use crate::script::simulation::{self, Wishes};
 use crate::script::{Dialect, Session};
 use crate::value::{RecordValue, Value};
 use indexmap::IndexMap;
+use regex::{Regex, RegexBuilder};
 
 /// The commands of this file.
 pub(super) const FAMILY: Family = Family {
@@ -16,12 +18,12 @@ pub(super) const FAMILY: Family = Family {
     dialect: Some(Dialect::OpenModelica),
     builtins: &[
         Builtin { header: SIMULATE, run: simulate },
+        Builtin { header: BUILD_MODEL, run: build_model },
         Builtin { header: TRANSLATE_MODEL, run: translate_model },
         Builtin { header: CHECK_MODEL, run: check_model },
         Builtin { header: INSTANTIATE_MODEL, run: instantiate_model },
         Builtin { header: VAL, run: val },
         Builtin { header: GET_PARAMETER_NAMES, run: get_parameter_names },
-        Builtin { header: SET_PARAMETER_VALUE, run: set_parameter_value },
         Builtin { header: STRING_REPLACE, run: string_replace },
         Builtin { header: STRTOK, run: strtok },
         Builtin { header: STRING_TYPE_NAME, run: string_type_name },
@@ -46,9 +48,9 @@ function simulate "Simulates a model. What is not given comes from its experimen
   input String fileNamePrefix = "" "empty: the name of the class";
   input String options = "" "has no effect";
   input String outputFormat = "mat" "mat or csv";
-  input String variableFilter = ".*" "has no effect: all variables are stored";
+  input String variableFilter = ".*" "regular expression of the names that are stored";
   input String cflags = "" "has no effect";
-  input String simflags = "" "-override=name=value,… sets parameters";
+  input String simflags = "" "-override=name=value,… sets parameters and start values";
   output Any simulationResults "resultFile, simulationOptions, messages";
 end simulate;
 "#;
@@ -59,30 +61,69 @@ fn simulate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let prefix: String = args.take("fileNamePrefix")?;
     let format: String = args.take("outputFormat")?;
     let flags: String = args.take("simflags")?;
+    let filter = filter(&args.take::<String>("variableFilter")?)?;
     let prefix = if prefix.is_empty() { class.to_string() } else { prefix };
     let file = format!("{prefix}_res.{format}");
-    let done = run(session, &class, &wishes, &flags, &file);
+    let done = run(session, &class, &wishes, &flags, (&file, &filter));
     let messages = match &done {
         Ok(()) => String::new(),
-        Err(errors) => errors.iter().map(|error| format!("{}\n", error.message)).collect(),
+        Err(errors) => {
+            let reasons = errors.iter().map(|error| format!("{}\n", error.message));
+            format!("Failed to build model: {class}\n{}", reasons.collect::<String>())
+        }
     };
     let result_file = match session.or_report_all(done) {
         Some(()) => session.world.absolute(file.as_ref()).display().to_string(),
         None => String::new(),
     };
     let options = shown(&wishes, &prefix, &format);
-    let fields =
-        [("resultFile", result_file), ("simulationOptions", options), ("messages", messages)];
-    Ok(Value::Record(RecordValue {
-        type_name: Name::parse("SimulationResult"),
-        fields: fields
-            .into_iter()
-            .map(|(name, text)| (Ident::new(name), Value::from(text)))
-            .collect::<IndexMap<Ident, Value>>(),
-    }))
+    Ok(simulation_result([result_file, options, messages]))
 }
 
-fn wishes(args: &mut Args) -> Result<Wishes, Failure> {
+/// The record that simulations return.
+pub(super) fn simulation_result(texts: [String; 3]) -> Value {
+    let names = ["resultFile", "simulationOptions", "messages"].map(Ident::new);
+    let fields = names.into_iter().zip(texts.map(Value::from));
+    Value::Record(RecordValue {
+        type_name: Name::parse("SimulationResult"),
+        fields: fields.collect::<IndexMap<Ident, Value>>(),
+    })
+}
+
+/// The names that are stored: those that an expression matches as a whole.
+fn filter(expression: &str) -> Result<Regex, Fault> {
+    let whole = format!("^(?:{expression})$");
+    RegexBuilder::new(&whole).size_limit(1 << 20).build().map_err(|_| {
+        fault!(BAD_ARGUMENT, "`variableFilter` is no regular expression: `{expression}`")
+    })
+}
+
+const BUILD_MODEL: &str = r#"
+function buildModel "Translates a model; nothing is written, it is simulated by this program."
+  input TypeName className;
+  input Real startTime = 0.0 "s" annotation(optional = true);
+  input Real stopTime = 1.0 "s" annotation(optional = true);
+  input Integer numberOfIntervals = 500 annotation(optional = true);
+  input Real tolerance = 1e-6 "relative" annotation(optional = true);
+  input String method = "dassl" annotation(optional = true);
+  input String fileNamePrefix = "" "empty: the name of the class";
+  input String options = "";
+  input String outputFormat = "mat";
+  input String variableFilter = ".*";
+  input String cflags = "";
+  input String simflags = "";
+  output String buildModelResults[2] "the name of the class, and an empty string: there is no init file";
+end buildModel;
+"#;
+
+fn build_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let class: Name = args.take("className")?;
+    let done = simulation::translate(session, &class.to_string());
+    let built = session.or_report_all(done).map_or(String::new(), |_| class.to_string());
+    Ok(vec![built, String::new()].into())
+}
+
+pub(super) fn wishes(args: &mut Args) -> Result<Wishes, Failure> {
     let intervals: Option<i64> = args.optional("numberOfIntervals")?;
     Ok(Wishes {
         start: args.optional("startTime")?,
@@ -99,29 +140,46 @@ fn run(
     class: &Name,
     wishes: &Wishes,
     flags: &str,
-    file: &str,
+    (file, filter): (&str, &Regex),
 ) -> Result<(), Vec<Diagnostic>> {
     let model = simulation::translate(session, &class.to_string())?;
-    let one = |session: &Session, fault: crate::diag::Fault| vec![fault.at(session.call_site())];
-    for (name, value) in overrides(flags) {
-        session.set_parameter(name, value).map_err(|fault| one(session, fault))?;
+    let at = session.call_site();
+    let one = |error: Diagnostic| vec![error];
+    let before = session.current_values();
+    let set = set_overrides(session, flags).at(at);
+    let done = set.and_then(|()| simulation::simulate(session, &model, wishes));
+    session.restore_values(before);
+    let mut done = done.map_err(one)?;
+    if filter.as_str() != "^(?:.*)$" {
+        done.table = done.table.only(|name| filter.is_match(name));
     }
-    let done = simulation::simulate(session, &model, wishes).map_err(|error| vec![error])?;
     let bytes = crate::results::format_of_file(file).and_then(|f| f.write(&done.table));
     let written = bytes.and_then(|bytes| session.write_file(file.as_ref(), &bytes));
-    written.map_err(|fault| one(session, fault))?;
+    written.at(at).map_err(one)?;
     session.extension::<LastResults>().0 = Some(file.to_owned());
+    super::plotting::note_results(session, file);
     Ok(())
 }
 
-/// The numbers of `-override=a=1,b.c=2` and `-override a=1`.
-fn overrides(flags: &str) -> impl Iterator<Item = (&str, f64)> {
-    let list = flags.split("-override").nth(1).unwrap_or("");
+/// Sets what `-override=a=1,b.c=2` or `-override a=1` says.
+pub(super) fn set_overrides(session: &mut Session, flags: &str) -> Result<(), Fault> {
+    let Some((_, list)) = flags.split_once("-override") else { return Ok(()) };
     let list = list.trim_start_matches(['=', ' ']).split_whitespace().next().unwrap_or("");
-    list.split(',').filter_map(|setting| {
-        let (name, value) = setting.split_once('=')?;
-        Some((name.trim(), value.trim().parse().ok()?))
-    })
+    for setting in list.split(',').filter(|setting| !setting.is_empty()) {
+        let parsed = setting.split_once('=').and_then(|(name, value)| {
+            let value = match value.trim() {
+                "true" => 1.0,
+                "false" => 0.0,
+                number => number.parse().ok()?,
+            };
+            Some((name.trim(), value))
+        });
+        let Some((name, value)) = parsed else {
+            bail!(BAD_ARGUMENT, "`{setting}` in `-override` is not `name=value`")
+        };
+        session.set_parameter(name, value)?;
+    }
+    Ok(())
 }
 
 fn shown(wishes: &Wishes, prefix: &str, format: &str) -> String {
@@ -222,27 +280,6 @@ fn get_parameter_names(session: &mut Session, mut args: Args) -> Result<Value, F
     };
     let names = flat.variables.values().filter(is_parameter).map(|v| v.name.to_string());
     Ok(names.collect::<Vec<String>>().into())
-}
-
-const SET_PARAMETER_VALUE: &str = r#"
-function setParameterValue "Gives a parameter of the translated model a value."
-  input TypeName className;
-  input VariableName variableName;
-  input Real value;
-  output Boolean success;
-end setParameterValue;
-"#;
-
-fn set_parameter_value(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let class: Name = args.take("className")?;
-    let name: String = args.take("variableName")?;
-    let value: f64 = args.take("value")?;
-    let translated = simulation::translate(session, &class.to_string());
-    if session.or_report_all(translated).is_none() {
-        return Ok(false.into());
-    }
-    let set = session.set_parameter(&name, value);
-    Ok(session.succeeded(set))
 }
 
 const STRING_REPLACE: &str = r#"

@@ -4,9 +4,12 @@ use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
 use crate::plot::{Axis, Figure, Mark, Panel, Series};
+use crate::results::ResultTable;
 use crate::script::errors::BAD_ARGUMENT;
 use crate::script::{Dialect, Session};
 use crate::value::Value;
+use std::path::Path;
+use std::sync::Arc;
 
 /// The commands of this file.
 pub(super) const FAMILY: Family = Family {
@@ -17,15 +20,27 @@ pub(super) const FAMILY: Family = Family {
         Builtin { header: CREATE_PLOT, run: create_plot },
         Builtin { header: PLOT_ARRAY, run: plot_array },
         Builtin { header: PLOT_SCATTER, run: plot_scatter },
+        Builtin { header: PLOT_EXPRESSION, run: plot_expression },
+        Builtin { header: EXPORT_PLOT_AS_IMAGE, run: export_plot_as_image },
         Builtin { header: REMOVE_PLOTS, run: remove_plots },
     ],
+};
+
+/// OpenModelica's `plot`.
+pub(super) const OPENMODELICA: Family = Family {
+    packages: &["OpenModelica.Scripting"],
+    dialect: Some(Dialect::OpenModelica),
+    builtins: &[Builtin { header: PLOT_OPENMODELICA, run: plot_openmodelica }],
 };
 
 /// What was plotted so far.
 #[derive(Default)]
 struct Plots {
     drawn: usize,
+    last_drawn: Option<String>,
     last_results: Option<String>,
+    /// What `plotArray` and `plotScatter` draw on: drawn already when it has series.
+    vectors: Option<Figure>,
 }
 
 /// Notes the result file that plots take where they name none.
@@ -115,7 +130,9 @@ fn create_plot(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
         bottom_title: args.take("bottomTitle")?,
         logarithmic: [args.take("logX")?, args.take("logY")?],
     };
-    if !drawing.names.is_empty() {
+    if drawing.names.is_empty() {
+        session.extension::<Plots>().vectors = Some(drawing.empty_figure());
+    } else {
         draw_trajectories(session, drawing)?;
     }
     Ok(Value::Integer(id.max(1)))
@@ -170,7 +187,8 @@ end removePlots;
 "#;
 
 fn remove_plots(session: &mut Session, _: Args) -> Result<Value, Failure> {
-    session.extension::<Plots>().drawn = 0;
+    let plots = session.extension::<Plots>();
+    (plots.drawn, plots.vectors) = (0, None);
     Ok(true.into())
 }
 
@@ -187,17 +205,34 @@ struct Drawing {
     logarithmic: [bool; 2],
 }
 
-fn draw_trajectories(session: &mut Session, drawing: Drawing) -> Result<(), Fault> {
-    let file = match (drawing.file.as_str(), &session.extension::<Plots>().last_results) {
-        ("", Some(last)) => last.clone(),
-        ("", None) => bail!(
+impl Drawing {
+    /// The titles and axes, with nothing drawn.
+    fn empty_figure(self) -> Figure {
+        let axis = |label: &str, logarithmic: bool| {
+            if logarithmic { Axis::logarithmic(label, "") } else { Axis::linear(label, "") }
+        };
+        let [log_x, log_y] = self.logarithmic;
+        let axes = [axis(&self.bottom_title, log_x), axis(&self.left_title, log_y)];
+        figure(self.title, axes, Vec::new())
+    }
+}
+
+/// The result file that a plot takes: the one named, else that of the last simulation.
+fn results(session: &mut Session, file: &str) -> Result<Arc<ResultTable>, Fault> {
+    let file = match (file, &session.extension::<Plots>().last_results) {
+        ("" | "<default>", Some(last)) => last.clone(),
+        ("" | "<default>", None) => bail!(
             BAD_ARGUMENT,
             "there is nothing to plot: no model has been simulated";
             help: "simulate first, or name a result file with `createPlot(filename=…)`"
         ),
         (named, _) => named.to_owned(),
     };
-    let table = super::results::table(session, &file)?;
+    super::results::table(session, &file)
+}
+
+fn draw_trajectories(session: &mut Session, drawing: Drawing) -> Result<(), Fault> {
+    let table = results(session, &drawing.file)?;
     let x = table.column(&drawing.x)?;
     let mut series = Vec::with_capacity(drawing.names.len());
     for (at, name) in drawing.names.iter().enumerate() {
@@ -222,17 +257,12 @@ fn draw_trajectories(session: &mut Session, drawing: Drawing) -> Result<(), Faul
     let y_name = if let [only] = drawing.names.as_slice() { only.as_str() } else { "" };
     let y_unit = drawing.names.first().map_or(String::new(), |name| unit(name));
     let [log_x, log_y] = drawing.logarithmic;
-    let figure = Figure {
-        title: drawing.title,
-        panels: vec![Panel {
-            x: axis(&drawing.bottom_title, &drawing.x, &x_unit, log_x),
-            y: axis(&drawing.left_title, y_name, &y_unit, log_y),
-            height: 300.0,
-            zero_line: false,
-            series,
-        }],
-    };
-    write(session, &figure)
+    let axes = [
+        axis(&drawing.bottom_title, &drawing.x, &x_unit, log_x),
+        axis(&drawing.left_title, y_name, &y_unit, log_y),
+    ];
+    session.extension::<Plots>().vectors = None;
+    write(session, &figure(drawing.title, axes, series))
 }
 
 fn draw_vectors(session: &mut Session, mut args: Args, mark: Mark) -> Result<Value, Failure> {
@@ -241,18 +271,27 @@ fn draw_vectors(session: &mut Session, mut args: Args, mark: Mark) -> Result<Val
     if x.len() != y.len() {
         bail!(BAD_ARGUMENT, "`x` has {} values and `y` has {}", x.len(), y.len());
     }
-    let figure = Figure {
-        title: String::new(),
-        panels: vec![Panel {
-            x: Axis::linear("", ""),
-            y: Axis::linear("", &unit),
-            height: 300.0,
-            zero_line: false,
-            series: vec![Series { name: legend, x, y, mark, colour: 1 }],
-        }],
-    };
+    let erase: bool = args.take("erase")?;
+    let plots = session.extension::<Plots>();
+    let begun = plots.vectors.take().filter(|figure| !erase || figure.panels[0].series.is_empty());
+    let mut figure = begun.unwrap_or_else(|| Drawing::default().empty_figure());
+    let series = &mut figure.panels[0].series;
+    if !series.is_empty() {
+        plots.drawn -= 1;
+    }
+    let colour = series.len() + 1;
+    series.push(Series { name: legend, x, y, mark, colour });
+    if !unit.is_empty() {
+        figure.panels[0].y.unit = unit;
+    }
     write(session, &figure)?;
+    session.extension::<Plots>().vectors = Some(figure);
     Ok(true.into())
+}
+
+/// A figure with one panel.
+fn figure(title: String, [x, y]: [Axis; 2], series: Vec<Series>) -> Figure {
+    Figure { title, panels: vec![Panel { x, y, height: 300.0, zero_line: false, series }] }
 }
 
 /// Writes the next `plot_<number>.svg` into the output folder.
@@ -261,5 +300,100 @@ fn write(session: &mut Session, figure: &Figure) -> Result<(), Fault> {
     plots.drawn += 1;
     let name = format!("plot_{}.svg", plots.drawn);
     let path = session.world.output_dir().join(name);
-    session.write_file(&path, figure.svg().as_bytes())
+    write_drawn(session, &path, figure.svg())
+}
+
+fn write_drawn(session: &mut Session, path: &Path, svg: String) -> Result<(), Fault> {
+    session.write_file(path, svg.as_bytes())?;
+    session.extension::<Plots>().last_drawn = Some(svg);
+    Ok(())
+}
+
+const EXPORT_PLOT_AS_IMAGE: &str = r#"
+function ExportPlotAsImage "Writes the plot drawn last to a file."
+  input String fileName "ends in .svg";
+  input Integer id = -1 "has no effect: the last plot is written";
+  input Boolean includeInLog = true "has no effect";
+  input Boolean onlyActiveSubplot = false "has no effect";
+  output Boolean ok;
+end ExportPlotAsImage;
+"#;
+
+fn export_plot_as_image(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let file: String = args.take("fileName")?;
+    if !file.to_ascii_lowercase().ends_with(".svg") {
+        bail!(
+            BAD_ARGUMENT,
+            "`{file}` does not end in `.svg`: plots are drawn as SVG only";
+            help: "write `ExportPlotAsImage(\"plot.svg\")`"
+        );
+    }
+    let Some(svg) = session.extension::<Plots>().last_drawn.clone() else {
+        bail!(BAD_ARGUMENT, "no plot has been drawn")
+    };
+    let written = session.write_file(Path::new(&file), svg.as_bytes());
+    Ok(session.succeeded(written))
+}
+
+const PLOT_EXPRESSION: &str = r#"
+function plotExpression "Draws an expression in variables of the last simulation over time."
+  input Expression mapFun "the expression";
+  input Boolean eraseOld = false;
+  input String expressionName = "" "legend";
+  input Integer id = 0;
+  output Boolean ok;
+end plotExpression;
+"#;
+
+fn plot_expression(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let shown: String = args.take("mapFun")?;
+    let legend: String = args.take("expressionName")?;
+    let table = results(session, "")?;
+    let y = session.along(&shown, &table)?;
+    let name = if legend.is_empty() { shown } else { legend };
+    let series = vec![Series { name, x: table.time.clone(), y, mark: Mark::Line, colour: 1 }];
+    let axes = [Axis::linear("time", "s"), Axis::linear("", "")];
+    write(session, &figure(String::new(), axes, series))?;
+    Ok(true.into())
+}
+
+const PLOT_OPENMODELICA: &str = r#"
+function plot "Draws trajectories of a result file over time."
+  input VariableName vars[:] "variables, or one";
+  input Boolean externalWindow = false "has no effect";
+  input String fileName = "<default>" "result file; default: that of the last simulation";
+  input String title = "";
+  input String grid = "simple" "has no effect";
+  input Boolean logX = false;
+  input Boolean logY = false;
+  input String xLabel = "time";
+  input String yLabel = "";
+  input Real xRange[2] = {0.0, 0.0} "has no effect";
+  input Real yRange[2] = {0.0, 0.0} "has no effect";
+  input Real curveWidth = 1.0 "has no effect";
+  input Integer curveStyle = 1 "has no effect";
+  input String legendPosition = "top" "has no effect";
+  input String footer = "" "has no effect";
+  input Boolean autoScale = true "has no effect";
+  input Boolean forceOMPlot = false "has no effect";
+  input String yAxis = "L" "has no effect";
+  input String yLabelRight = "" "has no effect";
+  input Real yRangeRight[2] = {0.0, 0.0} "has no effect";
+  output Boolean success;
+end plot;
+"#;
+
+fn plot_openmodelica(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let drawing = Drawing {
+        title: args.take("title")?,
+        x: "time".to_owned(),
+        names: super::results::variable_names(&mut args, "vars")?,
+        legends: Vec::new(),
+        file: args.take("fileName")?,
+        left_title: args.take("yLabel")?,
+        bottom_title: args.take("xLabel")?,
+        logarithmic: [args.take("logX")?, args.take("logY")?],
+    };
+    let drawn = draw_trajectories(session, drawing);
+    Ok(session.succeeded(drawn))
 }

@@ -21,6 +21,7 @@ pub(super) const FAMILY: Family = Family {
         Builtin { header: READ_TRAJECTORY, run: read_trajectory },
         Builtin { header: EXIST_TRAJECTORY_NAMES, run: exist_trajectory_names },
         Builtin { header: INTERPOLATE_TRAJECTORY, run: interpolate_trajectory },
+        Builtin { header: WRITE_TRAJECTORY, run: write_trajectory },
     ],
 };
 
@@ -155,6 +156,52 @@ fn interpolate_trajectory(session: &mut Session, mut args: Args) -> Result<Value
     Ok(RealMatrix { rows: signals.len(), columns: times.len(), elements }.into())
 }
 
+/// The names that an input of type `VariableName[:]` is given: several or one.
+pub(super) fn variable_names(args: &mut Args, input: &str) -> Result<Vec<String>, Fault> {
+    match args.take::<Value>(input)? {
+        Value::Array(ArrayValue { elements: Elements::String(names), .. }) => {
+            Ok(names.iter().map(|name| name.to_string()).collect())
+        }
+        Value::VariableName(name) | Value::String(name) => Ok(vec![name.to_string()]),
+        other => bail!(BAD_ARGUMENT, "`{input}` must be names, not {}", other.type_name()),
+    }
+}
+
+const WRITE_TRAJECTORY: &str = r#"
+function writeTrajectory "Writes trajectories to a result file."
+  input String fileName;
+  input String signals[:] "the first one is Time";
+  input Real values[:, size(signals, 1)] "one column for each signal; equal times mark an event";
+  output Boolean ok;
+end writeTrajectory;
+"#;
+
+fn write_trajectory(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let file: String = args.take("fileName")?;
+    let signals: Vec<String> = args.take("signals")?;
+    let values: RealMatrix = args.take("values")?;
+    let is_time = |name: &String| name.eq_ignore_ascii_case("time");
+    let Some(time) = signals.iter().position(is_time) else {
+        bail!(BAD_ARGUMENT, "none of `signals` is `Time`");
+    };
+    if values.columns != signals.len() {
+        let (columns, count) = (values.columns, signals.len());
+        bail!(BAD_ARGUMENT, "`values` has {columns} columns for {count} signals");
+    }
+    let column = |at: usize| (0..values.rows).map(|row| values.row(row)[at]).collect();
+    let mut table = ResultTable::new(column(time));
+    table.time_name = "Time".to_owned();
+    for (at, name) in signals.iter().enumerate().filter(|(at, _)| *at != time) {
+        let values = results::Values::Trajectory(column(at));
+        table.series.push(results::Series::new(name.as_str(), values));
+    }
+    table.check().map_err(|fault| Fault::new(BAD_ARGUMENT, fault.message))?;
+    let file = if file.contains('.') { file } else { format!("{file}.mat") };
+    let bytes = results::format_of_file(&file)?.write(&table)?;
+    let written = session.write_file(Path::new(&file), &bytes);
+    Ok(session.succeeded(written))
+}
+
 const READ_SIMULATION_RESULT: &str = r#"
 function readSimulationResult "Trajectories from a result file, one row for each variable."
   input String filename;
@@ -166,13 +213,7 @@ end readSimulationResult;
 
 fn read_simulation_result(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let file: String = args.take("filename")?;
-    let names: Vec<String> = match args.take::<Value>("variables")? {
-        Value::Array(ArrayValue { elements: Elements::String(names), .. }) => {
-            names.iter().map(|name| name.to_string()).collect()
-        }
-        Value::VariableName(name) => vec![name.to_string()],
-        other => bail!(BAD_ARGUMENT, "`variables` must be names, not {}", other.type_name()),
-    };
+    let names = variable_names(&mut args, "variables")?;
     let size: i64 = args.take("size")?;
     let table = table(session, &file)?;
     if size != 0 && size != table.time.len() as i64 {

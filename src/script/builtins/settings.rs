@@ -23,7 +23,10 @@ pub(super) const FAMILY: Family = Family {
 pub(super) const LIST_FAMILY: Family = Family {
     packages: &["DymolaCommands.SimulatorAPI"],
     dialect: Some(Dialect::Dymola),
-    builtins: &[Builtin { header: LIST, run: variables }],
+    builtins: &[
+        Builtin { header: LIST, run: variables },
+        Builtin { header: SAVELOG, run: savelog },
+    ],
 };
 
 const CLEAR: &str = r#"
@@ -63,7 +66,7 @@ fn echo(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 
 const LIST: &str = r#"
 function list "Prints the variables with their types and values, in alphabetic order."
-  input String filename = "" "where to write them; empty: the terminal";
+  input String filename = "" "where to write them, .mos for a script that sets them; empty: the terminal";
   input String variables[:] = {"*"} "patterns; * stands for any characters, ? for one";
   output Boolean ok;
 end list;
@@ -71,7 +74,7 @@ end list;
 
 const VARIABLES: &str = r#"
 function variables "Prints the variables with their types and values, in alphabetic order."
-  input String filename = "" "where to write them; empty: the terminal";
+  input String filename = "" "where to write them, .mos for a script that sets them; empty: the terminal";
   input String variables[:] = {"*"} "patterns; * stands for any characters, ? for one";
   output Boolean ok;
 end variables;
@@ -80,12 +83,31 @@ end variables;
 fn variables(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let file: String = args.take("filename")?;
     let patterns: Vec<String> = args.take("variables")?;
-    let listing: String = patterns.iter().map(|pattern| session.listing(pattern)).collect();
+    let is_script = file.ends_with(".mos");
+    let listing: String =
+        patterns.iter().map(|pattern| session.listing(pattern, !is_script)).collect();
     if file.is_empty() {
         session.print(&listing);
         return Ok(true.into());
     }
     let written = session.write_file(file.as_ref(), listing.as_bytes());
+    Ok(session.succeeded(written))
+}
+
+const SAVELOG: &str = r#"
+function savelog "Writes what was said and answered so far."
+  input String logfile = "dymolalg.txt" "with the ending .mos the statements alone";
+  output Boolean ok;
+end savelog;
+"#;
+
+fn savelog(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let file: String = args.take("logfile")?;
+    let contents = match file.ends_with(".mos") {
+        true => session.log.statements(),
+        false => session.log.to_string(),
+    };
+    let written = session.write_file(file.as_ref(), contents.as_bytes());
     Ok(session.succeeded(written))
 }
 

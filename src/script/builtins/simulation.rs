@@ -1,12 +1,12 @@
 //! Translating and simulating models.
 
 use super::{Args, Builtin, Failure, Family};
-use crate::bail;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::results;
-use crate::script::errors::{BAD_ARGUMENT, NO_TRANSLATED_MODEL};
+use crate::script::errors::NO_TRANSLATED_MODEL;
 use crate::script::simulation::{self, Simulated, Translated, Wishes};
 use crate::script::{Dialect, Session};
+use crate::sim::OutputGrid;
 use crate::value::Value;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -17,7 +17,6 @@ pub(super) const FAMILY: Family = Family {
     dialect: Some(Dialect::Dymola),
     builtins: &[
         Builtin { header: SIMULATE_MODEL, run: simulate_model },
-        Builtin { header: SIMULATE_EXTENDED_MODEL, run: simulate_extended_model },
         Builtin { header: SIMULATE, run: simulate },
         Builtin { header: TRANSLATE_MODEL, run: translate_model },
         Builtin { header: CHECK_MODEL, run: check_model },
@@ -27,7 +26,39 @@ pub(super) const FAMILY: Family = Family {
 
 /// What `experiment` set for the simulations that say nothing else.
 #[derive(Default)]
-struct Experiment(Wishes);
+pub(super) struct Experiment(pub(super) Wishes);
+
+/// What `simulateModel` and its relatives are asked for.
+pub(super) struct Request {
+    /// The model; empty for the one used last.
+    pub(super) problem: String,
+    /// How it is simulated.
+    pub(super) wishes: Wishes,
+    /// The result file.
+    pub(super) file: String,
+}
+
+impl Request {
+    /// The inputs that the headers of all of them begin with.
+    pub(super) fn take(session: &mut Session, args: &mut Args) -> Result<Request, Fault> {
+        let wishes = wishes(session, args)?;
+        Ok(Request { wishes, problem: args.take("problem")?, file: args.take("resultFile")? })
+    }
+
+    /// The times of the output grid.
+    pub(super) fn grid(&self, model: &Translated) -> Result<Vec<f64>, Fault> {
+        let settings = simulation::settings(&model.program.experiment(), &self.wishes)?;
+        let count = match settings.output {
+            OutputGrid::Intervals(count) => count.max(1),
+            _ => 500,
+        };
+        let at = |i: usize| match i == count {
+            true => settings.stop,
+            false => settings.start + (settings.stop - settings.start) * i as f64 / count as f64,
+        };
+        Ok((0..=count).map(at).collect())
+    }
+}
 
 const SIMULATE_MODEL: &str = r#"
 function simulateModel "Simulates a model; it is translated if it has not been. What is not given comes from the model's experiment annotation."
@@ -45,63 +76,9 @@ end simulateModel;
 "#;
 
 fn simulate_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let wishes = wishes(session, &mut args)?;
-    let problem: String = args.take("problem")?;
-    let file: String = args.take("resultFile")?;
-    let done = run(session, &problem, &wishes, &file);
+    let request = Request::take(session, &mut args)?;
+    let done = run(session, &request.problem, &request.wishes, &request.file);
     Ok(session.or_report_all(done).is_some().into())
-}
-
-const SIMULATE_EXTENDED_MODEL: &str = r#"
-function simulateExtendedModel "Simulates a model with given parameter values and returns values at the end."
-  input String problem = "" "Class or Class(modification); empty: the model used last";
-  input Real startTime = 0.0 "s" annotation(optional = true);
-  input Real stopTime = 1.0 "s" annotation(optional = true);
-  input Integer numberOfIntervals = 500 annotation(optional = true);
-  input Real outputInterval = 0.0 "s; counts if numberOfIntervals is 0 or not given" annotation(optional = true);
-  input String method = "Dassl" annotation(optional = true);
-  input Real tolerance = 0.0001 "relative" annotation(optional = true);
-  input Real fixedstepsize = 0.0 "s, for methods with a fixed step" annotation(optional = true);
-  input String resultFile = "dsres" "without an ending, .mat is added";
-  input String initialNames[:] = fill("", 0) "parameters to set";
-  input Real initialValues[:] = fill(0.0, 0) "their values";
-  input String finalNames[:] = fill("", 0) "variables whose last values are returned";
-  input Boolean autoLoad = true "has no effect: nothing is plotted";
-  output Boolean ok;
-  output Real finalValues[size(finalNames, 1)];
-end simulateExtendedModel;
-"#;
-
-fn simulate_extended_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let wishes = wishes(session, &mut args)?;
-    let problem: String = args.take("problem")?;
-    let file: String = args.take("resultFile")?;
-    let names: Vec<String> = args.take("initialNames")?;
-    let values: Vec<f64> = args.take("initialValues")?;
-    let finals: Vec<String> = args.take("finalNames")?;
-    if names.len() != values.len() {
-        bail!(BAD_ARGUMENT, "{} names and {} values are given", names.len(), values.len());
-    }
-    let model = match model(session, &problem) {
-        Ok(model) => model,
-        Err(errors) => {
-            session.or_report_all::<()>(Err(errors));
-            return Ok(Value::Tuple(vec![false.into(), vec![f64::NAN; finals.len()].into()]));
-        }
-    };
-    for (name, value) in names.iter().zip(&values) {
-        session.set_parameter(name, *value)?;
-    }
-    let done = run_model(session, &model, &wishes, &file);
-    let Some(simulated) = session.or_report_all(done) else {
-        return Ok(Value::Tuple(vec![false.into(), vec![f64::NAN; finals.len()].into()]));
-    };
-    let last = |name: &String| {
-        let column = simulated.table.column(name)?;
-        Ok(column.last().copied().unwrap_or(f64::NAN))
-    };
-    let values = finals.iter().map(last).collect::<Result<Vec<f64>, Fault>>()?;
-    Ok(Value::Tuple(vec![true.into(), values.into()]))
 }
 
 const SIMULATE: &str = r#"
@@ -171,6 +148,7 @@ fn experiment(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         method: args.optional("Algorithm")?.filter(|method: &String| !method.is_empty()),
         tolerance: args.optional("Tolerance")?,
         fixed_step: args.optional("FixedStepSize")?,
+        reached: None,
     };
     *session.extension::<Experiment>() = Experiment(wishes);
     Ok(true.into())
@@ -188,6 +166,7 @@ fn wishes(session: &mut Session, args: &mut Args) -> Result<Wishes, Fault> {
         method: method.filter(|method| !method.is_empty()).or(set.method),
         tolerance: args.optional("tolerance")?.or(set.tolerance),
         fixed_step: args.optional("fixedstepsize")?.or(set.fixed_step),
+        reached: None,
     })
 }
 
@@ -207,6 +186,12 @@ fn model(session: &mut Session, problem: &str) -> Result<Arc<Translated>, Vec<Di
     })
 }
 
+/// The model of a problem; `None` if it cannot be translated, which has been reported.
+pub(super) fn translated_model(session: &mut Session, problem: &str) -> Option<Arc<Translated>> {
+    let done = model(session, problem);
+    session.or_report_all(done)
+}
+
 fn run(
     session: &mut Session,
     problem: &str,
@@ -218,7 +203,7 @@ fn run(
 }
 
 /// Simulates and writes the result file.
-fn run_model(
+pub(super) fn run_model(
     session: &mut Session,
     model: &Translated,
     wishes: &Wishes,

@@ -1,9 +1,8 @@
-//! The working directory, the environment, and what is refused because it leaves the script.
+//! The working directory, the environment, and programs outside of the script.
 
 use super::strings::text;
 use super::{Args, Builtin, Failure, Family};
-use crate::bail;
-use crate::script::errors::REFUSED;
+use crate::diag::Fault;
 use crate::script::session::Stop;
 use crate::script::{Dialect, Session};
 use crate::value::Value;
@@ -14,10 +13,8 @@ pub(super) const FAMILY: Family = Family {
     dialect: None,
     builtins: &[
         Builtin { header: EXIT, run: exit },
-        Builtin { header: SYSTEM, run: refused },
-        Builtin { header: EXECUTE, run: refused },
-        Builtin { header: COMMAND, run: refused },
-        Builtin { header: SET_ENVIRONMENT_VARIABLE, run: refused },
+        Builtin { header: COMMAND, run: command },
+        Builtin { header: SET_ENVIRONMENT_VARIABLE, run: set_environment_variable },
         Builtin { header: GET_WORK_DIRECTORY, run: get_work_directory },
         Builtin { header: SET_WORK_DIRECTORY, run: set_work_directory },
         Builtin { header: GET_ENVIRONMENT_VARIABLE, run: get_environment_variable },
@@ -28,7 +25,11 @@ pub(super) const FAMILY: Family = Family {
 pub(super) const DYMOLA: Family = Family {
     packages: &["DymolaCommands.System"],
     dialect: Some(Dialect::Dymola),
-    builtins: &[Builtin { header: CD, run: cd }],
+    builtins: &[
+        Builtin { header: CD, run: cd },
+        Builtin { header: SYSTEM, run: system },
+        Builtin { header: EXECUTE, run: execute },
+    ],
 };
 
 /// `cd` as OpenModelica has it, and its environment.
@@ -37,7 +38,9 @@ pub(super) const OPENMODELICA: Family = Family {
     dialect: Some(Dialect::OpenModelica),
     builtins: &[
         Builtin { header: CD_OPENMODELICA, run: cd_openmodelica },
+        Builtin { header: SYSTEM_OPENMODELICA, run: system_openmodelica },
         Builtin { header: GET_ENVIRONMENT_VAR, run: get_environment_var },
+        Builtin { header: SET_ENVIRONMENT_VAR, run: set_environment_var },
     ],
 };
 
@@ -54,42 +57,87 @@ fn exit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const SYSTEM: &str = r#"
-function system "Runs a command of the operating system: refused."
-  input String callStr;
-  input String outputFile = "";
-  output Boolean ok;
+function system "Runs a command of the operating system; refused without --allow-system."
+  input String command;
+  output Boolean ok "whether it ended with status 0";
 end system;
 "#;
 
 const EXECUTE: &str = r#"
-function Execute "Opens a file with its program: refused."
+function Execute "Runs a command of the operating system; refused without --allow-system."
   input String file;
-  output Boolean ok;
+  output Boolean ok "whether it ended with status 0";
 end Execute;
 "#;
 
+const SYSTEM_OPENMODELICA: &str = r#"
+function system "Runs a command of the operating system; refused without --allow-system."
+  input String callStr;
+  input String outputFile = "" "where its output goes; empty: it is printed";
+  output Integer retval "its exit status";
+end system;
+"#;
+
 const COMMAND: &str = r#"
-function command "Runs a command of the operating system: refused."
+function command "Runs a command of the operating system; refused without --allow-system."
   input String string;
-  output Integer result;
+  output Integer result "its exit status";
 end command;
 "#;
 
+/// Runs the command that an input holds and prints what it printed.
+fn status(session: &mut Session, args: &mut Args, input: &str) -> Result<i32, Fault> {
+    let (status, printed) = session.run_system_command(&args.take::<String>(input)?)?;
+    session.print(&String::from_utf8_lossy(&printed));
+    Ok(status)
+}
+
+fn system(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    Ok((status(session, &mut args, "command")? == 0).into())
+}
+
+fn execute(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    Ok((status(session, &mut args, "file")? == 0).into())
+}
+
+fn command(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    Ok(i64::from(status(session, &mut args, "string")?).into())
+}
+
+fn system_openmodelica(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let file: String = args.take("outputFile")?;
+    if file.is_empty() {
+        return Ok(i64::from(status(session, &mut args, "callStr")?).into());
+    }
+    let (status, printed) = session.run_system_command(&args.take::<String>("callStr")?)?;
+    session.write_file(file.as_ref(), &printed)?;
+    Ok(i64::from(status).into())
+}
+
 const SET_ENVIRONMENT_VARIABLE: &str = r#"
-function setEnvironmentVariable "Changes the environment: refused."
+function setEnvironmentVariable "Sets an environment variable for this session and the commands that it runs."
   input String name;
   input String content;
-  input Boolean convertFromSlash = false;
+  input Boolean convertFromSlash = false "has no effect";
 end setEnvironmentVariable;
 "#;
 
-fn refused(_: &mut Session, args: Args) -> Result<Value, Failure> {
-    bail!(
-        REFUSED,
-        "`{}` is refused: a script may not run programs or change the environment",
-        args.command();
-        help: "do this before or after the script"
-    )
+fn set_environment_variable(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    session.environment.insert(args.take("name")?, args.take("content")?);
+    Ok(Value::nothing())
+}
+
+const SET_ENVIRONMENT_VAR: &str = r#"
+function setEnvironmentVar "Sets an environment variable for this session and the commands that it runs."
+  input String var;
+  input String value;
+  output Boolean success;
+end setEnvironmentVar;
+"#;
+
+fn set_environment_var(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    session.environment.insert(args.take("var")?, args.take("value")?);
+    Ok(true.into())
 }
 
 const GET_WORK_DIRECTORY: &str = r#"
@@ -123,7 +171,7 @@ end getEnvironmentVariable;
 "#;
 
 fn get_environment_variable(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let content = session.world.env(&args.take::<String>("name")?);
+    let content = session.environment_variable(&args.take::<String>("name")?)?;
     let exist = content.is_some();
     let mut content = content.unwrap_or_default();
     if args.take("convertToSlash")? {
@@ -169,5 +217,6 @@ end getEnvironmentVar;
 "#;
 
 fn get_environment_var(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    Ok(text(session.world.env(&args.take::<String>("var")?).unwrap_or_default()))
+    let content = session.environment_variable(&args.take::<String>("var")?)?;
+    Ok(text(content.unwrap_or_default()))
 }

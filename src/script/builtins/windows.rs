@@ -33,7 +33,6 @@ pub(super) const FAMILY: Family = Family {
         "plotText",
         "plotWindowSetup",
         "plotSetup",
-        "savelog",
         "trace",
         "beep",
         "experimentSetupOutput",

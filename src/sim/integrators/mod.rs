@@ -105,7 +105,7 @@ impl Problem<'_> {
     /// The smallest step that changes t noticeably.
     fn smallest_step(&self, t: f64) -> f64 {
         let span = (self.settings.stop - self.settings.start).abs();
-        16.0 * f64::EPSILON * t.abs().max(1e-3 * span)
+        16.0 * f64::EPSILON * t.abs().max(1e-10 * span)
     }
 
     /// A first step over which x changes little, from the relative speed of x at (t, y).

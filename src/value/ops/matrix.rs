@@ -6,6 +6,7 @@ use crate::value::array::{element_count, sizes};
 use crate::value::errors::{DOMAIN_ERROR, INTEGER_OVERFLOW, SIZE_MISMATCH, TYPE_MISMATCH};
 use crate::value::{ArrayValue, Elements, Value};
 use crate::{bail, fault};
+use nalgebra::DMatrixView;
 
 /// `a * b`: vector · vector is a scalar, matrix · vector and vector · matrix are vectors,
 /// matrix · matrix is a matrix.
@@ -93,7 +94,16 @@ fn identity_like(base: &ArrayValue, size: usize) -> Result<ArrayValue, Fault> {
     Ok(ArrayValue { dims: vec![size, size], elements })
 }
 
+/// Multiplications from which on nalgebra's blocked product is worth its setting up.
+const BLOCKED: usize = 1 << 15;
+
+/// Row-major all three: read as columns they are the transposed matrices, so Bᵀ Aᵀ is the product.
 fn real_product(a: &[f64], b: &[f64], rows: usize, inner: usize, columns: usize) -> Vec<f64> {
+    if rows.saturating_mul(inner).saturating_mul(columns) >= BLOCKED {
+        let a = DMatrixView::from_slice(a, inner, rows);
+        let b = DMatrixView::from_slice(b, columns, inner);
+        return (b * a).data.into();
+    }
     let mut result = vec![0.0; rows * columns];
     for row in 0..rows {
         for k in 0..inner {

@@ -37,6 +37,17 @@ impl Ledger {
         self.found.entry(section.to_owned()).or_default().insert(case.to_owned(), reason);
     }
 
+    /// Takes over what the ledger says of a case that this run cannot judge, such as `differs: …`
+    /// where there are no references.
+    pub(crate) fn keep(&mut self, is_kept: impl Fn(&str) -> bool) {
+        for (section, cases) in &self.known {
+            for (case, reason) in cases.iter().filter(|(_, reason)| is_kept(reason)) {
+                let found = self.found.entry(section.clone()).or_default();
+                found.entry(case.clone()).or_insert_with(|| reason.clone());
+            }
+        }
+    }
+
     /// Writes the ledger anew if that is asked for, else compares: improvements are told.
     ///
     /// # Panics

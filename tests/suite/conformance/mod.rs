@@ -8,11 +8,13 @@
 mod corpus;
 mod ledger;
 mod pool;
+mod reference;
 mod verdict;
 
 pub(super) use corpus::{Corpus, File};
 pub(super) use ledger::Ledger;
 pub(super) use pool::{Ended, judge_all};
+pub(super) use reference::Reference;
 pub(super) use verdict::{Failure, Progress, Stage, run};
 
 use std::path::PathBuf;

@@ -1,13 +1,11 @@
-//! How far a class gets: flattened, sorted, compiled, simulated.
+//! How far a class gets: flattened, sorted, compiled, simulated, in agreement with a reference.
 
-use gapilib::compile::Program;
-use gapilib::dae;
-use gapilib::diag::{Diagnostic, Fault};
-use gapilib::flatten::{self, Library};
+use super::Reference;
+use gapilib::diag::Diagnostic;
+use gapilib::flatten::Library;
 use gapilib::name::Name;
-use gapilib::script::simulation::{self, Wishes};
-use gapilib::sim::{Simulator, Trajectory};
-use gapilib::source::Span;
+use gapilib::results::TUBE_TOLERANCE;
+use gapilib::script::verification;
 use std::fmt;
 use std::sync::Arc;
 use std::sync::Mutex;
@@ -27,6 +25,8 @@ pub(crate) enum Stage {
     Compile,
     /// From its start time to its stop time.
     Simulate,
+    /// With reference results.
+    Compare,
 }
 
 /// How far the work on a class is, and whether it is still wanted.
@@ -40,13 +40,25 @@ pub(crate) struct Progress {
 #[derive(Debug, Clone)]
 pub(crate) struct Failure {
     pub(crate) stage: Stage,
-    /// The errors, at least one.
+    /// The errors, at least one unless a signal differs.
     pub(crate) errors: Vec<Diagnostic>,
+    /// The first signal that differs from the reference.
+    pub(crate) signal: Option<String>,
 }
 
 impl Stage {
-    const ALL: [Stage; 5] =
-        [Stage::Load, Stage::Flatten, Stage::Sort, Stage::Compile, Stage::Simulate];
+    const ALL: [Stage; 6] =
+        [Stage::Load, Stage::Flatten, Stage::Sort, Stage::Compile, Stage::Simulate, Stage::Compare];
+
+    fn of(stage: verification::Stage) -> Stage {
+        match stage {
+            verification::Stage::Flatten => Stage::Flatten,
+            verification::Stage::Sort => Stage::Sort,
+            verification::Stage::Compile => Stage::Compile,
+            verification::Stage::Simulate => Stage::Simulate,
+            verification::Stage::Compare => Stage::Compare,
+        }
+    }
 
     fn name(self) -> &'static str {
         match self {
@@ -55,6 +67,7 @@ impl Stage {
             Stage::Sort => "sort",
             Stage::Compile => "compile",
             Stage::Simulate => "simulate",
+            Stage::Compare => "differs",
         }
     }
 
@@ -90,35 +103,41 @@ impl Failure {
     /// Whether a part of the language, or of the numerics, is not built: then nothing was judged.
     pub(crate) fn is_missing_feature(&self) -> bool {
         let missing = ["unsupported-language", "not-supported"];
-        self.errors.iter().all(|error| missing.contains(&error.code.slug))
+        self.signal.is_none() && self.errors.iter().all(|error| missing.contains(&error.code.slug))
     }
 }
 
-/// What a ledger says of it: `stage: code`.
+/// What a ledger says of it: `stage: code`, or `differs: signal`.
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let code = self.errors.first().map_or("", |error| error.code.slug);
+        let code = self.signal.as_deref().unwrap_or(code);
         write!(f, "{}: {code}", self.stage.name())
     }
 }
 
-/// Translates and simulates a class as its experiment annotation says.
-pub(crate) fn run(library: &Library, class: &Name, progress: &Progress) -> Result<(), Failure> {
-    let failed = |error| Failure { stage: progress.stage(), errors: vec![error] };
-    let nowhere = |fault: Fault| fault.at(Span::NONE);
-    progress.enter(Stage::Flatten);
-    let flat = flatten::flatten(library, class, &[])
-        .map_err(|errors| Failure { stage: Stage::Flatten, errors })?;
-    progress.enter(Stage::Sort);
-    let sorted = dae::sort(&flat.model).map_err(failed)?;
-    progress.enter(Stage::Compile);
-    let program = Program::compile(sorted).map_err(failed)?;
-    progress.enter(Stage::Simulate);
-    let settings = simulation::settings(&program.experiment(), &Wishes::default());
-    let mut settings = settings.map_err(nowhere).map_err(failed)?;
-    settings.cancel = Some(progress.cancel.clone());
-    Simulator::new()
-        .run(&mut program.system(), &settings, &mut Trajectory::default())
-        .map_err(|error| failed(program.explain(&error)))?;
-    Ok(())
+/// Translates and simulates a class as its experiment annotation says, and compares it with its
+/// reference results if there are some.
+pub(crate) fn run(
+    library: &Library,
+    class: &Name,
+    reference: Option<&Reference>,
+    progress: &Progress,
+) -> Result<(), Failure> {
+    let enter = &mut |stage: verification::Stage| progress.enter(Stage::of(stage));
+    let reference = reference.map(|reference| verification::Reference {
+        table: &reference.table,
+        signals: &reference.signals,
+        tolerance: TUBE_TOLERANCE,
+    });
+    let compared =
+        verification::verify(library, class, reference, &progress.cancel, enter).map_err(
+            |stuck| Failure { stage: Stage::of(stuck.stage), errors: stuck.errors, signal: None },
+        )?;
+    match compared.into_iter().find(|one| !one.agrees()) {
+        None => Ok(()),
+        Some(one) => {
+            Err(Failure { stage: Stage::Compare, errors: Vec::new(), signal: Some(one.signal) })
+        }
+    }
 }

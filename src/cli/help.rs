@@ -1,0 +1,63 @@
+//! `gapi help`: the commands of scripts, and the ledger of compatibility.
+
+use super::args::{DialectName, HelpArgs};
+use super::terminal;
+use crate::script::builtins;
+use std::process::ExitCode;
+
+/// The ledgers, as they are in the repository.
+const LEDGERS: [(DialectName, &str, &str); 2] = [
+    (DialectName::Dymola, "Dymola", include_str!("../../compat/dymola.toml")),
+    (DialectName::Openmodelica, "OpenModelica", include_str!("../../compat/openmodelica.toml")),
+];
+
+/// Prints what is asked for.
+pub(super) fn help(arguments: &HelpArgs) -> ExitCode {
+    if let Some(wanted) = arguments.compat {
+        let all = LEDGERS.iter().filter(|(name, ..)| wanted.is_none_or(|wanted| wanted == *name));
+        all.for_each(|(_, title, ledger)| terminal::print(&table(title, ledger)));
+        return ExitCode::SUCCESS;
+    }
+    match &arguments.name {
+        None => {
+            let names: String = builtins::names().iter().map(|name| format!("{name}\n")).collect();
+            terminal::print(&names);
+            ExitCode::SUCCESS
+        }
+        Some(name) => match builtins::declarations(name).as_slice() {
+            [] => {
+                let known = builtins::names();
+                let hint = crate::diag::suggest::did_you_mean(name, known.iter().copied());
+                let hint = hint.map_or(String::new(), |hint| format!(": {hint}"));
+                terminal::eprint(&format!("error: there is no command `{name}`{hint}\n"));
+                ExitCode::FAILURE
+            }
+            all => {
+                all.iter().for_each(|header| terminal::print(&format!("{header}\n")));
+                ExitCode::SUCCESS
+            }
+        },
+    }
+}
+
+/// One row a line: name, status, difference.
+fn table(title: &str, ledger: &str) -> String {
+    let mut text = format!("{title}\n");
+    for block in ledger.split("\n\n") {
+        let mut lines = block.lines().filter(|line| !line.starts_with('#'));
+        let Some(name) = lines.next().and_then(|line| line.strip_prefix('[')) else { continue };
+        let value = |key: &str| {
+            let line = block.lines().find(|line| line.starts_with(&format!("{key} = ")))?;
+            Some(line.split_once(" = ")?.1.trim_matches('"').replace("\\\"", "\""))
+        };
+        let status = value("status").unwrap_or_default();
+        let row = format!(
+            "  {:28} {status:10} {}",
+            name.trim_end_matches(']').trim_matches('"'),
+            value("difference").unwrap_or_default()
+        );
+        text.push_str(row.trim_end());
+        text.push('\n');
+    }
+    text
+}

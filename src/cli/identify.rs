@@ -1,0 +1,34 @@
+//! `gapi identify`: solves a problem that is written in a file.
+
+use super::args::{Global, IdentifyArgs};
+use super::session;
+use super::terminal::{self, Terminal};
+use super::world::SystemWorld;
+use crate::script::problem::{RunOptions, solve};
+use std::process::ExitCode;
+
+/// Solves the problem.
+pub(super) fn identify(arguments: &IdentifyArgs, global: &Global) -> ExitCode {
+    let terminal = Terminal::new(global.color, arguments.quiet);
+    let threads = arguments.threads.map(usize::from);
+    let world = match SystemWorld::new(terminal, &arguments.out, threads) {
+        Ok(world) => world,
+        Err(error) => {
+            terminal::eprint(&format!("error: the working directory cannot be read: {error}\n"));
+            return ExitCode::FAILURE;
+        }
+    };
+    world.catch_interrupts();
+    let mut session = session::open(global, world);
+    let options = RunOptions {
+        resume: arguments.resume,
+        fresh: arguments.fresh,
+        watch: arguments.watch.clone(),
+        evaluations: arguments.evaluations,
+    };
+    match solve(&mut session, &arguments.problem, &options) {
+        Ok(_) if session.is_interrupted() => ExitCode::from(130),
+        Ok(_) => ExitCode::SUCCESS,
+        Err(errors) => session::failed(&mut session, errors),
+    }
+}

@@ -1,0 +1,64 @@
+//! `gapi run --parse-only`: which scripts can be read.
+
+use crate::diag::render;
+use crate::script::parsing::{self, Reading};
+use crate::source::SourceMap;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use super::terminal;
+
+/// Reads all scripts in these files and folders; exit code 1 if one is rejected.
+pub(super) fn parse_only(paths: &[PathBuf]) -> ExitCode {
+    let (mut accepted, mut rejected, mut data) = (0, 0, 0);
+    for path in scripts(paths) {
+        let bytes = match std::fs::read(&path) {
+            Ok(bytes) => bytes,
+            Err(error) => {
+                rejected += 1;
+                terminal::eprint(&format!("error: cannot read `{}`: {error}\n", path.display()));
+                continue;
+            }
+        };
+        let mut sources = SourceMap::default();
+        match parsing::read(&mut sources, &path.to_string_lossy(), &bytes) {
+            Reading::Script(_) => accepted += 1,
+            Reading::Data => data += 1,
+            Reading::Rejected(error) => {
+                rejected += 1;
+                terminal::eprint(&render::render(&error, &sources, false));
+            }
+        }
+    }
+    terminal::print(&format!(
+        "{accepted} accepted, {rejected} rejected, {data} recognised as data\n"
+    ));
+    if rejected > 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+}
+
+/// The scripts among these files and below these folders, sorted; a file that is named is one.
+pub(super) fn scripts(paths: &[PathBuf]) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for path in paths {
+        match path.is_dir() {
+            true => collect(path, &mut found),
+            false => found.push(path.clone()),
+        }
+    }
+    found.sort();
+    found.dedup();
+    found
+}
+
+fn collect(folder: &Path, found: &mut Vec<PathBuf>) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let path = entry.path();
+        let is_link = entry.file_type().is_ok_and(|kind| kind.is_symlink());
+        if path.is_dir() && !is_link {
+            collect(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "mos") {
+            found.push(path);
+        }
+    }
+}

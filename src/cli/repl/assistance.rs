@@ -1,0 +1,342 @@
+//! Help while typing: completion, colours, and whether a statement is complete.
+
+use crate::script::{Session, builtins};
+use rustyline::completion::{Completer, FilenameCompleter, Pair};
+use rustyline::highlight::{CmdKind, Highlighter};
+use rustyline::hint::Hinter;
+use rustyline::validate::{ValidationContext, ValidationResult, Validator};
+use rustyline::{Context, Helper};
+use std::borrow::Cow;
+
+/// Words of the language.
+const KEYWORDS: &[&str] = &[
+    "algorithm",
+    "and",
+    "annotation",
+    "block",
+    "break",
+    "class",
+    "connector",
+    "constant",
+    "each",
+    "else",
+    "elseif",
+    "elsewhen",
+    "end",
+    "equation",
+    "extends",
+    "external",
+    "false",
+    "final",
+    "flow",
+    "for",
+    "function",
+    "if",
+    "import",
+    "in",
+    "initial",
+    "input",
+    "loop",
+    "model",
+    "not",
+    "or",
+    "output",
+    "package",
+    "parameter",
+    "partial",
+    "protected",
+    "public",
+    "record",
+    "redeclare",
+    "replaceable",
+    "return",
+    "then",
+    "true",
+    "type",
+    "when",
+    "while",
+    "within",
+];
+
+/// Names of the prompt's own commands.
+const COMMANDS: &[&str] = &[":help", ":vars", ":type", ":load", ":dump", ":time", ":quit"];
+
+/// What is known when a line is read.
+pub(super) struct Assistance {
+    /// All that can be completed: functions, variables, classes, parts of the model.
+    names: Vec<String>,
+    files: FilenameCompleter,
+    colour: bool,
+}
+
+impl Assistance {
+    /// The names that the session knows now.
+    pub(super) fn of(session: &mut Session, colour: bool) -> Assistance {
+        let mut names: Vec<String> = builtins::names()
+            .into_iter()
+            .chain(KEYWORDS.iter().copied())
+            .map(str::to_owned)
+            .collect();
+        names.extend(session.names_to_complete());
+        names.sort();
+        names.dedup();
+        Assistance { names, files: FilenameCompleter::new(), colour }
+    }
+
+    /// Names that begin with what is typed; of dotted names the next part only.
+    fn matching(&self, typed: &str) -> Vec<String> {
+        let mut found: Vec<String> = Vec::new();
+        for name in self.names.iter().filter(|name| name.starts_with(typed)) {
+            let end = name[typed.len()..].find('.').map_or(name.len(), |at| typed.len() + at);
+            let part = &name[..end];
+            if found.last().is_none_or(|last| last != part) {
+                found.push(part.to_owned());
+            }
+        }
+        found.dedup();
+        found
+    }
+}
+
+/// Where the name before the cursor begins.
+fn name_start(line: &str) -> usize {
+    line.rfind(|c: char| !(c.is_alphanumeric() || matches!(c, '_' | '.' | ':')))
+        .map_or(0, |at| at + line[at..].chars().next().map_or(1, char::len_utf8))
+}
+
+/// The function whose arguments the cursor is in.
+fn enclosing_call(line: &str) -> Option<&str> {
+    let mut depth = 0;
+    for (at, character) in line.char_indices().rev() {
+        match character {
+            ')' => depth += 1,
+            '(' if depth > 0 => depth -= 1,
+            '(' => {
+                let before = &line[..at];
+                return Some(&before[name_start(before)..]);
+            }
+            _ => {}
+        }
+    }
+    None
+}
+
+impl Completer for Assistance {
+    type Candidate = Pair;
+
+    fn complete(
+        &self,
+        line: &str,
+        pos: usize,
+        context: &Context<'_>,
+    ) -> rustyline::Result<(usize, Vec<Pair>)> {
+        let before = &line[..pos];
+        let in_string = before.matches('"').count() % 2 == 1;
+        if in_string || before.starts_with(":load ") {
+            return self.files.complete(line, pos, context);
+        }
+        let start = name_start(before);
+        let typed = &before[start..];
+        let mut pairs: Vec<Pair> = Vec::new();
+        if let Some(function) = enclosing_call(before) {
+            let inputs = builtins::inputs(function).into_iter();
+            pairs.extend(inputs.filter(|input| input.starts_with(typed)).map(|input| Pair {
+                replacement: format!("{input}="),
+                display: format!("{input}="),
+            }));
+        }
+        let own = COMMANDS.iter().filter(|name| start == 0 && name.starts_with(typed));
+        let own = own.map(|name| (*name).to_owned());
+        let names = if typed.is_empty() { Vec::new() } else { self.matching(typed) };
+        pairs
+            .extend(own.chain(names).map(|name| Pair { display: name.clone(), replacement: name }));
+        Ok((start, pairs))
+    }
+}
+
+impl Hinter for Assistance {
+    type Hint = String;
+}
+
+impl Validator for Assistance {
+    fn validate(&self, context: &mut ValidationContext<'_>) -> rustyline::Result<ValidationResult> {
+        Ok(match is_complete(context.input()) {
+            true => ValidationResult::Valid(None),
+            false => ValidationResult::Incomplete,
+        })
+    }
+}
+
+/// Whether brackets, strings, comments and blocks are closed. An empty last line ends any input.
+fn is_complete(input: &str) -> bool {
+    if input.trim_start().starts_with(':') || input.ends_with("\n\n") {
+        return true;
+    }
+    let (mut brackets, mut blocks) = (0_i32, 0_i32);
+    let mut previous = "";
+    for token in tokens(input) {
+        match token.text {
+            "(" | "[" | "{" => brackets += 1,
+            ")" | "]" | "}" => brackets -= 1,
+            "/*" | "\"" if token.is_open => return false,
+            "end" if brackets == 0 => blocks -= 1,
+            "for" | "while" | "if" | "when" if starts_statement(previous) && brackets == 0 => {
+                blocks += 1;
+            }
+            "model" | "function" | "package" | "block" | "record" | "class" | "connector"
+                if previous != "end" && brackets == 0 =>
+            {
+                blocks += 1;
+            }
+            _ => {}
+        }
+        if token.kind != Kind::Blank {
+            previous = token.text;
+        }
+    }
+    brackets <= 0 && blocks <= 0
+}
+
+/// Whether a statement may begin behind this token; an `if` elsewhere is an expression's.
+fn starts_statement(previous: &str) -> bool {
+    matches!(previous, "" | ";" | "loop" | "then" | "else" | "algorithm" | "equation")
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Blank,
+    Word,
+    Number,
+    Text,
+    Comment,
+    Other,
+}
+
+/// A piece of a line; the pieces make up the whole line.
+struct Token<'t> {
+    text: &'t str,
+    /// The whole piece; `text` is only its beginning where it is an open string or comment.
+    whole: &'t str,
+    kind: Kind,
+    is_open: bool,
+}
+
+fn tokens(input: &str) -> Vec<Token<'_>> {
+    let mut tokens = Vec::new();
+    let mut rest = input;
+    while let Some(first) = rest.chars().next() {
+        let (kind, length, closed) = match first {
+            '"' => text_length(rest),
+            '/' if rest.starts_with("//") => {
+                (Kind::Comment, rest.find('\n').unwrap_or(rest.len()), true)
+            }
+            '/' if rest.starts_with("/*") => match rest.find("*/") {
+                Some(end) => (Kind::Comment, end + 2, true),
+                None => (Kind::Comment, rest.len(), false),
+            },
+            c if c.is_whitespace() => (Kind::Blank, length_of(rest, char::is_whitespace), true),
+            c if c.is_alphabetic() || c == '_' => {
+                (Kind::Word, length_of(rest, |c| c.is_alphanumeric() || c == '_'), true)
+            }
+            c if c.is_ascii_digit() => {
+                (Kind::Number, length_of(rest, |c| c.is_alphanumeric() || c == '.'), true)
+            }
+            other => (Kind::Other, other.len_utf8(), true),
+        };
+        let whole = &rest[..length];
+        let text = match (closed, kind) {
+            (false, Kind::Comment) => "/*",
+            (false, _) => "\"",
+            _ => whole,
+        };
+        tokens.push(Token { text, whole, kind, is_open: !closed });
+        rest = &rest[length..];
+    }
+    tokens
+}
+
+fn length_of(text: &str, belongs: impl Fn(char) -> bool) -> usize {
+    text.find(|c| !belongs(c)).unwrap_or(text.len())
+}
+
+fn text_length(text: &str) -> (Kind, usize, bool) {
+    let mut escaped = false;
+    for (at, character) in text.char_indices().skip(1) {
+        match character {
+            '"' if !escaped => return (Kind::Text, at + 1, true),
+            _ => escaped = character == '\\' && !escaped,
+        }
+    }
+    (Kind::Text, text.len(), false)
+}
+
+impl Highlighter for Assistance {
+    fn highlight<'l>(&self, line: &'l str, _pos: usize) -> Cow<'l, str> {
+        if !self.colour {
+            return Cow::Borrowed(line);
+        }
+        let mut painted = String::with_capacity(line.len() * 2);
+        for token in tokens(line) {
+            let code = match token.kind {
+                Kind::Word if KEYWORDS.contains(&token.whole) => "1;34",
+                Kind::Word if builtins::names().binary_search(&token.whole).is_ok() => "36",
+                Kind::Number => "35",
+                Kind::Text => "32",
+                Kind::Comment => "2",
+                _ => "",
+            };
+            match code {
+                "" => painted.push_str(token.whole),
+                code => painted.push_str(&format!("\x1b[{code}m{}\x1b[0m", token.whole)),
+            }
+        }
+        Cow::Owned(painted)
+    }
+
+    fn highlight_char(&self, _line: &str, _pos: usize, kind: CmdKind) -> bool {
+        self.colour && kind != CmdKind::MoveCursor
+    }
+}
+
+impl Helper for Assistance {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_statement_is_complete_when_everything_is_closed() {
+        for (input, expected) in [
+            ("x = 1", true),
+            ("x = {1,", false),
+            ("x = {1,\n2}", true),
+            ("for i in 1:3 loop", false),
+            ("for i in 1:3 loop\nx = i;\nend for", true),
+            ("x = if a then 1 else 2", true),
+            ("model M", false),
+            ("model M end M;", true),
+            ("f(\"open", false),
+            ("/* open", false),
+            ("x = sum(i for i in 1:3)", true),
+            (":load x", true),
+            ("for i in\n\n", true),
+        ] {
+            assert_eq!(is_complete(input), expected, "{input:?}");
+        }
+    }
+
+    #[test]
+    fn arguments_belong_to_the_innermost_open_call() {
+        assert_eq!(enclosing_call("x = simulateModel(\"M\", sto"), Some("simulateModel"));
+        assert_eq!(enclosing_call("f(g(1), "), Some("f"));
+        assert_eq!(enclosing_call("f(1)"), None);
+    }
+
+    #[test]
+    fn of_dotted_names_the_next_part_is_offered() {
+        let names = ["a.b.c", "a.b.d", "a.x", "ab"].map(str::to_owned).to_vec();
+        let assistance = Assistance { names, files: FilenameCompleter::new(), colour: false };
+        assert_eq!(assistance.matching("a"), ["a", "ab"]);
+        assert_eq!(assistance.matching("a."), ["a.b", "a.x"]);
+    }
+}

@@ -1,0 +1,91 @@
+//! What is typed at the prompt: statements, and commands that begin with a colon.
+
+use super::terminal;
+use crate::script::{Session, builtins, checking, simulation};
+use std::path::Path;
+use std::time::Instant;
+
+const HELP: &str = "\
+Statements are executed and answered; an open bracket or a `for` goes on in the next line.
+  :help [NAME]   this text, or the declaration of a command or a function
+  :vars          the variables
+  :type EXPR     the type of an expression's value
+  :load FILE     run a script, or load a Modelica file
+  :dump CLASS    a model, sorted
+  :time STMT     execute a statement and say how long it took
+  :quit          leave (also Ctrl-D); Ctrl-C stops what is running
+";
+
+/// Does what is asked; the exit code if the session ends.
+pub(super) fn answer(session: &mut Session, input: &str) -> Option<u8> {
+    let Some(command) = input.trim().strip_prefix(':') else { return run(session, input) };
+    let (word, rest) = command.split_once(char::is_whitespace).unwrap_or((command, ""));
+    let rest = rest.trim();
+    match word {
+        "quit" | "q" | "exit" => return Some(0),
+        "help" | "h" if rest.is_empty() => terminal::print(HELP),
+        "help" | "h" => help(session, rest),
+        "vars" => terminal::print(&session.listed_variables()),
+        "type" => type_of(session, rest),
+        "load" => return load(session, rest),
+        "dump" => dump(session, rest),
+        "time" => {
+            let started = Instant::now();
+            let ended = run(session, rest);
+            terminal::print(&format!("{:.3} s\n", started.elapsed().as_secs_f64()));
+            return ended;
+        }
+        other => terminal::eprint(&format!("error: there is no command `:{other}`; see :help\n")),
+    }
+    None
+}
+
+fn run(session: &mut Session, text: &str) -> Option<u8> {
+    let status = session.run_text("prompt", text);
+    // What was shown at the prompt has been read.
+    session.messages.forget_unread();
+    status.exit.map(|_| status.code)
+}
+
+fn help(session: &mut Session, name: &str) {
+    let declarations = builtins::declarations(name);
+    if declarations.is_empty() {
+        match session.declaration(name) {
+            Some(text) => terminal::print(&format!("{text}\n")),
+            None => terminal::eprint(&format!("error: there is no command or class `{name}`\n")),
+        }
+    }
+    declarations.iter().for_each(|text| terminal::print(&format!("{text}\n")));
+}
+
+fn type_of(session: &mut Session, text: &str) {
+    match session.value_of("prompt", text) {
+        Ok(value) => terminal::print(&format!("{}\n", value.type_name())),
+        Err(error) => session.report(error),
+    }
+}
+
+fn load(session: &mut Session, file: &str) -> Option<u8> {
+    let file = file.trim_matches('"');
+    if file.ends_with(".mos") {
+        let status = session.run_file(Path::new(file));
+        return status.exit.map(|_| status.code);
+    }
+    match session.load_path(Path::new(file)) {
+        Ok(names) => {
+            names.iter().for_each(|name| terminal::print(&format!("{name}\n")));
+        }
+        Err(errors) => errors.into_iter().for_each(|error| session.report(error)),
+    }
+    None
+}
+
+fn dump(session: &mut Session, class: &str) {
+    match simulation::translated(session, class) {
+        Ok(model) => {
+            let report = checking::report(session, &model);
+            terminal::print(&report);
+        }
+        Err(errors) => errors.into_iter().for_each(|error| session.report(error)),
+    }
+}

@@ -1,0 +1,97 @@
+//! `gapi repl`: a prompt.
+
+mod assistance;
+mod commands;
+
+use super::args::{Global, ReplArgs};
+use super::terminal::{self, Terminal};
+use super::world::SystemWorld;
+use super::{limits, session};
+use crate::script::{Dialect, Options, Session};
+use assistance::Assistance;
+use rustyline::error::ReadlineError;
+use rustyline::history::FileHistory;
+use rustyline::{CompletionType, Config, Editor};
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Reads statements and shows their answers until the input ends.
+pub(super) fn repl(arguments: &ReplArgs, global: &Global) -> ExitCode {
+    let terminal = Terminal::new(global.color, false);
+    let colour = terminal.colour();
+    let world = match SystemWorld::new(terminal, &arguments.out, None) {
+        Ok(world) => world,
+        Err(error) => {
+            terminal::eprint(&format!("error: the working directory cannot be read: {error}\n"));
+            return ExitCode::FAILURE;
+        }
+    };
+    world.catch_interrupts();
+    let (flag, reason) = world.stopping();
+    if let Err(message) = limits::watch(&arguments.freedom, flag.clone(), reason) {
+        terminal::eprint(&format!("error: {message}\n"));
+        return ExitCode::from(2);
+    }
+    let options = arguments.freedom.options();
+    let dialect = Some(options.dialect.unwrap_or(Dialect::Dymola));
+    let mut session = session::open(global, world).with_options(Options { dialect, ..options });
+    if let Some(script) = &arguments.script {
+        session.run_file(script);
+    }
+    match talk(&mut session, &flag, colour) {
+        Ok(code) => ExitCode::from(code),
+        Err(error) => {
+            terminal::eprint(&format!("error: the terminal cannot be read: {error}\n"));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn talk(session: &mut Session, flag: &AtomicBool, colour: bool) -> rustyline::Result<u8> {
+    let config = Config::builder()
+        .completion_type(CompletionType::List)
+        .history_ignore_space(true)
+        .max_history_size(10_000)?
+        .build();
+    let mut editor: Editor<Assistance, FileHistory> = Editor::with_config(config)?;
+    let history = history_file();
+    if let Some(file) = &history {
+        // A first session has no history yet.
+        let _ = editor.load_history(file);
+    }
+    let code = loop {
+        editor.set_helper(Some(Assistance::of(session, colour)));
+        match editor.readline("> ") {
+            Ok(input) if input.trim().is_empty() => {}
+            Ok(input) => {
+                let _ = editor.add_history_entry(input.trim_end());
+                // Ctrl-C ends what is running now, not what comes next.
+                flag.store(false, Ordering::SeqCst);
+                if let Some(code) = commands::answer(session, &input) {
+                    break code;
+                }
+            }
+            Err(ReadlineError::Interrupted) => {}
+            Err(ReadlineError::Eof) => break 0,
+            Err(error) => return Err(error),
+        }
+    };
+    if let Some(file) = &history {
+        let _ = editor.save_history(file);
+    }
+    Ok(code)
+}
+
+/// `GAPI_HISTORY`, else a file in the user's state folder.
+fn history_file() -> Option<PathBuf> {
+    if let Some(file) = std::env::var_os("GAPI_HISTORY") {
+        return (!file.is_empty()).then(|| PathBuf::from(file));
+    }
+    let folder = match std::env::var_os("XDG_STATE_HOME") {
+        Some(folder) => PathBuf::from(folder),
+        None => PathBuf::from(std::env::var_os("HOME")?).join(".local/state"),
+    };
+    std::fs::create_dir_all(folder.join("gapi")).ok()?;
+    Some(folder.join("gapi/history"))
+}

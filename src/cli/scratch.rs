@@ -1,0 +1,182 @@
+//! The world of a test: it reads the disk, and keeps in memory what is written.
+
+use super::world::SystemWorld;
+use crate::script::world::{Files, Progress, Stamp, World};
+use std::collections::{BTreeMap, BTreeSet};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex};
+
+/// What a script prints, readable while its session owns the world.
+pub(super) type Output = Arc<Mutex<String>>;
+
+/// The disk below, memory above; the clock stands still and there is one thread, so that a test
+/// gives the same text every time.
+pub(super) struct ScratchWorld {
+    disk: SystemWorld,
+    current: PathBuf,
+    output: PathBuf,
+    files: BTreeMap<PathBuf, Vec<u8>>,
+    folders: BTreeSet<PathBuf>,
+    removed: BTreeSet<PathBuf>,
+    changes: u64,
+    printed: Output,
+}
+
+impl ScratchWorld {
+    /// A world whose working directory is `folder`.
+    pub(super) fn new(disk: SystemWorld, folder: &Path, printed: Output) -> ScratchWorld {
+        let current = disk.absolute(folder);
+        ScratchWorld {
+            output: current.join("results"),
+            current,
+            disk,
+            files: BTreeMap::new(),
+            folders: BTreeSet::new(),
+            removed: BTreeSet::new(),
+            changes: 0,
+            printed,
+        }
+    }
+}
+
+fn missing(path: &Path) -> io::Error {
+    io::Error::new(io::ErrorKind::NotFound, format!("no such file: {}", path.display()))
+}
+
+impl World for ScratchWorld {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        let path = self.absolute(path);
+        match self.files.get(&path) {
+            Some(bytes) => Ok(bytes.clone()),
+            None if self.removed.contains(&path) => Err(missing(&path)),
+            None => self.disk.read(&path),
+        }
+    }
+
+    fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        let path = self.absolute(path);
+        self.changes += 1;
+        self.folders.extend(path.ancestors().skip(1).map(Path::to_path_buf));
+        self.files.insert(path, bytes.to_vec());
+        Ok(())
+    }
+
+    fn append(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        let mut all = self.read(path).unwrap_or_default();
+        all.extend_from_slice(bytes);
+        self.write(path, &all)
+    }
+
+    fn remove(&mut self, path: &Path) -> io::Result<()> {
+        if !self.exists(path) {
+            return Err(missing(path));
+        }
+        let path = self.absolute(path);
+        self.files.remove(&path);
+        self.folders.remove(&path);
+        self.removed.insert(path);
+        Ok(())
+    }
+
+    fn exists(&self, path: &Path) -> bool {
+        let path = self.absolute(path);
+        self.files.contains_key(&path)
+            || self.folders.contains(&path)
+            || !self.removed.contains(&path) && self.disk.exists(&path)
+    }
+
+    fn is_dir(&self, path: &Path) -> bool {
+        let path = self.absolute(path);
+        self.folders.contains(&path) || !self.removed.contains(&path) && self.disk.is_dir(&path)
+    }
+
+    fn stamp(&self, path: &Path) -> Option<Stamp> {
+        let path = self.absolute(path);
+        match self.files.get(&path) {
+            Some(bytes) => Some(Stamp(self.changes, bytes.len() as u64)),
+            None => self.disk.stamp(&path),
+        }
+    }
+
+    fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
+        let path = self.absolute(path);
+        let mut names: BTreeSet<String> =
+            self.disk.list_dir(&path).unwrap_or_default().into_iter().collect();
+        for written in self.files.keys().chain(&self.folders) {
+            let inside = written.strip_prefix(&path).ok().and_then(|rest| rest.components().next());
+            names.extend(inside.map(|name| name.as_os_str().to_string_lossy().into_owned()));
+        }
+        names.retain(|name| !self.removed.contains(&path.join(name)));
+        match names.is_empty() && !self.is_dir(&path) {
+            true => Err(missing(&path)),
+            false => Ok(names.into_iter().collect()),
+        }
+    }
+
+    fn files(&self) -> Arc<dyn Files> {
+        self.disk.files()
+    }
+
+    fn create_dirs(&mut self, path: &Path) -> io::Result<()> {
+        let path = self.absolute(path);
+        self.folders.extend(path.ancestors().map(Path::to_path_buf));
+        Ok(())
+    }
+
+    fn current_dir(&self) -> PathBuf {
+        self.current.clone()
+    }
+
+    fn set_current_dir(&mut self, path: &Path) -> io::Result<()> {
+        let path = self.absolute(path);
+        if !self.is_dir(&path) {
+            return Err(missing(&path));
+        }
+        self.current = path;
+        Ok(())
+    }
+
+    fn env(&self, name: &str) -> Option<String> {
+        self.disk.env(name)
+    }
+
+    fn print(&mut self, text: &str) {
+        if let Ok(mut printed) = self.printed.lock() {
+            printed.push_str(text);
+        }
+    }
+
+    fn eprint(&mut self, _text: &str) {}
+
+    fn monotonic_seconds(&self) -> f64 {
+        0.0
+    }
+
+    fn unix_seconds(&self) -> u64 {
+        0
+    }
+
+    fn interrupted(&self) -> bool {
+        self.disk.interrupted()
+    }
+
+    fn interrupt_flag(&self) -> Option<Arc<AtomicBool>> {
+        self.disk.interrupt_flag()
+    }
+
+    fn stop_reason(&self) -> Option<String> {
+        self.disk.stop_reason()
+    }
+
+    fn threads(&self) -> usize {
+        1
+    }
+
+    fn output_dir(&self) -> PathBuf {
+        self.output.clone()
+    }
+
+    fn progress(&mut self, _progress: &Progress) {}
+}

@@ -1,0 +1,199 @@
+//! `gapi test`: scripts compared with what is recorded of them.
+
+use super::args::{Freedom, Global, TestArgs};
+use super::parsing::scripts;
+use super::run::without_folders;
+use super::scratch::{Output, ScratchWorld};
+use super::terminal::{self, Terminal};
+use super::world::SystemWorld;
+use super::{limits, session};
+use crate::script::expectation::{Line, Tolerance, difference, embedded, shown};
+use crate::script::{Dialect, Echo, Options, Transcript};
+use std::fmt::Write as _;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// How a script did.
+enum Verdict {
+    Agrees,
+    /// The transcript was written.
+    Accepted,
+    /// There is nothing to compare with.
+    Unrecorded,
+    /// The comparison.
+    Differs(Vec<Line>),
+    Failed(String),
+}
+
+/// Runs the scripts; exit code 1 unless all agree with what is recorded.
+pub(super) fn test(arguments: &TestArgs, global: &Global) -> ExitCode {
+    let terminal = Terminal::new(global.color, false);
+    let found = scripts(&arguments.paths);
+    let mut results = Vec::with_capacity(found.len());
+    for path in found {
+        let verdict = examined(&path, arguments, global)
+            .unwrap_or_else(|error| Verdict::Failed(error.to_string()));
+        terminal::print(&line(&path, &verdict, terminal.colour()));
+        let verdict = match (verdict, arguments.review) {
+            (verdict @ (Verdict::Differs(_) | Verdict::Unrecorded), true) => {
+                reviewed(&path, verdict, arguments, global)
+            }
+            (verdict, _) => verdict,
+        };
+        results.push((path, verdict));
+    }
+    let good = |verdict: &Verdict| matches!(verdict, Verdict::Agrees | Verdict::Accepted);
+    let wrong = results.iter().filter(|(_, verdict)| !good(verdict)).count();
+    let count = results.len();
+    terminal::print(&format!("{count} scripts, {} agree, {wrong} do not\n", count - wrong));
+    if let Some(file) = &arguments.junit
+        && let Err(error) = std::fs::write(file, junit(&results))
+    {
+        terminal::eprint(&format!("error: cannot write `{}`: {error}\n", file.display()));
+        return ExitCode::FAILURE;
+    }
+    if wrong == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// Where the transcript of a script is.
+fn recorded(path: &Path) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".snap");
+    PathBuf::from(name)
+}
+
+fn examined(path: &Path, arguments: &TestArgs, global: &Global) -> io::Result<Verdict> {
+    let bytes = std::fs::read(path)?;
+    let (script, _) = crate::script::parsing::text(&bytes);
+    let snap = recorded(path);
+    let expected = std::fs::read_to_string(&snap).ok();
+    if let (None, Some(expected)) = (&expected, embedded(&script)) {
+        let ran = Ran::new(path, &arguments.freedom, global, true)?;
+        let lines = difference(&expected, &ran.printed, Tolerance::EMBEDDED);
+        return Ok(lines.map_or(Verdict::Agrees, Verdict::Differs));
+    }
+    let ran = Ran::new(path, &arguments.freedom, global, false)?;
+    let lines =
+        expected.map(|expected| difference(&expected, &ran.transcript, Tolerance::TRANSCRIPT));
+    match lines {
+        Some(None) => Ok(Verdict::Agrees),
+        _ if arguments.accept => {
+            std::fs::write(snap, ran.transcript)?;
+            Ok(Verdict::Accepted)
+        }
+        Some(Some(lines)) => Ok(Verdict::Differs(lines)),
+        None => Ok(Verdict::Unrecorded),
+    }
+}
+
+/// What a script printed and its transcript.
+struct Ran {
+    printed: String,
+    transcript: String,
+}
+
+impl Ran {
+    fn new(path: &Path, freedom: &Freedom, global: &Global, embedded: bool) -> io::Result<Ran> {
+        let disk = SystemWorld::new(Terminal::new(global.color, true), "results".as_ref(), None)?;
+        let (flag, reason) = disk.stopping();
+        limits::watch(freedom, flag, reason).map_err(io::Error::other)?;
+        let (folder, name) = (path.parent().unwrap_or(Path::new("")), path.file_name());
+        let name = name.ok_or_else(|| io::Error::other("a script has a name"))?;
+        let printed = Output::default();
+        let world = ScratchWorld::new(disk, folder, Output::clone(&printed));
+        let options = freedom.options();
+        let dialect = options.dialect.or(embedded.then_some(Dialect::OpenModelica));
+        let echo = if embedded { Echo::Everything } else { Echo::Usual };
+        let mut session =
+            session::open(global, world).with_options(Options { dialect, echo, ..options });
+        let start = session.world.current_dir();
+        session.transcript = Some(Transcript::default());
+        let status = session.run_file(Path::new(name));
+        let transcript = session.transcript.take().unwrap_or_default();
+        let text = without_folders(&transcript.to_string(), &start, &start.join("results"));
+        let printed = printed.lock().map_or(String::new(), |printed| printed.clone());
+        Ok(Ran {
+            printed: without_folders(&printed, &start, &start.join("results")),
+            transcript: format!("{text}[exit code {}]\n", status.code),
+        })
+    }
+}
+
+fn line(path: &Path, verdict: &Verdict, colour: bool) -> String {
+    let (word, code, rest) = match verdict {
+        Verdict::Agrees => ("ok", "32", String::new()),
+        Verdict::Accepted => ("accepted", "33", String::new()),
+        Verdict::Unrecorded => ("new", "33", "  nothing is recorded: --accept\n".to_owned()),
+        Verdict::Differs(lines) => ("differs", "31", shown(lines, colour)),
+        Verdict::Failed(message) => ("failed", "31", format!("  {message}\n")),
+    };
+    let word = match colour {
+        true => format!("\x1b[{code}m{word:8}\x1b[0m"),
+        false => format!("{word:8}"),
+    };
+    format!("{word} {}\n{rest}", path.display())
+}
+
+/// Asks whether the new transcript is right.
+fn reviewed(path: &Path, verdict: Verdict, arguments: &TestArgs, global: &Global) -> Verdict {
+    let Ok(ran) = Ran::new(path, &arguments.freedom, global, false) else { return verdict };
+    if matches!(verdict, Verdict::Unrecorded) {
+        terminal::print(&ran.transcript);
+    }
+    terminal::print("accept this transcript? [y/N] ");
+    let mut answer = String::new();
+    let read = io::stdin().read_line(&mut answer);
+    let accepted = read.is_ok() && answer.trim().eq_ignore_ascii_case("y");
+    match accepted && std::fs::write(recorded(path), ran.transcript).is_ok() {
+        true => Verdict::Accepted,
+        false => verdict,
+    }
+}
+
+/// The report in the format of JUnit.
+fn junit(results: &[(PathBuf, Verdict)]) -> String {
+    let mut cases = String::new();
+    let mut failures = 0;
+    for (path, verdict) in results {
+        let name = escaped(&path.to_string_lossy());
+        let failure = match verdict {
+            Verdict::Agrees | Verdict::Accepted => None,
+            Verdict::Unrecorded => Some("nothing is recorded".to_owned()),
+            Verdict::Differs(lines) => Some(shown(lines, false)),
+            Verdict::Failed(message) => Some(message.clone()),
+        };
+        let _ = match failure {
+            None => writeln!(cases, "  <testcase classname=\"gapi\" name=\"{name}\"/>"),
+            Some(text) => {
+                failures += 1;
+                writeln!(
+                    cases,
+                    "  <testcase classname=\"gapi\" name=\"{name}\">\n    <failure>{}</failure>\n  </testcase>",
+                    escaped(&text)
+                )
+            }
+        };
+    }
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"gapi\" tests=\"{}\" failures=\"{failures}\">\n{cases}</testsuite>\n",
+        results.len()
+    )
+}
+
+/// Text as XML holds it; control characters cannot stand in it.
+fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\n' | '\t' => escaped.push(character),
+            control if control.is_control() => escaped.push('?'),
+            other => escaped.push(other),
+        }
+    }
+    escaped
+}

@@ -1,0 +1,78 @@
+//! The cases of a reference collection: one folder a model, which holds `comparisonSignals.txt`,
+//! `creation.txt`, or a `.csv` file with the folder's name. The path of the folder below the
+//! collection is the name of the model.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Folders deeper than this are not looked at.
+const MAX_DEPTH: usize = 20;
+
+/// A model and its reference.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Case {
+    /// The class.
+    pub(super) model: String,
+    /// The reference results, if the collection holds them.
+    pub(super) reference: Option<PathBuf>,
+    /// The list of the signals to compare.
+    pub(super) signals: Option<PathBuf>,
+}
+
+/// All cases below a folder whose models' names contain a text, by name.
+pub(super) fn find(root: &Path, filter: Option<&str>) -> io::Result<Vec<Case>> {
+    let mut cases = Vec::new();
+    collect(root, &mut Vec::new(), &mut cases)?;
+    cases.retain(|case: &Case| filter.is_none_or(|filter| case.model.contains(filter)));
+    cases.sort_by(|a, b| a.model.cmp(&b.model));
+    Ok(cases)
+}
+
+fn collect(folder: &Path, parts: &mut Vec<String>, cases: &mut Vec<Case>) -> io::Result<()> {
+    cases.extend(case(folder, parts));
+    if parts.len() == MAX_DEPTH {
+        return Ok(());
+    }
+    for entry in std::fs::read_dir(folder)? {
+        let entry = entry?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if entry.file_type()?.is_dir() && !name.starts_with('.') {
+            parts.push(name);
+            collect(&entry.path(), parts, cases)?;
+            parts.pop();
+        }
+    }
+    Ok(())
+}
+
+fn case(folder: &Path, parts: &[String]) -> Option<Case> {
+    let existing = |name: &str| Some(folder.join(name)).filter(|path| path.is_file());
+    let reference = existing(&format!("{}.csv", parts.last()?));
+    let signals = existing("comparisonSignals.txt");
+    let is_case = reference.is_some() || signals.is_some() || existing("creation.txt").is_some();
+    is_case.then(|| Case { model: parts.join("."), reference, signals })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    #[test]
+    fn folders_are_models() {
+        let root = tempfile::tempdir().unwrap();
+        let folder = root.path().join("Lib/Examples/Decay");
+        fs::create_dir_all(folder.join(".git/Hidden")).unwrap();
+        fs::create_dir_all(root.path().join("Lib/Examples/Growth")).unwrap();
+        fs::write(folder.join("Decay.csv"), "time,x\n0,1\n").unwrap();
+        fs::write(folder.join(".git/Hidden/Hidden.csv"), "").unwrap();
+        fs::write(root.path().join("Lib/Examples/Growth/comparisonSignals.txt"), "x\n").unwrap();
+        let found = find(root.path(), None).unwrap();
+        let models: Vec<&str> = found.iter().map(|case| &*case.model).collect();
+        assert_eq!(models, ["Lib.Examples.Decay", "Lib.Examples.Growth"]);
+        assert_eq!(found[0].reference, Some(folder.join("Decay.csv")));
+        assert_eq!((&found[0].signals, &found[1].reference), (&None, &None));
+        assert_eq!(find(root.path(), Some("Grow")).unwrap(), found[1..]);
+        assert!(find(&root.path().join("nowhere"), None).is_err());
+    }
+}

@@ -1,0 +1,154 @@
+//! `gapi verify`: a library against a collection of reference results.
+
+mod cases;
+mod pool;
+mod report;
+
+use super::args::{Global, VerifyArgs};
+use super::session;
+use super::terminal::{self, Terminal};
+use crate::diag::Fault;
+use crate::name::Name;
+use crate::results::{self, Compared};
+use crate::script::Session;
+use crate::script::verification::{self, Reference, Stage, Stuck};
+use crate::script::world::Progress;
+use crate::source::Span;
+use cases::Case;
+use pool::{Ended, Watch};
+use report::{Outcome, Row};
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::Mutex;
+use std::time::Duration;
+
+/// Verifies all cases; succeeds if every one that has a reference agrees.
+pub(super) fn verify(arguments: &VerifyArgs, global: &Global) -> ExitCode {
+    let files: Vec<_> = global.library.iter().chain(&arguments.files).cloned().collect();
+    let mut session = match session::with_files(global, &files) {
+        Ok((session, _)) => session,
+        Err(code) => return code,
+    };
+    let cases = match cases::find(&arguments.references, arguments.filter.as_deref()) {
+        Ok(cases) => cases,
+        Err(error) => {
+            let folder = arguments.references.display();
+            terminal::eprint(&format!("error: `{folder}` cannot be read: {error}\n"));
+            return ExitCode::FAILURE;
+        }
+    };
+    let rows = run(&mut session, &cases, arguments, global);
+    session.print(&report::table(&rows));
+    for path in &arguments.output {
+        if let Err(fault) = write(&mut session, path, &rows) {
+            return session::failed(&mut session, vec![fault.at(Span::NONE)]);
+        }
+    }
+    let all_good = rows.iter().all(|row| row.outcome.is_good());
+    if all_good { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+fn write(session: &mut Session, path: &Path, rows: &[Row]) -> Result<(), Fault> {
+    let is_csv = path.extension().is_some_and(|extension| extension == "csv");
+    let text = if is_csv { report::csv(rows) } else { report::json(rows) };
+    session.write_file(path, text.as_bytes())
+}
+
+/// The cases whose work has ended, and how far all of it is.
+struct Board {
+    rows: Vec<Option<Row>>,
+    terminal: Terminal,
+    progress: Progress,
+}
+
+fn run(session: &mut Session, cases: &[Case], arguments: &VerifyArgs, global: &Global) -> Vec<Row> {
+    let library = verification::library(session);
+    let board = Mutex::new(Board {
+        rows: cases.iter().map(|_| None).collect(),
+        terminal: Terminal::new(global.color, false),
+        progress: Progress {
+            label: "case".to_owned(),
+            total: cases.len() as u64,
+            ..Progress::default()
+        },
+    });
+    let job = |case: &Case| {
+        let (library, case, tolerance) = (library.clone(), case.clone(), arguments.tolerance);
+        Box::new(move |watch: &Watch| {
+            let (table, signals) = match reference(&case)? {
+                Some((table, signals)) => (Some(table), signals),
+                None => (None, Vec::new()),
+            };
+            let reference =
+                table.as_ref().map(|table| Reference { table, signals: &signals, tolerance });
+            let enter = &mut |stage| watch.enter(stage);
+            let class = Name::parse(&case.model);
+            let verified = verification::verify(&library, &class, reference, &watch.cancel, enter);
+            Ok(verified.map(|compared| (reference.is_some(), compared)))
+        }) as Box<dyn FnOnce(&Watch) -> Judged + Send>
+    };
+    let budget = Duration::from_secs_f64(arguments.budget);
+    let threads = arguments.threads.map_or_else(|| session.world.threads(), usize::from);
+    pool::work(cases, threads, budget, job, |index, watch, ended| {
+        let row = row(&cases[index], watch, ended);
+        let mut board = board.lock().expect("no panic under the lock");
+        let Board { rows, terminal, progress } = &mut *board;
+        progress.done += 1;
+        progress.failures += u64::from(!row.outcome.is_good());
+        terminal.progress(progress);
+        rows[index] = Some(row);
+    });
+    let board = board.into_inner().expect("no panic under the lock");
+    board.rows.into_iter().flatten().collect()
+}
+
+/// Whether there was a reference, and the comparison with it; or where the model got stuck; or why
+/// the reference cannot be read.
+type Judged = Result<Result<(bool, Vec<Compared>), Stuck>, Fault>;
+
+/// The reference of a case and the signals to compare.
+fn reference(case: &Case) -> Result<Option<(results::ResultTable, Vec<String>)>, Fault> {
+    let Some(path) = &case.reference else { return Ok(None) };
+    let read = |path: &Path| {
+        std::fs::read(path).map_err(|error| {
+            let text = format!("`{}` cannot be read: {error}", path.display());
+            Fault::new(crate::script::errors::FILE_ERROR, text)
+        })
+    };
+    let table = results::format_of_file(&path.to_string_lossy())?.read(&read(path)?)?;
+    let list = case.signals.as_deref().map(read).transpose()?;
+    let list = list.as_deref().map(String::from_utf8_lossy);
+    let signals = results::signals_to_compare(&table, list.as_deref());
+    Ok(Some((table, signals)))
+}
+
+fn row(case: &Case, watch: &Watch, ended: Ended<Judged>) -> Row {
+    let stopped = |code: &str| Outcome::Failed {
+        stage: watch.stage().unwrap_or(Stage::Flatten).name(),
+        code: code.to_owned(),
+        reason: String::new(),
+    };
+    let outcome = match ended {
+        Ended::Done(Ok(Ok((true, compared)))) => Outcome::of(&compared),
+        Ended::Done(Ok(Ok((false, _)))) => Outcome::Unjudged,
+        Ended::Done(Ok(Err(stuck))) => failed(&stuck),
+        Ended::Done(Err(fault)) => Outcome::BadReference { reason: fault.message.clone() },
+        Ended::Panicked => stopped("panic"),
+        Ended::TimedOut => stopped("timeout"),
+    };
+    Row {
+        model: case.model.clone(),
+        outcome,
+        compile_seconds: watch.seconds(Stage::Flatten, Stage::Simulate),
+        simulate_seconds: watch.seconds(Stage::Simulate, Stage::Compare),
+    }
+}
+
+fn failed(stuck: &Stuck) -> Outcome {
+    let first = stuck.errors.first();
+    Outcome::Failed {
+        stage: stuck.stage.name(),
+        code: first.map_or(String::new(), |error| error.code.slug.to_owned()),
+        reason: first.map_or(String::new(), |error| error.message.clone()),
+    }
+}

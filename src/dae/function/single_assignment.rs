@@ -1,0 +1,56 @@
+//! Local variables with one value: what is assigned to them is known wherever it is a number.
+
+use crate::name::Ident;
+use crate::syntax::ast::{Statement, StatementKind};
+use rustc_hash::FxHashMap;
+
+/// The variables that one statement assigns to as a whole, which is carried out once and always:
+/// it stands in no branch and in no loop, and nothing returns before it.
+pub(super) fn assigned_once(statements: &[Statement]) -> Vec<Ident> {
+    let mut counts = FxHashMap::default();
+    count(statements, &mut counts);
+    let plain = statements.iter().take_while(|s| !may_return(s)).filter_map(|s| match &s.kind {
+        StatementKind::Assign { target, .. } => target.as_ident(),
+        _ => None,
+    });
+    plain.filter(|name| counts.get(name) == Some(&1)).collect()
+}
+
+fn count(statements: &[Statement], counts: &mut FxHashMap<Ident, usize>) {
+    let mut one = |target: &crate::syntax::ast::ComponentReference| {
+        *counts.entry(target.parts[0].name).or_default() += 1;
+    };
+    for statement in statements {
+        match &statement.kind {
+            StatementKind::Assign { target, .. } => one(target),
+            StatementKind::MultiAssign { targets, .. } => {
+                targets.iter().flatten().for_each(&mut one)
+            }
+            _ => {}
+        }
+    }
+    for statement in statements {
+        for body in bodies(statement) {
+            count(body, counts);
+        }
+    }
+}
+
+fn may_return(statement: &Statement) -> bool {
+    matches!(statement.kind, StatementKind::Return)
+        || bodies(statement).iter().any(|body| body.iter().any(may_return))
+}
+
+/// The statements inside a statement.
+fn bodies(statement: &Statement) -> Vec<&[Statement]> {
+    match &statement.kind {
+        StatementKind::If { branches, otherwise } => {
+            branches.iter().map(|(_, body)| body.as_slice()).chain([otherwise.as_slice()]).collect()
+        }
+        StatementKind::For { body, .. } | StatementKind::While { body, .. } => vec![body],
+        StatementKind::When { branches } => {
+            branches.iter().map(|(_, body)| body.as_slice()).collect()
+        }
+        _ => Vec::new(),
+    }
+}

@@ -1,0 +1,176 @@
+//! Functions of texts: called while the model is compiled, by the interpreter.
+
+use super::{Array, Lowered, Lowering, Target};
+use crate::dae::build::UNKNOWN_TEXT;
+use crate::dae::errors::NOT_SUPPORTED;
+use crate::diag::Diagnostic;
+use crate::eval::{self, Callee, Function, Host, ValueType};
+use crate::external::{Outside, Resources};
+use crate::fault;
+use crate::name::Name;
+use crate::source::Span;
+use crate::syntax::ast::ComponentReference;
+use crate::value::{ArrayValue, Elements, EnumerationValue, Value};
+use std::sync::Arc;
+
+/// Functions that find files: whoever compiles the model knows where they are (MLS §13.5).
+const FIND_FILES: &[&str] = &[
+    "Modelica.Utilities.Files.loadResource",
+    "ModelicaServices.ExternalReferences.loadResource",
+    "Modelica.Utilities.Files.fullPathName",
+];
+
+impl<T: Target> Lowering<'_, T> {
+    /// The outputs of a function that takes or gives texts, if all its arguments are known and it
+    /// can be run now; parameters that a text depends on are settled.
+    pub(super) fn text_call(
+        &mut self,
+        function: &Arc<Function>,
+        arguments: &[Lowered<T::Scalar>],
+        span: Span,
+    ) -> Result<Option<Vec<Lowered<T::Scalar>>>, Diagnostic> {
+        let is_text = |c: &eval::FunctionComponent| c.value_type == ValueType::String;
+        let gives_text = function.outputs.iter().any(is_text);
+        if !gives_text && !function.inputs.iter().any(is_text) {
+            return Ok(None);
+        }
+        let mut values = Vec::with_capacity(arguments.len());
+        for (input, argument) in function.inputs.iter().zip(arguments) {
+            match self.known_value(argument, &input.value_type, gives_text) {
+                Some(value) => values.push(value),
+                None if gives_text => {
+                    return Err(fault!(
+                        NOT_SUPPORTED,
+                        "`{}` gives a text, but `{}` is not known when the model is compiled",
+                        function.name,
+                        input.name
+                    )
+                    .at(span));
+                }
+                None => return Ok(None),
+            }
+        }
+        let resources = self.target.resources();
+        if let ([Value::String(name)], true) =
+            (values.as_slice(), FIND_FILES.contains(&function.name.to_string().as_str()))
+        {
+            let path = resources.path(name).map_err(|fault| fault.at(span))?;
+            return Ok(Some(vec![Lowered::Text(path.into())]));
+        }
+        let mut host = Compiling { target: &*self.target, resources };
+        match eval::call_function(function, values.into(), span, &mut host) {
+            Ok(outputs) => Ok(outputs.iter().map(|value| self.lowered_value(value)).collect()),
+            Err(error) if gives_text => Err(error),
+            Err(_) => Ok(None),
+        }
+    }
+
+    fn known_value(
+        &mut self,
+        argument: &Lowered<T::Scalar>,
+        wanted: &ValueType,
+        settle: bool,
+    ) -> Option<Value> {
+        match argument {
+            Lowered::Text(text) => {
+                (!text.contains(UNKNOWN_TEXT)).then(|| Value::String(text.clone()))
+            }
+            Lowered::Record(_) => None,
+            Lowered::Array(array) => {
+                let mut values = Vec::with_capacity(array.elements.len());
+                for element in &array.elements {
+                    let known = self.target.as_constant(*element);
+                    let known = match settle {
+                        true => known.or_else(|| self.target.settle(*element)),
+                        false => known,
+                    };
+                    values.push(typed(known?, wanted)?);
+                }
+                match array.dims.is_empty() {
+                    true => values.pop(),
+                    false => gathered(array.dims.clone(), values),
+                }
+            }
+        }
+    }
+
+    /// A value of the interpreter; `None` for records and external objects.
+    fn lowered_value(&mut self, value: &Value) -> Option<Lowered<T::Scalar>> {
+        if let Value::String(text) = value {
+            return Some(Lowered::Text(text.clone()));
+        }
+        let (dims, numbers) = match value {
+            Value::Array(array) => {
+                let all = (0..array.elements.len()).map(|at| number(&array.elements.get(at)));
+                (array.dims.clone(), all.collect::<Option<Vec<f64>>>()?)
+            }
+            other => (Vec::new(), vec![number(other)?]),
+        };
+        let elements = numbers.into_iter().map(|number| self.target.constant(number)).collect();
+        Some(Lowered::Array(Array { dims, elements }))
+    }
+}
+
+/// Answers the interpreter while a model is compiled.
+struct Compiling<'a, T> {
+    target: &'a T,
+    resources: Resources,
+}
+
+impl<T: Target> Host for Compiling<'_, T> {
+    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
+        Ok(self.target.function(name).map(Callee::Function))
+    }
+
+    fn call_builtin(
+        &mut self,
+        header: &Arc<Function>,
+        _: Vec<Value>,
+        span: Span,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        Err(fault!(NOT_SUPPORTED, "the command `{}` in a model", header.name).at(span))
+    }
+
+    fn variable(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
+        let _ = reference;
+        Ok(None)
+    }
+
+    fn outside(&mut self) -> Option<&mut dyn Outside> {
+        Some(&mut self.resources)
+    }
+}
+
+/// Scalars of one type as an array.
+fn gathered(dims: Vec<usize>, values: Vec<Value>) -> Option<Value> {
+    let mut values = values.into_iter();
+    let mut elements = Elements::repeated(&values.next()?, 1).ok()?;
+    for value in values {
+        elements.append(Elements::repeated(&value, 1).ok()?).ok()?;
+    }
+    Some(Value::Array(ArrayValue { dims, elements }))
+}
+
+fn number(value: &Value) -> Option<f64> {
+    match value {
+        Value::Real(value) => Some(*value),
+        Value::Integer(value) => Some(*value as f64),
+        Value::Boolean(value) => Some(f64::from(u8::from(*value))),
+        Value::Enumeration(value) => Some(value.ordinal as f64),
+        _ => None,
+    }
+}
+
+/// A number as a value of a type.
+fn typed(number: f64, wanted: &ValueType) -> Option<Value> {
+    Some(match wanted {
+        ValueType::Real => Value::Real(number),
+        ValueType::Integer => Value::Integer(number as i64),
+        ValueType::Boolean => Value::Boolean(number != 0.0),
+        ValueType::Enumeration(definition) => Value::Enumeration(EnumerationValue {
+            definition: definition.clone(),
+            ordinal: number as i64,
+        }),
+        _ => return None,
+    })
+}

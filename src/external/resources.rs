@@ -1,0 +1,92 @@
+//! Files that models use, granted while they are compiled.
+
+use super::call::Outside;
+use super::errors::EXTERNAL_OUTSIDE;
+use crate::diag::Fault;
+use crate::fault;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::Arc;
+
+/// Finds and reads the files that models name: paths, or `modelica://` URIs (MLS §13.5).
+pub trait Provide: fmt::Debug + Send + Sync {
+    /// The path of a file; it need not exist.
+    fn path(&self, name: &str) -> Result<String, Fault>;
+    /// The content of a file.
+    fn read(&self, name: &str) -> Result<Vec<u8>, Fault>;
+    /// Whether there is a file (`Some(false)`) or a folder (`Some(true)`) of this name.
+    fn is_folder(&self, name: &str) -> Option<bool>;
+}
+
+/// The files that a model may use; none by default.
+#[derive(Debug, Clone, Default)]
+pub struct Resources(Option<Arc<dyn Provide>>);
+
+/// Equal if the same files are meant by the same names.
+impl PartialEq for Resources {
+    fn eq(&self, other: &Resources) -> bool {
+        match (&self.0, &other.0) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (a, b) => a.is_none() && b.is_none(),
+        }
+    }
+}
+
+impl Resources {
+    /// What this one provides.
+    pub fn new(provider: Arc<dyn Provide>) -> Resources {
+        Resources(Some(provider))
+    }
+
+    /// The path of a file that a model names.
+    pub fn path(&self, name: &str) -> Result<String, Fault> {
+        self.provider(name)?.path(name)
+    }
+
+    fn provider(&self, name: &str) -> Result<&dyn Provide, Fault> {
+        self.0.as_deref().ok_or_else(|| {
+            fault!(EXTERNAL_OUTSIDE, "the model wants the file `{name}`, and there are no files")
+        })
+    }
+}
+
+impl Outside for Resources {
+    fn read(&mut self, path: &str) -> Result<Vec<u8>, Fault> {
+        self.provider(path)?.read(path)
+    }
+
+    fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {
+        Ok(self.provider(path)?.is_folder(path))
+    }
+}
+
+/// Contents of files by the names that external functions are called with; shared by clones.
+#[derive(Clone, Default)]
+pub struct Contents(Arc<BTreeMap<Arc<str>, Arc<[u8]>>>);
+
+impl fmt::Debug for Contents {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_set().entries(self.0.keys()).finish()
+    }
+}
+
+impl Contents {
+    /// Keeps the content of a file, unless it is there already.
+    pub fn keep(&mut self, name: &Arc<str>, resources: &Resources) -> Result<(), Fault> {
+        if !self.0.contains_key(name) {
+            let bytes = resources.clone().read(name)?;
+            Arc::make_mut(&mut self.0).insert(name.clone(), bytes.into());
+        }
+        Ok(())
+    }
+}
+
+impl Contents {
+    /// The content of a file that was kept.
+    pub fn read(&self, path: &str) -> Result<Vec<u8>, Fault> {
+        match self.0.get(path) {
+            Some(bytes) => Ok(bytes.to_vec()),
+            None => ().read(path),
+        }
+    }
+}

@@ -1,0 +1,350 @@
+//! The local balance of classes (MLS §4.8): the equations that a model or block writes itself, with
+//! those of its own connections and those that its connectors promise, against the unknowns that
+//! it declares itself, with the inputs and flows of its components' connectors.
+//!
+//! Counted over the instances of a model. A class whose counts cannot be told — with expandable or
+//! overdetermined connectors, connections through components or equations of unknown size — is
+//! left out.
+
+use super::super::connections::{Connections, Edge, Face};
+use super::super::errors::INVALID_CONNECTION;
+use super::super::instance::{Leaf, MemberState, NodeId, NodeKind};
+use super::super::instantiation::Instantiation;
+use super::super::{BaseType, FlatModel, Variability, Variable};
+use super::{plural, size, targets};
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::name::Name;
+use crate::source::Span;
+use crate::syntax::ast::{CausalityPrefix, ConnectionPrefix, Restriction};
+use indexmap::IndexMap;
+use rustc_hash::FxHashMap;
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+/// Which equations and algorithms of the flat model an instance writes itself.
+#[derive(Debug, Clone)]
+pub(in super::super) struct Written {
+    pub(in super::super) node: NodeId,
+    pub(in super::super) equations: Range<usize>,
+    pub(in super::super) algorithms: Range<usize>,
+}
+
+/// Local unknowns and equations of one instance of a class.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LocalBalance {
+    /// The class.
+    pub class: Name,
+    /// Path of the instance; empty for the model itself.
+    pub path: String,
+    /// Scalar unknowns (MLS §4.8).
+    pub unknowns: usize,
+    /// Scalar equations, those that the connectors promise included.
+    pub equations: usize,
+    /// Scalar flow variables of its public connectors.
+    pub flows: usize,
+    /// Scalar inputs that the outside determines.
+    pub inputs: usize,
+    /// Where the class is declared.
+    pub span: Span,
+}
+
+#[derive(Debug, Clone, Default)]
+struct Counts {
+    unknowns: usize,
+    equations: usize,
+    /// Equations of flows of components that are part of a larger set.
+    merged: usize,
+    flows: usize,
+    inputs: usize,
+    unclear: bool,
+    /// The instance whose class holds the component; `None` for the model itself.
+    holder: Option<NodeId>,
+}
+
+/// Where in a class a variable stands.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    owner: NodeId,
+    public: bool,
+    in_connector: bool,
+}
+
+impl LocalBalance {
+    /// Whether the numbers agree.
+    pub fn is_balanced(&self) -> bool {
+        self.unknowns == self.equations
+    }
+
+    /// The balance of a class whose connectors are open, in one line; `None` if it has none or the
+    /// numbers differ.
+    pub fn of_component(&self) -> Option<String> {
+        let is_component = self.flows + self.inputs > 0 && self.is_balanced();
+        is_component.then(|| {
+            format!(
+                "balanced: {}, {} with {} of connectors and {} outside",
+                plural(self.unknowns, "unknown"),
+                plural(self.equations, "equation"),
+                plural(self.flows, "flow variable"),
+                plural(self.inputs, "input")
+            )
+        })
+    }
+
+    /// What is wrong with the class.
+    pub(super) fn finding(&self) -> String {
+        let (few, many) = (plural(self.unknowns, "unknown"), plural(self.equations, "equation"));
+        format!("`{}` by itself has {few} but {many}", self.class)
+    }
+}
+
+impl Instantiation<'_> {
+    /// The local balance of the model and of its components, as far as it can be told.
+    pub(in super::super) fn local_balances(
+        &mut self,
+        connections: &Connections,
+        model: &FlatModel,
+    ) -> Result<Vec<LocalBalance>, Vec<Diagnostic>> {
+        let mut counts = IndexMap::new();
+        let mut owners = FxHashMap::default();
+        counts.insert(self.root_node, Counts::default());
+        let place = Place { owner: self.root_node, public: true, in_connector: false };
+        self.count_variables(self.root_node, place, model, &mut counts, &mut owners);
+        for written in std::mem::take(&mut self.written) {
+            let owner = owners.get(&written.node).copied().unwrap_or(self.root_node);
+            let added = self.written_equations(&written, model);
+            let Some(count) = counts.get_mut(&owner) else { continue };
+            match added {
+                Some(added) => count.equations += added,
+                None => count.unclear = true,
+            }
+        }
+        let errors = self.count_connections(connections, &mut counts, &owners);
+        if !errors.is_empty() {
+            return Err(errors);
+        }
+        for redundant in connections.graph.nodes() {
+            if let Some(owner) = owners.get(&redundant) {
+                self.mark_unclear(*owner, &mut counts);
+            }
+        }
+        let clear = counts.into_iter().filter(|(_, count)| !count.unclear);
+        Ok(clear.filter_map(|(node, count)| self.local_balance(node, &count)).collect())
+    }
+
+    fn local_balance(&self, node: NodeId, count: &Counts) -> Option<LocalBalance> {
+        let text = self.text(self.scope_of(node)?);
+        Some(LocalBalance {
+            class: text.name.clone(),
+            path: self.nodes[node.0].path.clone(),
+            unknowns: count.unknowns,
+            equations: count.equations.saturating_sub(count.merged),
+            flows: count.flows,
+            inputs: count.inputs,
+            span: text.span(),
+        })
+    }
+
+    fn count_variables(
+        &mut self,
+        node: NodeId,
+        place: Place,
+        model: &FlatModel,
+        counts: &mut IndexMap<NodeId, Counts>,
+        owners: &mut FxHashMap<NodeId, NodeId>,
+    ) {
+        owners.insert(node, place.owner);
+        let Ok(members) = self.members(node) else { return };
+        for (name, state) in members {
+            let hidden = self.declaration_of(node, name).is_some_and(|one| one.protected);
+            let nodes = match state {
+                MemberState::Single(one) => vec![one],
+                MemberState::Array(_, nodes) => nodes,
+                _ => continue,
+            };
+            for one in nodes {
+                let mut inner = Place { public: place.public && !hidden, ..place };
+                let NodeKind::Composite(composite) = &self.nodes[one.0].kind else {
+                    owners.insert(one, place.owner);
+                    self.count_variable(one, inner, model, counts);
+                    continue;
+                };
+                inner.in_connector |= composite.connector;
+                let restriction = self.text(composite.scope).restriction();
+                let is_model = matches!(
+                    restriction,
+                    Restriction::Model | Restriction::Block | Restriction::Class
+                );
+                if is_model && !inner.in_connector {
+                    let holder = Some(place.owner);
+                    counts.insert(one, Counts { holder, ..Counts::default() });
+                    inner = Place { owner: one, public: true, in_connector: false };
+                } else if self.is_expandable(one) {
+                    self.mark_unclear(place.owner, counts);
+                }
+                self.count_variables(one, inner, model, counts, owners);
+            }
+        }
+    }
+
+    fn mark_unclear(&self, owner: NodeId, counts: &mut IndexMap<NodeId, Counts>) {
+        let holder = counts.get(&owner).and_then(|count| count.holder);
+        for one in [Some(owner), holder].into_iter().flatten() {
+            if let Some(count) = counts.get_mut(&one) {
+                count.unclear = true;
+            }
+        }
+    }
+
+    fn count_variable(
+        &self,
+        node: NodeId,
+        place: Place,
+        model: &FlatModel,
+        counts: &mut IndexMap<NodeId, Counts>,
+    ) {
+        let NodeKind::Variable(leaf) = &self.nodes[node.0].kind else { return };
+        let Some(variable) = model.variables.get(self.nodes[node.0].path.as_str()) else { return };
+        if variable.variability < Variability::Discrete
+            || matches!(variable.base, BaseType::ExternalObject(_))
+        {
+            return;
+        }
+        let n = variable.len();
+        let binder = self.binder(leaf);
+        let given_inside = variable.binding.is_some() && binder == Some(place.owner);
+        let is_flow = leaf.connection == Some(ConnectionPrefix::Flow) && place.in_connector;
+        let is_input = leaf.causality == Some(CausalityPrefix::Input) && place.public;
+        let is_open_input = is_input && !given_inside;
+        let Some(count) = counts.get_mut(&place.owner) else { return };
+        count.unknowns += n;
+        // The outside determines flows and inputs; a flow that nobody sees outside is zero.
+        if is_flow || is_open_input {
+            count.equations += n;
+        }
+        count.flows += if is_flow && place.public { n } else { 0 };
+        count.inputs += if is_open_input { n } else { 0 };
+        let holder = count.holder;
+        if variable.binding.is_some() && !is_open_input {
+            count.equations += n;
+        }
+        let Some(outside) = holder.and_then(|holder| counts.get_mut(&holder)) else { return };
+        if place.public && (is_flow || is_open_input) {
+            outside.unknowns += n;
+            // A flow that is not connected is zero.
+            outside.equations += if is_flow { n } else { 0 };
+        }
+        if is_open_input && variable.binding.is_some() {
+            outside.equations += n;
+        }
+    }
+
+    /// The instance in whose class the binding of a variable is written.
+    fn binder(&self, leaf: &Leaf) -> Option<NodeId> {
+        let bound = leaf.modifier.binding.as_ref()?;
+        Some(self.node_of(bound.context))
+    }
+
+    /// Number of scalar equations, those of algorithms included; `None` if it is not known.
+    fn written_equations(&mut self, written: &Written, model: &FlatModel) -> Option<usize> {
+        let mut count = 0;
+        for equation in &model.equations[written.equations.clone()] {
+            count += size(equation, &mut |e| self.shape_of(e))?;
+        }
+        for statements in &model.algorithms[written.algorithms.clone()] {
+            let mut assigned = BTreeSet::new();
+            targets(statements, &mut assigned);
+            let variables = assigned.iter().filter_map(|name| model.variables.get(name.as_str()));
+            count += variables.map(Variable::len).sum::<usize>();
+        }
+        Some(count)
+    }
+
+    /// Adds the equations of the sets that the connections of each class make by themselves.
+    fn count_connections(
+        &self,
+        connections: &Connections,
+        counts: &mut IndexMap<NodeId, Counts>,
+        owners: &FxHashMap<NodeId, NodeId>,
+    ) -> Vec<Diagnostic> {
+        let mut of_class: IndexMap<NodeId, Vec<Edge>> = IndexMap::new();
+        for edge in &connections.edges {
+            let Some(context) = owners.get(&edge.context).copied() else { continue };
+            let is_near = |leaf: NodeId| {
+                let owner = owners.get(&leaf).copied();
+                let holder = owner.and_then(|owner| counts.get(&owner)?.holder);
+                owner == Some(context) || holder == Some(context)
+            };
+            let far: Vec<NodeId> =
+                edge.faces.iter().map(|face| face.leaf).filter(|leaf| !is_near(*leaf)).collect();
+            for leaf in &far {
+                if let Some(owner) = owners.get(leaf) {
+                    self.mark_unclear(*owner, counts);
+                }
+            }
+            match counts.get_mut(&context) {
+                Some(count) if !far.is_empty() => count.unclear = true,
+                _ => of_class.entry(context).or_default().push(edge.clone()),
+            }
+        }
+        let mut errors = Vec::new();
+        for (context, edges) in of_class {
+            let sets = super::sets::of_edges(&edges);
+            let Some(count) = counts.get_mut(&context) else { continue };
+            for set in sets {
+                errors.extend(self.two_sources(&set, context, &edges, owners));
+                let outside = set.iter().filter(|face| face.outside).count();
+                match self.connection_of(set[0].leaf) {
+                    None => count.equations += self.potential_equations(&set),
+                    Some(ConnectionPrefix::Flow) => {
+                        count.equations += 1;
+                        count.merged += set.len() - outside;
+                    }
+                    Some(ConnectionPrefix::Stream) => count.equations += outside,
+                }
+            }
+        }
+        errors
+    }
+
+    /// A connection set of a class has one source of a signal at most: an output of a component, or
+    /// an input of the class itself (MLS §9.3).
+    fn two_sources(
+        &self,
+        set: &[Face],
+        context: NodeId,
+        edges: &[Edge],
+        owners: &FxHashMap<NodeId, NodeId>,
+    ) -> Option<Diagnostic> {
+        let is_source = |face: &&Face| {
+            let NodeKind::Variable(leaf) = &self.nodes[face.leaf.0].kind else { return false };
+            let is_own = owners.get(&face.leaf) == Some(&context);
+            match leaf.causality {
+                Some(CausalityPrefix::Input) => {
+                    is_own && !self.variables[leaf.variable].0.protected
+                }
+                Some(CausalityPrefix::Output) => !is_own,
+                None => false,
+            }
+        };
+        let mut sources = set.iter().filter(is_source);
+        let (one, other) = (sources.next()?, sources.next()?);
+        let edge = edges.iter().find(|edge| edge.faces.contains(other))?;
+        let [one, other] = [one, other].map(|face| &self.nodes[face.leaf.0].path);
+        Some(
+            fault!(INVALID_CONNECTION, "`{one}` and `{other}` are connected and both are sources";
+                help: "connect an output of a component, or an input of the class, to inputs")
+            .at(edge.span),
+        )
+    }
+
+    fn potential_equations(&self, set: &[Face]) -> usize {
+        let varies = |face: &&Face| match &self.nodes[face.leaf.0].kind {
+            NodeKind::Variable(leaf) => {
+                self.variables[leaf.variable].0.variability >= Variability::Discrete
+            }
+            NodeKind::Composite(_) => false,
+        };
+        set.iter().filter(varies).count().saturating_sub(1)
+    }
+}

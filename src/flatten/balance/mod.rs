@@ -1,0 +1,216 @@
+//! Compares the number of equations with that of unknowns (MLS §4.8): of the whole model, and of
+//! each class by itself.
+
+mod local;
+mod sets;
+
+pub use local::LocalBalance;
+pub(super) use local::Written;
+
+use super::errors::{UNBALANCED_CLASS, UNBALANCED_MODEL};
+use super::{FlatModel, Variability};
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::source::Span;
+use crate::syntax::ast::{
+    CausalityPrefix, ComponentReference, Equation, EquationKind, Expression, ExpressionKind,
+    Statement, StatementKind,
+};
+use std::collections::BTreeSet;
+
+/// The most classes that one message names.
+const MAX_CLASSES: usize = 3;
+
+/// An error if the numbers differ. Where the size of an equation cannot be told from its text, the
+/// model is left to the matching of equations and unknowns.
+pub(super) fn check(model: &FlatModel, classes: &[LocalBalance]) -> Result<(), Diagnostic> {
+    let unknowns: usize = model
+        .variables
+        .values()
+        .filter(|variable| {
+            variable.variability >= Variability::Discrete
+                && variable.causality != Some(CausalityPrefix::Input)
+        })
+        .map(super::Variable::len)
+        .sum();
+    let bindings = model.variables.values().filter(|variable| {
+        variable.variability >= Variability::Discrete
+            && variable.causality != Some(CausalityPrefix::Input)
+            && variable.binding.is_some()
+    });
+    let mut equations: usize = bindings.map(super::Variable::len).sum();
+    for equation in &model.equations {
+        match size(equation, &mut |e| dims(e, model)) {
+            Some(count) => equations += count,
+            None => return Ok(()),
+        }
+    }
+    let mut assigned = BTreeSet::new();
+    for statements in &model.algorithms {
+        targets(statements, &mut assigned);
+    }
+    equations += assigned
+        .iter()
+        .filter_map(|name| model.variables.get(name.as_str()))
+        .map(super::Variable::len)
+        .sum::<usize>();
+    if equations == unknowns {
+        return Ok(());
+    }
+    let name = &model.name;
+    let (few, many) = (plural(unknowns, "unknown"), plural(equations, "equation"));
+    let fault = if equations < unknowns {
+        fault!(UNBALANCED_MODEL, "`{name}` has {few} but {many}";
+            help: "add the equations that are missing, or give variables a binding")
+    } else {
+        fault!(UNBALANCED_MODEL, "`{name}` has {few} but {many}";
+            help: "remove equations, or declare the unknowns that they determine")
+    };
+    let mut error = fault.at(model.span.unwrap_or(Span::NONE));
+    for class in unbalanced(classes).filter(|class| !class.path.is_empty()).take(MAX_CLASSES) {
+        error = error.related(class.span, format!("{} (`{}`)", class.finding(), class.path));
+    }
+    Err(error)
+}
+
+/// Warnings about classes that are not balanced by themselves though the model is: their parts
+/// make up for each other. One for each library, as older ones do not know the rule, and about a
+/// part rather than about what holds it.
+pub(super) fn warnings(classes: &[LocalBalance]) -> Vec<Diagnostic> {
+    let mut told = BTreeSet::new();
+    let mut found: Vec<&LocalBalance> = unbalanced(classes).collect();
+    found.reverse();
+    found
+        .into_iter()
+        .filter(|class| told.insert(class.class.first().map(|name| name.to_string())))
+        .map(|class| {
+            let finding = class.finding();
+            fault!(UNBALANCED_CLASS, "{finding}").at(class.span).warning()
+        })
+        .collect()
+}
+
+/// The classes with other numbers of equations than of unknowns, each once.
+fn unbalanced(classes: &[LocalBalance]) -> impl Iterator<Item = &LocalBalance> {
+    let mut seen = BTreeSet::new();
+    let wrong = classes.iter().filter(|class| !class.is_balanced());
+    wrong.filter(move |class| seen.insert(class.class.to_string()))
+}
+
+fn plural(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Number of scalar equations; `None` if it cannot be told from the text.
+fn size(
+    equation: &Equation,
+    dims: &mut dyn FnMut(&Expression) -> Option<Vec<usize>>,
+) -> Option<usize> {
+    match &equation.kind {
+        EquationKind::Equal { left, right } => match &left.kind {
+            ExpressionKind::Tuple(outputs) => {
+                let outputs = outputs.iter().flatten();
+                outputs.map(|output| Some(dims(output)?.iter().product::<usize>())).sum()
+            }
+            _ => Some(dims(left).or_else(|| dims(right))?.iter().product()),
+        },
+        EquationKind::If { branches, .. } | EquationKind::When { branches } => {
+            let (_, body) = branches.first()?;
+            body.iter().map(|equation| size(equation, dims)).sum()
+        }
+        EquationKind::Call(_) => Some(0),
+        EquationKind::For { .. } | EquationKind::Connect { .. } => None,
+    }
+}
+
+/// The sizes of an expression where its text shows them.
+fn dims(e: &Expression, model: &FlatModel) -> Option<Vec<usize>> {
+    match &e.kind {
+        ExpressionKind::Real(_) | ExpressionKind::Integer(_) | ExpressionKind::Boolean(_) => {
+            Some(Vec::new())
+        }
+        ExpressionKind::Reference(reference) => reference_dims(reference, model),
+        ExpressionKind::Call { function, arguments } if function.as_ident()? == "der" => {
+            dims(arguments.positional.first()?, model)
+        }
+        ExpressionKind::Unary { operand, .. } => dims(operand, model),
+        ExpressionKind::Array(elements) => {
+            let mut sizes = dims(elements.first()?, model)?;
+            sizes.insert(0, elements.len());
+            Some(sizes)
+        }
+        _ => None,
+    }
+}
+
+fn reference_dims(reference: &ComponentReference, model: &FlatModel) -> Option<Vec<usize>> {
+    if reference.as_ident().is_some_and(|name| name == "time") {
+        return Some(Vec::new());
+    }
+    let last = reference.parts.last()?;
+    let variable = model.variables.get(path(reference).as_str())?;
+    if last.subscripts.is_empty() {
+        return Some(variable.dims.clone());
+    }
+    let scalar = last.subscripts.iter().all(|subscript| {
+        matches!(
+            subscript,
+            crate::syntax::ast::Subscript::Index(Expression {
+                kind: ExpressionKind::Integer(_),
+                ..
+            })
+        )
+    });
+    let all = last.subscripts.len() == variable.dims.len();
+    (scalar && all).then(Vec::new)
+}
+
+/// The name of the variable that a flat reference names, without the last subscripts.
+pub(super) fn path(reference: &ComponentReference) -> String {
+    let mut path = String::new();
+    for (at, part) in reference.parts.iter().enumerate() {
+        if at > 0 {
+            path.push('.');
+        }
+        path.push_str(part.name.as_str());
+        if at + 1 < reference.parts.len() && !part.subscripts.is_empty() {
+            let texts: Vec<String> = part
+                .subscripts
+                .iter()
+                .map(|subscript| match subscript {
+                    crate::syntax::ast::Subscript::Index(Expression {
+                        kind: ExpressionKind::Integer(n),
+                        ..
+                    }) => n.to_string(),
+                    _ => ":".to_owned(),
+                })
+                .collect();
+            path.push_str(&format!("[{}]", texts.join(",")));
+        }
+    }
+    path
+}
+
+fn targets(statements: &[Statement], out: &mut BTreeSet<String>) {
+    for statement in statements {
+        match &statement.kind {
+            StatementKind::Assign { target, .. } => {
+                out.insert(path(target));
+            }
+            StatementKind::MultiAssign { targets, .. } => {
+                out.extend(targets.iter().flatten().map(path));
+            }
+            StatementKind::If { branches, otherwise } => {
+                branches.iter().for_each(|(_, body)| targets(body, out));
+                targets(otherwise, out);
+            }
+            StatementKind::For { body, .. } | StatementKind::While { body, .. } => {
+                targets(body, out);
+            }
+            StatementKind::When { branches } => {
+                branches.iter().for_each(|(_, body)| targets(body, out));
+            }
+            StatementKind::Call(_) | StatementKind::Break | StatementKind::Return => {}
+        }
+    }
+}

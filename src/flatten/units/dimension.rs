@@ -1,0 +1,80 @@
+//! Dimensions: products of powers of the base units of the SI.
+
+use std::fmt;
+
+/// Exponents are counted in parts of this, so that roots of units stay exact.
+const PARTS: i32 = 60;
+
+const SYMBOLS: [&str; 7] = ["kg", "m", "s", "A", "K", "mol", "cd"];
+
+/// What a unit measures: exponents of kg, m, s, A, K, mol and cd. Radians and steradians are
+/// numbers; factors such as that of `kPa` do not matter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Dimension([i32; 7]);
+
+impl Dimension {
+    /// That of a pure number.
+    pub(super) const ONE: Dimension = Dimension([0; 7]);
+
+    /// The dimension with whole exponents.
+    pub(super) const fn new(exponents: [i32; 7]) -> Dimension {
+        let mut parts = [0; 7];
+        let mut at = 0;
+        while at < 7 {
+            parts[at] = exponents[at] * PARTS;
+            at += 1;
+        }
+        Dimension(parts)
+    }
+
+    pub(super) fn times(self, other: Dimension) -> Option<Dimension> {
+        self.zip(other, i32::checked_add)
+    }
+
+    pub(super) fn over(self, other: Dimension) -> Option<Dimension> {
+        self.zip(other, i32::checked_sub)
+    }
+
+    /// The power; `None` if an exponent is no multiple of 1/60.
+    pub(super) fn power(self, exponent: f64) -> Option<Dimension> {
+        let mut out = [0; 7];
+        for (out, part) in out.iter_mut().zip(self.0) {
+            let value = f64::from(part) * exponent;
+            if value.fract() != 0.0 || value.abs() > 1e6 {
+                return None;
+            }
+            *out = value as i32;
+        }
+        Some(Dimension(out))
+    }
+
+    fn zip(self, other: Dimension, f: fn(i32, i32) -> Option<i32>) -> Option<Dimension> {
+        let mut out = [0; 7];
+        for (at, out) in out.iter_mut().enumerate() {
+            *out = f(self.0[at], other.0[at])?;
+        }
+        Some(Dimension(out))
+    }
+}
+
+impl fmt::Display for Dimension {
+    /// As a unit of the Modelica grammar (MLS ch. 19), such as `kg.m/s2` or `1`; broken exponents
+    /// in parentheses.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let power = |(symbol, parts): (&str, i32)| match (parts / PARTS, parts % PARTS) {
+            (1, 0) => symbol.to_owned(),
+            (whole, 0) => format!("{symbol}{whole}"),
+            _ => format!("{symbol}({parts}/{PARTS})"),
+        };
+        let all = || SYMBOLS.into_iter().zip(self.0);
+        let above: Vec<String> = all().filter(|(_, n)| *n > 0).map(power).collect();
+        let below: Vec<String> =
+            all().filter(|(_, n)| *n < 0).map(|(symbol, n)| power((symbol, -n))).collect();
+        f.write_str(&if above.is_empty() { "1".to_owned() } else { above.join(".") })?;
+        match below.len() {
+            0 => Ok(()),
+            1 => write!(f, "/{}", below[0]),
+            _ => write!(f, "/({})", below.join(".")),
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Optimizers: each is asked for individuals and told how good they are. It keeps no clock, no
+//! file and no thread, so that the same seed and the same answers give the same questions:
+//! a run is replayed from its recorded answers.
+//!
+//! Genes lie in the unit cube; what they stand for (a range, its logarithm) is the asker's
+//! business. The method of the paper alone works in the ranges of the genes.
+
+mod cma_es;
+mod gapilib2006;
+mod genetic;
+mod levenberg_marquardt;
+mod lshade;
+mod multistart;
+mod nelder_mead;
+mod nsga2;
+mod polish;
+
+pub use nsga2::non_dominated;
+pub use polish::Polished;
+
+use super::{Gene, Genomes, Mrg32k3a, has_failed};
+use crate::diag::Fault;
+use crate::fault;
+use crate::registry::{BAD_OPTION, Entry, Options};
+
+/// A search in progress.
+pub trait Optimizer: Send {
+    /// Fills `batch`, which is empty, with the individuals to evaluate next. It stays empty when
+    /// the search has converged and asks nothing more.
+    fn ask(&mut self, batch: &mut Genomes);
+    /// The answers to the last question, one for each individual in its order.
+    fn tell(&mut self, batch: &Genomes, answers: &Answers<'_>);
+    /// Whether the next question needs the residuals besides the fitness.
+    fn wants_residuals(&self) -> bool {
+        false
+    }
+    /// What it is doing, in one word.
+    fn phase(&self) -> &'static str;
+    /// Changes a setting while the search goes on.
+    ///
+    /// # Errors
+    ///
+    /// `bad-option` where the method has no such setting or the value is outside its domain.
+    fn change(&mut self, setting: &str, value: f64) -> Result<(), Fault> {
+        Err(fault!(BAD_OPTION, "`{setting}` cannot be changed to {value} during the run"))
+    }
+    /// The ranges of the genes have changed by this map: a gene at u is now at `offset + scale u`.
+    fn rescale(&mut self, _gene: usize, _offset: f64, _scale: f64) {}
+}
+
+/// How good the individuals of one question are; smaller is better.
+#[derive(Debug, Clone, Copy)]
+pub struct Answers<'a> {
+    /// Objectives, individual by individual; [`FAILED_FITNESS`](super::FAILED_FITNESS) or more for a failed one.
+    pub objectives: &'a [f64],
+    /// Objectives of one individual, at least 1.
+    pub n_objectives: usize,
+    /// Residuals, individual by individual, whose sum of squares is minimised; empty unless asked
+    /// for. NaN for a failed individual.
+    pub residuals: &'a [f64],
+}
+
+impl Answers<'_> {
+    /// The first objective of individual `k`.
+    pub fn fitness(&self, k: usize) -> f64 {
+        self.objectives[k * self.n_objectives]
+    }
+
+    /// The residuals of individual `k` out of `count`.
+    pub fn residuals_of(&self, k: usize, count: usize) -> &[f64] {
+        let n = self.residuals.len() / count.max(1);
+        &self.residuals[k * n..(k + 1) * n]
+    }
+}
+
+/// What a search starts from.
+#[derive(Debug, Clone)]
+pub struct Setup {
+    /// The genes with the ranges in which the method of the paper works; the others use 0..1.
+    pub genes: Vec<Gene>,
+    /// Number of objectives.
+    pub n_objectives: usize,
+    /// Evaluations that the whole run may take, where known: some methods plan with it.
+    pub budget: Option<u64>,
+    /// A point of the unit cube to include, if there is one.
+    pub start: Option<Vec<f64>>,
+    /// Step of finite differences in the unit cube, matched to the noise of the simulator.
+    pub difference: f64,
+    /// The random numbers of the run.
+    pub rng: Mrg32k3a,
+}
+
+/// A way to search.
+pub trait Method: Send + Sync {
+    /// Begins a search.
+    ///
+    /// # Errors
+    ///
+    /// Settings that do not fit the problem, such as more parents than individuals.
+    fn start(&self, setup: Setup) -> Result<Box<dyn Optimizer>, Fault>;
+    /// Whether genes are in their own ranges instead of the unit cube.
+    fn in_natural_units(&self) -> bool {
+        false
+    }
+    /// Whether it needs residuals, so that only sums of squares can be minimised.
+    fn needs_residuals(&self) -> bool {
+        false
+    }
+    /// Whether its result is worth to be refined by a local method.
+    fn can_be_polished(&self) -> bool {
+        true
+    }
+    /// Whether it handles several objectives at once.
+    fn handles_several_objectives(&self) -> bool {
+        false
+    }
+}
+
+/// All methods; the first is the default.
+pub const METHODS: &[&Entry<dyn Method>] = &[
+    &genetic::ENTRY,
+    &gapilib2006::ENTRY,
+    &lshade::ENTRY,
+    &cma_es::ENTRY,
+    &levenberg_marquardt::ENTRY,
+    &nelder_mead::ENTRY,
+    &multistart::ENTRY,
+    &nsga2::ENTRY,
+];
+
+/// A whole number among the options.
+fn whole(
+    options: &mut Options,
+    name: &str,
+    domain: std::ops::RangeInclusive<f64>,
+    default: f64,
+) -> Result<usize, Fault> {
+    let value = options.take(name, domain, default)?;
+    if value.fract() != 0.0 {
+        return Err(fault!(BAD_OPTION, "`{name}` is {value}, which is not a whole number"));
+    }
+    Ok(value as usize)
+}
+
+/// A key that orders fitness with NaN last.
+fn key(fitness: f64) -> f64 {
+    if fitness.is_nan() { f64::INFINITY } else { fitness }
+}
+
+#[cfg(test)]
+pub(crate) mod problems;
+#[cfg(test)]
+mod tests;

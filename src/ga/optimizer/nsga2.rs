@@ -1,0 +1,223 @@
+//! NSGA-II: individuals are ranked by non-dominated fronts, within a front by their distance to
+//! their neighbours; parents and offspring compete for the next generation.
+//!
+//! Reference: [Deb et al. 2002](crate::bibliography#deb-2002).
+
+use super::{Answers, Method, Optimizer, Setup, key, whole};
+use crate::diag::Fault;
+use crate::ga::crossover::sbx;
+use crate::ga::mutation::polynomial;
+use crate::ga::sampling::latin_hypercube;
+use crate::ga::selection::tournament;
+use crate::ga::{Genomes, Mrg32k3a};
+use crate::registry::Entry;
+
+/// The table entry.
+pub(super) const ENTRY: Entry<dyn Method> = Entry {
+    name: "nsga2",
+    aliases: &["nsga-ii"],
+    summary: "several fitness functions at once: a front of the best compromises",
+    reference: "deb-2002",
+    make: |options| {
+        Ok(Box::new(Nsga2 {
+            population: whole(options, "population", 4.0..=1e5, 100.0)?,
+            crossover: options.take("crossover", 0.0..=1.0, 0.9)?,
+            eta_crossover: options.take("eta_crossover", 0.0..=1000.0, 15.0)?,
+            mutation: options.take("mutation", 0.0..=1.0, 0.0)?,
+            eta_mutation: options.take("eta_mutation", 0.0..=1000.0, 20.0)?,
+        }))
+    },
+};
+
+#[derive(Clone, Copy)]
+struct Nsga2 {
+    population: usize,
+    crossover: f64,
+    eta_crossover: f64,
+    /// 0 for one gene in each individual.
+    mutation: f64,
+    eta_mutation: f64,
+}
+
+impl Method for Nsga2 {
+    fn start(&self, setup: Setup) -> Result<Box<dyn Optimizer>, Fault> {
+        let n = setup.genes.len();
+        let mut rng = setup.rng;
+        let mut pending = latin_hypercube(n, self.population, &mut rng);
+        if let Some(start) = setup.start {
+            pending.row_mut(0).copy_from_slice(&start);
+        }
+        let settings = *self;
+        let (genomes, objectives) = (Genomes::with_capacity(n, 0), Vec::new());
+        Ok(Box::new(Search {
+            settings,
+            rng,
+            pending,
+            genomes,
+            objectives,
+            rank: Vec::new(),
+            distance: Vec::new(),
+        }))
+    }
+
+    fn can_be_polished(&self) -> bool {
+        false
+    }
+
+    fn handles_several_objectives(&self) -> bool {
+        true
+    }
+}
+
+struct Search {
+    settings: Nsga2,
+    rng: Mrg32k3a,
+    pending: Genomes,
+    genomes: Genomes,
+    objectives: Vec<f64>,
+    rank: Vec<usize>,
+    distance: Vec<f64>,
+}
+
+impl Optimizer for Search {
+    fn ask(&mut self, batch: &mut Genomes) {
+        self.pending.rows().for_each(|genome| batch.push(genome));
+    }
+
+    fn tell(&mut self, batch: &Genomes, answers: &Answers<'_>) {
+        batch.rows().for_each(|genome| self.genomes.push(genome));
+        self.objectives.extend(answers.objectives.iter().copied().map(key));
+        self.survive(answers.n_objectives);
+        self.breed();
+    }
+
+    fn phase(&self) -> &'static str {
+        "search"
+    }
+
+    fn rescale(&mut self, gene: usize, offset: f64, scale: f64) {
+        for genomes in [&mut self.pending, &mut self.genomes] {
+            for k in 0..genomes.len() {
+                let value = &mut genomes.row_mut(k)[gene];
+                *value = (offset + scale * *value).clamp(0.0, 1.0);
+            }
+        }
+    }
+}
+
+impl Search {
+    fn survive(&mut self, m: usize) {
+        let fronts = fronts(&self.objectives, m);
+        let mut next = Genomes::with_capacity(self.genomes.n_genes(), 2 * self.settings.population);
+        let (mut objectives, mut ranks, mut distances) = (Vec::new(), Vec::new(), Vec::new());
+        for (rank, front) in fronts.iter().enumerate() {
+            let distance = crowding(front, &self.objectives, m);
+            let mut chosen: Vec<usize> = (0..front.len()).collect();
+            let room = self.settings.population - next.len();
+            if chosen.len() > room {
+                chosen.sort_by(|&a, &b| distance[b].total_cmp(&distance[a]));
+                chosen.truncate(room);
+            }
+            for k in chosen {
+                next.push(self.genomes.row(front[k]));
+                objectives.extend_from_slice(&self.objectives[front[k] * m..(front[k] + 1) * m]);
+                ranks.push(rank);
+                distances.push(distance[k]);
+            }
+        }
+        (self.genomes, self.objectives, self.rank, self.distance) =
+            (next, objectives, ranks, distances);
+    }
+
+    fn breed(&mut self) {
+        let n = self.genomes.n_genes();
+        let settings = self.settings;
+        let mutation = if settings.mutation > 0.0 { settings.mutation } else { 1.0 / n as f64 };
+        let mut offspring = Genomes::with_capacity(n, settings.population);
+        let (mut first, mut second) = (vec![0.0; n], vec![0.0; n]);
+        let count = self.genomes.len();
+        while offspring.len() < settings.population {
+            let (rank, distance) = (&self.rank, &self.distance);
+            let better = |a: usize, b: usize| (rank[a], -distance[a]) <= (rank[b], -distance[b]);
+            let mut parent = || tournament(count, &mut self.rng, better);
+            let (a, b) = (parent(), parent());
+            first.copy_from_slice(self.genomes.row(a));
+            second.copy_from_slice(self.genomes.row(b));
+            if self.rng.uniform() < settings.crossover {
+                sbx(&mut first, &mut second, settings.eta_crossover, &mut self.rng);
+            }
+            for child in [&mut first, &mut second] {
+                polynomial(child, mutation, settings.eta_mutation, &mut self.rng);
+                let known =
+                    self.genomes.rows().chain(offspring.rows()).any(|genome| genome == &child[..]);
+                if offspring.len() < settings.population && (!known || self.rng.uniform() < 0.05) {
+                    offspring.push(child);
+                }
+            }
+        }
+        self.pending = offspring;
+    }
+}
+
+fn dominates(a: &[f64], b: &[f64]) -> bool {
+    a.iter().zip(b).all(|(a, b)| a <= b) && a.iter().zip(b).any(|(a, b)| a < b)
+}
+
+/// The individuals that no other dominates, in their order; `objectives` has `m` numbers each.
+pub fn non_dominated(objectives: &[f64], m: usize) -> Vec<usize> {
+    fronts(objectives, m).into_iter().next().unwrap_or_default()
+}
+
+/// Fronts, best first.
+fn fronts(objectives: &[f64], m: usize) -> Vec<Vec<usize>> {
+    let count = objectives.len() / m;
+    let row = |k: usize| &objectives[k * m..(k + 1) * m];
+    let mut dominated: Vec<Vec<usize>> = vec![Vec::new(); count];
+    let mut above = vec![0_usize; count];
+    for a in 0..count {
+        for b in a + 1..count {
+            if dominates(row(a), row(b)) {
+                dominated[a].push(b);
+                above[b] += 1;
+            } else if dominates(row(b), row(a)) {
+                dominated[b].push(a);
+                above[a] += 1;
+            }
+        }
+    }
+    let mut fronts = Vec::new();
+    let mut front: Vec<usize> = (0..count).filter(|&k| above[k] == 0).collect();
+    while !front.is_empty() {
+        let mut next = Vec::new();
+        for &a in &front {
+            for &b in &dominated[a] {
+                above[b] -= 1;
+                if above[b] == 0 {
+                    next.push(b);
+                }
+            }
+        }
+        next.sort_unstable();
+        fronts.push(std::mem::replace(&mut front, next));
+    }
+    fronts
+}
+
+/// How far the neighbours of each member of a front are, summed over the objectives, each relative
+/// to the width of the front; infinite at the ends.
+fn crowding(front: &[usize], objectives: &[f64], m: usize) -> Vec<f64> {
+    let mut distance = vec![0.0; front.len()];
+    for objective in 0..m {
+        let value = |k: usize| objectives[front[k] * m + objective];
+        let mut sorted: Vec<usize> = (0..front.len()).collect();
+        sorted.sort_by(|&a, &b| value(a).total_cmp(&value(b)));
+        let (first, last) = (sorted[0], sorted[sorted.len() - 1]);
+        let width = value(last) - value(first);
+        distance[first] = f64::INFINITY;
+        distance[last] = f64::INFINITY;
+        for three in sorted.windows(3).filter(|_| width > 0.0) {
+            distance[three[1]] += (value(three[2]) - value(three[0])) / width;
+        }
+    }
+    distance
+}

@@ -1,0 +1,97 @@
+//! Problems with known minima, and the loop that solves them.
+
+use super::{Answers, Method, Setup};
+use crate::ga::{FAILED_FITNESS, Gene, Genomes, Mrg32k3a};
+
+/// Residuals at a point of the unit cube; `None` where it fails. The first objective is their sum
+/// of squares.
+pub(crate) type Residuals = dyn Fn(&[f64]) -> Option<Vec<f64>>;
+
+/// The best sum of squares after so many evaluations.
+pub(crate) fn minimum(
+    method: &dyn Method,
+    n: usize,
+    budget: u64,
+    seed: u64,
+    polish: bool,
+    residuals: &Residuals,
+) -> f64 {
+    let rng = Mrg32k3a::new(&Mrg32k3a::DEFAULT_SEED).unwrap().stream(seed);
+    let genes = (0..n).map(|j| Gene::new(format!("g{j}"), 0.0, 1.0).unwrap()).collect();
+    let setup = Setup {
+        genes,
+        n_objectives: 1,
+        budget: Some(budget),
+        start: None,
+        difference: 1.5e-8,
+        rng: rng.clone(),
+    };
+    let mut search = method.start(setup).unwrap();
+    if polish {
+        search = Box::new(super::Polished::new(search, 1.5e-8, 0.0, rng.substream(1)));
+    }
+    let (mut best, mut used) = (f64::INFINITY, 0);
+    while used < budget {
+        let mut batch = Genomes::with_capacity(n, 0);
+        search.ask(&mut batch);
+        if batch.is_empty() {
+            break;
+        }
+        used += batch.len() as u64;
+        let rows: Vec<Option<Vec<f64>>> = batch.rows().map(residuals).collect();
+        let m = rows.iter().flatten().next().map_or(1, Vec::len);
+        let fitness: Vec<f64> = rows
+            .iter()
+            .map(|row| row.as_ref().map_or(FAILED_FITNESS, |row| row.iter().map(|r| r * r).sum()))
+            .collect();
+        best = fitness.iter().copied().fold(best, f64::min);
+        let rows: Vec<f64> =
+            rows.into_iter().flat_map(|row| row.unwrap_or_else(|| vec![f64::NAN; m])).collect();
+        search.tell(&batch, &Answers { objectives: &fitness, n_objectives: 1, residuals: &rows });
+    }
+    best
+}
+
+/// The polarization curve of the case study: six genes on logarithmic scales over one decade.
+pub(crate) fn polarization(genome: &[f64]) -> Option<Vec<f64>> {
+    const TRUTH: [f64; 6] = [0.0390, 1.4e-3, 1.5856e-6, 0.0918, 0.7286, 0.2265];
+    const OFF_CENTRE: [f64; 6] = [0.3, 0.6, 0.4, 0.7, 0.35, 0.15];
+    let p: Vec<f64> = (0..6).map(|j| TRUTH[j] * 10f64.powf(genome[j] - OFF_CENTRE[j])).collect();
+    let voltage = |p: &[f64], i: f64| {
+        let all = i + p[1];
+        1.2 - p[4] * all - p[0] * (all / p[2]).ln() + p[3] * (1.0 - all / p[5]).ln()
+    };
+    let current = |k: usize| 0.002 + (0.22 - 0.002) * k as f64 / 29.0;
+    let residuals: Vec<f64> =
+        (0..30).map(|k| voltage(&p, current(k)) - voltage(&TRUTH, current(k))).collect();
+    residuals.iter().all(|r| r.is_finite()).then_some(residuals)
+}
+
+/// Rosenbrock's valley in −5..10, as residuals.
+pub(crate) fn rosenbrock(genome: &[f64]) -> Option<Vec<f64>> {
+    let x: Vec<f64> = genome.iter().map(|u| -5.0 + 15.0 * u).collect();
+    Some(x.windows(2).flat_map(|x| [10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]]).collect())
+}
+
+/// Rastrigin's function in −5.12..5.12, minimum at 0.3 + 0.01 j.
+pub(crate) fn rastrigin(genome: &[f64]) -> Option<Vec<f64>> {
+    let term = |(j, u): (usize, &f64)| {
+        let x = -5.12 + 10.24 * u - (0.3 + 0.01 * j as f64);
+        (x * x + 10.0 * (1.0 - (std::f64::consts::TAU * x).cos())).max(0.0).sqrt()
+    };
+    Some(genome.iter().enumerate().map(term).collect())
+}
+
+/// Ackley's function in −32..32, minimum at 0.3 + 0.01 j.
+pub(crate) fn ackley(genome: &[f64]) -> Option<Vec<f64>> {
+    let n = genome.len() as f64;
+    let x: Vec<f64> = genome
+        .iter()
+        .enumerate()
+        .map(|(j, u)| -32.0 + 64.0 * u - (0.3 + 0.01 * j as f64))
+        .collect();
+    let square = x.iter().map(|x| x * x).sum::<f64>() / n;
+    let cosine = x.iter().map(|x| (std::f64::consts::TAU * x).cos()).sum::<f64>() / n;
+    let value = -20.0 * (-0.2 * square.sqrt()).exp() - cosine.exp() + 20.0 + std::f64::consts::E;
+    Some(vec![value.max(0.0).sqrt()])
+}

@@ -1,0 +1,33 @@
+//! Negative logarithm of the likelihood of normal errors whose variance is estimated along:
+//! n/2 (ln(2π s²) + 1) with s² = Σ (wⱼ (yⱼ − ŷⱼ))² / n.
+//!
+//! Reference: [walter-pronzato-1997](crate::bibliography#walter-pronzato-1997).
+
+use super::{Fitness, checked, differences};
+use crate::registry::Entry;
+
+/// The table entry.
+pub(super) const ENTRY: Entry<dyn Fitness> = Entry {
+    name: "log_likelihood",
+    aliases: &["likelihood", "nll"],
+    summary: "negative log-likelihood of normal errors of unknown variance",
+    reference: "walter-pronzato-1997",
+    make: |_| Ok(Box::new(LogLikelihood)),
+};
+
+struct LogLikelihood;
+
+impl Fitness for LogLikelihood {
+    fn fitness(&self, simulated: &[f64], measured: &[f64], weights: &[f64]) -> f64 {
+        let n = measured.len() as f64;
+        let sum: f64 = differences(simulated, measured, weights).map(|d| d * d).sum();
+        // An exact fit would be infinitely likely.
+        let variance = (sum / n).max(f64::MIN_POSITIVE);
+        let value = 0.5 * n * ((std::f64::consts::TAU * variance).ln() + 1.0);
+        if sum.is_nan() { checked(sum) } else { checked(value) }
+    }
+
+    fn least_squares(&self, _: &[f64], weights: &[f64]) -> Option<Vec<f64>> {
+        Some(weights.to_vec())
+    }
+}

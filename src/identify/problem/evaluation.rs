@@ -1,0 +1,248 @@
+//! Evaluates populations on all cores. What comes out depends neither on the number of threads
+//! nor on what was evaluated before: equal genes are answered from memory.
+
+use super::{Failed, Problem, Simulate};
+use crate::diag::Fault;
+use crate::fault;
+use crate::ga::Genomes;
+use crate::registry::BAD_OPTION;
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+use std::sync::{Mutex, PoisonError};
+
+/// Individuals remembered.
+const REMEMBERED: usize = 8192;
+
+/// The answers to one question.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Answered {
+    /// Objectives, individual by individual.
+    pub objectives: Vec<f64>,
+    /// Weighted residuals, individual by individual; empty unless asked for.
+    pub residuals: Vec<f64>,
+    /// Which failed, in order of the individuals.
+    pub failures: Vec<(usize, Failed)>,
+    /// Simulations that it took.
+    pub simulations: u64,
+}
+
+/// Simulators on several threads, and the memory of equal genes.
+pub struct Evaluation {
+    measured: Vec<f64>,
+    weights: Vec<f64>,
+    /// What residuals are multiplied with, where there is a sum of squares.
+    scales: Option<Vec<f64>>,
+    n_objectives: usize,
+    pool: rayon::ThreadPool,
+    workers: Vec<Mutex<Box<dyn Simulate>>>,
+    rows: Vec<f64>,
+    memory: Memory,
+}
+
+/// Answers by genes; the oldest give way.
+#[derive(Default)]
+struct Memory {
+    places: FxHashMap<u64, usize>,
+    keys: Vec<u64>,
+    genomes: Vec<f64>,
+    objectives: Vec<f64>,
+    failures: Vec<Option<Failed>>,
+    next: usize,
+}
+
+impl Evaluation {
+    /// Prepares one simulator for each of `threads` threads.
+    ///
+    /// # Errors
+    ///
+    /// Those of the simulator's maker; no threads to be had.
+    pub fn new(problem: &Problem, threads: usize) -> Result<Evaluation, Fault> {
+        let threads = threads.max(1);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.map_err(|error| fault!(BAD_OPTION, "no {threads} threads: {error}"))?;
+        let workers = (0..threads).map(|_| Ok(Mutex::new((problem.simulator)()?)));
+        let measured: Vec<f64> =
+            problem.series.iter().flat_map(|series| series.y.clone()).collect();
+        let weight = |series: &super::Series| vec![series.weight; series.y.len()];
+        let weights: Vec<f64> = problem.series.iter().flat_map(weight).collect();
+        let first = problem.objectives.first();
+        let scales = first.and_then(|(_, fitness)| fitness.least_squares(&measured, &weights));
+        Ok(Evaluation {
+            scales,
+            n_objectives: problem.objectives.len(),
+            workers: workers.collect::<Result<_, Fault>>()?,
+            pool,
+            measured,
+            weights,
+            rows: Vec::new(),
+            memory: Memory::default(),
+        })
+    }
+
+    /// Whether the first objective is a sum of squares, so that it has residuals.
+    pub fn has_residuals(&self) -> bool {
+        self.scales.is_some()
+    }
+
+    /// What the differences are multiplied with to become residuals.
+    pub fn scales(&self) -> Option<&[f64]> {
+        self.scales.as_deref()
+    }
+
+    /// Evaluates every individual; the genomes are those of the method.
+    pub fn evaluate(&mut self, problem: &Problem, batch: &Genomes, residuals: bool) -> Answered {
+        let (n, m, points) = (batch.len(), self.n_objectives, self.measured.len());
+        let mut objectives = vec![f64::NAN; n * m];
+        let mut failed: Vec<Option<Failed>> = vec![None; n];
+        // Those with equal genes stand for each other; with residuals everything is simulated.
+        let mut wanted: Vec<usize> = Vec::with_capacity(n);
+        for (k, genome) in batch.rows().enumerate() {
+            match self.memory.find(genome).filter(|_| !residuals) {
+                Some(place) => self.memory.answer(
+                    place,
+                    m,
+                    &mut objectives[k * m..(k + 1) * m],
+                    &mut failed[k],
+                ),
+                None => wanted.push(k),
+            }
+        }
+        let mut rows = std::mem::take(&mut self.rows);
+        rows.clear();
+        rows.resize(wanted.len() * points, f64::NAN);
+        let mut outcomes: Vec<(Vec<f64>, Option<Failed>)> = Vec::with_capacity(wanted.len());
+        let evaluate = |(row, &k): (&mut [f64], &usize)| self.one(problem, batch.row(k), row);
+        self.pool.install(|| {
+            rows.par_chunks_mut(points).zip(&wanted).map(evaluate).collect_into_vec(&mut outcomes);
+        });
+        for (&k, (values, failure)) in wanted.iter().zip(outcomes) {
+            objectives[k * m..(k + 1) * m].copy_from_slice(&values);
+            failed[k] = failure;
+        }
+        let answered = Answered {
+            residuals: if residuals { self.residuals(&rows) } else { Vec::new() },
+            objectives,
+            failures: failed.into_iter().enumerate().filter_map(|(k, f)| Some((k, f?))).collect(),
+            simulations: wanted.len() as u64,
+        };
+        self.rows = rows;
+        self.remember(batch, &answered);
+        answered
+    }
+
+    /// The simulated points of one individual.
+    ///
+    /// # Errors
+    ///
+    /// Why it failed.
+    pub fn simulate(&self, values: &[f64]) -> Result<Vec<f64>, Failed> {
+        let mut row = vec![f64::NAN; self.measured.len()];
+        self.workers[0]
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .simulate(values, &mut row)?;
+        Ok(row)
+    }
+
+    /// The simulated points of several individuals given by their values, at once.
+    pub fn simulate_all(&self, values: &[Vec<f64>]) -> Vec<Result<Vec<f64>, Failed>> {
+        let one = |values: &Vec<f64>| {
+            let worker =
+                &self.workers[rayon::current_thread_index().unwrap_or(0) % self.workers.len()];
+            let mut row = vec![f64::NAN; self.measured.len()];
+            worker.lock().unwrap_or_else(PoisonError::into_inner).simulate(values, &mut row)?;
+            Ok(row)
+        };
+        self.pool.install(|| values.par_iter().map(one).collect())
+    }
+
+    /// The answers of an earlier run are remembered as if they were new.
+    pub fn remember(&mut self, batch: &Genomes, answered: &Answered) {
+        let m = self.n_objectives;
+        let mut failures = answered.failures.iter().peekable();
+        for (k, genome) in batch.rows().enumerate() {
+            let failure =
+                failures.next_if(|(failed, _)| *failed == k).map(|(_, failed)| failed.clone());
+            self.memory.insert(genome, &answered.objectives[k * m..(k + 1) * m], failure);
+        }
+    }
+
+    /// Forgets the answers: equal genes mean other values from now on.
+    pub(super) fn forget(&mut self) {
+        self.memory = Memory::default();
+    }
+
+    fn one(
+        &self,
+        problem: &Problem,
+        genome: &[f64],
+        row: &mut [f64],
+    ) -> (Vec<f64>, Option<Failed>) {
+        let worker = &self.workers[rayon::current_thread_index().unwrap_or(0) % self.workers.len()];
+        let mut worker = worker.lock().unwrap_or_else(PoisonError::into_inner);
+        match worker.simulate(&problem.values(genome), row) {
+            Ok(()) => {
+                let value = |(_, f): &(String, Box<dyn super::Fitness>)| {
+                    f.fitness(row, &self.measured, &self.weights)
+                };
+                (problem.objectives.iter().map(value).collect(), None)
+            }
+            Err(failed) => {
+                row.fill(f64::NAN);
+                (vec![failed.fitness(); self.n_objectives], Some(failed))
+            }
+        }
+    }
+
+    fn residuals(&self, rows: &[f64]) -> Vec<f64> {
+        let Some(scales) = &self.scales else { return Vec::new() };
+        let row = |row: &[f64]| {
+            let triple = row.iter().zip(&self.measured).zip(scales);
+            triple.map(|((s, m), scale)| scale * (s - m)).collect::<Vec<f64>>()
+        };
+        rows.chunks_exact(self.measured.len()).flat_map(row).collect()
+    }
+}
+
+impl Memory {
+    fn key(genome: &[f64]) -> u64 {
+        use std::hash::Hasher;
+        let mut hasher = rustc_hash::FxHasher::default();
+        genome.iter().for_each(|value| hasher.write_u64(value.to_bits()));
+        hasher.finish()
+    }
+
+    fn find(&self, genome: &[f64]) -> Option<usize> {
+        let place = *self.places.get(&Memory::key(genome))?;
+        let known = &self.genomes[place * genome.len()..(place + 1) * genome.len()];
+        (known == genome).then_some(place)
+    }
+
+    fn answer(&self, place: usize, m: usize, objectives: &mut [f64], failed: &mut Option<Failed>) {
+        objectives.copy_from_slice(&self.objectives[place * m..(place + 1) * m]);
+        failed.clone_from(&self.failures[place]);
+    }
+
+    fn insert(&mut self, genome: &[f64], objectives: &[f64], failure: Option<Failed>) {
+        if self.find(genome).is_some() {
+            return;
+        }
+        let (n, m, key, place) = (genome.len(), objectives.len(), Memory::key(genome), self.next);
+        if self.keys.len() < REMEMBERED {
+            self.keys.push(key);
+            self.genomes.extend_from_slice(genome);
+            self.objectives.extend_from_slice(objectives);
+            self.failures.push(failure);
+        } else {
+            if self.places.get(&self.keys[place]) == Some(&place) {
+                self.places.remove(&self.keys[place]);
+            }
+            self.keys[place] = key;
+            self.genomes[place * n..(place + 1) * n].copy_from_slice(genome);
+            self.objectives[place * m..(place + 1) * m].copy_from_slice(objectives);
+            self.failures[place] = failure;
+        }
+        self.places.insert(key, place);
+        self.next = (place + 1) % REMEMBERED;
+    }
+}

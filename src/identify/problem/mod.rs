@@ -1,0 +1,132 @@
+//! Identification as a problem of its own: free parameters, measured series, fitness functions, a
+//! method and stop conditions. The simulation is anything that turns parameters into points, so
+//! that a problem can be put in Rust as well as read from a file.
+//!
+//! A run keeps no clock and no file. Every question that the method asked and the answers to it are
+//! a [`Record`]; a run that is given the records of an earlier one goes the same way again without
+//! simulating, and then on: that is how an interrupted run is resumed to the same end.
+
+mod evaluation;
+mod experiment;
+mod failure;
+mod html;
+mod journal;
+mod notes;
+mod run;
+mod space;
+mod statistics;
+mod summary;
+mod text;
+
+pub use evaluation::Evaluation;
+pub use experiment::{Experiment, ModelSimulator, Observation};
+pub use failure::{Failed, FailureKind};
+pub use journal::{Journal, Record, decode, encode, header};
+pub use run::{Best, Run};
+pub use space::Free;
+pub use statistics::{ResidualTest, Statistics, residual_test, student_quantile};
+pub use summary::{Solution, SolvedParameter, SolvedSeries};
+
+use super::fitness::Fitness;
+use crate::diag::Fault;
+use crate::ga::optimizer::Method;
+
+/// Something that turns values of the free parameters into simulated points.
+pub trait Simulate: Send {
+    /// Writes the simulated value of every point of every series, one after the other.
+    ///
+    /// # Errors
+    ///
+    /// Why the simulation failed.
+    fn simulate(&mut self, parameters: &[f64], out: &mut [f64]) -> Result<(), Failed>;
+}
+
+/// A measured series.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// The experiment that it belongs to.
+    pub experiment: String,
+    /// The variable that was measured, and its unit.
+    pub y_name: String,
+    /// Unit of Y; empty if it has none.
+    pub y_unit: String,
+    /// What it was measured over.
+    pub x_name: String,
+    /// Unit of X; empty if it has none.
+    pub x_unit: String,
+    /// Where the data come from.
+    pub file: String,
+    /// X of the points; missing points are left out.
+    pub x: Vec<f64>,
+    /// Y of the points.
+    pub y: Vec<f64>,
+    /// Every difference counts times this.
+    pub weight: f64,
+}
+
+/// When a run ends; the first that holds ends it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Stop {
+    /// Questions asked by the method.
+    pub generations: Option<u64>,
+    /// Individuals evaluated.
+    pub evaluations: Option<u64>,
+    /// Seconds of work, those before a resume included.
+    pub seconds: Option<f64>,
+    /// A fitness that is good enough.
+    pub target: Option<f64>,
+    /// Generations without an improvement by one millionth.
+    pub stagnation: Option<u64>,
+}
+
+/// A problem to solve.
+pub struct Problem {
+    /// What the report is headed with.
+    pub title: String,
+    /// The model, for the report.
+    pub model: String,
+    /// The parameters to identify.
+    pub parameters: Vec<Free>,
+    /// The measured series.
+    pub series: Vec<Series>,
+    /// Names and functions to minimise; several for a method that handles several.
+    pub objectives: Vec<(String, Box<dyn Fitness>)>,
+    /// The name of the method.
+    pub method_name: String,
+    /// The method.
+    pub method: Box<dyn Method>,
+    /// Whether the best individuals are refined by least squares.
+    pub polish: bool,
+    /// The seed of all random numbers.
+    pub seed: [f64; 6],
+    /// When the run ends.
+    pub stop: Stop,
+    /// Relative error of the simulated values, for finite differences: 1e-15 for a formula.
+    pub noise: f64,
+    /// Makes a simulator; one a thread.
+    pub simulator: Box<dyn Fn() -> Result<Box<dyn Simulate>, Fault> + Send + Sync>,
+}
+
+impl Problem {
+    /// Number of points of all series.
+    pub fn n_points(&self) -> usize {
+        self.series.iter().map(|series| series.x.len()).sum()
+    }
+
+    /// Step of finite differences in the unit cube: the square root of the noise, where the errors
+    /// of the difference and of the simulation are alike.
+    pub fn difference(&self) -> f64 {
+        self.noise.sqrt().clamp(1e-8, 1e-2)
+    }
+
+    /// Values of the free parameters of a genome.
+    pub fn values(&self, genome: &[f64]) -> Vec<f64> {
+        match self.method.in_natural_units() {
+            true => genome.to_vec(),
+            false => self.parameters.iter().zip(genome).map(|(free, &u)| free.value(u)).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

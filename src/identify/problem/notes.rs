@@ -1,0 +1,106 @@
+//! What must be known about a solution, in words.
+
+use super::{Solution, SolvedParameter, SolvedSeries, Statistics};
+use crate::identify::table::significant;
+
+/// Residuals whose runs are less probable than this are no noise.
+const NO_NOISE: f64 = 0.01;
+/// Beyond this condition number digits of the sensitivities are lost.
+const ILL_CONDITIONED: f64 = 1e4;
+
+/// The sentences, most important first.
+pub(super) fn notes(solution: &Solution, statistics: &Statistics) -> Vec<String> {
+    let mut notes = Vec::new();
+    let name = |k: usize| solution.parameters[k].name.as_str();
+    for &k in &statistics.without_effect {
+        notes.push(format!("{} has no effect on the compared points.", name(k)));
+    }
+    for group in &statistics.inseparable {
+        notes.push(inseparable(group, &name));
+    }
+    let alone = |k: usize| {
+        !statistics.without_effect.contains(&k)
+            && !statistics.inseparable.iter().flatten().any(|part| part.0 == k)
+    };
+    for (k, parameter) in solution.parameters.iter().enumerate() {
+        if parameter.determined == Some(false) && alone(k) {
+            notes.push(undetermined(parameter));
+        }
+        if parameter.at_bound {
+            let Some(end) = parameter.range.iter().min_by(|a, b| {
+                (*a - parameter.value).abs().total_cmp(&(*b - parameter.value).abs())
+            }) else {
+                continue;
+            };
+            notes.push(format!(
+                "{} lies at the end {} of its search range: the best value may lie beyond it.",
+                parameter.name,
+                significant(*end, 5)
+            ));
+        }
+    }
+    let pairs = solution.strongly_correlated();
+    if !pairs.is_empty() {
+        let text = |(k, l, c): &(usize, usize, f64)| {
+            format!("{} and {} ({})", name(*k), name(*l), significant(*c, 4))
+        };
+        let pairs: Vec<String> = pairs.iter().map(text).collect();
+        notes.push(format!("Hardly told apart (correlation): {}.", pairs.join(", ")));
+    }
+    if let Some(condition) = solution.condition.filter(|condition| *condition > ILL_CONDITIONED) {
+        notes.push(format!(
+            "The sensitivities are ill-conditioned ({}): small errors of the data change the \
+             parameters much.",
+            significant(condition, 2)
+        ));
+    }
+    notes.extend(solution.series.iter().filter_map(not_noise));
+    if statistics.uncertainty.is_none() {
+        notes.push(
+            "Deviations could not be computed: there are not more points than parameters, or the \
+             simulation fails beside the best point."
+                .to_owned(),
+        );
+    }
+    notes
+}
+
+fn inseparable<'a>(group: &[(usize, f64)], name: &impl Fn(usize) -> &'a str) -> String {
+    let names: Vec<&str> = group.iter().map(|part| name(part.0)).collect();
+    let change = |(k, part): &(usize, f64)| format!("{} by {} %", name(*k), significant(*part, 3));
+    let changes: Vec<String> = group.iter().map(change).collect();
+    format!(
+        "{} cannot be determined separately: changing {} together changes nothing. Fix one of them.",
+        names.join(", "),
+        changes.join(", ")
+    )
+}
+
+fn undetermined(parameter: &SolvedParameter) -> String {
+    let [min, max] = parameter.range;
+    let (low, high) = match parameter.interval {
+        Some([low, high]) => (low.clamp(min, max), high.clamp(min, max)),
+        None => (min, max),
+    };
+    format!(
+        "{} cannot be determined from these data: it may be anything between {} and {}{}.",
+        parameter.name,
+        significant(low, 4),
+        significant(high, 4),
+        if (low, high) == (min, max) { ", its whole search range" } else { "" }
+    )
+}
+
+fn not_noise(series: &SolvedSeries) -> Option<String> {
+    let [runs, expected, probability, autocorrelation] = series.residual_test?;
+    (probability < NO_NOISE && runs < expected).then(|| {
+        format!(
+            "The residuals of {} are no noise: {runs} runs of equal sign where {} are expected, \
+             correlation of neighbours {}. The model misses something of these data, so the \
+             deviations are too small.",
+            series.y[0],
+            significant(expected, 3),
+            significant(autocorrelation, 2)
+        )
+    })
+}

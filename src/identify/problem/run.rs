@@ -1,0 +1,364 @@
+//! A run: the method asks, the simulator answers, until a stop condition holds.
+
+use super::evaluation::{Answered, Evaluation};
+use super::{FailureKind, Problem, Record};
+use crate::bail;
+use crate::diag::Fault;
+use crate::fault;
+use crate::ga::optimizer::{Answers, Optimizer, Polished, Setup, non_dominated};
+use crate::ga::{Gene, Generation, Genomes, History, Mrg32k3a, has_failed, order};
+use crate::registry::BAD_OPTION;
+use indexmap::IndexMap;
+
+/// The smallest relative improvement that is one.
+const IMPROVEMENT: f64 = 1e-6;
+/// Individuals kept for the figures.
+const KEPT: usize = 4000;
+/// Different causes of failure kept apart.
+const CAUSES: usize = 50;
+
+/// The best individual.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Best {
+    /// Values of the free parameters.
+    pub values: Vec<f64>,
+    /// Its first objective.
+    pub fitness: f64,
+}
+
+/// A run under way.
+pub struct Run {
+    /// What is solved.
+    pub problem: Problem,
+    /// The simulators.
+    pub evaluation: Evaluation,
+    optimizer: Box<dyn Optimizer>,
+    batch: Genomes,
+    asked: bool,
+    converged: bool,
+    changes: Vec<(String, f64)>,
+    /// One record for each question.
+    pub history: History,
+    /// The best individual so far.
+    pub best: Option<Best>,
+    /// The values of the best individual after each question.
+    pub trace: Vec<Vec<f64>>,
+    /// Individuals evaluated.
+    pub evaluations: u64,
+    /// Simulations that it took.
+    pub simulations: u64,
+    /// Seconds of work so far, as the records say.
+    pub seconds: f64,
+    /// Failures by kind.
+    pub failed: [u64; FailureKind::ALL.len()],
+    /// Failures by cause.
+    pub causes: IndexMap<String, u64>,
+    /// Evenly chosen individuals: values and fitness.
+    pub kept: Vec<(Vec<f64>, f64)>,
+    keep_every: u64,
+    /// The non-dominated individuals, where there are several objectives: values and objectives.
+    pub front: Vec<(Vec<f64>, Vec<f64>)>,
+    last_gain: u64,
+    reference: f64,
+    /// Changes made during the run, and before which question.
+    pub changed: Vec<(u64, String, f64)>,
+}
+
+impl Run {
+    /// Prepares a run on `threads` threads.
+    ///
+    /// # Errors
+    ///
+    /// Problems without parameters, points or objectives; a method that cannot solve this one;
+    /// whatever the simulator's maker refuses.
+    pub fn new(problem: Problem, threads: usize) -> Result<Run, Fault> {
+        if problem.parameters.is_empty() || problem.n_points() == 0 || problem.objectives.is_empty()
+        {
+            bail!(BAD_OPTION, "there are no parameters, no points or no fitness functions");
+        }
+        let several = problem.objectives.len() > 1;
+        if several && !problem.method.handles_several_objectives() {
+            bail!(BAD_OPTION, "`{}` minimises one fitness function, not {}", problem.method_name, problem.objectives.len(); help: "use `nsga2`");
+        }
+        let evaluation = Evaluation::new(&problem, threads)?;
+        if problem.method.needs_residuals() && !evaluation.has_residuals() {
+            bail!(BAD_OPTION, "`{}` needs a sum of squares, which `{}` is not", problem.method_name, problem.objectives[0].0; help: "use `nelder_mead` or a genetic method");
+        }
+        let optimizer = optimizer(&problem, &evaluation)?;
+        Ok(Run {
+            batch: Genomes::with_capacity(problem.parameters.len(), 0),
+            problem,
+            evaluation,
+            optimizer,
+            asked: false,
+            converged: false,
+            changes: Vec::new(),
+            history: History::default(),
+            best: None,
+            trace: Vec::new(),
+            evaluations: 0,
+            simulations: 0,
+            seconds: 0.0,
+            failed: [0; FailureKind::ALL.len()],
+            causes: IndexMap::new(),
+            kept: Vec::new(),
+            keep_every: 1,
+            front: Vec::new(),
+            last_gain: 0,
+            reference: f64::INFINITY,
+            changed: Vec::new(),
+        })
+    }
+
+    /// Questions answered so far.
+    pub fn generations(&self) -> u64 {
+        self.history.generations.len() as u64
+    }
+
+    /// What the method is doing, in one word.
+    pub fn phase(&self) -> &'static str {
+        self.optimizer.phase()
+    }
+
+    /// Why the run is over, in words; `None` while it is not.
+    pub fn stop(&mut self) -> Option<String> {
+        let stop = self.problem.stop;
+        let best = self.best.as_ref().map_or(f64::INFINITY, |best| best.fitness);
+        if let Some(target) = stop.target.filter(|target| best <= *target) {
+            return Some(format!("the fitness {best:e} has reached the target {target:e}"));
+        }
+        if let Some(limit) = stop.generations.filter(|limit| self.generations() >= *limit) {
+            return Some(format!("{limit} generations"));
+        }
+        if let Some(limit) = stop.evaluations.filter(|limit| self.evaluations >= *limit) {
+            return Some(format!("{limit} evaluations"));
+        }
+        if let Some(limit) = stop.seconds.filter(|limit| self.seconds >= *limit) {
+            return Some(format!("{limit} seconds"));
+        }
+        let idle = self.generations() - self.last_gain;
+        if let Some(limit) = stop.stagnation.filter(|limit| idle >= *limit) {
+            return Some(format!("{limit} generations without improvement"));
+        }
+        self.ask();
+        self.converged.then(|| "the method has converged".to_owned())
+    }
+
+    /// Changes a setting of the method, or with `min NAME` and `max NAME` a range, or a stop
+    /// condition, before the next question.
+    ///
+    /// # Errors
+    ///
+    /// `bad-option` where there is no such setting or the value does not fit.
+    pub fn change(&mut self, setting: &str, value: f64) -> Result<(), Fault> {
+        let whole = value.fract() == 0.0 && value >= 0.0;
+        match setting {
+            "generations" if whole => self.problem.stop.generations = Some(value as u64),
+            "evaluations" if whole => self.problem.stop.evaluations = Some(value as u64),
+            "seconds" if value >= 0.0 => self.problem.stop.seconds = Some(value),
+            _ if setting.starts_with("min ") || setting.starts_with("max ") => {
+                self.change_range(setting, value)?;
+            }
+            _ => self.optimizer.change(setting, value)?,
+        }
+        self.changes.push((setting.to_owned(), value));
+        self.changed.push((self.generations(), setting.to_owned(), value));
+        Ok(())
+    }
+
+    fn change_range(&mut self, setting: &str, value: f64) -> Result<(), Fault> {
+        if self.problem.method.in_natural_units() {
+            bail!(BAD_OPTION, "`{}` cannot change search ranges during the run", self.problem.method_name; help: "use another method, or change them in the script's own loop");
+        }
+        let (end, name) = setting.split_at(4);
+        let place = self.problem.parameters.iter().position(|free| free.name == name);
+        let place =
+            place.ok_or_else(|| fault!(BAD_OPTION, "no parameter `{name}` is identified"))?;
+        let old = self.problem.parameters[place].clone();
+        let range = if end == "min " { [value, old.max] } else { [old.min, value] };
+        let new = super::Free::new(&old.name, &old.unit, range, Some(old.logarithmic), None)?;
+        // Both scales are linear in the fractions, so the map is found from two points.
+        let fraction = |value: f64| match new.logarithmic {
+            true => (value / new.min).ln() / (new.max / new.min).ln(),
+            false => (value - new.min) / (new.max - new.min),
+        };
+        let (offset, end) = (fraction(old.min), fraction(old.max));
+        self.optimizer.rescale(place, offset, end - offset);
+        self.problem.parameters[place] = new;
+        self.asked = false;
+        self.batch = Genomes::with_capacity(self.problem.parameters.len(), 0);
+        self.evaluation.forget();
+        Ok(())
+    }
+
+    fn ask(&mut self) {
+        if self.asked || self.converged {
+            return;
+        }
+        self.batch = Genomes::with_capacity(self.problem.parameters.len(), self.batch.len());
+        self.optimizer.ask(&mut self.batch);
+        self.asked = !self.batch.is_empty();
+        self.converged = !self.asked;
+    }
+
+    /// One question and its answers; `None` when the method has converged. `seconds` of work so
+    /// far go into the record.
+    pub fn step(&mut self, seconds: f64) -> Option<Record> {
+        self.ask();
+        if self.converged {
+            return None;
+        }
+        let residuals = self.optimizer.wants_residuals();
+        let answered = self.evaluation.evaluate(&self.problem, &self.batch, residuals);
+        let record = Record {
+            seconds,
+            changes: std::mem::take(&mut self.changes),
+            asked: fingerprint(&self.batch),
+            answered,
+        };
+        self.take(&record);
+        Some(record)
+    }
+
+    /// Goes a step of an earlier run again.
+    ///
+    /// # Errors
+    ///
+    /// `bad-option` when this run asks something else than that one did.
+    pub fn replay(&mut self, record: &Record) -> Result<(), Fault> {
+        for (setting, value) in &record.changes {
+            self.change(setting, *value)?;
+        }
+        self.changes.clear();
+        self.ask();
+        let n = self.batch.len() * self.problem.objectives.len();
+        if fingerprint(&self.batch) != record.asked || record.answered.objectives.len() != n {
+            bail!(
+                BAD_OPTION,
+                "generation {} of the checkpoint is not that of this problem", self.generations() + 1;
+                help: "start anew, or use the version of the program that wrote the checkpoint"
+            );
+        }
+        self.evaluation.remember(&self.batch, &record.answered);
+        self.take(record);
+        Ok(())
+    }
+
+    fn take(&mut self, record: &Record) {
+        let Answered { objectives, residuals, failures, simulations } = &record.answered;
+        let m = self.problem.objectives.len();
+        let fitness: Vec<f64> = objectives.iter().step_by(m).copied().collect();
+        self.seconds = record.seconds;
+        self.simulations += simulations;
+        self.history.record(&fitness);
+        for (_, failed) in failures {
+            self.failed
+                [FailureKind::ALL.iter().position(|kind| *kind == failed.kind).unwrap_or(0)] += 1;
+            let room = self.causes.len() < CAUSES || self.causes.contains_key(&failed.cause);
+            let cause = if room { failed.cause.as_str() } else { "other causes" };
+            *self.causes.entry(cause.to_owned()).or_insert(0) += 1;
+        }
+        self.keep(&fitness);
+        self.keep_best(&fitness);
+        if m > 1 {
+            self.keep_front(objectives, m);
+        }
+        let answers = Answers { objectives, n_objectives: m, residuals };
+        self.optimizer.tell(&self.batch, &answers);
+        self.asked = false;
+    }
+
+    fn keep_best(&mut self, fitness: &[f64]) {
+        let k = order(fitness)[0];
+        let best = self.best.as_ref().map_or(f64::INFINITY, |best| best.fitness);
+        if !has_failed(fitness[k]) && fitness[k] < best {
+            let values = self.problem.values(self.batch.row(k));
+            self.best = Some(Best { values, fitness: fitness[k] });
+            let is_first = self.reference.is_infinite();
+            if is_first || fitness[k] <= self.reference - IMPROVEMENT * self.reference.abs() {
+                self.last_gain = self.generations();
+                self.reference = fitness[k];
+            }
+        }
+        let values = self.best.as_ref().map_or_else(Vec::new, |best| best.values.clone());
+        self.trace.push(values);
+    }
+
+    /// Every n-th individual, n doubled when there are too many.
+    fn keep(&mut self, fitness: &[f64]) {
+        for (k, &fitness) in fitness.iter().enumerate() {
+            if self.evaluations.is_multiple_of(self.keep_every) {
+                self.kept.push((self.problem.values(self.batch.row(k)), fitness));
+            }
+            self.evaluations += 1;
+            if self.kept.len() >= KEPT {
+                let mut number = 0;
+                self.kept.retain(|_| {
+                    number += 1;
+                    number % 2 == 1
+                });
+                self.keep_every *= 2;
+            }
+        }
+    }
+
+    fn keep_front(&mut self, objectives: &[f64], m: usize) {
+        for k in 0..self.batch.len() {
+            let own = &objectives[k * m..(k + 1) * m];
+            if !has_failed(own[0]) {
+                self.front.push((self.problem.values(self.batch.row(k)), own.to_vec()));
+            }
+        }
+        let all: Vec<f64> =
+            self.front.iter().flat_map(|(_, objectives)| objectives.clone()).collect();
+        let kept = non_dominated(&all, m);
+        let mut front: Vec<_> = kept.into_iter().map(|k| self.front[k].clone()).collect();
+        front.sort_by(|a, b| a.1[0].total_cmp(&b.1[0]));
+        front.dedup_by(|a, b| a.1 == b.1);
+        self.front = front;
+    }
+
+    /// The generation evaluated last.
+    pub fn last(&self) -> Option<&Generation> {
+        self.history.generations.last()
+    }
+}
+
+fn optimizer(problem: &Problem, evaluation: &Evaluation) -> Result<Box<dyn Optimizer>, Fault> {
+    let rng = Mrg32k3a::new(&problem.seed)?;
+    let natural = problem.method.in_natural_units();
+    let gene = |free: &super::Free| match natural {
+        true => Gene::new(&free.name, free.min, free.max),
+        false => Gene::new(&free.name, 0.0, 1.0),
+    };
+    let starts = problem.parameters.iter().any(|free| free.start.is_some());
+    let start = |free: &super::Free| free.start.map_or(0.5, |value| free.fraction(value));
+    let setup = Setup {
+        genes: problem.parameters.iter().map(gene).collect::<Result<_, Fault>>()?,
+        n_objectives: problem.objectives.len(),
+        budget: problem.stop.evaluations,
+        start: starts.then(|| problem.parameters.iter().map(start).collect()),
+        difference: problem.difference(),
+        rng: rng.clone(),
+    };
+    let search = problem.method.start(setup)?;
+    let polished = problem.polish && problem.method.can_be_polished() && evaluation.has_residuals();
+    if !polished {
+        return Ok(search);
+    }
+    let size: f64 = problem.series.iter().flat_map(|s| &s.y).map(|y| y * y).sum();
+    // Below this the residuals are those of rounding, or of the simulator's tolerance.
+    let floor = size * (problem.noise * 1e-3).powi(2).max(1e-32);
+    Ok(Box::new(Polished::new(search, problem.difference(), floor, rng.stream(1))))
+}
+
+fn fingerprint(batch: &Genomes) -> u64 {
+    // FNV-1a over the bits: the same on every machine.
+    batch
+        .values()
+        .iter()
+        .flat_map(|value| value.to_bits().to_le_bytes())
+        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+        })
+}

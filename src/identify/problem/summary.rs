@@ -1,0 +1,284 @@
+//! The solution: what was found, how well it fits, and what the data cannot tell.
+
+use super::{FailureKind, Run, Statistics, residual_test};
+use crate::diag::Fault;
+use crate::fault;
+use crate::ga::Generation;
+use crate::registry::BAD_OPTION;
+use serde::Serialize;
+
+/// A parameter counts as determined when its deviation is below this fraction of its value.
+const DETERMINED_BELOW: f64 = 0.5;
+/// Correlations above this are worth a word.
+const STRONG: f64 = 0.95;
+/// Values nearer to a bound than this fraction of the range are at it.
+const AT_BOUND: f64 = 1e-3;
+
+/// The solution of a problem.
+#[derive(Debug, Clone, Serialize)]
+pub struct Solution {
+    /// The heading.
+    pub title: String,
+    /// The model.
+    pub model: String,
+    /// The method.
+    pub method: String,
+    /// The first objective: its name and the smallest value found.
+    pub fitness_name: String,
+    /// Its smallest value.
+    pub fitness: f64,
+    /// The parameters.
+    pub parameters: Vec<SolvedParameter>,
+    /// The series with their residuals.
+    pub series: Vec<SolvedSeries>,
+    /// Series that were not used for the fit.
+    pub validation: Vec<SolvedSeries>,
+    /// Correlations of the parameters, row by row; `None` where they could not be computed.
+    pub correlations: Option<Vec<Vec<Option<f64>>>>,
+    /// Condition number of the sensitivities.
+    pub condition: Option<f64>,
+    /// What must be known about these numbers.
+    pub notes: Vec<String>,
+    /// Why the run ended.
+    pub stop: String,
+    /// Questions of the method.
+    pub generations: u64,
+    /// Individuals evaluated.
+    pub evaluations: u64,
+    /// Simulations that it took; equal genes are simulated once.
+    pub simulations: u64,
+    /// Further simulations for the statistics.
+    pub simulations_for_statistics: u64,
+    /// Failed individuals by kind.
+    pub failures: indexmap::IndexMap<&'static str, u64>,
+    /// Failed individuals by cause.
+    pub causes: indexmap::IndexMap<String, u64>,
+    /// Settings changed during the run.
+    pub changes: Vec<(u64, String, f64)>,
+    /// Points of the front, where there are several objectives: parameters and objectives.
+    pub front: Vec<(Vec<f64>, Vec<f64>)>,
+    /// The place in the front that is farthest from the line between its ends.
+    pub knee: Option<usize>,
+    /// Names of the objectives.
+    pub objectives: Vec<String>,
+    /// The seed.
+    pub seed: [f64; 6],
+    /// Version of the program.
+    pub version: &'static str,
+    /// Every generation: best, mean, worst, failures.
+    #[serde(skip)]
+    pub history: Vec<Generation>,
+    /// The best values after each generation.
+    #[serde(skip)]
+    pub trace: Vec<Vec<f64>>,
+    /// Evenly chosen individuals.
+    #[serde(skip)]
+    pub individuals: Vec<(Vec<f64>, f64)>,
+}
+
+/// An identified parameter.
+#[derive(Debug, Clone, Serialize)]
+pub struct SolvedParameter {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Its value.
+    pub value: f64,
+    /// The range that was searched.
+    pub range: [f64; 2],
+    /// Whether its logarithm was searched.
+    pub logarithmic: bool,
+    /// One standard deviation; `None` where infinite or unknown.
+    pub deviation: Option<f64>,
+    /// The 95 % interval, not cut at the range.
+    pub interval: Option<[f64; 2]>,
+    /// Whether the data determine it; `None` where unknown.
+    pub determined: Option<bool>,
+    /// Whether it lies at an end of its range.
+    pub at_bound: bool,
+}
+
+/// A series with its simulation.
+#[derive(Debug, Clone, Serialize)]
+pub struct SolvedSeries {
+    /// The experiment.
+    pub experiment: String,
+    /// The variable and its unit.
+    pub y: [String; 2],
+    /// What it is given over, and the unit.
+    pub x: [String; 2],
+    /// Where the data come from.
+    pub file: String,
+    /// Root of the mean squared residual.
+    pub rmse: f64,
+    /// Coefficient of determination.
+    pub r_squared: Option<f64>,
+    /// Runs of equal sign, how many are expected, the probability of that by chance, and the
+    /// correlation of neighbours.
+    pub residual_test: Option<[f64; 4]>,
+    /// X, measured, simulated.
+    pub points: Vec<[f64; 3]>,
+}
+
+impl SolvedSeries {
+    /// Puts a series beside its simulation.
+    pub fn new(series: &super::Series, simulated: &[f64]) -> SolvedSeries {
+        let n = series.y.len() as f64;
+        let points: Vec<[f64; 3]> =
+            series.x.iter().zip(&series.y).zip(simulated).map(|((x, y), s)| [*x, *y, *s]).collect();
+        let square: f64 = points.iter().map(|p| (p[1] - p[2]).powi(2)).sum();
+        let mean = series.y.iter().sum::<f64>() / n;
+        let total: f64 = series.y.iter().map(|y| (y - mean).powi(2)).sum();
+        let mut ordered = points.clone();
+        ordered.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let residuals: Vec<f64> = ordered.iter().map(|p| p[1] - p[2]).collect();
+        let test = residual_test(&residuals);
+        SolvedSeries {
+            experiment: series.experiment.clone(),
+            y: [series.y_name.clone(), series.y_unit.clone()],
+            x: [series.x_name.clone(), series.x_unit.clone()],
+            file: series.file.clone(),
+            rmse: (square / n).sqrt(),
+            r_squared: (total > 0.0).then(|| 1.0 - square / total),
+            residual_test: test
+                .map(|t| [t.runs as f64, t.expected_runs, t.runs_probability, t.autocorrelation]),
+            points,
+        }
+    }
+}
+
+impl Solution {
+    /// Puts together what a run has found. `validation`: series that were not used, with their
+    /// simulation at the best values.
+    ///
+    /// # Errors
+    ///
+    /// When nothing was simulated successfully.
+    pub fn of(run: &Run, stop: &str, validation: Vec<SolvedSeries>) -> Result<Solution, Fault> {
+        let problem = &run.problem;
+        let Some(best) = &run.best else {
+            let most = run.causes.iter().max_by_key(|cause| cause.1);
+            let why =
+                most.map_or_else(String::new, |(cause, count)| format!("; {count} times: {cause}"));
+            return Err(fault!(
+                BAD_OPTION,
+                "none of {} individuals could be simulated{why}", run.evaluations;
+                help: "correct the model or the search ranges"
+            ));
+        };
+        let simulated = run.evaluation.simulate(&best.values);
+        let simulated = simulated.map_err(|failed| fault!(BAD_OPTION, "{}", failed.cause))?;
+        let statistics = Statistics::at(problem, &run.evaluation, &best.values, &simulated);
+        let mut rest = simulated.as_slice();
+        let mut series = Vec::new();
+        for measured in &problem.series {
+            let (own, others) = rest.split_at(measured.x.len());
+            series.push(SolvedSeries::new(measured, own));
+            rest = others;
+        }
+        let parameters = parameters(run, &best.values, &statistics);
+        let kinds = FailureKind::ALL.iter().zip(&run.failed).filter(|(_, count)| **count > 0);
+        let mut solution = Solution {
+            title: problem.title.clone(),
+            model: problem.model.clone(),
+            method: format!(
+                "{}{}",
+                problem.method_name,
+                if problem.polish
+                    && problem.method.can_be_polished()
+                    && run.evaluation.has_residuals()
+                {
+                    " + levenberg_marquardt"
+                } else {
+                    ""
+                }
+            ),
+            fitness_name: problem.objectives[0].0.clone(),
+            fitness: best.fitness,
+            correlations: correlations(&statistics, parameters.len()),
+            condition: statistics.condition.filter(|condition| condition.is_finite()),
+            parameters,
+            series,
+            validation,
+            notes: Vec::new(),
+            stop: stop.to_owned(),
+            generations: run.generations(),
+            evaluations: run.evaluations,
+            simulations: run.simulations,
+            simulations_for_statistics: statistics.simulations,
+            failures: kinds.map(|(kind, count)| (kind.name(), *count)).collect(),
+            causes: run.causes.clone(),
+            changes: run.changed.clone(),
+            knee: knee(&run.front),
+            front: run.front.clone(),
+            objectives: problem.objectives.iter().map(|(name, _)| name.clone()).collect(),
+            seed: problem.seed,
+            version: env!("CARGO_PKG_VERSION"),
+            history: run.history.generations.clone(),
+            trace: run.trace.clone(),
+            individuals: run.kept.clone(),
+        };
+        solution.notes = super::notes::notes(&solution, &statistics);
+        Ok(solution)
+    }
+
+    /// Pairs of parameters that the data can hardly tell apart.
+    pub fn strongly_correlated(&self) -> Vec<(usize, usize, f64)> {
+        let Some(rows) = &self.correlations else { return Vec::new() };
+        let n = self.parameters.len();
+        let pairs = (0..n).flat_map(|k| (k + 1..n).map(move |l| (k, l)));
+        pairs
+            .filter_map(|(k, l)| Some((k, l, rows[k][l]?)))
+            .filter(|(_, _, correlation)| correlation.abs() > STRONG)
+            .collect()
+    }
+}
+
+fn parameters(run: &Run, values: &[f64], statistics: &Statistics) -> Vec<SolvedParameter> {
+    let one = |(k, free): (usize, &super::Free)| {
+        let value = values[k];
+        let deviation = statistics.uncertainty.as_ref().map(|found| found.standard_deviations[k]);
+        let reach = deviation.map(|deviation| statistics.factor * deviation);
+        let determined = deviation.map(|deviation| {
+            deviation <= DETERMINED_BELOW * value.abs() && deviation <= free.max - free.min
+        });
+        // Where the logarithm is searched, the interval is one of ratios.
+        let interval =
+            reach.filter(|reach| reach.is_finite()).map(|reach| match free.logarithmic {
+                true => [value * (-reach / value).exp(), value * (reach / value).exp()],
+                false => [value - reach, value + reach],
+            });
+        let place = free.fraction(value);
+        SolvedParameter {
+            name: free.name.clone(),
+            unit: free.unit.clone(),
+            value,
+            range: [free.min, free.max],
+            logarithmic: free.logarithmic,
+            deviation: deviation.filter(|deviation| deviation.is_finite()),
+            interval: interval.filter(|ends| ends.iter().all(|end| end.is_finite())),
+            determined,
+            at_bound: place.min(1.0 - place) < AT_BOUND,
+        }
+    };
+    run.problem.parameters.iter().enumerate().map(one).collect()
+}
+
+fn correlations(statistics: &Statistics, n: usize) -> Option<Vec<Vec<Option<f64>>>> {
+    let found = statistics.uncertainty.as_ref()?;
+    let entry = |k: usize, l: usize| Some(found.correlations[k * n + l]).filter(|c| c.is_finite());
+    Some((0..n).map(|k| (0..n).map(|l| entry(k, l)).collect()).collect())
+}
+
+/// The member of a front of two objectives that is farthest from the line between its ends, both
+/// objectives in units of the front's width.
+fn knee(front: &[(Vec<f64>, Vec<f64>)]) -> Option<usize> {
+    if front.len() < 3 || front[0].1.len() != 2 {
+        return None;
+    }
+    let (first, last) = (&front[0].1, &front[front.len() - 1].1);
+    let scaled = |point: &[f64], j: usize| (point[j] - first[j]) / (last[j] - first[j]);
+    let below = |k: usize| scaled(&front[k].1, 1) - scaled(&front[k].1, 0);
+    (0..front.len()).max_by(|a, b| below(*a).abs().total_cmp(&below(*b).abs()))
+}

@@ -1,0 +1,173 @@
+//! Problems put in Rust: a straight line and a product.
+
+use super::*;
+use crate::ga::optimizer::METHODS;
+use crate::identify::fitness::FITNESSES;
+use crate::registry::{self, Options};
+
+/// y = f(parameters, x) at the points.
+struct Formula(Vec<f64>, fn(&[f64], f64) -> f64);
+
+impl Simulate for Formula {
+    fn simulate(&mut self, parameters: &[f64], out: &mut [f64]) -> Result<(), Failed> {
+        for (value, x) in out.iter_mut().zip(&self.0) {
+            *value = self.1(parameters, *x);
+        }
+        match out.iter().all(|value| value.is_finite()) {
+            true => Ok(()),
+            false => Err(Failed { kind: FailureKind::Model, cause: "log".into(), progress: 0.5 }),
+        }
+    }
+}
+
+fn problem(method: &str, formula: fn(&[f64], f64) -> f64, truth: &[f64], noise: &[f64]) -> Problem {
+    let x: Vec<f64> = (0..noise.len()).map(|k| k as f64 / 4.0).collect();
+    let y = x.iter().zip(noise).map(|(x, e)| formula(truth, *x) + e).collect();
+    let free = |k: usize| Free::new(format!("p{k}"), "V", [0.1, 10.0], None, None).unwrap();
+    let series = Series {
+        experiment: String::new(),
+        y_name: "y".into(),
+        y_unit: "V".into(),
+        x_name: "time".into(),
+        x_unit: "s".into(),
+        file: "twin".into(),
+        x: x.clone(),
+        y,
+        weight: 1.0,
+    };
+    let sse = registry::find("fitness", FITNESSES, "sse").unwrap();
+    let entry = registry::find("method", METHODS, method).unwrap();
+    Problem {
+        title: "a test".into(),
+        model: "M(q = 1)".into(),
+        parameters: (0..truth.len()).map(free).collect(),
+        series: vec![series],
+        objectives: vec![("sse".into(), (sse.make)(&mut Options::default()).unwrap())],
+        method_name: method.into(),
+        method: (entry.make)(&mut Options::default()).unwrap(),
+        polish: true,
+        seed: [12345.0; 6],
+        stop: Stop { evaluations: Some(2000), ..Stop::default() },
+        noise: 1e-15,
+        simulator: Box::new(move || Ok(Box::new(Formula(x.clone(), formula)))),
+    }
+}
+
+fn decay(p: &[f64], x: f64) -> f64 {
+    // Fails for small sums, as models do.
+    if p[0] + p[1] < 1.0 { f64::NAN } else { p[0] * (-p[1] * x).exp() }
+}
+
+const NOISE: [f64; 12] =
+    [0.01, -0.02, 0.015, 0.0, -0.01, 0.02, -0.015, 0.01, 0.0, -0.01, 0.005, -0.005];
+
+fn finish(mut run: Run) -> (Solution, Vec<Record>) {
+    let mut records = Vec::new();
+    let stop = loop {
+        if let Some(stop) = run.stop() {
+            break stop;
+        }
+        records.extend(run.step(records.len() as f64));
+    };
+    (Solution::of(&run, &stop, Vec::new()).unwrap(), records)
+}
+
+#[test]
+fn the_truth_is_found_from_its_own_simulation() {
+    let run = Run::new(problem("genetic", decay, &[2.0, 0.7], &[0.0; 12]), 2).unwrap();
+    let (solution, _) = finish(run);
+    assert!(solution.fitness < 1e-20, "{}", solution.fitness);
+    for (found, truth) in solution.parameters.iter().zip([2.0, 0.7]) {
+        assert!((found.value - truth).abs() < 1e-8, "{found:?}");
+    }
+    assert!(solution.failures["model"] > 0, "some individuals fail");
+    assert_eq!(solution.stop, "the method has converged");
+}
+
+#[test]
+fn a_resumed_run_ends_with_the_same_bytes_on_any_number_of_threads() {
+    let begin =
+        |threads| Run::new(problem("genetic", decay, &[2.0, 0.7], &NOISE), threads).unwrap();
+    let (whole, records) = finish(begin(1));
+    for (kept, threads) in [(0, 3), (1, 2), (records.len() / 2, 3), (records.len(), 1)] {
+        let mut run = begin(threads);
+        records[..kept].iter().for_each(|record| run.replay(record).unwrap());
+        let (resumed, _) = finish(run);
+        assert_eq!(resumed.to_json(), whole.to_json(), "after {kept} records");
+        assert_eq!(resumed.history_csv(), whole.history_csv());
+        assert_eq!(resumed.individuals_csv(), whole.individuals_csv());
+    }
+    let mut other = Run::new(problem("genetic", decay, &[2.0, 0.7], &NOISE), 1).unwrap();
+    assert!(other.replay(&records[1]).unwrap_err().message.contains("checkpoint"));
+}
+
+#[test]
+fn changes_are_recorded_and_replayed() {
+    let begin = || Run::new(problem("genetic", decay, &[2.0, 0.7], &NOISE), 1).unwrap();
+    let mut run = begin();
+    let mut records = vec![run.step(0.0).unwrap(), run.step(1.0).unwrap()];
+    run.change("mutation", 0.9).unwrap();
+    run.change("min p1", 0.5).unwrap();
+    run.change("evaluations", 400.0).unwrap();
+    assert!(run.change("colour", 1.0).is_err());
+    records.push(run.step(2.0).unwrap());
+    let (whole, rest) = finish(run);
+    let mut again = begin();
+    records.iter().for_each(|record| again.replay(record).unwrap());
+    let (resumed, _) = finish(again);
+    assert_eq!(resumed.to_json(), whole.to_json());
+    assert_eq!(whole.parameters[1].range[0], 0.5);
+    assert_eq!(whole.changes.len(), 3);
+    assert!(rest.len() < 40, "the new limit holds");
+}
+
+#[test]
+fn a_product_is_named_as_inseparable() {
+    let product = |p: &[f64], x: f64| p[0] * p[1] * x + 1.0;
+    let run = Run::new(problem("genetic", product, &[2.0, 3.0], &NOISE), 1).unwrap();
+    let (solution, _) = finish(run);
+    let note = &solution.notes[0];
+    assert!(note.starts_with("p0, p1 cannot be determined separately"), "{note}");
+    assert!(solution.parameters.iter().all(|p| p.determined == Some(false)));
+}
+
+#[test]
+fn a_parameter_without_effect_is_named() {
+    let line = |p: &[f64], x: f64| p[0] * x;
+    let run = Run::new(problem("cma_es", line, &[2.0, 3.0], &NOISE), 1).unwrap();
+    let (solution, _) = finish(run);
+    assert_eq!(solution.notes[0], "p1 has no effect on the compared points.");
+    assert!((solution.parameters[0].value - 2.0).abs() < 0.02);
+    let model = solution.modelica();
+    assert!(model.contains("extends M(\n    q = 1,\n    p0 = "), "{model}");
+}
+
+/// Over many realisations of normal noise the 95 % intervals contain the truth about as often as
+/// they promise.
+#[test]
+fn intervals_cover_the_truth() {
+    let mut rng = crate::ga::Mrg32k3a::new(&[12345.0; 6]).unwrap();
+    let mut covered = 0;
+    for _ in 0..200 {
+        let noise: Vec<f64> = (0..20).map(|_| 0.02 * rng.normal()).collect();
+        let mut problem = problem("levenberg_marquardt", decay, &[2.0, 0.7], &noise);
+        problem.polish = false;
+        let (solution, _) = finish(Run::new(problem, 1).unwrap());
+        for (found, truth) in solution.parameters.iter().zip([2.0, 0.7]) {
+            let [low, high] = found.interval.unwrap();
+            covered += usize::from(low < truth && truth < high);
+        }
+    }
+    assert!((368..=392).contains(&covered), "{covered} of 400");
+}
+
+#[test]
+fn equal_genes_are_simulated_once() {
+    let mut run = Run::new(problem("gapilib2006", decay, &[2.0, 0.7], &NOISE), 2).unwrap();
+    for generation in 0..5 {
+        run.step(f64::from(generation)).unwrap();
+    }
+    assert_eq!(run.evaluations, 500);
+    // The elite of each later generation at least; parents that are alike have children like them.
+    assert!((450..=496).contains(&run.simulations), "{}", run.simulations);
+}

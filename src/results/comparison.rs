@@ -1,0 +1,154 @@
+//! Results against reference results, signal by signal.
+
+use super::ResultTable;
+use super::errors::BAD_REFERENCE;
+use super::tube::{Deviation, Tube};
+use crate::bail;
+use crate::diag::Fault;
+
+/// What comparing one signal gave.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Compared {
+    /// Its name.
+    pub signal: String,
+    /// Whether, or where, it differs.
+    pub agreement: Agreement,
+}
+
+/// Whether a signal agrees with its reference.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Agreement {
+    /// Every point is inside the tube.
+    Inside,
+    /// A point is outside.
+    Outside {
+        /// The point farthest outside.
+        worst: Deviation,
+        /// How far it is outside, in half heights of the tube.
+        distance: f64,
+    },
+    /// The result begins later or ends earlier than the reference.
+    Incomplete {
+        /// The result's first and last time, seconds; `None` if it has no points.
+        covered: Option<(f64, f64)>,
+    },
+    /// The result has no signal of this name.
+    Missing,
+}
+
+impl Compared {
+    /// Whether the signal agrees.
+    pub fn agrees(&self) -> bool {
+        self.agreement == Agreement::Inside
+    }
+}
+
+/// Compares signals of a result with the tubes around those of a reference. Names may differ in
+/// blanks.
+///
+/// # Errors
+/// A reference without one of the signals, or without points; a tolerance outside ]0, 1[.
+pub fn compare(
+    result: &ResultTable,
+    reference: &ResultTable,
+    signals: &[String],
+    tolerance: f64,
+) -> Result<Vec<Compared>, Fault> {
+    if !(tolerance > 0.0 && tolerance < 1.0) {
+        bail!(crate::registry::BAD_OPTION, "the tolerance is {tolerance}, outside ]0, 1[");
+    }
+    if reference.time.is_empty() {
+        bail!(BAD_REFERENCE, "the reference has no points in time");
+    }
+    signals.iter().map(|signal| compare_signal(result, reference, signal, tolerance)).collect()
+}
+
+/// The signals of a reference that are to be compared: the lines of a list, without `time`; all of
+/// the reference without a list.
+pub fn signals_to_compare(reference: &ResultTable, list: Option<&str>) -> Vec<String> {
+    let is_time = |name: &str| name.eq_ignore_ascii_case("time");
+    let all = || reference.series.iter().map(|series| series.name.clone()).collect();
+    list.map_or_else(all, |list| {
+        let lines = list.lines().map(str::trim);
+        lines.filter(|line| !line.is_empty() && !is_time(line)).map(str::to_owned).collect()
+    })
+}
+
+fn compare_signal(
+    result: &ResultTable,
+    reference: &ResultTable,
+    signal: &str,
+    tolerance: f64,
+) -> Result<Compared, Fault> {
+    let Some(expected) = reference.column_like(signal) else {
+        bail!(BAD_REFERENCE, "the reference has no signal `{signal}`")
+    };
+    let tube = Tube::around(&reference.time, &expected, tolerance);
+    let agreement = match result.column_like(signal) {
+        None => Agreement::Missing,
+        Some(values) => agreement(&tube, reference, &result.time, &values),
+    };
+    Ok(Compared { signal: signal.to_owned(), agreement })
+}
+
+fn agreement(tube: &Tube, reference: &ResultTable, time: &[f64], values: &[f64]) -> Agreement {
+    let covered = time.first().copied().zip(time.last().copied());
+    let (start, stop) = (reference.time[0], reference.time[reference.time.len() - 1]);
+    let is_covering = covered.is_some_and(|(first, last)| {
+        first <= start + tube.half_width() && last >= stop - tube.half_width()
+    });
+    if !is_covering {
+        return Agreement::Incomplete { covered };
+    }
+    match tube.worst_deviation(time, values) {
+        None => Agreement::Inside,
+        Some(worst) => Agreement::Outside { worst, distance: tube.distance(&worst) },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Series, Values};
+    use super::*;
+
+    fn table(time: &[f64], columns: &[(&str, &[f64])]) -> ResultTable {
+        let mut table = ResultTable::new(time.to_vec());
+        let series = |(name, values): &(&str, &[f64])| {
+            Series::new(*name, Values::Trajectory(values.to_vec()))
+        };
+        table.series = columns.iter().map(series).collect();
+        table
+    }
+
+    #[test]
+    fn every_signal_gets_its_verdict() {
+        let reference = table(&[0.0, 1.0], &[("a", &[0.0, 1.0]), ("b[1, 2]", &[2.0, 4.0])]);
+        let result = table(&[0.0, 1.0], &[("b[1,2]", &[2.0, 4.1]), ("c", &[0.0, 0.0])]);
+        let signals = signals_to_compare(&reference, None);
+        let found = compare(&result, &reference, &signals, 0.002).unwrap();
+        assert_eq!(found[0].agreement, Agreement::Missing);
+        let Agreement::Outside { worst, distance } = &found[1].agreement else { panic!() };
+        assert_eq!((worst.time, worst.value), (1.0, 4.1));
+        assert!((distance - (0.1 - 0.004) / 0.004).abs() < 1e-9, "{distance}");
+    }
+
+    #[test]
+    fn results_that_end_early_do_not_agree() {
+        let reference = table(&[0.0, 1.0], &[("a", &[0.0, 0.0])]);
+        let result = table(&[0.0, 0.5], &[("a", &[0.0, 0.0])]);
+        let found = compare(&result, &reference, &["a".to_owned()], 0.002).unwrap();
+        assert_eq!(found[0].agreement, Agreement::Incomplete { covered: Some((0.0, 0.5)) });
+        let empty = compare(&table(&[], &[("a", &[])]), &reference, &["a".to_owned()], 0.002);
+        assert_eq!(empty.unwrap()[0].agreement, Agreement::Incomplete { covered: None });
+    }
+
+    #[test]
+    fn a_list_names_the_signals() {
+        let reference = table(&[0.0], &[("a", &[0.0]), ("b", &[0.0])]);
+        assert_eq!(signals_to_compare(&reference, Some("time\r\n b \n\n")), ["b"]);
+        assert_eq!(signals_to_compare(&reference, None), ["a", "b"]);
+        let fault = compare(&reference, &reference, &["x".to_owned()], 0.1).unwrap_err();
+        assert_eq!(fault.code.slug, "bad-reference");
+        assert!(compare(&reference, &reference, &[], 2.0).is_err());
+    }
+}

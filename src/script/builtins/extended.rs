@@ -1,0 +1,190 @@
+//! Simulations with given values that return values: once, or once for each row of values.
+
+use super::simulation::{Request, run_model, translated_model};
+use super::{Args, Builtin, Failure, Family};
+use crate::bail;
+use crate::diag::Fault;
+use crate::script::errors::BAD_ARGUMENT;
+use crate::script::simulation::{Simulated, Translated};
+use crate::script::{Dialect, Session};
+use crate::value::{ArrayValue, Elements, RealMatrix, Value, element_count};
+
+/// The commands of this file.
+pub(super) const FAMILY: Family = Family {
+    packages: &["DymolaCommands.SimulatorAPI"],
+    dialect: Some(Dialect::Dymola),
+    builtins: &[
+        Builtin { header: SIMULATE_EXTENDED_MODEL, run: simulate_extended_model },
+        Builtin { header: SIMULATE_MULTI_EXTENDED_MODEL, run: simulate_multi_extended_model },
+        Builtin { header: SIMULATE_MULTI_RESULTS_MODEL, run: simulate_multi_results_model },
+    ],
+};
+
+/// A header whose inputs begin with those of `simulateModel`.
+macro_rules! header {
+    ($name:literal, $description:literal, $rest:literal) => {
+        concat!(
+            "function ",
+            $name,
+            " \"",
+            $description,
+            "\"\n",
+            r#"  input String problem = "" "Class or Class(modification); empty: the model used last";
+  input Real startTime = 0.0 "s" annotation(optional = true);
+  input Real stopTime = 1.0 "s" annotation(optional = true);
+  input Integer numberOfIntervals = 500 annotation(optional = true);
+  input Real outputInterval = 0.0 "s; counts if numberOfIntervals is 0 or not given" annotation(optional = true);
+  input String method = "Dassl" annotation(optional = true);
+  input Real tolerance = 0.0001 "relative" annotation(optional = true);
+  input Real fixedstepsize = 0.0 "s, for methods with a fixed step" annotation(optional = true);
+  input String resultFile = "dsres" "without an ending, .mat is added";
+  input String initialNames[:] = fill("", 0) "parameters, and states or variables with a start value";
+"#,
+            $rest,
+            "end ",
+            $name,
+            ";\n"
+        )
+    };
+}
+
+const SIMULATE_EXTENDED_MODEL: &str = header!(
+    "simulateExtendedModel",
+    "Simulates a model with given parameter and start values and returns values at the end.",
+    r#"  input Real initialValues[:] = fill(0.0, 0) "their values";
+  input String finalNames[:] = fill("", 0) "variables whose last values are returned";
+  input Boolean autoLoad = true "has no effect: nothing is plotted";
+  output Boolean ok;
+  output Real finalValues[size(finalNames, 1)];
+"#
+);
+
+fn simulate_extended_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let request = Request::take(session, &mut args)?;
+    let names: Vec<String> = args.take("initialNames")?;
+    let values: Vec<f64> = args.take("initialValues")?;
+    let finals: Vec<String> = args.take("finalNames")?;
+    check_count(&names, values.len())?;
+    let failed = || Value::Tuple(vec![false.into(), vec![f64::NAN; finals.len()].into()]);
+    let Some(model) = translated_model(session, &request.problem) else { return Ok(failed()) };
+    let done = simulated(session, &model, &request, &names, &values)?;
+    let Some(simulated) = done else { return Ok(failed()) };
+    Ok(Value::Tuple(vec![true.into(), last_values(&simulated, &finals)?.into()]))
+}
+
+const SIMULATE_MULTI_EXTENDED_MODEL: &str = header!(
+    "simulateMultiExtendedModel",
+    "Simulates a model once for each row of parameter and start values and returns values at the ends.",
+    r#"  input Real initialValues[:, :] = fill(0.0, 0, 0) "one row for each simulation";
+  input String finalNames[:] = fill("", 0) "variables whose last values are returned";
+  output Boolean ok;
+  output Real finalValues[size(initialValues, 1), size(finalNames, 1)] "NaN where a simulation failed";
+"#
+);
+
+fn simulate_multi_extended_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let request = Request::take(session, &mut args)?;
+    let names: Vec<String> = args.take("initialNames")?;
+    let values: RealMatrix = args.take("initialValues")?;
+    let finals: Vec<String> = args.take("finalNames")?;
+    let (ok, elements) = each_row(session, &request, &names, &values, finals.len(), |run| {
+        last_values(run, &finals)
+    })?;
+    let (rows, columns) = (values.rows, finals.len());
+    Ok(Value::Tuple(vec![ok.into(), RealMatrix { rows, columns, elements }.into()]))
+}
+
+const SIMULATE_MULTI_RESULTS_MODEL: &str = header!(
+    "simulateMultiResultsModel",
+    "Simulates a model once for each row of parameter and start values and returns trajectories.",
+    r#"  input Real initialValues[:, :] = fill(0.0, 0, 0) "one row for each simulation";
+  input String resultNames[:] = fill("", 0) "variables whose trajectories are returned";
+  output Boolean ok;
+  output Real trajectories[:, :, :] "simulation, variable, point of the output grid; NaN where a simulation failed";
+"#
+);
+
+/// The trajectories lie on the grid of the output intervals, so that all have the same points.
+fn simulate_multi_results_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let request = Request::take(session, &mut args)?;
+    let names: Vec<String> = args.take("initialNames")?;
+    let values: RealMatrix = args.take("initialValues")?;
+    let results: Vec<String> = args.take("resultNames")?;
+    let Some(model) = translated_model(session, &request.problem) else {
+        return Ok(Value::Tuple(vec![false.into(), cube([values.rows, results.len(), 0], vec![])]));
+    };
+    let grid = request.grid(&model)?;
+    let points = grid.len();
+    element_count(&[values.rows, results.len(), points])?;
+    let (ok, elements) =
+        each_row(session, &request, &names, &values, results.len() * points, |run| {
+            let mut all = Vec::with_capacity(results.len() * points);
+            for name in &results {
+                all.extend(run.table.interpolate(name, &grid)?);
+            }
+            Ok(all)
+        })?;
+    Ok(Value::Tuple(vec![ok.into(), cube([values.rows, results.len(), points], elements)]))
+}
+
+fn cube(dims: [usize; 3], elements: Vec<f64>) -> Value {
+    Value::Array(ArrayValue { dims: dims.to_vec(), elements: Elements::Real(elements) })
+}
+
+fn check_count(names: &[String], values: usize) -> Result<(), Fault> {
+    if names.len() != values {
+        bail!(BAD_ARGUMENT, "{} names and {values} values are given", names.len());
+    }
+    Ok(())
+}
+
+/// Simulates once for each row; what a failed simulation would have given is NaN.
+fn each_row(
+    session: &mut Session,
+    request: &Request,
+    names: &[String],
+    values: &RealMatrix,
+    wanted: usize,
+    take: impl Fn(&Simulated) -> Result<Vec<f64>, Fault>,
+) -> Result<(bool, Vec<f64>), Failure> {
+    check_count(names, values.columns)?;
+    let mut all = Vec::with_capacity(values.rows * wanted);
+    let Some(model) = translated_model(session, &request.problem) else {
+        all.resize(values.rows * wanted, f64::NAN);
+        return Ok((false, all));
+    };
+    let mut ok = true;
+    for row in 0..values.rows {
+        match simulated(session, &model, request, names, values.row(row))? {
+            Some(run) => all.extend(take(&run)?),
+            None => {
+                ok = false;
+                all.resize(all.len() + wanted, f64::NAN);
+            }
+        }
+    }
+    Ok((ok, all))
+}
+
+/// Simulates with these values; `None` if it failed, which has been reported.
+fn simulated(
+    session: &mut Session,
+    model: &Translated,
+    request: &Request,
+    names: &[String],
+    values: &[f64],
+) -> Result<Option<Simulated>, Failure> {
+    for (name, value) in names.iter().zip(values) {
+        session.set_parameter(name, *value)?;
+    }
+    let done = run_model(session, model, &request.wishes, &request.file);
+    Ok(session.or_report_all(done))
+}
+
+fn last_values(simulated: &Simulated, names: &[String]) -> Result<Vec<f64>, Fault> {
+    let last = |name: &String| {
+        let column = simulated.table.column(name)?;
+        Ok(column.last().copied().unwrap_or(f64::NAN))
+    };
+    names.iter().map(last).collect()
+}

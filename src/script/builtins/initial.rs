@@ -1,0 +1,107 @@
+//! Simulations that begin where another one ended.
+
+use super::simulation::Experiment;
+use super::{Args, Builtin, Failure, Family};
+use crate::bail;
+use crate::diag::Fault;
+use crate::script::errors::{BAD_ARGUMENT, NO_TRANSLATED_MODEL};
+use crate::script::simulation::{Translated, state_names};
+use crate::script::{Dialect, Session};
+use crate::value::Value;
+use indexmap::IndexMap;
+use std::sync::Arc;
+
+/// The commands of this file.
+pub(super) const FAMILY: Family = Family {
+    packages: &["DymolaCommands.SimulatorAPI"],
+    dialect: Some(Dialect::Dymola),
+    builtins: &[
+        Builtin { header: IMPORT_INITIAL, run: import_initial },
+        Builtin { header: IMPORT_INITIAL_RESULT, run: import_initial_result },
+        Builtin { header: INITIALIZED, run: initialized },
+    ],
+};
+
+fn model(session: &Session, command: &str) -> Result<Arc<Translated>, Fault> {
+    session.last_model().ok_or_else(|| {
+        Fault::new(NO_TRANSLATED_MODEL, format!("`{command}`: no model has been translated yet"))
+            .help("translate or simulate the model first")
+    })
+}
+
+const IMPORT_INITIAL: &str = r#"
+function importInitial "The next simulations begin where the last one ended, with its time and the length of its interval."
+  input String dsName = "dsfinal.txt" "only this name: the end of the last simulation of this session";
+  output Boolean ok;
+end importInitial;
+"#;
+
+fn import_initial(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let file: String = args.take("dsName")?;
+    if file != "dsfinal.txt" {
+        bail!(
+            BAD_ARGUMENT,
+            "`importInitial` continues the last simulation of this session, `{file}` is not read";
+            help: "`importInitialResult(\"result.mat\", time)` takes the values of a result file"
+        );
+    }
+    model(session, "importInitial")?;
+    let Some(end) = session.last_end().cloned() else {
+        bail!(BAD_ARGUMENT, "no model has been simulated, so there is no end to continue from")
+    };
+    session.import_states(end.states);
+    let (start, stop) = end.span;
+    let wishes = &mut session.extension::<Experiment>().0;
+    wishes.start = Some(stop);
+    wishes.stop = Some(stop + (stop - start));
+    Ok(true.into())
+}
+
+const IMPORT_INITIAL_RESULT: &str = r#"
+function importInitialResult "The next simulations begin with the states and parameters that a result file has at a time."
+  input String dsResName "result file";
+  input Real atTime "s";
+  output Boolean ok;
+end importInitialResult;
+"#;
+
+fn import_initial_result(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let (file, time): (String, f64) = (args.take("dsResName")?, args.take("atTime")?);
+    let model = model(session, "importInitialResult")?;
+    let table = super::results::table(session, &file)?;
+    let mut states = IndexMap::new();
+    for name in state_names(&model) {
+        states.insert(name.clone(), table.interpolate(name, &[time])?[0]);
+    }
+    for parameter in model.program.parameters() {
+        if let Ok(values) = table.interpolate(&parameter.name, &[time]) {
+            session.set_parameter(&parameter.name, values[0])?;
+        }
+    }
+    session.import_states(states);
+    session.extension::<Experiment>().0.start = Some(time);
+    Ok(true.into())
+}
+
+const INITIALIZED: &str = r#"
+function initialized "Whether the next simulations begin with the states as importInitial left them, or with the initial equations."
+  input Boolean allVars = false "whether all variables are fixed: refused, the equations determine the others";
+  input Boolean isInitialized = true "false: the initial equations count again";
+end initialized;
+"#;
+
+fn initialized(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let (all, is_initialized): (bool, bool) = (args.take("allVars")?, args.take("isInitialized")?);
+    model(session, "initialized")?;
+    if all {
+        bail!(
+            BAD_ARGUMENT,
+            "`allVars = true` is refused: with the states given, the equations determine the rest";
+            help: "leave it out"
+        );
+    }
+    if !is_initialized {
+        session.import_states(IndexMap::new());
+    }
+    Ok(Value::nothing())
+}

@@ -1,0 +1,106 @@
+//! Regular expressions and encodings of OpenModelica's scripts.
+
+use super::strings::text;
+use super::{Args, Builtin, Failure, Family};
+use crate::bail;
+use crate::diag::Fault;
+use crate::fault;
+use crate::script::errors::BAD_ARGUMENT;
+use crate::script::{Dialect, Session};
+use crate::value::Value;
+use regex::{Regex, RegexBuilder};
+
+/// The commands of this file.
+pub(super) const FAMILY: Family = Family {
+    packages: &["OpenModelica.Scripting"],
+    dialect: Some(Dialect::OpenModelica),
+    builtins: &[
+        Builtin { header: REGEX, run: regex },
+        Builtin { header: REGEX_BOOL, run: regex_bool },
+        Builtin { header: ICONV, run: iconv },
+    ],
+};
+
+/// Bytes that a compiled expression may take.
+const MAX_SIZE: usize = 1 << 20;
+
+const REGEX: &str = r#"
+function regex "Whether a regular expression is found in a string, and the parts that it matched."
+  input String str;
+  input String re;
+  input Integer maxMatches = 1 "number of strings returned: the match, then its groups";
+  input Boolean extended = true "false is refused";
+  input Boolean caseInsensitive = false;
+  output Integer numMatches "of the strings returned, those that are parts of str";
+  output String matchedSubstrings[maxMatches];
+end regex;
+"#;
+
+const REGEX_BOOL: &str = r#"
+function regexBool "Whether a regular expression is found in a string."
+  input String str;
+  input String re;
+  input Boolean extended = true "false is refused";
+  input Boolean caseInsensitive = false;
+  output Boolean matches;
+end regexBool;
+"#;
+
+fn compiled(args: &mut Args) -> Result<Regex, Fault> {
+    let expression: String = args.take("re")?;
+    if !args.take::<bool>("extended")? {
+        bail!(BAD_ARGUMENT, "basic regular expressions are refused: leave out `extended = false`");
+    }
+    RegexBuilder::new(&expression)
+        .case_insensitive(args.take("caseInsensitive")?)
+        .size_limit(MAX_SIZE)
+        .build()
+        .map_err(|error| {
+            let reason = error.to_string();
+            let last = reason.lines().last().unwrap_or_default().trim_start_matches("error: ");
+            fault!(BAD_ARGUMENT, "`{expression}` is no regular expression: {last}")
+        })
+}
+
+fn regex(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let (subject, wanted): (String, i64) = (args.take("str")?, args.take("maxMatches")?);
+    let wanted = usize::try_from(wanted).ok().filter(|wanted| *wanted <= 1000);
+    let Some(wanted) = wanted else { bail!(BAD_ARGUMENT, "`maxMatches` must be 0 to 1000") };
+    let found = compiled(&mut args)?.captures(&subject).map_or(Vec::new(), |captures| {
+        let parts = captures.iter().take(wanted);
+        parts.map(|part| part.map_or(String::new(), |part| part.as_str().to_owned())).collect()
+    });
+    let count = found.len() as i64;
+    let mut strings = found;
+    strings.resize(wanted, String::new());
+    Ok(Value::Tuple(vec![count.into(), strings.into()]))
+}
+
+fn regex_bool(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let subject: String = args.take("str")?;
+    Ok(compiled(&mut args)?.is_match(&subject).into())
+}
+
+const ICONV: &str = r#"
+function iconv "A string in another encoding: strings are Unicode here, so it stays as it is."
+  input String string;
+  input String from;
+  input String to = "UTF-8";
+  output String result;
+end iconv;
+"#;
+
+fn iconv(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let known = |name: &str| {
+        ["UTF-8", "UTF8", "ISO-8859-1", "LATIN1", "ASCII", "US-ASCII"]
+            .iter()
+            .any(|known| known.eq_ignore_ascii_case(name))
+    };
+    for name in ["from", "to"] {
+        let encoding: String = args.take(name)?;
+        if !known(&encoding) {
+            bail!(BAD_ARGUMENT, "the encoding `{encoding}` is not known");
+        }
+    }
+    Ok(text(args.take::<String>("string")?))
+}

@@ -1,0 +1,99 @@
+//! Simulations that begin where another one ended.
+
+use crate::compile::System;
+use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern};
+
+/// A system whose states have given values at the start, whatever its initial equations say; all
+/// other variables follow from them. Discrete variables keep the values that initialization gave
+/// them.
+pub(super) struct Continued {
+    /// The system, which can tell its parameters afterwards.
+    pub(super) system: System,
+    /// Positions among the states, and values.
+    pub(super) states: Vec<(usize, f64)>,
+}
+
+impl DaeSystem for Continued {
+    fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        self.system.initialize(t, y)?;
+        if self.states.is_empty() {
+            return Ok(());
+        }
+        for (state, value) in &self.states {
+            y[*state] = *value;
+        }
+        self.system.handle_event(t, y).map(|_| ())
+    }
+
+    fn n_differential(&self) -> usize {
+        self.system.n_differential()
+    }
+
+    fn n_algebraic(&self) -> usize {
+        self.system.n_algebraic()
+    }
+
+    fn solve_loops(&mut self, inside: bool) {
+        self.system.solve_loops(inside);
+    }
+
+    fn nominal(&self, out: &mut [f64]) {
+        self.system.nominal(out);
+    }
+
+    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.system.rhs(t, y, out)
+    }
+
+    fn pattern(&self) -> &Pattern {
+        self.system.pattern()
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        self.system.jacobian(t, y, values)
+    }
+
+    fn n_crossings(&self) -> usize {
+        self.system.n_crossings()
+    }
+
+    fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.system.crossings(t, y, out)
+    }
+
+    fn next_time_event(&self, t: f64) -> Option<f64> {
+        self.system.next_time_event(t)
+    }
+
+    fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
+        self.system.handle_event(t, y)
+    }
+
+    fn remembers(&self) -> bool {
+        self.system.remembers()
+    }
+
+    fn remember(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        self.system.remember(t, y)
+    }
+
+    fn longest_step(&self) -> f64 {
+        self.system.longest_step()
+    }
+
+    fn finish(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
+        self.system.finish(t, y)
+    }
+
+    fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        self.system.check(t, y)
+    }
+
+    fn n_observed(&self) -> usize {
+        self.system.n_observed()
+    }
+
+    fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.system.observe(t, y, out)
+    }
+}

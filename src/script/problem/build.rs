@@ -1,0 +1,410 @@
+//! From the file to the problem: models are translated, data read.
+//!
+//! What an experiment sets beyond values of parameters (ties, initial values, inputs that follow
+//! data) becomes a class around the model, so that it means what it means in Modelica.
+
+use super::file::{ColumnEntry, ExperimentEntry, OneOrMany, ProblemFile, Role};
+use crate::bail;
+use crate::diag::{Diagnostic, Fault};
+use crate::fault;
+use crate::ga::optimizer::METHODS;
+use crate::identify::fitness::FITNESSES;
+use crate::identify::problem::{
+    Experiment, Free, ModelSimulator, Observation, Problem, Series, Simulate, Stop,
+};
+use crate::identify::{CompiledModel, Model};
+use crate::mat::{self, MatFile};
+use crate::registry::{self, BAD_OPTION, Options};
+use crate::script::Session;
+use crate::script::simulation::{self, Wishes};
+use crate::source::Span;
+use std::fmt::Write;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Error of a value that is computed without integration, relative.
+const NOISE_OF_FORMULAS: f64 = 1e-12;
+
+/// A problem with the experiments that are kept for validation.
+pub(super) struct Built {
+    pub problem: Problem,
+    pub validation: Vec<(Experiment, Vec<Series>)>,
+    /// Changes when the problem or its data change.
+    pub fingerprint: u64,
+}
+
+/// Something that a class around the model must hold.
+#[derive(Default)]
+struct Around {
+    modifications: Vec<String>,
+    declarations: String,
+}
+
+/// Builds the problem.
+///
+/// # Errors
+///
+/// Everything that is wrong with the models, the data or the settings.
+pub(super) fn build(
+    session: &mut Session,
+    file: &ProblemFile,
+    path: &Path,
+    text: &str,
+) -> Result<Built, Vec<Diagnostic>> {
+    let one = |fault: Fault| vec![fault.at(Span::NONE)];
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    for models in &file.files {
+        session.load_path(&folder.join(models))?;
+    }
+    let free = free_parameters(file).map_err(one)?;
+    let mut hash = Hash::default();
+    hash.add(text.as_bytes());
+    let (mut experiments, mut series, mut validation) = (Vec::new(), Vec::new(), Vec::new());
+    let mut noise: f64 = NOISE_OF_FORMULAS;
+    for (number, entry) in file.experiment.iter().enumerate() {
+        let data = folder.join(&entry.data);
+        let bytes = session.read_bytes(&data).map_err(one)?;
+        hash.add(&bytes);
+        let table = mat::read_named(&data.to_string_lossy(), &bytes).map_err(one)?;
+        let built = experiment(session, file, entry, number, &table, &free)?;
+        let (experiment, own, has_states) = built;
+        if has_states {
+            noise = noise.max(experiment.settings.tolerance);
+        }
+        if entry.validation {
+            validation.push((experiment, own));
+        } else {
+            experiments.push(experiment);
+            series.extend(own);
+        }
+    }
+    if experiments.is_empty() {
+        return Err(one(fault!(BAD_OPTION, "there is no experiment to fit")
+            .help("add a table `[[experiment]]`")));
+    }
+    let parameters = with_units(free, &experiments);
+    // Made once here, so that what is wrong shows before the run.
+    drop(ModelSimulator::new(&experiments).map_err(one)?);
+    let simulator = move || Ok(Box::new(ModelSimulator::new(&experiments)?) as Box<dyn Simulate>);
+    let problem = assemble(file, parameters, series, noise, Box::new(simulator)).map_err(one)?;
+    Ok(Built { problem, validation, fingerprint: hash.0 })
+}
+
+fn assemble(
+    file: &ProblemFile,
+    parameters: Vec<Free>,
+    series: Vec<Series>,
+    noise: f64,
+    simulator: Box<dyn Fn() -> Result<Box<dyn Simulate>, Fault> + Send + Sync>,
+) -> Result<Problem, Fault> {
+    let names = match &file.fitness {
+        None => vec![FITNESSES[0].name.to_owned()],
+        Some(OneOrMany::One(name)) => vec![name.clone()],
+        Some(OneOrMany::Many(names)) => names.clone(),
+    };
+    let mut objectives = Vec::new();
+    for name in &names {
+        let entry = registry::find("fitness function", FITNESSES, name)?;
+        objectives.push((entry.name.to_owned(), (entry.make)(&mut Options::default())?));
+    }
+    let several = objectives.len() > 1;
+    let default = if several { "nsga2" } else { METHODS[0].name };
+    let wanted = file.method.name.as_deref().unwrap_or(default);
+    let entry = registry::find("method", METHODS, wanted)?;
+    let mut options = Options::default();
+    file.method.settings.iter().for_each(|(name, value)| options.set(name, *value));
+    let method = (entry.make)(&mut options)?;
+    options.finish()?;
+    let stop = &file.stop;
+    let mut stop = Stop {
+        generations: stop.generations,
+        evaluations: stop.evaluations,
+        seconds: stop.seconds,
+        target: stop.target,
+        stagnation: stop.stagnation,
+    };
+    if stop == Stop::default() {
+        stop = Stop { evaluations: Some(20_000), stagnation: Some(500), ..stop };
+    }
+    Ok(Problem {
+        title: file.title.clone().unwrap_or_else(|| format!("Identification of {}", file.model)),
+        model: file.model.clone(),
+        parameters,
+        series,
+        objectives,
+        method_name: entry.name.to_owned(),
+        method,
+        polish: file.method.polish.unwrap_or(true),
+        seed: file.seed.unwrap_or([12345.0; 6]),
+        stop,
+        noise,
+        simulator,
+    })
+}
+
+/// The free parameters, those of single experiments once for each.
+fn free_parameters(file: &ProblemFile) -> Result<Vec<Free>, Fault> {
+    let mut free = Vec::new();
+    for (name, entry) in &file.parameters {
+        let Role::Free { range, logarithmic } = entry.role(name)? else { continue };
+        let unit = entry.unit.clone().unwrap_or_default();
+        let one = |name: String| Free::new(name, unit.clone(), range, logarithmic, entry.start);
+        if entry.per_experiment {
+            for (number, experiment) in file.experiment.iter().enumerate() {
+                if !experiment.validation {
+                    free.push(one(format!("{name}@{}", label(experiment, number)))?);
+                }
+            }
+        } else {
+            free.push(one(name.clone())?);
+        }
+    }
+    Ok(free)
+}
+
+fn with_units(mut free: Vec<Free>, experiments: &[Experiment]) -> Vec<Free> {
+    for (place, parameter) in free.iter_mut().enumerate() {
+        for experiment in experiments.iter().filter(|_| parameter.unit.is_empty()) {
+            let known = experiment.parameters.iter().find(|(own, _)| *own == place);
+            let Some((_, name)) = known else { continue };
+            let own = experiment.model.parameters().into_iter().find(|p| p.name == *name);
+            parameter.unit = own.map_or_else(String::new, |own| own.unit);
+            break;
+        }
+    }
+    free
+}
+
+fn label(entry: &ExperimentEntry, number: usize) -> String {
+    entry.name.clone().unwrap_or_else(|| format!("experiment {}", number + 1))
+}
+
+type OneExperiment = (Experiment, Vec<Series>, bool);
+
+fn experiment(
+    session: &mut Session,
+    file: &ProblemFile,
+    entry: &ExperimentEntry,
+    number: usize,
+    table: &MatFile,
+    free: &[Free],
+) -> Result<OneExperiment, Vec<Diagnostic>> {
+    let one = |fault: Fault| vec![fault.at(Span::NONE)];
+    let name = label(entry, number);
+    let x_entry =
+        entry.x.as_ref().map_or_else(|| ColumnEntry::named(None), super::file::Column::entry);
+    let x_name = match &x_entry.variable {
+        Some(variable) => variable.clone(),
+        // A bare name is both the column and, where nothing else is said, the variable.
+        None => x_entry.column.clone().unwrap_or_else(|| "time".to_owned()),
+    };
+    let x = column(table, &x_entry, &x_name).map_err(one)?;
+    let mut around = Around::default();
+    let parameters = settle(file, entry, &name, free, &mut around).map_err(one)?;
+    inputs(entry, table, &x, &mut around).map_err(one)?;
+    let class = class_of(session, file, number, &around)?;
+    let translated = simulation::translated(session, &class)?;
+    let program = translated.program.clone();
+    let has_states = !program.sorted().states.is_empty();
+    let model: Arc<dyn Model> = Arc::new(CompiledModel::new(&file.model, program.clone()));
+    let wishes = Wishes {
+        stop: stop_time(entry, &x_name, &x, program.experiment().stop_time),
+        tolerance: entry.tolerance,
+        method: entry.integrator.clone(),
+        ..Wishes::default()
+    };
+    let settings = simulation::settings(&program.experiment(), &wishes).map_err(one)?;
+    let (mut observations, mut series) = (Vec::new(), Vec::new());
+    for (y_name, wanted) in &entry.outputs {
+        let wanted = wanted.entry();
+        let y = column(table, &wanted, y_name).map_err(one)?;
+        let (x, y): (Vec<f64>, Vec<f64>) =
+            x.iter().copied().zip(y).filter(|(x, y)| x.is_finite() && y.is_finite()).unzip();
+        if x.is_empty() {
+            return Err(one(fault!(BAD_OPTION, "`{y_name}` of {name} has no points")));
+        }
+        let unit = |name: &str| {
+            if name == "time" { "s".to_owned() } else { model.unit(name).unwrap_or_default() }
+        };
+        check_unit(y_name, &unit(y_name), &wanted).map_err(one)?;
+        check_unit(&x_name, &unit(&x_name), &x_entry).map_err(one)?;
+        let weight = wanted.weight.unwrap_or(1.0) * entry.weight.unwrap_or(1.0)
+            / wanted.sigma.unwrap_or(1.0);
+        if !(weight.is_finite() && weight > 0.0) {
+            return Err(one(fault!(BAD_OPTION, "the weight of `{y_name}` in {name} is {weight}")));
+        }
+        series.push(Series {
+            experiment: name.clone(),
+            y_name: y_name.clone(),
+            y_unit: unit(y_name),
+            x_name: x_name.clone(),
+            x_unit: unit(&x_name),
+            file: entry.data.display().to_string(),
+            x: x.clone(),
+            y,
+            weight,
+        });
+        observations.push(Observation { y_name: y_name.clone(), x });
+    }
+    if observations.is_empty() {
+        return Err(one(fault!(BAD_OPTION, "{name} has no outputs to compare")));
+    }
+    Ok((Experiment { name, model, settings, x_name, observations, parameters }, series, has_states))
+}
+
+/// Over time, the simulation goes as far as it was measured.
+fn stop_time(
+    entry: &ExperimentEntry,
+    x_name: &str,
+    x: &[f64],
+    annotated: Option<f64>,
+) -> Option<f64> {
+    let last = x.iter().copied().filter(|x| x.is_finite()).fold(f64::NEG_INFINITY, f64::max);
+    match entry.stop_time {
+        None if x_name == "time" && last.is_finite() => Some(annotated.unwrap_or(last).max(last)),
+        wanted => wanted,
+    }
+}
+
+/// What the parameters of the file mean in one experiment: modifications, and the free ones with
+/// their names in the class.
+fn settle(
+    file: &ProblemFile,
+    entry: &ExperimentEntry,
+    experiment: &str,
+    free: &[Free],
+    around: &mut Around,
+) -> Result<Vec<(usize, String)>, Fault> {
+    let mut places = Vec::new();
+    for (number, (name, parameter)) in file.parameters.iter().enumerate() {
+        let initial = parameter.initial;
+        let value = match parameter.role(name)? {
+            Role::Free { .. } => {
+                let full = if parameter.per_experiment {
+                    format!("{name}@{experiment}")
+                } else {
+                    name.clone()
+                };
+                let Some(place) = free.iter().position(|free| free.name == full) else {
+                    bail!(BAD_OPTION, "`{name}` is identified for each experiment, so that {experiment} has no value of it"; help: "fix it there with `set`")
+                };
+                if !initial {
+                    places.push((place, name.clone()));
+                    continue;
+                }
+                let own = format!("gapi_initial_{number}");
+                let middle = free[place].value(0.5);
+                _ = writeln!(around.declarations, "  parameter Real {own} = {middle:e};");
+                places.push((place, own.clone()));
+                own
+            }
+            Role::Fixed(value) => format!("{value:e}"),
+            Role::Tied(expression) => expression,
+        };
+        around.modifications.push(match initial {
+            true => format!("{name}(start = {value}, fixed = true)"),
+            false => format!("{name} = {value}"),
+        });
+    }
+    for (name, value) in &entry.set {
+        if file.parameters.contains_key(name) {
+            bail!(BAD_OPTION, "`{name}` is set in {experiment} and among the parameters"; help: "keep one of them");
+        }
+        around.modifications.push(format!("{name} = {value:e}"));
+    }
+    let start = |(name, value): (&String, &f64)| format!("{name}(start = {value:e}, fixed = true)");
+    around.modifications.extend(entry.start.iter().map(start));
+    Ok(places)
+}
+
+/// Inputs follow their columns by linear interpolation.
+fn inputs(
+    entry: &ExperimentEntry,
+    table: &MatFile,
+    x: &[f64],
+    around: &mut Around,
+) -> Result<(), Fault> {
+    if entry.inputs.is_empty() {
+        return Ok(());
+    }
+    let time = match &entry.input_time {
+        Some(name) => column(table, &ColumnEntry::named(Some(name.clone())), name)?,
+        None => x.to_vec(),
+    };
+    for (number, (name, wanted)) in entry.inputs.iter().enumerate() {
+        let values = column(table, &wanted.entry(), name)?;
+        let pairs = time.iter().zip(&values).filter(|(t, v)| t.is_finite() && v.is_finite());
+        let rows: Vec<String> = pairs.map(|(t, v)| format!("{t:e},{v:e}")).collect();
+        if rows.is_empty() {
+            bail!(BAD_OPTION, "the input `{name}` has no points");
+        }
+        let table = format!("gapi_input_{number}");
+        _ = writeln!(
+            around.declarations,
+            "  Modelica.Blocks.Sources.CombiTimeTable {table}(table = [{}], extrapolation = Modelica.Blocks.Types.Extrapolation.HoldLastPoint);",
+            rows.join(";")
+        );
+        around.modifications.push(format!("{name} = {table}.y[1]"));
+    }
+    Ok(())
+}
+
+/// The class to translate: the model itself, or one around it.
+fn class_of(
+    session: &mut Session,
+    file: &ProblemFile,
+    number: usize,
+    around: &Around,
+) -> Result<String, Vec<Diagnostic>> {
+    if around.modifications.is_empty() {
+        return Ok(file.model.clone());
+    }
+    let (class, inner) = match file.model.split_once('(') {
+        Some((class, inner)) => (class.trim(), inner.trim_end().strip_suffix(')').unwrap_or(inner)),
+        None => (file.model.trim(), ""),
+    };
+    let own = std::iter::once(inner.trim()).filter(|inner| !inner.is_empty());
+    let all: Vec<&str> = own.chain(around.modifications.iter().map(String::as_str)).collect();
+    let name = format!("GAPILibExperiment{}", number + 1);
+    let text = format!(
+        "model {name}\n  extends {class}(\n    {});\n{}end {name};\n",
+        all.join(",\n    "),
+        around.declarations
+    );
+    session.load_text(&format!("experiment {} of the problem", number + 1), &text)?;
+    Ok(name)
+}
+
+fn column(table: &MatFile, entry: &ColumnEntry, default: &str) -> Result<Vec<f64>, Fault> {
+    let name = entry.column.as_deref().unwrap_or(default);
+    let factor = entry.factor.unwrap_or(1.0);
+    Ok(table.matrix(name)?.row_major().iter().map(|value| value * factor).collect())
+}
+
+fn check_unit(name: &str, unit: &str, entry: &ColumnEntry) -> Result<(), Fault> {
+    match &entry.unit {
+        Some(given) if entry.factor.is_none() && given != unit => bail!(
+            BAD_OPTION,
+            "`{name}` is in {}, but its column in {given}", if unit.is_empty() { "no unit" } else { unit };
+            help: "give the `factor` that turns the column's values into the model's unit"
+        ),
+        _ => Ok(()),
+    }
+}
+
+/// FNV-1a.
+struct Hash(u64);
+
+impl Default for Hash {
+    fn default() -> Hash {
+        Hash(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Hash {
+    fn add(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Settings that are changed while a run goes on: a file `name = number` in each line, looked at
+//! again whenever it changes.
+//!
+//! Names are those of the method (`mutation`, `elites`, …), `generations`, `evaluations` and
+//! `seconds` of the stop conditions, and `"min NAME"` and `"max NAME"` of the search ranges.
+
+use crate::identify::problem::Run;
+use crate::script::Session;
+use crate::script::world::Stamp;
+use indexmap::IndexMap;
+use std::path::PathBuf;
+
+/// A watched file.
+pub(super) struct Watched {
+    path: PathBuf,
+    stamp: Option<Stamp>,
+    known: IndexMap<String, f64>,
+}
+
+impl Watched {
+    pub(super) fn new(path: PathBuf) -> Watched {
+        Watched { path, stamp: None, known: IndexMap::new() }
+    }
+
+    /// Carries out what has changed in the file; what cannot be is told and left.
+    pub(super) fn apply(&mut self, session: &mut Session, run: &mut Run) {
+        let stamp = session.world.stamp(&self.path);
+        if stamp.is_none() || stamp == self.stamp {
+            return;
+        }
+        self.stamp = stamp;
+        let Ok(bytes) = session.world.read(&self.path) else { return };
+        let text = String::from_utf8_lossy(&bytes).into_owned();
+        let wanted: IndexMap<String, f64> = match toml::from_str(&text) {
+            Ok(wanted) => wanted,
+            Err(error) => {
+                let text = format!("warning: `{}`: {}\n", self.path.display(), error.message());
+                session.world.eprint(&text);
+                return;
+            }
+        };
+        for (setting, value) in wanted {
+            if self.known.get(&setting) == Some(&value) {
+                continue;
+            }
+            match run.change(&setting, value) {
+                Ok(()) => session.print(&format!(
+                    "{setting} = {value} from generation {} on\n",
+                    run.generations() + 1
+                )),
+                Err(fault) => session.world.eprint(&format!("warning: {}\n", fault.message)),
+            }
+            self.known.insert(setting, value);
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! The file that a problem is written in: TOML.
+
+use crate::bail;
+use crate::diag::Diagnostic;
+use crate::registry::BAD_OPTION;
+use crate::source::{SourceId, Span};
+use indexmap::IndexMap;
+use serde::Deserialize;
+use std::path::PathBuf;
+
+/// A problem as the file says it.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ProblemFile {
+    pub title: Option<String>,
+    /// `Class` or `Class(modification)`.
+    pub model: String,
+    /// Modelica files and folders, relative to the problem's file.
+    #[serde(default)]
+    pub files: Vec<PathBuf>,
+    pub parameters: IndexMap<String, ParameterEntry>,
+    pub experiment: Vec<ExperimentEntry>,
+    pub fitness: Option<OneOrMany>,
+    #[serde(default)]
+    pub method: MethodEntry,
+    #[serde(default)]
+    pub stop: StopEntry,
+    pub seed: Option<[f64; 6]>,
+    #[serde(default)]
+    pub checkpoint: CheckpointEntry,
+}
+
+/// A parameter: free within a range, or fixed, or tied to others.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ParameterEntry {
+    pub min: Option<f64>,
+    pub max: Option<f64>,
+    /// `linear` or `log`.
+    pub scale: Option<String>,
+    pub start: Option<f64>,
+    pub unit: Option<String>,
+    pub fixed: Option<f64>,
+    /// An expression of other parameters.
+    pub tied: Option<String>,
+    /// The name is that of a state, whose initial value is meant.
+    #[serde(default)]
+    pub initial: bool,
+    /// Every experiment has its own.
+    #[serde(default)]
+    pub per_experiment: bool,
+}
+
+/// An experiment.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ExperimentEntry {
+    pub name: Option<String>,
+    pub data: PathBuf,
+    /// The variable that the outputs were measured over; `time` unless given.
+    pub x: Option<Column>,
+    /// Variables that were measured.
+    pub outputs: IndexMap<String, Column>,
+    /// Inputs of the model that follow columns of the data.
+    #[serde(default)]
+    pub inputs: IndexMap<String, Column>,
+    /// The column of time for the inputs; that of X unless given.
+    pub input_time: Option<String>,
+    /// Values of parameters in this experiment.
+    #[serde(default)]
+    pub set: IndexMap<String, f64>,
+    /// Initial values of states in this experiment.
+    #[serde(default)]
+    pub start: IndexMap<String, f64>,
+    pub weight: Option<f64>,
+    /// Not used for the fit, compared at the end.
+    #[serde(default)]
+    pub validation: bool,
+    pub stop_time: Option<f64>,
+    pub tolerance: Option<f64>,
+    pub integrator: Option<String>,
+}
+
+/// A column of the data: its name, or its name with more.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged)]
+pub(super) enum Column {
+    Name(String),
+    More(ColumnEntry),
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ColumnEntry {
+    /// For `x`: the variable of the model.
+    pub variable: Option<String>,
+    pub column: Option<String>,
+    /// The unit of the column; must be that of the variable after `factor`.
+    pub unit: Option<String>,
+    /// The column's values times this are in the variable's unit.
+    pub factor: Option<f64>,
+    pub weight: Option<f64>,
+    /// Standard deviation of the measurement: the weight becomes its reciprocal.
+    pub sigma: Option<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+pub(super) enum OneOrMany {
+    One(String),
+    Many(Vec<String>),
+}
+
+/// The method: its name and its settings.
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct MethodEntry {
+    pub name: Option<String>,
+    /// Whether least squares refine the result.
+    pub polish: Option<bool>,
+    #[serde(flatten)]
+    pub settings: IndexMap<String, f64>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct StopEntry {
+    pub generations: Option<u64>,
+    pub evaluations: Option<u64>,
+    pub seconds: Option<f64>,
+    pub target: Option<f64>,
+    pub stagnation: Option<u64>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CheckpointEntry {
+    pub generations: Option<u64>,
+    pub seconds: Option<f64>,
+}
+
+/// Reads a problem.
+///
+/// # Errors
+///
+/// What is wrong with the text, at its place.
+pub(super) fn read(source: SourceId, text: &str) -> Result<ProblemFile, Diagnostic> {
+    toml::from_str(text).map_err(|error| {
+        let range = error.span().unwrap_or(0..0);
+        let span = Span { source, start: range.start as u32, end: range.end as u32 };
+        let message = error.message().lines().collect::<Vec<_>>().join("; ");
+        crate::fault!(BAD_OPTION, "{}", message.trim_end_matches('.')).at(span)
+    })
+}
+
+impl ColumnEntry {
+    pub(super) fn named(column: Option<String>) -> ColumnEntry {
+        ColumnEntry { variable: None, column, unit: None, factor: None, weight: None, sigma: None }
+    }
+}
+
+impl Column {
+    /// With the variable's name for what is not said.
+    pub(super) fn entry(&self) -> ColumnEntry {
+        match self {
+            Column::Name(column) => ColumnEntry::named(Some(column.clone())),
+            Column::More(entry) => entry.clone(),
+        }
+    }
+}
+
+/// The kinds of parameter that an entry may be.
+pub(super) enum Role {
+    Free { range: [f64; 2], logarithmic: Option<bool> },
+    Fixed(f64),
+    Tied(String),
+}
+
+impl ParameterEntry {
+    /// What the entry says.
+    ///
+    /// # Errors
+    ///
+    /// Where it says several things or nothing.
+    pub(super) fn role(&self, name: &str) -> Result<Role, crate::diag::Fault> {
+        let logarithmic = match self.scale.as_deref() {
+            None => None,
+            Some("log" | "logarithmic") => Some(true),
+            Some("linear") => Some(false),
+            Some(other) => {
+                bail!(BAD_OPTION, "the scale of `{name}` is `{other}`"; help: "write \"linear\" or \"log\"")
+            }
+        };
+        match (self.min, self.max, self.fixed, &self.tied) {
+            (Some(min), Some(max), None, None) => Ok(Role::Free { range: [min, max], logarithmic }),
+            (None, None, Some(value), None) => Ok(Role::Fixed(value)),
+            (None, None, None, Some(expression)) => Ok(Role::Tied(expression.clone())),
+            _ => bail!(
+                BAD_OPTION,
+                "`{name}` must have either `min` and `max`, or `fixed`, or `tied`";
+                help: "write for example `{name} = {{ min = 0.1, max = 10 }}`"
+            ),
+        }
+    }
+}

@@ -1,0 +1,274 @@
+//! Problems written in files: read, run with checkpoints, report.
+//!
+//! The checkpoint is the journal of the run in the folder of the results: every answer of the
+//! simulator, appended from time to time. A run that resumes asks the same questions again, is
+//! answered from the journal as far as it goes, and so ends with the same bytes as a run that was
+//! never interrupted. It is removed when the results have been written.
+
+mod build;
+mod control;
+mod file;
+
+use super::Session;
+use super::world::Progress;
+use crate::bail;
+use crate::diag::{Diagnostic, Fault};
+use crate::fault;
+use crate::identify::problem::{
+    self as solving, ModelSimulator, Run, Simulate, Solution, SolvedSeries,
+};
+use crate::registry::BAD_OPTION;
+use crate::source::Span;
+use build::Built;
+use control::Watched;
+use std::path::{Path, PathBuf};
+
+/// The journal's file.
+const JOURNAL: &str = "run.journal";
+/// Seconds between two checkpoints unless the problem says otherwise.
+const SECONDS: f64 = 2.0;
+/// Seconds between two looks at the watched settings.
+const LOOK: f64 = 0.2;
+
+/// How a problem is run.
+#[derive(Debug, Clone, Default)]
+pub struct RunOptions {
+    /// Go on from the checkpoint.
+    pub resume: bool,
+    /// Discard the checkpoint of an earlier run.
+    pub fresh: bool,
+    /// A file with settings that may be changed while the run goes on.
+    pub watch: Option<PathBuf>,
+    /// Ends the run after so many evaluations, whatever the problem says.
+    pub evaluations: Option<u64>,
+}
+
+/// The journal being written.
+struct Checkpoint {
+    path: PathBuf,
+    pending: Vec<u8>,
+    questions: u64,
+    written: f64,
+    /// Limits from the problem.
+    every: (Option<u64>, f64),
+    /// Why it could not be written.
+    broken: Option<String>,
+}
+
+/// Solves the problem in the file `path`; writes the results into the world's folder for them.
+///
+/// # Errors
+///
+/// Everything that is wrong with the problem; a run without any success; results that cannot be
+/// written.
+pub fn solve(
+    session: &mut Session,
+    path: &Path,
+    options: &RunOptions,
+) -> Result<Solution, Vec<Diagnostic>> {
+    let one = |fault: Fault| vec![fault.at(Span::NONE)];
+    let bytes = session.read_bytes(path).map_err(one)?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_| one(fault!(BAD_OPTION, "`{}` is no text", path.display())))?;
+    let source = session.sources.add(path.display().to_string(), text.as_str());
+    let file = file::read(source, &text).map_err(|error| vec![error])?;
+    let mut built = build::build(session, &file, path, &text)?;
+    if let Some(limit) = options.evaluations {
+        built.problem.stop.evaluations = Some(limit);
+    }
+    let every = (file.checkpoint.generations, file.checkpoint.seconds.unwrap_or(SECONDS));
+    solve_built(session, built, options, every).map_err(one)
+}
+
+fn solve_built(
+    session: &mut Session,
+    built: Built,
+    options: &RunOptions,
+    every: (Option<u64>, f64),
+) -> Result<Solution, Fault> {
+    let Built { problem, validation, fingerprint } = built;
+    let folder = session.world.output_dir();
+    let mut run = Run::new(problem, session.world.threads())?;
+    let mut checkpoint = open(session, &mut run, &folder, fingerprint, options, every)?;
+    let mut watched = options.watch.clone().map(Watched::new);
+    let before = run.seconds;
+    let started = session.world.monotonic_seconds();
+    let mut looked = f64::NEG_INFINITY;
+    let (stop, interrupted) = loop {
+        if let Some(stop) = run.stop() {
+            break (stop, false);
+        }
+        if session.world.interrupted() {
+            break ("interrupted: these are the best values found so far".to_owned(), true);
+        }
+        let seconds = before + session.world.monotonic_seconds() - started;
+        if let Some(watched) = watched.as_mut().filter(|_| seconds - looked > LOOK) {
+            looked = seconds;
+            watched.apply(session, &mut run);
+        }
+        let Some(record) = run.step(seconds) else { continue };
+        checkpoint.note(session, &solving::encode(&record), seconds);
+        show(session, &run);
+    };
+    checkpoint.flush(session, run.seconds);
+    let validation = validated(&run, &validation)?;
+    let solution = Solution::of(&run, &stop, validation)?;
+    session.print(&solution.text());
+    write(session, &folder, &solution)?;
+    if let Some(why) = checkpoint.broken {
+        session.report_fault(fault!(BAD_OPTION, "the checkpoint could not be written: {why}"));
+    }
+    if interrupted {
+        session.print("\n  the run can go on from here with --resume\n");
+    } else if session.world.exists(&checkpoint.path) {
+        // What cannot be removed does no harm.
+        let _ = session.world.remove(&checkpoint.path);
+    }
+    Ok(solution)
+}
+
+/// Reads the checkpoint of an earlier run, or begins one.
+fn open(
+    session: &mut Session,
+    run: &mut Run,
+    folder: &Path,
+    fingerprint: u64,
+    options: &RunOptions,
+    every: (Option<u64>, f64),
+) -> Result<Checkpoint, Fault> {
+    let path = folder.join(JOURNAL);
+    let exists = session.world.exists(&path);
+    if exists && !options.resume && !options.fresh {
+        bail!(
+            BAD_OPTION,
+            "`{}` holds an earlier run that did not end", path.display();
+            help: "go on with `--resume`, or discard it with `--fresh`"
+        );
+    }
+    let mut bytes = solving::header(fingerprint);
+    if options.resume && exists {
+        let old = session.read_bytes(&path)?;
+        let Some(journal) = solving::decode(&old) else {
+            bail!(BAD_OPTION, "`{}` is no checkpoint", path.display(); help: "start anew with `--fresh`")
+        };
+        if journal.fingerprint != fingerprint {
+            bail!(
+                BAD_OPTION,
+                "`{}` is the checkpoint of another problem, or the problem or its data have changed", path.display();
+                help: "start anew with `--fresh`"
+            );
+        }
+        journal.records.iter().try_for_each(|record| run.replay(record))?;
+        let lost = match journal.lost {
+            0 => String::new(),
+            lost => {
+                format!("; {lost} bytes at its end are damaged or unfinished and computed again")
+            }
+        };
+        let text = format!(
+            "resumed after {} generations, {} evaluations{lost}\n",
+            run.generations(),
+            run.evaluations
+        );
+        session.print(&text);
+        bytes = old[..journal.whole].to_vec();
+    }
+    session.write_file(&path, &bytes)?;
+    Ok(Checkpoint {
+        path,
+        pending: Vec::new(),
+        questions: 0,
+        written: run.seconds,
+        every,
+        broken: None,
+    })
+}
+
+impl Checkpoint {
+    fn note(&mut self, session: &mut Session, record: &[u8], seconds: f64) {
+        self.pending.extend_from_slice(record);
+        self.questions += 1;
+        let enough = self.every.0.is_some_and(|limit| self.questions >= limit);
+        if enough || seconds - self.written >= self.every.1 {
+            self.flush(session, seconds);
+        }
+    }
+
+    fn flush(&mut self, session: &mut Session, seconds: f64) {
+        self.written = seconds;
+        self.questions = 0;
+        if self.pending.is_empty() || self.broken.is_some() {
+            return;
+        }
+        match session.world.append(&self.path, &self.pending) {
+            Ok(()) => self.pending.clear(),
+            Err(error) => {
+                // A part may have been written; what stands before it is whole.
+                self.broken = Some(format!("{error}; the run goes on without"));
+                let text = format!(
+                    "warning: `{}` cannot be written: {error}; the run goes on without checkpoints\n",
+                    self.path.display()
+                );
+                session.world.eprint(&text);
+            }
+        }
+    }
+}
+
+fn show(session: &mut Session, run: &Run) {
+    let limits = run.problem.stop;
+    let (done, total) = match (limits.evaluations, limits.generations) {
+        (_, Some(total)) => (run.generations(), total),
+        (Some(total), None) => (run.evaluations.min(total), total),
+        (None, None) => (run.evaluations, 0),
+    };
+    session.world.progress(&Progress {
+        label: run.phase().to_owned(),
+        done,
+        total,
+        best: run.best.as_ref().map(|best| best.fitness),
+        failures: run.failed.iter().sum(),
+    });
+}
+
+/// The experiments kept for validation, at the best values.
+fn validated(
+    run: &Run,
+    validation: &[(solving::Experiment, Vec<solving::Series>)],
+) -> Result<Vec<SolvedSeries>, Fault> {
+    let Some(best) = &run.best else { return Ok(Vec::new()) };
+    let mut solved = Vec::new();
+    for (experiment, series) in validation {
+        let mut simulator = ModelSimulator::new(std::slice::from_ref(experiment))?;
+        let mut row = vec![f64::NAN; series.iter().map(|series| series.x.len()).sum()];
+        // A simulation that fails shows as NaN; that is the result of the validation.
+        let _ = simulator.simulate(&best.values, &mut row);
+        let mut rest = row.as_slice();
+        for series in series {
+            let (own, others) = rest.split_at(series.x.len());
+            solved.push(SolvedSeries::new(series, own));
+            rest = others;
+        }
+    }
+    Ok(solved)
+}
+
+fn write(session: &mut Session, folder: &Path, solution: &Solution) -> Result<(), Fault> {
+    let files = [
+        ("result.json", solution.to_json()),
+        ("history.csv", solution.history_csv()),
+        ("fit.csv", solution.fit_csv()),
+        ("individuals.csv", solution.individuals_csv()),
+        ("Calibrated.mo", solution.modelica()),
+        ("calibrated.mos", solution.script()),
+        ("report.html", solution.html()),
+    ];
+    for (name, text) in files {
+        session.write_file(&folder.join(name), text.as_bytes())?;
+    }
+    session.print(&format!("\n  written to {}\n", folder.display()));
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;

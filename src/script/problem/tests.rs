@@ -1,0 +1,180 @@
+//! Problems in files: what experiments can set, and runs that are interrupted.
+
+use super::*;
+use crate::script::world::MemoryWorld;
+
+const MODEL: &str = "model Tank
+  parameter Real k(unit = \"1/s\") = 1;
+  parameter Real area = 1;
+  parameter Real gain = 1;
+  input Real u;
+  Real h(start = 1, fixed = true);
+  output Real q;
+  output Real p;
+equation
+  area*der(h) = u - k*h;
+  q = k*h;
+  p = gain*h;
+end Tank;
+model Free
+  extends Tank(u = 0);
+end Free;";
+
+/// h of the tank: k = 0.8, area = 2, from h0, with the inflow u.
+fn height(time: f64, h0: f64, u: f64) -> f64 {
+    let end = u / 0.8;
+    end + (h0 - end) * (-0.4 * time).exp()
+}
+
+fn world(files: &[(&str, String)]) -> MemoryWorld {
+    let world = MemoryWorld::new().with_file("tank.mo", MODEL);
+    files.iter().fold(world, |world, (name, text)| world.with_file(name, text))
+}
+
+/// Times 0, 0.25 … 4 with a value each.
+fn table(header: &str, row: impl Fn(f64) -> String) -> String {
+    let lines: Vec<String> =
+        (0..17).map(|k| f64::from(k) / 4.0).map(|t| format!("{t},{}", row(t))).collect();
+    format!("{header}\n{}\n", lines.join("\n"))
+}
+
+fn solved(files: &[(&str, String)]) -> Solution {
+    let mut session = Session::new(Box::new(world(files)));
+    match solve(&mut session, Path::new("p.toml"), &RunOptions::default()) {
+        Ok(solution) => solution,
+        Err(errors) => panic!("{}", errors[0].message),
+    }
+}
+
+fn refusal(problem: &str, data: &str) -> String {
+    let files = [("p.toml", problem.to_owned()), ("d.csv", data.to_owned())];
+    let mut session = Session::new(Box::new(world(&files)));
+    match solve(&mut session, Path::new("p.toml"), &RunOptions::default()) {
+        Ok(_) => panic!("solved"),
+        Err(errors) => errors[0].message.clone(),
+    }
+}
+
+#[test]
+fn two_experiments_with_ties_initial_states_and_missing_points() {
+    let problem = "
+model = \"Free\"
+files = [\"tank.mo\"]
+[parameters]
+k = { min = 0.1, max = 5 }
+area = { tied = \"2.5*k\" }
+gain = { fixed = 3 }
+h = { min = 0.1, max = 10, initial = true, per_experiment = true }
+[[experiment]]
+name = \"empties\"
+data = \"a.csv\"
+outputs = { q = \"q\", p = { column = \"p_milli\", factor = 1e-3, weight = 2 } }
+tolerance = 1e-9
+[[experiment]]
+name = \"fills\"
+data = \"b.csv\"
+outputs = { q = \"q\" }
+tolerance = 1e-9
+[stop]
+evaluations = 1500
+";
+    let first = table("time,q,p_milli", |t| {
+        let h = height(t, 2.0, 0.0);
+        let p = if t == 1.0 { "NaN".to_owned() } else { (3000.0 * h).to_string() };
+        format!("{},{p}", 0.8 * h)
+    });
+    let second = table("time,q", |t| (0.8 * height(t, 0.3, 0.0)).to_string());
+    let solution = solved(&[("p.toml", problem.to_owned()), ("a.csv", first), ("b.csv", second)]);
+    let value = |name: &str| solution.parameters.iter().find(|p| p.name == name).unwrap().value;
+    assert!((value("k") - 0.8).abs() < 1e-5, "{}", value("k"));
+    assert!((value("h@empties") - 2.0).abs() < 1e-4, "{}", value("h@empties"));
+    assert!((value("h@fills") - 0.3).abs() < 1e-4, "{}", value("h@fills"));
+    assert_eq!(solution.parameters[0].unit, "1/s");
+    assert_eq!(solution.series[1].points.len(), 16, "one point is missing");
+    assert!(solution.html().contains("<svg"));
+}
+
+const SIMPLE: &str = "
+model = \"Free\"
+files = [\"tank.mo\"]
+[parameters]
+k = { min = 0.1, max = 5 }
+h = { min = 0.1, max = 10, initial = true }
+[[experiment]]
+data = \"d.csv\"
+outputs = { q = \"q\" }
+[checkpoint]
+generations = 1
+[stop]
+evaluations = 600
+";
+
+#[test]
+fn validation_is_compared_but_not_fitted() {
+    let problem = SIMPLE.replace(
+        "[checkpoint]",
+        "[[experiment]]\nvalidation = true\ndata = \"v.csv\"\noutputs = { q = \"q\" }\n[checkpoint]",
+    );
+    let data = table("time,q", |t| (3.0 * (-t).exp()).to_string());
+    let other = table("time,q", |t| (3.0 * (-t).exp() + 0.5).to_string());
+    let solution = solved(&[("p.toml", problem), ("d.csv", data), ("v.csv", other)]);
+    assert!(solution.series[0].rmse < 1e-3);
+    assert!((solution.validation[0].rmse - 0.5).abs() < 1e-3);
+}
+
+#[test]
+fn what_is_wrong_is_told() {
+    let data = "time,q\n0,1\n1,0.5\n2,0.3\n";
+    assert!(refusal(&SIMPLE.replace("k = {", "kk = {"), data).contains("kk"));
+    assert!(refusal(&SIMPLE.replace("max = 5", "max = 0.01"), data).contains("empty"));
+    assert!(refusal(&SIMPLE.replace("= \"q\" }", "= \"Q\" }"), data).contains("no column `Q`"));
+    assert!(
+        refusal(&SIMPLE.replace("[checkpoint]", "[checkpoints]"), data).contains("checkpoints")
+    );
+    assert!(refusal(&SIMPLE.replace("evaluations", "evaluation"), data).contains("evaluation"));
+    let slow = SIMPLE.replace("[stop]", "[method]\npopulatin = 3\n[stop]");
+    assert!(refusal(&slow, data).contains("populatin"));
+    let two = SIMPLE.replace("[stop]", "[method]\nname = \"lshade\"\n[stop]");
+    let two = format!("fitness = [\"sse\", \"mae\"]\n{two}");
+    assert!(refusal(&two, data).contains("minimises one fitness function"));
+}
+
+#[test]
+fn an_unfinished_run_is_never_overwritten_and_resumes_to_the_same_end() {
+    let data = table("time,q", |t| (3.0 * (-t).exp() + 0.01 * (7.0 * t).sin()).to_string());
+    let files = [("p.toml", SIMPLE.to_owned()), ("d.csv", data)];
+    let run = |world: MemoryWorld, options: &RunOptions| {
+        let mut session = Session::new(Box::new(world));
+        let solution = solve(&mut session, Path::new("p.toml"), options);
+        solution.map(|solution| solution.to_json()).map_err(|errors| errors[0].message.clone())
+    };
+    let whole = run(world(&files), &RunOptions::default()).unwrap();
+    // The journal of a run that was cut short, by its own means.
+    let mut session = Session::new(Box::new(world(&files)));
+    let text = files[0].1.clone();
+    let source = session.sources.add("p.toml", text.as_str());
+    let file = file::read(source, &text).unwrap();
+    let built = build::build(&mut session, &file, Path::new("p.toml"), &text)
+        .unwrap_or_else(|e| panic!("{}", e[0].message));
+    let mut journal = solving::header(built.fingerprint);
+    let mut run_of = Run::new(built.problem, 1).unwrap();
+    for k in 0..9 {
+        assert!(run_of.stop().is_none());
+        journal.extend(solving::encode(&run_of.step(f64::from(k)).unwrap()));
+    }
+    let resume = RunOptions { resume: true, ..RunOptions::default() };
+    for cut in [journal.len(), journal.len() - 1, journal.len() / 2, 16] {
+        let with_journal = || {
+            let world = world(&files);
+            let path = crate::script::world::World::output_dir(&world).join(JOURNAL);
+            world.with_file(path, &journal[..cut])
+        };
+        let refused = run(with_journal(), &RunOptions::default()).unwrap_err();
+        assert!(refused.contains("did not end"), "{refused}");
+        assert_eq!(run(with_journal(), &resume).unwrap(), whole, "cut at {cut}");
+    }
+    let other = world(&files);
+    let path = crate::script::world::World::output_dir(&other).join(JOURNAL);
+    let other = other.with_file(path, "something");
+    assert!(run(other, &resume).unwrap_err().contains("no checkpoint"));
+}

@@ -1,0 +1,108 @@
+//! Simulations at tolerance 1e-4 with 100 output intervals, initialisation included, as an
+//! identification makes them: compiled once, two variables observed.
+//!
+//! | model | at most |
+//! |---|---|
+//! | RC circuit | 0.02 ms |
+//! | FC2Layer, 0.5 s | 0.5 ms |
+//! | FC3Layer, 0.5 s | 1.1 ms |
+//! | FC3Layer from source to first result | 400 ms |
+//!
+//! The folder that `GAPILIB_MSL` names holds the standard library, of which two examples are
+//! simulated; without it they are left out.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use gapilib::compile::Program;
+use gapilib::dae::sort;
+use gapilib::flatten::{self, Library, LibraryFiles};
+use gapilib::name::Name;
+use gapilib::sim::{OutputGrid, Settings, Simulator, Trajectory};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+#[path = "disk.rs"]
+mod disk;
+use disk::Disk;
+
+/// Class, observed variables, end in seconds, target in milliseconds.
+const SHIPPED: &[(&str, &[&str], f64, f64)] = &[
+    ("RC", &["capacitor.v"], 0.5, 0.02),
+    ("FuelCellLib.casestudies.FC2Layer", &["V"], 0.5, 0.5),
+    ("FuelCellLib.casestudies.FC3Layer", &["V"], 0.5, 1.1),
+];
+
+/// The same of the standard library; there is no target.
+const STANDARD: &[(&str, &[&str], f64)] = &[
+    ("Modelica.Electrical.Analog.Examples.CauerLowPassAnalog", &["C9.v"], 60.0),
+    ("Modelica.Mechanics.MultiBody.Examples.Elementary.DoublePendulum", &["revolute1.phi"], 3.0),
+];
+
+fn program(folder: &Path, packages: &[&str], class: &str) -> Arc<Program> {
+    let files: Arc<dyn LibraryFiles> = Arc::new(Disk::default());
+    let mut library = Library::new();
+    for name in packages {
+        let loaded = library.load_lazily(&files, &folder.join(name), &Name::default());
+        loaded.expect("the library is there");
+    }
+    let flat = flatten::flatten(&library, &Name::parse(class), &[]).expect("a model").model;
+    Program::compile(sort(&flat).expect("it can be sorted")).expect("it compiles")
+}
+
+/// A model of the folder `models`, or of `tests/models`.
+fn shipped(class: &str) -> Arc<Program> {
+    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+    let file = match class.split_once('.') {
+        Some((package, _)) => package.to_owned(),
+        None => format!("../tests/models/{class}.mo"),
+    };
+    program(&models, &["Modelica", &file], class)
+}
+
+/// A function that simulates once.
+fn run(program: &Arc<Program>, observed: &[&str], stop: f64) -> impl FnMut() -> f64 + use<> {
+    let observed: Vec<usize> =
+        observed.iter().map(|name| program.find_variable(name).expect("declared")).collect();
+    let mut system = program.system();
+    system.observe_only(&observed);
+    let mut simulator = Simulator::new();
+    let mut trajectory = Trajectory::default();
+    let settings = Settings {
+        stop,
+        tolerance: 1e-4,
+        output: OutputGrid::Intervals(100),
+        ..Settings::default()
+    };
+    move || {
+        simulator.run(&mut system, &settings, &mut trajectory).expect("the simulation succeeds");
+        trajectory.column(0)[trajectory.len() - 1]
+    }
+}
+
+fn simulations(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("simulation");
+    for (class, observed, stop, target) in SHIPPED {
+        let mut simulate = run(&shipped(class), observed, *stop);
+        let name = format!("{class}, at most {target} ms");
+        group.bench_function(name, |bencher| bencher.iter(&mut simulate));
+    }
+    if let Some(folder) = std::env::var_os("GAPILIB_MSL").map(PathBuf::from) {
+        for (class, observed, stop) in STANDARD {
+            let packages = ["Modelica", "ModelicaServices", "Complex.mo"];
+            let mut simulate = run(&program(&folder, &packages, class), observed, *stop);
+            group.bench_function(*class, |bencher| bencher.iter(&mut simulate));
+        }
+    }
+    group.finish();
+}
+
+fn first_result(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("source to first result");
+    group.sample_size(10);
+    group.bench_function("FC3Layer, at most 400 ms", |bencher| {
+        bencher.iter(|| run(&shipped("FuelCellLib.casestudies.FC3Layer"), &["V"], 0.5)());
+    });
+    group.finish();
+}
+
+criterion_group!(benches, simulations, first_result);
+criterion_main!(benches);

@@ -1,0 +1,115 @@
+//! Linear algebraic loops, from Modelica text, against exact solutions.
+
+use super::index_reduction::{Run, compiled};
+use gapilib::compile::Program;
+use gapilib::dae::{Block, sort};
+use gapilib::sim::{Settings, simulate};
+
+/// Sizes of the linear and of the other loops.
+fn loops(program: &Program) -> (Vec<usize>, Vec<usize>) {
+    let blocks = &program.sorted().blocks;
+    let linear = blocks.iter().filter_map(|block| match block {
+        Block::Linear(solved) => Some(solved.unknowns.len()),
+        _ => None,
+    });
+    let torn = blocks.iter().filter_map(|block| match block {
+        Block::Loop(torn) => Some(torn.iteration.len()),
+        _ => None,
+    });
+    (linear.collect(), torn.collect())
+}
+
+/// Every entry of the matrix vanishes at some time, never all that a pivot could be chosen from.
+const ROTATION: &str = "model Rotation Real a[3]; Real b[3]; Real x(start = 0, fixed = true);
+    parameter Real u[3] = {1, -2, 3};
+    equation
+      cos(7*time)*a[1] - sin(7*time)*a[2] + 0.2*a[3]*sin(time) = u[1];
+      sin(7*time)*a[1] + cos(7*time)*a[2] + 0.3*a[3]*cos(time) = u[2];
+      0.1*a[1]*sin(time) + 0.1*a[2]*cos(3*time) + (3 + sin(5*time))*a[3] = u[3];
+      b = 2*a;
+      der(x) = u[1] - (cos(7*time)*a[1] - sin(7*time)*a[2] + 0.2*a[3]*sin(time)) + 1;
+    end Rotation;";
+
+#[test]
+fn loops_of_three_are_solved_whatever_entries_vanish() {
+    let run = Run::of(ROTATION, 3.0);
+    assert_eq!(loops(&run.program), (vec![3], vec![]));
+    let (a1, a2, a3) = (run.values("a[1]"), run.values("a[2]"), run.values("a[3]"));
+    for (at, t) in run.values("time").into_iter().enumerate() {
+        let first = (7.0 * t).cos() * a1[at] - (7.0 * t).sin() * a2[at] + 0.2 * a3[at] * t.sin();
+        let third = 0.1 * a1[at] * t.sin()
+            + 0.1 * a2[at] * (3.0 * t).cos()
+            + (3.0 + (5.0 * t).sin()) * a3[at];
+        assert!((first - 1.0).abs() < 1e-12 && (third - 3.0).abs() < 1e-12, "{first} {third}");
+    }
+    run.follows("x", 1e-8, |t| t);
+}
+
+#[test]
+fn the_slopes_of_a_loop_reach_the_integrator() {
+    // The inverse of a rotation by x turns (sin x, cos x, x) back: der(x) = -x.
+    let text = "model Slopes Real x(start = 1, fixed = true); Real a[3];
+        equation
+          cos(x)*a[1] - sin(x)*a[2] + x*a[3] = -sin(x) + x*x;
+          sin(x)*a[1] + cos(x)*a[2] + x*a[3] = cos(x) + x*x;
+          2*cos(x)*a[2] + (1 + x*x)*a[3] = 2*cos(x) + x + x^3;
+          der(x) = -a[3];
+        end Slopes;";
+    for method in ["dassl", "rodas4", "dopri5"] {
+        let method = gapilib::sim::find_integrator(method).unwrap();
+        let run = Run::with(text, Settings { method, tolerance: 1e-9, ..Settings::default() });
+        assert_eq!(loops(&run.program), (vec![3], vec![]));
+        run.follows("x", 1e-7, |t| (-t).exp());
+        run.follows("a[2]", 1e-9, |_| 1.0);
+    }
+}
+
+#[test]
+fn a_singular_loop_with_solutions_has_the_smallest() {
+    // Two equal springs share a load: the static problem does not say how.
+    let text = "model Shared Real f[2]; parameter Real k = 1;
+        equation (2 + sin(time))*(f[1] + f[2]) = (2 + sin(time))*(6 + time);
+          k*sin(time + 1)*(f[1] + f[2]) = sin(time + 1)*(6 + time);
+        end Shared;";
+    let run = Run::of(text, 1.0);
+    run.follows("f[1]", 1e-9, |t| 3.0 + t / 2.0);
+    run.follows("f[2]", 1e-9, |t| 3.0 + t / 2.0);
+}
+
+#[test]
+fn contradicting_equations_are_an_error() {
+    let text = "model Contradiction Real f[2]; parameter Real k = 1;
+        equation f[1] + f[2] = 6; k*sin(time + 1)*(f[1] + f[2]) = 7; end Contradiction;";
+    let program = compiled(text);
+    let error = simulate(&mut program.system(), &Settings::default()).unwrap_err();
+    let diagnostic = program.explain(&error);
+    assert!(diagnostic.message.contains("`f["), "{diagnostic}");
+}
+
+/// A torque along an axis, as joints have it: components of the axis are zero.
+const AXIS: &str = "model Axis
+    function unit input Real v[3]; output Real e[3];
+    algorithm assert(v*v > 0, \"no direction\"); e := v/sqrt(v*v); end unit;
+    parameter Real n[3] = {0, 2, 0} annotation(Evaluate = true);
+    parameter Real r[3] = {0, 0, 3};
+    final parameter Real e[3] = unit(n);
+    Real t[3]; Real f[3]; Real tau;
+    equation tau = e*t; t = {4, 5 + time, 6} + {r[2]*f[3] - r[3]*f[2], 0, 0}; r*f = 1;
+      e*f = tau; f[1] = 2*t[1];
+    end Axis;";
+
+#[test]
+fn parameters_that_are_zero_are_not_divided_by() {
+    let run = Run::of(AXIS, 1.0);
+    run.follows("tau", 1e-9, |t| 5.0 + t);
+    run.follows("f[3]", 1e-9, |_| 1.0 / 3.0);
+    run.follows("t[1]", 1e-9, |t| 4.0 - 3.0 * (5.0 + t));
+}
+
+#[test]
+fn what_cannot_be_set_becomes_a_number() {
+    let sorted = sort(&super::index_reduction::flat(AXIS)).unwrap();
+    let kind = |name: &str| sorted.dae.variables.iter().find(|v| &*v.name == name).unwrap().kind;
+    assert_eq!(kind("e[2]"), gapilib::dae::Kind::Constant(1.0));
+    assert_eq!(kind("r[3]"), gapilib::dae::Kind::Parameter { tunable: true });
+}

@@ -1,0 +1,105 @@
+//! `gapi test`, `gapi help`, permissions and limits, as a user meets them.
+
+use crate::cli::{folder, gapi};
+use std::fs;
+
+#[test]
+fn a_transcript_is_accepted_then_agrees_then_differs() {
+    let here = folder(&[("a.mos", "x = 1.5\nx + 1\n")]);
+    let (code, out, _) = gapi(&here, &["test", "."]);
+    assert_eq!(code, 1);
+    assert!(out.contains("new") && out.contains("1 do not"), "{out}");
+    assert_eq!(gapi(&here, &["test", ".", "--accept"]).0, 0);
+    let snap = here.path().join("a.mos.snap");
+    let recorded = fs::read_to_string(&snap).expect("a transcript");
+    assert_eq!(recorded, ">>> x = 1.5\n>>> x + 1\n = 2.5\n[exit code 0]\n");
+    assert_eq!(gapi(&here, &["test", "a.mos"]).0, 0);
+    fs::write(&snap, recorded.replace("2.5", "2.500000001")).expect("writable");
+    assert_eq!(gapi(&here, &["test"]).0, 0, "numbers are compared with a tolerance");
+    fs::write(&snap, recorded.replace("2.5", "2.6")).expect("writable");
+    let (code, out, _) = gapi(&here, &["test", "--junit", "report.xml"]);
+    assert_eq!(code, 1);
+    assert!(out.contains("-  = 2.6\n+  = 2.5"), "{out}");
+    let report = fs::read_to_string(here.path().join("report.xml")).expect("a report");
+    assert!(report.contains("tests=\"1\" failures=\"1\""), "{report}");
+}
+
+#[test]
+fn an_embedded_result_is_compared_as_the_tests_of_openmodelica_are() {
+    let good = "x := 1/3;\nx + 1;\nwriteFile(\"left.txt\", \"\");\n// Result:\n// 0.333\n// 1.333\n// true\n// endResult\n";
+    let here = folder(&[("good.mos", good), ("bad.mos", &good.replace("1.333", "1.4"))]);
+    assert_eq!(gapi(&here, &["test", "good.mos"]).0, 0);
+    let (code, out, _) = gapi(&here, &["test", "bad.mos"]);
+    assert_eq!(code, 1);
+    assert!(out.contains("- 1.4"), "{out}");
+    assert!(!here.path().join("left.txt").exists(), "a test writes nothing");
+}
+
+#[test]
+fn scripts_are_read_without_being_run() {
+    let here = folder(&[
+        ("good.mos", "x = 1\n"),
+        ("bad.mos", "x = (1\n"),
+        ("data.mos", "#1\ndouble dat(2,2)\n1 2\n3 4\n"),
+    ]);
+    let (code, out, errors) = gapi(&here, &["run", "--parse-only", "."]);
+    assert_eq!((code, out.trim()), (1, "1 accepted, 1 rejected, 1 recognised as data"));
+    assert!(errors.contains("unclosed-bracket"), "{errors}");
+}
+
+#[test]
+fn writing_elsewhere_and_running_programs_need_permission() {
+    let elsewhere = folder(&[]);
+    let path = elsewhere.path().join("a.txt");
+    let text = format!("Modelica.Utilities.Streams.print(\"x\", \"{}\")\n", path.display());
+    let here = folder(&[("write.mos", &text), ("run.mos", "system(\"echo hello\")\n")]);
+    let (code, _, errors) = gapi(&here, &["run", "write.mos"]);
+    assert_eq!(code, 1);
+    assert!(errors.contains("--allow-write") && !path.exists(), "{errors}");
+    assert_eq!(gapi(&here, &["run", "write.mos", "--allow-write"]).0, 0);
+    assert!(path.exists());
+    let (code, out, errors) = gapi(&here, &["run", "run.mos"]);
+    assert_eq!((code, out.contains("hello")), (1, false));
+    assert!(errors.contains("--allow-system"), "{errors}");
+    let (code, out, _) = gapi(&here, &["run", "run.mos", "--allow-system"]);
+    assert_eq!((code, out.contains("hello")), (0, true));
+}
+
+#[test]
+fn a_script_is_stopped_at_its_limits() {
+    let here = folder(&[
+        ("long.mos", "i = 0\nwhile true loop i = i + 1; end while\n"),
+        ("large.mos", "v = {fill(1.0, 1000000)}\nwhile true loop v = cat(1, v, v); end while\n"),
+    ]);
+    let (code, _, errors) = gapi(&here, &["run", "long.mos", "--time-limit", "0.2"]);
+    assert_eq!(code, 1);
+    assert!(errors.contains("error[limit-reached]"), "{errors}");
+    if cfg!(target_os = "linux") {
+        let (code, _, errors) = gapi(&here, &["run", "large.mos", "--memory-limit", "200"]);
+        assert_eq!(code, 1);
+        assert!(errors.contains("limit of memory"), "{errors}");
+    }
+}
+
+#[test]
+fn help_prints_declarations_and_the_ledger() {
+    let here = folder(&[]);
+    let (code, out, _) = gapi(&here, &["help", "simulateModel"]);
+    assert_eq!(code, 0);
+    assert!(out.contains("function simulateModel") && out.contains("resultFile"), "{out}");
+    let (code, _, errors) = gapi(&here, &["help", "simulateModl"]);
+    assert_eq!(code, 1);
+    assert!(errors.contains("simulateModel"), "{errors}");
+    let (code, out, _) = gapi(&here, &["help", "--compat", "openmodelica"]);
+    assert_eq!(code, 0);
+    assert!(out.contains("OpenModelica\n") && out.contains("getErrorString"), "{out}");
+    assert!(!out.contains("Dymola\n"), "{out}");
+}
+
+#[test]
+fn a_transcript_tells_no_folders() {
+    let here = folder(&[("a.mos", "cd()\nx = 1\n")]);
+    assert_eq!(gapi(&here, &["run", "a.mos", "--transcript", "t.txt", "--echo"]).0, 0);
+    let transcript = fs::read_to_string(here.path().join("t.txt")).expect("a transcript");
+    assert!(transcript.contains(">>> cd()\n<start>\n"), "{transcript}");
+}

@@ -1,0 +1,25 @@
+package Plant "Small models with known solutions"
+  model Decay "x = x0 exp(-k t)"
+    parameter Real k = 1 "rate";
+    Real x(start = 1, fixed = true);
+  equation
+    der(x) = -k*x;
+  end Decay;
+
+  model Chain "n decays in a row"
+    parameter Integer n = 2;
+    Real x[n](start = fill(1, n), each fixed = true);
+  equation
+    der(x) = -x;
+  end Chain;
+
+  model Oscillator "x = x0 cos(w t)"
+    parameter Real w = 2;
+    Real x(start = 1, fixed = true);
+    Real v(start = 0, fixed = true);
+  equation
+    der(x) = v;
+    der(v) = -w^2*x;
+    annotation(experiment(StopTime = 3.0, Tolerance = 1e-8));
+  end Oscillator;
+end Plant;
