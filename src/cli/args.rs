@@ -64,6 +64,8 @@ pub(super) enum Command {
     Run(RunArgs),
     /// Watch the genetic algorithm of a script step by step
     Teach(TeachArgs),
+    /// Learn how the genetic algorithm works, in twelve short lessons
+    Lesson(LessonArgs),
     /// Identify parameters as a problem file says
     Identify(IdentifyArgs),
     /// Run scripts and compare what they answer with what is recorded
@@ -297,20 +299,45 @@ pub(super) struct IdentifyArgs {
 Examples:
   gapi teach scripts/GAPILib.mos
   gapi teach scripts/GAPILib.mos --generation 100 --count 2
+  gapi teach scripts/twin/GAPILib.mos --html steps.html
   gapi run my.mos --trace my.trace && gapi teach my.trace")]
 pub(super) struct TeachArgs {
     /// A script (.mos), which is run first, or a trace that `gapi run --trace` has written
     #[arg(value_name = "SCRIPT|TRACE", value_hint = ValueHint::FilePath)]
     pub input: PathBuf,
+    /// Print the steps as text, also on a terminal
+    #[arg(long)]
+    pub plain: bool,
     /// The generation to begin with
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
     pub generation: usize,
-    /// How many generations to show
+    /// How many generations to print as text
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
     pub count: usize,
+    /// Write one page with all steps, for any browser, in place of the text
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub html: Option<PathBuf>,
     /// Folder for the results and the trace of the run
     #[arg(long, default_value = "results", value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: PathBuf,
+}
+
+/// Arguments of `gapi lesson`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi lesson
+  gapi lesson 1
+
+Each lesson is a script of a page, with its text in the comments. It is copied into the folder
+`lessons`, shown, and run. Change the copy and give the command again: your copy is run then.")]
+pub(super) struct LessonArgs {
+    /// The number of the lesson; without it all are listed
+    #[arg(value_name = "N")]
+    pub number: Option<usize>,
+    /// Folder for the copies and what they write
+    #[arg(long, default_value = "lessons", value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub folder: PathBuf,
 }
 
 /// Arguments of `gapi simulate`.

@@ -2,12 +2,14 @@
 
 use super::args::{Global, TeachArgs};
 use super::session;
+use super::teach_screen;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use crate::script::{Echo, Options};
 use crate::source::Span;
-use crate::teach::{Trace, Walk, plain};
-use std::path::PathBuf;
+use crate::teach::{Trace, Walk, page, plain};
+use std::io::IsTerminal as _;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Runs the script, or reads the trace, and shows its steps.
@@ -23,10 +25,10 @@ pub(super) fn teach(arguments: &TeachArgs, global: &Global) -> ExitCode {
     let read = std::fs::read(&file).map_err(|error| error.to_string());
     let trace = read.and_then(|bytes| Trace::read(&bytes).map_err(|fault| fault.message));
     match trace {
-        Ok(trace) => {
-            show(Walk::new(trace), arguments);
-            ExitCode::SUCCESS
-        }
+        Ok(trace) => match &arguments.html {
+            Some(page) => write_page(trace, page, is_script.then_some(&arguments.out)),
+            None => show(Walk::new(trace), arguments, global),
+        },
         Err(message) => {
             terminal::eprint(&format!("error: `{}`: {message}\n", file.display()));
             ExitCode::FAILURE
@@ -52,13 +54,38 @@ fn record(arguments: &TeachArgs, global: &Global) -> Result<PathBuf, ExitCode> {
     if status.code == 0 || status.interrupted { Ok(file) } else { Err(status.code.into()) }
 }
 
-fn show(mut walk: Walk, arguments: &TeachArgs) {
-    let last = arguments.generation + arguments.count - 1;
+/// Writes the page of a trace; the report of the run lies in the folder `results`.
+fn write_page(trace: Trace, file: &Path, results: Option<&PathBuf>) -> ExitCode {
+    let report =
+        results.and_then(|folder| std::fs::read_to_string(folder.join("result.json")).ok());
+    let text = page::page(trace, report.as_deref());
+    match std::fs::write(file, text) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            terminal::eprint(&format!("error: `{}` cannot be written: {error}\n", file.display()));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// On the screen of a terminal; as text where there is none.
+fn show(mut walk: Walk, arguments: &TeachArgs, global: &Global) -> ExitCode {
     if !walk.go_to(arguments.generation - 1) {
         let has = walk.trace().generations.len();
         terminal::eprint(&format!("error: the run has {has} generations\n"));
-        return;
+        return ExitCode::FAILURE;
     }
+    if !arguments.plain && std::io::stdout().is_terminal() && std::io::stdin().is_terminal() {
+        let colour = Terminal::new(global.color, true).colour();
+        return match teach_screen::walk_through(walk, colour) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => {
+                terminal::eprint(&format!("error: the terminal cannot be drawn on: {error}\n"));
+                ExitCode::FAILURE
+            }
+        };
+    }
+    let last = arguments.generation + arguments.count - 1;
     loop {
         terminal::print(&format!("{}\n", plain::step(&walk)));
         if !walk.forward() || walk.number() >= last {
@@ -66,4 +93,5 @@ fn show(mut walk: Walk, arguments: &TeachArgs) {
         }
     }
     terminal::print(&plain::summary(&walk));
+    ExitCode::SUCCESS
 }

@@ -107,16 +107,16 @@ impl Session {
         let revision = self.classes.revision();
         let identification = self.identification();
         identification.recorder.evaluated(evaluator.study(), evaluator.x(), genomes, &simulated);
-        let study = evaluator.study().clone();
+        let (study, x) = (evaluator.study().clone(), evaluator.x().to_vec());
         identification.prepared = Some((request, revision, evaluator));
-        self.trace_simulation(&study, genomes, &simulated)?;
+        self.trace_simulation((&study, &x), genomes, &simulated)?;
         self.show_progress();
         Ok(simulated)
     }
 
     fn trace_simulation(
         &mut self,
-        study: &Study,
+        (study, x): (&Study, &[f64]),
         genomes: &Genomes,
         simulated: &Simulated,
     ) -> Result<(), Fault> {
@@ -125,7 +125,7 @@ impl Session {
             let failures =
                 failed.filter_map(|(k, why)| Some((k as u32, why.as_ref()?.to_string())));
             let subject = tracing::subject(study);
-            tracer.simulated(place, &subject, genomes.values(), failures.collect());
+            tracer.simulated(place, (&subject, x), genomes.values(), failures.collect());
         })
     }
 

@@ -69,7 +69,7 @@ pub enum Event {
     },
     /// What is identified, told when it changes.
     Subject(Subject),
-    /// `Exp_Adq_SISO` has read measured data.
+    /// What simulations are compared with, told when it changes.
     Measured {
         /// X.
         x: Vec<f64>,
@@ -102,6 +102,8 @@ pub enum Event {
         place: Place,
         /// The fitness of each individual.
         fitness: Vec<f64>,
+        /// Simulated Y of the best of them at every measured point; empty where all failed.
+        best: Vec<f64>,
     },
     /// `Fit_Order` has sorted them. Expected: what `Eval` got and `Fit` gave.
     Sort {

@@ -18,8 +18,8 @@ pub fn explain(walk: &Walk) -> String {
         Step::Cross(rank) => cross(generation, rank),
         Step::Mutate(row) => mutate(walk, row),
         Step::Complete(row) => format!(
-            "Individual {} of the next generation is drawn at random: new blood, so that the search \
-             does not end where it happens to be.",
+            "Individual {} of the next generation is drawn at random between Param_Min and \
+             Param_Max: new blood, so that the search does not end where it happens to be.",
             row + 1
         ),
         Step::Renew => renew(walk),
@@ -49,8 +49,8 @@ fn counted(count: usize, what: &str) -> String {
 fn draw(generation: &Generation) -> String {
     let numbers: usize = generation.drawn.iter().map(|drawn| drawn.numbers.len()).sum();
     format!(
-        "The first population (N_Population = {}) is drawn: Ram_Gen_ARENA has given {}, one places \
-         one gene between Param_Min and Param_Max.",
+        "The first population (N_Population = {}) is drawn: Ram_Gen_ARENA has given {} between 0 and \
+         1. One number u places one gene in its range, at Param_Min + (Param_Max - Param_Min) u.",
         generation.len(),
         counted(numbers, "random number"),
     )
@@ -79,9 +79,17 @@ fn rate(walk: &Walk) -> String {
     let generation = walk.generation();
     let points = walk.trace().measured.1.len();
     match generation.best() {
+        Some((k, fitness)) if !has_failed(fitness) && generation.best_simulated.is_empty() => {
+            format!(
+                "The fitness tells how far simulation and measurement are apart: the smaller, the \
+                 fitter. The best of this generation is individual {} with {}.",
+                k + 1,
+                short(fitness)
+            )
+        }
         Some((k, fitness)) if !has_failed(fitness) => format!(
             "Fit adds up the squared differences between simulation and measurement over {}: the \
-             smaller the sum, the fitter. The best so far is individual {} with {}.",
+             smaller the sum, the fitter. The best of this generation is individual {} with {}.",
             counted(points, "point"),
             k + 1,
             short(fitness)
@@ -104,9 +112,9 @@ fn elite(generation: &Generation) -> String {
     let Some(crossed) = &generation.crossed else { return String::new() };
     let best = generation.best().map_or(f64::NAN, |(_, fitness)| fitness);
     format!(
-        "The best {} (N_Elitism) pass on unaltered, so that the best fitness, {}, can never get \
-         worse.",
+        "The best {} (N_Elitism) {} unaltered, so that the best fitness, {}, can never get worse.",
         crossed.elites,
+        if crossed.elites == 1 { "passes on" } else { "pass on" },
         short(best)
     )
 }
@@ -142,11 +150,18 @@ fn mutate(walk: &Walk, row: usize) -> String {
         .collect();
     let child = row + 1 - mutated.elites;
     match changes.is_empty() {
+        true if n == 1 => format!(
+            "Child {child} keeps its gene: its random number is not below F_Mut = {}.",
+            mutated.factor
+        ),
         true => format!(
             "Child {child} keeps its genes: none of its {n} random numbers is below F_Mut = {}.",
             mutated.factor
         ),
-        false => format!("Child {child} mutates: {}.", changes.join("; ")),
+        false => format!(
+            "Child {child} mutates: {}. The new value is Param_Min + (Param_Max - Param_Min) u/F_Mut.",
+            changes.join("; ")
+        ),
     }
 }
 

@@ -36,6 +36,8 @@ pub struct Mutated {
     pub after: Vec<f64>,
     /// One number for each gene.
     pub numbers: Vec<f64>,
+    /// The state of the generator before the last draw, which usually gave these numbers.
+    pub seed: Option<[f64; 6]>,
     /// Number of elites, which stay.
     pub elites: usize,
     /// The probability that a gene mutates.
@@ -79,6 +81,8 @@ pub struct Sorted {
 pub struct Drawn {
     /// Where it was called.
     pub place: Place,
+    /// The state of the generator before them.
+    pub seed: [f64; 6],
     /// The numbers.
     pub numbers: Vec<f64>,
 }
@@ -103,6 +107,8 @@ pub struct Generation {
     pub fitness: Vec<f64>,
     /// Where it was computed.
     pub rated: Option<Place>,
+    /// Simulated Y of the best individual at every measured point; empty where it is not known.
+    pub best_simulated: Vec<f64>,
     /// Their order.
     pub sorted: Option<Sorted>,
     /// The crossover.
@@ -134,16 +140,29 @@ impl Generation {
 
     /// The best individual and its fitness.
     pub fn best(&self) -> Option<(usize, f64)> {
-        let k = *crate::ga::order(&self.fitness).first()?;
+        let order = crate::ga::order(&self.fitness);
+        let k = order.into_iter().find(|&k| k < self.len())?;
         Some((k, self.fitness[k]))
     }
 
     /// The ranks of all individuals, from 0; by fitness where nothing sorted them.
     pub fn order(&self) -> Vec<usize> {
-        match &self.sorted {
+        let order = match &self.sorted {
             Some(sorted) => sorted.order.clone(),
             None => crate::ga::order(&self.fitness),
-        }
+        };
+        // A script may have judged others than those of this generation.
+        order.into_iter().filter(|&k| k < self.len()).collect()
+    }
+
+    /// Who goes on for individual `k` of the generation before: its copy as elite, or its first
+    /// child.
+    pub fn successor(&self, k: usize) -> Option<usize> {
+        let copy = |origin: &Origin| matches!(origin, Origin::Elite { from } if *from == k);
+        let child =
+            |origin: &Origin| matches!(origin, Origin::Child { parent, .. } if *parent == k);
+        let origins = &self.origins;
+        origins.iter().position(copy).or_else(|| origins.iter().position(child))
     }
 
     /// How the individuals of `next` came out of this generation.

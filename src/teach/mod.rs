@@ -3,16 +3,23 @@
 //! back.
 //!
 //! [`Tracer`] writes the trace while the scripts run, [`Trace`] reads it, also what an interrupted
-//! run has left. A [`Walk`] stands at one [`Step`] of it; [`plain`] shows steps as text.
+//! run has left. A [`Walk`] stands at one [`Step`] of it; [`plain`] shows steps as text, [`page`] makes a page of them
+//! all, [`screen`] a terminal's full of each.
 
 pub mod errors;
 mod event;
 pub mod explain;
 mod file;
 mod generation;
+pub mod page;
 pub mod plain;
 mod produced;
+#[cfg(test)]
+mod sample;
+pub mod screen;
 mod step;
+#[cfg(test)]
+mod tests;
 mod trace;
 mod tracer;
 mod walk;

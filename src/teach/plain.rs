@@ -11,6 +11,8 @@ use std::fmt::Write as _;
 pub const WIDTH: usize = 79;
 /// No more individuals than this are listed.
 const LISTED: usize = 12;
+/// No more terms of a sum than this are written.
+const SUMMED: usize = 4;
 
 /// The step that `walk` stands at: its heading, its sentence, the line of the script, and a table
 /// where one helps.
@@ -21,7 +23,7 @@ pub fn step(walk: &Walk) -> String {
     let mut text = format!("{heading}\n{}\n", "-".repeat(heading.chars().count()));
     if let Some((script, line)) = walk.line() {
         let code = script.lines.get(line - 1).map_or("", |line| line.trim());
-        let _ = writeln!(text, "{}:{line}  {code}", script.name);
+        let _ = writeln!(text, "{}", cut(&format!("{}:{line}  {code}", script.name)));
     }
     text.push_str(&wrapped(&explain(walk)));
     text.push_str(&table(walk));
@@ -82,37 +84,116 @@ fn is_shown(number: usize, of: usize) -> bool {
 fn table(walk: &Walk) -> String {
     let generation = walk.generation();
     match walk.step() {
-        Step::Draw | Step::Simulate => {
-            individuals(walk, generation, &(0..generation.len()).collect::<Vec<_>>())
+        Step::Draw => individuals(walk, generation, &in_sequence(generation), Known::Genes),
+        Step::Simulate => individuals(walk, generation, &in_sequence(generation), Known::Failures),
+        Step::Rate => {
+            let sequence = in_sequence(generation);
+            individuals(walk, generation, &sequence, Known::Fitness) + &sum_of_best(walk)
         }
-        Step::Rate | Step::Stop => individuals(walk, generation, &generation.order()),
-        Step::Sort => individuals(walk, generation, &generation.order()),
+        Step::Sort => individuals(walk, generation, &generation.order(), Known::Rank),
+        Step::Stop => individuals(walk, generation, &generation.order(), Known::Fitness),
+        Step::Elite => elites(walk),
+        Step::Complete(row) => completed(walk, row),
         Step::Cross(rank) => family(walk, rank),
         Step::Mutate(row) => mutation(walk, row),
         Step::Renew => match walk.next_generation() {
-            Some(next) => individuals(walk, next, &(0..next.len()).collect::<Vec<_>>()),
+            Some(next) => individuals(walk, next, &in_sequence(next), Known::Genes),
             None => String::new(),
         },
-        Step::Elite | Step::Complete(_) => String::new(),
     }
 }
 
-/// A table of individuals in this order.
-fn individuals(walk: &Walk, generation: &Generation, order: &[usize]) -> String {
-    let mut text = heading(walk, &["no", "fitness"], "came as");
-    let ranked = !generation.fitness.is_empty();
-    for &k in order.iter().take(LISTED) {
+/// How much of a generation is known at a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Known {
+    Genes,
+    Failures,
+    Fitness,
+    Rank,
+}
+
+fn in_sequence(generation: &Generation) -> Vec<usize> {
+    (0..generation.len()).collect()
+}
+
+/// A table of individuals in this order, with no more than is known.
+fn individuals(walk: &Walk, generation: &Generation, order: &[usize], known: Known) -> String {
+    let last = if known == Known::Rank { "becomes" } else { "came as" };
+    let mut text = heading(walk, &["no", "fitness"], last);
+    for (rank, &k) in order.iter().take(LISTED).enumerate() {
         let fitness = match generation.fitness.get(k) {
-            _ if generation.failure(k).is_some() => "failed".to_owned(),
-            Some(&fitness) if ranked => short(fitness),
+            _ if known >= Known::Failures && generation.failure(k).is_some() => "failed".to_owned(),
+            Some(&fitness) if known >= Known::Fitness => short(fitness),
             _ => "-".to_owned(),
         };
         let genes = cells(generation.genome(k));
-        let _ = writeln!(text, "{:>5} {fitness:>10}{genes}  {}", k + 1, origin(generation, k));
+        let note = match known {
+            Known::Rank => role(generation, rank).to_owned(),
+            _ => origin(generation, k),
+        };
+        let _ = writeln!(text, "{:>5} {fitness:>10}{genes}  {note}", k + 1);
     }
     if order.len() > LISTED {
         let _ = writeln!(text, "  ... and {} more", order.len() - LISTED);
     }
+    text
+}
+
+/// What becomes of the individual of this rank, from 0.
+fn role(generation: &Generation, rank: usize) -> &'static str {
+    let (parents, elites) = match &generation.sorted {
+        Some(sorted) => (sorted.parents, sorted.elites),
+        None => (0, 0),
+    };
+    match (rank < elites, rank < parents) {
+        (true, true) => "elite and parent",
+        (true, false) => "elite",
+        (false, true) => "parent",
+        (false, false) => "forgotten",
+    }
+}
+
+/// How the best individual got its fitness, as a sum. Nothing where another function than the
+/// built-in `Fit` has computed it.
+fn sum_of_best(walk: &Walk) -> String {
+    let (Some((k, fitness)), measured) = (walk.generation().best(), &walk.trace().measured.1)
+    else {
+        return String::new();
+    };
+    let simulated = &walk.generation().best_simulated;
+    if simulated.len() != measured.len() || simulated.is_empty() {
+        return String::new();
+    }
+    let terms: Vec<String> = simulated
+        .iter()
+        .zip(measured)
+        .take(SUMMED)
+        .map(|(simulated, measured)| format!("({} - {})^2", short(*simulated), short(*measured)))
+        .collect();
+    let more = if measured.len() > SUMMED { " + ..." } else { "" };
+    let terms = terms.join(" + ");
+    wrapped(&format!("fitness of {} = {terms}{more} = {}", k + 1, short(fitness)))
+}
+
+fn elites(walk: &Walk) -> String {
+    let generation = walk.generation();
+    let Some(crossed) = &generation.crossed else { return String::new() };
+    let order = generation.order();
+    let elites = &order[..crossed.elites.min(order.len())];
+    individuals(walk, generation, elites, Known::Fitness)
+}
+
+/// The random numbers of one individual and the genes they give.
+fn completed(walk: &Walk, row: usize) -> String {
+    let Some(next) = walk.next_generation() else { return String::new() };
+    let mut text = heading(walk, &["", ""], "");
+    let drawn = next.drawn.iter().map(|drawn| &drawn.numbers);
+    let random = |k: &usize| next.origins.get(*k) == Some(&Origin::Random);
+    let before = (0..row).filter(random).count();
+    if let Some(numbers) = drawn.filter(|numbers| numbers.len() == next.n_genes).nth(before) {
+        let _ = writeln!(text, "{:<16}{}", "u", cells(numbers));
+    }
+    let _ = writeln!(text, "{:<16}{}", "genes", cells(next.genome(row)));
     text
 }
 
@@ -170,6 +251,12 @@ fn mutation(walk: &Walk, row: usize) -> String {
     for (name, values) in [("u", numbers), ("before", before), ("after", after)] {
         let _ = writeln!(text, "{name:<16}{}", cells(values));
     }
+    let changed = generation.mutated_genes(row);
+    let marks = (0..n).map(|j| if changed.contains(&j) { "          *" } else { "           " });
+    let marks: String = marks.collect();
+    if !changed.is_empty() {
+        let _ = writeln!(text, "{}", format!("{:<16}{marks}", "").trim_end());
+    }
     text
 }
 
@@ -192,6 +279,14 @@ fn cells(genes: &[f64]) -> String {
 fn divided(genes: &[f64], points: &[usize]) -> String {
     let bar = |j: usize| if points.contains(&j) { '|' } else { ' ' };
     genes.iter().enumerate().map(|(j, gene)| format!("{}{:>10}", bar(j), short(*gene))).collect()
+}
+
+/// The text up to [`WIDTH`] columns.
+fn cut(text: &str) -> String {
+    match text.chars().count() {
+        count if count <= WIDTH => text.to_owned(),
+        _ => text.chars().take(WIDTH - 3).chain("...".chars()).collect(),
+    }
 }
 
 /// The text in lines of at most [`WIDTH`] columns.

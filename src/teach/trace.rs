@@ -1,7 +1,7 @@
 //! A trace that was read: the scripts, what is identified, and the generations.
 
 use super::errors::BAD_TRACE;
-use super::event::{Event, Subject};
+use super::event::{Event, Numbers, Subject};
 use super::file;
 use super::generation::{Crossed, Drawn, Generation, Mutated, Origin, Sorted};
 use super::produced::Produced;
@@ -67,6 +67,10 @@ struct Reading {
 
 impl Reading {
     fn follow(&mut self, event: Event) {
+        // Only a damaged file has individuals without genes.
+        if matches!(event, Event::Simulate { n_genes: 0, .. }) {
+            return;
+        }
         self.note(&event);
         self.produced.follow(&event);
         self.complete(&event);
@@ -84,7 +88,7 @@ impl Reading {
             Event::Draw { place, seed, count } => {
                 if let Ok(mut rng) = Mrg32k3a::new(seed) {
                     let numbers = (0..*count).map(|_| rng.uniform()).collect();
-                    self.drawn.push(Drawn { place: *place, numbers });
+                    self.drawn.push(Drawn { place: *place, seed: *seed, numbers });
                 }
             }
             Event::Simulate { place, n_genes, .. } => {
@@ -110,6 +114,7 @@ impl Reading {
 
     fn note_decision(&mut self, event: &Event) {
         let produced = &self.produced;
+        let seed = self.drawn.last().map(|drawn| drawn.seed);
         let Some(generation) = self.trace.generations.last_mut() else { return };
         match event {
             Event::Sort { place, genes, fitness, parents, elites } => {
@@ -131,6 +136,7 @@ impl Reading {
                     before: before.unwrap_or_default(),
                     after: Vec::new(),
                     numbers: numbers.resolve(&produced.numbers),
+                    seed: seed.filter(|_| *numbers == Numbers::Expected),
                     elites: *elites as usize,
                     factor: *factor,
                     minima: minima.clone(),
@@ -151,12 +157,20 @@ impl Reading {
                 let shifted = |(k, cause): &(u32, String)| (*k as usize + offset, cause.clone());
                 generation.failures.extend(failures.iter().map(shifted));
                 generation.genes = produced.simulated.clone();
+                let count = generation.len();
                 generation.origins = match before.last() {
-                    Some(before) => before.origins_of(&generation.genes),
-                    None => vec![Origin::Random; generation.len()],
+                    Some(before) if before.n_genes == generation.n_genes => {
+                        before.origins_of(&generation.genes)
+                    }
+                    None if !generation.drawn.is_empty() => vec![Origin::Random; count],
+                    _ => vec![Origin::Script; count],
                 };
             }
-            Event::Rate { place, .. } => {
+            Event::Rate { place, fitness, best } => {
+                let known = generation.best().map_or(f64::INFINITY, |(_, fitness)| fitness);
+                if fitness.iter().any(|fitness| *fitness < known) {
+                    generation.best_simulated = best.clone();
+                }
                 generation.rated = Some(*place);
                 generation.fitness = produced.fitness.clone();
             }

@@ -14,6 +14,8 @@ const LARGEST: usize = 64 << 20;
 pub struct Tracer {
     scripts: HashMap<PathBuf, u32>,
     subject: Option<Subject>,
+    /// Where the model was asked for its Y, and what was measured there.
+    points: (Vec<f64>, Vec<f64>),
     produced: Produced,
     unwritten: Vec<u8>,
     size: usize,
@@ -51,6 +53,7 @@ impl Tracer {
         Tracer {
             scripts: HashMap::new(),
             subject: None,
+            points: (Vec::new(), Vec::new()),
             produced: Produced::default(),
             size: unwritten.len(),
             unwritten,
@@ -82,21 +85,17 @@ impl Tracer {
         Place { script, line }
     }
 
-    /// `Exp_Adq_SISO` has read data.
-    pub fn measured(&mut self, x: &[f64], y: &[f64]) {
-        self.push(&Event::Measured { x: x.to_vec(), y: y.to_vec() });
-    }
-
     /// `Ram_Gen_ARENA` has drawn `count` numbers.
     pub fn drawn(&mut self, place: Place, seed: [f64; 6], count: usize) {
         self.push(&Event::Draw { place, seed, count: count as u32 });
     }
 
-    /// `Eval` has simulated individuals; `failures` names those that failed, from 0, and why.
+    /// `Eval` has simulated individuals, and interpolated Y at the points `x`; `failures` names
+    /// those that failed, from 0, and why.
     pub fn simulated(
         &mut self,
         place: Place,
-        subject: &Subject,
+        (subject, x): (&Subject, &[f64]),
         genes: &[f64],
         failures: Vec<(u32, String)>,
     ) {
@@ -104,14 +103,27 @@ impl Tracer {
             self.push(&Event::Subject(subject.clone()));
             self.subject = Some(subject.clone());
         }
+        if self.points.0 != x {
+            self.points = (x.to_vec(), Vec::new());
+        }
         let n_genes = subject.parameters.len();
         let genes = Genes::of(genes, &self.produced.mutated, n_genes);
         self.push(&Event::Simulate { place, n_genes: n_genes as u32, genes, failures });
     }
 
-    /// `Fit` has given the fitness of individuals.
-    pub fn rated(&mut self, place: Place, fitness: &[f64]) {
-        self.push(&Event::Rate { place, fitness: fitness.to_vec() });
+    /// `Fit` has compared individuals with `measured`; `simulated` has one row for each.
+    pub fn rated(&mut self, place: Place, fitness: &[f64], simulated: &[f64], measured: &[f64]) {
+        if self.points.0.len() == measured.len() && self.points.1 != measured {
+            self.points.1 = measured.to_vec();
+            let (x, y) = self.points.clone();
+            self.push(&Event::Measured { x, y });
+        }
+        let points = simulated.len().checked_div(fitness.len()).unwrap_or(0);
+        let best = crate::ga::order(fitness).first().copied();
+        let best = best.filter(|&k| !crate::ga::has_failed(fitness[k]));
+        let row = best.and_then(|k| simulated.get(k * points..(k + 1) * points));
+        let best = row.unwrap_or_default().to_vec();
+        self.push(&Event::Rate { place, fitness: fitness.to_vec(), best });
     }
 
     /// `Fit_Order` has sorted individuals.

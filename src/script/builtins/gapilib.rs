@@ -134,7 +134,6 @@ fn exp_adq_siso(session: &mut Session, mut args: Args) -> Result<Value, Failure>
         Ok(measurement) => {
             let (x, y) = (measurement.x.clone(), measurement.y.clone());
             session.measured(measurement)?;
-            session.traced(|tracer, _| tracer.measured(&x, &y))?;
             Ok(acquired(true, x, y))
         }
         Err(fault) => {
@@ -206,7 +205,8 @@ fn fit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let rows = (0..simulated.rows).map(|k| simulated.row(k));
     let fitness: Vec<f64> = rows.map(|row| sum_of_squares(row, &measured)).collect();
     session.identification().recorder.rated(&fitness, &measured);
-    session.traced(|tracer, place| tracer.rated(place, &fitness))?;
+    session
+        .traced(|tracer, place| tracer.rated(place, &fitness, &simulated.elements, &measured))?;
     Ok(fitness.into())
 }
 
