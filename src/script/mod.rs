@@ -22,6 +22,7 @@ mod follow_up;
 mod host;
 mod identification;
 mod libraries;
+mod linearization;
 mod messages;
 pub mod parsing;
 mod permissions;
