@@ -14,6 +14,7 @@ mod memory;
 mod newton;
 mod program;
 mod selection;
+mod slopes;
 mod system;
 mod tape;
 

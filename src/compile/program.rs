@@ -243,15 +243,7 @@ impl Program {
             row.entry(state).or_insert(zero);
         }
         let (pattern, entries) = by_columns(&rows, columns.len());
-        let extended: Vec<Assignment> = slopes
-            .sequence
-            .iter()
-            .map(|(variable, value, equation)| Assignment {
-                variable: *variable,
-                value: *value,
-                equation: *equation,
-            })
-            .collect();
+        let extended = slopes.sequence;
         let jacobian =
             compile_continuous(&pool, &mut registers, &extended, &entries, Hoisting::Total);
 
@@ -829,7 +821,7 @@ fn compile_steps(
         let zero = pool.constant(0.0);
         let mut builder = TapeBuilder::new(pool, registers);
         let inner: FxHashSet<VarId> = torn.assignments.iter().map(|a| a.variable).collect();
-        for (variable, value, equation) in &slopes.sequence {
+        for Assignment { variable, value, equation } in &slopes.sequence {
             builder.origin(*equation as u32);
             match inner.contains(variable) {
                 true => builder.store(*variable, *value),

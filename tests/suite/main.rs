@@ -22,6 +22,7 @@ mod identified_models;
 mod identify;
 mod index_reduction;
 mod initialization;
+mod lapack;
 mod lazy_reading;
 mod lessons;
 mod libraries;
