@@ -308,6 +308,9 @@ pub(super) struct TeachArgs {
     /// Print the steps as text, also on a terminal
     #[arg(long)]
     pub plain: bool,
+    /// Ask what will happen before it is told; answers are read line by line, as text
+    #[arg(long, conflicts_with = "html")]
+    pub quiz: bool,
     /// The generation to begin with
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
     pub generation: usize,

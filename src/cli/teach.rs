@@ -7,6 +7,7 @@ use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use crate::script::{Echo, Options};
 use crate::source::Span;
+use crate::teach::quiz::{self, Score};
 use crate::teach::{Trace, Walk, page, plain};
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
@@ -75,7 +76,11 @@ fn show(mut walk: Walk, arguments: &TeachArgs, global: &Global) -> ExitCode {
         terminal::eprint(&format!("error: the run has {has} generations\n"));
         return ExitCode::FAILURE;
     }
-    if !arguments.plain && std::io::stdout().is_terminal() && std::io::stdin().is_terminal() {
+    if !arguments.plain
+        && !arguments.quiz
+        && std::io::stdout().is_terminal()
+        && std::io::stdin().is_terminal()
+    {
         let colour = Terminal::new(global.color, true).colour();
         return match teach_screen::walk_through(walk, colour) {
             Ok(()) => ExitCode::SUCCESS,
@@ -86,12 +91,34 @@ fn show(mut walk: Walk, arguments: &TeachArgs, global: &Global) -> ExitCode {
         };
     }
     let last = arguments.generation + arguments.count - 1;
+    let mut score = Score::default();
     loop {
+        if arguments.quiz {
+            ask(&walk, &mut score);
+        }
         terminal::print(&format!("{}\n", plain::step(&walk)));
         if !walk.forward() || walk.number() >= last {
             break;
         }
     }
     terminal::print(&plain::summary(&walk));
+    if arguments.quiz {
+        terminal::print(&format!("\n{score}\n"));
+    }
     ExitCode::SUCCESS
+}
+
+/// Asks what the step will do, if there is something to ask and someone to answer.
+fn ask(walk: &Walk, score: &mut Score) {
+    let Some(question) = quiz::question(walk) else { return };
+    terminal::print(&format!("? {}\n> ", question.text));
+    let mut answer = String::new();
+    match std::io::stdin().read_line(&mut answer) {
+        Ok(length) if length > 0 => {
+            let verdict = question.judge(&answer);
+            score.count(&verdict);
+            terminal::print(&format!("{}\n\n", verdict.text));
+        }
+        _ => terminal::print("(no answer)\n\n"),
+    }
 }

@@ -4,7 +4,8 @@
 //!
 //! [`Tracer`] writes the trace while the scripts run, [`Trace`] reads it, also what an interrupted
 //! run has left. A [`Walk`] stands at one [`Step`] of it; [`plain`] shows steps as text, [`page`] makes a page of them
-//! all, [`screen`] a terminal's full of each.
+//! all, [`screen`] a terminal's full of
+//! each. [`quiz`] asks before it tells.
 
 pub mod errors;
 mod event;
@@ -14,6 +15,7 @@ mod generation;
 pub mod page;
 pub mod plain;
 mod produced;
+pub mod quiz;
 #[cfg(test)]
 mod sample;
 pub mod screen;

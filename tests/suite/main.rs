@@ -16,6 +16,7 @@ mod fuel_cells;
 mod functions;
 mod gapilib;
 mod grammar;
+mod guide;
 mod hybrid;
 mod identification;
 mod identified_models;
