@@ -6,7 +6,6 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
-use std::time::Duration;
 use tempfile::TempDir;
 
 fn command(folder: &Path, arguments: &[&str]) -> Command {
@@ -104,43 +103,113 @@ fn inputs_follow_the_data_and_initial_states_are_found() {
     }
 }
 
-/// A run that is killed again and again ends with the bytes of one that was not, on other numbers
-/// of threads, too.
+/// Kills in the suite; `GAPILIB_KILLS` sets another number.
+const KILLS: u64 = 6;
+
+/// Runs that are killed again and again at random moments end with the bytes of one that was not,
+/// on other numbers of threads, too.
 #[test]
 fn killed_runs_resume_to_the_same_end() {
     let folder: TempDir = tempfile::tempdir().unwrap();
     filled_tank(folder.path());
+    let started = std::time::Instant::now();
     let (code, text) = run(folder.path(), &["tank.toml", "--out", "whole", "--threads", "2"]);
     assert_eq!(code, 0, "{text}");
-    for kill in 0..5_u64 {
-        let threads = ["1", "2", "3"][kill as usize % 3];
-        let arguments = ["tank.toml", "--out", "cut", "--resume", "--threads", threads];
-        let mut child = command(folder.path(), &arguments)
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        // Killed when some more of the run stands in the journal.
-        let journal = folder.path().join("cut/run.journal");
-        let length = || fs::metadata(&journal).map_or(0, |metadata| metadata.len());
-        let before = length();
-        for _ in 0..1000 {
-            if length() > before + 100 || child.try_wait().unwrap().is_some() {
+    let length = started.elapsed();
+    let wanted = std::env::var("GAPILIB_KILLS").map_or(KILLS, |text| text.parse().unwrap());
+    let mut rng = gapilib::ga::Mrg32k3a::new(&[12345.0; 6]).unwrap();
+    let (mut kills, mut rounds, mut resumed) = (0, 0, 0);
+    while kills < wanted {
+        let out = format!("cut{rounds}");
+        rounds += 1;
+        loop {
+            let threads = ["1", "2", "3"][kills as usize % 3];
+            let arguments = ["tank.toml", "--out", &out, "--resume", "--threads", threads];
+            let mut child = command(folder.path(), &arguments)
+                .stdout(Stdio::null())
+                .stderr(Stdio::null())
+                .spawn()
+                .unwrap();
+            // At any moment of the whole run, the start and the writing of the results included.
+            std::thread::sleep(length.mul_f64(rng.uniform()));
+            let killed = child.try_wait().unwrap().is_none();
+            // It may end by itself just now.
+            let _ = child.kill();
+            let status = child.wait().unwrap();
+            if status.success() {
                 break;
             }
-            std::thread::sleep(Duration::from_millis(10));
+            assert!(killed, "it failed by itself: {status}");
+            kills += 1;
+            let journal = folder.path().join(&out).join("run.journal");
+            resumed += u64::from(fs::metadata(journal).is_ok_and(|file| file.len() > 16));
+            if kills >= wanted {
+                let (code, text) = run(folder.path(), &["tank.toml", "--out", &out, "--resume"]);
+                assert_eq!(code, 0, "{text}");
+                break;
+            }
         }
-        std::thread::sleep(Duration::from_millis(7 * kill));
-        // It may have ended by itself.
-        let _ = child.kill();
-        child.wait().unwrap();
+        for file in ["result.json", "history.csv", "fit.csv", "individuals.csv", "Calibrated.mo"] {
+            let read = |out: &str| fs::read(folder.path().join(out).join(file)).unwrap();
+            assert!(read(&out) == read("whole"), "{file} differs in {out} after {kills} kills");
+        }
     }
-    let (code, text) = run(folder.path(), &["tank.toml", "--out", "cut", "--resume"]);
+    assert!(resumed > 0, "none of {kills} kills hit a run with a checkpoint");
+}
+
+/// A file larger than 4 KiB cannot be written, as on a full disk.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_ends_no_run_and_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    filled_tank(folder.path());
+    let script = "trap '' XFSZ; ulimit -f 8; exec \"$0\" identify tank.toml";
+    let output = Command::new("sh")
+        .args(["-c", script, env!("CARGO_BIN_EXE_gapi")])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    let text = [output.stdout, output.stderr].map(|b| String::from_utf8(b).unwrap()).concat();
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(text.contains("the run goes on without checkpoints"), "{text}");
+    assert!(text.contains("area") && text.contains("95 % interval"), "{text}");
+    assert!(text.contains("result.json") && text.contains("could not be written"), "{text}");
+    // What is small enough was written, and nothing half.
+    assert!(folder.path().join("results/Calibrated.mo").is_file());
+    assert!(!folder.path().join("results/result.json").exists());
+    // With room again the run is completed from what the journal holds.
+    let (code, text) = run(folder.path(), &["tank.toml", "--resume"]);
     assert_eq!(code, 0, "{text}");
-    for file in ["result.json", "history.csv", "fit.csv", "individuals.csv", "Calibrated.mo"] {
-        let read = |out: &str| fs::read(folder.path().join(out).join(file)).unwrap();
-        assert!(read("cut") == read("whole"), "{file} differs\n{text}");
+    assert!(text.contains("resumed after"), "{text}");
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_told_before_the_run() {
+    let folder = tempfile::tempdir().unwrap();
+    filled_tank(folder.path());
+    fs::write(folder.path().join("taken"), "a file").unwrap();
+    let (code, text) = run(folder.path(), &["tank.toml", "--out", "taken/results"]);
+    assert!(code == 1 && text.contains("taken/results"), "{text}");
+    assert!(!text.contains("evaluations"), "{text}");
+}
+
+#[test]
+fn profiles_and_sensitivities_are_written() {
+    let folder = tempfile::tempdir().unwrap();
+    filled_tank(folder.path());
+    let (code, text) = run(
+        folder.path(),
+        &["tank.toml", "--profile", "--sensitivity", "sobol", "--samples", "32"],
+    );
+    assert_eq!(code, 0, "{text}");
+    assert!(text.contains("first order") && text.contains("95 % by profiles"), "{text}");
+    // Exact data: what the tolerance leaves is no physics that the model misses.
+    assert!(!text.contains("misses"), "{text}");
+    for file in ["sensitivity.csv", "profiles.csv"] {
+        assert!(folder.path().join("results").join(file).is_file(), "{file}");
     }
+    let (code, text) = run(folder.path(), &["tank.toml", "--sensitivity", "guess", "--out", "o"]);
+    assert!(code == 1 && text.contains("morris"), "{text}");
 }
 
 #[test]

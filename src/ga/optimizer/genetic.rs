@@ -1,5 +1,5 @@
 //! A genetic algorithm with the operators that have proved themselves on real genes: Latin
-//! hypercube start that redraws failures, binary tournament, simulated binary crossover,
+//! hypercube or Sobol start that redraws failures, binary tournament, simulated binary crossover,
 //! polynomial mutation, elites.
 //!
 //! References: [Deb & Agrawal 1995](crate::bibliography#deb-agrawal-1995),
@@ -11,7 +11,7 @@ use crate::diag::Fault;
 use crate::fault;
 use crate::ga::crossover::sbx;
 use crate::ga::mutation::polynomial;
-use crate::ga::sampling::latin_hypercube;
+use crate::ga::sampling::{latin_hypercube, sobol};
 use crate::ga::selection::tournament;
 use crate::ga::{Genomes, Mrg32k3a, order};
 use crate::registry::{BAD_OPTION, Entry};
@@ -30,6 +30,7 @@ pub(super) const ENTRY: Entry<dyn Method> = Entry {
             eta_crossover: options.take("eta_crossover", 0.0..=1000.0, 15.0)?,
             mutation: options.take("mutation", 0.0..=1.0, 0.0)?,
             eta_mutation: options.take("eta_mutation", 0.0..=1000.0, 20.0)?,
+            sobol: whole(options, "sobol", 0.0..=1.0, 0.0)? == 1,
         }))
     },
 };
@@ -47,6 +48,8 @@ struct Genetic {
     /// 0 for one gene in each individual.
     mutation: f64,
     eta_mutation: f64,
+    /// Whether it starts from a Sobol sequence instead of a Latin hypercube.
+    sobol: bool,
 }
 
 impl Method for Genetic {
@@ -58,7 +61,7 @@ impl Method for Genetic {
             return Err(fault!(BAD_OPTION, "{elites} elites leave no room in {size} individuals"));
         }
         let mut rng = setup.rng;
-        let mut first = latin_hypercube(n, size, &mut rng);
+        let mut first = if self.sobol { sobol } else { latin_hypercube }(n, size, &mut rng);
         if let Some(start) = setup.start {
             first.row_mut(0).copy_from_slice(&start);
         }
