@@ -8,6 +8,6 @@ record Free "A parameter of a problem: free within a range, or fixed, or tied to
   Real fixed[:] = fill(0.0, 0) "The value, if it is not to be identified";
   String tied = "" "An expression of other parameters, such as 2*A";
   String unit = "" "Unit; empty for that of the model";
-  Boolean initial = false "Whether the initial value of the state is meant";
+  Boolean initialValue = false "Whether the initial value of the state is meant";
   Boolean perExperiment = false "Whether every experiment has its own";
 end Free;

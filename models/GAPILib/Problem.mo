@@ -1,7 +1,7 @@
 within GAPILib;
 record Problem "What to identify, from which data, and how: the argument of identify"
   String title = "" "Heading of the report";
-  String model "Class, or class with a modification";
+  String modelName "Class, or class with a modification";
   String files[:] = fill("", 0) "Modelica files and folders to load";
   GAPILib.Free parameters[:] "Parameters to identify, to fix or to tie";
   GAPILib.Experiment experiments[:] "What was measured";

@@ -18,4 +18,5 @@ pub trait Sampling: Send + Sync {
 }
 
 /// All ways of sampling.
-pub const SAMPLINGS: &[&Entry<dyn Sampling>] = &[&uniform::ENTRY, &latin_hypercube::ENTRY, &sobol::ENTRY];
+pub const SAMPLINGS: &[&Entry<dyn Sampling>] =
+    &[&uniform::ENTRY, &latin_hypercube::ENTRY, &sobol::ENTRY];

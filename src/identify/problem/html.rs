@@ -36,6 +36,9 @@ impl Solution {
         page += &self.traces();
         page += &self.correlation_table();
         page += &self.profile_figures();
+        if let Some(importance) = &self.importance {
+            _ = writeln!(page, "<h2>Sensitivity</h2><pre>{}</pre>", escaped(&importance.text()));
+        }
         page += &self.landscapes();
         page += &self.front_figure();
         page += "</body></html>\n";

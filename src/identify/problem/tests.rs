@@ -153,8 +153,7 @@ fn intervals_cover_the_truth() {
         let mut problem = problem("levenberg_marquardt", decay, &[2.0, 0.7], &noise);
         problem.polish = false;
         let (solution, _) = finish(Run::new(problem, 1).unwrap());
-        for ((found, truth), count) in
-            solution.parameters.iter().zip([2.0, 0.7]).zip(&mut covered)
+        for ((found, truth), count) in solution.parameters.iter().zip([2.0, 0.7]).zip(&mut covered)
         {
             let [low, high] = found.interval.unwrap();
             *count += usize::from(low < truth && truth < high);

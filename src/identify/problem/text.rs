@@ -13,7 +13,8 @@ impl Solution {
         let mut text = format!("\n{}\n\n{}\n", self.title, parameter_table(&self.parameters));
         if let Some(profiles) = &self.profiles {
             let row = |profile: &Profile| {
-                let ends = profile.interval.map(|end| end.map_or("-".into(), |e| significant(e, 4)));
+                let ends =
+                    profile.interval.map(|end| end.map_or("-".into(), |e| significant(e, 4)));
                 format!("{} in {} .. {}", profile.name, ends[0], ends[1])
             };
             let rows: Vec<String> = profiles.profiles.iter().map(row).collect();

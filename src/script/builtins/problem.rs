@@ -4,8 +4,8 @@ use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::script::Session;
 use crate::script::problem::{self, RunOptions};
-use crate::value::errors::TYPE_MISMATCH;
 use crate::value::Value;
+use crate::value::errors::TYPE_MISMATCH;
 use std::path::Path;
 
 /// The commands of this file.

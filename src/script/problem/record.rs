@@ -4,7 +4,7 @@
 use crate::bail;
 use crate::diag::Fault;
 use crate::registry::BAD_OPTION;
-use crate::value::{FromValue, RecordValue, Value};
+use crate::value::{ArrayValue, Elements, FromValue, RecordValue, Value};
 use toml::{Table, Value as Entry};
 
 /// The file that says what the record says.
@@ -16,7 +16,7 @@ pub(super) fn text(record: &RecordValue) -> Result<String, Fault> {
     let fields = Fields(record);
     let mut file = Table::new();
     put_text(&mut file, "title", fields.text("title")?);
-    put_text(&mut file, "model", fields.text("model")?);
+    put_text(&mut file, "model", fields.text("modelName")?);
     put(&mut file, "fitness", strings(fields.get("fitness")?));
     put(&mut file, "files", strings(fields.get("files")?));
     let seed: Vec<f64> = fields.get("seed")?;
@@ -68,7 +68,7 @@ fn parameter(fields: &Fields<'_>) -> Result<Table, Fault> {
     }
     put_text(&mut entry, "scale", fields.text("scale")?);
     put_text(&mut entry, "unit", fields.text("unit")?);
-    put(&mut entry, "initial", fields.get::<bool>("initial")?);
+    put(&mut entry, "initial", fields.get::<bool>("initialValue")?);
     put(&mut entry, "per_experiment", fields.get::<bool>("perExperiment")?);
     Ok(entry)
 }
@@ -128,15 +128,11 @@ impl Fields<'_> {
     }
 
     fn records(&self, name: &str) -> Result<Vec<RecordValue>, Fault> {
-        let elements = match self.get(name)? {
-            Value::Array(array) => array.elements,
-            one => vec![one],
-        };
-        let record = |value| match value {
-            Value::Record(record) => Ok(record),
+        match self.get(name)? {
+            Value::Array(ArrayValue { elements: Elements::Record(records), .. }) => Ok(records),
+            Value::Record(record) => Ok(vec![record]),
             _ => bail!(BAD_OPTION, "`{name}` of `{}` must hold records", self.0.type_name),
-        };
-        elements.into_iter().map(record).collect()
+        }
     }
 
     /// A vector of one number or none.
@@ -144,7 +140,9 @@ impl Fields<'_> {
         match self.get::<Vec<f64>>(name)?.as_slice() {
             [] => {}
             [value] => put(entry, name, *value),
-            more => bail!(BAD_OPTION, "`{name}` holds {} values instead of one or none", more.len()),
+            more => {
+                bail!(BAD_OPTION, "`{name}` holds {} values instead of one or none", more.len())
+            }
         }
         Ok(())
     }

@@ -184,17 +184,18 @@ fn an_unfinished_run_is_never_overwritten_and_resumes_to_the_same_end() {
 fn records_of_scripts_are_the_problems_of_files() {
     let data = table("time,q", |t| (3.0 * (-t).exp() + 0.01 * (7.0 * t).sin()).to_string());
     let world = world(&[("p.toml", SIMPLE.to_owned()), ("d.csv", data)]);
+    let streams = world.streams();
     let mut session = Session::new(Box::new(world));
     let script = "
-problem = GAPILib.Problem(model = \"Free\", files = {\"tank.mo\"},
-  parameters = {GAPILib.Free(\"k\", min = 0.1, max = 5), GAPILib.Free(\"h\", min = 0.1, max = 10, initial = true)},
+problem = GAPILib.Problem(modelName = \"Free\", files = {\"tank.mo\"},
+  parameters = {GAPILib.Free(\"k\", min = 0.1, max = 5), GAPILib.Free(\"h\", min = 0.1, max = 10, initialValue = true)},
   experiments = {GAPILib.Experiment(data = \"d.csv\", outputs = {\"q\"})},
   evaluations = 600)
 (values, fitness, deviations) = identify(problem, folder = \"record\")
 (others, same, alike) = identify(\"p.toml\", folder = \"file\", profile = true, sensitivity = \"morris\")
 ";
     let status = session.run_text("s.mos", script);
-    assert_eq!(status.code, 0, "{:?}", session.variable("values"));
+    assert_eq!(status.code, 0, "{}", streams.output() + &streams.errors());
     for (record, file) in [("values", "others"), ("fitness", "same"), ("deviations", "alike")] {
         assert_eq!(session.variable(record), session.variable(file), "{record}");
         assert!(session.variable(record).is_some());

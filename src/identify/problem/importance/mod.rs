@@ -96,7 +96,8 @@ impl Importance {
     /// Parameters that hardly matter.
     pub fn hardly_matter(&self) -> Vec<&str> {
         // Both figures of the screening and the total share are zero without any effect.
-        let size = |p: &ParameterImportance| p.figures.iter().flatten().copied().fold(0.0, f64::max);
+        let size =
+            |p: &ParameterImportance| p.figures.iter().flatten().copied().fold(0.0, f64::max);
         let largest = self.parameters.iter().map(size).fold(0.0, f64::max);
         let known = self.parameters.iter().filter(|p| p.figures.iter().all(Option::is_some));
         known.filter(|p| size(p) <= HARDLY * largest).map(|p| p.name.as_str()).collect()
@@ -105,8 +106,7 @@ impl Importance {
     /// One line for each parameter.
     pub fn csv(&self) -> String {
         let [first, second] = self.headings.map(|heading| heading.replace(' ', "_"));
-        let mut text =
-            format!("parameter,{first},{second},{first}_deviation,{second}_deviation\n");
+        let mut text = format!("parameter,{first},{second},{first}_deviation,{second}_deviation\n");
         for parameter in &self.parameters {
             text += &parameter.name;
             for value in parameter.figures.iter().chain(&parameter.errors) {

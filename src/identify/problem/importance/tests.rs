@@ -57,7 +57,8 @@ fn analysed(
 #[test]
 fn shares_of_the_ishigami_function() {
     let pi = std::f64::consts::PI;
-    let ishigami = |p: &[f64]| p[0].sin() + 7.0 * p[1].sin().powi(2) + 0.1 * p[2].powi(4) * p[0].sin();
+    let ishigami =
+        |p: &[f64]| p[0].sin() + 7.0 * p[1].sin().powi(2) + 0.1 * p[2].powi(4) * p[0].sin();
     let found = analysed("sobol", [-pi, pi], ishigami);
     let (v1, v2) = (0.5 * (1.0 + 0.1 * pi.powi(4) / 5.0).powi(2), 49.0 / 8.0);
     let v13 = 0.01 * pi.powi(8) * (1.0 / 18.0 - 1.0 / 50.0);
