@@ -124,6 +124,32 @@ fn inputs_follow_the_data_and_initial_states_are_found() {
     }
 }
 
+#[test]
+fn a_script_puts_a_problem_together() {
+    let folder = tempfile::tempdir().unwrap();
+    filled_tank(folder.path());
+    let script = "
+problem = GAPILib.Problem(modelName = \"Tank\", files = {\"tank.mo\"},
+  parameters = {GAPILib.Free(\"k\", min = 0.05, max = 5), GAPILib.Free(\"area\", min = 0.1, max = 20),
+                GAPILib.Free(\"h\", min = 0.01, max = 3, initialValue = true)},
+  experiments = {GAPILib.Experiment(data = \"tank.csv\", xColumn = \"t\", outputs = {\"h\"},
+                                    inputs = {\"u\"}, inputColumns = {\"inflow\"}, tolerance = 1e-8)},
+  evaluations = 600);
+(values, fitness, deviations) = identify(problem);
+print(\"k area h: \" + String(integer(1e3*values[1] + 0.5)) + \" \" + String(integer(1e3*values[2] + 0.5)) + \" \" + String(integer(1e3*values[3] + 0.5)))
+";
+    fs::write(folder.path().join("s.mos"), script).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_gapi"))
+        .args(["run", "s.mos"])
+        .current_dir(folder.path())
+        .env_remove("MODELICAPATH")
+        .output()
+        .unwrap();
+    let text = [output.stdout, output.stderr].map(|b| String::from_utf8(b).unwrap()).concat();
+    assert!(text.contains("k area h: 800 2000 300"), "{text}");
+    assert!(folder.path().join("results/report.html").is_file());
+}
+
 /// Kills in the suite; `GAPILIB_KILLS` sets another number.
 const KILLS: u64 = 6;
 

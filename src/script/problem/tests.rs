@@ -183,7 +183,12 @@ fn an_unfinished_run_is_never_overwritten_and_resumes_to_the_same_end() {
 #[test]
 fn records_of_scripts_are_the_problems_of_files() {
     let data = table("time,q", |t| (3.0 * (-t).exp() + 0.01 * (7.0 * t).sin()).to_string());
-    let world = world(&[("p.toml", SIMPLE.to_owned()), ("d.csv", data)]);
+    let mut world = world(&[("p.toml", SIMPLE.to_owned()), ("d.csv", data)]);
+    for name in ["package.mo", "Problem.mo", "Free.mo", "Experiment.mo"] {
+        let path = Path::new("GAPILib").join(name);
+        let bytes = crate::models::read(&Path::new(crate::models::FOLDER).join(&path)).unwrap();
+        world = world.with_file(path, bytes);
+    }
     let streams = world.streams();
     let mut session = Session::new(Box::new(world));
     let script = "
