@@ -278,6 +278,15 @@ pub(super) struct IdentifyArgs {
     /// End after so many evaluations
     #[arg(long, value_name = "N")]
     pub evaluations: Option<u64>,
+    /// Profile likelihoods of the parameters after the fit
+    #[arg(long)]
+    pub profile: bool,
+    /// First analyse how much each parameter matters: `morris` or `sobol`
+    #[arg(long, value_name = "WAY")]
+    pub sensitivity: Option<String>,
+    /// Base samples of that analysis [default: 20 for morris, 512 for sobol]
+    #[arg(long, value_name = "N", requires = "sensitivity", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub samples: Option<u32>,
     /// A file with settings (name = number) that may change while it runs
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub watch: Option<PathBuf>,
