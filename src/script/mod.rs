@@ -34,6 +34,7 @@ mod scripts;
 mod session;
 pub mod simulation;
 mod statements;
+mod tracing;
 mod transcript;
 mod variables;
 pub mod verification;
