@@ -66,6 +66,12 @@ const CORPUS: &[(&str, &str)] = &[
          y := y + sum(powers(u/3, 4)); end while; end f;",
     ),
     (
+        "a size that the value in the declaration has",
+        "function bent input Real v[:]; output Real w[:] = 2*v; protected Real s[:, :] = [v, v]; \
+         Integer k = 0; algorithm while k < 3 loop k := k + 1; w[k] := w[k] + s[k, 2]*k; \
+         end while; end bent; function f {h} algorithm y := sum(bent({u, sin(u), n})); end f;",
+    ),
+    (
         "slices that change from turn to turn",
         "function f {h} protected Real v[4] = {u, 2, 3*u, n}; Real s = 0; algorithm \
          for i in 1:4 loop s := s + sum(v[i:4])*i; if s > 40 then break; end if; end for; \
@@ -276,6 +282,20 @@ fn messages_show_what_is_known_when_compiling() {
 }
 
 #[test]
+fn a_parameter_that_gives_a_size_is_settled() {
+    // Σ u^i, i = 1 … n
+    let functions = "function f {h} protected Real p[n]; Integer k = 0; algorithm \
+        while k < n loop k := k + 1; p[k] := u^k; end while; y := sum(p); end f;";
+    let program = compiled(&library(functions)).expect("it compiles");
+    assert!(program.parameters().is_empty(), "`n` cannot be set any more");
+    let mut value = [0.0];
+    let mut system = program.system();
+    system.initialize(0.0, &mut [1.0]).expect("initial values");
+    system.rhs(0.0, &[0.5], &mut value).expect("a value");
+    assert_eq!(value, [0.75]);
+}
+
+#[test]
 fn a_warning_does_not_end_a_simulation() {
     let warning = "function f {h} algorithm y := -u; \
         assert(u < 0, \"not below zero\", AssertionLevel.warning); end f;";
@@ -327,7 +347,7 @@ fn the_second_derivative_function_is_used() {
 /// A table as an external object, with the derivative that its library declares.
 const TABLE: &str = "package P class Table extends ExternalObject; function constructor \
     input String name; input Real table[:, :]; input Integer smoothness; output Table id; \
-    external \"C\" id = ModelicaStandardTables_CombiTable1D_init2(name, \"NoName\", table, \
+    external \"C\" id = ModelicaStandardTables_CombiTable1D_init2(\"NoName\", name, table, \
     size(table, 1), size(table, 2), {2}, 1, smoothness, 2, false); end constructor; \
     function destructor input Table id; \
     external \"C\" ModelicaStandardTables_CombiTable1D_close(id); end destructor; end Table; \
