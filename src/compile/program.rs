@@ -5,6 +5,7 @@ use super::events::{CompiledRounding, Events, compile_events, linear_in_time};
 use super::hoist::Hoisting;
 use super::jacobian::differentiate_sequence;
 use super::lower::{Registers, TapeBuilder};
+use super::machine_code::MachineCode;
 use super::memory::Memory;
 use super::system::System;
 use super::tape::{Register, Tape};
@@ -143,6 +144,7 @@ pub(super) struct CompiledSelection {
 pub(super) struct Outputs {
     pub(super) tape: Tape,
     pub(super) outputs: Vec<Register>,
+    pub(super) machine_code: MachineCode,
 }
 
 /// A compiled model.
@@ -794,7 +796,7 @@ pub(super) fn compile_continuous(
         builder.define(assignment.variable, assignment.value);
     }
     let registers = outputs.iter().map(|output| builder.emit(*output)).collect();
-    Outputs { tape: builder.finish(), outputs: registers }
+    Outputs { tape: builder.finish(), outputs: registers, ..Outputs::default() }
 }
 
 /// The steps of solving blocks one after another.

@@ -10,8 +10,11 @@ mod evaluation;
 mod experiment;
 mod failure;
 mod html;
+mod importance;
 mod journal;
 mod notes;
+mod profile;
+mod refit;
 mod run;
 mod space;
 mod statistics;
@@ -21,7 +24,9 @@ mod text;
 pub use evaluation::Evaluation;
 pub use experiment::{Experiment, ModelSimulator, Observation};
 pub use failure::{Failed, FailureKind};
+pub use importance::{ANALYSES, Analysis, Importance, ParameterImportance, analysis};
 pub use journal::{Journal, Record, decode, encode, header};
+pub use profile::{Profile, Profiles, profiles};
 pub use run::{Best, Run};
 pub use space::Free;
 pub use statistics::{ResidualTest, Statistics, residual_test, student_quantile};
@@ -30,6 +35,15 @@ pub use summary::{Solution, SolvedParameter, SolvedSeries};
 use super::fitness::Fitness;
 use crate::diag::Fault;
 use crate::ga::optimizer::Method;
+
+/// Relative error of simulated values where nothing is integrated.
+pub const NOISE_OF_FORMULAS: f64 = 1e-12;
+
+/// Step of finite differences in the unit cube: the square root of the relative error of the
+/// simulated values, where the errors of the difference and of the simulation are alike.
+pub fn difference(noise: f64) -> f64 {
+    noise.sqrt().clamp(1e-8, 1e-2)
+}
 
 /// Something that turns values of the free parameters into simulated points.
 pub trait Simulate: Send {
@@ -113,10 +127,9 @@ impl Problem {
         self.series.iter().map(|series| series.x.len()).sum()
     }
 
-    /// Step of finite differences in the unit cube: the square root of the noise, where the errors
-    /// of the difference and of the simulation are alike.
+    /// Step of finite differences in the unit cube.
     pub fn difference(&self) -> f64 {
-        self.noise.sqrt().clamp(1e-8, 1e-2)
+        difference(self.noise)
     }
 
     /// Values of the free parameters of a genome.

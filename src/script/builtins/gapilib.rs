@@ -10,9 +10,12 @@ use crate::ga::{self, Gene, Genomes, Mrg32k3a};
 use crate::identify::Question;
 use crate::identify::errors::BAD_DATA;
 use crate::identify::fitness::sum_of_squares;
+use crate::identify::problem::Free;
 use crate::script::Session;
 use crate::script::errors::FOLLOW_UP;
 use crate::script::identification::Request;
+use crate::script::refinement::Refinement;
+use crate::teach::MutationCall;
 use crate::value::errors::TYPE_MISMATCH;
 use crate::value::{ArrayValue, FromValue, RealMatrix, Value};
 
@@ -28,6 +31,7 @@ pub(super) const FAMILY: Family = Family {
         Builtin { header: FIT_ORDER, run: fit_order },
         Builtin { header: CROSS, run: cross },
         Builtin { header: MUTATION, run: mutation },
+        Builtin { header: REFINE, run: refine },
     ],
 };
 
@@ -110,6 +114,7 @@ fn ram_gen_arena(session: &mut Session, mut args: Args) -> Result<Value, Failure
     let first = rng.state();
     let numbers = (0..count).map(|_| rng.uniform()).collect();
     session.identification().recorder.seeded(first, rng.state());
+    session.traced(|tracer, place| tracer.drawn(place, first, count as usize))?;
     Ok(Value::Tuple(vec![row(numbers), row(rng.state().to_vec())]))
 }
 
@@ -162,24 +167,32 @@ end Eval;
 "#;
 
 fn eval(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let path: String = args.take("SimuPath")?;
-    let model: String = args.take("SimuCaseStudyName")?;
-    let x: Vec<f64> = args.take("Xexp")?;
+    let request = take_request(&mut args)?;
     let genomes = take_genomes(&mut args, "New_Generation")?;
-    let parameters: Vec<String> = args.take("Parameter_Names")?;
-    let (x_name, y_name) = (args.take("X_Name")?, args.take("Y_Name")?);
-    if x.is_empty() && session.identification().data_missing {
+    if request.question.x.is_empty() && session.identification().data_missing {
         // One cause, one error: reading the data has failed, and has said so.
         let message = "nothing is simulated, because the measured data could not be read";
         let note = Fault::new(FOLLOW_UP, message).at(session.call_site()).note();
         return Err(note.into());
     }
-    let columns = x.len();
-    let question = Question { parameters, x_name, y_name, x };
-    let simulated = session.evaluate_population(Request { path, model, question }, &genomes)?;
+    let columns = request.question.x.len();
+    let simulated = session.evaluate_population(request, &genomes)?;
     let messages = simulated.messages();
     let rows = RealMatrix { rows: genomes.len(), columns, elements: simulated.rows };
     Ok(Value::Tuple(vec![rows.into(), messages.into()]))
+}
+
+fn take_request(args: &mut Args) -> Result<Request, Fault> {
+    Ok(Request {
+        path: args.take("SimuPath")?,
+        model: args.take("SimuCaseStudyName")?,
+        question: Question {
+            x: args.take("Xexp")?,
+            parameters: args.take("Parameter_Names")?,
+            x_name: args.take("X_Name")?,
+            y_name: args.take("Y_Name")?,
+        },
+    })
 }
 
 const FIT: &str = r#"
@@ -203,6 +216,8 @@ fn fit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let rows = (0..simulated.rows).map(|k| simulated.row(k));
     let fitness: Vec<f64> = rows.map(|row| sum_of_squares(row, &measured)).collect();
     session.identification().recorder.rated(&fitness, &measured);
+    session
+        .traced(|tracer, place| tracer.rated(place, &fitness, &simulated.elements, &measured))?;
     Ok(fitness.into())
 }
 
@@ -222,13 +237,16 @@ fn fit_order(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let population = take_genomes(&mut args, "Pop")?;
     let fitness: Vec<f64> = args.take("Fit")?;
     let individuals: i64 = args.take("Population")?;
-    ga::selection::check_sizes(individuals, args.take("Parents")?, args.take("Elitism")?)?;
+    let (parents, elites): (i64, i64) = (args.take("Parents")?, args.take("Elitism")?);
+    ga::selection::check_sizes(individuals, parents, elites)?;
     if individuals != population.len() as i64 {
         let rows = population.len();
         bail!(SIZE_MISMATCH, "`Pop` has {rows} rows, but `Population` is {individuals}"; help: "make the sizes agree");
     }
     let (ordered, fitness_ordered) = ga::sort_by_fitness(&population, &fitness)?;
     session.identification().recorder.ordered(&population, &fitness);
+    let pairs = (parents as usize, elites as usize);
+    session.traced(|tracer, place| tracer.sorted(place, (population.values(), &fitness), pairs))?;
     Ok(Value::Tuple(vec![genomes_value(ordered), fitness_ordered.into()]))
 }
 
@@ -242,7 +260,7 @@ function Cross "Elites and children: adjacent ranks exchange the genes behind ea
 end Cross;
 "#;
 
-fn cross(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
+fn cross(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let (parents, elites): (i64, i64) = (args.take("Parents")?, args.take("Elitism")?);
     let old = take_genomes(&mut args, "OldGeneration")?;
     let n_genes = old.n_genes();
@@ -251,6 +269,8 @@ fn cross(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
         None => vec![n_genes / 2],
     };
     ga::selection::check_sizes(old.len() as i64, parents, elites)?;
+    let pairs = (parents as usize, elites as usize);
+    session.traced(|tracer, place| tracer.crossed(place, old.values(), pairs, &points))?;
     let mut chosen = Genomes::with_capacity(n_genes, parents as usize);
     old.rows().take(parents as usize).for_each(|genome| chosen.push(genome));
     let children = ga::crossover::cross_adjacent(&chosen, &points);
@@ -290,6 +310,15 @@ fn mutation(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     if searched {
         session.identification().recorder.searched(&minima, &maxima);
     }
+    let call = MutationCall {
+        genes: genomes.values(),
+        numbers: &numbers.elements,
+        elites,
+        factor,
+        minima: &minima,
+        maxima: &maxima,
+    };
+    session.traced(|tracer, place| tracer.mutated(place, &call))?;
     ga::mutation::mutate_uniform(&mut genomes, elites, &genes, factor, &numbers.elements);
     Ok(genomes_value(genomes))
 }
@@ -306,4 +335,44 @@ fn genes(minima: &[f64], maxima: &[f64], n_genes: usize) -> Result<Vec<Gene>, Fa
     check_size("Param_Max", maxima.len(), n_genes, "the columns of the population number")?;
     let ranges = minima.iter().zip(maxima).enumerate();
     ranges.map(|(k, (&min, &max))| Gene::new(format!("parameter {}", k + 1), min, max)).collect()
+}
+
+const REFINE: &str = r#"
+function Refine "Least squares: brings individuals to the next optimum by Levenberg and Marquardt's method."
+  input String SimuPath "path of the model's file or package folder; empty when it is loaded already";
+  input String SimuCaseStudyName "name of the model to simulate, with a modification if wanted";
+  input Any Xexp "Real[:]: array of experimental X data";
+  input Any Yexp "Real[:]: array of experimental Y data";
+  input Any Individuals "Real[:,:]: where to begin, one individual in each row";
+  input Any Param_Min "Real[:]: lower bound of every parameter";
+  input Any Param_Max "Real[:]: upper bound of every parameter; a positive range wider than a decade is followed by its logarithm";
+  input String Parameter_Names[:] = fill("", 0) "the identified parameters, one for each column; empty: the model's top-level tunable parameters in order of declaration";
+  input String X_Name = "time" "the variable that Xexp holds values of";
+  input String Y_Name = "" "the variable that was measured; empty: the model's only top-level output";
+  output Real Refined[:] "the best individual found";
+  output Real Fit_Refined "its sum of squared differences";
+  output Integer Simulations "how many it took";
+end Refine;
+"#;
+
+fn refine(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let request = take_request(&mut args)?;
+    let measured: Vec<f64> = args.take("Yexp")?;
+    check_size("Yexp", measured.len(), request.question.x.len(), "`Xexp` has")?;
+    let starts = take_genomes(&mut args, "Individuals")?;
+    let n_genes = starts.n_genes();
+    let (minima, maxima): (Vec<f64>, Vec<f64>) = (args.take("Param_Min")?, args.take("Param_Max")?);
+    for (name, bounds) in [("Param_Min", &minima), ("Param_Max", &maxima)] {
+        check_size(name, bounds.len(), n_genes, "the rows of `Individuals` have")?;
+    }
+    let range = |k: usize| {
+        let name = request.question.parameters.get(k).cloned();
+        let name = name.unwrap_or_else(|| format!("parameter {}", k + 1));
+        Free::new(name, "", [minima[k], maxima[k]], None, None)
+    };
+    let ranges = (0..n_genes).map(range).collect::<Result<_, Fault>>()?;
+    let refinement = Refinement { request, measured, ranges };
+    let (refined, simulations) = session.refine(&refinement, &starts)?;
+    let simulations = i64::try_from(simulations).unwrap_or(i64::MAX);
+    Ok(Value::Tuple(vec![refined.genome.into(), refined.fitness.into(), simulations.into()]))
 }

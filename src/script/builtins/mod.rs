@@ -17,6 +17,7 @@ mod messages;
 mod openmodelica;
 mod output;
 mod plotting;
+mod problem;
 mod refused;
 mod regular;
 mod results;
@@ -102,6 +103,7 @@ pub static FAMILIES: &[&Family] = &[
     &files::FAMILY,
     &files::OPENMODELICA,
     &gapilib::FAMILY,
+    &problem::FAMILY,
     &initial::FAMILY,
     &linearization::FAMILY,
     &linearization::OPENMODELICA,
