@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 /// An argument.
 #[derive(Clone)]
-enum Arg<'a> {
+pub(super) enum Arg<'a> {
     Number(f64),
     Array(&'a [usize], &'a [f64]),
     Text(&'a str),
@@ -20,10 +20,10 @@ use Arg::{Array, Number, Text};
 
 /// What a call leaves: its result, every number and text after it, and the objects.
 #[derive(Debug)]
-struct Done {
+pub(super) struct Done {
     result: f64,
     text: String,
-    numbers: Vec<f64>,
+    pub(super) numbers: Vec<f64>,
     written: Vec<Arc<str>>,
     objects: Vec<Object>,
 }
@@ -97,12 +97,12 @@ fn call_with(name: &str, args: &[Arg<'_>], outside: &mut dyn Outside) -> Result<
     Ok(Done { result, text, numbers, written, objects })
 }
 
-fn call(name: &str, args: &[Arg<'_>]) -> Result<Done, Fault> {
+pub(super) fn call(name: &str, args: &[Arg<'_>]) -> Result<Done, Fault> {
     call_with(name, args, &mut ())
 }
 
 #[track_caller]
-fn near(value: f64, expected: f64) {
+pub(super) fn near(value: f64, expected: f64) {
     assert!((value - expected).abs() <= 1e-12 * expected.abs().max(1.0), "{value}, not {expected}");
 }
 
@@ -527,7 +527,7 @@ fn strings_are_scanned_as_documented() {
 }
 
 #[test]
-fn random_numbers_are_those_of_the_published_algorithms() {
+fn random_numbers_are_those_of_the_standard_library() {
     let run = |name: &str, state: &[f64]| {
         let size = [state.len()];
         let args = [Array(&size, state), Array(&size, state), Number(0.0)];
@@ -536,9 +536,9 @@ fn random_numbers_are_those_of_the_published_algorithms() {
     };
     let mut state = vec![1.0, 0.0];
     for (next, number) in [
-        ([33554433.0, 0.0], 0.7808350500503596),
-        ([8398849.0, 262208.0], 0.17113725302667643),
-        ([52439043.0, 852032.0], 0.22584614528336688),
+        ([-1989354211.0, 1206177355.0], 0.7808350500503596),
+        ([-955010875.0, 602321399.0], 0.6402388791967286),
+        ([-779129102.0, 923993986.0], 0.7151341146832786),
     ] {
         let (found, value) = run("ModelicaRandom_xorshift64star", &state);
         assert_eq!((found.as_slice(), value), (next.as_slice(), number));
@@ -550,7 +550,7 @@ fn random_numbers_are_those_of_the_published_algorithms() {
         assert_eq!(value, number);
         state = found;
     }
-    assert_eq!(state, [25166017.0, 0.0, 8392706.0, 16384.0]);
+    assert_eq!(state, [33554700.0, 0.0, 33558869.0, 16384.0]);
     let mut state: Vec<f64> = (1..=16).flat_map(|word| [f64::from(word), 0.0]).collect();
     state.push(0.0);
     for number in [0.2513150092458146, 0.5358190340172654, 0.5259321584469488] {
