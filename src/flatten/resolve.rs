@@ -83,6 +83,8 @@ impl Instantiation<'_> {
             | ExpressionKind::Integer(_)
             | ExpressionKind::Boolean(_)
             | ExpressionKind::String(_)
+            | ExpressionKind::TypeName(_)
+            | ExpressionKind::Code(_)
             | ExpressionKind::End => e.kind.clone(),
             ExpressionKind::Reference(reference) => {
                 return self.reference(reference, context, local);
