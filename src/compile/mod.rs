@@ -13,6 +13,7 @@ mod lower;
 mod memory;
 mod newton;
 mod program;
+mod relations;
 mod selection;
 mod system;
 mod tape;

@@ -317,6 +317,29 @@ fn with_values(current: &Current, model: &Translated) -> Result<Continued, Fault
     Ok(Continued { states: states.collect(), system })
 }
 
+/// The next simulations begin with the states and parameters that a result has at a time.
+///
+/// # Errors
+/// A state that the result does not have.
+pub fn begin_with(
+    session: &mut Session,
+    model: &Translated,
+    result: &ResultTable,
+    time: f64,
+) -> Result<(), Fault> {
+    let mut states = IndexMap::new();
+    for name in state_names(model) {
+        states.insert(name.clone(), result.interpolate(name, &[time])?[0]);
+    }
+    for parameter in model.program.parameters() {
+        if let Ok(values) = result.interpolate(&parameter.name, &[time]) {
+            session.set_parameter(&parameter.name, values[0])?;
+        }
+    }
+    session.import_states(states);
+    Ok(())
+}
+
 /// The names of the states, in their order.
 pub(super) fn state_names(model: &Translated) -> impl Iterator<Item = &Arc<str>> {
     let sorted = model.program.sorted();
