@@ -59,9 +59,10 @@ only be an effective value of partly filled pores.</li>
 <li>Rmem, 1.419e-3 Ohm.m2: the membrane at the start (lambda = 3), with all that is in series with it.
 Springer's conductivity gives 9.2e-5; so it sets the ratio to later times here, and Rmem the size.</li>
 </ul>
-<p>Fixed choices change the voltage, too: the diffusion Kl of liquid water (186 mV for a third of it), the
-exponent m = 3 (37 mV), humidities (42 mV for RHa = 0.8), sorption ksorb (16 mV for twice it). ksorb of a
-dry film is limited by swelling, two orders slower than permeation: P. W. Majsztrik et al., J. Membr.
+<p>Fixed choices change the voltage, too, at most by: 186 mV for the diffusion Kl of liquid water of 3e-13,
+37 mV for the exponent m = 3, 42 and 22 mV for RHa and RHc = 0.8, 26 mV for twice the sorption ksorb, 18 mV for
+Dl = 1e-10, 11 mV for lambda0 = 5, 5 mV for ten times or a tenth of kc
+(<code>scripts/water_effect/fixed_choices.mos</code>). ksorb of a dry film is limited by swelling, two orders slower than permeation: P. W. Majsztrik et al., J. Membr.
 Sci. 301 (2007) 93. B = 0.15 V is the library's value.</p>
 </html>"));
 end WaterEffect;

@@ -5,6 +5,7 @@ use super::BaseType;
 use super::errors::{PARTIAL_CLASS, TYPE_MISMATCH, UNKNOWN_NAME};
 use super::instance::{Declaration, Member, MemberState, NodeId, NodeKind};
 use super::instantiation::Instantiation;
+use super::library::Habit;
 use super::modification::Modifier;
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -19,14 +20,11 @@ impl Instantiation<'_> {
         node: NodeId,
         declared: &Declaration,
     ) -> Result<MemberState, Diagnostic> {
-        if !declared.prefixes.inner && !declared.modifier.is_empty() {
-            let name = declared.name;
-            self.warnings.push(
-                fault!(UNKNOWN_NAME, "the value of the outer component `{name}` is ignored";
-                    help: "give it to the inner component")
-                .at(declared.span)
-                .warning(),
-            );
+        if !declared.prefixes.inner
+            && !declared.modifier.is_empty()
+            && let Some(text) = &self.scope(declared.scope).text
+        {
+            self.library.meet(&text.name, Habit::OuterValue, declared.span);
         }
         let mut holder = self.nodes[node.0].parent;
         while let Some(id) = holder {

@@ -11,11 +11,13 @@ use crate::diag::Diagnostic;
 use crate::external::Resources;
 use crate::fault;
 use crate::name::{Ident, Name};
+use crate::source::Span;
 use crate::syntax::ast::{
     ClassDefinition, ClassSpecifier, Constraint, Element, ElementPrefixes, Extends, ImportKind,
     Section, StoredDefinition, Visibility,
 };
 use files::{Entry, Folder};
+pub(super) use habits::Habit;
 use habits::Habits;
 use indexmap::{IndexMap, IndexSet};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -364,6 +366,11 @@ impl Library {
     /// files can load them and try again.
     pub fn take_missing(&self) -> BTreeSet<Ident> {
         std::mem::take(&mut *locked(&self.missing))
+    }
+
+    /// Notes that the library of a class has a habit, at a place.
+    pub(super) fn meet(&self, class: &Name, habit: Habit, span: Span) {
+        self.habits.meet(class.first(), habit, span);
     }
 
     /// Whether a library was written for an old Modelica, as far as its habits show.

@@ -89,7 +89,7 @@ pub struct Recorder {
     pub best: Option<Best>,
     /// The measured data read last.
     pub measurement: Option<Measurement>,
-    /// The first seed.
+    /// The seed that the random numbers of the first population began with.
     pub seed: Option<[f64; 6]>,
     /// The search ranges used last: minima and maxima.
     pub ranges: Option<(Vec<f64>, Vec<f64>)>,
@@ -140,6 +140,9 @@ impl Recorder {
             _ => seed,
         };
         self.chain = Some(Chain { first, next });
+        if self.evaluations == 0 {
+            self.seed = Some(first);
+        }
         self.seed.get_or_insert(first);
     }
 
@@ -385,6 +388,11 @@ mod tests {
         assert_eq!((before.seed, before.evaluations), (Some(seed(1.0)), 1));
         recorder.seeded(seed(9.0), seed(10.0));
         assert_eq!((recorder.seed, recorder.evaluations), (Some(seed(7.0)), 0));
+        // Another seed before anything was simulated is the one that counts, not one for later.
+        recorder.seeded(seed(20.0), seed(21.0));
+        recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &simulated(&[7.0]));
+        recorder.seeded(seed(30.0), seed(31.0));
+        assert_eq!(recorder.seed, Some(seed(20.0)));
     }
 
     #[test]

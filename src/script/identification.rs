@@ -112,11 +112,17 @@ impl Session {
         Ok(simulated)
     }
 
-    fn prepare(&mut self, request: &Request) -> Result<Evaluator, Failure> {
+    /// Loads the file or folder that the model of a request is in.
+    pub(super) fn load_model_of(&mut self, request: &Request) -> Result<(), Failure> {
         let path = Path::new(&request.path);
         if !request.path.is_empty() && !self.has_loaded(path) {
             self.load_path(path)?;
         }
+        Ok(())
+    }
+
+    fn prepare(&mut self, request: &Request) -> Result<Evaluator, Failure> {
+        self.load_model_of(request)?;
         let translated = simulation::translated(self, &request.model)?;
         let model = CompiledModel::new(&request.model, translated.program.clone());
         let threads = self.world.threads();

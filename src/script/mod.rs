@@ -26,6 +26,7 @@ mod messages;
 pub mod parsing;
 mod permissions;
 pub mod problem;
+mod refinement;
 mod resources;
 mod retranslation;
 mod scripts;

@@ -25,9 +25,9 @@ fn flattened(path: &Path) -> String {
             if let Err(error) = parse_stored_definition(source, &text) {
                 panic!("the flat text does not parse:\n{}", render(&error, &sources, false));
             }
-            let warnings = flattened.warnings.iter();
+            let warnings = flattened.warnings.into_iter().chain(library.take_warnings());
             let told: String =
-                warnings.map(|one| format!("\n{}", render(one, &sources, false))).collect();
+                warnings.map(|one| format!("\n{}", render(&one, &sources, false))).collect();
             text + &told
         }
         Err(errors) => {

@@ -117,6 +117,31 @@ fn elites_pass_crossover_and_mutation_unaltered() {
     assert_eq!(reals(&session, "n")[..8], reals(&session, "o")[..8]);
 }
 
+/// Values of section 4.1 computed with the model, found again from far away; where the sum of
+/// squares ends at a bound, the bound.
+#[test]
+fn refinement_finds_the_optimum_and_counts_as_a_generation() {
+    let session = session(
+        "x := 0.002:0.01:0.22;\n\
+         m := \"CaseStudies.PolarizationCurve(i_max=0.22)\"; p := \"models/CaseStudies\";\n\
+         y := Eval(p, m, x, [0.039, 0.0918, 0.2265], {\"A\", \"B\", \"Ilim\"}, \"i\");\n\
+         (b, f, n) := Refine(p, m, x, y[1,:], [0.06, 0.03, 0.4; 0.02, 0.1, 0.23], {0.01, 0.01, 0.221}, \
+         {0.1, 0.2, 0.5}, {\"A\", \"B\", \"Ilim\"}, \"i\");\n\
+         (c, g) := Refine(p, m, x, y[1,:], [0.06, 0.03, 0.4], {0.04, 0.01, 0.221}, \
+         {0.1, 0.2, 0.5}, {\"A\", \"B\", \"Ilim\"}, \"i\");\n",
+    );
+    for (found, truth) in reals(&session, "b").iter().zip([0.039, 0.0918, 0.2265]) {
+        assert!((found - truth).abs() < 1e-6 * truth, "{found} {truth}");
+    }
+    let number = |name: &str| match session.variable(name) {
+        Some(Value::Real(value)) => *value,
+        Some(Value::Integer(value)) => *value as f64,
+        other => panic!("`{name}` is {other:?}"),
+    };
+    assert!(number("f") < 1e-15 && (10.0..200.0).contains(&number("n")), "{}", number("f"));
+    assert!((reals(&session, "c")[0] - 0.04).abs() < 1e-12 && number("g") > 1e-8);
+}
+
 #[test]
 fn functions_that_need_the_machine_are_built_in_also_in_the_package() {
     let session = session(&format!(

@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// A way of writing that today's Modelica does not have and that changes nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Habit {
+pub(in crate::flatten) enum Habit {
     /// A file in a package's folder says nothing about where it belongs.
     NoWithin,
     /// It names another package than that of its folder.
@@ -23,6 +23,8 @@ pub(super) enum Habit {
     AnnotationPlace,
     /// The annotations that drew classes in Modelica 1 and 2.
     OldGraphics,
+    /// An `outer` component with a value or other modifiers, which the inner one does not take.
+    OuterValue,
 }
 
 /// The habits met in each library.
@@ -58,6 +60,10 @@ impl Habit {
             Habit::OldGraphics => (
                 "graphical annotations of Modelica 1 or 2, which are ignored",
                 "convert the library to Modelica 3, if it is to be drawn",
+            ),
+            Habit::OuterValue => (
+                "`outer` components with modifiers, which are ignored",
+                "give the values to the inner components",
             ),
         };
         Fault::new(OLD_LIBRARY, format!("library `{library}` has {what}")).help(remedy)

@@ -31,6 +31,15 @@ use super::fitness::Fitness;
 use crate::diag::Fault;
 use crate::ga::optimizer::Method;
 
+/// Relative error of simulated values where nothing is integrated.
+pub const NOISE_OF_FORMULAS: f64 = 1e-12;
+
+/// Step of finite differences in the unit cube: the square root of the relative error of the
+/// simulated values, where the errors of the difference and of the simulation are alike.
+pub fn difference(noise: f64) -> f64 {
+    noise.sqrt().clamp(1e-8, 1e-2)
+}
+
 /// Something that turns values of the free parameters into simulated points.
 pub trait Simulate: Send {
     /// Writes the simulated value of every point of every series, one after the other.
@@ -113,10 +122,9 @@ impl Problem {
         self.series.iter().map(|series| series.x.len()).sum()
     }
 
-    /// Step of finite differences in the unit cube: the square root of the noise, where the errors
-    /// of the difference and of the simulation are alike.
+    /// Step of finite differences in the unit cube.
     pub fn difference(&self) -> f64 {
-        self.noise.sqrt().clamp(1e-8, 1e-2)
+        difference(self.noise)
     }
 
     /// Values of the free parameters of a genome.

@@ -10,9 +10,11 @@ use crate::ga::{self, Gene, Genomes, Mrg32k3a};
 use crate::identify::Question;
 use crate::identify::errors::BAD_DATA;
 use crate::identify::fitness::sum_of_squares;
+use crate::identify::problem::Free;
 use crate::script::Session;
 use crate::script::errors::FOLLOW_UP;
 use crate::script::identification::Request;
+use crate::script::refinement::Refinement;
 use crate::value::errors::TYPE_MISMATCH;
 use crate::value::{ArrayValue, FromValue, RealMatrix, Value};
 
@@ -28,6 +30,7 @@ pub(super) const FAMILY: Family = Family {
         Builtin { header: FIT_ORDER, run: fit_order },
         Builtin { header: CROSS, run: cross },
         Builtin { header: MUTATION, run: mutation },
+        Builtin { header: REFINE, run: refine },
     ],
 };
 
@@ -162,24 +165,32 @@ end Eval;
 "#;
 
 fn eval(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let path: String = args.take("SimuPath")?;
-    let model: String = args.take("SimuCaseStudyName")?;
-    let x: Vec<f64> = args.take("Xexp")?;
+    let request = take_request(&mut args)?;
     let genomes = take_genomes(&mut args, "New_Generation")?;
-    let parameters: Vec<String> = args.take("Parameter_Names")?;
-    let (x_name, y_name) = (args.take("X_Name")?, args.take("Y_Name")?);
-    if x.is_empty() && session.identification().data_missing {
+    if request.question.x.is_empty() && session.identification().data_missing {
         // One cause, one error: reading the data has failed, and has said so.
         let message = "nothing is simulated, because the measured data could not be read";
         let note = Fault::new(FOLLOW_UP, message).at(session.call_site()).note();
         return Err(note.into());
     }
-    let columns = x.len();
-    let question = Question { parameters, x_name, y_name, x };
-    let simulated = session.evaluate_population(Request { path, model, question }, &genomes)?;
+    let columns = request.question.x.len();
+    let simulated = session.evaluate_population(request, &genomes)?;
     let messages = simulated.messages();
     let rows = RealMatrix { rows: genomes.len(), columns, elements: simulated.rows };
     Ok(Value::Tuple(vec![rows.into(), messages.into()]))
+}
+
+fn take_request(args: &mut Args) -> Result<Request, Fault> {
+    Ok(Request {
+        path: args.take("SimuPath")?,
+        model: args.take("SimuCaseStudyName")?,
+        question: Question {
+            x: args.take("Xexp")?,
+            parameters: args.take("Parameter_Names")?,
+            x_name: args.take("X_Name")?,
+            y_name: args.take("Y_Name")?,
+        },
+    })
 }
 
 const FIT: &str = r#"
@@ -306,4 +317,44 @@ fn genes(minima: &[f64], maxima: &[f64], n_genes: usize) -> Result<Vec<Gene>, Fa
     check_size("Param_Max", maxima.len(), n_genes, "the columns of the population number")?;
     let ranges = minima.iter().zip(maxima).enumerate();
     ranges.map(|(k, (&min, &max))| Gene::new(format!("parameter {}", k + 1), min, max)).collect()
+}
+
+const REFINE: &str = r#"
+function Refine "Least squares: brings individuals to the next optimum by Levenberg and Marquardt's method."
+  input String SimuPath "path of the model's file or package folder; empty when it is loaded already";
+  input String SimuCaseStudyName "name of the model to simulate, with a modification if wanted";
+  input Any Xexp "Real[:]: array of experimental X data";
+  input Any Yexp "Real[:]: array of experimental Y data";
+  input Any Individuals "Real[:,:]: where to begin, one individual in each row";
+  input Any Param_Min "Real[:]: lower bound of every parameter";
+  input Any Param_Max "Real[:]: upper bound of every parameter; a positive range wider than a decade is followed by its logarithm";
+  input String Parameter_Names[:] = fill("", 0) "the identified parameters, one for each column; empty: the model's top-level tunable parameters in order of declaration";
+  input String X_Name = "time" "the variable that Xexp holds values of";
+  input String Y_Name = "" "the variable that was measured; empty: the model's only top-level output";
+  output Real Refined[:] "the best individual found";
+  output Real Fit_Refined "its sum of squared differences";
+  output Integer Simulations "how many it took";
+end Refine;
+"#;
+
+fn refine(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let request = take_request(&mut args)?;
+    let measured: Vec<f64> = args.take("Yexp")?;
+    check_size("Yexp", measured.len(), request.question.x.len(), "`Xexp` has")?;
+    let starts = take_genomes(&mut args, "Individuals")?;
+    let n_genes = starts.n_genes();
+    let (minima, maxima): (Vec<f64>, Vec<f64>) = (args.take("Param_Min")?, args.take("Param_Max")?);
+    for (name, bounds) in [("Param_Min", &minima), ("Param_Max", &maxima)] {
+        check_size(name, bounds.len(), n_genes, "the rows of `Individuals` have")?;
+    }
+    let range = |k: usize| {
+        let name = request.question.parameters.get(k).cloned();
+        let name = name.unwrap_or_else(|| format!("parameter {}", k + 1));
+        Free::new(name, "", [minima[k], maxima[k]], None, None)
+    };
+    let ranges = (0..n_genes).map(range).collect::<Result<_, Fault>>()?;
+    let refinement = Refinement { request, measured, ranges };
+    let (refined, simulations) = session.refine(&refinement, &starts)?;
+    let simulations = i64::try_from(simulations).unwrap_or(i64::MAX);
+    Ok(Value::Tuple(vec![refined.genome.into(), refined.fitness.into(), simulations.into()]))
 }

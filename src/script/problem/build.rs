@@ -10,7 +10,8 @@ use crate::fault;
 use crate::ga::optimizer::METHODS;
 use crate::identify::fitness::FITNESSES;
 use crate::identify::problem::{
-    Experiment, Free, ModelSimulator, Observation, Problem, Series, Simulate, Stop,
+    Experiment, Free, ModelSimulator, NOISE_OF_FORMULAS, Observation, Problem, Series, Simulate,
+    Stop,
 };
 use crate::identify::{CompiledModel, Model};
 use crate::mat::{self, MatFile};
@@ -21,9 +22,6 @@ use crate::source::Span;
 use std::fmt::Write;
 use std::path::Path;
 use std::sync::Arc;
-
-/// Error of a value that is computed without integration, relative.
-const NOISE_OF_FORMULAS: f64 = 1e-12;
 
 /// A problem with the experiments that are kept for validation.
 pub(super) struct Built {

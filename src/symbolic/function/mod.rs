@@ -1,7 +1,7 @@
 //! The mathematical functions of the language (MLS §3.7.1 to §3.7.3, scalar Real arguments), one
 //! table for scripts, constant folding, residuals and Jacobians alike.
 //!
-//! `ln` stands for `log`, as libraries before 2.0 of the language write it. Functions of arrays and
+//! `ln` stands for `log`, as libraries before 2.0 of the language write it, and `RandomUniform` is theirs too. Functions of arrays and
 //! operators with a meaning in time (`der`, `pre`, `noEvent` …) are not here.
 
 use super::node::Expr;
@@ -12,6 +12,7 @@ use std::sync::LazyLock;
 mod elementary;
 mod extremum;
 mod hyperbolic;
+mod random;
 mod rounding;
 mod trigonometric;
 
@@ -21,6 +22,7 @@ const FAMILIES: &[&[Function]] = &[
     hyperbolic::FUNCTIONS,
     rounding::FUNCTIONS,
     trigonometric::FUNCTIONS,
+    random::FUNCTIONS,
 ];
 
 /// One function of the table.
