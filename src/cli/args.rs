@@ -351,7 +351,11 @@ fn pass_names() -> clap::builder::PossibleValuesParser {
         clap::builder::PossibleValue::new(*name).help(*what)
     };
     let flat = ("flatten", "the flat model");
-    std::iter::once(&flat).chain(crate::dae::PASSES).map(value).collect::<Vec<_>>().into()
+    std::iter::once(&flat)
+        .chain(crate::script::simulation::PASSES)
+        .map(value)
+        .collect::<Vec<_>>()
+        .into()
 }
 
 /// Arguments of `gapi check`.

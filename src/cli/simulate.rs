@@ -3,7 +3,6 @@
 use super::args::{Global, SimulateArgs};
 use super::session;
 use super::terminal::Terminal;
-use crate::dae;
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::plot::{self, Axis, Figure, Mark, Panel};
@@ -54,7 +53,9 @@ fn run(
         None => None,
     };
     if let Some(pass) = &arguments.dump {
-        return dump(session, &arguments.model, pass);
+        let text = simulation::dump(session, &arguments.model, pass)?;
+        session.print(&text);
+        return Ok(());
     }
     let filter = arguments.variable_filter.as_deref().map(filter).transpose().map_err(one)?;
     let model = simulation::translate(session, &arguments.model)?;
@@ -93,17 +94,6 @@ fn run(
     Ok(())
 }
 
-/// Prints the system after a pass.
-fn dump(session: &mut Session, model: &str, pass: &str) -> Result<(), Vec<Diagnostic>> {
-    let flat = simulation::flat_model(session, model)?;
-    let text = match dae::dump(&flat, pass).map_err(|error| vec![error])? {
-        Some(text) => text,
-        None => flat.to_string(),
-    };
-    session.print(&text);
-    Ok(())
-}
-
 /// Matches whole names.
 fn filter(expression: &str) -> Result<Regex, Fault> {
     let whole = format!("^(?:{expression})$");
@@ -119,9 +109,10 @@ fn begin_with(
     path: &Path,
     time: Option<f64>,
 ) -> Result<f64, Fault> {
-    let bytes = session.world.read(path).map_err(|error| {
-        fault!(FILE_ERROR, "`{}` cannot be read: {error}", path.display())
-    })?;
+    let bytes = session
+        .world
+        .read(path)
+        .map_err(|error| fault!(FILE_ERROR, "`{}` cannot be read: {error}", path.display()))?;
     let table = results::format_of_file(&path.to_string_lossy())?.read(&bytes)?;
     let last = || table.time.last().copied().unwrap_or(0.0);
     let time = time.unwrap_or_else(last);

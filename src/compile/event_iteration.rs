@@ -159,7 +159,15 @@ impl System {
         }
         self.update_previous();
         while self.event(t)? == EventOutcome::Again {}
-        Ok(())
+        // What was before the start is what the events of the first instant lead to.
+        for _ in 0..MAX_ROUNDS {
+            if !self.start_histories(t)? {
+                return Ok(());
+            }
+            self.load_delayed(t);
+            while self.event(t)? == EventOutcome::Again {}
+        }
+        Err(Failure::EventIteration { variable: self.unstable })
     }
 
     /// An event at `t`, the variables being those before it.

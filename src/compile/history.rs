@@ -133,16 +133,19 @@ impl System {
         }
     }
 
-    /// Starts the histories with the values at `t`, all variables being known.
-    pub(super) fn start_histories(&mut self, t: f64) -> Result<(), Failure> {
+    /// Starts the histories with the values at `t`, all variables being known; whether one of them
+    /// began with another value.
+    pub(super) fn start_histories(&mut self, t: f64) -> Result<bool, Failure> {
         let program = self.program.clone();
+        let mut changed = false;
         for (at, delay) in program.events.delays.iter().enumerate() {
             let value = self.delayed_expression(delay)?;
+            changed |= self.histories[at].values.front() != Some(&value);
             self.histories[at].start(t, value);
             run(&delay.time.tape, &mut self.registers)?;
             self.delay_times[at] = self.registers[delay.time.outputs[0] as usize];
         }
-        Ok(())
+        Ok(changed)
     }
 
     /// Adds the values at `t`, all registers of states and events being loaded.

@@ -1,11 +1,12 @@
 //! Relations that keep their values between events (MLS §8.5).
 //!
 //! ```text
-//! a > b   holds at first        where a - b > 0
-//!         changes in a step     where a - b passes -ε while it holds, ε while it does not
-//!         changes again within  where a - b is beyond these as well
-//!         one event
+//! a > b   changes in a step and       where a - b > 0 begins or ends to hold
+//!         at first in an event
+//!         changes again in that event where a - b passes -ε while it holds, ε while it does not
 //! ```
+//!
+//! A relation that has so been kept once has these bounds in all later steps.
 //!
 //! ε is a little more than what rounding makes of the sides. Without it the value of a relation
 //! that decides which equations hold, and that they bring to its very limit (a friction element
@@ -81,10 +82,13 @@ impl System {
         }
         let [a, b] = [sides.outputs[0], sides.outputs[1]];
         let (a, b) = (self.registers[a as usize], self.registers[b as usize]);
-        match self.has_changed[at] {
-            true => before == (distance(operator, before, a, b) >= 0.0),
-            false => operator.holds(a, b),
+        let exact = operator.holds(a, b);
+        if exact == before || !self.has_changed[at] {
+            return exact;
         }
+        let keeps = distance(operator, before, a, b) >= 0.0;
+        self.held[at] |= keeps;
+        before == keeps
     }
 
     /// Writes the crossing functions of relations and roundings; y is loaded and solved.
@@ -99,8 +103,11 @@ impl System {
             let relation = &program.relations[*at];
             let holds = self.registers[relation.register as usize] != 0.0;
             let [a, b] = [pair[0], pair[1]].map(|side| self.registers[side as usize]);
-            let distance = distance(relation.operator, holds, a, b);
-            *z = if holds { distance } else { -distance };
+            *z = match self.held[*at] {
+                true if holds => distance(relation.operator, true, a, b),
+                true => -distance(relation.operator, false, a, b),
+                false => a - b,
+            };
         }
         for (z, register) in second.iter_mut().zip(rest) {
             *z = self.registers[*register as usize];

@@ -35,6 +35,8 @@ pub struct System {
     pub(super) switches: Vec<Option<f64>>,
     /// Whether relations have changed in the event at hand.
     pub(super) has_changed: Vec<bool>,
+    /// Whether relations have been kept at a value that their sides did not quite have.
+    pub(super) held: Vec<bool>,
     nominal: Vec<f64>,
     /// One for every loop of the initial system, of the system, and of that at events, in order.
     initial_solvers: Vec<LoopSolver>,
@@ -69,6 +71,7 @@ impl System {
             observed: None,
             switches: vec![None; program.relations.len()],
             has_changed: vec![false; program.relations.len()],
+            held: vec![false; program.relations.len()],
             nominal: vec![1.0; n],
             initial_solvers: Vec::new(),
             solvers: Vec::new(),
@@ -324,6 +327,7 @@ impl System {
         }
         self.take_start_values_of_events();
         self.has_changed.fill(false);
+        self.held.fill(false);
         self.update_relations(t, Change::All);
         self.has_changed.fill(false);
         for (choice, selection) in self.choices.iter_mut().zip(&program.selections) {

@@ -114,9 +114,8 @@ impl Builder<'_> {
     fn statements(&mut self, list: &[Statement], loops: &mut Loops) -> Result<Broken, Diagnostic> {
         let mut broken = self.not_broken();
         for statement in list {
-            broken = self.unless(broken, loops, |builder, loops| {
-                builder.statement(statement, loops)
-            })?;
+            broken =
+                self.unless(broken, loops, |builder, loops| builder.statement(statement, loops))?;
             if self.dae.pool.as_constant(broken) == Some(1.0) {
                 break;
             }
@@ -174,9 +173,8 @@ impl Builder<'_> {
                 let mut broken = self.not_broken();
                 while self.statement_lowering(loops).known(condition)? != 0.0 {
                     self.count_statement(s.span)?;
-                    broken = self.unless(broken, loops, |builder, loops| {
-                        builder.statements(body, loops)
-                    })?;
+                    broken = self
+                        .unless(broken, loops, |builder, loops| builder.statements(body, loops))?;
                     if self.dae.pool.as_constant(broken) == Some(1.0) {
                         break;
                     }
@@ -361,9 +359,8 @@ impl Builder<'_> {
         for value in self.statement_lowering(loops).loop_values(index)? {
             self.count_statement(index.name.span)?;
             loops.push((index.name.node, value));
-            let turn = self.unless(broken, loops, |builder, loops| {
-                builder.for_statement(inner, body, loops)
-            });
+            let turn = self
+                .unless(broken, loops, |builder, loops| builder.for_statement(inner, body, loops));
             loops.pop();
             broken = turn?;
             if self.dae.pool.as_constant(broken) == Some(1.0) {

@@ -120,8 +120,10 @@ impl Builder<'_> {
         span: Span,
     ) -> Result<Vec<Place>, Diagnostic> {
         if self.varies(subscript) {
-            return Err(fault!(NO_CONSTANT_VALUE,
-                "the subscript of an assignment must be known, or be discrete")
+            return Err(fault!(
+                NO_CONSTANT_VALUE,
+                "the subscript of an assignment must be known, or be discrete"
+            )
             .at(span));
         }
         let one = self.dae.pool.constant(1.0);
@@ -157,8 +159,9 @@ impl Builder<'_> {
         value?.append_scalars(&mut scalars);
         let place = |(element, e): (usize, Expr)| match self.dae.pool.as_variable(e) {
             Some(variable) => Ok(Place { variable, element, guard: None }),
-            None => Err(fault!(NOT_SUPPORTED, "`{}` cannot be assigned", target.name())
-                .at(target.span)),
+            None => {
+                Err(fault!(NOT_SUPPORTED, "`{}` cannot be assigned", target.name()).at(target.span))
+            }
         };
         scalars.into_iter().enumerate().map(place).collect()
     }

@@ -9,6 +9,8 @@ use super::{PASSES, sort_and_show};
 use crate::diag::Diagnostic;
 use crate::flatten::FlatModel;
 use crate::symbolic::{Expr, VarId, print};
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// The system after a pass of [`PASSES`], as text; `None` if there is no such pass.
@@ -80,21 +82,25 @@ fn counts(dae: &Dae, aliases: &[Option<Alias>]) -> String {
     )
 }
 
-/// `12 blocks; linear 4 by 2; torn 3 by 1`: equations of every loop, and those left to be solved
-/// together.
+/// `12 blocks; linear 4 by 2; 3 torn 3 by 1`: equations of the loops, and those left to be solved
+/// together; the largest first.
 fn block_sizes(blocks: &[Block]) -> String {
-    let mut text = format!("{} blocks", blocks.len());
+    let mut counts: BTreeMap<(Reverse<usize>, usize, &str), usize> = BTreeMap::new();
     for block in blocks {
-        let _ = match block {
+        let (kind, size, left) = match block {
             Block::Assignment(_) => continue,
-            Block::Linear(solved) => {
-                write!(text, "; linear {} by {}", solved.assignments.len(), solved.unknowns.len())
-            }
+            Block::Linear(solved) => ("linear", solved.assignments.len(), solved.unknowns.len()),
             Block::Loop(torn) => {
                 let n = torn.iteration.len();
-                write!(text, "; torn {} by {n}", torn.assignments.len() + n)
+                ("torn", torn.assignments.len() + n, n)
             }
         };
+        *counts.entry((Reverse(size), left, kind)).or_default() += 1;
+    }
+    let mut text = format!("{} blocks", blocks.len());
+    for ((Reverse(size), left, kind), count) in counts {
+        let times = if count == 1 { String::new() } else { format!("{count} ") };
+        let _ = write!(text, "; {times}{kind} {size} by {left}");
     }
     text
 }

@@ -165,6 +165,18 @@ pub fn flat_model(session: &mut Session, problem: &str) -> Result<FlatModel, Vec
     flattened(session, problem).map(|flattened| flattened.model)
 }
 
+pub use crate::dae::PASSES;
+
+/// The system of a model after a pass of [`PASSES`] as text, in its own names; else the flat model.
+///
+/// # Errors
+/// Everything that is wrong with it up to there.
+pub fn dump(session: &mut Session, problem: &str, pass: &str) -> Result<String, Vec<Diagnostic>> {
+    let flat = flat_model(session, problem)?;
+    let system = dae::dump(&flat, pass).map_err(|error| vec![error])?;
+    Ok(system.unwrap_or_else(|| flat.to_string()))
+}
+
 /// As [`flat_model`], with the local balance; warnings are reported.
 pub(super) fn flattened(
     session: &mut Session,

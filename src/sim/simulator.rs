@@ -288,12 +288,16 @@ impl Run<'_> {
         if !self.problem.system.crossings_vary_in_time() {
             return end;
         }
+        let share = part + (end - begin) / PARTS_SEARCHED;
+        if share <= part {
+            return end;
+        }
         let settings = self.problem.settings;
         let numbers = self.output_number..;
         let mut points =
             numbers.map_while(|n| settings.output.point(settings.start, settings.stop, n));
         let point = points.find(|point| *point > part).unwrap_or(end);
-        (part + (end - begin) / PARTS_SEARCHED).min(point).min(end)
+        share.min(point).min(end)
     }
 
     /// Records the output points before `end`; y is y(`end`) afterwards as before.

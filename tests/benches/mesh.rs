@@ -114,7 +114,9 @@ fn figure(models: &[(&str, Vec<Row>)]) -> Figure {
 fn main() {
     let limit = std::env::args().filter_map(|text| text.parse().ok()).min().unwrap_or(usize::MAX);
     let mut models = Vec::new();
-    println!("model     n     states  translation s  steps  simulation ms  step us  step and state ns");
+    println!(
+        "model     n     states  translation s  steps  simulation ms  step us  step and state ns"
+    );
     for (model, layers) in [("FC2Layer", 2), ("FC3Layer", 3)] {
         let mut rows = Vec::new();
         for n in MESHES.into_iter().filter(|n| *n <= limit) {
