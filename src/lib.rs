@@ -80,6 +80,7 @@ pub mod script;
 pub mod sim;
 pub mod symbolic;
 pub mod syntax;
+pub mod teach;
 pub mod value;
 
 pub mod cli;

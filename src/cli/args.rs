@@ -62,6 +62,10 @@ pub(super) enum Colour {
 pub(super) enum Command {
     /// Run a script
     Run(RunArgs),
+    /// Watch the genetic algorithm of a script step by step
+    Teach(TeachArgs),
+    /// Learn how the genetic algorithm works, in twelve short lessons
+    Lesson(LessonArgs),
     /// Identify parameters as a problem file says
     Identify(IdentifyArgs),
     /// Run scripts and compare what they answer with what is recorded
@@ -110,6 +114,9 @@ pub(super) struct RunArgs {
     /// Write every statement with its answer to a file
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub transcript: Option<PathBuf>,
+    /// Record what the genetic algorithm did, for `gapi teach`
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub trace: Option<PathBuf>,
     /// Show errors only
     #[arg(long, short)]
     pub quiet: bool,
@@ -278,12 +285,68 @@ pub(super) struct IdentifyArgs {
     /// End after so many evaluations
     #[arg(long, value_name = "N")]
     pub evaluations: Option<u64>,
+    /// Profile likelihoods of the parameters after the fit
+    #[arg(long)]
+    pub profile: bool,
+    /// First analyse how much each parameter matters: `morris` or `sobol`
+    #[arg(long, value_name = "WAY")]
+    pub sensitivity: Option<String>,
+    /// Base samples of that analysis [default: 20 for morris, 512 for sobol]
+    #[arg(long, value_name = "N", requires = "sensitivity", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub samples: Option<u32>,
     /// A file with settings (name = number) that may change while it runs
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub watch: Option<PathBuf>,
     /// Show errors only
     #[arg(long, short)]
     pub quiet: bool,
+}
+
+/// Arguments of `gapi teach`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi teach scripts/GAPILib.mos
+  gapi teach scripts/GAPILib.mos --generation 100 --count 2
+  gapi teach scripts/twin/GAPILib.mos --html steps.html
+  gapi run my.mos --trace my.trace && gapi teach my.trace")]
+pub(super) struct TeachArgs {
+    /// A script (.mos), which is run first, or a trace that `gapi run --trace` has written
+    #[arg(value_name = "SCRIPT|TRACE", value_hint = ValueHint::FilePath)]
+    pub input: PathBuf,
+    /// Print the steps as text, also on a terminal
+    #[arg(long)]
+    pub plain: bool,
+    /// The generation to begin with
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
+    pub generation: usize,
+    /// How many generations to print as text
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
+    pub count: usize,
+    /// Write one page with all steps, for any browser, in place of the text
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub html: Option<PathBuf>,
+    /// Folder for the results and the trace of the run
+    #[arg(long, default_value = "results", value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
+}
+
+/// Arguments of `gapi lesson`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi lesson
+  gapi lesson 1
+
+Each lesson is a script of a page, with its text in the comments. It is copied into the folder
+`lessons`, shown, and run. Change the copy and give the command again: your copy is run then.")]
+pub(super) struct LessonArgs {
+    /// The number of the lesson; without it all are listed
+    #[arg(value_name = "N")]
+    pub number: Option<usize>,
+    /// Folder for the copies and what they write
+    #[arg(long, default_value = "lessons", value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub folder: PathBuf,
 }
 
 /// Arguments of `gapi simulate`.
@@ -468,6 +531,10 @@ Example:
 pub(super) struct CompletionsArgs {
     /// The shell
     pub shell: clap_complete::Shell,
+}
+
+fn at_least_one(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|&number| number > 0).ok_or_else(|| "expected 1, 2, ...".to_owned())
 }
 
 fn seconds(text: &str) -> Result<f64, String> {

@@ -8,6 +8,7 @@ mod completions;
 mod explain;
 mod help;
 mod identify;
+mod lesson;
 mod limits;
 mod parsing;
 mod repl;
@@ -15,6 +16,8 @@ mod run;
 mod scratch;
 mod session;
 mod simulate;
+mod teach;
+mod teach_screen;
 mod terminal;
 mod test;
 mod verify;
@@ -49,6 +52,8 @@ pub fn main() -> ExitCode {
 fn dispatch(cli: &Cli) -> ExitCode {
     match &cli.command {
         Command::Run(arguments) => run::run(arguments, &cli.global),
+        Command::Teach(arguments) => teach::teach(arguments, &cli.global),
+        Command::Lesson(arguments) => lesson::lesson(arguments, &cli.global),
         Command::Identify(arguments) => identify::identify(arguments, &cli.global),
         Command::Test(arguments) => test::test(arguments, &cli.global),
         Command::Repl(arguments) => repl::repl(arguments, &cli.global),

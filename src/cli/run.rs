@@ -5,6 +5,7 @@ use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, parsing, session};
 use crate::script::{Echo, Options, Session, Strictness, Transcript};
+use crate::source::Span;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -32,6 +33,9 @@ pub(super) fn run(arguments: &RunArgs, global: &Global) -> ExitCode {
     let start = session.world.current_dir();
     if arguments.transcript.is_some() {
         session.transcript = Some(Transcript::default());
+    }
+    if let Some(fault) = arguments.trace.as_deref().and_then(|path| session.trace_to(path).err()) {
+        return session::failed(&mut session, vec![fault.at(Span::NONE)]);
     }
     let status = session.run_file(script);
     match write_transcript(&mut session, arguments.transcript.as_deref(), &start) {

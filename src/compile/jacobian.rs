@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Assignments of derivatives and where each entry is found.
 pub(super) struct Differentiated {
     /// Every assignment of the sequence, followed by those of its derivatives.
-    pub(super) sequence: Vec<(VarId, Expr, usize)>,
+    pub(super) sequence: Vec<Assignment>,
     /// ∂output/∂column by output, columns ascending; zeros left out.
     pub(super) rows: Vec<BTreeMap<usize, Expr>>,
 }
@@ -30,7 +30,7 @@ pub(super) fn differentiate_sequence(
     let mut extended = Vec::new();
     let mut solved = Solved::default();
     for assignment in sequence {
-        extended.push((assignment.variable, assignment.value, assignment.equation));
+        extended.push(*assignment);
         let mut row = match *pool.node(assignment.value) {
             Node::Solution { matrix, right, output, .. } => {
                 let columns = solved.entry((matrix, right)).or_insert_with(|| {
@@ -45,7 +45,11 @@ pub(super) fn differentiate_sequence(
             if !simple {
                 let variable = VarId(*next);
                 *next += 1;
-                extended.push((variable, *slope, assignment.equation));
+                extended.push(Assignment {
+                    variable,
+                    value: *slope,
+                    equation: assignment.equation,
+                });
                 *slope = pool.variable(variable);
             }
         }

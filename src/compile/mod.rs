@@ -1,5 +1,5 @@
 //! Compilation: a sorted system becomes a [`Program`] of instruction tapes, and every thread runs
-//! its own [`System`] of it.
+//! its own [`System`] of it. Tapes that run often become machine code.
 
 pub mod errors;
 mod event_iteration;
@@ -10,13 +10,16 @@ mod jacobian;
 mod least_squares;
 mod linear_system;
 mod lower;
+mod machine_code;
 mod memory;
 mod newton;
 mod program;
 mod relations;
 mod selection;
+mod slopes;
 mod system;
 mod tape;
+mod translation;
 
 pub use program::{Access, ParameterInfo, Program, VariableInfo};
 pub use system::System;

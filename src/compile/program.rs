@@ -5,6 +5,7 @@ use super::events::{CompiledRounding, Events, compile_events, linear_in_time};
 use super::hoist::Hoisting;
 use super::jacobian::differentiate_sequence;
 use super::lower::{Registers, TapeBuilder};
+use super::machine_code::MachineCode;
 use super::memory::Memory;
 use super::system::System;
 use super::tape::{Register, Tape};
@@ -143,6 +144,7 @@ pub(super) struct CompiledSelection {
 pub(super) struct Outputs {
     pub(super) tape: Tape,
     pub(super) outputs: Vec<Register>,
+    pub(super) machine_code: MachineCode,
 }
 
 /// A compiled model.
@@ -247,15 +249,7 @@ impl Program {
             row.entry(state).or_insert(zero);
         }
         let (pattern, entries) = by_columns(&rows, columns.len());
-        let extended: Vec<Assignment> = slopes
-            .sequence
-            .iter()
-            .map(|(variable, value, equation)| Assignment {
-                variable: *variable,
-                value: *value,
-                equation: *equation,
-            })
-            .collect();
+        let extended = slopes.sequence;
         let jacobian =
             compile_continuous(&pool, &mut registers, &extended, &entries, Hoisting::Total);
 
@@ -822,7 +816,7 @@ pub(super) fn compile_continuous(
         builder.define(assignment.variable, assignment.value);
     }
     let registers = outputs.iter().map(|output| builder.emit(*output)).collect();
-    Outputs { tape: builder.finish(), outputs: registers }
+    Outputs { tape: builder.finish(), outputs: registers, ..Outputs::default() }
 }
 
 /// The steps of solving blocks one after another.
@@ -849,7 +843,7 @@ fn compile_steps(
         let zero = pool.constant(0.0);
         let mut builder = TapeBuilder::new(pool, registers);
         let inner: FxHashSet<VarId> = torn.assignments.iter().map(|a| a.variable).collect();
-        for (variable, value, equation) in &slopes.sequence {
+        for Assignment { variable, value, equation } in &slopes.sequence {
             builder.origin(*equation as u32);
             match inner.contains(variable) {
                 true => builder.store(*variable, *value),

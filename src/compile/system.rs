@@ -13,7 +13,7 @@ use crate::dae::Homotopy;
 use crate::diag::Fault;
 use crate::fault;
 use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern};
-use crate::symbolic::{Expr, VarId, function};
+use crate::symbolic::{Expr, Pool, VarId, function};
 use std::sync::Arc;
 
 /// How far, relative to their size or 1, the sides of a redundant initial equation may differ.
@@ -126,13 +126,7 @@ impl System {
     pub fn observe_only(&mut self, variables: &[usize]) {
         let program = self.program.clone();
         let mut pool = program.sorted.dae.pool.clone();
-        let outputs: Vec<Expr> = variables
-            .iter()
-            .map(|at| match program.variables()[*at].access {
-                Access::Constant(value) => pool.constant(value),
-                _ => resolved(&mut pool, &program.sorted, program.variables()[*at].variable),
-            })
-            .collect();
+        let outputs = expressions(&program, &mut pool, variables);
         let mut registers = program.registers.clone();
         let observed =
             compile_continuous(&pool, &mut registers, &program.sequence, &outputs, Hoisting::Known);
@@ -151,7 +145,7 @@ impl System {
         }
     }
 
-    fn load(&mut self, t: f64, y: &[f64]) {
+    pub(super) fn load(&mut self, t: f64, y: &[f64]) {
         self.registers[0] = t;
         let states = self.program.sorted.states.iter();
         for (variable, value) in states.chain(&self.program.iteration).zip(y) {
@@ -523,8 +517,20 @@ impl DaeSystem for System {
     }
 }
 
-/// Runs code and copies its results.
-fn read(code: &Outputs, registers: &mut Memory, out: &mut [f64]) -> Result<(), Failure> {
+/// What variables (positions in [`Program::variables`]) are.
+pub(super) fn expressions(program: &Program, pool: &mut Pool, variables: &[usize]) -> Vec<Expr> {
+    let of = |at: &usize| match program.variables()[*at].access {
+        Access::Constant(value) => pool.constant(value),
+        _ => resolved(pool, &program.sorted, program.variables()[*at].variable),
+    };
+    variables.iter().map(of).collect()
+}
+
+/// Computes the outputs of code that computes nothing else.
+pub(super) fn read(code: &Outputs, registers: &mut Memory, out: &mut [f64]) -> Result<(), Failure> {
+    if code.machine_code.run(code, registers, out) {
+        return Ok(());
+    }
     run(&code.tape, registers)?;
     for (value, register) in out.iter_mut().zip(&code.outputs) {
         *value = registers[*register as usize];

@@ -376,7 +376,8 @@ impl Builder<'_> {
         match (function.name().to_string().as_str(), self.in_when) {
             ("assert", _) => self.assertion(arguments, call.span, loops),
             ("terminate", true) => {
-                let message = arguments.positional.first().map_or(String::new(), message_text);
+                let message = arguments.positional.first();
+                let message = message_text(&mut self.statement_lowering(loops), message);
                 let condition = self.guard();
                 let termination =
                     Termination { condition, message: message.into(), span: call.span };

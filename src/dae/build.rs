@@ -2,7 +2,7 @@
 
 use super::algorithm::Execution;
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, PARAMETER_CYCLE, UNRESOLVED_REFERENCE};
-use super::lowering::{Array, Lowered, Lowering, size_fault};
+use super::lowering::{Array, Lowered, Lowering, Target, size_fault};
 use super::model::{Assertion, Dae, Equation, Kind, StateSelect, Variable};
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
@@ -515,20 +515,34 @@ impl<'a> Builder<'a> {
             Some(level) => lowering.known(level)? != 1.0,
             None => true,
         };
-        let message = find(1, "message").map_or(String::new(), message_text);
+        let message = message_text(&mut lowering, find(1, "message"));
         self.dae.assertions.push(Assertion { condition, message: message.into(), is_error, span });
         Ok(())
     }
 }
 
-/// The literal parts of a message; what is computed shows as `…`.
-pub(super) fn message_text(e: &Expression) -> String {
-    match &e.kind {
-        ExpressionKind::String(text) => text.to_string(),
+/// The text of a message as far as it is known when compiling.
+pub(super) fn message_text<T: Target>(
+    lowering: &mut Lowering<'_, T>,
+    e: Option<&Expression>,
+) -> String {
+    let Some(e) = e else { return String::new() };
+    let text = match &e.kind {
+        ExpressionKind::String(text) => return text.to_string(),
         ExpressionKind::Binary { operator: ast::BinaryOperator::Add, left, right } => {
-            message_text(left) + &message_text(right)
+            return message_text(lowering, Some(left)) + &message_text(lowering, Some(right));
         }
-        _ => "…".into(),
+        ExpressionKind::Call { function, .. }
+            if function.as_ident().is_some_and(|name| name == "String") =>
+        {
+            lowering.lower(e)
+        }
+        ExpressionKind::Reference(_) => lowering.lower(e),
+        _ => return UNKNOWN_TEXT.into(),
+    };
+    match text {
+        Ok(Lowered::Text(text)) => text.to_string(),
+        _ => UNKNOWN_TEXT.into(),
     }
 }
 

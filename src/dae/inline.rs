@@ -7,9 +7,8 @@
 
 use super::build::{Builder, message_text};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
-use super::lowering::{
-    Array, Binary, Branch, Choice, Lowered, Lowering, Operator, Target, Unary, field,
-};
+use super::function::{component_type, local_value};
+use super::lowering::{Array, Binary, Branch, Choice, Lowered, Lowering, Operator, Target, Unary};
 use super::model::{Assertion, Shape};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
@@ -60,7 +59,13 @@ pub(super) fn inline(
         return refuse("calls itself without an end that is known when compiling");
     }
     builder.calls += 1;
-    let mut call = Call { builder, locals: Vec::new(), guards: Vec::new(), unassigned: false };
+    let mut call = Call {
+        builder,
+        function: function.clone(),
+        locals: Vec::new(),
+        guards: Vec::new(),
+        unassigned: false,
+    };
     let result = call.run(function, statements, arguments, span);
     builder.calls -= 1;
     result
@@ -69,6 +74,7 @@ pub(super) fn inline(
 /// A call being carried out.
 struct Call<'a, 'b> {
     builder: &'a mut Builder<'b>,
+    function: Arc<Function>,
     /// Variables with their values; NaN where nothing was assigned.
     locals: Vec<(Ident, Lowered<Expr>)>,
     /// Conditions of the branches around, for assertions.
@@ -272,16 +278,24 @@ impl Call<'_, '_> {
         if function.as_ident().is_none_or(|name| name != "assert") {
             return Err(fault!(NOT_SUPPORTED, "a call without a value in a function").at(call.span));
         }
-        let Some(condition) = arguments.positional.first() else {
+        let find = |position: usize, name: &str| {
+            let named = arguments.named.iter().find(|a| a.name.node == name).map(|a| &a.value);
+            arguments.positional.get(position).or(named)
+        };
+        let Some(condition) = find(0, "condition") else {
             return Err(fault!(ARRAY_MISMATCH, "`assert` needs a condition").at(call.span));
+        };
+        let is_error = match find(2, "level") {
+            Some(level) => self.lowering(loops).known(level)? != 1.0,
+            None => true,
         };
         let mut condition = self.lowering(loops).scalar(condition)?;
         for guard in self.guards.clone() {
             let not = self.unary(Unary::Not, guard);
             condition = self.binary(Binary::Or, not, condition);
         }
-        let message = arguments.positional.get(1).map_or(String::new(), message_text).into();
-        let assertion = Assertion { condition, message, is_error: true, span: call.span };
+        let message = message_text(&mut self.lowering(loops), find(1, "message")).into();
+        let assertion = Assertion { condition, message, is_error, span: call.span };
         self.builder.dae.assertions.push(assertion);
         Ok(())
     }
@@ -430,18 +444,17 @@ pub(super) fn component_shape<T: Target>(
     component: &FunctionComponent,
 ) -> Result<Shape, Diagnostic> {
     let mut dims = Vec::new();
-    for subscript in &component.dims {
-        match subscript {
-            Subscript::Index(size) => dims.push(lowering.known_size(size)?),
-            Subscript::All(place) => {
-                return Err(fault!(
-                    NOT_SUPPORTED,
-                    "the size of `{}` is not declared",
-                    component.name
-                )
-                .at(*place));
-            }
-        }
+    for (position, subscript) in component.dims.iter().enumerate() {
+        let declared = match (subscript, &component.binding) {
+            (Subscript::Index(size), _) => Some(lowering.known_size(size)?),
+            // The size is that of the value in the declaration (MLS §12.4.5).
+            (Subscript::All(_), Some(value)) => lowering.array(value)?.dims.get(position).copied(),
+            (Subscript::All(_), None) => None,
+        };
+        dims.push(declared.ok_or_else(|| {
+            fault!(NOT_SUPPORTED, "the size of `{}` is not declared", component.name)
+                .at(component.span)
+        })?);
     }
     match &component.value_type {
         ValueType::Record(_, fields) if dims.is_empty() => {
@@ -520,21 +533,15 @@ impl Target for Call<'_, '_> {
         path: &str,
         reference: &ComponentReference,
     ) -> Result<Lowered<Expr>, Diagnostic> {
-        let mut parts = path.split('.');
-        let first = parts.next().unwrap_or(path);
-        let found = self.locals.iter().find(|(name, _)| *name == first);
-        let mut value = found.map(|(_, value)| value.clone()).ok_or_else(|| {
-            fault!(UNRESOLVED_REFERENCE, "there is no variable `{path}` in this function")
-                .at(reference.span)
-        })?;
-        for part in parts {
-            value = field(value, Ident::new(part), reference.span)?;
-        }
-        Ok(value)
+        local_value(&self.locals, path, reference)
     }
 
     fn function(&self, name: &Name) -> Option<Arc<Function>> {
         self.builder.function(name)
+    }
+
+    fn value_type(&self, path: &str) -> Option<ValueType> {
+        component_type(&self.function, path)
     }
 
     fn call(

@@ -6,7 +6,7 @@ use super::index_reduction::derivative_of;
 use super::lowering::{Array, Binary, Branch, Lowered, Lowering, Operator, Target, Unary};
 use super::model::{Assertion, Homotopy, Kind, Relation};
 use crate::diag::Diagnostic;
-use crate::eval::Function;
+use crate::eval::{Function, ValueType};
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
 use crate::name::{Ident, Name};
@@ -166,6 +166,17 @@ impl Target for Builder<'_> {
     fn function(&self, name: &Name) -> Option<Arc<Function>> {
         let bare = Name { global: false, parts: name.parts.clone() };
         self.flat.functions.get(&bare).or_else(|| self.flat.functions.get(name)).cloned()
+    }
+
+    fn value_type(&self, path: &str) -> Option<ValueType> {
+        Some(match &self.flat.variables.get(path)?.base {
+            BaseType::Real => ValueType::Real,
+            BaseType::Integer => ValueType::Integer,
+            BaseType::Boolean => ValueType::Boolean,
+            BaseType::String => ValueType::String,
+            BaseType::Enumeration(definition) => ValueType::Enumeration(definition.clone()),
+            BaseType::ExternalObject(class) => ValueType::ExternalObject(class.clone()),
+        })
     }
 
     fn call(
@@ -371,11 +382,11 @@ impl Builder<'_> {
     fn record(&mut self, path: &str) -> Option<Lowered<Expr>> {
         let prefix = format!("{path}.");
         let flat = self.flat;
-        let mut names: Vec<&str> = Vec::new();
+        let mut names: Vec<Ident> = Vec::new();
         for name in flat.variables.keys() {
             if let Some(rest) = name.strip_prefix(&prefix) {
-                let field = rest.split('.').next().unwrap_or(rest);
-                if field.contains('[') {
+                let field = Name::parse(rest).first()?;
+                if field.as_str().contains('[') {
                     return None;
                 }
                 if !names.contains(&field) {
@@ -390,7 +401,7 @@ impl Builder<'_> {
         for name in names {
             let full = format!("{prefix}{name}");
             let reference = ComponentReference::from_name(&Name::parse(&full), Span::NONE);
-            fields.push((Ident::new(name), self.reference(&full, &reference).ok()?));
+            fields.push((name, self.reference(&full, &reference).ok()?));
         }
         Some(Lowered::Record(fields))
     }

@@ -239,7 +239,9 @@ impl Builder<'_> {
         match (function.name().to_string().as_str(), arguments.positional.as_slice()) {
             ("assert", _) => self.assertion(arguments, call.span, loops),
             ("terminate", arguments) => {
-                let message = arguments.first().map_or(String::new(), message_text).into();
+                let mut lowering = Lowering::new(self);
+                lowering.loops = loops.to_vec();
+                let message = message_text(&mut lowering, arguments.first()).into();
                 let termination = Termination { condition: guard, message, span: call.span };
                 self.dae.events.terminations.push(termination);
                 Ok(())

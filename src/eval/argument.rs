@@ -64,13 +64,21 @@ impl Evaluator<'_> {
             (&input.value_type, &argument.kind)
             && let Some(name) = reference.as_name()
         {
-            return Ok(Value::TypeName(name));
+            return Ok(Value::TypeName(self.type_name_in(&name).unwrap_or(name)));
         }
         let text = self.written(argument)?;
         Ok(match input.value_type {
             ValueType::TypeName => Value::TypeName(Name::parse(&text)),
             _ => Value::VariableName(text),
         })
+    }
+
+    /// The name that a variable of a script holds.
+    fn type_name_in(&self, variable: &Name) -> Option<Name> {
+        match self.scope.get(variable.is_simple().then(|| variable.first())??) {
+            Some(Value::TypeName(held)) => Some(held.clone()),
+            _ => None,
+        }
     }
 
     fn names(&mut self, argument: &Expression) -> Result<Value, Diagnostic> {

@@ -118,6 +118,8 @@ impl Search {
             | ExpressionKind::Integer(_)
             | ExpressionKind::Boolean(_)
             | ExpressionKind::String(_)
+            | ExpressionKind::TypeName(_)
+            | ExpressionKind::Code(_)
             | ExpressionKind::End => {}
         }
     }

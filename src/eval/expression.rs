@@ -34,6 +34,8 @@ impl Evaluator<'_> {
             ExpressionKind::String(text) => Ok(Value::String(text.clone())),
             ExpressionKind::Reference(reference) => self.reference(reference),
             ExpressionKind::End => self.end(expression.span),
+            ExpressionKind::TypeName(name) => Ok(Value::TypeName(name.clone())),
+            ExpressionKind::Code(text) => Ok(Value::VariableName(text.clone())),
             _ => {
                 depth::check_nesting().at(expression.span)?;
                 self.composite(expression)

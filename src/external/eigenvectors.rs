@@ -1,63 +1,147 @@
-//! Right eigenvectors of real matrices, in LAPACK's form.
+//! Eigenvectors of upper quasi-triangular matrices, in LAPACK's form.
 
-use nalgebra::{Complex, DMatrix, DVector, Schur};
+use super::schur::block_size;
+use nalgebra::{Complex, DMatrix, DVector};
 
-/// The vectors of all eigenvalues, which come in conjugate pairs, that with positive imaginary part
-/// first: a column for a real one, real and imaginary parts in two columns for a pair. Their norms
-/// are 1, and the largest component of a complex one is real. `None` if the Schur form was not
-/// found.
-pub(super) fn eigenvectors(a: &DMatrix<f64>, values: &[Complex<f64>]) -> Option<DMatrix<f64>> {
-    let n = a.nrows();
-    let complex = a.map(|value| Complex::new(value, 0.0));
-    let (q, t) = Schur::try_new(complex, f64::EPSILON, 10_000)?.unpack();
-    let mut free: Vec<usize> = (0..n).collect();
+type C = Complex<f64>;
+
+/// The right eigenvectors of all eigenvalues, as columns: one for a real eigenvalue, real and
+/// imaginary parts of that with positive imaginary part for a pair.
+pub(super) fn right_eigenvectors(t: &DMatrix<f64>) -> DMatrix<f64> {
+    let n = t.nrows();
     let mut all = DMatrix::zeros(n, n);
-    for (at, value) in values.iter().enumerate() {
-        let distance = |k: usize| (t[(k, k)] - value).norm();
-        let nearest =
-            (0..free.len()).min_by(|a, b| distance(free[*a]).total_cmp(&distance(free[*b])))?;
-        let vector = normalized(&q * triangular_eigenvector(&t, free.remove(nearest)));
-        if value.im == 0.0 {
-            all.set_column(at, &real_form(vector));
-        } else if value.im > 0.0 && at + 1 < n {
-            all.set_column(at, &vector.map(|v| v.re));
+    let mut at = 0;
+    while at < n {
+        let size = block_size(t, at);
+        let vector = eigenvector(t, at, size);
+        all.set_column(at, &vector.map(|v| v.re));
+        if size == 2 {
             all.set_column(at + 1, &vector.map(|v| v.im));
         }
+        at += size;
     }
-    Some(all)
+    all
 }
 
-/// The eigenvector of an upper triangular matrix for its diagonal element `k`.
-fn triangular_eigenvector(t: &DMatrix<Complex<f64>>, k: usize) -> DVector<Complex<f64>> {
+/// The left eigenvectors y, yᴴ T = λ yᴴ, as columns like the right ones.
+pub(super) fn left_eigenvectors(t: &DMatrix<f64>) -> DMatrix<f64> {
+    // They are right ones of Tᵀ, which is upper triangular with its coordinates in reverse, for
+    // the conjugate eigenvalues.
     let n = t.nrows();
-    let least = f64::EPSILON * t.norm().max(f64::MIN_POSITIVE);
-    let mut x = DVector::from_element(n, Complex::new(0.0, 0.0));
-    x[k] = Complex::new(1.0, 0.0);
-    for i in (0..k).rev() {
-        let sum: Complex<f64> = (i + 1..=k).map(|j| t[(i, j)] * x[j]).sum();
-        let difference = t[(i, i)] - t[(k, k)];
-        let pivot = if difference.norm() < least { Complex::new(least, 0.0) } else { difference };
-        x[i] = -sum / pivot;
+    let reverse = DMatrix::from_fn(n, n, |i, j| t[(n - 1 - j, n - 1 - i)]);
+    let vectors = right_eigenvectors(&reverse);
+    let mut all = DMatrix::zeros(n, n);
+    let mut at = 0;
+    while at < n {
+        let size = block_size(t, at);
+        let from = n - at - size;
+        for row in 0..n {
+            all[(row, at)] = vectors[(n - 1 - row, from)];
+            if size == 2 {
+                all[(row, at + 1)] = -vectors[(n - 1 - row, from + 1)];
+            }
+        }
+        at += size;
+    }
+    all
+}
+
+/// The vector of the block of `size` rows from `k` on, by back substitution.
+fn eigenvector(t: &DMatrix<f64>, k: usize, size: usize) -> DVector<C> {
+    let mut x = DVector::from_element(t.nrows(), C::new(0.0, 0.0));
+    let value = if size == 1 {
+        x[k] = C::new(1.0, 0.0);
+        C::new(t[(k, k)], 0.0)
+    } else {
+        let root = (-t[(k, k + 1)] * t[(k + 1, k)]).max(0.0).sqrt();
+        x[k] = C::new(t[(k, k + 1)], 0.0);
+        x[k + 1] = C::new(0.0, root);
+        C::new(t[(k, k)], root)
+    };
+    let least = (f64::EPSILON * t.norm()).max(f64::MIN_POSITIVE.sqrt());
+    let mut row = k;
+    while row > 0 {
+        let size = if row > 1 && t[(row - 1, row - 2)] != 0.0 { 2 } else { 1 };
+        row -= size;
+        let rest =
+            |i: usize| -> C { -(row + size..t.nrows()).map(|j| x[j] * t[(i, j)]).sum::<C>() };
+        if size == 1 {
+            x[row] = rest(row) / apart(value, t[(row, row)], least);
+        } else {
+            let (p, q) = (C::from(t[(row, row)]) - value, C::from(t[(row + 1, row + 1)]) - value);
+            let (b, c) = (t[(row, row + 1)], t[(row + 1, row)]);
+            let (r, s) = (rest(row), rest(row + 1));
+            let mut determinant = p * q - b * c;
+            if determinant.norm() < least * least {
+                determinant = C::from(least * least);
+            }
+            x[row] = (r * q - s * b) / determinant;
+            x[row + 1] = (s * p - r * c) / determinant;
+        }
+        // Next to a multiple eigenvalue components grow without bound.
+        let size = x[row].norm();
+        if size > 1e50 {
+            x.unscale_mut(size);
+        }
     }
     x
 }
 
-/// Of norm 1, turned so that its largest component is real and positive.
-fn normalized(x: DVector<Complex<f64>>) -> DVector<Complex<f64>> {
-    let norm = x.norm();
-    let mut greatest = x[0];
-    for value in x.iter() {
+/// `element − value`, but never zero.
+fn apart(value: C, element: f64, least: f64) -> C {
+    let difference = C::from(element) - value;
+    if difference.norm() < least { C::from(least) } else { difference }
+}
+
+/// How columns that hold eigenvectors are scaled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Scale {
+    /// Euclidean norm 1; the largest component of a complex one is real.
+    Norm,
+    /// The largest component has 1 as sum of the sizes of its parts.
+    Largest,
+}
+
+/// Scales columns that hold eigenvectors, complex ones where eigenvalues are.
+pub(super) fn scale(vectors: &mut DMatrix<f64>, is_complex: impl Fn(usize) -> bool, scale: Scale) {
+    let mut at = 0;
+    while at < vectors.ncols() {
+        let size = if is_complex(at) && at + 1 < vectors.ncols() { 2 } else { 1 };
+        let imaginary = |row: usize| if size == 2 { vectors[(row, at + 1)] } else { 0.0 };
+        let vector: Vec<C> =
+            (0..vectors.nrows()).map(|row| C::new(vectors[(row, at)], imaginary(row))).collect();
+        let factor = match scale {
+            Scale::Norm => {
+                let norm = vector.iter().map(|v| v.norm_sqr()).sum::<f64>().sqrt();
+                let turn = if size == 2 { turn(&vector) } else { C::new(1.0, 0.0) };
+                turn / norm
+            }
+            Scale::Largest => {
+                let size = |v: &C| v.re.abs() + v.im.abs();
+                C::from(1.0 / vector.iter().map(size).fold(0.0, f64::max))
+            }
+        };
+        if factor.is_finite() {
+            for (row, value) in vector.iter().enumerate() {
+                let scaled = value * factor;
+                vectors[(row, at)] = scaled.re;
+                if size == 2 {
+                    vectors[(row, at + 1)] = scaled.im;
+                }
+            }
+        }
+        at += size;
+    }
+}
+
+/// The complex number of size 1 that makes the largest component real and positive.
+fn turn(vector: &[C]) -> C {
+    let mut greatest = C::new(0.0, 0.0);
+    for value in vector {
         // Components that differ by rounding are equal: the first counts.
         if value.norm() > greatest.norm() * (1.0 + 1e-12) {
             greatest = *value;
         }
     }
-    let turn = greatest.conj() / greatest.norm();
-    x.map(|value| value * turn / norm)
-}
-
-fn real_form(x: DVector<Complex<f64>>) -> DVector<f64> {
-    let real = x.map(|value| value.re);
-    let norm = real.norm();
-    real / norm
+    if greatest.norm() == 0.0 { C::new(1.0, 0.0) } else { greatest.conj() / greatest.norm() }
 }

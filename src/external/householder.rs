@@ -1,11 +1,11 @@
-//! LAPACK's orthogonal factorizations: `dgeqp3`, `dgeqrf`, `dorgqr`, `dgehrd`, `dorghr`
-//! ([Anderson et al. 1999](crate::bibliography#anderson-1999)).
+//! LAPACK's orthogonal factorizations: `dgeqp3`, `dgeqrf`, `dorgqr`, `dormqr`, `dgehrd`, `dorghr`,
+//! `dormhr` ([Anderson et al. 1999](crate::bibliography#anderson-1999)).
 //!
 //! A reflection is I − τ v vᵀ with v = (1, …); below the result stand the other elements of v.
 
 use super::Entry;
 use super::call::Call;
-use super::linear_algebra::{matrix, write};
+use super::matrices::{column, is_transposed, matrix, square, write};
 use crate::diag::Fault;
 use nalgebra::DMatrix;
 
@@ -13,8 +13,10 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("dgeqp3", "nnAnAAAnN", dgeqp3),
     Entry::pure("dgeqrf", "nnAnAAnN", dgeqrf),
     Entry::pure("dorgqr", "nnnAnaAnN", dorgqr),
+    Entry::pure("dormqr", "ttnnnanaAnAnN", dormqr),
     Entry::pure("dgehrd", "nnnAnAAnN", dgehrd),
     Entry::pure("dorghr", "nnnAnaAnN", dorghr),
+    Entry::pure("dormhr", "ttnnnnanaAnAnN", dormhr),
 ];
 
 /// Makes the elements of a column below `row` zero by a reflection, of which v stays there; its τ.
@@ -81,8 +83,10 @@ fn qr(a: &mut DMatrix<f64>, mut pivots: Option<&mut [usize]>) -> Vec<f64> {
     taus
 }
 
-fn column(values: &[f64]) -> DMatrix<f64> {
-    DMatrix::from_column_slice(values.len(), 1, values)
+/// All of Q and R.
+pub(super) fn full_qr(mut a: DMatrix<f64>) -> (DMatrix<f64>, DMatrix<f64>) {
+    let taus = qr(&mut a, None);
+    (product(&a, &taus, 0, a.nrows()), a.upper_triangle())
 }
 
 /// `(m, n, A, lda, jpvt, tau, work, lwork, info)`; all columns are free.
@@ -156,6 +160,39 @@ fn dorghr(call: &mut Call<'_>) -> Result<(), Fault> {
     let q = product(&a, call.array(5), 1, a.ncols());
     write(call, 3, &q);
     call.set(8, 0.0);
+    Ok(())
+}
+
+/// `(side, trans, m, n, k, A, lda, tau, C, ldc, work, lwork, info)`
+fn dormqr(call: &mut Call<'_>) -> Result<(), Fault> {
+    let a = matrix(call, 5)?;
+    let q = product(&a, call.array(7), 0, a.nrows());
+    multiply(call, q, 8)?;
+    call.set(12, 0.0);
+    Ok(())
+}
+
+/// `(side, trans, m, n, ilo, ihi, A, lda, tau, C, ldc, work, lwork, info)`
+fn dormhr(call: &mut Call<'_>) -> Result<(), Fault> {
+    let a = square(call, 6)?;
+    if call.number(4) != 1.0 || call.number(5) != a.nrows() as f64 {
+        return Err(call.fault("a part of a matrix"));
+    }
+    let q = product(&a, call.array(8), 1, a.ncols());
+    multiply(call, q, 9)?;
+    call.set(13, 0.0);
+    Ok(())
+}
+
+/// Replaces the argument C by op(Q) C or C op(Q), as the first two arguments say.
+fn multiply(call: &mut Call<'_>, q: DMatrix<f64>, argument: usize) -> Result<(), Fault> {
+    let c = matrix(call, argument)?;
+    let is_left = call.text(0).eq_ignore_ascii_case("L");
+    if q.nrows() != if is_left { c.nrows() } else { c.ncols() } {
+        return Err(call.fault("the matrices do not fit each other"));
+    }
+    let q = if is_transposed(call, 1) { q.transpose() } else { q };
+    write(call, argument, &if is_left { q * c } else { c * q });
     Ok(())
 }
 

@@ -13,16 +13,22 @@
 //! whoever calls it.
 
 mod call;
+mod eigenvalues;
 mod eigenvectors;
 pub mod errors;
 mod fourier;
+mod generalized;
 mod householder;
-mod linear_algebra;
+mod least_squares;
+mod linear_systems;
+mod matrices;
 mod messages;
 mod objects;
 mod random;
 mod resources;
+mod schur;
 mod strings;
+mod sylvester;
 mod tables;
 
 pub use call::{Call, Kind, Object, Outside, Slot};
@@ -134,7 +140,10 @@ const FAMILIES: &[&[Entry]] = &[
     tables::ENTRIES,
     strings::ENTRIES,
     random::ENTRIES,
-    linear_algebra::ENTRIES,
+    linear_systems::ENTRIES,
+    least_squares::ENTRIES,
+    eigenvalues::ENTRIES,
+    generalized::ENTRIES,
     householder::ENTRIES,
     fourier::ENTRIES,
     messages::ENTRIES,

@@ -1,8 +1,10 @@
 //! `ModelicaRandom_*`: random numbers of [Vigna 2016](crate::bibliography#vigna-2016) and
 //! [Vigna 2017](crate::bibliography#vigna-2017).
 //!
-//! A state is an array of Integers of 32 bits: words of 64 bits, the lower half first. The hidden
-//! state is that of one generator xorshift1024*, [`Random`].
+//! A state is an array of Integers of 32 bits: words of 64 bits, the lower half first. As the
+//! standard library defines them, xorshift64* and xorshift128+ go on from the number that they gave,
+//! where their author goes on from the word before it is scrambled. The hidden state is that of one
+//! generator xorshift1024*, [`Random`].
 
 use super::Entry;
 use super::call::Call;
@@ -52,15 +54,13 @@ fn unit(bits: u64) -> f64 {
 
 fn xorshift64_star(call: &mut Call<'_>) -> Result<(), Fault> {
     let mut words = words(call, 2)?;
-    let bits = next64(&mut words[0]);
+    let mut x = words[0];
+    x ^= x >> 12;
+    x ^= x << 25;
+    x ^= x >> 27;
+    words[0] = x.wrapping_mul(2_685_821_657_736_338_717);
+    let bits = words[0];
     done(call, &words, bits)
-}
-
-fn next64(x: &mut u64) -> u64 {
-    *x ^= *x >> 12;
-    *x ^= *x << 25;
-    *x ^= *x >> 27;
-    x.wrapping_mul(2_685_821_657_736_338_717)
 }
 
 fn xorshift128_plus(call: &mut Call<'_>) -> Result<(), Fault> {
@@ -68,8 +68,8 @@ fn xorshift128_plus(call: &mut Call<'_>) -> Result<(), Fault> {
     let (mut a, b) = (words[0], words[1]);
     a ^= a << 23;
     words[0] = b;
-    words[1] = a ^ b ^ (a >> 17) ^ (b >> 26);
-    let bits = words[1].wrapping_add(b);
+    words[1] = (a ^ b ^ (a >> 17) ^ (b >> 26)).wrapping_add(b);
+    let bits = words[1];
     done(call, &words, bits)
 }
 
@@ -86,8 +86,9 @@ impl Xorshift1024 {
         let words = words(call, 33)?;
         let position = call.array(0)[32];
         match <[u64; 16]>::try_from(words) {
-            Ok(words) if (0.0..=15.0).contains(&position) => {
-                Ok(Xorshift1024 { words, at: position as usize })
+            // An initial state has any Integer there, of which the last four bits count.
+            Ok(words) if position.is_finite() => {
+                Ok(Xorshift1024 { words, at: (position as i64 & 15) as usize })
             }
             _ => Err(call.fault(format!("the state has no position {position}"))),
         }

@@ -3,6 +3,7 @@
 
 use super::BaseType;
 use super::errors::TYPE_MISMATCH;
+use super::instance::NodeId;
 use super::instantiation::Instantiation;
 use super::lookup::{Predefined, Type};
 use super::resolve::Local;
@@ -10,9 +11,11 @@ use super::scope::ScopeId;
 use crate::diag::Diagnostic;
 use crate::eval::ValueType;
 use crate::fault;
+use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{
-    Arguments, ClassSpecifier, ComponentReference, Expression, ExpressionKind, Subscript,
+    Arguments, ClassSpecifier, ComponentReference, Expression, ExpressionKind, ReferencePart,
+    Subscript,
 };
 
 /// How many short classes a type may lead through.
@@ -35,14 +38,63 @@ impl Instantiation<'_> {
         }
         let Some(found) = self.lookup(context, &reference.name())? else { return Ok(None) };
         if self.is_boolean(found)? {
-            let truth = |truth| Expression::new(ExpressionKind::Boolean(truth), e.span);
-            let both = ExpressionKind::Array(vec![truth(false), truth(true)]);
-            return Ok(Some(Expression::new(both, e.span)));
+            return Ok(Some(all_booleans(e.span)));
         }
         let Some(definition) = self.enumeration(found, e.span)? else { return Ok(None) };
         let integer = |n: usize| Expression::new(ExpressionKind::Integer(n as i64), e.span);
         let ordinals = (1..=definition.literals.len()).map(integer).collect();
         Ok(Some(Expression::new(ExpressionKind::Array(ordinals), e.span)))
+    }
+
+    /// The type whose values are the subscripts of one dimension of a component, as its values; `None`
+    /// where the size is a number.
+    fn subscript_type(
+        &mut self,
+        node: NodeId,
+        name: Ident,
+        dimension: usize,
+    ) -> Result<Option<Expression>, Diagnostic> {
+        let Some(declared) = self.declaration_of(node, name) else { return Ok(None) };
+        match declared.dims.get(dimension) {
+            Some((Subscript::Index(size), scope)) => {
+                self.type_range(size, *scope, &Local::default())
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// Whether the subscripts of one dimension of a component are of type Boolean.
+    pub(super) fn is_sized_by_boolean(
+        &mut self,
+        node: NodeId,
+        name: Ident,
+        dimension: usize,
+    ) -> Result<bool, Diagnostic> {
+        let values = self.subscript_type(node, name, dimension)?;
+        Ok(values.is_some_and(|values| self.type_of(&values) == Some(BaseType::Boolean)))
+    }
+
+    /// A dimension that is sized by an enumeration or by Boolean has subscripts of that type alone
+    /// (MLS §10.5).
+    pub(super) fn check_subscript_types(
+        &mut self,
+        node: NodeId,
+        part: &ReferencePart,
+    ) -> Result<(), Diagnostic> {
+        for (at, subscript) in part.subscripts.iter().enumerate() {
+            let Subscript::Index(index) = subscript else { continue };
+            if matches!(index.kind, ExpressionKind::Integer(_))
+                && self.subscript_type(node, part.name, at)?.is_some()
+            {
+                return Err(fault!(
+                    TYPE_MISMATCH,
+                    "`{}` has the values of a type as subscripts, not numbers",
+                    part.name;
+                    help: "write a literal of the type that its declaration names")
+                .at(index.span));
+            }
+        }
+        Ok(())
     }
 
     /// Whether a type is Boolean, through short classes.
@@ -158,4 +210,10 @@ impl Instantiation<'_> {
         let base = Expression::new(names, span);
         Ok(Some(super::resolve::subscripted(base, vec![Subscript::Index(resolved)], span)))
     }
+}
+
+/// `false` and `true` as a vector.
+pub(super) fn all_booleans(span: Span) -> Expression {
+    let truth = |truth| Expression::new(ExpressionKind::Boolean(truth), span);
+    Expression::new(ExpressionKind::Array(vec![truth(false), truth(true)]), span)
 }

@@ -1,6 +1,6 @@
 //! Functions made ready to be called: inherited elements collected, names resolved (MLS ch. 12).
 
-use super::errors::{NOT_SUPPORTED, TYPE_MISMATCH, UNKNOWN_CLASS};
+use super::errors::{NOT_SUPPORTED, PROTECTED_ACCESS, TYPE_MISMATCH, UNKNOWN_CLASS};
 use super::instance::{MemberState, Shape};
 use super::instantiation::Instantiation;
 use super::library::Library;
@@ -14,9 +14,9 @@ use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
-    Argument, Arguments, Binding, CausalityPrefix, ClassSpecifier, ComponentReference, Expression,
-    ExpressionKind, NamedArgument, Purity, Restriction, Section, Statement, StatementKind,
-    Subscript,
+    Argument, Arguments, Binding, CausalityPrefix, ClassSpecifier, ComponentReference, Element,
+    Expression, ExpressionKind, NamedArgument, Purity, Restriction, Section, Statement,
+    StatementKind, Subscript, Visibility,
 };
 use crate::syntax::visit::Visit;
 use indexmap::IndexMap;
@@ -70,7 +70,7 @@ impl Instantiation<'_> {
                 Some(full) => Ok(full),
                 None => Err(fault!(TYPE_MISMATCH, "`{name}` is not a function").at(span)),
             },
-            _ => match self.function_of_component(name, context)? {
+            _ => match self.function_of_component(name, context, span)? {
                 Some(full) => Ok(full),
                 None => Ok(self.intrinsic_name(name)),
             },
@@ -82,6 +82,7 @@ impl Instantiation<'_> {
         &mut self,
         name: &Name,
         context: ScopeId,
+        span: Span,
     ) -> Result<Option<Name>, Diagnostic> {
         let Some((first, rest)) = name.parts.split_first() else { return Ok(None) };
         if rest.is_empty() || name.global || !self.has_component(context, *first)? {
@@ -93,6 +94,12 @@ impl Instantiation<'_> {
                 Some(MemberState::Single(next)) => node = next,
                 _ => {
                     let Some(scope) = self.scope_of(node) else { return Ok(None) };
+                    if at > 0 && self.is_protected_class(scope, *part) {
+                        let path = &self.nodes[node.0].path;
+                        return Err(
+                            fault!(PROTECTED_ACCESS, "`{part}` is protected in `{path}`").at(span)
+                        );
+                    }
                     let found = Some(Type::Class(scope));
                     return match self.lookup_inside(found, &name.parts[at..])? {
                         Some(Type::Class(id)) => self.function(id),
@@ -102,6 +109,19 @@ impl Instantiation<'_> {
             }
         }
         Ok(None)
+    }
+
+    /// Whether a class declares another one behind `protected`.
+    fn is_protected_class(&self, scope: ScopeId, name: Ident) -> bool {
+        let class = self.text(scope).id.map(|id| self.library.class(id));
+        class.is_some_and(|class| {
+            class.elements().any(|(visibility, element)| match element {
+                Element::Class(nested) => {
+                    nested.class.name.node == name && visibility == Visibility::Protected
+                }
+                _ => false,
+            })
+        })
     }
 
     /// `Modelica.Math.sin` is `sin` where no library declares it.

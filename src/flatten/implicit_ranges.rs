@@ -1,7 +1,7 @@
 //! Ranges that a loop does not write and its body shows: the sizes of the arrays that its variable
 //! is a subscript of (MLS §11.2.2.1).
 
-use super::errors::{NOT_SUPPORTED, SIZE_MISMATCH};
+use super::errors::{NOT_CONSTANT, SIZE_MISMATCH};
 use super::instance::{MemberState, NodeKind};
 use super::instantiation::Instantiation;
 use super::resolve::Local;
@@ -19,6 +19,15 @@ use crate::syntax::visit::{Visit, walk_reference};
 struct Use {
     array: ComponentReference,
     dimension: usize,
+}
+
+/// What a subscript of one dimension of an array runs over.
+#[derive(PartialEq)]
+enum Extent {
+    /// The numbers from 1 to the size.
+    Size(usize),
+    /// The values of Boolean.
+    Booleans,
 }
 
 /// Finds the uses of a loop variable as a subscript.
@@ -79,7 +88,7 @@ impl Instantiation<'_> {
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
         let (name, span) = (index.name.node, index.name.span);
-        let mut known: Option<usize> = None;
+        let mut known: Option<Extent> = None;
         let mut of_local = None;
         for one in uses {
             let first = one.array.parts[0].name;
@@ -87,19 +96,20 @@ impl Instantiation<'_> {
                 of_local = Some(one);
                 continue;
             }
-            let Some(size) = self.size_of_array(one, context)? else { continue };
-            if known.is_some_and(|known| known != size) {
+            let Some(extent) = self.extent_of_array(one, context)? else { continue };
+            if known.as_ref().is_some_and(|known| *known != extent) {
                 return Err(fault!(
                     SIZE_MISMATCH,
                     "`{name}` runs over arrays of different sizes";
                     help: "write the range: `for {name} in 1:n loop`")
                 .at(span));
             }
-            known = Some(size);
+            known = Some(extent);
         }
         let integer = |n: i64| Expression::new(ExpressionKind::Integer(n), span);
         let stop = match (known, of_local) {
-            (Some(size), _) => integer(size as i64),
+            (Some(Extent::Booleans), _) => return Ok(super::enumerations::all_booleans(span)),
+            (Some(Extent::Size(size)), _) => integer(size as i64),
             (None, Some(one)) => {
                 let array = ExpressionKind::Reference(one.array.clone());
                 let positional =
@@ -110,7 +120,7 @@ impl Instantiation<'_> {
             }
             (None, None) => {
                 return Err(fault!(
-                    NOT_SUPPORTED,
+                    NOT_CONSTANT,
                     "the range of `{name}` is not written, and `{name}` alone is the subscript of \
                      no array";
                     help: "write the range: `for {name} in 1:n loop`")
@@ -122,31 +132,42 @@ impl Instantiation<'_> {
         Ok(Expression::new(kind, span))
     }
 
-    /// The size of one dimension of an array of variables or components.
-    fn size_of_array(&mut self, one: &Use, context: ScopeId) -> Result<Option<usize>, Diagnostic> {
+    /// The extent of one dimension of an array of variables or components.
+    fn extent_of_array(
+        &mut self,
+        one: &Use,
+        context: ScopeId,
+    ) -> Result<Option<Extent>, Diagnostic> {
         let mut node = self.node_of(context);
         if !self.has_component(context, one.array.parts[0].name)? {
             return Ok(None);
         }
         let count = one.array.parts.len();
         for (at, part) in one.array.parts.iter().enumerate() {
-            match self.member(node, part.name)?.map(MemberState::seen) {
-                Some(MemberState::Single(next)) => {
-                    if let NodeKind::Variable(leaf) = &self.nodes[next.0].kind {
-                        let dims = &self.variables[leaf.variable].0.dims;
-                        return Ok(dims.get(one.dimension).copied().filter(|_| at + 1 == count));
+            let is_last = at + 1 == count;
+            let dims = match self.member(node, part.name)?.map(MemberState::seen) {
+                Some(MemberState::Single(next)) => match &self.nodes[next.0].kind {
+                    NodeKind::Variable(leaf) => self.variables[leaf.variable].0.dims.clone(),
+                    NodeKind::Composite(_) => {
+                        node = next;
+                        continue;
                     }
-                    node = next;
-                }
-                Some(MemberState::Array(dims, _)) if at + 1 == count => {
-                    return Ok(dims.get(one.dimension).copied());
-                }
+                },
+                Some(MemberState::Array(dims, _)) if is_last => dims,
                 Some(MemberState::Array(_, nodes)) => match nodes.first() {
-                    Some(first) => node = *first,
+                    Some(first) => {
+                        node = *first;
+                        continue;
+                    }
                     None => return Ok(None),
                 },
                 _ => return Ok(None),
+            };
+            if is_last && self.is_sized_by_boolean(node, part.name, one.dimension)? {
+                return Ok(Some(Extent::Booleans));
             }
+            let size = dims.get(one.dimension).copied().filter(|_| is_last);
+            return Ok(size.map(Extent::Size));
         }
         Ok(None)
     }

@@ -3,14 +3,15 @@
 
 use super::BaseType;
 use super::errors::{PARTIAL_CLASS, TYPE_MISMATCH, UNKNOWN_NAME};
-use super::instance::{Declaration, Member, MemberState, NodeId, NodeKind};
+use super::instance::{Declaration, Member, MemberState, NodeId, NodeKind, Shape};
 use super::instantiation::Instantiation;
 use super::library::Habit;
 use super::modification::Modifier;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::name::Ident;
-use crate::syntax::ast::ElementPrefixes;
+use crate::source::Span;
+use crate::syntax::ast::{CausalityPrefix, ElementPrefixes};
 use std::sync::Arc;
 
 impl Instantiation<'_> {
@@ -41,7 +42,7 @@ impl Instantiation<'_> {
     }
 
     /// The inner component must be of a subtype of the outer one's type (MLS §5.4): variables of
-    /// the same predefined type with as many dimensions.
+    /// the same predefined type and sizes, as far as the outer ones are known.
     fn check_same_type(
         &mut self,
         inner: &MemberState,
@@ -51,8 +52,13 @@ impl Instantiation<'_> {
         let NodeKind::Variable(leaf) = &self.nodes[node.0].kind else { return Ok(()) };
         let variable = leaf.variable;
         let expanded = self.expand(outer)?;
-        let variable = &self.variables[variable].0;
         let rank = outer.dims.len() + expanded.dims.len();
+        let dims = self.dimensions(outer, &expanded).ok();
+        let variable = &self.variables[variable].0;
+        let same_sizes = match dims {
+            Some(dims) => dims == variable.dims,
+            None => rank == variable.dims.len(),
+        };
         let is_same = match (expanded.shape.base(), &variable.base) {
             (Some(BaseType::Enumeration(one)), BaseType::Enumeration(other)) => {
                 one.literals == other.literals
@@ -60,7 +66,7 @@ impl Instantiation<'_> {
             (Some(one), other) => one == *other,
             (None, _) => false,
         };
-        if is_same && rank == variable.dims.len() {
+        if is_same && same_sizes {
             return Ok(());
         }
         let reason = if is_same { "has other dimensions" } else { "is of another type" };
@@ -69,11 +75,32 @@ impl Instantiation<'_> {
             .related(variable.span, "the inner one"))
     }
 
+    /// Of an outer component only what its own class declares can be named, whatever else the inner
+    /// one has.
+    pub(super) fn check_outer_element(
+        &mut self,
+        node: NodeId,
+        outer: Ident,
+        element: Ident,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        let Some(declared) = self.declaration_of(node, outer) else { return Ok(()) };
+        let Shape::Class(class) = self.expand(&declared)?.shape else { return Ok(()) };
+        if self.has_component(class, element)? {
+            return Ok(());
+        }
+        let class = &self.text(class).name;
+        Err(fault!(UNKNOWN_NAME, "`{class}`, the class of the outer `{outer}`, has no component `{element}`";
+            help: "declare the outer component with the class of the inner one")
+        .at(span))
+    }
+
     fn is_inner(&self, node: NodeId, name: Ident) -> bool {
         self.declaration_of(node, name).is_some_and(|declaration| declaration.prefixes.inner)
     }
 
-    /// Without an inner component the model itself gets one, with the defaults of its class.
+    /// Without an inner component the model itself gets one, with the defaults of its class; a
+    /// variable becomes an input, as nothing here determines it.
     fn missing_inner(
         &mut self,
         node: NodeId,
@@ -83,27 +110,44 @@ impl Instantiation<'_> {
         let path = self.nodes[node.0].path.clone();
         let expanded = self.expand(declared)?;
         let missing = || {
-            fault!(UNKNOWN_NAME, "no `inner` component `{name}` encloses the `outer` one in `{path}`";
+            let holder = match path.as_str() {
+                "" => "the model".to_owned(),
+                path => format!("`{path}`"),
+            };
+            fault!(UNKNOWN_NAME, "no `inner` component `{name}` encloses the `outer` one in {holder}";
                 help: "declare `inner {} {name};` in the model", declared.type_specifier.name)
             .at(declared.span)
         };
         let root = self.root_node;
-        let unsuitable = match expanded.shape {
-            super::instance::Shape::Class(class) => self
+        let is_partial = match expanded.shape {
+            Shape::Class(class) => self
                 .check_complete(class, declared.span)
                 .is_err_and(|error| error.code == PARTIAL_CLASS),
-            _ => true,
+            _ => expanded.shape.base().is_none(),
         };
-        if unsuitable || self.in_package(node) || self.declaration_of(root, name).is_some() {
+        let of_root = self.declaration_of(root, name);
+        let is_outer = of_root.as_ref().is_some_and(|one| one.prefixes.outer);
+        if is_partial || self.in_package(node) || (of_root.is_some() && !is_outer) {
             return Err(missing());
         }
+        if node != root && is_outer {
+            let state = self.member(root, name)?.map(MemberState::own);
+            return Ok(MemberState::Outer(Box::new(state.unwrap_or(MemberState::Absent))));
+        }
         self.warnings.push(missing().warning());
-        let declaration = Declaration {
+        let mut declaration = Declaration {
             prefixes: ElementPrefixes { inner: true, ..ElementPrefixes::default() },
             modifier: Modifier::default(),
             condition: None,
             ..declared.clone()
         };
+        if expanded.shape.base().is_some() && declaration.type_prefixes.variability.is_none() {
+            declaration.type_prefixes.causality = Some(CausalityPrefix::Input);
+        }
+        if node == root {
+            let own = Box::new(self.built(root, &declaration)?);
+            return Ok(MemberState::Both { inner: own.clone(), outer: own });
+        }
         let member = Member { declaration: Arc::new(declaration), state: MemberState::Pending };
         if let NodeKind::Composite(composite) = &mut self.nodes[root.0].kind
             && let Some(members) = &mut composite.members

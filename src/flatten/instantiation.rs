@@ -379,7 +379,11 @@ impl<'a> Instantiation<'a> {
         self.built(node, declared)
     }
 
-    fn built(&mut self, node: NodeId, declared: &Declaration) -> Result<MemberState, Diagnostic> {
+    pub(super) fn built(
+        &mut self,
+        node: NodeId,
+        declared: &Declaration,
+    ) -> Result<MemberState, Diagnostic> {
         let expanded = self.expand(declared)?;
         let dims = self.dimensions(declared, &expanded)?;
         match expanded.shape.base() {
@@ -390,7 +394,8 @@ impl<'a> Instantiation<'a> {
         }
     }
 
-    fn dimensions(
+    /// The sizes of a component, those of its type included.
+    pub(super) fn dimensions(
         &mut self,
         declared: &Declaration,
         expanded: &Expanded,

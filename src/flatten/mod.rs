@@ -15,6 +15,7 @@
 
 mod balance;
 mod checks;
+mod comprehensions;
 mod connections;
 mod constants;
 mod declarations;

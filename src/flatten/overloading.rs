@@ -1,8 +1,8 @@
 //! Overloaded operators of operator records (MLS ch. 14): an operation on records becomes a call of
-//! the one function of its operator that fits the operands.
+//! the one function of its operator that fits the operands, or, on arrays, one call for each element.
 
 use super::BaseType;
-use super::errors::TYPE_MISMATCH;
+use super::errors::{SIZE_MISMATCH, TYPE_MISMATCH};
 use super::instantiation::Instantiation;
 use super::lookup::Type;
 use super::resolve::Local;
@@ -27,7 +27,7 @@ impl Instantiation<'_> {
         local: &Local,
         span: Span,
     ) -> Result<Option<Expression>, Diagnostic> {
-        let types = (self.value_type_of(left, local), self.value_type_of(right, local));
+        let types = (self.element_type_of(left, local), self.element_type_of(right, local));
         let records: Vec<Name> =
             [&types.0, &types.1].into_iter().filter_map(|t| record_name(t.as_ref())).collect();
         if records.is_empty() {
@@ -35,10 +35,21 @@ impl Instantiation<'_> {
         }
         let sign = sign(operator);
         let both = [left.clone(), right.clone()];
-        for record in &records {
+        // Operators with a dot mean those of the elements, whatever functions take arrays.
+        let direct = if is_dotted(operator) && is_array(left, right) { &[] } else { &records[..] };
+        for record in direct {
             if let Some(call) = self.operator_call(record, sign, &both, local, span)? {
                 return Ok(Some(call));
             }
+        }
+        if let Some(pairs) = elementwise(operator, left, right, span)? {
+            let operation = |(left, right): (Expression, Expression)| {
+                let call = self.overloaded_binary(operator, &left, &right, local, span)?;
+                call.ok_or_else(|| no_operator(&records[0], sign, span))
+            };
+            let elements: Result<Vec<Expression>, Diagnostic> =
+                pairs.into_iter().map(operation).collect();
+            return Ok(Some(Expression::new(ExpressionKind::Array(elements?), span)));
         }
         // One operand may be converted by a constructor of the other's record (MLS §14.3).
         for record in &records {
@@ -60,9 +71,7 @@ impl Instantiation<'_> {
                 }
             }
         }
-        let record = &records[0];
-        Err(fault!(TYPE_MISMATCH, "`{record}` has no operator `{}` for these operands", sign)
-            .at(span))
+        Err(no_operator(&records[0], sign, span))
     }
 
     /// `-operand` as a call, if the operand is a record.
@@ -73,11 +82,29 @@ impl Instantiation<'_> {
         local: &Local,
         span: Span,
     ) -> Result<Option<Expression>, Diagnostic> {
-        let operand_type = self.value_type_of(operand, local);
+        let operand_type = self.element_type_of(operand, local);
         let Some(record) = record_name(operand_type.as_ref()) else { return Ok(None) };
-        match self.operator_call(&record, sign, std::slice::from_ref(operand), local, span)? {
-            Some(call) => Ok(Some(call)),
-            None => Err(fault!(TYPE_MISMATCH, "`{record}` has no unary operator {sign}").at(span)),
+        let call = self.operator_call(&record, sign, std::slice::from_ref(operand), local, span)?;
+        match (call, &operand.kind) {
+            (Some(call), _) => Ok(Some(call)),
+            (None, ExpressionKind::Array(elements)) => {
+                let mut calls = Vec::with_capacity(elements.len());
+                for element in elements {
+                    calls.extend(self.overloaded_unary(sign, element, local, span)?);
+                }
+                Ok(Some(Expression::new(ExpressionKind::Array(calls), span)))
+            }
+            (None, _) => {
+                Err(fault!(TYPE_MISMATCH, "`{record}` has no unary operator {sign}").at(span))
+            }
+        }
+    }
+
+    /// The type of an expression, or of the elements of an array constructor.
+    fn element_type_of(&self, e: &Expression, local: &Local) -> Option<ValueType> {
+        match &e.kind {
+            ExpressionKind::Array(elements) => self.element_type_of(elements.first()?, local),
+            _ => self.value_type_of(e, local),
         }
     }
 
@@ -179,7 +206,12 @@ impl Instantiation<'_> {
     }
 
     fn fits_input(&self, input: &FunctionComponent, argument: &Expression, local: &Local) -> bool {
-        let found = self.value_type_of(argument, local);
+        let found = self.element_type_of(argument, local);
+        let is_record = |t: Option<&ValueType>| matches!(t, Some(ValueType::Record(..)));
+        let rank = constructor_rank(argument);
+        if is_record(found.as_ref()) && rank.is_some_and(|rank| rank != input.dims.len()) {
+            return false;
+        }
         match (&input.value_type, found) {
             (ValueType::Record(wanted, _), Some(ValueType::Record(found, _))) => *wanted == found,
             (ValueType::Record(..), _) | (_, Some(ValueType::Record(..))) => false,
@@ -234,6 +266,73 @@ impl Instantiation<'_> {
             _ => self.type_of(e).map(plain),
         }
     }
+}
+
+/// The dimensions of a value of records: how many array constructors stand around the elements.
+/// Those of a function's own variables are not told by their names.
+fn constructor_rank(e: &Expression) -> Option<usize> {
+    match &e.kind {
+        ExpressionKind::Array(elements) => Some(1 + constructor_rank(elements.first()?)?),
+        ExpressionKind::Reference(_) => None,
+        _ => Some(0),
+    }
+}
+
+/// The operands of each element of an operation on arrays (MLS §14.4, §10.6); `None` where both are
+/// scalars, or where the operator has another meaning for arrays.
+fn elementwise(
+    operator: BinaryOperator,
+    left: &Expression,
+    right: &Expression,
+    span: Span,
+) -> Result<Option<Vec<(Expression, Expression)>>, Diagnostic> {
+    use BinaryOperator as Op;
+    let is_dotted = is_dotted(operator);
+    match (&left.kind, &right.kind) {
+        (ExpressionKind::Array(left), ExpressionKind::Array(right))
+            if is_dotted || matches!(operator, Op::Add | Op::Subtract) =>
+        {
+            if left.len() != right.len() {
+                let (one, other) = (left.len(), right.len());
+                return Err(fault!(
+                    SIZE_MISMATCH,
+                    "an operation on arrays of {one} and {other} elements"
+                )
+                .at(span));
+            }
+            Ok(Some(left.iter().cloned().zip(right.iter().cloned()).collect()))
+        }
+        (ExpressionKind::Array(_), ExpressionKind::Array(_)) => Ok(None),
+        (ExpressionKind::Array(left), _)
+            if is_dotted || matches!(operator, Op::Multiply | Op::Divide) =>
+        {
+            Ok(Some(left.iter().map(|one| (one.clone(), right.clone())).collect()))
+        }
+        (_, ExpressionKind::Array(right)) if is_dotted || operator == Op::Multiply => {
+            Ok(Some(right.iter().map(|one| (left.clone(), one.clone())).collect()))
+        }
+        _ => Ok(None),
+    }
+}
+
+fn is_dotted(operator: BinaryOperator) -> bool {
+    use BinaryOperator as Op;
+    matches!(
+        operator,
+        Op::ElementwiseAdd
+            | Op::ElementwiseSubtract
+            | Op::ElementwiseMultiply
+            | Op::ElementwiseDivide
+            | Op::ElementwisePower
+    )
+}
+
+fn is_array(left: &Expression, right: &Expression) -> bool {
+    [left, right].iter().any(|operand| matches!(operand.kind, ExpressionKind::Array(_)))
+}
+
+fn no_operator(record: &Name, sign: &str, span: Span) -> Diagnostic {
+    fault!(TYPE_MISMATCH, "`{record}` has no operator {sign} for these operands").at(span)
 }
 
 fn plain(base: BaseType) -> ValueType {

@@ -1,7 +1,6 @@
 //! Resolves the names in expressions: components become their flat paths, constants of packages
 //! their values, functions their full names (MLS §5.3, §5.6.2).
 
-use super::BaseType;
 use super::errors::{
     NOT_CONSTANT, NOT_SUPPORTED, PROTECTED_ACCESS, SIZE_MISMATCH, TOO_LARGE, UNKNOWN_NAME,
 };
@@ -15,10 +14,9 @@ use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
-    Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, NamedArgument,
-    ReferencePart, Subscript, UnaryOperator,
+    Arguments, ComponentReference, Expression, ExpressionKind, NamedArgument, ReferencePart,
+    Subscript, UnaryOperator,
 };
-use crate::syntax::visit::Visit;
 use crate::value::Value;
 use std::rc::Rc;
 
@@ -86,6 +84,8 @@ impl Instantiation<'_> {
             | ExpressionKind::Integer(_)
             | ExpressionKind::Boolean(_)
             | ExpressionKind::String(_)
+            | ExpressionKind::TypeName(_)
+            | ExpressionKind::Code(_)
             | ExpressionKind::End => e.kind.clone(),
             ExpressionKind::Reference(reference) => {
                 return self.reference(reference, context, local);
@@ -139,9 +139,7 @@ impl Instantiation<'_> {
                 ExpressionKind::Array(self.all(elements, context, local)?)
             }
             ExpressionKind::Comprehension { element, indices } => {
-                let (indices, inner) = self.iterators(indices, context, local)?;
-                let element = Box::new(self.resolve(element, context, &inner)?);
-                ExpressionKind::Comprehension { element, indices }
+                return self.comprehension(element, indices, e.span, context, local);
             }
             ExpressionKind::Matrix(rows) => ExpressionKind::Matrix(
                 rows.iter()
@@ -207,7 +205,7 @@ impl Instantiation<'_> {
         }
     }
 
-    fn all(
+    pub(super) fn all(
         &mut self,
         expressions: &[Expression],
         context: ScopeId,
@@ -216,7 +214,7 @@ impl Instantiation<'_> {
         expressions.iter().map(|e| self.resolve(e, context, local)).collect()
     }
 
-    fn named_arguments(
+    pub(super) fn named_arguments(
         &mut self,
         named: &[NamedArgument],
         context: ScopeId,
@@ -229,32 +227,6 @@ impl Instantiation<'_> {
                 Ok(NamedArgument { name: argument.name, value })
             })
             .collect()
-    }
-
-    /// The iterators with resolved ranges, and what their body knows.
-    pub(super) fn iterators(
-        &mut self,
-        indices: &[ForIndex],
-        context: ScopeId,
-        local: &Local,
-    ) -> Result<(Vec<ForIndex>, Local), Diagnostic> {
-        let mut inner = local.clone();
-        let mut resolved = Vec::with_capacity(indices.len());
-        for index in indices {
-            let range = match &index.range {
-                Some(range) => match self.type_range(range, context, &inner)? {
-                    Some(values) => Some(values),
-                    None => Some(self.resolve(range, context, &inner)?),
-                },
-                None => None,
-            };
-            if range.as_ref().and_then(|range| self.type_of(range)) == Some(BaseType::Boolean) {
-                Rc::make_mut(&mut inner.types).push((index.name.node, ValueType::Boolean));
-            }
-            resolved.push(ForIndex { name: index.name, range });
-            inner.names.push((index.name.node, None));
-        }
-        Ok((resolved, inner))
     }
 
     pub(super) fn subscripts(
@@ -304,16 +276,11 @@ impl Instantiation<'_> {
             let name = self.instance_name(context);
             return Ok(Expression::new(ExpressionKind::String(name.into()), span));
         }
-        let visit = |uses: &mut dyn Visit| {
-            arguments.positional.iter().for_each(|argument| uses.expression(argument));
-        };
-        let iterators = self.with_ranges(&arguments.iterators, context, local, &visit)?;
-        let (iterators, inner) = self.iterators(&iterators, context, local)?;
-        let arguments = Arguments {
-            positional: self.all(&arguments.positional, context, &inner)?,
-            named: self.named_arguments(&arguments.named, context, &inner)?,
-            iterators,
-        };
+        if self.is_array_constructor(function, arguments, context)? {
+            let elements = self.all(&arguments.positional, context, local)?;
+            return Ok(Expression::new(ExpressionKind::Array(elements), span));
+        }
+        let arguments = self.arguments(arguments, context, local)?;
         let name = if function.as_ident().is_some_and(|name| local.get(name).is_some()) {
             function.name()
         } else {
@@ -321,7 +288,7 @@ impl Instantiation<'_> {
         };
         let name = match self.lookup(context, &function.name())? {
             Some(Type::Class(class)) => {
-                self.overloaded_constructor(class, &arguments, &inner)?.unwrap_or(name)
+                self.overloaded_constructor(class, &arguments, local)?.unwrap_or(name)
             }
             _ => name,
         };
@@ -346,6 +313,20 @@ impl Instantiation<'_> {
         let function = ComponentReference::from_name(&name, function.span);
         let kind = ExpressionKind::Call { function, arguments: Box::new(arguments) };
         Ok(Expression::new(kind, span))
+    }
+
+    /// Whether a call is `array(a, b)`, another form of `{a, b}` (MLS §10.4).
+    fn is_array_constructor(
+        &mut self,
+        function: &ComponentReference,
+        arguments: &Arguments,
+        context: ScopeId,
+    ) -> Result<bool, Diagnostic> {
+        let is_named = function.as_ident().is_some_and(|name| name == "array");
+        let lists = arguments.iterators.is_empty()
+            && arguments.named.is_empty()
+            && !arguments.positional.is_empty();
+        Ok(is_named && lists && self.lookup(context, &function.name())?.is_none())
     }
 
     /// The class that is simulated, and the path to the instance (MLS §3.7.4.4).
@@ -416,10 +397,13 @@ impl Instantiation<'_> {
         let Some((part, rest)) = parts.split_first() else {
             return self.whole_instance(node, whole, context, local);
         };
-        let state = match self.member(node, part.name)? {
-            Some(state) => state.seen(),
-            None => return Err(self.unknown_component(node, part.name, whole.span)),
+        let Some(state) = self.member(node, part.name)? else {
+            return Err(self.unknown_component(node, part.name, whole.span));
         };
+        if let (MemberState::Outer(_), Some(next)) = (&state, rest.first()) {
+            self.check_outer_element(node, part.name, next.name, whole.span)?;
+        }
+        let state = state.seen();
         if !local.flat && parts.len() < whole.parts.len() && self.is_protected(node, part.name) {
             let path = &self.nodes[node.0].path;
             return Err(fault!(
@@ -429,6 +413,9 @@ impl Instantiation<'_> {
                 path.trim_start_matches('.')
             )
             .at(whole.span));
+        }
+        if !local.flat && !part.subscripts.is_empty() {
+            self.check_subscript_types(node, part)?;
         }
         match state {
             MemberState::Single(id) => {
@@ -632,17 +619,63 @@ impl Instantiation<'_> {
         }
         if let ExpressionKind::Subscripted { base: inner, subscripts } = &base.kind
             && let ExpressionKind::Reference(reference) = &inner.kind
-            && reference.parts.last().is_some_and(|part| part.subscripts.is_empty())
+            && let Some(mut longer) = self.element_of(reference, subscripts, context, local)?
         {
-            let mut longer = reference.clone();
-            if let Some(last) = longer.parts.last_mut() {
-                last.subscripts = subscripts.clone();
-            }
             longer.parts.push(ReferencePart { name, subscripts: Vec::new() });
             return self.reference(&longer, context, local);
         }
         let base = self.resolve(base, context, local)?;
         Ok(Expression::new(ExpressionKind::Field { base: Box::new(base), name }, span))
+    }
+
+    /// `(a.b)[i]` as a reference, with the subscripts at the parts that are arrays: `a[i].b` if `a`
+    /// is one.
+    fn element_of(
+        &mut self,
+        reference: &ComponentReference,
+        subscripts: &[Subscript],
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Option<ComponentReference>, Diagnostic> {
+        let mut found = reference.clone();
+        let mut given = subscripts.iter().cloned();
+        let first = reference.parts[0].name;
+        let is_component = !reference.global && local.get(first).is_none();
+        let mut node = match is_component && self.has_component(context, first)? {
+            true => Some(self.node_of(context)),
+            false => None,
+        };
+        let count = found.parts.len();
+        for (at, part) in found.parts.iter_mut().enumerate() {
+            let rank = match node {
+                Some(holder) => {
+                    let (rank, next) = self.rank_of_member(holder, part.name)?;
+                    node = next;
+                    rank
+                }
+                None => None,
+            };
+            let is_last = at + 1 == count;
+            let wanted = if is_last { usize::MAX } else { rank.unwrap_or(0) };
+            if part.subscripts.is_empty() {
+                part.subscripts = given.by_ref().take(wanted).collect();
+            }
+        }
+        Ok(given.next().is_none().then_some(found))
+    }
+
+    /// How many dimensions a component has, and the instance in which those of its components are
+    /// looked for.
+    fn rank_of_member(
+        &mut self,
+        node: NodeId,
+        name: Ident,
+    ) -> Result<(Option<usize>, Option<NodeId>), Diagnostic> {
+        Ok(match self.member(node, name)?.map(MemberState::seen) {
+            Some(MemberState::Single(one)) => (Some(0), Some(one)),
+            Some(MemberState::Array(dims, nodes)) => (Some(dims.len()), nodes.first().copied()),
+            _ => (None, None),
+        })
     }
 
     /// Whether a component is protected in the class of its node.
@@ -795,7 +828,7 @@ pub(super) fn subscripted(base: Expression, subscripts: Vec<Subscript>, span: Sp
         })
         .collect();
     if let Some(indices) = literals
-        && let Some(element) = element_of(&base, &indices)
+        && let Some(element) = element_at(&base, &indices)
     {
         return element.clone();
     }
@@ -810,10 +843,10 @@ pub(super) fn subscripted(base: Expression, subscripts: Vec<Subscript>, span: Sp
 }
 
 /// The element of an array constructor.
-fn element_of<'e>(base: &'e Expression, indices: &[usize]) -> Option<&'e Expression> {
+fn element_at<'e>(base: &'e Expression, indices: &[usize]) -> Option<&'e Expression> {
     let Some((first, rest)) = indices.split_first() else { return Some(base) };
     match &base.kind {
-        ExpressionKind::Array(elements) => element_of(elements.get(first.checked_sub(1)?)?, rest),
+        ExpressionKind::Array(elements) => element_at(elements.get(first.checked_sub(1)?)?, rest),
         _ => None,
     }
 }

@@ -18,6 +18,7 @@ pub fn all() -> Vec<Code> {
         crate::compile::errors::CODES,
         crate::ga::errors::CODES,
         crate::identify::errors::CODES,
+        crate::teach::errors::CODES,
         super::errors::CODES,
     ]
     .concat();

@@ -177,6 +177,44 @@ fn end_of_number(bytes: &[u8], start: usize) -> usize {
     end
 }
 
+/// Which statements agree, given how many lines each printed: those whose lines are all expected
+/// and none of whose is missing. A missing line belongs to the statement that printed another line
+/// in its place, else to one between its neighbours that printed nothing, else to the one before.
+pub fn agreeing(lines: &[Line], printed: &[usize]) -> Vec<bool> {
+    let mut agree = vec![true; printed.len()];
+    let owners: Vec<usize> =
+        printed.iter().enumerate().flat_map(|(at, count)| vec![at; *count]).collect();
+    let last = printed.len().saturating_sub(1);
+    let owner = |line: usize| owners.get(line).copied().unwrap_or(last);
+    let (mut line, mut missing, mut replaced) = (0, false, false);
+    for at in 0..=lines.len() {
+        match lines.get(at) {
+            Some(Line::Missing(_)) => missing = true,
+            Some(Line::Unexpected(_)) => {
+                if let Some(agrees) = agree.get_mut(owner(line)) {
+                    *agrees = false;
+                }
+                replaced = true;
+                line += 1;
+            }
+            same => {
+                if missing && !replaced {
+                    let before = line.checked_sub(1).map(owner);
+                    let next = same.map_or(printed.len(), |_| owner(line));
+                    let first = before.map_or(0, |before| before + 1);
+                    let silent = (first..next).find(|at| printed[*at] == 0);
+                    if let Some(agrees) = silent.or(before).and_then(|at| agree.get_mut(at)) {
+                        *agrees = false;
+                    }
+                }
+                (missing, replaced) = (false, false);
+                line += 1;
+            }
+        }
+    }
+    agree
+}
+
 /// A comparison as text: three lines of context around what differs; coloured if wanted.
 pub fn shown(lines: &[Line], colour: bool) -> String {
     const CONTEXT: usize = 3;
@@ -232,6 +270,21 @@ mod tests {
         let script = "x := 1;\n// Result:\n// 1\n//\n//   two\n// endResult\n// 3\n";
         assert_eq!(embedded(script).as_deref(), Some("1\n\n  two\n"));
         assert_eq!(embedded("x := 1;"), None);
+    }
+
+    #[test]
+    fn a_missing_line_belongs_to_the_statement_that_should_have_printed_it() {
+        let agreeing = |expected: &str, printed: [&str; 3]| {
+            let lines = difference(expected, &printed.concat(), Tolerance::EMBEDDED);
+            let counts = printed.map(|text| text.lines().count());
+            super::agreeing(&lines.unwrap_or_default(), &counts)
+        };
+        assert_eq!(agreeing("a\nb\nc", ["a\n", "b\n", "c\n"]), [true, true, true]);
+        assert_eq!(agreeing("a\nb\nc", ["a\n", "x\n", "c\n"]), [true, false, true]);
+        assert_eq!(agreeing("a\nb\nc", ["a\n", "", "c\n"]), [true, false, true]);
+        assert_eq!(agreeing("a\nb\nc\nd", ["a\n", "b\n", "d\n"]), [true, false, true]);
+        assert_eq!(agreeing("a\nc", ["a\n", "b\n", "c\n"]), [true, false, true]);
+        assert_eq!(agreeing("a\nb\nc", ["a\n", "b\n", ""]), [true, true, false]);
     }
 
     #[test]

@@ -3,13 +3,13 @@
 
 use super::builtins::Failure;
 use super::world::Progress;
-use super::{Session, simulation};
+use super::{Session, simulation, tracing};
 use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::ga::Genomes;
 use crate::identify::errors::{BAD_DATA, DATA_SIZES_DIFFER};
 use crate::identify::{
-    CompiledModel, Evaluator, FitPoint, Measurement, Outcome, Question, Recorder, Simulated,
+    CompiledModel, Evaluator, FitPoint, Measurement, Outcome, Question, Recorder, Simulated, Study,
     Uncertainty, deviations,
 };
 use crate::mat::{self, MatFile};
@@ -107,9 +107,26 @@ impl Session {
         let revision = self.classes.revision();
         let identification = self.identification();
         identification.recorder.evaluated(evaluator.study(), evaluator.x(), genomes, &simulated);
+        let (study, x) = (evaluator.study().clone(), evaluator.x().to_vec());
         identification.prepared = Some((request, revision, evaluator));
+        self.trace_simulation((&study, &x), genomes, &simulated)?;
         self.show_progress();
         Ok(simulated)
+    }
+
+    fn trace_simulation(
+        &mut self,
+        (study, x): (&Study, &[f64]),
+        genomes: &Genomes,
+        simulated: &Simulated,
+    ) -> Result<(), Fault> {
+        self.traced(|tracer, place| {
+            let failed = simulated.failures.iter().enumerate();
+            let failures =
+                failed.filter_map(|(k, why)| Some((k as u32, why.as_ref()?.to_string())));
+            let subject = tracing::subject(study);
+            tracer.simulated(place, (&subject, x), genomes.values(), failures.collect());
+        })
     }
 
     /// Loads the file or folder that the model of a request is in.

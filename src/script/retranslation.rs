@@ -142,7 +142,18 @@ fn literal(model: &Translated, path: &str, value: f64) -> Expression {
 
 /// Gives the element at a path a value, within what is there already.
 pub(super) fn merge(arguments: &mut Vec<Argument>, path: &[Ident], value: &Expression) {
-    let Some((first, rest)) = path.split_first() else { return };
+    if let Some(modification) = modification_at(arguments, path) {
+        modification.binding = Some(Binding::Expression(value.clone()));
+    }
+}
+
+/// The modification of the element at a path, which is made where it is missing; `None` for the
+/// empty path and behind a redeclaration.
+pub(super) fn modification_at<'a>(
+    arguments: &'a mut Vec<Argument>,
+    path: &[Ident],
+) -> Option<&'a mut Modification> {
+    let (first, rest) = path.split_first()?;
     let position = arguments.iter().position(|argument| match argument {
         Argument::Element(element) => element.name.node == Name::from(*first),
         Argument::Redeclaration(_) => false,
@@ -151,16 +162,18 @@ pub(super) fn merge(arguments: &mut Vec<Argument>, path: &[Ident], value: &Expre
         arguments.push(Argument::Element(element(*first)));
         arguments.len() - 1
     });
-    let Argument::Element(element) = &mut arguments[at] else { return };
-    let modification = element.modification.get_or_insert_with(|| Modification {
-        arguments: Vec::new(),
-        binding: None,
-        span: Span::NONE,
-    });
-    match rest {
-        [] => modification.binding = Some(Binding::Expression(value.clone())),
-        rest => merge(&mut modification.arguments, rest, value),
+    let Argument::Element(element) = &mut arguments[at] else { return None };
+    let modification = element.modification.get_or_insert_with(no_modification);
+    if rest.is_empty() {
+        Some(modification)
+    } else {
+        modification_at(&mut modification.arguments, rest)
     }
+}
+
+/// A modification that says nothing.
+pub(super) fn no_modification() -> Modification {
+    Modification { arguments: Vec::new(), binding: None, span: Span::NONE }
 }
 
 fn element(name: Ident) -> ElementModification {

@@ -251,10 +251,10 @@ impl Session {
         self.record(text);
     }
 
-    /// Notes an answer in the transcript and in the log.
+    /// Notes what is printed in the transcript and in the log.
     pub(super) fn record(&mut self, text: &str) {
         if let Some(transcript) = &mut self.transcript {
-            transcript.answer(text);
+            transcript.print(text);
         }
         self.log.answer_within(text, MAX_LOG);
     }
@@ -267,7 +267,10 @@ impl Session {
             true => self.world.eprint(&render::render(&diagnostic, &self.sources, true)),
             false => self.world.eprint(&plain),
         }
-        self.record(&plain);
+        if let Some(transcript) = &mut self.transcript {
+            transcript.report(&plain, diagnostic.code);
+        }
+        self.log.answer_within(&plain, MAX_LOG);
         if diagnostic.is_error() && self.options.strictness == Strictness::Strict {
             self.stop.get_or_insert(Stop::Error);
         }

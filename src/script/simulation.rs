@@ -437,6 +437,34 @@ impl Session {
         self.models.last.clone()
     }
 
+    /// Puts a variant of the model translated last, or of what scripts changed it to, in its place;
+    /// its parameters have the values that scripts gave. `None`: it stays as it is.
+    /// [`Session::restore_values`] takes it back.
+    pub(super) fn vary_current(
+        &mut self,
+        variant: impl FnOnce(&Translated) -> Result<Option<Translated>, Diagnostic>,
+    ) -> Result<Arc<Translated>, Vec<Diagnostic>> {
+        let (call, one) = (self.call, |error: Diagnostic| vec![error]);
+        let Some(mut current) = self.models.last.clone() else {
+            return Err(vec![no_model().at(call)]);
+        };
+        let changed = match current.changes.is_empty() {
+            true => current.model.clone(),
+            false => self.changed_model(&current.model.clone(), &mut current.changes)?,
+        };
+        let model = variant(&changed).map_err(one)?.map_or(changed, Arc::new);
+        let mut overrides = IndexMap::new();
+        for (at, value) in &current.overrides {
+            let name = &current.model.program.parameters()[*at].name;
+            let found = model.program.find_parameter(name).at(call).map_err(one)?;
+            overrides.insert(found, *value);
+        }
+        let imported = current.imported;
+        let changes = Changes::default();
+        self.models.last = Some(Current { model: model.clone(), overrides, changes, imported });
+        Ok(model)
+    }
+
     /// Takes back what was set since.
     pub(super) fn restore_values(&mut self, before: Option<Current>) {
         self.models.last = before;
@@ -503,6 +531,11 @@ impl Session {
         let default = current.model.program.parameters()[index].default;
         Some(current.overrides.get(&index).copied().unwrap_or(default))
     }
+}
+
+fn no_model() -> Fault {
+    fault!(super::errors::NO_TRANSLATED_MODEL, "no model is translated";
+        help: "call `translateModel(\"Package.Model\")` first")
 }
 
 fn check_value(model: &Translated, index: usize, value: f64) -> Result<(), Fault> {

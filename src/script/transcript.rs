@@ -1,5 +1,6 @@
 //! Transcripts: each statement and what it answered, interleaved, so that one reads alone.
 
+use crate::diag::Code;
 use std::fmt;
 
 /// One statement and its answer.
@@ -9,6 +10,10 @@ pub struct Exchange {
     pub input: String,
     /// What it printed, its value and its diagnostics, in the order they came.
     pub answer: String,
+    /// What went to standard output of it.
+    pub printed: String,
+    /// The codes of its diagnostics.
+    pub codes: Vec<Code>,
 }
 
 /// What a script said and what was answered, at its top level.
@@ -23,7 +28,7 @@ pub struct Transcript {
 impl Transcript {
     /// Begins the exchange of a statement.
     pub fn begin(&mut self, input: &str) {
-        self.exchanges.push(Exchange { input: input.to_owned(), answer: String::new() });
+        self.exchanges.push(Exchange { input: input.to_owned(), ..Exchange::default() });
     }
 
     /// The statements alone, each ended by a semicolon.
@@ -45,11 +50,28 @@ impl Transcript {
     /// Adds to the answer of the current statement.
     pub fn answer(&mut self, text: &str) {
         self.size += text.len();
+        self.current().answer.push_str(text);
+    }
+
+    /// Adds what goes to standard output to the answer of the current statement.
+    pub fn print(&mut self, text: &str) {
+        self.answer(text);
+        self.current().printed.push_str(text);
+    }
+
+    /// Adds a diagnostic to the answer of the current statement.
+    pub fn report(&mut self, text: &str, code: Code) {
+        self.answer(text);
+        self.current().codes.push(code);
+    }
+
+    fn current(&mut self) -> &mut Exchange {
         if self.exchanges.is_empty() {
             self.exchanges.push(Exchange::default());
         }
-        if let Some(exchange) = self.exchanges.last_mut() {
-            exchange.answer.push_str(text);
+        match self.exchanges.last_mut() {
+            Some(exchange) => exchange,
+            None => unreachable!("one was pushed"),
         }
     }
 }

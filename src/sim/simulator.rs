@@ -219,7 +219,10 @@ impl Run<'_> {
             limit = self.next_output.map_or(limit, |point| limit.min(point));
         }
         self.integrator.step(&mut self.problem, limit)?;
-        Ok(event == Some(self.integrator.time()))
+        let Some(event) = event else { return Ok(false) };
+        // A step to an output point may end next to an event: the same time to the system.
+        let next = self.problem.system.next_time_event(self.integrator.time());
+        Ok(next.is_none_or(|next| next > event))
     }
 
     /// Goes to the end of the step, or to the event that made the rest of it void.

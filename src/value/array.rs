@@ -172,6 +172,12 @@ impl Elements {
             {
                 values[offset] = value;
             }
+            // In the functions of loaded classes literals are ordinals.
+            (Elements::Enumeration(values), Value::Integer(ordinal))
+                if (1..=values[offset].definition.literals.len() as i64).contains(&ordinal) =>
+            {
+                values[offset].ordinal = ordinal;
+            }
             (Elements::Record(values), Value::Record(value))
                 if values[offset].type_name == value.type_name =>
             {

@@ -15,6 +15,7 @@ package overconstrained
     Frame R;
     Real x;
     flow Real f;
+    flow Real t;
   end Flange;
   model Root
     Flange flange;
@@ -32,6 +33,7 @@ package overconstrained
     b.R = a.R;
     b.x = a.x + 1;
     a.f + b.f = 0;
+    a.t + b.t = 0;
   end Bar;
   model Spring
     Flange a;
@@ -39,6 +41,8 @@ package overconstrained
   equation
     a.f + b.f = 0;
     a.f = a.x - b.x;
+    a.t = 0;
+    b.t = 0;
     if Connections.isRoot(a.R) then
       a.R = Frame(0, 1);
     end if;

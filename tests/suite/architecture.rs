@@ -40,20 +40,21 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "name", "source", "diag",
         ],
     ),
+    ("teach", &["ga", "plot", "diag"]),
     ("identify", &["compile", "results", "plot", "sim", "ga", "registry", "name", "diag"]),
     (
         "script",
         &[
             "identify", "compile", "dae", "external", "flatten", "eval", "value", "syntax",
-            "symbolic", "results", "plot", "mat", "sim", "ga", "registry", "models", "name",
-            "source", "diag",
+            "symbolic", "teach", "results", "plot", "mat", "sim", "ga", "registry", "models",
+            "name", "source", "diag",
         ],
     ),
     (
         "cli",
         &[
-            "script", "identify", "compile", "results", "plot", "sim", "models", "registry",
-            "name", "source", "diag",
+            "script", "identify", "teach", "compile", "results", "plot", "sim", "models",
+            "registry", "name", "source", "diag",
         ],
     ),
 ];

@@ -12,6 +12,8 @@ use std::path::Path;
 const WITHOUT_SCRIPT: &[&str] = &[
     // A world in memory has no limits; `tests/suite/cli.rs` shows it.
     "limit-reached",
+    // `gapi teach` reports it, no script: see `teach.rs`.
+    "bad-trace",
     // `gapi compare` reports it, no script: see `cli.rs`.
     "bad-reference",
     // A result table is checked before it is written; only a fault of the program can raise it.

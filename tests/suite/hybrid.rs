@@ -59,7 +59,7 @@ fn file(name: &str) -> String {
 
 impl Run {
     /// All values of a variable.
-    fn column(&self, name: &str) -> Vec<f64> {
+    pub(super) fn column(&self, name: &str) -> Vec<f64> {
         let at = self.program.find_variable(name).expect("the variable exists");
         match self.program.variables()[at].access {
             Access::Observed { column, negated } => {
@@ -312,6 +312,17 @@ fn an_assertion_at_an_event_holds_at_that_event_only() {
     let error = ended.expect_err("x is 2 at the second sample");
     near(error.time, 2.0, 1e-12);
     assert_eq!(program.explain(&error).code.slug, "assertion-failed");
+}
+
+#[test]
+fn a_sample_next_to_an_output_point_is_not_lost() {
+    // 12·0.05 and 15·0.04 differ by rounding.
+    let run = simulated(
+        "model S Integer n(start = 0, fixed = true); \
+         equation when sample(0, 0.05) then n = pre(n) + 1; end when; end S;",
+        2.0,
+    );
+    assert_eq!(run.last("n"), 41.0);
 }
 
 #[test]

@@ -18,13 +18,16 @@ mod target;
 pub(super) use instances::Instances;
 
 use super::build::Builder;
-use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
+use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use super::inline::{MAX_INLINED, MAX_STATEMENTS, inline};
-use super::lowering::Lowered;
+use super::lowering::{Lowered, field};
 use crate::diag::Diagnostic;
-use crate::eval::Function;
+use crate::eval::{Function, ValueType};
+use crate::fault;
+use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::symbolic::Expr;
+use crate::syntax::ast::ComponentReference;
 use std::sync::Arc;
 
 /// The outputs of a call in an equation: expressions where its statements can be carried out on
@@ -32,7 +35,7 @@ use std::sync::Arc;
 pub(super) fn call(
     builder: &mut Builder<'_>,
     function: &Arc<Function>,
-    arguments: Vec<Lowered<Expr>>,
+    mut arguments: Vec<Lowered<Expr>>,
     span: Span,
 ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
     let outermost = builder.calls == 0;
@@ -49,13 +52,44 @@ pub(super) fn call(
         return Err(error);
     }
     builder.dae.assertions.truncate(asserted);
-    match compiled_call(builder, function, arguments.clone(), span) {
+    let mut result = compiled_call(builder, function, arguments.clone(), span);
+    if matches!(&result, Err(e) if e.code == NO_CONSTANT_VALUE)
+        && settle_whole_numbers(builder, function, &mut arguments)
+    {
+        result = compiled_call(builder, function, arguments.clone(), span);
+    }
+    match result {
         Err(_) if too_big => {
             builder.inlined = MAX_STATEMENTS;
             inline(builder, function, arguments, span)
         }
         result => result,
     }
+}
+
+/// Gives Integer and Boolean arguments, which sizes may depend on, the values that parameters have
+/// when compiling; whether there are any.
+fn settle_whole_numbers(
+    builder: &mut Builder<'_>,
+    function: &Function,
+    arguments: &mut [Lowered<Expr>],
+) -> bool {
+    let mut any = false;
+    for (input, argument) in function.inputs.iter().zip(arguments) {
+        let is_whole = matches!(input.value_type, ValueType::Integer | ValueType::Boolean);
+        let Lowered::Array(array) = &*argument else { continue };
+        let ([element], true) = (array.elements.as_slice(), array.dims.is_empty()) else {
+            continue;
+        };
+        if !is_whole || builder.dae.pool.as_constant(*element).is_some() {
+            continue;
+        }
+        if let Ok(Some(value)) = builder.settled(*element) {
+            *argument = Lowered::scalar(builder.dae.pool.constant(value));
+            any = true;
+        }
+    }
+    any
 }
 
 /// Expressions that call the code of a function.
@@ -97,4 +131,32 @@ fn compiled_call(
     }
     let mut results = results.into_iter();
     Ok(instance.outputs.iter().map(|s| Lowered::from_scalars(s, &mut results)).collect())
+}
+
+/// What a variable of a function holds, or a field of it.
+pub(super) fn local_value<T: Copy>(
+    locals: &[(Ident, Lowered<T>)],
+    path: &str,
+    reference: &ComponentReference,
+) -> Result<Lowered<T>, Diagnostic> {
+    let mut parts = Name::parse(path).parts.into_iter();
+    let first = parts.next();
+    let found = locals.iter().find(|(name, _)| Some(*name) == first);
+    let value = found.map(|(_, value)| value.clone()).ok_or_else(|| {
+        fault!(UNRESOLVED_REFERENCE, "there is no variable `{path}` in this function")
+            .at(reference.span)
+    })?;
+    parts.try_fold(value, |value, part| field(value, part, reference.span))
+}
+
+/// The type of a variable of a function, or of a field of it.
+pub(super) fn component_type(function: &Function, path: &str) -> Option<ValueType> {
+    let mut parts = Name::parse(path).parts.into_iter();
+    let first = parts.next();
+    let mut all = function.inputs.iter().chain(&function.outputs).chain(&function.locals);
+    let component = all.find(|component| Some(component.name) == first)?;
+    parts.try_fold(component.value_type.clone(), |value_type, part| match value_type {
+        ValueType::Record(_, fields) => Some(fields.get(&part)?.value_type.clone()),
+        _ => None,
+    })
 }

@@ -421,7 +421,7 @@ impl<'a, 'f> Body<'a, 'f> {
         {
             return Ok(());
         }
-        let text = find(1, "message").map_or(String::new(), message_text);
+        let text = message_text(&mut self.lowering(loops), find(1, "message"));
         let message = self.emitter.message(text.into());
         let a = self.emitter.register(condition);
         self.emitter.emit(Instruction::Assert { a, message });

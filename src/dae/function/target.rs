@@ -3,14 +3,12 @@
 use super::emitter::Operand;
 use super::statements::Body;
 use crate::bytecode::{Elementary, Instruction};
-use crate::dae::errors::{NOT_SUPPORTED, UNRESOLVED_REFERENCE};
-use crate::dae::lowering::{
-    Array, Binary, Branch, Choice, Lowered, Operator, Target, Unary, field,
-};
+use crate::dae::errors::NOT_SUPPORTED;
+use crate::dae::lowering::{Array, Binary, Branch, Choice, Lowered, Operator, Target, Unary};
 use crate::diag::Diagnostic;
-use crate::eval::Function;
+use crate::eval::{Function, ValueType};
 use crate::fault;
-use crate::name::{Ident, Name};
+use crate::name::Name;
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::{FunctionId, Value};
@@ -186,22 +184,16 @@ impl Target for Body<'_, '_> {
         path: &str,
         reference: &ComponentReference,
     ) -> Result<Lowered<Operand>, Diagnostic> {
-        let mut parts = path.split('.');
-        let first = parts.next().unwrap_or(path);
-        let found = self.locals.iter().find(|(name, _)| *name == first);
-        let mut value = found.map(|(_, value)| value.clone()).ok_or_else(|| {
-            fault!(UNRESOLVED_REFERENCE, "there is no variable `{path}` in this function")
-                .at(reference.span)
-        })?;
-        for part in parts {
-            value = field(value, Ident::new(part), reference.span)?;
-        }
-        Ok(value)
+        super::local_value(&self.locals, path, reference)
     }
 
     fn function(&self, name: &Name) -> Option<Arc<Function>> {
         let bare = Name { global: false, parts: name.parts.clone() };
         self.flat.functions.get(&bare).or_else(|| self.flat.functions.get(name)).cloned()
+    }
+
+    fn value_type(&self, path: &str) -> Option<ValueType> {
+        super::component_type(&self.function, path)
     }
 
     fn call(

@@ -3,7 +3,6 @@
 
 use super::arrays::concatenate;
 use super::{Array, Binary, Lowered, Lowering, Operator, Target, placed};
-use crate::dae::build::UNKNOWN_TEXT;
 use crate::dae::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use crate::diag::{Diagnostic, suggest};
 use crate::eval::FunctionBody;
@@ -33,7 +32,7 @@ impl<T: Target> Lowering<'_, T> {
         let text = name.to_string();
         let short = text.strip_prefix('.').unwrap_or(&text);
         if short == "String" {
-            return Ok(Lowered::Text(UNKNOWN_TEXT.into()));
+            return Ok(Lowered::Text(self.string_operator(callee, arguments, span)));
         }
         if short == "homotopy" {
             return self.homotopy(arguments, span);

@@ -67,6 +67,13 @@ impl<T: Target> Lowering<'_, T> {
                     return Err(fault!(ARRAY_MISMATCH, "`end` outside a subscript").at(e.span));
                 }
             },
+            ExpressionKind::TypeName(_) | ExpressionKind::Code(_) => {
+                return Err(fault!(
+                    NOT_SUPPORTED,
+                    "a class or code as a value stands in scripts only"
+                )
+                .at(e.span));
+            }
             ExpressionKind::Subscripted { base, subscripts } => {
                 let base = self.array(base)?;
                 self.subscripted(base, subscripts, e.span)?

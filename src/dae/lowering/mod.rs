@@ -111,6 +111,8 @@ pub(crate) trait Target {
     ) -> Result<Lowered<Self::Scalar>, Diagnostic>;
     /// A user function; `None` if there is none of this name.
     fn function(&self, name: &Name) -> Option<Arc<crate::eval::Function>>;
+    /// The type of the scalars of a variable that has this path.
+    fn value_type(&self, path: &str) -> Option<crate::eval::ValueType>;
     /// The files that the model may use.
     fn resources(&self) -> Resources;
     /// Calls a user function with all its arguments.

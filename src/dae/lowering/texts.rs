@@ -4,12 +4,12 @@ use super::{Array, Lowered, Lowering, Target};
 use crate::dae::build::UNKNOWN_TEXT;
 use crate::dae::errors::NOT_SUPPORTED;
 use crate::diag::Diagnostic;
-use crate::eval::{self, Callee, Function, Host, ValueType};
+use crate::eval::{self, Callee, Function, Host, Scope, ValueType};
 use crate::external::{Outside, Resources};
 use crate::fault;
 use crate::name::Name;
 use crate::source::Span;
-use crate::syntax::ast::ComponentReference;
+use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
 use crate::value::{ArrayValue, Elements, EnumerationValue, Value};
 use std::sync::Arc;
 
@@ -63,6 +63,36 @@ impl<T: Target> Lowering<'_, T> {
             Err(error) if gives_text => Err(error),
             Err(_) => Ok(None),
         }
+    }
+
+    /// `String(x, …)` (MLS §3.7.1), [`UNKNOWN_TEXT`] if that is not known.
+    pub(super) fn string_operator(
+        &mut self,
+        callee: &ComponentReference,
+        arguments: &Arguments,
+        span: Span,
+    ) -> Arc<str> {
+        let (function, arguments) = (callee.clone(), Box::new(arguments.clone()));
+        let call = Expression::new(ExpressionKind::Call { function, arguments }, span);
+        match eval::evaluate(&call, &mut Scope::script(), &mut Reading { lowering: self }) {
+            Ok(Value::String(text)) => text,
+            _ => UNKNOWN_TEXT.into(),
+        }
+    }
+
+    /// What a reference stands for, if that is known.
+    fn known_reference(&mut self, reference: &ComponentReference) -> Option<Value> {
+        let is_index = |name| self.loops.iter().any(|(index, _)| *index == name);
+        let wanted = match reference.as_ident().is_some_and(is_index) {
+            true => ValueType::Integer,
+            false => {
+                let path = self.path(reference).ok()?;
+                self.target.value_type(&path)?
+            }
+        };
+        let e = Expression::new(ExpressionKind::Reference(reference.clone()), reference.span);
+        let value = self.lower(&e).ok()?;
+        self.known_value(&value, &wanted, false)
     }
 
     fn known_value(
@@ -138,6 +168,30 @@ impl<T: Target> Host for Compiling<'_, T> {
 
     fn outside(&mut self) -> Option<&mut dyn Outside> {
         Some(&mut self.resources)
+    }
+}
+
+/// Answers the interpreter with what is known of variables while a model is compiled.
+struct Reading<'r, 'a, T: Target> {
+    lowering: &'r mut Lowering<'a, T>,
+}
+
+impl<T: Target> Host for Reading<'_, '_, T> {
+    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
+        Ok(self.lowering.target.function(name).map(Callee::Function))
+    }
+
+    fn call_builtin(
+        &mut self,
+        header: &Arc<Function>,
+        _: Vec<Value>,
+        span: Span,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        Err(fault!(NOT_SUPPORTED, "the command `{}` in a model", header.name).at(span))
+    }
+
+    fn variable(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
+        Ok(self.lowering.known_reference(reference))
     }
 }
 

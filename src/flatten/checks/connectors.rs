@@ -1,11 +1,14 @@
-//! What a connector class must hold together (MLS §9.3.1, §15.1).
+//! What a connector class must hold together (MLS §9.3.1, §9.4, §15.1).
 
 use super::lookup::Type;
 use super::scope::{Component, Scope};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::CLASS_RESTRICTION;
-use crate::syntax::ast::{ConnectionPrefix, Expression, ExpressionKind, Restriction, Subscript};
+use crate::name::Ident;
+use crate::syntax::ast::{
+    Binding, CausalityPrefix, ConnectionPrefix, Expression, ExpressionKind, Restriction, Subscript,
+};
 
 /// The deepest nesting of records and connectors that is counted.
 const MAX_DEPTH: usize = 20;
@@ -94,7 +97,9 @@ fn add_component(
         return Some(());
     }
     let sizes = component.clause.subscripts.iter().chain(&component.declaration.subscripts);
-    let times = sizes.map(literal).try_fold(times, |all, size| all.checked_mul(size?))?;
+    let times = sizes
+        .map(|size| known_size(component.owner, size))
+        .try_fold(times, |all, size| all.checked_mul(size?))?;
     let connection = prefixes.connection.or(outer);
     let class = match component.meaning()? {
         Type::Predefined(_) => None,
@@ -103,8 +108,13 @@ fn add_component(
     let Some(class) = class else { return count.add(connection, times) };
     let (target, short) = class.unaliased();
     let is_plain = short.iter().all(|one| one.causality.is_none() && one.connection.is_none());
-    let is_open = class.is_replaceable() || super::compatibility::dimensions(class) > 0;
-    if !is_plain || is_open || equality_constraint(class) {
+    if class.is_replaceable() || !is_plain {
+        return None;
+    }
+    if let Some(constraint) = equality_constraint(class) {
+        return count.add(connection, times.checked_mul(residue_size(constraint)?)?);
+    }
+    if super::compatibility::dimensions(class) > 0 {
         return None;
     }
     if class.predefined().is_some() || class.is_enumeration() {
@@ -131,20 +141,40 @@ impl Count {
     }
 }
 
-/// Overdetermined types count less than their variables (MLS §9.4).
-fn equality_constraint(class: Scope<'_>) -> bool {
-    let declares = |class: Scope<'_>| {
-        let mut names = class.class_elements().map(|(_, nested)| nested.class.name.node);
-        names.any(|name| name.as_str() == "equalityConstraint")
-    };
-    class.lineage().into_iter().any(declares)
+/// The function of an overdetermined type, which counts less than its variables (MLS §9.4).
+fn equality_constraint(class: Scope<'_>) -> Option<Scope<'_>> {
+    let name = Ident::new("equalityConstraint");
+    class.lineage().into_iter().find_map(|class| class.own_class(name))
 }
 
-fn literal(subscript: &Subscript) -> Option<usize> {
-    match subscript {
-        Subscript::Index(Expression { kind: ExpressionKind::Integer(size), .. }) => {
-            usize::try_from(*size).ok()
-        }
+/// How many equations the function stands for: the size of its output.
+fn residue_size(function: Scope<'_>) -> Option<usize> {
+    let is_output = |component: &Component<'_>| {
+        component.clause.type_prefixes.causality == Some(CausalityPrefix::Output)
+    };
+    let output = function.components().find(is_output)?;
+    let sizes = output.clause.subscripts.iter().chain(&output.declaration.subscripts);
+    let mut sizes = sizes.map(|size| known_size(function, size));
+    sizes.try_fold(1usize, |all, size| all.checked_mul(size?))
+}
+
+/// The size that a subscript gives: a number, or a component of the class with a number as value.
+fn known_size(class: Scope<'_>, subscript: &Subscript) -> Option<usize> {
+    let Subscript::Index(size) = subscript else { return None };
+    if let ExpressionKind::Reference(reference) = &size.kind {
+        let component = class.component(reference.as_ident()?)?;
+        let modification = component.declaration.modification.as_ref()?;
+        return match &modification.binding {
+            Some(Binding::Expression(value)) => natural(value),
+            _ => None,
+        };
+    }
+    natural(size)
+}
+
+fn natural(e: &Expression) -> Option<usize> {
+    match e.kind {
+        ExpressionKind::Integer(size) => usize::try_from(size).ok(),
         _ => None,
     }
 }

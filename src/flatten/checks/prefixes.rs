@@ -1,4 +1,5 @@
-//! Which components may have which type prefixes (MLS §4.4.2.2, §9.3, §15.1).
+//! Which components may have which type prefixes (MLS §4.4.2.2, §9.1.3, §9.3,
+//! §15.1).
 
 use super::lookup::Type;
 use super::scope::{Component, Scope};
@@ -48,6 +49,16 @@ fn wrong_use(class: Scope<'_>, component: &Component<'_>) -> Option<Diagnostic> 
         matches!(class.restriction(), Restriction::Connector | Restriction::ExpandableConnector);
     let in_record =
         matches!(class.restriction(), Restriction::Record | Restriction::OperatorRecord);
+    if class.restriction() == Restriction::ExpandableConnector
+        && prefixes.connection == Some(ConnectionPrefix::Flow)
+    {
+        return Some(
+            fault!(ILLEGAL_PREFIX, "the expandable connector `{}` has the flow variable `{name}`",
+                class.name();
+                help: "declare it in a connector of its own, and that in the expandable one")
+            .at(span),
+        );
+    }
     let is_stream = prefixes.connection == Some(ConnectionPrefix::Stream);
     if is_stream && !is_connector && !in_record {
         return Some(

@@ -3,20 +3,20 @@
 use super::strings::text;
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
-use crate::diag::Fault;
+use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::script::errors::BAD_ARGUMENT;
+use crate::script::retranslation::{modification_at, no_modification};
 use crate::script::{Dialect, Session, simulation};
-use crate::source::{SourceId, Span};
+use crate::source::SourceId;
 use crate::syntax::ast::{
-    Binding, CausalityPrefix, ClassDefinition, ClassSpecifier, ComponentClause,
+    Argument, Binding, CausalityPrefix, ClassDefinition, ClassSpecifier, ComponentClause,
     ComponentDeclaration, ConnectionPrefix, Element, Modification, Section, Subscript,
     VariabilityPrefix, Visibility,
 };
 use crate::syntax::{self, print};
 use crate::value::Value;
-use crate::value::show::{Style, show};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -235,15 +235,15 @@ const SET_PARAMETER_VALUE: &str = r#"
 function setParameterValue "Changes the value that a parameter is declared with."
   input TypeName className;
   input VariableName variableName;
-  input Any value;
+  input Expression value "not evaluated";
   output Boolean success;
 end setParameterValue;
 "#;
 
 fn set_parameter_value(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let (class, name): (Name, String) = (args.take("className")?, args.take("variableName")?);
-    let value = format!("={}", show(&args.take::<Value>("value")?, Style::OpenModelica));
-    let done = modified(session, &class, &name, &value);
+    let value: String = args.take("value")?;
+    let done = modified(session, &class, &name, &format!("= {value}"));
     answer(session, done)
 }
 
@@ -251,15 +251,21 @@ const SET_ELEMENT_MODIFIER_VALUE: &str = r#"
 function setElementModifierValue "Changes the modifier of an element of a class, or of an element in an element."
   input TypeName className;
   input VariableName elementName "x, or x.start for what stands in the parentheses behind x";
-  input Any modifier "the value";
+  input Expression modifier "a value, not evaluated; or $Code(= value), $Code((name = value)), $Code(()) to take it away";
   output Boolean success;
 end setElementModifierValue;
 "#;
 
 fn set_element_modifier_value(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let (class, name): (Name, String) = (args.take("className")?, args.take("elementName")?);
-    let value = format!("={}", show(&args.take::<Value>("modifier")?, Style::OpenModelica));
-    let done = modified(session, &class, &name, &value);
+    let value: String = args.take("modifier")?;
+    let code = value.strip_prefix("$Code(").and_then(|code| code.strip_suffix(')'));
+    let modification = match code.map(str::trim) {
+        Some(code) if code.starts_with(['=', '(']) => code.to_owned(),
+        Some(code) => format!("= {code}"),
+        None => format!("= {value}"),
+    };
+    let done = modified(session, &class, &name, &modification);
     answer(session, done)
 }
 
@@ -273,35 +279,62 @@ fn answer(session: &mut Session, done: Result<(), Failure>) -> Result<Value, Fai
     }
 }
 
-/// Gives an element of a class, or what stands in its modification, another binding.
+/// Gives an element of a class, or what stands in its modification, another modification, as it
+/// is written behind the element's name. A binding leaves what stands in parentheses as it is;
+/// `()` takes the binding away.
 fn modified(
     session: &mut Session,
     class: &Name,
     element: &str,
-    value: &str,
+    modification: &str,
 ) -> Result<(), Failure> {
     let path: Vec<Ident> = Name::parse(element).parts.to_vec();
-    let binding = syntax::parse_expression(SourceId::NONE, &value[1..])
-        .map_err(|error| Fault::new(BAD_ARGUMENT, error.message.clone()))?;
+    let new = parsed_modification(modification)?;
     let shown = class.to_string();
     edited(session, class, |definition| {
         let Some((first, rest)) = path.split_first() else { return false };
         let Some(component) = component_mut(definition, *first) else { return false };
-        let modification = component.modification.get_or_insert_with(|| Modification {
-            arguments: Vec::new(),
-            binding: None,
-            span: Span::NONE,
-        });
-        match rest {
-            [] => modification.binding = Some(Binding::Expression(binding)),
-            rest => {
-                crate::script::retranslation::merge(&mut modification.arguments, rest, &binding);
-            }
+        let whole = component.modification.get_or_insert_with(no_modification);
+        let part = match rest {
+            [] => Some(whole),
+            rest => modification_at(&mut whole.arguments, rest),
+        };
+        let Some(part) = part else { return false };
+        if !new.arguments.is_empty() {
+            part.arguments = new.arguments;
+        } else {
+            part.binding = new.binding;
+        }
+        if let Some(whole) = &mut component.modification {
+            prune(&mut whole.arguments);
         }
         true
     })?
     .then_some(())
     .ok_or_else(|| fault!(BAD_ARGUMENT, "`{shown}` declares no `{element}`").into())
+}
+
+/// Takes elements away whose modification says nothing.
+fn prune(arguments: &mut Vec<Argument>) {
+    arguments.retain_mut(|argument| {
+        let Argument::Element(element) = argument else { return true };
+        let Some(modification) = &mut element.modification else { return true };
+        prune(&mut modification.arguments);
+        !modification.arguments.is_empty() || modification.binding.is_some()
+    });
+}
+
+fn parsed_modification(text: &str) -> Result<Modification, Fault> {
+    let wrong = |error: Diagnostic| Fault::new(BAD_ARGUMENT, error.message.clone());
+    let whole = format!("class_(element_{text})");
+    let (_, mut arguments) =
+        syntax::parse_class_with_modification(SourceId::NONE, &whole).map_err(wrong)?;
+    match (arguments.pop(), arguments.is_empty()) {
+        (Some(Argument::Element(element)), true) => {
+            Ok(element.modification.unwrap_or_else(no_modification))
+        }
+        _ => Err(fault!(BAD_ARGUMENT, "`{text}` is no modification of one element")),
+    }
 }
 
 fn component_mut(class: &mut ClassDefinition, name: Ident) -> Option<&mut ComponentDeclaration> {

@@ -15,6 +15,7 @@ use crate::script::Session;
 use crate::script::errors::FOLLOW_UP;
 use crate::script::identification::Request;
 use crate::script::refinement::Refinement;
+use crate::teach::MutationCall;
 use crate::value::errors::TYPE_MISMATCH;
 use crate::value::{ArrayValue, FromValue, RealMatrix, Value};
 
@@ -113,6 +114,7 @@ fn ram_gen_arena(session: &mut Session, mut args: Args) -> Result<Value, Failure
     let first = rng.state();
     let numbers = (0..count).map(|_| rng.uniform()).collect();
     session.identification().recorder.seeded(first, rng.state());
+    session.traced(|tracer, place| tracer.drawn(place, first, count as usize))?;
     Ok(Value::Tuple(vec![row(numbers), row(rng.state().to_vec())]))
 }
 
@@ -214,6 +216,8 @@ fn fit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let rows = (0..simulated.rows).map(|k| simulated.row(k));
     let fitness: Vec<f64> = rows.map(|row| sum_of_squares(row, &measured)).collect();
     session.identification().recorder.rated(&fitness, &measured);
+    session
+        .traced(|tracer, place| tracer.rated(place, &fitness, &simulated.elements, &measured))?;
     Ok(fitness.into())
 }
 
@@ -233,13 +237,16 @@ fn fit_order(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let population = take_genomes(&mut args, "Pop")?;
     let fitness: Vec<f64> = args.take("Fit")?;
     let individuals: i64 = args.take("Population")?;
-    ga::selection::check_sizes(individuals, args.take("Parents")?, args.take("Elitism")?)?;
+    let (parents, elites): (i64, i64) = (args.take("Parents")?, args.take("Elitism")?);
+    ga::selection::check_sizes(individuals, parents, elites)?;
     if individuals != population.len() as i64 {
         let rows = population.len();
         bail!(SIZE_MISMATCH, "`Pop` has {rows} rows, but `Population` is {individuals}"; help: "make the sizes agree");
     }
     let (ordered, fitness_ordered) = ga::sort_by_fitness(&population, &fitness)?;
     session.identification().recorder.ordered(&population, &fitness);
+    let pairs = (parents as usize, elites as usize);
+    session.traced(|tracer, place| tracer.sorted(place, (population.values(), &fitness), pairs))?;
     Ok(Value::Tuple(vec![genomes_value(ordered), fitness_ordered.into()]))
 }
 
@@ -253,7 +260,7 @@ function Cross "Elites and children: adjacent ranks exchange the genes behind ea
 end Cross;
 "#;
 
-fn cross(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
+fn cross(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let (parents, elites): (i64, i64) = (args.take("Parents")?, args.take("Elitism")?);
     let old = take_genomes(&mut args, "OldGeneration")?;
     let n_genes = old.n_genes();
@@ -262,6 +269,8 @@ fn cross(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
         None => vec![n_genes / 2],
     };
     ga::selection::check_sizes(old.len() as i64, parents, elites)?;
+    let pairs = (parents as usize, elites as usize);
+    session.traced(|tracer, place| tracer.crossed(place, old.values(), pairs, &points))?;
     let mut chosen = Genomes::with_capacity(n_genes, parents as usize);
     old.rows().take(parents as usize).for_each(|genome| chosen.push(genome));
     let children = ga::crossover::cross_adjacent(&chosen, &points);
@@ -301,6 +310,15 @@ fn mutation(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     if searched {
         session.identification().recorder.searched(&minima, &maxima);
     }
+    let call = MutationCall {
+        genes: genomes.values(),
+        numbers: &numbers.elements,
+        elites,
+        factor,
+        minima: &minima,
+        maxima: &maxima,
+    };
+    session.traced(|tracer, place| tracer.mutated(place, &call))?;
     ga::mutation::mutate_uniform(&mut genomes, elites, &genes, factor, &numbers.elements);
     Ok(genomes_value(genomes))
 }

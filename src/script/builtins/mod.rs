@@ -16,6 +16,7 @@ mod matrices;
 mod messages;
 mod openmodelica;
 mod plotting;
+mod problem;
 mod refused;
 mod regular;
 mod results;
@@ -100,6 +101,7 @@ pub static FAMILIES: &[&Family] = &[
     &files::FAMILY,
     &files::OPENMODELICA,
     &gapilib::FAMILY,
+    &problem::FAMILY,
     &initial::FAMILY,
     &linearization::FAMILY,
     &linearization::OPENMODELICA,

@@ -87,6 +87,11 @@ pub enum ExpressionKind {
     Tuple(Vec<Option<Expression>>),
     /// `end` in a subscript
     End,
+    /// `$TypeName(A.B)`: the name itself (scripts of OpenModelica)
+    TypeName(Name),
+    /// `$Code(= 2)`, `$Code((start = 1))`, `$Code(x)`: an expression or a modification as written
+    /// (scripts of OpenModelica)
+    Code(Arc<str>),
     /// `e[i]` for an `e` in parentheses, and `e.name` (scripts and MLS 3.6's
     /// `output-expression-list array-subscripts`)
     Subscripted {

@@ -187,6 +187,10 @@ fn primary(parts: &mut Nodes<'_>) -> Lowered<Expression> {
         Rule::STRING => ExpressionKind::String(super::string(&node)),
         Rule::boolean_literal => ExpressionKind::Boolean(node.as_str() == "true"),
         Rule::end_subscript => ExpressionKind::End,
+        Rule::type_name_quoted => ExpressionKind::TypeName(name(&mut parts.inside(node)).node),
+        Rule::code_quoted => {
+            ExpressionKind::Code(parts.inside(node).expect(Rule::code).as_str().into())
+        }
         Rule::array => array(parts.inside(node))?,
         Rule::matrix => matrix(parts.inside(node))?,
         other => panic!("the grammar has no operand {other:?}"),

@@ -122,6 +122,16 @@ impl Printer {
                 self.word(")");
             }
             ExpressionKind::End => self.word("end"),
+            ExpressionKind::TypeName(name) => {
+                self.word("$TypeName(");
+                self.show(name);
+                self.word(")");
+            }
+            ExpressionKind::Code(text) => {
+                self.word("$Code(");
+                self.show(text);
+                self.word(")");
+            }
             ExpressionKind::Subscripted { base, subscripts } => {
                 self.base(base);
                 self.subscripts(subscripts);

@@ -205,7 +205,10 @@ impl<'t> Scanner<'t> {
     /// Whether the word belongs to a conditional expression, which is then followed.
     fn in_condition(&mut self, token: &Token<'t>) -> bool {
         match token.text {
-            "if" if !self.blocks.at_start() && !self.after_end() => {
+            "if" if !self.after_end()
+                && (!self.blocks.at_start() || self.is_conditional_expression(token)) =>
+            {
+                self.blocks.leave_start();
                 self.awaiting_else += 1;
                 self.awaiting_then += 1;
             }
@@ -215,6 +218,31 @@ impl<'t> Scanner<'t> {
             _ => return false,
         }
         true
+    }
+
+    /// Whether the `if` that begins a statement of a script is an expression, `if a then b else c`:
+    /// its line has an `else` before anything that ends a statement.
+    fn is_conditional_expression(&self, token: &Token<'t>) -> bool {
+        if self.dialect != Dialect::Script || self.blocks.in_class() {
+            return false;
+        }
+        let line = self.tokens.line_from(token.start);
+        let mut tokens = Tokens::new(self.source, line);
+        let (mut scratch, mut open) = (line.as_bytes().to_vec(), 0usize);
+        while let Ok(Some(next)) = tokens.next(CommandPlace::Nowhere, &mut scratch) {
+            match (next.kind, next.text) {
+                (TokenKind::Open, _) => open += 1,
+                (TokenKind::Close, _) => open = open.saturating_sub(1),
+                (TokenKind::Separator, ";") if open == 0 => return false,
+                (TokenKind::Word, "end") if open == 0 => return false,
+                (TokenKind::Word, "else") if open == 0 => {
+                    let value = tokens.next(CommandPlace::Nowhere, &mut scratch);
+                    return matches!(value, Ok(Some(_)));
+                }
+                _ => {}
+            }
+        }
+        false
     }
 
     fn after_end(&self) -> bool {

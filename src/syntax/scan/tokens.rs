@@ -151,6 +151,7 @@ impl<'t> Tokens<'t> {
         let Some(&first) = self.text.as_bytes().get(start) else { return Ok(None) };
         let kind = match first {
             b'a'..=b'z' | b'A'..=b'Z' | b'_' => self.word(command),
+            b'$' if self.quotes() => self.single(TokenKind::Operator),
             b'0'..=b'9' => self.number(),
             b'.' if self.peek(1).is_some_and(|byte| byte.is_ascii_digit()) => self.number(),
             b'"' => self.delimited(b'"', TokenKind::String)?,
@@ -169,6 +170,17 @@ impl<'t> Tokens<'t> {
 
     fn peek(&self, ahead: usize) -> Option<u8> {
         self.text.as_bytes().get(self.at + ahead).copied()
+    }
+
+    /// The rest of a line.
+    pub(super) fn line_from(&self, start: usize) -> &'t str {
+        self.text[start..].lines().next().unwrap_or("")
+    }
+
+    /// Whether `$TypeName` or `$Code` is here.
+    fn quotes(&self) -> bool {
+        let rest = &self.text[self.at + 1..];
+        ["TypeName(", "Code("].iter().any(|word| rest.starts_with(word))
     }
 
     fn single(&mut self, kind: TokenKind) -> TokenKind {

@@ -36,6 +36,8 @@ pub fn walk_expression<V: Visit + ?Sized>(visitor: &mut V, expression: &Expressi
         | ExpressionKind::Integer(_)
         | ExpressionKind::Boolean(_)
         | ExpressionKind::String(_)
+        | ExpressionKind::TypeName(_)
+        | ExpressionKind::Code(_)
         | ExpressionKind::End => {}
         ExpressionKind::Reference(reference) => visitor.reference(reference),
         ExpressionKind::Call { function, arguments } => {

@@ -45,6 +45,8 @@ pub fn rewrite_expression<R: Rewrite + ?Sized>(rewriter: &mut R, expression: &mu
         | ExpressionKind::Integer(_)
         | ExpressionKind::Boolean(_)
         | ExpressionKind::String(_)
+        | ExpressionKind::TypeName(_)
+        | ExpressionKind::Code(_)
         | ExpressionKind::End => {}
         ExpressionKind::Reference(reference) => rewriter.reference(reference),
         ExpressionKind::Call { function, arguments } => {

@@ -22,4 +22,13 @@ package Plant "Small models with known solutions"
     der(v) = -w^2*x;
     annotation(experiment(StopTime = 3.0, Tolerance = 1e-8));
   end Oscillator;
+
+  model Lag "first order, with feedthrough"
+    parameter Real T = 0.5;
+    input Real u;
+    output Real y = x + 2*u;
+    Real x(start = 0, fixed = true);
+  equation
+    T*der(x) = u - x;
+  end Lag;
 end Plant;

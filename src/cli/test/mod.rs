@@ -1,5 +1,8 @@
 //! `gapi test`: scripts compared with what is recorded of them.
 
+mod judgement;
+mod junit;
+
 use super::args::{Freedom, Global, TestArgs};
 use super::parsing::scripts;
 use super::run::without_folders;
@@ -8,21 +11,22 @@ use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, session};
 use crate::script::expectation::{Line, Tolerance, difference, embedded, shown};
-use crate::script::{Dialect, Echo, Options, Transcript};
-use std::fmt::Write as _;
+use crate::script::{Dialect, Echo, Exchange, Options, Transcript};
+use judgement::{Counts, Judged, judged, summary};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// How a script did.
 enum Verdict {
-    Agrees,
+    /// With this number of statements compared one by one.
+    Agrees(usize),
     /// The transcript was written.
     Accepted,
     /// There is nothing to compare with.
     Unrecorded,
-    /// The comparison.
-    Differs(Vec<Line>),
+    /// The comparison, and for an embedded result what each statement did.
+    Differs(Vec<Line>, Vec<Judged>),
     Failed(String),
 }
 
@@ -36,19 +40,23 @@ pub(super) fn test(arguments: &TestArgs, global: &Global) -> ExitCode {
             .unwrap_or_else(|error| Verdict::Failed(error.to_string()));
         terminal::print(&line(&path, &verdict, terminal.colour()));
         let verdict = match (verdict, arguments.review) {
-            (verdict @ (Verdict::Differs(_) | Verdict::Unrecorded), true) => {
+            (verdict @ (Verdict::Differs(..) | Verdict::Unrecorded), true) => {
                 reviewed(&path, verdict, arguments, global)
             }
             (verdict, _) => verdict,
         };
         results.push((path, verdict));
     }
-    let good = |verdict: &Verdict| matches!(verdict, Verdict::Agrees | Verdict::Accepted);
+    let good = |verdict: &Verdict| matches!(verdict, Verdict::Agrees(_) | Verdict::Accepted);
     let wrong = results.iter().filter(|(_, verdict)| !good(verdict)).count();
     let count = results.len();
     terminal::print(&format!("{count} scripts, {} agree, {wrong} do not\n", count - wrong));
+    let counts = Counts::of_all(&results);
+    if counts.total() > 0 {
+        terminal::print(&format!("{counts}\n"));
+    }
     if let Some(file) = &arguments.junit
-        && let Err(error) = std::fs::write(file, junit(&results))
+        && let Err(error) = std::fs::write(file, junit::report(&results))
     {
         terminal::eprint(&format!("error: cannot write `{}`: {error}\n", file.display()));
         return ExitCode::FAILURE;
@@ -70,19 +78,24 @@ fn examined(path: &Path, arguments: &TestArgs, global: &Global) -> io::Result<Ve
     let expected = std::fs::read_to_string(&snap).ok();
     if let (None, Some(expected)) = (&expected, embedded(&script)) {
         let ran = Ran::new(path, &arguments.freedom, global, true)?;
-        let lines = difference(&expected, &ran.printed, Tolerance::EMBEDDED);
-        return Ok(lines.map_or(Verdict::Agrees, Verdict::Differs));
+        return Ok(match difference(&expected, &ran.printed, Tolerance::EMBEDDED) {
+            None => Verdict::Agrees(ran.exchanges.len()),
+            Some(lines) => {
+                let judged = judged(&lines, &ran.exchanges);
+                Verdict::Differs(lines, judged)
+            }
+        });
     }
     let ran = Ran::new(path, &arguments.freedom, global, false)?;
     let lines =
         expected.map(|expected| difference(&expected, &ran.transcript, Tolerance::TRANSCRIPT));
     match lines {
-        Some(None) => Ok(Verdict::Agrees),
+        Some(None) => Ok(Verdict::Agrees(0)),
         _ if arguments.accept => {
             std::fs::write(snap, ran.transcript)?;
             Ok(Verdict::Accepted)
         }
-        Some(Some(lines)) => Ok(Verdict::Differs(lines)),
+        Some(Some(lines)) => Ok(Verdict::Differs(lines, Vec::new())),
         None => Ok(Verdict::Unrecorded),
     }
 }
@@ -90,6 +103,7 @@ fn examined(path: &Path, arguments: &TestArgs, global: &Global) -> io::Result<Ve
 /// What a script printed and its transcript.
 struct Ran {
     printed: String,
+    exchanges: Vec<Exchange>,
     transcript: String,
 }
 
@@ -116,16 +130,19 @@ impl Ran {
         Ok(Ran {
             printed: without_folders(&printed, &start, &start.join("results")),
             transcript: format!("{text}[exit code {}]\n", status.code),
+            exchanges: transcript.exchanges,
         })
     }
 }
 
 fn line(path: &Path, verdict: &Verdict, colour: bool) -> String {
     let (word, code, rest) = match verdict {
-        Verdict::Agrees => ("ok", "32", String::new()),
+        Verdict::Agrees(_) => ("ok", "32", String::new()),
         Verdict::Accepted => ("accepted", "33", String::new()),
         Verdict::Unrecorded => ("new", "33", "  nothing is recorded: --accept\n".to_owned()),
-        Verdict::Differs(lines) => ("differs", "31", shown(lines, colour)),
+        Verdict::Differs(lines, judged) => {
+            ("differs", "31", shown(lines, colour) + &summary(judged))
+        }
         Verdict::Failed(message) => ("failed", "31", format!("  {message}\n")),
     };
     let word = match colour {
@@ -149,51 +166,4 @@ fn reviewed(path: &Path, verdict: Verdict, arguments: &TestArgs, global: &Global
         true => Verdict::Accepted,
         false => verdict,
     }
-}
-
-/// The report in the format of JUnit.
-fn junit(results: &[(PathBuf, Verdict)]) -> String {
-    let mut cases = String::new();
-    let mut failures = 0;
-    for (path, verdict) in results {
-        let name = escaped(&path.to_string_lossy());
-        let failure = match verdict {
-            Verdict::Agrees | Verdict::Accepted => None,
-            Verdict::Unrecorded => Some("nothing is recorded".to_owned()),
-            Verdict::Differs(lines) => Some(shown(lines, false)),
-            Verdict::Failed(message) => Some(message.clone()),
-        };
-        let _ = match failure {
-            None => writeln!(cases, "  <testcase classname=\"gapi\" name=\"{name}\"/>"),
-            Some(text) => {
-                failures += 1;
-                writeln!(
-                    cases,
-                    "  <testcase classname=\"gapi\" name=\"{name}\">\n    <failure>{}</failure>\n  </testcase>",
-                    escaped(&text)
-                )
-            }
-        };
-    }
-    format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"gapi\" tests=\"{}\" failures=\"{failures}\">\n{cases}</testsuite>\n",
-        results.len()
-    )
-}
-
-/// Text as XML holds it; control characters cannot stand in it.
-fn escaped(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\n' | '\t' => escaped.push(character),
-            control if control.is_control() => escaped.push('?'),
-            other => escaped.push(other),
-        }
-    }
-    escaped
 }

@@ -1,64 +1,28 @@
-//! The LAPACK routines that `Modelica.Math.Matrices` calls ([Anderson et al.
+//! LAPACK's systems of linear equations ([Anderson et al.
 //! 1999](crate::bibliography#anderson-1999)), on row-major arrays.
 //!
-//! Arguments are those of LAPACK; leading dimensions and workspaces are not looked at. Signs of
-//! singular vectors are not specified, and the rank of `dgelsy` counts the singular values above
-//! `rcond` times the largest. Routines and jobs that are not here are refused by name.
+//! Arguments are those of LAPACK; leading dimensions and workspaces are not looked at. Conditions
+//! are exact, not estimates. Routines and jobs that are not here are refused by name.
 
 use super::Entry;
 use super::call::Call;
-use super::eigenvectors::eigenvectors;
+use super::matrices::{column, is_transposed, matrix, norm, square, write};
 use crate::diag::Fault;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::DMatrix;
 
 pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("dgesv", "nnAnAAnN", dgesv),
+    Entry::pure("dgesvx", "ttnnAnAnAtAAAnAnNAAAAN", dgesvx),
     Entry::pure("dgetrf", "nnAnAN", dgetrf),
     Entry::pure("dgetrs", "tnnanaAnN", dgetrs),
     Entry::pure("dgetri", "nAnaAnN", dgetri),
     Entry::pure("dgtsv", "nnAAAAnN", dgtsv),
     Entry::pure("dpotrf", "tnAnN", dpotrf),
-    Entry::pure("dgels", "tnnnAnAnAnN", dgels),
-    Entry::pure("dgelsy", "nnnAnAnAnNAnN", dgelsy),
-    Entry::pure("dgesvd", "ttnnAnAAnAnAnN", dgesvd),
-    Entry::pure("dgeev", "ttnAnAAAnAnAnN", dgeev),
     Entry::pure("dgbsv", "nnnnAnAAnN", dgbsv),
     Entry::pure("dgecon", "tnannNAAN", dgecon),
     Entry::pure("dlange", "tnnanA->n", dlange),
+    Entry::pure("dtrsm", "ttttnnnanAn", dtrsm),
 ];
-
-/// A vector or matrix argument; a vector is a column.
-pub(super) fn matrix(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, Fault> {
-    let (rows, columns) = match *call.dims(argument) {
-        [rows] => (rows as usize, 1),
-        [rows, columns] => (rows as usize, columns as usize),
-        _ => return Err(call.fault("an argument is neither vector nor matrix")),
-    };
-    let values = call.array(argument);
-    match values.iter().all(|value| value.is_finite()) {
-        true => Ok(DMatrix::from_row_slice(rows, columns, values)),
-        false => Err(call.fault("a matrix holds a number that is not finite")),
-    }
-}
-
-/// Writes the upper left part that fits.
-pub(super) fn write(call: &mut Call<'_>, argument: usize, matrix: &DMatrix<f64>) {
-    let columns = call.dims(argument).get(1).map_or(1, |columns| *columns as usize);
-    for (at, element) in call.array_mut(argument).iter_mut().enumerate() {
-        let (row, column) = (at / columns, at % columns);
-        if row < matrix.nrows() && column < matrix.ncols() {
-            *element = matrix[(row, column)];
-        }
-    }
-}
-
-fn square(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, Fault> {
-    let matrix = matrix(call, argument)?;
-    match matrix.is_square() {
-        true => Ok(matrix),
-        false => Err(call.fault("a matrix is not square")),
-    }
-}
 
 /// P A = L U in place by partial pivoting; pivots from 1, and the first zero pivot from 1, 0
 /// without.
@@ -138,7 +102,7 @@ fn dgesv(call: &mut Call<'_>) -> Result<(), Fault> {
         write(call, 5, &b);
     }
     write(call, 2, &a);
-    write(call, 4, &DMatrix::from_vec(pivots.len(), 1, pivots));
+    write(call, 4, &column(&pivots));
     call.set(7, info);
     Ok(())
 }
@@ -148,7 +112,7 @@ fn dgetrf(call: &mut Call<'_>) -> Result<(), Fault> {
     let mut a = matrix(call, 2)?;
     let (pivots, info) = factorize(&mut a);
     write(call, 2, &a);
-    write(call, 4, &DMatrix::from_vec(pivots.len(), 1, pivots));
+    write(call, 4, &column(&pivots));
     call.set(5, info);
     Ok(())
 }
@@ -177,7 +141,7 @@ fn dgetrs(call: &mut Call<'_>) -> Result<(), Fault> {
     same_rows(call, &lu, &b)?;
     regular(call, &lu)?;
     let pivots = pivots(call, 5, lu.nrows())?;
-    let transposed = !call.text(0).eq_ignore_ascii_case("N");
+    let transposed = is_transposed(call, 0);
     solve(&lu, &pivots, &mut b, transposed);
     write(call, 6, &b);
     call.set(8, 0.0);
@@ -249,108 +213,6 @@ fn dpotrf(call: &mut Call<'_>) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The solution of smallest norm of a least squares problem, and the rank of the matrix.
-fn least_squares(
-    call: &Call<'_>,
-    a: DMatrix<f64>,
-    b: &DMatrix<f64>,
-    relative: f64,
-) -> Result<(DMatrix<f64>, f64), Fault> {
-    let (rows, columns) = a.shape();
-    if b.nrows() < rows {
-        return Err(call.fault("the right side has another number of rows"));
-    }
-    let b = b.rows(0, rows).into_owned();
-    if rows == 0 || columns == 0 {
-        return Ok((DMatrix::zeros(columns, b.ncols()), 0.0));
-    }
-    let svd = a.svd(true, true);
-    let largest = svd.singular_values.max();
-    let least = largest * relative.max(f64::EPSILON * rows.max(columns) as f64);
-    let rank = svd.singular_values.iter().filter(|value| **value > least).count();
-    let x = svd.solve(&b, least).map_err(|reason| call.fault(reason))?;
-    Ok((x, rank as f64))
-}
-
-/// `(trans, m, n, nrhs, A, lda, B, ldb, work, lwork, info)`
-fn dgels(call: &mut Call<'_>) -> Result<(), Fault> {
-    let a = matrix(call, 4)?;
-    let a = if call.text(0).eq_ignore_ascii_case("N") { a } else { a.transpose() };
-    let full = a.nrows().min(a.ncols()) as f64;
-    let b = matrix(call, 6)?;
-    let (x, rank) = least_squares(call, a, &b, 0.0)?;
-    if rank == full {
-        write(call, 6, &x);
-    }
-    call.set(10, if rank == full { 0.0 } else { rank + 1.0 });
-    Ok(())
-}
-
-/// `(m, n, nrhs, A, lda, B, ldb, jpvt, rcond, rank, work, lwork, info)`
-fn dgelsy(call: &mut Call<'_>) -> Result<(), Fault> {
-    let (a, b) = (matrix(call, 3)?, matrix(call, 5)?);
-    let (x, rank) = least_squares(call, a, &b, call.number(8))?;
-    write(call, 5, &x);
-    call.set(9, rank);
-    call.set(12, 0.0);
-    Ok(())
-}
-
-/// `(jobu, jobvt, m, n, A, lda, s, U, ldu, VT, ldvt, work, lwork, info)`; vectors of square
-/// matrices, values of all.
-fn dgesvd(call: &mut Call<'_>) -> Result<(), Fault> {
-    let a = matrix(call, 4)?;
-    let vectors = !call.text(0).eq_ignore_ascii_case("N");
-    if vectors && !a.is_square() {
-        return Err(call.fault("singular vectors of a matrix that is not square"));
-    }
-    let svd = a.svd(vectors, vectors);
-    let n = svd.singular_values.len();
-    write(call, 6, &DMatrix::from_column_slice(n, 1, svd.singular_values.as_slice()));
-    if let (Some(u), Some(v)) = (&svd.u, &svd.v_t) {
-        write(call, 7, u);
-        write(call, 9, v);
-    }
-    call.set(13, 0.0);
-    Ok(())
-}
-
-/// `(jobvl, jobvr, n, A, lda, wr, wi, VL, ldvl, VR, ldvr, work, lwork, info)`; no left vectors.
-fn dgeev(call: &mut Call<'_>) -> Result<(), Fault> {
-    let wants = |argument: usize| !call.text(argument).eq_ignore_ascii_case("N");
-    if wants(0) {
-        return Err(call.fault("left eigenvectors of unsymmetric matrices are not supported"));
-    }
-    let (a, wants_vectors) = (square(call, 3)?, wants(1));
-    let mut values = a.complex_eigenvalues().as_slice().to_vec();
-    pair(&mut values);
-    if wants_vectors {
-        let vectors = eigenvectors(&a, &values);
-        let vectors = vectors.ok_or_else(|| call.fault("the eigenvectors were not found"))?;
-        write(call, 9, &vectors);
-    }
-    let column = |part: Vec<f64>| DMatrix::from_vec(part.len(), 1, part);
-    write(call, 5, &column(values.iter().map(|value| value.re).collect()));
-    write(call, 6, &column(values.iter().map(|value| value.im).collect()));
-    call.set(13, 0.0);
-    Ok(())
-}
-
-/// Conjugate pairs with the positive imaginary part first.
-fn pair(values: &mut [Complex<f64>]) {
-    let mut at = 0;
-    while at + 1 < values.len() {
-        if values[at].im == 0.0 {
-            at += 1;
-            continue;
-        }
-        if values[at].im < 0.0 {
-            values.swap(at, at + 1);
-        }
-        at += 2;
-    }
-}
-
 /// `(n, kl, ku, nrhs, AB, ldab, ipiv, B, ldb, info)`: A(i, j) stands in row kl + ku + i − j.
 fn dgbsv(call: &mut Call<'_>) -> Result<(), Fault> {
     let (band, mut b) = (matrix(call, 4)?, matrix(call, 7)?);
@@ -373,41 +235,84 @@ fn dgbsv(call: &mut Call<'_>) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The norm that a letter names: greatest element, columns, rows, Frobenius.
-fn norm(call: &Call<'_>, letter: &str, a: &DMatrix<f64>) -> Result<f64, Fault> {
-    let greatest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
-    let size = |values: &[f64]| values.iter().map(|value| value.abs()).sum::<f64>();
-    Ok(match letter.to_ascii_uppercase().as_str() {
-        "M" => greatest(&mut a.iter().map(|value| value.abs())),
-        "1" | "O" => greatest(&mut a.column_iter().map(|c| size(c.clone_owned().as_slice()))),
-        "I" => greatest(&mut a.row_iter().map(|r| size(r.clone_owned().as_slice()))),
-        "F" | "E" => a.norm(),
-        _ => return Err(call.fault(format!("there is no norm `{letter}`"))),
-    })
-}
-
 /// `(norm, m, n, A, lda, work)`
 fn dlange(call: &mut Call<'_>) -> Result<(), Fault> {
     let norm = norm(call, call.text(0), &matrix(call, 3)?)?;
     call.give(norm)
 }
 
-/// `(norm, n, LU, lda, anorm, rcond, work, iwork, info)`; from the inverse, not an estimate. The
-/// interchange of rows changes neither norm of the inverse.
+/// `(norm, n, LU, lda, anorm, rcond, work, iwork, info)`
 fn dgecon(call: &mut Call<'_>) -> Result<(), Fault> {
     let lu = square(call, 2)?;
-    let n = lu.nrows();
-    let pivots: Vec<f64> = (1..=n).map(|k| k as f64).collect();
-    let is_singular = (0..n).any(|k| lu[(k, k)] == 0.0);
-    let rcond = match is_singular || call.number(4) == 0.0 {
-        true => 0.0,
-        false => {
-            let mut inverse = DMatrix::identity(n, n);
-            solve(&lu, &pivots, &mut inverse, false);
-            1.0 / (call.number(4) * norm(call, call.text(0), &inverse)?)
-        }
-    };
+    let rcond = reciprocal_condition(call, &lu, call.text(0), call.number(4))?;
     call.set(5, rcond);
     call.set(8, 0.0);
+    Ok(())
+}
+
+/// 1/(|A| |A⁻¹|) in a norm, from the factors of A and its norm. The interchange of rows changes
+/// neither norm of the inverse.
+fn reciprocal_condition(
+    call: &Call<'_>,
+    lu: &DMatrix<f64>,
+    letter: &str,
+    size: f64,
+) -> Result<f64, Fault> {
+    let n = lu.nrows();
+    if size == 0.0 || (0..n).any(|k| lu[(k, k)] == 0.0) {
+        return Ok(0.0);
+    }
+    let pivots: Vec<f64> = (1..=n).map(|k| k as f64).collect();
+    let mut inverse = DMatrix::identity(n, n);
+    solve(lu, &pivots, &mut inverse, false);
+    Ok(1.0 / (size * norm(call, letter, &inverse)?))
+}
+
+/// `(fact, trans, n, nrhs, A, lda, AF, ldaf, ipiv, equed, R, C, B, ldb, X, ldx, rcond, ferr, berr,
+/// work, iwork, info)`; without equilibration and bounds of errors.
+fn dgesvx(call: &mut Call<'_>) -> Result<(), Fault> {
+    if !call.text(0).eq_ignore_ascii_case("N") {
+        return Err(call.fault("equilibration and given factors are not supported"));
+    }
+    let (a, mut b) = (square(call, 4)?, matrix(call, 12)?);
+    same_rows(call, &a, &b)?;
+    let transposed = is_transposed(call, 1);
+    let letter = if transposed { "I" } else { "1" };
+    let size = norm(call, letter, &a)?;
+    let mut lu = a;
+    let (pivots, mut info) = factorize(&mut lu);
+    let rcond = reciprocal_condition(call, &lu, letter, size)?;
+    if info == 0.0 {
+        solve(&lu, &pivots, &mut b, transposed);
+        write(call, 14, &b);
+        if rcond < f64::EPSILON / 2.0 {
+            info = lu.nrows() as f64 + 1.0;
+        }
+    }
+    write(call, 6, &lu);
+    write(call, 8, &column(&pivots));
+    call.set(16, rcond);
+    call.set(21, info);
+    Ok(())
+}
+
+/// `(side, uplo, transa, diag, m, n, alpha, A, lda, B, ldb)`
+fn dtrsm(call: &mut Call<'_>) -> Result<(), Fault> {
+    let (a, b) = (square(call, 7)?, matrix(call, 9)? * call.number(6));
+    let is = |argument: usize, letter: &str| call.text(argument).eq_ignore_ascii_case(letter);
+    let mut a = if is(1, "U") { a.upper_triangle() } else { a.lower_triangle() };
+    if is(3, "U") {
+        a.fill_diagonal(1.0);
+    }
+    let is_right = is(0, "R");
+    // X op(A) = B is op(A)ᵀ Xᵀ = Bᵀ.
+    let a = if is_transposed(call, 2) != is_right { a.transpose() } else { a };
+    let b = if is_right { b.transpose() } else { b };
+    same_rows(call, &a, &b)?;
+    regular(call, &a)?;
+    let is_upper = is(1, "U") == (is_transposed(call, 2) == is_right);
+    let x = if is_upper { a.solve_upper_triangular(&b) } else { a.solve_lower_triangular(&b) };
+    let x = x.ok_or_else(|| call.fault("the matrix is singular"))?;
+    write(call, 9, &if is_right { x.transpose() } else { x });
     Ok(())
 }

@@ -1,0 +1,91 @@
+//! `gapi lesson N`: short scripts that teach one thing each.
+
+use super::args::{Global, LessonArgs};
+use super::session;
+use super::terminal::{self, Terminal};
+use super::world::SystemWorld;
+use crate::script::{Echo, Options};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Name and text of each lesson.
+const LESSONS: &[(&str, &str)] = &[
+    (
+        "01_one_parameter_by_hand.mos",
+        include_str!("../../scripts/lessons/01_one_parameter_by_hand.mos"),
+    ),
+    ("02_fitness_is_a_sum.mos", include_str!("../../scripts/lessons/02_fitness_is_a_sum.mos")),
+    ("03_random_search.mos", include_str!("../../scripts/lessons/03_random_search.mos")),
+    ("04_selection.mos", include_str!("../../scripts/lessons/04_selection.mos")),
+    (
+        "05_one_point_crossover.mos",
+        include_str!("../../scripts/lessons/05_one_point_crossover.mos"),
+    ),
+    ("06_mutation.mos", include_str!("../../scripts/lessons/06_mutation.mos")),
+    ("07_elites.mos", include_str!("../../scripts/lessons/07_elites.mos")),
+    ("08_failed_simulations.mos", include_str!("../../scripts/lessons/08_failed_simulations.mos")),
+    ("09_log_scale.mos", include_str!("../../scripts/lessons/09_log_scale.mos")),
+    ("10_local_refinement.mos", include_str!("../../scripts/lessons/10_local_refinement.mos")),
+    ("11_two_objectives.mos", include_str!("../../scripts/lessons/11_two_objectives.mos")),
+    (
+        "12_good_fit_wrong_parameters.mos",
+        include_str!("../../scripts/lessons/12_good_fit_wrong_parameters.mos"),
+    ),
+];
+
+/// Lists the lessons, or copies one, shows it, and runs the copy.
+pub(super) fn lesson(arguments: &LessonArgs, global: &Global) -> ExitCode {
+    let Some(number) = arguments.number else {
+        list();
+        return ExitCode::SUCCESS;
+    };
+    let Some(&(name, text)) = number.checked_sub(1).and_then(|k| LESSONS.get(k)) else {
+        let last = LESSONS.len();
+        terminal::eprint(&format!("error: there is no lesson {number}, only 1 to {last}\n"));
+        return ExitCode::from(2);
+    };
+    match copied(&arguments.folder.join(name), text) {
+        Ok((file, text)) => {
+            terminal::print(&format!("{}:\n\n{text}\n", file.display()));
+            run(&file, arguments, global)
+        }
+        Err(message) => {
+            terminal::eprint(&message);
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn list() {
+    for (_, text) in LESSONS {
+        let title = text.lines().next().unwrap_or_default();
+        terminal::print(&format!("{}\n", title.trim_start_matches("// ")));
+    }
+    terminal::print("\n`gapi lesson 1` shows the first and runs it.\n");
+}
+
+/// The learner's copy and its text; made where there is none.
+fn copied(file: &Path, text: &str) -> Result<(PathBuf, String), String> {
+    let failed = |error: std::io::Error| format!("error: `{}`: {error}\n", file.display());
+    if !file.exists() {
+        file.parent().map_or(Ok(()), std::fs::create_dir_all).map_err(failed)?;
+        std::fs::write(file, text).map_err(failed)?;
+    }
+    Ok((file.to_owned(), std::fs::read_to_string(file).map_err(failed)?))
+}
+
+fn run(file: &Path, arguments: &LessonArgs, global: &Global) -> ExitCode {
+    let terminal = Terminal::new(global.color, false);
+    let results = arguments.folder.join("results");
+    let world = match SystemWorld::new(terminal, &results, None) {
+        Ok(world) => world,
+        Err(error) => {
+            terminal::eprint(&format!("error: the working directory cannot be read: {error}\n"));
+            return ExitCode::FAILURE;
+        }
+    };
+    world.catch_interrupts();
+    let options = Options { echo: Echo::Usual, ..Options::default() };
+    let mut session = session::open(global, world).with_options(options);
+    ExitCode::from(session.run_file(file).code)
+}

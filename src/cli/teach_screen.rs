@@ -1,0 +1,53 @@
+//! The screen of `gapi teach` on a terminal: draws, waits for a key, draws again.
+
+use crate::teach::Walk;
+use crate::teach::screen::{self, Key, Screen};
+use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+
+/// Walks through a trace until the learner ends it.
+///
+/// # Errors
+///
+/// The terminal cannot be drawn on, or gives no keys.
+pub(super) fn walk_through(walk: Walk, colour: bool) -> std::io::Result<()> {
+    let mut screen = Screen::new(walk, colour);
+    let mut terminal = ratatui::try_init()?;
+    let walked = (|| {
+        loop {
+            terminal.draw(|frame| screen::draw(&screen, frame))?;
+            match event::read()? {
+                Event::Key(key) if key.kind != KeyEventKind::Release => {
+                    let go_on =
+                        !is_interrupt(key) && named(key).is_none_or(|key| screen.press(key));
+                    if !go_on {
+                        return Ok(());
+                    }
+                }
+                _ => {}
+            }
+        }
+    })();
+    ratatui::restore();
+    walked
+}
+
+fn is_interrupt(key: KeyEvent) -> bool {
+    key.modifiers.contains(KeyModifiers::CONTROL) && matches!(key.code, KeyCode::Char('c' | 'd'))
+}
+
+fn named(key: KeyEvent) -> Option<Key> {
+    Some(match key.code {
+        KeyCode::Char(c) => Key::Char(c),
+        KeyCode::Left => Key::Left,
+        KeyCode::Right => Key::Right,
+        KeyCode::Up | KeyCode::PageUp => Key::Up,
+        KeyCode::Down | KeyCode::PageDown => Key::Down,
+        KeyCode::Home => Key::Home,
+        KeyCode::End => Key::End,
+        KeyCode::Tab => Key::Tab,
+        KeyCode::Backspace => Key::Backspace,
+        KeyCode::Enter => Key::Enter,
+        KeyCode::Esc => Key::Escape,
+        _ => return None,
+    })
+}

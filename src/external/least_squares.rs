@@ -1,0 +1,151 @@
+//! LAPACK's least squares and singular values ([Anderson et al.
+//! 1999](crate::bibliography#anderson-1999)): `dgels`, `dgelsy`, `dgglse`, `dgesvd`, `dgesdd`.
+//!
+//! Signs of singular vectors are not specified, and the rank of `dgelsy` counts the singular values
+//! above `rcond` times the largest.
+
+use super::Entry;
+use super::call::Call;
+use super::householder::full_qr;
+use super::matrices::{column, matrix, wants, write};
+use crate::diag::Fault;
+use nalgebra::DMatrix;
+
+pub(super) const ENTRIES: &[Entry] = &[
+    Entry::pure("dgels", "tnnnAnAnAnN", dgels),
+    Entry::pure("dgelsy", "nnnAnAnAnNAnN", dgelsy),
+    Entry::pure("dgglse", "nnnAnAnAAAAnN", dgglse),
+    Entry::pure("dgesvd", "ttnnAnAAnAnAnN", dgesvd),
+    Entry::pure("dgesdd", "tnnAnAAnAnAnNN", dgesdd),
+];
+
+/// The solution of smallest norm of a least squares problem, and the rank of the matrix.
+fn least_squares(
+    call: &Call<'_>,
+    a: DMatrix<f64>,
+    b: &DMatrix<f64>,
+    relative: f64,
+) -> Result<(DMatrix<f64>, f64), Fault> {
+    let (rows, columns) = a.shape();
+    if b.nrows() < rows {
+        return Err(call.fault("the right side has another number of rows"));
+    }
+    let b = b.rows(0, rows).into_owned();
+    if rows == 0 || columns == 0 {
+        return Ok((DMatrix::zeros(columns, b.ncols()), 0.0));
+    }
+    let svd = a.svd(true, true);
+    let largest = svd.singular_values.max();
+    let least = largest * relative.max(f64::EPSILON * rows.max(columns) as f64);
+    let rank = svd.singular_values.iter().filter(|value| **value > least).count();
+    let x = svd.solve(&b, least).map_err(|reason| call.fault(reason))?;
+    Ok((x, rank as f64))
+}
+
+/// `(trans, m, n, nrhs, A, lda, B, ldb, work, lwork, info)`
+fn dgels(call: &mut Call<'_>) -> Result<(), Fault> {
+    let a = matrix(call, 4)?;
+    let a = if call.text(0).eq_ignore_ascii_case("N") { a } else { a.transpose() };
+    let full = a.nrows().min(a.ncols()) as f64;
+    let b = matrix(call, 6)?;
+    let (x, rank) = least_squares(call, a, &b, 0.0)?;
+    if rank == full {
+        write(call, 6, &x);
+    }
+    call.set(10, if rank == full { 0.0 } else { rank + 1.0 });
+    Ok(())
+}
+
+/// `(m, n, nrhs, A, lda, B, ldb, jpvt, rcond, rank, work, lwork, info)`
+fn dgelsy(call: &mut Call<'_>) -> Result<(), Fault> {
+    let (a, b) = (matrix(call, 3)?, matrix(call, 5)?);
+    let (x, rank) = least_squares(call, a, &b, call.number(8))?;
+    write(call, 5, &x);
+    call.set(9, rank);
+    call.set(12, 0.0);
+    Ok(())
+}
+
+/// `(m, n, p, A, lda, B, ldb, c, d, x, work, lwork, info)`: least |A x − c| with B x = d, in the
+/// null space of B ([Golub & Van Loan 2013](crate::bibliography#golub-van-loan-2013), §6.2.3).
+fn dgglse(call: &mut Call<'_>) -> Result<(), Fault> {
+    let (a, b) = (matrix(call, 3)?, matrix(call, 5)?);
+    let (c, d) = (matrix(call, 7)?, matrix(call, 8)?);
+    let (p, n) = b.shape();
+    if a.ncols() != n || c.nrows() != a.nrows() || d.nrows() != p || p > n || n > p + a.nrows() {
+        return Err(call.fault("the matrices do not fit each other"));
+    }
+    let (q, r) = full_qr(b.transpose());
+    let r = r.rows(0, p).into_owned();
+    let size = r.norm();
+    if r.diagonal().iter().any(|pivot| pivot.abs() <= f64::EPSILON * size) {
+        call.set(12, 1.0);
+        return Ok(());
+    }
+    let first = r.transpose().solve_lower_triangular(&d);
+    let first = first.ok_or_else(|| call.fault("the constraints are singular"))?;
+    let particular = q.columns(0, p) * first;
+    let null = q.columns(p, n - p).into_owned();
+    let (rest, rank) = least_squares(call, &a * &null, &(c - &a * &particular), 0.0)?;
+    write(call, 9, &(particular + null * rest));
+    call.set(12, if rank == (n - p) as f64 { 0.0 } else { 2.0 });
+    Ok(())
+}
+
+/// All of U, the singular values, all of Vᵀ.
+fn singular_values(
+    call: &Call<'_>,
+    a: DMatrix<f64>,
+) -> Result<(DMatrix<f64>, DMatrix<f64>, DMatrix<f64>), Fault> {
+    let svd = a.svd(true, true);
+    let (Some(u), Some(v_t)) = (svd.u, svd.v_t) else {
+        return Err(call.fault("the singular vectors were not found"));
+    };
+    Ok((
+        completed(u),
+        column(svd.singular_values.as_slice()),
+        completed(v_t.transpose()).transpose(),
+    ))
+}
+
+/// Orthonormal columns and as many more as there are rows.
+fn completed(columns: DMatrix<f64>) -> DMatrix<f64> {
+    let (m, k) = columns.shape();
+    let (mut q, _) = full_qr(columns.clone());
+    q.columns_mut(0, k.min(m)).copy_from(&columns);
+    q
+}
+
+/// `(jobu, jobvt, m, n, A, lda, s, U, ldu, VT, ldvt, work, lwork, info)`
+fn dgesvd(call: &mut Call<'_>) -> Result<(), Fault> {
+    let a = matrix(call, 4)?;
+    let jobs = [call.text(0), call.text(1)].map(str::to_ascii_uppercase);
+    if jobs.iter().any(|job| job == "O") {
+        return Err(call.fault("vectors in place of the matrix are not supported"));
+    }
+    let (u, values, v_t) = singular_values(call, a)?;
+    write(call, 6, &values);
+    if wants(call, 0) {
+        write(call, 7, &u);
+    }
+    if wants(call, 1) {
+        write(call, 9, &v_t);
+    }
+    call.set(13, 0.0);
+    Ok(())
+}
+
+/// `(jobz, m, n, A, lda, s, U, ldu, VT, ldvt, work, lwork, iwork, info)`
+fn dgesdd(call: &mut Call<'_>) -> Result<(), Fault> {
+    if call.text(0).eq_ignore_ascii_case("O") {
+        return Err(call.fault("vectors in place of the matrix are not supported"));
+    }
+    let (u, values, v_t) = singular_values(call, matrix(call, 3)?)?;
+    write(call, 5, &values);
+    if wants(call, 0) {
+        write(call, 6, &u);
+        write(call, 8, &v_t);
+    }
+    call.set(13, 0.0);
+    Ok(())
+}

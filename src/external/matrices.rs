@@ -1,0 +1,67 @@
+//! Matrices as arguments of LAPACK's routines, row-major; leading dimensions are not looked at.
+
+use super::call::Call;
+use crate::diag::Fault;
+use nalgebra::DMatrix;
+
+/// A vector or matrix argument; a vector is a column.
+pub(super) fn matrix(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, Fault> {
+    let (rows, columns) = match *call.dims(argument) {
+        [rows] => (rows as usize, 1),
+        [rows, columns] => (rows as usize, columns as usize),
+        _ => return Err(call.fault("an argument is neither vector nor matrix")),
+    };
+    let values = call.array(argument);
+    match values.iter().all(|value| value.is_finite()) {
+        true => Ok(DMatrix::from_row_slice(rows, columns, values)),
+        false => Err(call.fault("a matrix holds a number that is not finite")),
+    }
+}
+
+/// A square matrix argument.
+pub(super) fn square(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, Fault> {
+    let matrix = matrix(call, argument)?;
+    match matrix.is_square() {
+        true => Ok(matrix),
+        false => Err(call.fault("a matrix is not square")),
+    }
+}
+
+/// Writes the upper left part that fits.
+pub(super) fn write(call: &mut Call<'_>, argument: usize, matrix: &DMatrix<f64>) {
+    let columns = call.dims(argument).get(1).map_or(1, |columns| *columns as usize);
+    for (at, element) in call.array_mut(argument).iter_mut().enumerate() {
+        let (row, column) = (at / columns, at % columns);
+        if row < matrix.nrows() && column < matrix.ncols() {
+            *element = matrix[(row, column)];
+        }
+    }
+}
+
+/// A matrix of one column.
+pub(super) fn column(values: &[f64]) -> DMatrix<f64> {
+    DMatrix::from_column_slice(values.len(), 1, values)
+}
+
+/// Whether a job is asked for: its letter is not `N`.
+pub(super) fn wants(call: &Call<'_>, argument: usize) -> bool {
+    !call.text(argument).eq_ignore_ascii_case("N")
+}
+
+/// Whether the letter for op(A) is not `N`.
+pub(super) fn is_transposed(call: &Call<'_>, argument: usize) -> bool {
+    wants(call, argument)
+}
+
+/// The norm that a letter names: greatest element, columns, rows, Frobenius.
+pub(super) fn norm(call: &Call<'_>, letter: &str, a: &DMatrix<f64>) -> Result<f64, Fault> {
+    let greatest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+    let size = |values: &[f64]| values.iter().map(|value| value.abs()).sum::<f64>();
+    Ok(match letter.to_ascii_uppercase().as_str() {
+        "M" => greatest(&mut a.iter().map(|value| value.abs())),
+        "1" | "O" => greatest(&mut a.column_iter().map(|c| size(c.clone_owned().as_slice()))),
+        "I" => greatest(&mut a.row_iter().map(|r| size(r.clone_owned().as_slice()))),
+        "F" | "E" => a.norm(),
+        _ => return Err(call.fault(format!("there is no norm `{letter}`"))),
+    })
+}

@@ -1,0 +1,175 @@
+//! Real Schur form: A = Q T Qᵀ, T upper triangular but for blocks of two rows, one a conjugate pair
+//! of eigenvalues ([Golub & Van Loan 2013](crate::bibliography#golub-van-loan-2013), §7.4, §7.6).
+//!
+//! Blocks are in LAPACK's standard form: equal diagonal elements, the other two of opposite signs.
+
+use super::sylvester::sylvester;
+use nalgebra::{Complex, DMatrix, Schur};
+
+/// Most sweeps of the iteration.
+const MAX_SWEEPS: usize = 10_000;
+
+/// A real Schur form.
+#[derive(Debug, Clone)]
+pub(super) struct RealSchur {
+    /// Orthogonal.
+    pub(super) q: DMatrix<f64>,
+    /// Upper quasi-triangular.
+    pub(super) t: DMatrix<f64>,
+}
+
+impl RealSchur {
+    /// The form of a square matrix; `None` if it was not found.
+    pub(super) fn of(a: &DMatrix<f64>) -> Option<RealSchur> {
+        if a.nrows() < 2 {
+            return Some(RealSchur { q: DMatrix::identity(a.nrows(), a.nrows()), t: a.clone() });
+        }
+        let (q, t) = Schur::try_new(a.clone(), f64::EPSILON, MAX_SWEEPS)?.unpack();
+        let mut form = RealSchur { q, t };
+        let least = f64::EPSILON * form.t.norm();
+        let n = a.nrows();
+        for row in 0..n {
+            for column in 0..row {
+                if column + 1 < row || form.t[(row, column)].abs() <= least {
+                    form.t[(row, column)] = 0.0;
+                }
+            }
+        }
+        (0..n - 1).for_each(|k| form.standardize(k));
+        Some(form)
+    }
+
+    /// Turns the block of rows `k` and `k + 1`, if there is one, to standard form, or splits it if
+    /// its eigenvalues are real.
+    pub(super) fn standardize(&mut self, k: usize) {
+        if self.t[(k + 1, k)] == 0.0 {
+            return;
+        }
+        let [[a, b], [c, d]] = block(&self.t, k);
+        let half = (a - d) / 2.0;
+        let discriminant = half * half + b * c;
+        let is_real = discriminant >= 0.0;
+        let angle = match is_real {
+            // The first column becomes an eigenvector (half ± root, c).
+            true => c.atan2(half + discriminant.sqrt().copysign(half)),
+            false => -f64::atan2(2.0 * half, b + c) / 2.0,
+        };
+        self.rotate(k, angle);
+        if is_real {
+            self.t[(k + 1, k)] = 0.0;
+        } else {
+            let mean = (self.t[(k, k)] + self.t[(k + 1, k + 1)]) / 2.0;
+            self.t[(k, k)] = mean;
+            self.t[(k + 1, k + 1)] = mean;
+        }
+    }
+
+    /// A rotation of the coordinates `k` and `k + 1`: the first turns into the given direction.
+    fn rotate(&mut self, k: usize, angle: f64) {
+        let (sin, cos) = angle.sin_cos();
+        let turn = |matrix: &mut DMatrix<f64>| {
+            for row in 0..matrix.nrows() {
+                let (x, y) = (matrix[(row, k)], matrix[(row, k + 1)]);
+                matrix[(row, k)] = cos * x + sin * y;
+                matrix[(row, k + 1)] = cos * y - sin * x;
+            }
+        };
+        turn(&mut self.q);
+        turn(&mut self.t);
+        for column in 0..self.t.ncols() {
+            let (x, y) = (self.t[(k, column)], self.t[(k + 1, column)]);
+            self.t[(k, column)] = cos * x + sin * y;
+            self.t[(k + 1, column)] = cos * y - sin * x;
+        }
+    }
+
+    /// Brings chosen eigenvalues to the front, in their order; both of a pair count as chosen where
+    /// one is. How many there are.
+    pub(super) fn reorder(&mut self, chosen: &[bool]) -> usize {
+        let mut front = 0;
+        let mut at = 0;
+        while at < self.t.nrows() {
+            let size = block_size(&self.t, at);
+            if chosen[at..at + size].contains(&true) {
+                let mut here = at;
+                while here > front {
+                    let before = block_start(&self.t, here - 1);
+                    self.swap(before, here - before, size);
+                    here = before;
+                }
+                front += size;
+            }
+            at += size;
+        }
+        front
+    }
+
+    /// Interchanges the blocks of `m` rows from `k` on and of `n` rows behind them
+    /// ([Golub & Van Loan 2013](crate::bibliography#golub-van-loan-2013), §7.6.2).
+    fn swap(&mut self, k: usize, m: usize, n: usize) {
+        let first = self.t.view((k, k), (m, m)).into_owned();
+        let second = self.t.view((k + m, k + m), (n, n)).into_owned();
+        let coupling = self.t.view((k, k + m), (m, n)).into_owned();
+        // (−X, 1) spans the invariant subspace of the second block.
+        let x = sylvester(&first, &second, &coupling, -1.0);
+        let mut span = DMatrix::identity(m + n, m + n);
+        span.view_mut((0, 0), (m, n)).copy_from(&-x);
+        span.view_mut((m, 0), (n, n)).fill_with_identity();
+        span.view_mut((0, n), (m, m)).fill_with_identity();
+        span.view_mut((m, n), (n, m)).fill(0.0);
+        let turn = span.qr().q();
+        for matrix in [&mut self.q, &mut self.t] {
+            let turned = matrix.columns(k, m + n) * &turn;
+            matrix.columns_mut(k, m + n).copy_from(&turned);
+        }
+        let turned = turn.transpose() * self.t.rows(k, m + n);
+        self.t.rows_mut(k, m + n).copy_from(&turned);
+        self.t.view_mut((k + n, k), (m, n)).fill(0.0);
+        if n == 2 {
+            self.standardize(k);
+        }
+        if m == 2 {
+            self.standardize(k + n);
+        }
+    }
+
+    /// The eigenvalues in the order of the diagonal; of a pair, the one with positive imaginary
+    /// part first.
+    pub(super) fn eigenvalues(&self) -> Vec<Complex<f64>> {
+        let mut values = Vec::with_capacity(self.t.nrows());
+        while values.len() < self.t.nrows() {
+            let at = values.len();
+            let first = eigenvalue(&self.t, at);
+            values.push(first);
+            if block_size(&self.t, at) == 2 {
+                values.push(first.conj());
+            }
+        }
+        values
+    }
+}
+
+fn block(t: &DMatrix<f64>, k: usize) -> [[f64; 2]; 2] {
+    [[t[(k, k)], t[(k, k + 1)]], [t[(k + 1, k)], t[(k + 1, k + 1)]]]
+}
+
+/// Number of rows of the block that starts in a row.
+pub(super) fn block_size(t: &DMatrix<f64>, row: usize) -> usize {
+    if row + 1 < t.nrows() && t[(row + 1, row)] != 0.0 { 2 } else { 1 }
+}
+
+/// The first row of the block that a row belongs to.
+fn block_start(t: &DMatrix<f64>, row: usize) -> usize {
+    if row > 0 && t[(row, row - 1)] != 0.0 { row - 1 } else { row }
+}
+
+/// The eigenvalue of the block that starts in a row: of a pair, the one with positive imaginary
+/// part.
+fn eigenvalue(t: &DMatrix<f64>, row: usize) -> Complex<f64> {
+    if block_size(t, row) == 1 {
+        return Complex::new(t[(row, row)], 0.0);
+    }
+    let [[a, b], [c, d]] = block(t, row);
+    let half = (a - d) / 2.0;
+    Complex::new((a + d) / 2.0, (-half * half - b * c).max(0.0).sqrt())
+}

@@ -1,0 +1,193 @@
+//! One or two sentences for each step: what happens and why, with the numbers it uses and the names
+//! of the paper's Table 1.
+
+use super::generation::{Generation, mate};
+use super::step::Step;
+use super::walk::Walk;
+use crate::ga::has_failed;
+
+/// What happens in the step that `walk` stands at, and why.
+pub fn explain(walk: &Walk) -> String {
+    let generation = walk.generation();
+    match walk.step() {
+        Step::Draw => draw(generation),
+        Step::Simulate => simulate(walk),
+        Step::Rate => rate(walk),
+        Step::Sort => sort(generation),
+        Step::Elite => elite(generation),
+        Step::Cross(rank) => cross(generation, rank),
+        Step::Mutate(row) => mutate(walk, row),
+        Step::Complete(row) => format!(
+            "Individual {} of the next generation is drawn at random between Param_Min and \
+             Param_Max: new blood, so that the search does not end where it happens to be.",
+            row + 1
+        ),
+        Step::Renew => renew(walk),
+        Step::Stop => stop(walk),
+    }
+}
+
+/// A number as short as it can be read.
+pub fn short(value: f64) -> String {
+    let magnitude = value.abs();
+    match value {
+        _ if value == 0.0 => "0".to_owned(),
+        _ if !value.is_finite() => format!("{value}"),
+        _ if !(1e-3..1e5).contains(&magnitude) => format!("{value:.3e}"),
+        _ => {
+            let digits = (3 - magnitude.log10().floor() as i32).clamp(0, 6) as usize;
+            format!("{value:.digits$}")
+        }
+    }
+}
+
+/// `1 individual`, `2 individuals`.
+fn counted(count: usize, what: &str) -> String {
+    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
+}
+
+fn draw(generation: &Generation) -> String {
+    let numbers: usize = generation.drawn.iter().map(|drawn| drawn.numbers.len()).sum();
+    format!(
+        "The first population (N_Population = {}) is drawn: Ram_Gen_ARENA has given {} between 0 and \
+         1. One number u places one gene in its range, at Param_Min + (Param_Max - Param_Min) u.",
+        generation.len(),
+        counted(numbers, "random number"),
+    )
+}
+
+fn simulate(walk: &Walk) -> String {
+    let generation = walk.generation();
+    let (individuals, failed) = (generation.len(), generation.failures.len());
+    let subject = &walk.trace().subject;
+    let told = format!(
+        "Eval simulates `{}` once for each of {}; each row of genes is one choice of {}.",
+        subject.model,
+        counted(individuals, "individual"),
+        subject.parameters.join(", "),
+    );
+    match generation.failures.first() {
+        None => told,
+        Some((k, cause)) => format!(
+            "{told} {failed} of them cannot be simulated, the first is individual {}: {cause}.",
+            k + 1
+        ),
+    }
+}
+
+fn rate(walk: &Walk) -> String {
+    let generation = walk.generation();
+    let points = walk.trace().measured.1.len();
+    match generation.best() {
+        Some((k, fitness)) if !has_failed(fitness) && generation.best_simulated.is_empty() => {
+            format!(
+                "The fitness tells how far simulation and measurement are apart: the smaller, the \
+                 fitter. The best of this generation is individual {} with {}.",
+                k + 1,
+                short(fitness)
+            )
+        }
+        Some((k, fitness)) if !has_failed(fitness) => format!(
+            "Fit adds up the squared differences between simulation and measurement over {}: the \
+             smaller the sum, the fitter. The best of this generation is individual {} with {}.",
+            counted(points, "point"),
+            k + 1,
+            short(fitness)
+        ),
+        _ => "No individual could be simulated, so none is fitter than another.".to_owned(),
+    }
+}
+
+fn sort(generation: &Generation) -> String {
+    let Some(sorted) = &generation.sorted else { return String::new() };
+    format!(
+        "Fit_Order sorts them, best first. The best {} (N_Parents) will have children, the other {} \
+         are forgotten.",
+        sorted.parents,
+        generation.len().saturating_sub(sorted.parents)
+    )
+}
+
+fn elite(generation: &Generation) -> String {
+    let Some(crossed) = &generation.crossed else { return String::new() };
+    let best = generation.best().map_or(f64::NAN, |(_, fitness)| fitness);
+    format!(
+        "The best {} (N_Elitism) {} unaltered, so that the best fitness, {}, can never get worse.",
+        crossed.elites,
+        if crossed.elites == 1 { "passes on" } else { "pass on" },
+        short(best)
+    )
+}
+
+fn cross(generation: &Generation, rank: usize) -> String {
+    let Some(crossed) = &generation.crossed else { return String::new() };
+    let mate = mate(rank, crossed.parents);
+    let points: Vec<String> = crossed.points.iter().map(usize::to_string).collect();
+    let children = if mate < rank { "a child" } else { "two children" };
+    format!(
+        "Ranks {} and {} have {children}: they exchange the genes behind gene {} (Cross_Point).",
+        rank + 1,
+        mate + 1,
+        points.join(" and behind gene ")
+    )
+}
+
+fn mutate(walk: &Walk, row: usize) -> String {
+    let generation = walk.generation();
+    let Some(mutated) = &generation.mutated else { return String::new() };
+    let names = &walk.trace().subject.parameters;
+    let n = generation.n_genes;
+    let changes: Vec<String> = generation
+        .mutated_genes(row)
+        .into_iter()
+        .map(|j| {
+            let at = row * n + j;
+            let (u, value) = (mutated.numbers[at], mutated.after.get(at).copied());
+            let name = names.get(j).map_or_else(|| format!("gene {}", j + 1), Clone::clone);
+            let value = short(value.unwrap_or(f64::NAN));
+            format!("{name} (u = {u:.3}, below F_Mut = {}) becomes {value}", mutated.factor)
+        })
+        .collect();
+    let child = row + 1 - mutated.elites;
+    match changes.is_empty() {
+        true if n == 1 => format!(
+            "Child {child} keeps its gene: its random number is not below F_Mut = {}.",
+            mutated.factor
+        ),
+        true => format!(
+            "Child {child} keeps its genes: none of its {n} random numbers is below F_Mut = {}.",
+            mutated.factor
+        ),
+        false => format!(
+            "Child {child} mutates: {}. The new value is Param_Min + (Param_Max - Param_Min) u/F_Mut.",
+            changes.join("; ")
+        ),
+    }
+}
+
+fn renew(walk: &Walk) -> String {
+    let next = walk.next_generation().map_or(0, Generation::len);
+    format!(
+        "Elites, children and random individuals are the next generation: {}. The stop condition does \
+         not hold yet.",
+        counted(next, "individual")
+    )
+}
+
+fn stop(walk: &Walk) -> String {
+    let why = match (walk.trace().full, walk.trace().cut) {
+        (true, _) => "The trace has reached its largest size and ends here; the run went on",
+        (_, true) => "The run was interrupted here",
+        _ => "The stop condition holds: the run ends",
+    };
+    let generations = walk.trace().generations.len();
+    match walk.generation().best() {
+        Some((k, fitness)) => format!(
+            "{why}, after {}. The best individual is number {} with the fitness {}.",
+            counted(generations, "generation"),
+            k + 1,
+            short(fitness)
+        ),
+        None => format!("{why}, after {}.", counted(generations, "generation")),
+    }
+}

@@ -1,0 +1,221 @@
+//! One generation, put together from the events of a trace.
+
+use super::event::Place;
+
+/// How an individual came into its generation.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Origin {
+    /// An elite of the generation before, unaltered.
+    Elite {
+        /// Its index there.
+        from: usize,
+    },
+    /// A child of two parents of the generation before.
+    Child {
+        /// The parent whose genes stand before the first crossing point: its index there.
+        parent: usize,
+        /// The parent of the exchanged genes.
+        mate: usize,
+        /// Which genes mutated afterwards, from 0.
+        mutated: Vec<usize>,
+    },
+    /// Drawn at random.
+    Random,
+    /// The script set its genes in its own way.
+    Script,
+}
+
+/// The mutation of a generation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mutated {
+    /// Where it was called.
+    pub place: Place,
+    /// Elites and children before it, row by row.
+    pub before: Vec<f64>,
+    /// The same after it.
+    pub after: Vec<f64>,
+    /// One number for each gene.
+    pub numbers: Vec<f64>,
+    /// The state of the generator before the last draw, which usually gave these numbers.
+    pub seed: Option<[f64; 6]>,
+    /// Number of elites, which stay.
+    pub elites: usize,
+    /// The probability that a gene mutates.
+    pub factor: f64,
+    /// Lower ends of the search ranges.
+    pub minima: Vec<f64>,
+    /// Upper ends of the search ranges.
+    pub maxima: Vec<f64>,
+}
+
+/// The crossover of a generation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Crossed {
+    /// Where it was called.
+    pub place: Place,
+    /// Number of parents.
+    pub parents: usize,
+    /// Number of elites.
+    pub elites: usize,
+    /// The crossing points.
+    pub points: Vec<usize>,
+    /// Elites and children, row by row.
+    pub rows: Vec<f64>,
+}
+
+/// The order of a generation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sorted {
+    /// Where it was called.
+    pub place: Place,
+    /// Indices of the individuals, best first.
+    pub order: Vec<usize>,
+    /// Number of parents.
+    pub parents: usize,
+    /// Number of elites.
+    pub elites: usize,
+}
+
+/// Random numbers that were drawn in one call.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawn {
+    /// Where it was called.
+    pub place: Place,
+    /// The state of the generator before them.
+    pub seed: [f64; 6],
+    /// The numbers.
+    pub numbers: Vec<f64>,
+}
+
+/// One generation: who was simulated, how good they are, and what became of them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Generation {
+    /// The random numbers drawn before it was simulated and after the one before was mutated: the
+    /// initial population, or its random completion.
+    pub drawn: Vec<Drawn>,
+    /// Number of genes of each individual.
+    pub n_genes: usize,
+    /// The genes, row by row, in the order of the simulation.
+    pub genes: Vec<f64>,
+    /// How each individual came here.
+    pub origins: Vec<Origin>,
+    /// Where they were simulated.
+    pub simulated: Place,
+    /// Why simulations failed: indices from 0.
+    pub failures: Vec<(usize, String)>,
+    /// Their fitness, if it is known; smaller is better.
+    pub fitness: Vec<f64>,
+    /// Where it was computed.
+    pub rated: Option<Place>,
+    /// Simulated Y of the best individual at every measured point; empty where it is not known.
+    pub best_simulated: Vec<f64>,
+    /// Their order.
+    pub sorted: Option<Sorted>,
+    /// The crossover.
+    pub crossed: Option<Crossed>,
+    /// The mutation.
+    pub mutated: Option<Mutated>,
+}
+
+impl Generation {
+    /// Number of individuals.
+    pub fn len(&self) -> usize {
+        self.genes.len().checked_div(self.n_genes).unwrap_or(0)
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.genes.is_empty()
+    }
+
+    /// The genes of individual `k`, from 0.
+    pub fn genome(&self, k: usize) -> &[f64] {
+        &self.genes[k * self.n_genes..(k + 1) * self.n_genes]
+    }
+
+    /// Why the simulation of individual `k` failed.
+    pub fn failure(&self, k: usize) -> Option<&str> {
+        self.failures.iter().find(|(at, _)| *at == k).map(|(_, cause)| cause.as_str())
+    }
+
+    /// The best individual and its fitness.
+    pub fn best(&self) -> Option<(usize, f64)> {
+        let order = crate::ga::order(&self.fitness);
+        let k = order.into_iter().find(|&k| k < self.len())?;
+        Some((k, self.fitness[k]))
+    }
+
+    /// The ranks of all individuals, from 0; by fitness where nothing sorted them.
+    pub fn order(&self) -> Vec<usize> {
+        let order = match &self.sorted {
+            Some(sorted) => sorted.order.clone(),
+            None => crate::ga::order(&self.fitness),
+        };
+        // A script may have judged others than those of this generation.
+        order.into_iter().filter(|&k| k < self.len()).collect()
+    }
+
+    /// Who goes on for individual `k` of the generation before: its copy as elite, or its first
+    /// child.
+    pub fn successor(&self, k: usize) -> Option<usize> {
+        let copy = |origin: &Origin| matches!(origin, Origin::Elite { from } if *from == k);
+        let child =
+            |origin: &Origin| matches!(origin, Origin::Child { parent, .. } if *parent == k);
+        let origins = &self.origins;
+        origins.iter().position(copy).or_else(|| origins.iter().position(child))
+    }
+
+    /// How the individuals of `next` came out of this generation.
+    pub(super) fn origins_of(&self, next: &[f64]) -> Vec<Origin> {
+        let n = self.n_genes.max(1);
+        let order = self.order();
+        next.chunks_exact(n).enumerate().map(|(k, row)| self.origin(k, row, &order)).collect()
+    }
+
+    fn origin(&self, k: usize, row: &[f64], order: &[usize]) -> Origin {
+        let n = self.n_genes;
+        let produced = match (&self.mutated, &self.crossed) {
+            (Some(mutated), _) => &mutated.after,
+            (None, Some(crossed)) => &crossed.rows,
+            (None, None) => return Origin::Script,
+        };
+        let Some(crossed) = &self.crossed else { return Origin::Script };
+        match produced.chunks_exact(n).nth(k) {
+            None => Origin::Random,
+            Some(made) if made != row => Origin::Script,
+            Some(_) if k < crossed.elites => match order.get(k) {
+                Some(&from) => Origin::Elite { from },
+                None => Origin::Script,
+            },
+            Some(_) => self.child(k, crossed, order),
+        }
+    }
+
+    fn child(&self, k: usize, crossed: &Crossed, order: &[usize]) -> Origin {
+        let rank = k - crossed.elites;
+        let mate = mate(rank, crossed.parents);
+        let (Some(&parent), Some(&mate)) = (order.get(rank), order.get(mate)) else {
+            return Origin::Script;
+        };
+        Origin::Child { parent, mate, mutated: self.mutated_genes(k) }
+    }
+
+    /// Which genes of row `k` of the mutation were replaced.
+    pub fn mutated_genes(&self, k: usize) -> Vec<usize> {
+        let Some(mutated) = self.mutated.as_ref().filter(|mutated| k >= mutated.elites) else {
+            return Vec::new();
+        };
+        let numbers = mutated.numbers.chunks_exact(self.n_genes).nth(k).unwrap_or_default();
+        let replaced = |(j, u): (usize, &f64)| (*u < mutated.factor).then_some(j);
+        numbers.iter().enumerate().filter_map(replaced).collect()
+    }
+}
+
+/// Who mates with the parent of this rank: adjacent ranks, an odd last one with the first.
+pub(super) fn mate(rank: usize, parents: usize) -> usize {
+    match rank % 2 {
+        1 => rank - 1,
+        _ if rank + 1 < parents => rank + 1,
+        _ => 0,
+    }
+}

@@ -1,0 +1,32 @@
+//! Watching a genetic algorithm think: a run of scripts is recorded first, as a trace of what the
+//! functions of the paper were given and what they decided, and then walked through, forward and
+//! back.
+//!
+//! [`Tracer`] writes the trace while the scripts run, [`Trace`] reads it, also what an interrupted
+//! run has left. A [`Walk`] stands at one [`Step`] of it; [`plain`] shows steps as text, [`page`] makes a page of them
+//! all, [`screen`] a terminal's full of each.
+
+pub mod errors;
+mod event;
+pub mod explain;
+mod file;
+mod generation;
+pub mod page;
+pub mod plain;
+mod produced;
+#[cfg(test)]
+mod sample;
+pub mod screen;
+mod step;
+#[cfg(test)]
+mod tests;
+mod trace;
+mod tracer;
+mod walk;
+
+pub use event::{Event, Place, Subject};
+pub use generation::{Generation, Origin};
+pub use step::Step;
+pub use trace::Trace;
+pub use tracer::{MutationCall, Tracer};
+pub use walk::Walk;

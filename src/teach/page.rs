@@ -1,0 +1,166 @@
+//! A trace as one page that needs nothing else: the data as JSON, the drawing as a script of the
+//! page's own.
+//!
+//! A long run would make a page that no browser opens: the page has the steps of the first
+//! generations only, as many as [`MOST_GENES`] allows, and the curve of convergence of all.
+
+use super::explain::explain;
+use super::generation::{Generation, Origin};
+use super::plain::title;
+use super::step::Step;
+use super::trace::Trace;
+use super::walk::Walk;
+use serde_json::{Value, json};
+
+const PAGE: &str = include_str!("page/page.html");
+const STYLE: &str = include_str!("page/style.css");
+const SCRIPT: &str = include_str!("page/page.js");
+const PANELS: &str = include_str!("page/panels.js");
+const CHARTS: &str = include_str!("page/charts.js");
+/// More genes than this are not stepped through on one page.
+const MOST_GENES: usize = 120_000;
+/// Points of the curve of convergence.
+const CURVE_POINTS: usize = 1000;
+
+/// The page of a trace; `result` is the content of the run's `result.json`, if there is one.
+pub fn page(trace: Trace, result: Option<&str>) -> String {
+    let result = result.and_then(|text| serde_json::from_str(text).ok()).unwrap_or(Value::Null);
+    let title = escaped(&trace.subject.model);
+    let data = data(trace, result).to_string();
+    // Within a script element no text may look like its end.
+    let data = data.replace("</", "<\\/").replace("<!--", "<\\!--");
+    let script = format!("(() => {{\n{SCRIPT}\n{PANELS}\n{CHARTS}\n}})();");
+    PAGE.replace("{{title}}", &title)
+        .replace("{{style}}", STYLE)
+        .replace("{{script}}", &script)
+        .replacen("{{data}}", &data, 1)
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+fn data(trace: Trace, result: Value) -> Value {
+    let shown = shown(&trace.generations);
+    let mut walk = Walk::new(trace);
+    let mut steps = vec![step(&walk)];
+    while walk.forward() && walk.number() < shown {
+        steps.push(step(&walk));
+    }
+    let trace = walk.trace();
+    let subject = &trace.subject;
+    let (minima, maxima) = ranges(&trace.generations);
+    let scripts: Vec<Value> =
+        trace.scripts.iter().map(|s| json!({"name": s.name, "lines": s.lines})).collect();
+    let generations: Vec<Value> = trace.generations[..shown].iter().map(generation).collect();
+    json!({
+        "model": subject.model,
+        "parameters": subject.parameters,
+        "units": subject.units,
+        "x_name": subject.x_name,
+        "y_name": subject.y_name,
+        "x": rounded(&trace.measured.0),
+        "y": rounded(&trace.measured.1),
+        "minima": rounded(&minima),
+        "maxima": rounded(&maxima),
+        "scripts": scripts,
+        "generations": generations,
+        "of": trace.generations.len(),
+        "curve": curve(&trace.generations),
+        "last_simulated": trace.generations.last().map(|last| rounded(&last.best_simulated)),
+        "steps": steps,
+        "result": result,
+    })
+}
+
+/// How many generations the page steps through.
+fn shown(generations: &[Generation]) -> usize {
+    let mut genes = 0;
+    let fits = |generation: &&Generation| {
+        genes += generation.genes.len();
+        genes <= MOST_GENES
+    };
+    generations.iter().take_while(fits).count().max(1)
+}
+
+fn step(walk: &Walk) -> Value {
+    let step = walk.step();
+    let place = step.place(walk.generation(), walk.next_generation());
+    let of = match step {
+        Step::Cross(k) | Step::Mutate(k) | Step::Complete(k) => Some(k),
+        _ => None,
+    };
+    json!({
+        "g": walk.number(),
+        "title": title(step),
+        "of": of,
+        "place": place.map(|place| (place.script, place.line)),
+        "text": explain(walk),
+    })
+}
+
+fn generation(generation: &Generation) -> Value {
+    let origins: Vec<Value> = generation.origins.iter().map(origin).collect();
+    let sorted = generation.sorted.as_ref();
+    json!({
+        "n": generation.n_genes,
+        "genes": rounded(&generation.genes),
+        "fitness": rounded(&generation.fitness),
+        "origins": origins,
+        "failures": generation.failures,
+        "order": generation.order(),
+        "parents": sorted.map(|sorted| sorted.parents),
+        "elites": sorted.map(|sorted| sorted.elites),
+        "best": rounded(&generation.best_simulated),
+        "points": generation.crossed.as_ref().map(|crossed| &crossed.points),
+        "children": generation.crossed.as_ref().map(|crossed| rounded(&crossed.rows)),
+        "u": generation.mutated.as_ref().map(|mutated| rounded(&mutated.numbers)),
+        "after": generation.mutated.as_ref().map(|mutated| rounded(&mutated.after)),
+        "factor": generation.mutated.as_ref().map(|mutated| mutated.factor),
+    })
+}
+
+fn origin(origin: &Origin) -> Value {
+    match origin {
+        Origin::Elite { from } => json!({"elite": from}),
+        Origin::Child { parent, mate, mutated } => {
+            json!({"of": [parent, mate], "mutated": mutated})
+        }
+        Origin::Random => json!({"random": true}),
+        Origin::Script => json!({"script": true}),
+    }
+}
+
+/// The search ranges of the first mutation that names some; else what the first population spans.
+fn ranges(generations: &[Generation]) -> (Vec<f64>, Vec<f64>) {
+    if let Some(mutated) = generations.iter().find_map(|generation| generation.mutated.as_ref()) {
+        return (mutated.minima.clone(), mutated.maxima.clone());
+    }
+    let Some(first) = generations.first() else { return (Vec::new(), Vec::new()) };
+    let rows = || first.genes.chunks_exact(first.n_genes.max(1));
+    let extreme = |start: f64, extreme: fn(f64, f64) -> f64| -> Vec<f64> {
+        let over = |j: usize| rows().map(|row| row[j]).fold(start, extreme);
+        (0..first.n_genes).map(over).collect()
+    };
+    (extreme(f64::INFINITY, f64::min), extreme(f64::NEG_INFINITY, f64::max))
+}
+
+/// Number and best fitness of generations, thinned out to [`CURVE_POINTS`].
+fn curve(generations: &[Generation]) -> Vec<Value> {
+    let every = generations.len().div_ceil(CURVE_POINTS).max(1);
+    let last = generations.len().saturating_sub(1);
+    let point = |(k, generation): (usize, &Generation)| {
+        let best = generation.best().map(|(_, fitness)| six_digits(fitness));
+        (k % every == 0 || k == last).then(|| json!([k + 1, best]))
+    };
+    generations.iter().enumerate().filter_map(point).collect()
+}
+
+fn rounded(values: &[f64]) -> Vec<f64> {
+    values.iter().copied().map(six_digits).collect()
+}
+
+/// Six significant digits: what can be seen, at half the size.
+fn six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}

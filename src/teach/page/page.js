@@ -1,0 +1,136 @@
+"use strict";
+// The steps of a run: which one is shown, and the controls. What a step looks like is in the panels.
+const DATA = JSON.parse(document.getElementById("data").textContent);
+const at = id => document.getElementById(id);
+let current = 0;
+let timer = null;
+
+const failed = fitness => fitness === null || !(fitness < 1e59);
+const short = value => {
+  if (value === null || value === undefined || Number.isNaN(value)) return "-";
+  const size = Math.abs(value);
+  if (value === 0) return "0";
+  return size < 1e-3 || size >= 1e5 ? value.toExponential(2) : String(Number(value.toPrecision(4)));
+};
+const genome = (rows, n, k) => rows.slice(k * n, (k + 1) * n);
+const name = j => DATA.parameters[j] || "gene " + (j + 1);
+const unit = j => DATA.units[j] ? " " + DATA.units[j] : "";
+const titled = j => DATA.units[j] ? name(j) + " [" + DATA.units[j] + "]" : name(j);
+
+// An SVG element with attributes and children.
+function svg(tag, attributes, ...children) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", tag);
+  for (const [key, value] of Object.entries(attributes || {})) element.setAttribute(key, value);
+  for (const child of children) element.append(child);
+  return element;
+}
+const label = (x, y, text, more) => svg("text", Object.assign({ x, y, "font-size": 12 }, more), text);
+
+// Blue to yellow, with rising lightness: readable without colour vision and in grey print.
+const STOPS = [[0, 34, 78], [43, 68, 111], [88, 95, 109], [124, 123, 120], [166, 157, 117], [211, 193, 100], [254, 232, 56]];
+function colour(part) {
+  if (part === null || Number.isNaN(part)) return "#fff";
+  const place = Math.min(Math.max(part, 0), 1) * (STOPS.length - 1);
+  const low = Math.min(Math.floor(place), STOPS.length - 2);
+  const mix = STOPS[low].map((c, k) => Math.round(c + (STOPS[low + 1][k] - c) * (place - low)));
+  return "rgb(" + mix.join(",") + ")";
+}
+// Where a gene lies within its range; logarithmically where the range spans more than a decade.
+function part(value, j) {
+  const [low, high] = [DATA.minima[j], DATA.maxima[j]];
+  if (!(high > low)) return 0.5;
+  if (low > 0 && high / low > 10) return Math.log(value / low) / Math.log(high / low);
+  return (value - low) / (high - low);
+}
+
+function go(step, keepLink) {
+  current = Math.min(Math.max(step, 0), DATA.steps.length - 1);
+  show();
+  if (!keepLink) history.replaceState(null, "", "#step=" + (current + 1));
+}
+function goGeneration(number) {
+  const step = DATA.steps.findIndex(step => step.g === number);
+  if (step >= 0) go(step);
+}
+function stop() {
+  clearInterval(timer);
+  timer = null;
+  at("play").textContent = "Play";
+  at("play").setAttribute("aria-pressed", "false");
+}
+function play() {
+  if (timer !== null) return stop();
+  if (current === DATA.steps.length - 1) go(0);
+  timer = setInterval(() => current + 1 < DATA.steps.length ? go(current + 1) : stop(), 900);
+  at("play").textContent = "Pause";
+  at("play").setAttribute("aria-pressed", "true");
+}
+
+function show() {
+  const step = DATA.steps[current];
+  at("slider").value = current;
+  at("generation").value = step.g + 1;
+  at("title").textContent = "Generation " + (step.g + 1) + " of " + DATA.of + ": " + step.title;
+  at("text").textContent = step.text;
+  at("link").href = "#step=" + (current + 1);
+  at("first").disabled = at("back").disabled = current === 0;
+  at("previous-generation").disabled = current === 0;
+  at("next").disabled = at("last").disabled = current === DATA.steps.length - 1;
+  at("next-generation").disabled = !DATA.steps.some(other => other.g > step.g);
+  showScript(step);
+  showPopulation(step);
+  showDrawing(step);
+  showFit(step);
+  showCurve(step);
+  showLandscape(step);
+  showFamily(step);
+}
+
+function previousGeneration() {
+  const number = DATA.steps[current].g;
+  const first = DATA.steps.findIndex(step => step.g === number);
+  if (current > first) go(first); else goGeneration(number - 1);
+}
+const ACTIONS = {
+  "first": () => go(0),
+  "last": () => go(DATA.steps.length - 1),
+  "next": () => go(current + 1),
+  "back": () => go(current - 1),
+  "next-generation": () => goGeneration(DATA.steps[current].g + 1),
+  "previous-generation": previousGeneration,
+  "play": play,
+};
+const KEYS = { ArrowRight: "next", ArrowLeft: "back", PageDown: "next-generation", PageUp: "previous-generation", Home: "first", End: "last", " ": "play" };
+
+function begin() {
+  for (const [id, action] of Object.entries(ACTIONS)) {
+    at(id).addEventListener("click", () => { if (id !== "play" && timer !== null) stop(); action(); });
+  }
+  document.addEventListener("keydown", event => {
+    const taken = ["INPUT", "SELECT", "BUTTON"].includes(event.target.tagName);
+    const own = taken && (event.key === " " || event.target.tagName !== "BUTTON");
+    if (own || event.ctrlKey || event.altKey || event.metaKey || !KEYS[event.key]) return;
+    event.preventDefault();
+    at(KEYS[event.key]).click();
+  });
+  at("slider").max = DATA.steps.length - 1;
+  at("slider").addEventListener("input", event => go(Number(event.target.value)));
+  at("generation").max = DATA.generations.length;
+  at("generation").addEventListener("change", event => goGeneration(Number(event.target.value) - 1));
+  for (const id of ["across", "up"]) {
+    DATA.parameters.forEach((_, j) => at(id).append(new Option(name(j), j)));
+    at(id).addEventListener("change", () => showLandscape(DATA.steps[current]));
+  }
+  at("up").value = Math.min(1, DATA.parameters.length - 1);
+  const left = DATA.of - DATA.generations.length;
+  at("subject").textContent = DATA.model + ": " + DATA.parameters.map((_, j) => titled(j)).join(", ") +
+    (left > 0 ? " - the steps of the first " + DATA.generations.length + " of " + DATA.of + " generations" : "");
+  showTell();
+  follow();
+  window.addEventListener("hashchange", follow);
+}
+function follow() {
+  const asked = /^#step=(\d+)$/.exec(location.hash);
+  go(asked ? Number(asked[1]) - 1 : 0, true);
+}
+document.addEventListener("DOMContentLoaded", begin);

@@ -1,0 +1,110 @@
+//! The frame: heading, script, panel, explanation, and the line of keys.
+
+use super::{Screen, View, inspect, step_panel};
+use crate::teach::explain::explain;
+use crate::teach::plain::title;
+use ratatui::Frame;
+use ratatui::layout::{Constraint, Layout, Rect};
+use ratatui::style::{Color, Modifier, Style};
+use ratatui::text::{Line, Span};
+use ratatui::widgets::{Block, Borders, Paragraph, Wrap};
+
+const KEYS: &str =
+    "→ next  ← back  ↓↑ generation  Tab part  g go  f follow  i inspect  u until  ? q";
+const HELP: &str = "\
+→ space n Enter   the next step
+← b               one step back
+Tab               the next part: from crossover to mutation, and so on
+↓ Page down       the next generation
+↑ Page up         the generation before
+Home, End         the first step, the last step
+g                 go to a generation
+f                 follow an individual through the generations
+i                 inspect the simulation of an individual
+u                 go on until something happens
+q                 end
+
+Marks: > followed or new, ♛ elite, x failed, ? drawn at random, * mutated.
+Each block is a gene: · low, █ high among this generation.
+
+Any key goes back.";
+
+/// Draws the screen.
+pub fn draw(screen: &Screen, frame: &mut Frame) {
+    let [top, body, story, bottom] = Layout::vertical([
+        Constraint::Length(1),
+        Constraint::Min(6),
+        Constraint::Length(6),
+        Constraint::Length(1),
+    ])
+    .areas(frame.area());
+    frame.render_widget(Paragraph::new(heading(screen)), top);
+    match screen.view {
+        View::Steps => step(screen, frame, body),
+        View::Individual(k) => inspect::draw(screen, k, frame, body),
+        View::Help => frame.render_widget(Paragraph::new(HELP).block(titled("keys")), body),
+    }
+    let block = Block::new().borders(Borders::TOP);
+    let text = Paragraph::new(explain(&screen.walk)).wrap(Wrap { trim: true }).block(block);
+    frame.render_widget(text, story);
+    frame.render_widget(Paragraph::new(last_line(screen)), bottom);
+}
+
+fn heading(screen: &Screen) -> Line<'static> {
+    let walk = &screen.walk;
+    let (at, of) = walk.progress();
+    let text = format!(
+        "Generation {} of {}, step {} of {of}: {}",
+        walk.number() + 1,
+        walk.trace().generations.len(),
+        at + 1,
+        title(walk.step())
+    );
+    Line::styled(text, Style::new().add_modifier(Modifier::BOLD))
+}
+
+fn last_line(screen: &Screen) -> Line<'static> {
+    match (&screen.prompt, screen.message.as_str()) {
+        (Some(prompt), _) => Line::styled(prompt.shown(), screen.styled(Color::Yellow)),
+        (None, "") => Line::styled(KEYS, Style::new().add_modifier(Modifier::DIM)),
+        (None, message) => Line::styled(message.to_owned(), screen.styled(Color::Yellow)),
+    }
+}
+
+fn titled(title: &str) -> Block<'_> {
+    Block::new().borders(Borders::ALL).title(title)
+}
+
+fn step(screen: &Screen, frame: &mut Frame, area: Rect) {
+    let [left, right] =
+        Layout::horizontal([Constraint::Min(20), Constraint::Length(42)]).areas(area);
+    script(screen, frame, left);
+    let (lines, shown) = step_panel::lines(screen);
+    let height = usize::from(right.height.saturating_sub(2));
+    let offset = if shown >= height { shown + 1 - height } else { 0 };
+    let panel = Paragraph::new(lines).block(titled(" population ")).scroll((offset as u16, 0));
+    frame.render_widget(panel, right);
+}
+
+/// The lines around the current one.
+fn script(screen: &Screen, frame: &mut Frame, area: Rect) {
+    let Some((script, now)) = screen.walk.line() else {
+        let note = Paragraph::new("no line is known").block(titled(" script "));
+        frame.render_widget(note, area);
+        return;
+    };
+    let height = usize::from(area.height.saturating_sub(2));
+    let first = now.saturating_sub(1 + height / 2).min(script.lines.len().saturating_sub(height));
+    let lines = script.lines.iter().enumerate().skip(first).take(height).map(|(k, text)| {
+        let current = k + 1 == now;
+        let pointer = if current { '>' } else { ' ' };
+        let style = match current {
+            true => screen.styled(Color::Yellow).add_modifier(Modifier::BOLD),
+            false => Style::new(),
+        };
+        Line::from(Span::styled(format!("{pointer}{:>3} {text}", k + 1), style))
+    });
+    let name = script.name.rsplit('/').next().unwrap_or_default();
+    let title = format!(" {name} ");
+    frame.render_widget(Paragraph::new(lines.collect::<Vec<_>>()).block(titled(&title)), area);
+}

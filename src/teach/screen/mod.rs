@@ -1,0 +1,153 @@
+//! The steps on a terminal of 80 × 24 or more: the script on one side, the population on the other,
+//! what happens and why below. What is coloured also has a mark, so that nothing is lost without
+//! colours.
+
+mod draw;
+mod inspect;
+mod prompt;
+mod step_panel;
+#[cfg(test)]
+mod tests;
+
+use super::walk::Walk;
+use prompt::Prompt;
+
+pub use draw::draw;
+
+/// What a key means; the terminal's own names of keys are not known here.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Key {
+    /// A character.
+    Char(char),
+    /// The arrow to the left.
+    Left,
+    /// The arrow to the right.
+    Right,
+    /// Page up, or the arrow up.
+    Up,
+    /// Page down, or the arrow down.
+    Down,
+    /// The first step.
+    Home,
+    /// The last step.
+    End,
+    /// The tabulator.
+    Tab,
+    /// Takes back the last character of an answer.
+    Backspace,
+    /// Ends an answer.
+    Enter,
+    /// Gives an answer up.
+    Escape,
+}
+
+/// What is on the screen besides the step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum View {
+    Steps,
+    /// The simulation of an individual of this generation, from 0.
+    Individual(usize),
+    Help,
+}
+
+/// The state of the screen.
+#[derive(Debug, Clone)]
+pub struct Screen {
+    walk: Walk,
+    view: View,
+    /// The individual that is followed, from 0, in the generation of the walk.
+    followed: Option<usize>,
+    prompt: Option<Prompt>,
+    /// What the last key has led to, where that is not plain to see.
+    message: String,
+    colour: bool,
+}
+
+impl Screen {
+    /// A screen at the place of `walk`.
+    pub fn new(walk: Walk, colour: bool) -> Screen {
+        let message = String::new();
+        Screen { walk, view: View::Steps, followed: None, prompt: None, message, colour }
+    }
+
+    /// Answers a key; whether the learner goes on.
+    pub fn press(&mut self, key: Key) -> bool {
+        self.message.clear();
+        if let Some(prompt) = self.prompt.take() {
+            self.answer(prompt, key);
+            return true;
+        }
+        if self.view != View::Steps {
+            self.view = View::Steps;
+            return true;
+        }
+        match key {
+            Key::Char('q') => return false,
+            Key::Char('g' | 'f' | 'i' | 'u') => self.prompt = Prompt::of(key),
+            Key::Char('?' | 'h') => self.view = View::Help,
+            _ => self.step(key),
+        }
+        true
+    }
+
+    fn step(&mut self, key: Key) {
+        let before = self.walk.number();
+        let moved = match key {
+            Key::Right | Key::Char(' ' | 'n') | Key::Enter => self.walk.forward(),
+            Key::Left | Key::Char('b') => self.walk.back(),
+            Key::Down => self.walk.forward_generation(),
+            Key::Up => before > 0 && self.walk.go_to(before - 1),
+            Key::Tab => self.walk.forward_phase(),
+            Key::Home => self.walk.go_to(0),
+            Key::End => {
+                let last = self.walk.trace().generations.len() - 1;
+                self.walk.go_to(last);
+                while self.walk.forward() {}
+                true
+            }
+            _ => {
+                self.message = "no such key; ? shows the keys".to_owned();
+                return;
+            }
+        };
+        if !moved {
+            self.message = "there is nothing further".to_owned();
+        }
+        self.keep_following(before);
+    }
+
+    /// The followed individual lives on in the next generation as elite or in its first child.
+    fn keep_following(&mut self, before: usize) {
+        let Some(followed) = self.followed else { return };
+        if self.walk.number() == before {
+            return;
+        }
+        self.followed = (self.walk.number() == before + 1)
+            .then(|| self.walk.generation().successor(followed))
+            .flatten();
+        self.message = match self.followed {
+            Some(k) => format!("followed on as individual {}", k + 1),
+            None => format!("individual {} has no successor here; following ends", followed + 1),
+        };
+    }
+
+    fn answer(&mut self, mut prompt: Prompt, key: Key) {
+        match key {
+            Key::Escape => return,
+            Key::Backspace => {
+                prompt.text.pop();
+            }
+            Key::Char(c) => prompt.text.push(c),
+            Key::Enter => {
+                let before = self.walk.number();
+                self.message = prompt::carry_out(self, &prompt).unwrap_or_else(|why| why);
+                if self.message.is_empty() {
+                    self.keep_following(before);
+                }
+                return;
+            }
+            _ => {}
+        }
+        self.prompt = Some(prompt);
+    }
+}

@@ -1,0 +1,109 @@
+//! Questions that a key asks: which generation, which individual, until when.
+
+use super::{Key, Screen, View};
+use crate::ga::has_failed;
+use crate::teach::step::Step;
+use crate::teach::walk::Walk;
+
+/// What is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Question {
+    Generation,
+    Follow,
+    Inspect,
+    Until,
+}
+
+/// A question and the answer so far.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Prompt {
+    question: Question,
+    pub(super) text: String,
+}
+
+impl Prompt {
+    /// The question that a key asks.
+    pub(super) fn of(key: Key) -> Option<Prompt> {
+        let question = match key {
+            Key::Char('g') => Question::Generation,
+            Key::Char('f') => Question::Follow,
+            Key::Char('i') => Question::Inspect,
+            Key::Char('u') => Question::Until,
+            _ => return None,
+        };
+        Some(Prompt { question, text: String::new() })
+    }
+
+    /// The question as it is shown.
+    pub(super) fn shown(&self) -> String {
+        let question = match self.question {
+            Question::Generation => "go to generation",
+            Question::Follow => "follow individual (empty: the best)",
+            Question::Inspect => "inspect individual (empty: the best)",
+            Question::Until => "until (better, failure, mutation, stop, or a fitness to reach)",
+        };
+        format!("{question}: {}_", self.text)
+    }
+}
+
+/// Does what was answered; the text says why not, or is empty.
+pub(super) fn carry_out(screen: &mut Screen, prompt: &Prompt) -> Result<String, String> {
+    let text = prompt.text.trim();
+    match prompt.question {
+        Question::Generation => {
+            let of = screen.walk.trace().generations.len();
+            let number: usize = text.parse().map_err(|_| format!("`{text}` is no number"))?;
+            match number.checked_sub(1).is_some_and(|number| screen.walk.go_to(number)) {
+                true => Ok(String::new()),
+                false => Err(format!("there are the generations 1 to {of}")),
+            }
+        }
+        Question::Follow => {
+            let k = individual(&screen.walk, text)?;
+            screen.followed = Some(k);
+            Ok(format!("individual {} is followed", k + 1))
+        }
+        Question::Inspect => {
+            screen.view = View::Individual(individual(&screen.walk, text)?);
+            Ok(String::new())
+        }
+        Question::Until => until(&mut screen.walk, text),
+    }
+}
+
+/// The index of the individual that was named, from 0.
+fn individual(walk: &Walk, text: &str) -> Result<usize, String> {
+    let generation = walk.generation();
+    if text.is_empty() {
+        let best = generation.best().map(|(k, _)| k);
+        return best.ok_or_else(|| "who is the best is not known".to_owned());
+    }
+    let number: usize = text.parse().map_err(|_| format!("`{text}` is no number"))?;
+    let exists = number >= 1 && number <= generation.len();
+    exists
+        .then(|| number - 1)
+        .ok_or_else(|| format!("there are the individuals 1 to {}", generation.len()))
+}
+
+fn until(walk: &mut Walk, text: &str) -> Result<String, String> {
+    let best = |walk: &Walk| walk.generation().best().map_or(f64::INFINITY, |(_, fitness)| fitness);
+    let rated = |walk: &Walk| walk.step() == Step::Rate;
+    let (here, now) = (walk.number(), best(walk));
+    let found = match text {
+        "better" => walk.until(|walk| rated(walk) && walk.number() > here && best(walk) < now),
+        "failure" => walk
+            .until(|walk| walk.step() == Step::Simulate && !walk.generation().failures.is_empty()),
+        "mutation" => walk.until(|walk| match walk.step() {
+            Step::Mutate(row) => !walk.generation().mutated_genes(row).is_empty(),
+            _ => false,
+        }),
+        "stop" => walk.until(|walk| walk.step() == Step::Stop),
+        _ => match text.parse::<f64>() {
+            Ok(target) => {
+                walk.until(|walk| rated(walk) && !has_failed(best(walk)) && best(walk) <= target)
+            }
+            Err(_) => return Err(format!("`{text}` is no condition")),
+        },
+    };
+    if found { Ok(String::new()) } else { Err(format!("`{text}` does not come true from here on")) }
+}

@@ -1,0 +1,197 @@
+//! The right side: the population, or what crossover and mutation do to genes.
+
+use super::Screen;
+use crate::ga::has_failed;
+use crate::teach::explain::short;
+use crate::teach::generation::{Generation, Origin, mate};
+use crate::teach::step::{Phase, Step};
+use ratatui::style::{Color, Modifier, Style};
+use ratatui::text::{Line, Span};
+
+/// Lines of the panel, and the one that should be seen.
+pub(super) fn lines(screen: &Screen) -> (Vec<Line<'static>>, usize) {
+    let walk = &screen.walk;
+    match walk.step() {
+        Step::Cross(rank) => (crossover(screen, rank), 0),
+        Step::Mutate(row) => (mutation(screen, row), 0),
+        _ => population(screen),
+    }
+}
+
+impl Screen {
+    pub(super) fn styled(&self, colour: Color) -> Style {
+        if self.colour { Style::new().fg(colour) } else { Style::new() }
+    }
+}
+
+fn population(screen: &Screen) -> (Vec<Line<'static>>, usize) {
+    let walk = &screen.walk;
+    let renewed = matches!(walk.step(), Step::Renew | Step::Complete(_));
+    let generation = match walk.next_generation() {
+        Some(next) if renewed => next,
+        _ => walk.generation(),
+    };
+    let phase = if renewed { Phase::Drawing } else { walk.step().phase() };
+    let known_fitness = phase > Phase::Judging || walk.step() == Step::Rate;
+    let known_failures = known_fitness || phase == Phase::Judging;
+    let order = match phase > Phase::Judging {
+        true => generation.order(),
+        false => (0..generation.len()).collect(),
+    };
+    let mut lines = vec![Line::from(format!("  no    fitness  {}", names(screen)))];
+    let mut shown = 0;
+    for (place, &k) in order.iter().enumerate() {
+        let followed = !renewed && screen.followed == Some(k);
+        let newcomer = walk.step() == Step::Complete(k);
+        if followed || newcomer {
+            shown = place + 1;
+        }
+        let failed = known_failures && generation.failure(k).is_some();
+        let fitness = match generation.fitness.get(k) {
+            _ if failed => "failed".to_owned(),
+            Some(&fitness) if known_fitness => short(fitness),
+            _ => "-".to_owned(),
+        };
+        let pointer = if followed || newcomer { '>' } else { ' ' };
+        let text = format!("{pointer}{}{:>3} {fitness:>10}  ", mark(generation, k, failed), k + 1);
+        let style = if failed { screen.styled(Color::Red) } else { Style::new() };
+        let mut spans = vec![Span::styled(text, style)];
+        spans.extend(shades(screen, generation, k));
+        lines.push(Line::from(spans));
+    }
+    (lines, shown)
+}
+
+/// `♛` for an elite, `x` for a failed simulation, `?` for a random newcomer.
+fn mark(generation: &Generation, k: usize, failed: bool) -> char {
+    match generation.origins.get(k) {
+        _ if failed => 'x',
+        Some(Origin::Elite { .. }) => '♛',
+        Some(Origin::Random) => '?',
+        _ => ' ',
+    }
+}
+
+/// The first letters of the parameters, over their columns.
+fn names(screen: &Screen) -> String {
+    let names = screen.walk.trace().subject.parameters.iter();
+    names.map(|name| format!("{:<3}", name.chars().take(2).collect::<String>())).collect()
+}
+
+/// A block for each gene, fuller the higher it lies within the population; changed genes are marked.
+fn shades(screen: &Screen, generation: &Generation, k: usize) -> Vec<Span<'static>> {
+    let changed: &[usize] = match generation.origins.get(k) {
+        Some(Origin::Child { mutated, .. }) => mutated,
+        _ => &[],
+    };
+    let shade = |(j, gene): (usize, &f64)| {
+        let column = || generation.genes.iter().skip(j).step_by(generation.n_genes.max(1));
+        let low = column().copied().fold(f64::INFINITY, f64::min);
+        let high = column().copied().fold(f64::NEG_INFINITY, f64::max);
+        let part = if high > low { (gene - low) / (high - low) } else { 0.5 };
+        let block = ["·", "░", "▒", "▓", "█"][((part * 5.0) as usize).min(4)];
+        match changed.contains(&j) {
+            true => Span::styled(format!("{block}* "), screen.styled(Color::Yellow)),
+            false => Span::raw(format!("{block}{block} ")),
+        }
+    };
+    generation.genome(k).iter().enumerate().map(shade).collect()
+}
+
+fn gene_name(screen: &Screen, j: usize) -> String {
+    let name = screen.walk.trace().subject.parameters.get(j);
+    let name = name.cloned().unwrap_or_else(|| format!("gene {}", j + 1));
+    name.chars().take(7).collect()
+}
+
+/// One gene a line: two parents, two children; each child's gene in the colour and with the mark of
+/// the parent it comes from.
+fn crossover(screen: &Screen, rank: usize) -> Vec<Line<'static>> {
+    let generation = screen.walk.generation();
+    let Some(crossed) = &generation.crossed else { return Vec::new() };
+    let mate = mate(rank, crossed.parents);
+    let order = generation.order();
+    let (Some(&a), Some(&b)) = (order.get(rank), order.get(mate)) else { return Vec::new() };
+    let n = generation.n_genes;
+    let styles = [screen.styled(Color::Cyan), screen.styled(Color::Yellow)];
+    let marks = ['a', 'b'];
+    let second = mate > rank;
+    let mut heading = vec![
+        Span::raw(format!("{:<7}", "")),
+        Span::styled(format!("{:>8}", format!("a:rank{}", rank + 1)), styles[0]),
+        Span::styled(format!("{:>8}", format!("b:rank{}", mate + 1)), styles[1]),
+        Span::raw(format!("{:>8}", format!("child{}", rank + 1))),
+    ];
+    if second {
+        heading.push(Span::raw(format!("{:>8}", format!("child{}", mate + 1))));
+    }
+    let mut lines = vec![Line::from(heading)];
+    let child = |row: usize, j: usize| crossed.rows.get((crossed.elites + row) * n + j).copied();
+    for j in 0..n {
+        if j > 0 && crossed.points.contains(&j) {
+            lines.push(Line::from("- - - - - - exchanged behind here - - -"));
+        }
+        let swapped = crossed.points.iter().filter(|&&point| point <= j).count() % 2;
+        let cell = |value: f64, from: usize| {
+            Span::styled(format!("{:>7}{}", narrow(value), marks[from]), styles[from])
+        };
+        let mut spans = vec![
+            Span::raw(format!("{:<7}", gene_name(screen, j))),
+            cell(generation.genome(a)[j], 0),
+            cell(generation.genome(b)[j], 1),
+        ];
+        spans.extend(child(rank, j).map(|value| cell(value, swapped)));
+        if second {
+            spans.extend(child(mate, j).map(|value| cell(value, 1 - swapped)));
+        }
+        lines.push(Line::from(spans));
+    }
+    lines
+}
+
+/// At most seven columns.
+fn narrow(value: f64) -> String {
+    let text = short(value);
+    if text.chars().count() <= 7 { text } else { format!("{value:.1e}") }
+}
+
+/// One gene a line: its random number and what it decides.
+fn mutation(screen: &Screen, row: usize) -> Vec<Line<'static>> {
+    let generation = screen.walk.generation();
+    let Some(mutated) = &generation.mutated else { return Vec::new() };
+    let n = generation.n_genes;
+    let changed = generation.mutated_genes(row);
+    let title = format!("{:<7}{:>7}{:>11}{:>11}", "", "u", "before", "after");
+    let mut lines = vec![Line::from(title)];
+    for j in 0..n {
+        let at = row * n + j;
+        let (Some(u), Some(before), Some(after)) =
+            (mutated.numbers.get(at), mutated.before.get(at), mutated.after.get(at))
+        else {
+            continue;
+        };
+        let hit = changed.contains(&j);
+        let sign = if hit { '<' } else { ' ' };
+        let text = format!(
+            "{:<7}{u:>7.3}{sign}{:>10}{:>11}{}",
+            gene_name(screen, j),
+            short(*before),
+            short(*after),
+            if hit { '*' } else { ' ' }
+        );
+        let style = if hit {
+            screen.styled(Color::Yellow).add_modifier(Modifier::BOLD)
+        } else {
+            Style::new()
+        };
+        lines.push(Line::styled(text, style));
+    }
+    lines.push(Line::from(""));
+    lines.push(Line::from(format!("< u is below F_Mut = {}   * changed", mutated.factor)));
+    let fitness =
+        generation.best().map(|(_, fitness)| fitness).filter(|fitness| !has_failed(*fitness));
+    if let Some(fitness) = fitness {
+        lines.push(Line::from(format!("best fitness so far: {}", short(fitness))));
+    }
+    lines
+}

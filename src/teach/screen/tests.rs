@@ -1,0 +1,84 @@
+use super::{Key, Screen, draw};
+use crate::teach::sample;
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+
+/// What an 80 × 24 terminal shows after these keys.
+fn shown(keys: &[Key]) -> String {
+    let mut screen = Screen::new(sample::walk(), false);
+    for key in keys {
+        assert!(screen.press(*key), "the screen has ended");
+    }
+    let mut terminal = Terminal::new(TestBackend::new(80, 24)).unwrap();
+    terminal.draw(|frame| draw(&screen, frame)).unwrap();
+    let text = terminal.backend().to_string();
+    text.lines()
+        .map(|line| line.trim_end_matches('"').trim_start_matches('"').trim_end())
+        .fold(String::new(), |all, line| all + line + "\n")
+}
+
+fn typed(key: char, answer: &str) -> Vec<Key> {
+    let answer = answer.chars().map(Key::Char);
+    [Key::Char(key)].into_iter().chain(answer).chain([Key::Enter]).collect()
+}
+
+#[test]
+fn screens() {
+    let after = |keys: &[Key]| keys.to_vec();
+    let cases = [
+        ("first", after(&[])),
+        ("fitness", after(&[Key::Right; 2])),
+        ("selection", after(&[Key::Right; 3])),
+        ("crossover", after(&[Key::Right; 5])),
+        ("mutation", typed('u', "mutation")),
+        ("inspect", [after(&[Key::Right; 2]), typed('i', "")].concat()),
+        ("help", after(&[Key::Char('?')])),
+    ];
+    for (name, keys) in cases {
+        let text = shown(&keys);
+        sample::snapshots().bind(|| insta::assert_snapshot!(format!("screen_{name}"), text));
+    }
+}
+
+#[test]
+fn keys_move() {
+    let first_line = |keys: &[Key]| shown(keys).lines().next().unwrap_or_default().to_owned();
+    assert!(first_line(&[Key::Down]).starts_with("Generation 2 of 3, step 1 "));
+    assert!(first_line(&[Key::Down, Key::Up]).starts_with("Generation 1 of 3, step 1 "));
+    assert!(first_line(&[Key::Right, Key::Left]).starts_with("Generation 1 of 3, step 1 "));
+    assert!(first_line(&[Key::Tab]).ends_with("simulation"));
+    assert!(first_line(&[Key::End]).ends_with("stop"));
+    assert!(first_line(&[Key::End, Key::Home]).starts_with("Generation 1 of 3, step 1 "));
+    assert!(first_line(&typed('g', "3")).starts_with("Generation 3 of 3"));
+    assert!(first_line(&typed('u', "stop")).starts_with("Generation 3 of 3"));
+}
+
+#[test]
+fn answers_that_do_not_fit_say_why() {
+    let last = |keys: &[Key]| shown(keys).lines().last().unwrap_or_default().to_owned();
+    assert_eq!(last(&typed('g', "9")), "there are the generations 1 to 3");
+    assert_eq!(last(&typed('g', "x")), "`x` is no number");
+    assert_eq!(last(&typed('f', "7")), "there are the individuals 1 to 6");
+    assert_eq!(last(&typed('u', "soon")), "`soon` is no condition");
+    assert_eq!(last(&[Key::Left]), "there is nothing further");
+    assert_eq!(last(&[Key::Char('g'), Key::Char('2'), Key::Backspace]), "go to generation: _");
+}
+
+#[test]
+fn an_individual_is_followed() {
+    let followed = shown(&[&typed('f', "")[..], &[Key::Down]].concat());
+    assert!(followed.contains("followed on as individual 1"), "{followed}");
+    assert!(followed.lines().any(|line| line.contains(">♛  1")), "{followed}");
+}
+
+#[test]
+fn the_smallest_terminal_is_no_panic() {
+    for (width, height) in [(1, 1), (10, 3), (40, 10), (200, 60)] {
+        for keys in [vec![], vec![Key::Char('?')], typed('i', ""), vec![Key::Right; 5]] {
+            let mut screen = Screen::new(sample::walk(), true);
+            keys.into_iter().for_each(|key| drop(screen.press(key)));
+            let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
+            terminal.draw(|frame| draw(&screen, frame)).unwrap();
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! A trace that was read: the scripts, what is identified, and the generations.
+
+use super::errors::BAD_TRACE;
+use super::event::{Event, Numbers, Subject};
+use super::file;
+use super::generation::{Crossed, Drawn, Generation, Mutated, Origin, Sorted};
+use super::produced::Produced;
+use crate::bail;
+use crate::diag::Fault;
+use crate::ga::Mrg32k3a;
+
+/// A script that the run has executed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Script {
+    /// Its path as it was asked for.
+    pub name: String,
+    /// Its lines.
+    pub lines: Vec<String>,
+}
+
+/// The trace of one run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Trace {
+    /// The scripts, as places count them.
+    pub scripts: Vec<Script>,
+    /// What is identified.
+    pub subject: Subject,
+    /// Measured X and Y; empty where none were read.
+    pub measured: (Vec<f64>, Vec<f64>),
+    /// The generations in order; there is at least one.
+    pub generations: Vec<Generation>,
+    /// Whether the file ends within an event, as an interrupted run leaves it.
+    pub cut: bool,
+    /// Whether the run went on after the trace had reached its largest size.
+    pub full: bool,
+}
+
+impl Trace {
+    /// Reads the bytes that a [`Tracer`](super::Tracer) gave.
+    ///
+    /// # Errors
+    ///
+    /// `bad-trace` when they are no trace, or no generation was recorded.
+    pub fn read(bytes: &[u8]) -> Result<Trace, Fault> {
+        let (events, whole) = file::read(bytes)?;
+        let mut reading = Reading::default();
+        events.into_iter().for_each(|event| reading.follow(event));
+        let mut trace = reading.trace;
+        trace.cut = !whole;
+        if trace.generations.iter().all(Generation::is_empty) {
+            bail!(
+                BAD_TRACE, "the trace holds no generation: nothing was simulated";
+                help: "trace a script that calls `Eval`, such as `scripts/GAPILib.mos`"
+            );
+        }
+        Ok(trace)
+    }
+}
+
+#[derive(Default)]
+struct Reading {
+    trace: Trace,
+    produced: Produced,
+    /// Draws that no generation has used yet.
+    drawn: Vec<Drawn>,
+}
+
+impl Reading {
+    fn follow(&mut self, event: Event) {
+        // Only a damaged file has individuals without genes.
+        if matches!(event, Event::Simulate { n_genes: 0, .. }) {
+            return;
+        }
+        self.note(&event);
+        self.produced.follow(&event);
+        self.complete(&event);
+    }
+
+    /// What must be taken from what was produced before the event.
+    fn note(&mut self, event: &Event) {
+        match event {
+            Event::Script { name, text } => {
+                let lines = text.lines().map(str::to_owned).collect();
+                self.trace.scripts.push(Script { name: name.clone(), lines });
+            }
+            Event::Subject(subject) => self.trace.subject = subject.clone(),
+            Event::Measured { x, y } => self.trace.measured = (x.clone(), y.clone()),
+            Event::Draw { place, seed, count } => {
+                if let Ok(mut rng) = Mrg32k3a::new(seed) {
+                    let numbers = (0..*count).map(|_| rng.uniform()).collect();
+                    self.drawn.push(Drawn { place: *place, seed: *seed, numbers });
+                }
+            }
+            Event::Simulate { place, n_genes, .. } => {
+                let n_genes = *n_genes as usize;
+                let begins = self.produced.ended
+                    || self.trace.generations.last().is_none_or(|last| last.n_genes != n_genes);
+                if begins {
+                    let drawn = std::mem::take(&mut self.drawn);
+                    let simulated = *place;
+                    let generation =
+                        Generation { drawn, n_genes, simulated, ..Generation::default() };
+                    self.trace.generations.push(generation);
+                }
+            }
+            Event::Full => self.trace.full = true,
+            Event::Rate { .. }
+            | Event::Sort { .. }
+            | Event::Cross { .. }
+            | Event::Mutate { .. } => {}
+        }
+        self.note_decision(event);
+    }
+
+    fn note_decision(&mut self, event: &Event) {
+        let produced = &self.produced;
+        let seed = self.drawn.last().map(|drawn| drawn.seed);
+        let Some(generation) = self.trace.generations.last_mut() else { return };
+        match event {
+            Event::Sort { place, genes, fitness, parents, elites } => {
+                let fitness = fitness.resolve(&produced.fitness);
+                let order = crate::ga::order(&fitness);
+                let sorts_these = genes
+                    .resolve(&produced.simulated, produced.n_genes)
+                    .is_some_and(|sorted| sorted == generation.genes);
+                if sorts_these {
+                    generation.fitness = fitness;
+                }
+                let (parents, elites) = (*parents as usize, *elites as usize);
+                generation.sorted = Some(Sorted { place: *place, order, parents, elites });
+            }
+            Event::Mutate { place, genes, numbers, elites, factor, minima, maxima } => {
+                let before = genes.resolve(&produced.crossed, produced.n_genes);
+                generation.mutated = Some(Mutated {
+                    place: *place,
+                    before: before.unwrap_or_default(),
+                    after: Vec::new(),
+                    numbers: numbers.resolve(&produced.numbers),
+                    seed: seed.filter(|_| *numbers == Numbers::Expected),
+                    elites: *elites as usize,
+                    factor: *factor,
+                    minima: minima.clone(),
+                    maxima: maxima.clone(),
+                });
+            }
+            _ => {}
+        }
+    }
+
+    /// What can be taken only from what the event has produced.
+    fn complete(&mut self, event: &Event) {
+        let produced = &self.produced;
+        let Some((generation, before)) = self.trace.generations.split_last_mut() else { return };
+        match event {
+            Event::Simulate { failures, .. } => {
+                let offset = generation.len();
+                let shifted = |(k, cause): &(u32, String)| (*k as usize + offset, cause.clone());
+                generation.failures.extend(failures.iter().map(shifted));
+                generation.genes = produced.simulated.clone();
+                let count = generation.len();
+                generation.origins = match before.last() {
+                    Some(before) if before.n_genes == generation.n_genes => {
+                        before.origins_of(&generation.genes)
+                    }
+                    None if !generation.drawn.is_empty() => vec![Origin::Random; count],
+                    _ => vec![Origin::Script; count],
+                };
+            }
+            Event::Rate { place, fitness, best } => {
+                let known = generation.best().map_or(f64::INFINITY, |(_, fitness)| fitness);
+                if fitness.iter().any(|fitness| *fitness < known) {
+                    generation.best_simulated = best.clone();
+                }
+                generation.rated = Some(*place);
+                generation.fitness = produced.fitness.clone();
+            }
+            Event::Cross { place, parents, elites, points, .. } => {
+                generation.crossed = Some(Crossed {
+                    place: *place,
+                    parents: *parents as usize,
+                    elites: *elites as usize,
+                    points: points.iter().map(|&point| point as usize).collect(),
+                    rows: produced.crossed.clone(),
+                });
+            }
+            Event::Mutate { .. } => {
+                if let Some(mutated) = &mut generation.mutated {
+                    mutated.after = produced.mutated.clone();
+                }
+                // The numbers drawn so far have been used up by the mutation.
+                self.drawn.clear();
+            }
+            _ => {}
+        }
+    }
+}
