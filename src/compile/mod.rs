@@ -15,6 +15,7 @@ mod machine_code;
 mod memory;
 mod newton;
 mod program;
+mod relations;
 mod selection;
 mod slopes;
 mod system;
