@@ -146,6 +146,24 @@
 //!   selecting values of input variables in the analysis of output from a computer code.
 //!   Technometrics 21(2), 1979, 239–245.
 //!
+//! <a id="sobol-1967"></a>
+//! - **sobol-1967** — I. M. Sobol: On the distribution of points in a cube and the approximate
+//!   evaluation of integrals. USSR Computational Mathematics and Mathematical Physics 7(4), 1967,
+//!   86–112.
+//!
+//! <a id="joe-kuo-2008"></a>
+//! - **joe-kuo-2008** — S. Joe, F. Y. Kuo: Constructing Sobol sequences with better
+//!   two-dimensional projections. SIAM Journal on Scientific Computing 30(5), 2008, 2635–2654.
+//!
+//! <a id="jansen-1999"></a>
+//! - **jansen-1999** — M. J. W. Jansen: Analysis of variance designs for model output. Computer
+//!   Physics Communications 117(1–2), 1999, 35–43.
+//!
+//! <a id="lamboni-2011"></a>
+//! - **lamboni-2011** — M. Lamboni, H. Monod, D. Makowski: Multivariate sensitivity analysis to
+//!   measure global contribution of input factors in dynamic models. Reliability Engineering &
+//!   System Safety 96(4), 2011, 450–459.
+//!
 //! <a id="tanabe-fukunaga-2014"></a>
 //! - **tanabe-fukunaga-2014** — R. Tanabe, A. S. Fukunaga: Improving the search performance of SHADE
 //!   using linear population size reduction. IEEE Congress on Evolutionary Computation, 2014,

@@ -51,7 +51,10 @@ mod tests {
         assert!(top.contains(&"GAPILib".to_owned()), "{top:?}");
         let inner = Path::new(FOLDER).join("GAPILib");
         let names = list(&inner).expect("a folder");
-        assert_eq!(names, ["Basics", "package.mo", "package.order"]);
+        assert_eq!(
+            names,
+            ["Basics", "Experiment.mo", "Free.mo", "Problem.mo", "package.mo", "package.order"]
+        );
         let text = read(&inner.join("package.mo")).expect("a file");
         assert!(text.starts_with(b"package GAPILib"));
     }

@@ -123,6 +123,9 @@ pub struct Derivative {
     /// The output of `function` that is the derivative of each output; `None` for outputs that
     /// have none (Integers).
     pub outputs: Vec<Option<u32>>,
+    /// The function for the derivative of `function` (`order = 2`): its inputs are those of
+    /// `function`, followed by second derivatives; its outputs are in the same order.
+    pub second: Option<u32>,
 }
 
 /// All functions of a model; calls name them by position.

@@ -151,13 +151,12 @@ impl Machine {
         arguments: &[T],
     ) -> Result<Vec<T>, Failure> {
         let code = &functions.codes[function as usize];
-        let mut stack = std::mem::take(T::stack(&mut self.stacks));
-        grow(&mut stack, code.frame as usize);
-        stack[..arguments.len()].copy_from_slice(arguments);
-        let result = self.run_at(functions, function, 0, &mut stack);
-        let outputs = stack[code.outputs as usize..][..code.n_outputs as usize].to_vec();
-        *T::stack(&mut self.stacks) = stack;
-        result.map(|()| outputs)
+        let before = std::mem::take(T::stack(&mut self.stacks));
+        grow(T::stack(&mut self.stacks), code.frame as usize);
+        T::stack(&mut self.stacks)[..arguments.len()].copy_from_slice(arguments);
+        let result = self.run::<T>(functions, function);
+        let stack = std::mem::replace(T::stack(&mut self.stacks), before);
+        result.map(|()| stack[code.outputs as usize..][..code.n_outputs as usize].to_vec())
     }
 
     fn run_at<T: Differentiate>(
@@ -261,6 +260,17 @@ trait Differentiate: RunExternal {
         arguments: std::ops::Range<usize>,
         results: usize,
     ) -> Result<bool, Failure>;
+
+    /// What a derivative function gives for arguments and their derivatives.
+    fn slopes(
+        machine: &mut Machine,
+        functions: &Functions,
+        derivative: &Derivative,
+        values: &[Self],
+        tangents: &[Self],
+    ) -> Result<Vec<Self>, Failure> {
+        machine.nested(functions, derivative.function, &[values, tangents].concat())
+    }
 }
 
 impl Differentiate for f64 {
@@ -295,15 +305,46 @@ where
             return Ok(false);
         }
         let values: Vec<T> = given.iter().map(|x| x.v).collect();
-        let mut extended = values.clone();
-        extended.extend(derivative.tangents.iter().map(|input| given[*input as usize].d));
+        let tangents: Vec<T> =
+            derivative.tangents.iter().map(|input| given[*input as usize].d).collect();
+        let slopes = T::slopes(machine, functions, derivative, &values, &tangents)?;
         let values = machine.nested(functions, function, &values)?;
-        let slopes = machine.nested(functions, derivative.function, &extended)?;
         for (at, (v, slope)) in values.into_iter().zip(&derivative.outputs).enumerate() {
             let d = slope.map_or(T::constant(0.0), |slope| slopes[slope as usize]);
             stack[results + at] = Dual { v, d };
         }
         Ok(true)
+    }
+
+    /// The second derivative function gives f''[a, a] + f'·e; the derivative of f'·a in the
+    /// direction (b, c) is f''[a, b] + f'·c, a quarter of its values at a + b, 2c less those at
+    /// a − b, −2c.
+    fn slopes(
+        machine: &mut Machine,
+        functions: &Functions,
+        derivative: &Derivative,
+        values: &[Self],
+        tangents: &[Self],
+    ) -> Result<Vec<Self>, Failure> {
+        let Some(second) = derivative.second else {
+            return machine.nested(functions, derivative.function, &[values, tangents].concat());
+        };
+        let at: Vec<T> = values.iter().map(|u| u.v).collect();
+        let along: Vec<T> = tangents.iter().map(|a| a.v).collect();
+        let mut beside = |sign: f64| {
+            let sign = T::constant(sign);
+            let moved = derivative.tangents.iter().zip(&along);
+            let moved: Vec<T> =
+                moved.map(|(input, a)| a.add(sign.mul(values[*input as usize].d))).collect();
+            let two = sign.add(sign);
+            let bent: Vec<T> = tangents.iter().map(|a| two.mul(a.d)).collect();
+            machine.nested(functions, second, &[at.as_slice(), &moved, &bent].concat())
+        };
+        let (ahead, behind) = (beside(1.0)?, beside(-1.0)?);
+        let slopes = T::slopes(machine, functions, derivative, &at, &along)?;
+        let quarter = T::constant(0.25);
+        let parts = slopes.into_iter().zip(ahead.into_iter().zip(behind));
+        Ok(parts.map(|(v, (a, b))| Dual { v, d: quarter.mul(a.sub(b)) }).collect())
     }
 }
 

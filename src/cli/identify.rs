@@ -24,7 +24,11 @@ pub(super) fn identify(arguments: &IdentifyArgs, global: &Global) -> ExitCode {
         resume: arguments.resume,
         fresh: arguments.fresh,
         watch: arguments.watch.clone(),
+        profile: arguments.profile,
+        sensitivity: arguments.sensitivity.clone(),
+        samples: arguments.samples.unwrap_or(0) as usize,
         evaluations: arguments.evaluations,
+        ..RunOptions::default()
     };
     match solve(&mut session, &arguments.problem, &options) {
         Ok(_) if session.is_interrupted() => ExitCode::from(130),

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! regular     P A = L U, rows scaled by their largest entry
+//! up to 2     x = b / a; by determinants where the determinant is no small difference
 //! singular    A V = W with orthogonal columns wⱼ; x = Σ vⱼ (wⱼ·b)/(wⱼ·wⱼ) over those that are not
 //!             zero: of all solutions the smallest
 //! ```
@@ -22,6 +23,8 @@ const SMALLEST_COLUMN: f64 = 1e-11;
 const CONSISTENT: f64 = 1e-6;
 const CONSISTENT_TO_ONE: f64 = 1e-9;
 const MAX_SWEEPS: usize = 60;
+/// Two equations are solved by determinants where theirs is more than this part of its terms.
+pub(super) const SMALLEST_DETERMINANT: f64 = 1e-4;
 
 /// Solves A x = b.
 #[derive(Debug, Clone)]
@@ -87,9 +90,14 @@ impl LinearSystem {
     /// Carries out an instruction.
     pub(super) fn run(&mut self, solve: &LinearSolve, r: &mut [f64]) -> Result<(), NoSolution> {
         if let Some(entries) = &solve.entries
-            && (self.is_new(entries, r) || !self.is_factorized)
+            && self.is_new(entries, r)
         {
             self.is_factorized = false;
+        }
+        if self.run_small(solve, r) {
+            return Ok(());
+        }
+        if !self.is_factorized {
             self.scale();
             self.factorize()?;
             self.is_factorized = true;
@@ -106,6 +114,30 @@ impl LinearSystem {
         }
         r[solve.d as usize..][..self.n].copy_from_slice(&self.x);
         Ok(())
+    }
+
+    /// Solves one or two equations that are clearly regular; whether they are.
+    fn run_small(&mut self, solve: &LinearSolve, r: &mut [f64]) -> bool {
+        let solution = match (&self.given[..], &solve.right[..]) {
+            (&[a], &[right]) => [r[right as usize] / a, 0.0],
+            (&[a, b, c, d], &[first, second]) => {
+                let (right, s) = (r[first as usize], r[second as usize]);
+                let (ad, bc) = (a * d, b * c);
+                let determinant = ad - bc;
+                let smallest = SMALLEST_DETERMINANT * (ad.abs() + bc.abs());
+                if determinant.abs() <= smallest {
+                    return false;
+                }
+                let inverse = 1.0 / determinant;
+                [(right * d - b * s) * inverse, (a * s - right * c) * inverse]
+            }
+            _ => return false,
+        };
+        let is_finite = solution.iter().all(|x| x.is_finite());
+        if is_finite {
+            r[solve.d as usize..][..self.n].copy_from_slice(&solution[..self.n]);
+        }
+        is_finite
     }
 
     /// Reads the matrix; whether it is another than that factorised last.

@@ -1,6 +1,7 @@
 //! Compilation: a sorted system becomes a [`Program`] of instruction tapes, and every thread runs
-//! its own [`System`] of it.
+//! its own [`System`] of it. Tapes that run often become machine code.
 
+mod chains;
 pub mod errors;
 mod event_iteration;
 mod events;
@@ -10,13 +11,16 @@ mod jacobian;
 mod least_squares;
 mod linear_system;
 mod lower;
+mod machine_code;
 mod memory;
 mod newton;
 mod program;
+mod relations;
 mod selection;
 mod slopes;
 mod system;
 mod tape;
+mod translation;
 
 pub use program::{Access, ParameterInfo, Program, VariableInfo};
 pub use system::System;

@@ -95,6 +95,32 @@ pub(super) enum Instruction {
     },
 }
 
+impl Instruction {
+    /// Visits the registers read, but for those of calls and linear systems.
+    pub(super) fn for_each_operand(&self, mut visit: impl FnMut(Register)) {
+        match *self {
+            Instruction::Move { a, .. }
+            | Instruction::Neg { a, .. }
+            | Instruction::Not { a, .. }
+            | Instruction::Unary { a, .. }
+            | Instruction::JumpUnless { a, .. } => visit(a),
+            Instruction::Add { a, b, .. }
+            | Instruction::Sub { a, b, .. }
+            | Instruction::Mul { a, b, .. }
+            | Instruction::Div { a, b, .. }
+            | Instruction::Pow { a, b, .. }
+            | Instruction::And { a, b, .. }
+            | Instruction::Or { a, b, .. }
+            | Instruction::Relation { a, b, .. }
+            | Instruction::Binary { a, b, .. } => {
+                visit(a);
+                visit(b);
+            }
+            Instruction::Call { .. } | Instruction::Solve { .. } | Instruction::Jump { .. } => {}
+        }
+    }
+}
+
 /// A call of a function: its scalar outputs, or their derivatives for some inputs, are written to
 /// registers in a row.
 #[derive(Debug, Clone)]

@@ -444,18 +444,17 @@ pub(super) fn component_shape<T: Target>(
     component: &FunctionComponent,
 ) -> Result<Shape, Diagnostic> {
     let mut dims = Vec::new();
-    for subscript in &component.dims {
-        match subscript {
-            Subscript::Index(size) => dims.push(lowering.known_size(size)?),
-            Subscript::All(place) => {
-                return Err(fault!(
-                    NOT_SUPPORTED,
-                    "the size of `{}` is not declared",
-                    component.name
-                )
-                .at(*place));
-            }
-        }
+    for (position, subscript) in component.dims.iter().enumerate() {
+        let declared = match (subscript, &component.binding) {
+            (Subscript::Index(size), _) => Some(lowering.known_size(size)?),
+            // The size is that of the value in the declaration (MLS §12.4.5).
+            (Subscript::All(_), Some(value)) => lowering.array(value)?.dims.get(position).copied(),
+            (Subscript::All(_), None) => None,
+        };
+        dims.push(declared.ok_or_else(|| {
+            fault!(NOT_SUPPORTED, "the size of `{}` is not declared", component.name)
+                .at(component.span)
+        })?);
     }
     match &component.value_type {
         ValueType::Record(_, fields) if dims.is_empty() => {

@@ -16,6 +16,8 @@ pub enum Version {
     Text,
     /// A table with a header line.
     Csv,
+    /// The first sheet of an XLSX file.
+    Spreadsheet,
 }
 
 /// What the values of a matrix stand for.
@@ -168,7 +170,11 @@ impl MatFile {
         if let Some(reason) = self.skipped.get(name) {
             return Err(fault!(UNREADABLE_MATRIX, "`{name}` cannot be read: {reason}"));
         }
-        let what = if self.version == Version::Csv { "column" } else { "matrix" };
+        let what = if matches!(self.version, Version::Csv | Version::Spreadsheet) {
+            "column"
+        } else {
+            "matrix"
+        };
         let names = self.arrays.keys().map(String::as_str);
         Err(fault!(UNKNOWN_MATRIX, "the file has no {what} `{name}`")
             .help_if(suggest::did_you_mean(name, names))

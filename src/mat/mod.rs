@@ -1,4 +1,4 @@
-//! Matrices in files: MAT versions 4, 5 and 7, text in the `#1` format, and CSV.
+//! Matrices in files: MAT versions 4, 5 and 7, text in the `#1` format, CSV and XLSX.
 //!
 //! [`read`] recognises the format by content and [`read_csv`] reads tables; both return a
 //! [`MatFile`] of real matrices by name. [`write_v4`] and [`write_v5`] make files.
@@ -20,6 +20,7 @@ pub mod errors;
 mod matrix;
 mod number;
 mod reader;
+mod spreadsheet;
 mod text;
 mod v4;
 mod v5;
@@ -58,13 +59,19 @@ pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
     }
 }
 
-/// Reads a data file by the end of its name: `.csv` (also `.tsv`, `.txt` with columns) as a table,
-/// anything else with [`read`].
+/// Reads a data file by the end of its name: `.csv` (also `.tsv`, `.txt` with columns) as a table;
+/// by its content: the first sheet of an XLSX file as a table, anything else with [`read`].
 pub fn read_named(file_name: &str, bytes: &[u8]) -> Result<MatFile, Fault> {
     let lower = file_name.to_lowercase();
     let table = [".csv", ".tsv"].iter().any(|end| lower.ends_with(end))
         || lower.ends_with(".txt") && !text::looks_like(bytes);
-    if table { read_csv(bytes) } else { read(bytes) }
+    if table {
+        return read_csv(bytes);
+    }
+    if spreadsheet::looks_like(bytes) {
+        return spreadsheet::read(bytes);
+    }
+    read(bytes)
 }
 
 fn refuse_hdf5(bytes: &[u8]) -> Result<(), Fault> {

@@ -12,6 +12,16 @@ pub(super) fn weighted_rms(x: &[f64], weights: &[f64]) -> f64 {
     if x.is_empty() {
         return 0.0;
     }
-    let sum: f64 = x.iter().zip(weights).map(|(x, weight)| (x / weight).powi(2)).sum();
-    (sum / x.len() as f64).sqrt()
+    // Four sums that do not wait for each other.
+    let mut sums = [0.0; 4];
+    let (x_fours, weight_fours) = (x.chunks_exact(4), weights.chunks_exact(4));
+    let last = x_fours.remainder().iter().zip(&weights[x.len() - x.len() % 4..]);
+    let rest: f64 = last.map(|(x, weight)| (x / weight) * (x / weight)).sum();
+    for (x, weights) in x_fours.zip(weight_fours) {
+        for ((sum, x), weight) in sums.iter_mut().zip(x).zip(weights) {
+            let ratio = x / weight;
+            *sum += ratio * ratio;
+        }
+    }
+    ((sums.iter().sum::<f64>() + rest) / x.len() as f64).sqrt()
 }

@@ -308,6 +308,17 @@ fn a_time_table_jumps_where_its_event_has_been_handled() {
 }
 
 #[test]
+fn a_period_begins_where_the_last_one_ends() {
+    // In constant segments, with jumps at both ends; 1.5 = 1 + shift is reached but for rounding.
+    let points = [0.6, -2.0, 0.6, -3.0, 0.7, -2.0, 1.0, -5.0, 1.0, -4.0];
+    let table = over_time(&points, 3.0, 3.0, 1.0);
+    for time in [1.5, 1.5 + 1e-15, 1.9, 2.3] {
+        near(at_time(&table, time, next_event(&table, time)), -3.0);
+    }
+    near(at_time(&table, 1.65, next_event(&table, 1.65)), -2.0);
+}
+
+#[test]
 fn a_table_of_two_variables_is_bilinear() {
     let grid = [0.0, 1.0, 3.0, 0.0, 2.0, 4.0, 2.0, 6.0, 16.0];
     let made = |smoothness: f64, extrapolation: f64| {
@@ -477,6 +488,21 @@ fn tables_are_read_from_files() {
     };
     let text = "#1\ndouble a(1,2)\n0 0\ndouble b(2,3) # the table\n0 0 1\n2 4 5\n";
     near(at(&read("table.txt", text).expect("a table").objects[0], 1.0), 3.0);
+    // Without delimiter and header lines the file comes first too, as in version 4.0.0.
+    let args = [
+        Text("table.txt"),
+        Text("b"),
+        Array(&[0, 2], &[]),
+        Number(0.0),
+        Number(2.0),
+        Array(&[1], &[3.0]),
+        Number(1.0),
+        Number(1.0),
+        Number(2.0),
+        Number(0.0),
+    ];
+    let made = call_with("ModelicaStandardTables_CombiTable1D_init2", &args, &mut OneFile(text));
+    near(at(&made.expect("a table").objects[0], 1.0), 3.0);
     let csv = "x; y; z\n0; 0; 1\n2; 4; 5\n";
     near(at(&read("table.csv", csv).expect("a table").objects[0], 1.0), 3.0);
     let fault = read("table.csv", "x; y; z\n0; 0; one\n").expect_err("no number");

@@ -1,6 +1,7 @@
 //! Functions that run as bytecode in models: their values are those of the interpreter, their
 //! derivatives those of its differences.
 
+use super::hybrid::simulated;
 use gapilib::compile::{Program, System};
 use gapilib::dae::sort;
 use gapilib::diag::Diagnostic;
@@ -63,6 +64,12 @@ const CORPUS: &[(&str, &str)] = &[
          for i in 2:m loop p[i] := p[i - 1]*u; end for; end powers; \
          function f {h} protected Integer k = 0; algorithm y := 0; while k < n loop k := k + 1; \
          y := y + sum(powers(u/3, 4)); end while; end f;",
+    ),
+    (
+        "a size that the value in the declaration has",
+        "function bent input Real v[:]; output Real w[:] = 2*v; protected Real s[:, :] = [v, v]; \
+         Integer k = 0; algorithm while k < 3 loop k := k + 1; w[k] := w[k] + s[k, 2]*k; \
+         end while; end bent; function f {h} algorithm y := sum(bent({u, sin(u), n})); end f;",
     ),
     (
         "slices that change from turn to turn",
@@ -275,6 +282,20 @@ fn messages_show_what_is_known_when_compiling() {
 }
 
 #[test]
+fn a_parameter_that_gives_a_size_is_settled() {
+    // Σ u^i, i = 1 … n
+    let functions = "function f {h} protected Real p[n]; Integer k = 0; algorithm \
+        while k < n loop k := k + 1; p[k] := u^k; end while; y := sum(p); end f;";
+    let program = compiled(&library(functions)).expect("it compiles");
+    assert!(program.parameters().is_empty(), "`n` cannot be set any more");
+    let mut value = [0.0];
+    let mut system = program.system();
+    system.initialize(0.0, &mut [1.0]).expect("initial values");
+    system.rhs(0.0, &[0.5], &mut value).expect("a value");
+    assert_eq!(value, [0.75]);
+}
+
+#[test]
 fn a_warning_does_not_end_a_simulation() {
     let warning = "function f {h} algorithm y := -u; \
         assert(u < 0, \"not below zero\", AssertionLevel.warning); end f;";
@@ -297,10 +318,36 @@ fn a_function_with_bound_inputs_is_passed_to_loops() {
     assert_eq!(of_model(&mut system, 0.5, 4).expect("a value"), (8.5, 1.0));
 }
 
+#[test]
+fn the_second_derivative_function_is_used() {
+    // Of sin(k u), where the functions say 7 times as much: nobody else would.
+    let model = "model Main \
+        function f input Real u; input Real k; output Real y; protected Integer n = 0; \
+        algorithm while n < 1 and u < 9 loop n := n + 1; y := sin(k*u); end while; \
+        annotation(derivative(noDerivative = k) = slope); end f; \
+        function slope input Real u; input Real k; input Real du; output Real dy; \
+        protected Integer n = 0; algorithm while n < 1 and u < 9 loop n := n + 1; \
+        dy := 7*k*cos(k*u)*du; end while; \
+        annotation(derivative(noDerivative = k, order = 2) = bend); end slope; \
+        function bend input Real u; input Real k; input Real du; input Real ddu; \
+        output Real ddy; protected Integer n = 0; algorithm while n < 1 and u < 9 loop n := n + 1; \
+        ddy := 70*k*cos(k*u)*ddu - 700*k^2*sin(k*u)*du^2; end while; end bend; \
+        Real x(start = 0.3, fixed = true); Real y; Real w; Real a; \
+        equation der(x) = cos(time) + x; y = f(x, 2); w = der(y); a = der(w); end Main;";
+    let run = simulated(model, 1.0);
+    let column = |name: &str| run.column(name)[0];
+    let (speed, bent) = (1.0 + 0.3, 1.0 + 0.3);
+    let (sin, cos) = 0.6f64.sin_cos();
+    assert!((column("w") - 14.0 * cos * speed).abs() < 1e-12);
+    // The part of the second derivative is the first function's.
+    let second = -2800.0 * sin * speed * speed + 14.0 * cos * bent;
+    assert!((column("a") - second).abs() < 1e-9, "{} is not {second}", column("a"));
+}
+
 /// A table as an external object, with the derivative that its library declares.
 const TABLE: &str = "package P class Table extends ExternalObject; function constructor \
     input String name; input Real table[:, :]; input Integer smoothness; output Table id; \
-    external \"C\" id = ModelicaStandardTables_CombiTable1D_init2(name, \"NoName\", table, \
+    external \"C\" id = ModelicaStandardTables_CombiTable1D_init2(\"NoName\", name, table, \
     size(table, 1), size(table, 2), {2}, 1, smoothness, 2, false); end constructor; \
     function destructor input Table id; \
     external \"C\" ModelicaStandardTables_CombiTable1D_close(id); end destructor; end Table; \

@@ -10,7 +10,7 @@ use gapilib::syntax::parse_stored_definition;
 use std::sync::Arc;
 
 /// A finished simulation.
-struct Run {
+pub(super) struct Run {
     program: Arc<Program>,
     system: System,
     rows: Trajectory,
@@ -30,7 +30,10 @@ fn compiled(text: &str) -> Result<Arc<Program>, Diagnostic> {
     flat(text).and_then(|flat| sort(&flat)).and_then(Program::compile)
 }
 
-fn attempt(text: &str, stop: f64) -> (Arc<Program>, System, Trajectory, Result<(), SimError>) {
+pub(super) fn attempt(
+    text: &str,
+    stop: f64,
+) -> (Arc<Program>, System, Trajectory, Result<(), SimError>) {
     let program = compiled(text).unwrap_or_else(|d| panic!("{}: {}", d.code.slug, d.message));
     let mut system = program.system();
     let output = OutputGrid::Intervals(50);
@@ -40,7 +43,7 @@ fn attempt(text: &str, stop: f64) -> (Arc<Program>, System, Trajectory, Result<(
     (program, system, rows, ended)
 }
 
-fn simulated(text: &str, stop: f64) -> Run {
+pub(super) fn simulated(text: &str, stop: f64) -> Run {
     let (program, system, rows, ended) = attempt(text, stop);
     if let Err(error) = ended {
         panic!("{}", program.explain(&error).message);
@@ -56,7 +59,7 @@ fn file(name: &str) -> String {
 
 impl Run {
     /// All values of a variable.
-    fn column(&self, name: &str) -> Vec<f64> {
+    pub(super) fn column(&self, name: &str) -> Vec<f64> {
         let at = self.program.find_variable(name).expect("the variable exists");
         match self.program.variables()[at].access {
             Access::Observed { column, negated } => {
@@ -68,12 +71,12 @@ impl Run {
         }
     }
 
-    fn last(&self, name: &str) -> f64 {
+    pub(super) fn last(&self, name: &str) -> f64 {
         *self.column(name).last().expect("a row")
     }
 
     /// The value behind all events at a time of the output grid or of an event.
-    fn at(&self, name: &str, time: f64) -> f64 {
+    pub(super) fn at(&self, name: &str, time: f64) -> f64 {
         let rows = self.rows.time().iter().zip(self.column(name));
         let near = rows.filter(|(t, _)| (**t - time).abs() <= 1e-9);
         near.collect::<Vec<_>>().pop().unwrap_or_else(|| panic!("no row at {time}")).1
@@ -88,7 +91,7 @@ impl Run {
 }
 
 #[track_caller]
-fn near(value: f64, expected: f64, tolerance: f64) {
+pub(super) fn near(value: f64, expected: f64, tolerance: f64) {
     let error = (value - expected).abs() / expected.abs().max(1.0);
     assert!(error <= tolerance, "{value} instead of {expected}");
 }
@@ -309,6 +312,17 @@ fn an_assertion_at_an_event_holds_at_that_event_only() {
     let error = ended.expect_err("x is 2 at the second sample");
     near(error.time, 2.0, 1e-12);
     assert_eq!(program.explain(&error).code.slug, "assertion-failed");
+}
+
+#[test]
+fn a_sample_next_to_an_output_point_is_not_lost() {
+    // 12·0.05 and 15·0.04 differ by rounding.
+    let run = simulated(
+        "model S Integer n(start = 0, fixed = true); \
+         equation when sample(0, 0.05) then n = pre(n) + 1; end when; end S;",
+        2.0,
+    );
+    assert_eq!(run.last("n"), 41.0);
 }
 
 #[test]

@@ -6,7 +6,6 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
-use std::time::Duration;
 use tempfile::TempDir;
 
 fn command(folder: &Path, arguments: &[&str]) -> Command {
@@ -31,21 +30,42 @@ fn value(result: &Value, name: &str) -> f64 {
     all.iter().find(|p| p["name"] == name).unwrap()["value"].as_f64().unwrap()
 }
 
+/// The shipped problems with the best sums of squares that are known of their data.
+const SHIPPED: [(&str, f64); 4] = [
+    ("polarization", 2.462e-6),
+    ("bcs_500w", 0.011_697_780_7),
+    ("sr12", 1.056_628_35),
+    ("nedstack_ps6", 2.065_556_91),
+];
+
+/// Some methods end in local optima of these data; `GAPILIB_SEEDS` sets how many seeds are tried.
 #[test]
-fn the_shipped_problem_reaches_the_best_known_sum_of_squares() {
+fn shipped_problems_reach_the_best_known_sums_of_squares() {
     let folder = tempfile::tempdir().unwrap();
-    let problem = project("scripts/problems/polarization.toml");
-    let (code, text) = run(folder.path(), &[problem.to_str().unwrap(), "--out", "out"]);
-    assert_eq!(code, 0, "{text}");
-    let result = result(folder.path(), "out");
-    // 2.462e-6 is the best that is known of these data; some have ended in a local optimum.
-    assert!(result["fitness"].as_f64().unwrap() < 2.4625e-6, "{text}");
-    assert!(result["evaluations"].as_u64().unwrap() <= 5100, "{text}");
-    assert!(text.contains("cannot be determined from these data"), "{text}");
-    for file in ["history.csv", "fit.csv", "individuals.csv", "Calibrated.mo", "report.html"] {
-        assert!(folder.path().join("out").join(file).is_file(), "{file}");
+    let seeds = std::env::var("GAPILIB_SEEDS").map_or(1, |text| text.parse().unwrap());
+    for (name, best) in SHIPPED {
+        let problem = project(&format!("scripts/problems/{name}.toml"));
+        let text = fs::read_to_string(&problem).unwrap();
+        let data = project("scripts/data");
+        let text = text.replace("../data", &data.display().to_string().replace('\\', "/"));
+        for seed in 1..=seeds {
+            let entry = format!("seed = {:?}\n[parameters]", [f64::from(seed); 6]);
+            fs::write(folder.path().join("p.toml"), text.replace("[parameters]", &entry)).unwrap();
+            let (code, text) = run(folder.path(), &["p.toml", "--out", name]);
+            assert_eq!(code, 0, "{text}");
+            let result = result(folder.path(), name);
+            let found = result["fitness"].as_f64().unwrap();
+            assert!(found < best * 1.0002, "{name}, seed {seed}: {found}\n{text}");
+            // The last question may go beyond the limit.
+            assert!(result["simulations"].as_u64().unwrap() <= 5000, "{text}");
+            assert!(text.contains("cannot be determined"), "{text}");
+            let files = ["history.csv", "fit.csv", "individuals.csv", "Calibrated.mo"];
+            for file in files.into_iter().chain(["report.html"]) {
+                assert!(folder.path().join(name).join(file).is_file(), "{file}");
+            }
+            assert!(!folder.path().join(name).join("run.journal").exists(), "the run has ended");
+        }
     }
-    assert!(!folder.path().join("out/run.journal").exists(), "the run has ended");
 }
 
 const TANK: &str = "model Tank
@@ -104,43 +124,139 @@ fn inputs_follow_the_data_and_initial_states_are_found() {
     }
 }
 
-/// A run that is killed again and again ends with the bytes of one that was not, on other numbers
-/// of threads, too.
+#[test]
+fn a_script_puts_a_problem_together() {
+    let folder = tempfile::tempdir().unwrap();
+    filled_tank(folder.path());
+    let script = "
+problem = GAPILib.Problem(modelName = \"Tank\", files = {\"tank.mo\"},
+  parameters = {GAPILib.Free(\"k\", min = 0.05, max = 5), GAPILib.Free(\"area\", min = 0.1, max = 20),
+                GAPILib.Free(\"h\", min = 0.01, max = 3, initialValue = true)},
+  experiments = {GAPILib.Experiment(data = \"tank.csv\", xColumn = \"t\", outputs = {\"h\"},
+                                    inputs = {\"u\"}, inputColumns = {\"inflow\"}, tolerance = 1e-8)},
+  evaluations = 600);
+(values, fitness, deviations) = identify(problem);
+print(\"k area h: \" + String(integer(1e3*values[1] + 0.5)) + \" \" + String(integer(1e3*values[2] + 0.5)) + \" \" + String(integer(1e3*values[3] + 0.5)))
+";
+    fs::write(folder.path().join("s.mos"), script).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_gapi"))
+        .args(["run", "s.mos"])
+        .current_dir(folder.path())
+        .env_remove("MODELICAPATH")
+        .output()
+        .unwrap();
+    let text = [output.stdout, output.stderr].map(|b| String::from_utf8(b).unwrap()).concat();
+    assert!(text.contains("k area h: 800 2000 300"), "{text}");
+    assert!(folder.path().join("results/report.html").is_file());
+}
+
+/// Kills in the suite; `GAPILIB_KILLS` sets another number.
+const KILLS: u64 = 6;
+
+/// Runs that are killed again and again at random moments end with the bytes of one that was not,
+/// on other numbers of threads, too.
 #[test]
 fn killed_runs_resume_to_the_same_end() {
     let folder: TempDir = tempfile::tempdir().unwrap();
     filled_tank(folder.path());
+    let started = std::time::Instant::now();
     let (code, text) = run(folder.path(), &["tank.toml", "--out", "whole", "--threads", "2"]);
     assert_eq!(code, 0, "{text}");
-    for kill in 0..5_u64 {
-        let threads = ["1", "2", "3"][kill as usize % 3];
-        let arguments = ["tank.toml", "--out", "cut", "--resume", "--threads", threads];
-        let mut child = command(folder.path(), &arguments)
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        // Killed when some more of the run stands in the journal.
-        let journal = folder.path().join("cut/run.journal");
-        let length = || fs::metadata(&journal).map_or(0, |metadata| metadata.len());
-        let before = length();
-        for _ in 0..1000 {
-            if length() > before + 100 || child.try_wait().unwrap().is_some() {
+    let length = started.elapsed();
+    let wanted = std::env::var("GAPILIB_KILLS").map_or(KILLS, |text| text.parse().unwrap());
+    let mut rng = gapilib::ga::Mrg32k3a::new(&[12345.0; 6]).unwrap();
+    let (mut kills, mut rounds, mut resumed) = (0, 0, 0);
+    while kills < wanted {
+        let out = format!("cut{rounds}");
+        rounds += 1;
+        loop {
+            let threads = ["1", "2", "3"][kills as usize % 3];
+            let arguments = ["tank.toml", "--out", &out, "--resume", "--threads", threads];
+            let mut child = command(folder.path(), &arguments)
+                .stdout(Stdio::null())
+                .stderr(Stdio::null())
+                .spawn()
+                .unwrap();
+            // At any moment of the whole run, the start and the writing of the results included.
+            std::thread::sleep(length.mul_f64(rng.uniform()));
+            let killed = child.try_wait().unwrap().is_none();
+            // It may end by itself just now.
+            let _ = child.kill();
+            let status = child.wait().unwrap();
+            if status.success() {
                 break;
             }
-            std::thread::sleep(Duration::from_millis(10));
+            assert!(killed, "it failed by itself: {status}");
+            kills += 1;
+            let journal = folder.path().join(&out).join("run.journal");
+            resumed += u64::from(fs::metadata(journal).is_ok_and(|file| file.len() > 16));
+            if kills >= wanted {
+                let (code, text) = run(folder.path(), &["tank.toml", "--out", &out, "--resume"]);
+                assert_eq!(code, 0, "{text}");
+                break;
+            }
         }
-        std::thread::sleep(Duration::from_millis(7 * kill));
-        // It may have ended by itself.
-        let _ = child.kill();
-        child.wait().unwrap();
+        for file in ["result.json", "history.csv", "fit.csv", "individuals.csv", "Calibrated.mo"] {
+            let read = |out: &str| fs::read(folder.path().join(out).join(file)).unwrap();
+            assert!(read(&out) == read("whole"), "{file} differs in {out} after {kills} kills");
+        }
     }
-    let (code, text) = run(folder.path(), &["tank.toml", "--out", "cut", "--resume"]);
+    assert!(resumed > 0, "none of {kills} kills hit a run with a checkpoint");
+}
+
+/// A file larger than 4 KiB cannot be written, as on a full disk.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_ends_no_run_and_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    filled_tank(folder.path());
+    let script = "trap '' XFSZ; ulimit -f 8; exec \"$0\" identify tank.toml";
+    let output = Command::new("sh")
+        .args(["-c", script, env!("CARGO_BIN_EXE_gapi")])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    let text = [output.stdout, output.stderr].map(|b| String::from_utf8(b).unwrap()).concat();
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(text.contains("the run goes on without checkpoints"), "{text}");
+    assert!(text.contains("area") && text.contains("95 % interval"), "{text}");
+    assert!(text.contains("result.json") && text.contains("could not be written"), "{text}");
+    // What is small enough was written, and nothing half.
+    assert!(folder.path().join("results/Calibrated.mo").is_file());
+    assert!(!folder.path().join("results/result.json").exists());
+    // With room again the run is completed from what the journal holds.
+    let (code, text) = run(folder.path(), &["tank.toml", "--resume"]);
     assert_eq!(code, 0, "{text}");
-    for file in ["result.json", "history.csv", "fit.csv", "individuals.csv", "Calibrated.mo"] {
-        let read = |out: &str| fs::read(folder.path().join(out).join(file)).unwrap();
-        assert!(read("cut") == read("whole"), "{file} differs\n{text}");
+    assert!(text.contains("resumed after"), "{text}");
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_told_before_the_run() {
+    let folder = tempfile::tempdir().unwrap();
+    filled_tank(folder.path());
+    fs::write(folder.path().join("taken"), "a file").unwrap();
+    let (code, text) = run(folder.path(), &["tank.toml", "--out", "taken/results"]);
+    assert!(code == 1 && text.contains("taken/results"), "{text}");
+    assert!(!text.contains("evaluations"), "{text}");
+}
+
+#[test]
+fn profiles_and_sensitivities_are_written() {
+    let folder = tempfile::tempdir().unwrap();
+    filled_tank(folder.path());
+    let (code, text) = run(
+        folder.path(),
+        &["tank.toml", "--profile", "--sensitivity", "sobol", "--samples", "32"],
+    );
+    assert_eq!(code, 0, "{text}");
+    assert!(text.contains("first order") && text.contains("95 % by profiles"), "{text}");
+    // Exact data: what the tolerance leaves is no physics that the model misses.
+    assert!(!text.contains("misses"), "{text}");
+    for file in ["sensitivity.csv", "profiles.csv"] {
+        assert!(folder.path().join("results").join(file).is_file(), "{file}");
     }
+    let (code, text) = run(folder.path(), &["tank.toml", "--sensitivity", "guess", "--out", "o"]);
+    assert!(code == 1 && text.contains("morris"), "{text}");
 }
 
 #[test]

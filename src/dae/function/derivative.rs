@@ -3,9 +3,10 @@
 //!
 //! The annotation counts where its function can be compiled and its inputs are those of the
 //! function, followed by a derivative for every Real input that is not `noDerivative`; otherwise
-//! the function is differentiated itself.
+//! the function is differentiated itself. A derivative function may have a derivative of its own,
+//! `derivative(order = 2)`, whose inputs are its inputs, followed by second derivatives.
 
-use super::instances::{Argument, Instances};
+use super::instances::{Argument, Instance, Instances};
 use crate::bytecode::Derivative;
 use crate::dae::lowering::Lowered;
 use crate::dae::model::Shape;
@@ -21,6 +22,7 @@ struct Wanted {
     name: Name,
     without: Vec<Ident>,
     zero: Vec<Ident>,
+    order: i64,
 }
 
 impl Instances {
@@ -33,7 +35,8 @@ impl Instances {
         span: Span,
     ) -> Option<Derivative> {
         let wanted: Vec<Wanted> = function.annotation.iter().filter_map(wanted).collect();
-        wanted.iter().find_map(|wanted| self.used(flat, function, arguments, wanted, span))
+        let mut first = wanted.iter().filter(|wanted| wanted.order == 1);
+        first.find_map(|wanted| self.used(flat, function, arguments, wanted, span))
     }
 
     fn used(
@@ -48,6 +51,7 @@ impl Instances {
         let of = flat.functions.get(&bare)?.clone();
         let mut given: Vec<Lowered<Option<f64>>> = arguments.iter().map(known).collect();
         let (mut tangents, mut zero, mut next) = (Vec::new(), Vec::new(), 0u32);
+        let mut second = Vec::new();
         for (input, argument) in function.inputs.iter().zip(arguments) {
             let Argument::Shape(shape) = argument else { continue };
             let scalars = next..next + shape.len() as u32;
@@ -57,6 +61,7 @@ impl Instances {
             } else if is_real(input) && !wanted.without.contains(&input.name) {
                 tangents.extend(scalars);
                 given.push(known(argument));
+                second.push(known(argument));
             }
         }
         if of.inputs.len() != given.len() {
@@ -84,7 +89,32 @@ impl Instances {
             outputs.extend((place..place + shape).map(Some));
             place += shape;
         }
-        Some(Derivative { function: instance.code, tangents, zero, outputs })
+        let second = self.second(flat, &of, [given, second].concat(), &instance, span);
+        Some(Derivative { function: instance.code, tangents, zero, outputs, second })
+    }
+
+    /// The derivative of a derivative function, for what that is given and second derivatives.
+    fn second(
+        &mut self,
+        flat: &FlatModel,
+        function: &Function,
+        given: Vec<Lowered<Option<f64>>>,
+        first: &Instance,
+        span: Span,
+    ) -> Option<u32> {
+        let mut wanted = function.annotation.iter().filter_map(wanted);
+        let wanted = wanted.find(|wanted| wanted.order == 2 && wanted.zero.is_empty())?;
+        let bare = Name { global: false, parts: wanted.name.parts.clone() };
+        let of = flat.functions.get(&bare)?.clone();
+        if of.inputs.len() != given.len() {
+            return None;
+        }
+        let instance = self.instance(flat, &of, &given, span).ok()?;
+        let (own, passed) = (&first.passed, &instance.passed);
+        let fits = instance.outputs == first.outputs
+            && passed[..own.len()] == **own
+            && passed[own.len()..].iter().all(|passed| *passed);
+        fits.then_some(instance.code)
     }
 }
 
@@ -111,14 +141,18 @@ fn wanted(argument: &ast::Argument) -> Option<Wanted> {
     if name != "derivative" {
         return None;
     }
-    let mut wanted = Wanted { name: reference(modification)?, without: vec![], zero: vec![] };
+    let mut wanted =
+        Wanted { name: reference(modification)?, without: vec![], zero: vec![], order: 1 };
     for argument in &modification.arguments {
         let (name, modification) = element(argument)?;
         match name {
             "noDerivative" => wanted.without.push(reference(modification)?.last()?),
             "zeroDerivative" => wanted.zero.push(reference(modification)?.last()?),
             "order" => match &modification.binding {
-                Some(Binding::Expression(e)) if e.kind == ExpressionKind::Integer(1) => {}
+                Some(Binding::Expression(e)) => match e.kind {
+                    ExpressionKind::Integer(order) => wanted.order = order,
+                    _ => return None,
+                },
                 _ => return None,
             },
             _ => return None,

@@ -35,7 +35,7 @@ use std::sync::Arc;
 pub(super) fn call(
     builder: &mut Builder<'_>,
     function: &Arc<Function>,
-    arguments: Vec<Lowered<Expr>>,
+    mut arguments: Vec<Lowered<Expr>>,
     span: Span,
 ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
     let outermost = builder.calls == 0;
@@ -52,13 +52,44 @@ pub(super) fn call(
         return Err(error);
     }
     builder.dae.assertions.truncate(asserted);
-    match compiled_call(builder, function, arguments.clone(), span) {
+    let mut result = compiled_call(builder, function, arguments.clone(), span);
+    if matches!(&result, Err(e) if e.code == NO_CONSTANT_VALUE)
+        && settle_whole_numbers(builder, function, &mut arguments)
+    {
+        result = compiled_call(builder, function, arguments.clone(), span);
+    }
+    match result {
         Err(_) if too_big => {
             builder.inlined = MAX_STATEMENTS;
             inline(builder, function, arguments, span)
         }
         result => result,
     }
+}
+
+/// Gives Integer and Boolean arguments, which sizes may depend on, the values that parameters have
+/// when compiling; whether there are any.
+fn settle_whole_numbers(
+    builder: &mut Builder<'_>,
+    function: &Function,
+    arguments: &mut [Lowered<Expr>],
+) -> bool {
+    let mut any = false;
+    for (input, argument) in function.inputs.iter().zip(arguments) {
+        let is_whole = matches!(input.value_type, ValueType::Integer | ValueType::Boolean);
+        let Lowered::Array(array) = &*argument else { continue };
+        let ([element], true) = (array.elements.as_slice(), array.dims.is_empty()) else {
+            continue;
+        };
+        if !is_whole || builder.dae.pool.as_constant(*element).is_some() {
+            continue;
+        }
+        if let Ok(Some(value)) = builder.settled(*element) {
+            *argument = Lowered::scalar(builder.dae.pool.constant(value));
+            any = true;
+        }
+    }
+    any
 }
 
 /// Expressions that call the code of a function.

@@ -19,7 +19,7 @@ use crate::diag::Fault;
 
 pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaStandardTables_CombiTimeTable_init", "tfannnannn->o", time::init),
-    Entry::pure("ModelicaStandardTables_CombiTimeTable_init2", "tfannnannnnnn->o", time::init2),
+    Entry::pure("ModelicaStandardTables_CombiTimeTable_init2", "ftannnannnnnn->o", time::init2),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_init3", "ftannnannnnnntn->o", time::init3),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_close", "o", close),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_getValue", "onnnn->n", time::value),
@@ -29,7 +29,7 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaStandardTables_CombiTimeTable_maximumTime", "o->n", time::maximum),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_nextTimeEvent", "on->n", time::next_event),
     Entry::pure("ModelicaStandardTables_CombiTable1D_init", "tfannann->o", one::init),
-    Entry::pure("ModelicaStandardTables_CombiTable1D_init2", "tfannannnn->o", one::init2),
+    Entry::pure("ModelicaStandardTables_CombiTable1D_init2", "ftannannnn->o", one::init2),
     Entry::pure("ModelicaStandardTables_CombiTable1D_init3", "ftannannnntn->o", one::init3),
     Entry::pure("ModelicaStandardTables_CombiTable1D_close", "o", close),
     Entry::pure("ModelicaStandardTables_CombiTable1D_getValue", "onn->n", one::value),
@@ -38,7 +38,7 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaStandardTables_CombiTable1D_minimumAbscissa", "o->n", one::minimum),
     Entry::pure("ModelicaStandardTables_CombiTable1D_maximumAbscissa", "o->n", one::maximum),
     Entry::pure("ModelicaStandardTables_CombiTable2D_init", "tfannn->o", two::init),
-    Entry::pure("ModelicaStandardTables_CombiTable2D_init2", "tfannnnn->o", two::init2),
+    Entry::pure("ModelicaStandardTables_CombiTable2D_init2", "ftannnnn->o", two::init2),
     Entry::pure("ModelicaStandardTables_CombiTable2D_init3", "ftannnnntn->o", two::init3),
     Entry::pure("ModelicaStandardTables_CombiTable2D_close", "o", close),
     Entry::pure("ModelicaStandardTables_CombiTable2D_getValue", "onn->n", two::value),

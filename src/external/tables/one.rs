@@ -88,13 +88,13 @@ pub(super) fn init(call: &mut Call<'_>) -> Result<(), Fault> {
     make(call, Source { name: 0, file: 1, matrix: 2, csv: None }, 2)
 }
 
-/// As [`init`], with extrapolation and verbosity.
+/// As [`init`], file before table, with extrapolation and verbosity.
 pub(super) fn init2(call: &mut Call<'_>) -> Result<(), Fault> {
     let extrapolation = call.whole(8);
-    make(call, Source { name: 0, file: 1, matrix: 2, csv: None }, extrapolation)
+    make(call, Source { name: 1, file: 0, matrix: 2, csv: None }, extrapolation)
 }
 
-/// As [`init2`], file before table, with delimiter and header lines of CSV files.
+/// As [`init2`], with delimiter and header lines of CSV files.
 pub(super) fn init3(call: &mut Call<'_>) -> Result<(), Fault> {
     let extrapolation = call.whole(8);
     make(call, Source { name: 1, file: 0, matrix: 2, csv: Some((10, 11)) }, extrapolation)

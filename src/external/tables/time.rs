@@ -38,13 +38,13 @@ pub(super) fn init(call: &mut Call<'_>) -> Result<(), Fault> {
     make(call, Source { name: 0, file: 1, matrix: 2, csv: None }, start, TimeEvents::Always)
 }
 
-/// As [`init`], with shift, time events and verbosity.
+/// As [`init`], file before table, with shift, time events and verbosity.
 pub(super) fn init2(call: &mut Call<'_>) -> Result<(), Fault> {
     let (shift, events) = (call.number(10), events(call)?);
-    make(call, Source { name: 0, file: 1, matrix: 2, csv: None }, shift, events)
+    make(call, Source { name: 1, file: 0, matrix: 2, csv: None }, shift, events)
 }
 
-/// As [`init2`], file before table, with delimiter and header lines of CSV files.
+/// As [`init2`], with delimiter and header lines of CSV files.
 pub(super) fn init3(call: &mut Call<'_>) -> Result<(), Fault> {
     let (shift, events) = (call.number(10), events(call)?);
     make(call, Source { name: 1, file: 0, matrix: 2, csv: Some((13, 14)) }, shift, events)
@@ -93,7 +93,14 @@ fn evaluated(call: &Call<'_>) -> Result<[f64; 3], Fault> {
             return Ok(curve.inside(x, before - 1, s));
         }
     }
-    let place = table.place(call, time - shift)?;
+    let mut u = time - shift;
+    let period = x[x.len() - 1] - x[0];
+    if table.extrapolation == Extrapolation::Periodic && period > 0.0 {
+        // The end of a period, but for rounding, is the beginning of the next.
+        let periods = ((u - x[0]) / period + 1e-12).floor();
+        u = (u - periods * period).max(x[0]);
+    }
+    let place = table.place(call, u)?;
     Ok(curve.at(x, table.extrapolation, place))
 }
 

@@ -19,14 +19,14 @@ pub(super) const ENTRY: Entry<dyn Method> = Entry {
     make: |options| {
         Ok(Box::new(CmaEs {
             population: whole(options, "population", 0.0..=1e6, 0.0)?,
-            sigma: options.take("sigma", 1e-6..=1.0, 0.3)?,
+            sigma: options.take("sigma", 1e-6..=1.0, 0.2)?,
             restarts: whole(options, "restarts", 0.0..=100.0, 9.0)?,
         }))
     },
 };
 
 /// A step below this, in the unit cube, is convergence.
-const SMALLEST_STEP: f64 = 1e-12;
+const SMALLEST_STEP: f64 = 1e-16;
 /// Generations over which the best must change, relative to itself.
 const FLAT: f64 = 1e-13;
 /// Largest ratio of the axes of the distribution, squared.
@@ -68,14 +68,18 @@ struct Search {
     /// Restarts left.
     left: usize,
     done: bool,
-    /// The individuals asked, before reflection.
+    /// The individuals asked, before reflection: the fitness continues beyond the bounds as its
+    /// mirror image, so that the steps stay those of the distribution.
     raw: Vec<DVector<f64>>,
 }
 
 /// The distribution of one start, with the letters of the reference.
 struct Distribution {
     size: usize,
+    /// Of the better half, which moves the mean; their sum is 1.
     weights: Vec<f64>,
+    /// Of the worse half, not above 0: the distribution shrinks in their directions.
+    unlikely: Vec<f64>,
     mu_eff: f64,
     cc: f64,
     cs: f64,
@@ -98,20 +102,28 @@ struct Distribution {
 impl Distribution {
     fn new(mean: &[f64], sigma: f64, size: usize) -> Distribution {
         let n = mean.len() as f64;
-        let mu = size / 2;
         let raw: Vec<f64> =
-            (0..mu).map(|k| ((size as f64 + 1.0) / 2.0).ln() - (k as f64 + 1.0).ln()).collect();
-        let sum: f64 = raw.iter().sum();
-        let weights: Vec<f64> = raw.iter().map(|w| w / sum).collect();
-        let mu_eff = 1.0 / weights.iter().map(|w| w * w).sum::<f64>();
+            (0..size).map(|k| ((size as f64 + 1.0) / 2.0).ln() - (k as f64 + 1.0).ln()).collect();
+        let (above, below) = raw.split_at(size / 2);
+        let effective =
+            |raw: &[f64]| raw.iter().sum::<f64>().powi(2) / raw.iter().map(|w| w * w).sum::<f64>();
+        let (mu_eff, mu_below) = (effective(above), effective(below));
         let cs = (mu_eff + 2.0) / (n + mu_eff + 5.0);
         let c1 = 2.0 / ((n + 1.3).powi(2) + mu_eff);
-        let cmu =
-            (2.0 * (mu_eff - 2.0 + 1.0 / mu_eff) / ((n + 2.0).powi(2) + mu_eff)).min(1.0 - c1);
+        let cmu = (2.0 * (0.25 + mu_eff + 1.0 / mu_eff - 2.0) / ((n + 2.0).powi(2) + mu_eff))
+            .min(1.0 - c1);
+        let sum = |raw: &[f64]| raw.iter().map(|w| w.abs()).sum::<f64>();
+        // The covariance stays positive definite however bad the worst are.
+        let negative = (1.0 + c1 / cmu)
+            .min(1.0 + 2.0 * mu_below / (mu_eff + 2.0))
+            .min((1.0 - c1 - cmu) / (n * cmu));
+        let weights = above.iter().map(|w| w / sum(above)).collect();
+        let unlikely = below.iter().map(|w| negative * w / sum(below)).collect();
         let m = mean.len();
         Distribution {
             size,
             weights,
+            unlikely,
             mu_eff,
             cc: (4.0 + mu_eff / n) / (n + 4.0 + 2.0 * mu_eff / n),
             cs,
@@ -156,11 +168,19 @@ impl Distribution {
         let factor = h * (self.cc * (2.0 - self.cc) * self.mu_eff).sqrt();
         self.pc = &self.pc * (1.0 - self.cc) + &y * factor;
         let lost = (1.0 - h) * self.cc * (2.0 - self.cc);
-        let keep = 1.0 - self.c1 - self.cmu + self.c1 * lost;
+        let all: f64 = self.weights.iter().chain(&self.unlikely).sum();
+        let keep = 1.0 - self.c1 - self.cmu * all + self.c1 * lost;
         self.c.ger(self.c1, &self.pc, &self.pc, keep);
         for (x, &w) in ranked.iter().zip(&self.weights) {
             let step = (*x - &old) / self.sigma;
             self.c.ger(self.cmu * w, &step, &step, 1.0);
+        }
+        for (x, &w) in ranked[self.weights.len()..].iter().zip(&self.unlikely) {
+            let step = (*x - &old) / self.sigma;
+            let mut white = self.b.tr_mul(&step);
+            white.component_div_assign(&self.d);
+            let length = n / white.norm_squared().max(f64::MIN_POSITIVE);
+            self.c.ger(self.cmu * w * length, &step, &step, 1.0);
         }
         self.sigma *=
             ((self.cs / self.damps) * (self.ps.norm() / self.chi_n - 1.0)).exp().min(10.0);
@@ -205,9 +225,8 @@ impl Optimizer for Search {
         }
         self.raw.clear();
         for _ in 0..self.distribution.size {
-            let mut x = self.distribution.sample(&mut self.rng);
-            x.apply(|value| *value = reflected(*value));
-            batch.push(x.as_slice());
+            let x = self.distribution.sample(&mut self.rng);
+            batch.push(x.map(reflected).as_slice());
             self.raw.push(x);
         }
     }
@@ -215,8 +234,7 @@ impl Optimizer for Search {
     fn tell(&mut self, batch: &Genomes, answers: &Answers<'_>) {
         let fitness: Vec<f64> = (0..batch.len()).map(|k| answers.fitness(k)).collect();
         let ranks = order(&fitness);
-        let count = self.distribution.weights.len();
-        let ranked: Vec<&DVector<f64>> = ranks.iter().take(count).map(|&k| &self.raw[k]).collect();
+        let ranked: Vec<&DVector<f64>> = ranks.iter().map(|&k| &self.raw[k]).collect();
         self.distribution.update(&ranked, fitness[ranks[0]]);
         let hopeless = has_failed(fitness[ranks[0]]) && self.distribution.generation > 20;
         if self.distribution.has_converged() || hopeless {

@@ -1,5 +1,5 @@
 //! A genetic algorithm with the operators that have proved themselves on real genes: Latin
-//! hypercube start that redraws failures, binary tournament, simulated binary crossover,
+//! hypercube or Sobol start that redraws failures, binary tournament, simulated binary crossover,
 //! polynomial mutation, elites.
 //!
 //! References: [Deb & Agrawal 1995](crate::bibliography#deb-agrawal-1995),
@@ -11,7 +11,7 @@ use crate::diag::Fault;
 use crate::fault;
 use crate::ga::crossover::sbx;
 use crate::ga::mutation::polynomial;
-use crate::ga::sampling::latin_hypercube;
+use crate::ga::sampling::{latin_hypercube, sobol};
 use crate::ga::selection::tournament;
 use crate::ga::{Genomes, Mrg32k3a, order};
 use crate::registry::{BAD_OPTION, Entry};
@@ -30,6 +30,7 @@ pub(super) const ENTRY: Entry<dyn Method> = Entry {
             eta_crossover: options.take("eta_crossover", 0.0..=1000.0, 15.0)?,
             mutation: options.take("mutation", 0.0..=1.0, 0.0)?,
             eta_mutation: options.take("eta_mutation", 0.0..=1000.0, 20.0)?,
+            sobol: whole(options, "sobol", 0.0..=1.0, 0.0)? == 1,
         }))
     },
 };
@@ -39,26 +40,26 @@ const REDRAWS: usize = 10;
 
 #[derive(Clone, Copy)]
 struct Genetic {
-    /// 0 for ten times the number of genes, from 20 to 100.
+    /// 0 for five times the number of genes, from 20 to 100.
     population: usize,
+    /// Members of the old generation that compete with the offspring; as many as the population or
+    /// more for all of them.
     elites: usize,
     crossover: f64,
     eta_crossover: f64,
     /// 0 for one gene in each individual.
     mutation: f64,
     eta_mutation: f64,
+    /// Whether it starts from a Sobol sequence instead of a Latin hypercube.
+    sobol: bool,
 }
 
 impl Method for Genetic {
     fn start(&self, setup: Setup) -> Result<Box<dyn Optimizer>, Fault> {
         let n = setup.genes.len();
-        let size = if self.population == 0 { (10 * n).clamp(20, 100) } else { self.population };
-        if self.elites >= size {
-            let elites = self.elites;
-            return Err(fault!(BAD_OPTION, "{elites} elites leave no room in {size} individuals"));
-        }
+        let size = if self.population == 0 { (5 * n).clamp(20, 100) } else { self.population };
         let mut rng = setup.rng;
-        let mut first = latin_hypercube(n, size, &mut rng);
+        let mut first = if self.sobol { sobol } else { latin_hypercube }(n, size, &mut rng);
         if let Some(start) = setup.start {
             first.row_mut(0).copy_from_slice(&start);
         }
@@ -106,12 +107,8 @@ impl Optimizer for Search {
         match setting {
             "mutation" if probability => self.settings.mutation = value,
             "crossover" if probability => self.settings.crossover = value,
-            "elites" if size && value < self.settings.population as f64 => {
-                self.settings.elites = value as usize;
-            }
-            "population" if size && value >= 4.0 && value > self.settings.elites as f64 => {
-                self.settings.population = value as usize;
-            }
+            "elites" if size => self.settings.elites = value as usize,
+            "population" if size && value >= 4.0 => self.settings.population = value as usize,
             _ => return Err(fault!(BAD_OPTION, "`{setting}` cannot become {value}")),
         }
         Ok(())
@@ -147,18 +144,22 @@ impl Search {
         }
     }
 
-    /// The elites of the old generation, then the best of the offspring.
+    /// The best of the elites of the old generation and the offspring, each of them once.
     fn replace(&mut self, offspring: &Genomes, fitness: &[f64]) {
-        let old = order(&self.fitness);
+        let elites = order(&self.fitness).into_iter().take(self.settings.elites);
+        let mut all: Vec<(&[f64], f64)> =
+            elites.map(|k| (self.parents.row(k), self.fitness[k])).collect();
+        all.extend(offspring.rows().zip(fitness.iter().copied()));
+        all.sort_by(|a, b| key(a.1).total_cmp(&key(b.1)));
         let mut next = Genomes::with_capacity(offspring.n_genes(), self.settings.population);
-        let mut next_fitness = Vec::with_capacity(self.settings.population);
-        for &k in old.iter().take(self.settings.elites) {
-            next.push(self.parents.row(k));
-            next_fitness.push(self.fitness[k]);
-        }
-        for (k, &fitness) in fitness.iter().enumerate() {
-            next.push(offspring.row(k));
-            next_fitness.push(fitness);
+        let mut next_fitness: Vec<f64> = Vec::with_capacity(self.settings.population);
+        for (genome, fitness) in all {
+            let is_last = |last: usize| next_fitness[last] == fitness && next.row(last) == genome;
+            let known = next.len().checked_sub(1).is_some_and(is_last);
+            if next.len() < self.settings.population && !known {
+                next.push(genome);
+                next_fitness.push(fitness);
+            }
         }
         (self.parents, self.fitness) = (next, next_fitness);
     }
@@ -166,7 +167,9 @@ impl Search {
     fn breed(&mut self) {
         let n = self.parents.n_genes();
         let settings = self.settings;
-        let count = settings.population - settings.elites;
+        // Where all parents compete with them, there are as many offspring.
+        let kept = if settings.elites < settings.population { settings.elites } else { 0 };
+        let count = settings.population - kept;
         let mutation = if settings.mutation > 0.0 { settings.mutation } else { 1.0 / n as f64 };
         let better = |a: usize, b: usize, fitness: &[f64]| key(fitness[a]) <= key(fitness[b]);
         let mut offspring = Genomes::with_capacity(n, count);

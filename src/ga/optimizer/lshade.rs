@@ -32,14 +32,15 @@ const SMALLEST: usize = 4;
 const BUDGET_PER_GENE: u64 = 5000;
 
 struct Lshade {
-    /// 0 for 18 individuals a gene.
+    /// 0 for ten individuals a gene: the 18 of the reference use up small budgets before they
+    /// learn.
     population: usize,
 }
 
 impl Method for Lshade {
     fn start(&self, setup: Setup) -> Result<Box<dyn Optimizer>, Fault> {
         let n = setup.genes.len();
-        let size = if self.population == 0 { 18 * n } else { self.population }.max(SMALLEST);
+        let size = if self.population == 0 { 10 * n } else { self.population }.max(SMALLEST);
         let budget = setup.budget.unwrap_or(BUDGET_PER_GENE * n as u64).max(1);
         // A population that uses up the budget in its first generations learns nothing.
         let size = size.min((budget / 10) as usize).max(SMALLEST);

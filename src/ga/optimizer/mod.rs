@@ -15,7 +15,7 @@ mod nelder_mead;
 mod nsga2;
 mod polish;
 
-pub use nsga2::non_dominated;
+pub use nsga2::{Survivor, non_dominated, survivors};
 pub use polish::Polished;
 
 use super::{Gene, Genomes, Mrg32k3a, has_failed};
@@ -147,6 +147,8 @@ fn key(fitness: f64) -> f64 {
     if fitness.is_nan() { f64::INFINITY } else { fitness }
 }
 
+#[cfg(test)]
+use super::{FAILED_FITNESS, hypervolume};
 #[cfg(test)]
 pub(crate) mod problems;
 #[cfg(test)]

@@ -11,6 +11,7 @@ use crate::ga::sampling::latin_hypercube;
 use crate::ga::selection::tournament;
 use crate::ga::{Genomes, Mrg32k3a};
 use crate::registry::Entry;
+use std::cmp::Ordering;
 
 /// The table entry.
 pub(super) const ENTRY: Entry<dyn Method> = Entry {
@@ -107,26 +108,14 @@ impl Optimizer for Search {
 
 impl Search {
     fn survive(&mut self, m: usize) {
-        let fronts = fronts(&self.objectives, m);
-        let mut next = Genomes::with_capacity(self.genomes.n_genes(), 2 * self.settings.population);
-        let (mut objectives, mut ranks, mut distances) = (Vec::new(), Vec::new(), Vec::new());
-        for (rank, front) in fronts.iter().enumerate() {
-            let distance = crowding(front, &self.objectives, m);
-            let mut chosen: Vec<usize> = (0..front.len()).collect();
-            let room = self.settings.population - next.len();
-            if chosen.len() > room {
-                chosen.sort_by(|&a, &b| distance[b].total_cmp(&distance[a]));
-                chosen.truncate(room);
-            }
-            for k in chosen {
-                next.push(self.genomes.row(front[k]));
-                objectives.extend_from_slice(&self.objectives[front[k] * m..(front[k] + 1) * m]);
-                ranks.push(rank);
-                distances.push(distance[k]);
-            }
-        }
-        (self.genomes, self.objectives, self.rank, self.distance) =
-            (next, objectives, ranks, distances);
+        let survivors = survivors(&self.objectives, m, self.settings.population);
+        let mut next = Genomes::with_capacity(self.genomes.n_genes(), 2 * survivors.len());
+        survivors.iter().for_each(|survivor| next.push(self.genomes.row(survivor.place)));
+        let own = |survivor: &Survivor| survivor.place * m..(survivor.place + 1) * m;
+        self.objectives = survivors.iter().flat_map(|s| self.objectives[own(s)].to_vec()).collect();
+        self.rank = survivors.iter().map(|survivor| survivor.rank).collect();
+        self.distance = survivors.iter().map(|survivor| survivor.distance).collect();
+        self.genomes = next;
     }
 
     fn breed(&mut self) {
@@ -159,13 +148,48 @@ impl Search {
     }
 }
 
-fn dominates(a: &[f64], b: &[f64]) -> bool {
-    a.iter().zip(b).all(|(a, b)| a <= b) && a.iter().zip(b).any(|(a, b)| a < b)
+/// `Less` where `a` dominates `b`, `Greater` where `b` dominates `a`, else `Equal`.
+fn dominance(a: &[f64], b: &[f64]) -> Ordering {
+    let (mut better, mut worse) = (false, false);
+    for (a, b) in a.iter().zip(b) {
+        better |= a < b;
+        worse |= a > b;
+    }
+    worse.cmp(&better)
 }
 
 /// The individuals that no other dominates, in their order; `objectives` has `m` numbers each.
 pub fn non_dominated(objectives: &[f64], m: usize) -> Vec<usize> {
     fronts(objectives, m).into_iter().next().unwrap_or_default()
+}
+
+/// An individual that lives on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Survivor {
+    /// Its place among the individuals that competed.
+    pub place: usize,
+    /// The number of its front; 0 is the best.
+    pub rank: usize,
+    /// How far its neighbours in the front are; infinite at the ends.
+    pub distance: f64,
+}
+
+/// The individuals that form the next population: whole fronts, best first, then of the front that
+/// does not fit the members with the most room about them. `objectives` has `m` numbers each.
+pub fn survivors(objectives: &[f64], m: usize, population: usize) -> Vec<Survivor> {
+    let mut survivors = Vec::with_capacity(population);
+    for (rank, front) in fronts(objectives, m).into_iter().enumerate() {
+        let distance = crowding(&front, objectives, m);
+        let mut chosen: Vec<usize> = (0..front.len()).collect();
+        let room = population - survivors.len();
+        if chosen.len() > room {
+            chosen.sort_by(|&a, &b| distance[b].total_cmp(&distance[a]));
+            chosen.truncate(room);
+        }
+        let survivor = |k: usize| Survivor { place: front[k], rank, distance: distance[k] };
+        survivors.extend(chosen.into_iter().map(survivor));
+    }
+    survivors
 }
 
 /// Fronts, best first.
@@ -176,12 +200,16 @@ fn fronts(objectives: &[f64], m: usize) -> Vec<Vec<usize>> {
     let mut above = vec![0_usize; count];
     for a in 0..count {
         for b in a + 1..count {
-            if dominates(row(a), row(b)) {
-                dominated[a].push(b);
-                above[b] += 1;
-            } else if dominates(row(b), row(a)) {
-                dominated[b].push(a);
-                above[a] += 1;
+            match dominance(row(a), row(b)) {
+                Ordering::Less => {
+                    dominated[a].push(b);
+                    above[b] += 1;
+                }
+                Ordering::Greater => {
+                    dominated[b].push(a);
+                    above[a] += 1;
+                }
+                Ordering::Equal => {}
             }
         }
     }

@@ -1,7 +1,8 @@
 //! Problems with known minima, and the loop that solves them.
 
-use super::{Answers, Method, Setup};
-use crate::ga::{FAILED_FITNESS, Gene, Genomes, Mrg32k3a};
+// What includes this file, a test or a benchmark, names these in its own way.
+use super::{Answers, FAILED_FITNESS, Gene, Genomes, Method, Mrg32k3a, Polished, Setup};
+use super::{hypervolume, survivors};
 
 /// Residuals at a point of the unit cube; `None` where it fails. The first objective is their sum
 /// of squares.
@@ -28,7 +29,7 @@ pub(crate) fn minimum(
     };
     let mut search = method.start(setup).unwrap();
     if polish {
-        search = Box::new(super::Polished::new(search, 1.5e-8, 0.0, rng.substream(1)));
+        search = Box::new(Polished::new(search, 1.5e-8, 0.0, rng.substream(1)));
     }
     let (mut best, mut used) = (f64::INFINITY, 0);
     while used < budget {
@@ -94,4 +95,68 @@ pub(crate) fn ackley(genome: &[f64]) -> Option<Vec<f64>> {
     let cosine = x.iter().map(|x| (std::f64::consts::TAU * x).cos()).sum::<f64>() / n;
     let value = -20.0 * (-0.2 * square.sqrt()).exp() - cosine.exp() + 20.0 + std::f64::consts::E;
     Some(vec![value.max(0.0).sqrt()])
+}
+
+/// Several objectives of a point of the unit cube.
+pub(crate) type Objectives = fn(&[f64]) -> Vec<f64>;
+
+/// The volume that the population dominates after so many evaluations, up to 1.1 in each objective.
+pub(crate) fn dominated(
+    method: &dyn Method,
+    population: usize,
+    n: usize,
+    budget: usize,
+    seed: u64,
+    objectives: Objectives,
+) -> f64 {
+    let rng = Mrg32k3a::new(&Mrg32k3a::DEFAULT_SEED).unwrap().stream(seed);
+    let genes = (0..n).map(|j| Gene::new(format!("g{j}"), 0.0, 1.0).unwrap()).collect();
+    let n_objectives = objectives(&vec![0.5; n]).len();
+    let budget_known = Some(budget as u64);
+    let setup =
+        Setup { genes, n_objectives, budget: budget_known, start: None, difference: 1e-8, rng };
+    let mut search = method.start(setup).unwrap();
+    let (mut members, mut used): (Vec<f64>, usize) = (Vec::new(), 0);
+    while used < budget {
+        let mut batch = Genomes::with_capacity(n, 0);
+        search.ask(&mut batch);
+        used += batch.len();
+        let found: Vec<f64> = batch.rows().flat_map(objectives).collect();
+        search.tell(&batch, &Answers { objectives: &found, n_objectives, residuals: &[] });
+        // Population and offspring compete as they do within the method.
+        members.extend(found);
+        let kept = survivors(&members, n_objectives, population);
+        let row = |place: usize| members[place * n_objectives..(place + 1) * n_objectives].to_vec();
+        members = kept.into_iter().flat_map(|survivor| row(survivor.place)).collect();
+    }
+    hypervolume(&members, n_objectives, &vec![1.1; n_objectives])
+}
+
+fn zdt(genome: &[f64], shape: fn(f64, f64) -> f64) -> Vec<f64> {
+    let rest = &genome[1..];
+    let g = 1.0 + 9.0 * rest.iter().sum::<f64>() / rest.len() as f64;
+    vec![genome[0], g * shape(genome[0], g)]
+}
+
+/// Convex front.
+pub(crate) fn zdt1(genome: &[f64]) -> Vec<f64> {
+    zdt(genome, |f, g| 1.0 - (f / g).sqrt())
+}
+
+/// Front that is not convex.
+pub(crate) fn zdt2(genome: &[f64]) -> Vec<f64> {
+    zdt(genome, |f, g| 1.0 - (f / g).powi(2))
+}
+
+/// Front in five pieces.
+pub(crate) fn zdt3(genome: &[f64]) -> Vec<f64> {
+    zdt(genome, |f, g| 1.0 - (f / g).sqrt() - f / g * (10.0 * std::f64::consts::PI * f).sin())
+}
+
+/// A part of a sphere, three objectives.
+pub(crate) fn dtlz2(genome: &[f64]) -> Vec<f64> {
+    let g: f64 = genome[2..].iter().map(|u| (u - 0.5).powi(2)).sum();
+    let [a, b] = [genome[0], genome[1]].map(|u| u * std::f64::consts::FRAC_PI_2);
+    let size = 1.0 + g;
+    vec![size * a.cos() * b.cos(), size * a.cos() * b.sin(), size * a.sin()]
 }

@@ -1,9 +1,11 @@
 //! Sampling: how random individuals are made.
 
 mod latin_hypercube;
+mod sobol;
 mod uniform;
 
 pub use latin_hypercube::latin_hypercube;
+pub use sobol::{SOBOL_GENES, sobol};
 pub use uniform::sample_uniform;
 
 use super::{Gene, Genomes, Mrg32k3a};
@@ -16,4 +18,5 @@ pub trait Sampling: Send + Sync {
 }
 
 /// All ways of sampling.
-pub const SAMPLINGS: &[&Entry<dyn Sampling>] = &[&uniform::ENTRY, &latin_hypercube::ENTRY];
+pub const SAMPLINGS: &[&Entry<dyn Sampling>] =
+    &[&uniform::ENTRY, &latin_hypercube::ENTRY, &sobol::ENTRY];

@@ -89,6 +89,18 @@ impl Evaluation {
         self.scales.as_deref()
     }
 
+    /// What differences of the points count.
+    pub(super) fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// How far two simulations are apart: root mean square of the weighted differences.
+    pub(super) fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
+        let pairs = a.iter().zip(b).zip(&self.weights);
+        let square: f64 = pairs.map(|((a, b), weight)| (weight * (a - b)).powi(2)).sum();
+        (square / a.len() as f64).sqrt()
+    }
+
     /// Evaluates every individual; the genomes are those of the method.
     pub fn evaluate(&mut self, problem: &Problem, batch: &Genomes, residuals: bool) -> Answered {
         let (n, m, points) = (batch.len(), self.n_objectives, self.measured.len());

@@ -35,6 +35,10 @@ impl Solution {
         page += "</figure>\n";
         page += &self.traces();
         page += &self.correlation_table();
+        page += &self.profile_figures();
+        if let Some(importance) = &self.importance {
+            _ = writeln!(page, "<h2>Sensitivity</h2><pre>{}</pre>", escaped(&importance.text()));
+        }
         page += &self.landscapes();
         page += &self.front_figure();
         page += "</body></html>\n";
@@ -91,6 +95,39 @@ impl Solution {
             html += "</tr>\n";
         }
         html + "</table>\n"
+    }
+
+    /// The smallest sum of squares against each parameter, and the limit of the 95 % interval.
+    fn profile_figures(&self) -> String {
+        let Some(found) = &self.profiles else { return String::new() };
+        let mut html = String::from(
+            "<h2>Profiles</h2><p>Smallest sum of squares with one parameter held; below the line: 95 %.</p>\n",
+        );
+        for (parameter, profile) in self.parameters.iter().zip(&found.profiles) {
+            let sums = || profile.points.iter().map(|point| point[1]);
+            let low = sums().fold(f64::INFINITY, f64::min);
+            let high = 3.0f64.mul_add(profile.limit - low, low).max(f64::MIN_POSITIVE);
+            let [from, to] = [profile.points.first(), profile.points.last()]
+                .map(|end| end.map_or(0.0, |end| fraction(parameter, end[0])));
+            let up = |sum: f64| 140.0 - 130.0 * ((sum - low) / (high - low)).clamp(0.0, 1.0);
+            let place = |point: &[f64; 2]| {
+                let across = (fraction(parameter, point[0]) - from) / (to - from).max(1e-300);
+                format!("{:.1},{:.1}", 20.0 + 360.0 * across, up(point[1]))
+            };
+            let points: Vec<String> = profile.points.iter().map(place).collect();
+            let ends = [profile.points.first(), profile.points.last()]
+                .map(|end| end.map_or(String::new(), |end| significant(end[0], 4)));
+            let limit = up(profile.limit);
+            _ = writeln!(
+                html,
+                "<div>{}: {} to {}</div><svg viewBox=\"0 0 400 150\" width=\"400\"><rect x=\"20\" y=\"10\" width=\"360\" height=\"130\" fill=\"#f6f6f6\"/><line x1=\"20\" x2=\"380\" y1=\"{limit:.1}\" y2=\"{limit:.1}\" stroke=\"#c60\"/><polyline fill=\"none\" stroke=\"#06c\" points=\"{}\"/></svg>",
+                escaped(&parameter.name),
+                ends[0],
+                ends[1],
+                points.join(" ")
+            );
+        }
+        html
     }
 
     /// What was evaluated, for pairs of neighbouring parameters; darker is better, red failed.

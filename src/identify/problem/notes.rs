@@ -1,15 +1,17 @@
 //! What must be known about a solution, in words.
 
-use super::{Solution, SolvedParameter, SolvedSeries, Statistics};
+use super::{Profiles, Solution, SolvedParameter, SolvedSeries, Statistics};
 use crate::identify::table::significant;
 
 /// Residuals whose runs are less probable than this are no noise.
 const NO_NOISE: f64 = 0.01;
+/// Residuals below this many times the error of the simulation come from the simulation.
+const FROM_THE_SOLVER: f64 = 100.0;
 /// Beyond this condition number digits of the sensitivities are lost.
 const ILL_CONDITIONED: f64 = 1e4;
 
-/// The sentences, most important first.
-pub(super) fn notes(solution: &Solution, statistics: &Statistics) -> Vec<String> {
+/// The sentences, most important first. `noise`: relative error of the simulated values.
+pub(super) fn notes(solution: &Solution, statistics: &Statistics, noise: f64) -> Vec<String> {
     let mut notes = Vec::new();
     let name = |k: usize| solution.parameters[k].name.as_str();
     for &k in &statistics.without_effect {
@@ -54,7 +56,7 @@ pub(super) fn notes(solution: &Solution, statistics: &Statistics) -> Vec<String>
             significant(condition, 2)
         ));
     }
-    notes.extend(solution.series.iter().filter_map(not_noise));
+    notes.extend(solution.series.iter().filter_map(|series| about_residuals(series, noise)));
     if statistics.uncertainty.is_none() {
         notes.push(
             "Deviations could not be computed: there are not more points than parameters, or the \
@@ -89,6 +91,52 @@ fn undetermined(parameter: &SolvedParameter) -> String {
         significant(high, 4),
         if (low, high) == (min, max) { ", its whole search range" } else { "" }
     )
+}
+
+/// What the profiles say beyond the linear intervals.
+pub(super) fn profile_notes(solution: &Solution, found: &Profiles) -> Vec<String> {
+    let mut notes = Vec::new();
+    for (parameter, profile) in solution.parameters.iter().zip(&found.profiles) {
+        let [min, max] = parameter.range.map(|end| significant(end, 4));
+        let name = &parameter.name;
+        let note = match profile.interval.map(|end| end.map(|end| significant(end, 4))) {
+            [Some(_), Some(_)] => continue,
+            [None, None] => format!(
+                "By its profile {name} may be anything in its search range, {min} to {max}."
+            ),
+            [Some(low), None] => format!(
+                "By its profile {name} is at least {low}; up to the end {max} of its range the data do not bound it."
+            ),
+            [None, Some(high)] => format!(
+                "By its profile {name} is at most {high}; down to the end {min} of its range the data do not bound it."
+            ),
+        };
+        notes.push(note);
+    }
+    if let Some((values, sum)) = &found.better {
+        let pairs = solution.parameters.iter().zip(values);
+        let values: Vec<String> =
+            pairs.map(|(p, value)| format!("{} = {}", p.name, significant(*value, 6))).collect();
+        notes.push(format!(
+            "The profiles came upon a better fit ({}): {}. Run again, with a larger budget or these starts.",
+            significant(*sum, 7),
+            values.join(", ")
+        ));
+    }
+    notes
+}
+
+fn about_residuals(series: &SolvedSeries, noise: f64) -> Option<String> {
+    let square: f64 = series.points.iter().map(|point| point[1] * point[1]).sum();
+    let size = (square / series.points.len() as f64).sqrt();
+    if series.rmse <= FROM_THE_SOLVER * noise * size {
+        return Some(format!(
+            "The residuals of {} are as small as the errors of the simulation: these data have no \
+             noise, and deviations and intervals say nothing about measured ones.",
+            series.y[0]
+        ));
+    }
+    not_noise(series)
 }
 
 fn not_noise(series: &SolvedSeries) -> Option<String> {

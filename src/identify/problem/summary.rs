@@ -1,6 +1,6 @@
 //! The solution: what was found, how well it fits, and what the data cannot tell.
 
-use super::{FailureKind, Run, Statistics, residual_test};
+use super::{FailureKind, Importance, Profiles, Run, Statistics, profiles, residual_test};
 use crate::diag::Fault;
 use crate::fault;
 use crate::ga::Generation;
@@ -55,6 +55,10 @@ pub struct Solution {
     pub causes: indexmap::IndexMap<String, u64>,
     /// Settings changed during the run.
     pub changes: Vec<(u64, String, f64)>,
+    /// How much each parameter matters, where that was asked before the fit.
+    pub importance: Option<Importance>,
+    /// Profiles of the parameters, where they were asked.
+    pub profiles: Option<Profiles>,
     /// Points of the front, where there are several objectives: parameters and objectives.
     pub front: Vec<(Vec<f64>, Vec<f64>)>,
     /// The place in the front that is farthest from the line between its ends.
@@ -210,6 +214,8 @@ impl Solution {
             failures: kinds.map(|(kind, count)| (kind.name(), *count)).collect(),
             causes: run.causes.clone(),
             changes: run.changed.clone(),
+            importance: None,
+            profiles: None,
             knee: knee(&run.front),
             front: run.front.clone(),
             objectives: problem.objectives.iter().map(|(name, _)| name.clone()).collect(),
@@ -219,8 +225,30 @@ impl Solution {
             trace: run.trace.clone(),
             individuals: run.kept.clone(),
         };
-        solution.notes = super::notes::notes(&solution, &statistics);
+        solution.notes = super::notes::notes(&solution, &statistics, problem.noise);
         Ok(solution)
+    }
+
+    /// Adds the profiles of all parameters and what they tell.
+    ///
+    /// # Errors
+    ///
+    /// A fitness that is no sum of squares, or too few points.
+    pub fn add_profiles(&mut self, run: &Run) -> Result<(), Fault> {
+        let Some(best) = &run.best else { return Ok(()) };
+        let half = |p: &SolvedParameter| p.interval.map(|[low, high]| 0.5 * (high - low));
+        let reach: Vec<Option<f64>> = self.parameters.iter().map(half).collect();
+        let found = profiles(&run.problem, &run.evaluation, &best.values, &reach)?;
+        let found = found.ok_or_else(|| {
+            fault!(
+                BAD_OPTION,
+                "there are no profiles of `{}` with {} points", self.fitness_name, run.problem.n_points();
+                help: "minimise a sum of squares of more points than parameters"
+            )
+        })?;
+        self.notes.extend(super::notes::profile_notes(self, &found));
+        self.profiles = Some(found);
+        Ok(())
     }
 
     /// Pairs of parameters that the data can hardly tell apart.

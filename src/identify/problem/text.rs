@@ -1,6 +1,6 @@
 //! The solution as text: for people, as CSV, as Modelica and as script.
 
-use super::{Solution, SolvedParameter, SolvedSeries};
+use super::{Profile, Solution, SolvedParameter, SolvedSeries};
 use crate::identify::table::significant;
 use std::fmt::Write;
 
@@ -11,6 +11,15 @@ impl Solution {
     /// The report that ends a run.
     pub fn text(&self) -> String {
         let mut text = format!("\n{}\n\n{}\n", self.title, parameter_table(&self.parameters));
+        if let Some(profiles) = &self.profiles {
+            let row = |profile: &Profile| {
+                let ends =
+                    profile.interval.map(|end| end.map_or("-".into(), |e| significant(e, 4)));
+                format!("{} in {} .. {}", profile.name, ends[0], ends[1])
+            };
+            let rows: Vec<String> = profiles.profiles.iter().map(row).collect();
+            _ = writeln!(text, "  95 % by profiles: {}\n", rows.join("; "));
+        }
         for (label, value) in self.facts() {
             // Writing into a String cannot fail.
             _ = writeln!(text, "  {label:<12} {value}");
@@ -46,7 +55,7 @@ impl Solution {
         let share = 100.0 * failed as f64 / self.evaluations.max(1) as f64;
         facts.push((
             "evaluations",
-            format!("{} in {} generations, {failed} failed ({share:.1} %); {} simulations, {} more for the deviations", self.evaluations, self.generations, self.simulations, self.simulations_for_statistics),
+            format!("{} in {} generations, {failed} failed ({share:.1} %); {} simulations, {} more for the deviations{}", self.evaluations, self.generations, self.simulations, self.simulations_for_statistics, self.profiles.as_ref().map_or(String::new(), |all| format!(", {} for the profiles", all.simulations))),
         ));
         let mut causes: Vec<(&String, &u64)> = self.causes.iter().collect();
         causes.sort_by(|a, b| b.1.cmp(a.1));
@@ -108,6 +117,18 @@ impl Solution {
         for (values, fitness) in &self.individuals {
             values.iter().for_each(|value| text += &format!("{value},"));
             _ = writeln!(text, "{fitness:e}");
+        }
+        text
+    }
+
+    /// `profiles.csv`: one line for each value; empty without profiles.
+    pub fn profiles_csv(&self) -> String {
+        let mut text = String::from("parameter,value,sum_of_squares,limit\n");
+        for profile in self.profiles.iter().flat_map(|profiles| &profiles.profiles) {
+            for [value, sum] in &profile.points {
+                let (name, limit) = (quoted(&profile.name), profile.limit);
+                _ = writeln!(text, "{name},{value},{sum:e},{limit:e}");
+            }
         }
         text
     }

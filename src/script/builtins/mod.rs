@@ -15,7 +15,9 @@ mod loading;
 mod matrices;
 mod messages;
 mod openmodelica;
+mod output;
 mod plotting;
+mod problem;
 mod refused;
 mod regular;
 mod results;
@@ -30,6 +32,7 @@ mod upgrade;
 mod windows;
 
 pub use args::Args;
+pub(in crate::script) use classes::component_names;
 pub(in crate::script) use strings::constant;
 
 use crate::diag::{Diagnostic, Fault};
@@ -100,6 +103,7 @@ pub static FAMILIES: &[&Family] = &[
     &files::FAMILY,
     &files::OPENMODELICA,
     &gapilib::FAMILY,
+    &problem::FAMILY,
     &initial::FAMILY,
     &linearization::FAMILY,
     &linearization::OPENMODELICA,
@@ -108,6 +112,7 @@ pub static FAMILIES: &[&Family] = &[
     &matrices::FAMILY,
     &messages::FAMILY,
     &openmodelica::FAMILY,
+    &output::FAMILY,
     &plotting::FAMILY,
     &plotting::OPENMODELICA,
     &refused::FAMILY,

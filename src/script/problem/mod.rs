@@ -8,6 +8,7 @@
 mod build;
 mod control;
 mod file;
+mod record;
 
 use super::Session;
 use super::world::Progress;
@@ -15,10 +16,11 @@ use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::identify::problem::{
-    self as solving, ModelSimulator, Run, Simulate, Solution, SolvedSeries,
+    self as solving, Importance, ModelSimulator, Run, Simulate, Solution, SolvedSeries,
 };
 use crate::registry::BAD_OPTION;
 use crate::source::Span;
+use crate::value::RecordValue;
 use build::Built;
 use control::Watched;
 use std::path::{Path, PathBuf};
@@ -39,6 +41,14 @@ pub struct RunOptions {
     pub fresh: bool,
     /// A file with settings that may be changed while the run goes on.
     pub watch: Option<PathBuf>,
+    /// Folder for the results within that of the world.
+    pub folder: PathBuf,
+    /// Profiles of the parameters after the fit.
+    pub profile: bool,
+    /// A sensitivity analysis before the fit, by name.
+    pub sensitivity: Option<String>,
+    /// Its base samples; 0 for the usual number.
+    pub samples: usize,
     /// Ends the run after so many evaluations, whatever the problem says.
     pub evaluations: Option<u64>,
 }
@@ -70,6 +80,30 @@ pub fn solve(
     let bytes = session.read_bytes(path).map_err(one)?;
     let text = String::from_utf8(bytes)
         .map_err(|_| one(fault!(BAD_OPTION, "`{}` is no text", path.display())))?;
+    solve_text(session, path, text, options)
+}
+
+/// Solves the problem that a record `GAPILib.Problem` of a script holds.
+///
+/// # Errors
+///
+/// As [`solve`].
+pub(super) fn solve_record(
+    session: &mut Session,
+    record: &RecordValue,
+    options: &RunOptions,
+) -> Result<Solution, Vec<Diagnostic>> {
+    let text = record::text(record).map_err(|fault| vec![fault.at(Span::NONE)])?;
+    solve_text(session, Path::new("problem"), text, options)
+}
+
+fn solve_text(
+    session: &mut Session,
+    path: &Path,
+    text: String,
+    options: &RunOptions,
+) -> Result<Solution, Vec<Diagnostic>> {
+    let one = |fault: Fault| vec![fault.at(Span::NONE)];
     let source = session.sources.add(path.display().to_string(), text.as_str());
     let file = file::read(source, &text).map_err(|error| vec![error])?;
     let mut built = build::build(session, &file, path, &text)?;
@@ -87,8 +121,9 @@ fn solve_built(
     every: (Option<u64>, f64),
 ) -> Result<Solution, Fault> {
     let Built { problem, validation, fingerprint } = built;
-    let folder = session.world.output_dir();
+    let folder = session.world.output_dir().join(&options.folder);
     let mut run = Run::new(problem, session.world.threads())?;
+    let importance = analysed(session, &run, &folder, options)?;
     let mut checkpoint = open(session, &mut run, &folder, fingerprint, options, every)?;
     let mut watched = options.watch.clone().map(Watched::new);
     let before = run.seconds;
@@ -112,7 +147,11 @@ fn solve_built(
     };
     checkpoint.flush(session, run.seconds);
     let validation = validated(&run, &validation)?;
-    let solution = Solution::of(&run, &stop, validation)?;
+    let mut solution = Solution::of(&run, &stop, validation)?;
+    solution.importance = importance;
+    if options.profile && !interrupted {
+        solution.add_profiles(&run)?;
+    }
     session.print(&solution.text());
     write(session, &folder, &solution)?;
     if let Some(why) = checkpoint.broken {
@@ -125,6 +164,21 @@ fn solve_built(
         let _ = session.world.remove(&checkpoint.path);
     }
     Ok(solution)
+}
+
+/// The sensitivity analysis that was asked for, printed and written.
+fn analysed(
+    session: &mut Session,
+    run: &Run,
+    folder: &Path,
+    options: &RunOptions,
+) -> Result<Option<Importance>, Fault> {
+    let Some(name) = &options.sensitivity else { return Ok(None) };
+    let analysis = solving::analysis(name)?;
+    let found = analysis.importance(&run.problem, &run.evaluation, options.samples)?;
+    session.print(&found.text());
+    session.write_file(&folder.join("sensitivity.csv"), found.csv().as_bytes())?;
+    Ok(Some(found))
 }
 
 /// Reads the checkpoint of an earlier run, or begins one.
@@ -263,10 +317,23 @@ fn write(session: &mut Session, folder: &Path, solution: &Solution) -> Result<()
         ("calibrated.mos", solution.script()),
         ("report.html", solution.html()),
     ];
-    for (name, text) in files {
-        session.write_file(&folder.join(name), text.as_bytes())?;
+    let profiles = solution.profiles.is_some().then(|| ("profiles.csv", solution.profiles_csv()));
+    // What can be written is: one file that is too large must not take the others with it.
+    let (mut missing, mut why) = (Vec::new(), None);
+    for (name, text) in files.into_iter().chain(profiles) {
+        if let Err(fault) = session.write_file(&folder.join(name), text.as_bytes()) {
+            missing.push(name);
+            why.get_or_insert(fault);
+        }
     }
-    session.print(&format!("\n  written to {}\n", folder.display()));
+    match why {
+        None => session.print(&format!("\n  written to {}\n", folder.display())),
+        Some(fault) => bail!(
+            BAD_OPTION,
+            "{} could not be written into `{}`: {}", missing.join(", "), folder.display(), fault.message;
+            help: "make room or choose another folder with `--out`; what the run has found stands above"
+        ),
+    }
     Ok(())
 }
 

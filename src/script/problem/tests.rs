@@ -178,3 +178,35 @@ fn an_unfinished_run_is_never_overwritten_and_resumes_to_the_same_end() {
     let other = other.with_file(path, "something");
     assert!(run(other, &resume).unwrap_err().contains("no checkpoint"));
 }
+
+/// The record of a script, the file and the report of both are the same problem.
+#[test]
+fn records_of_scripts_are_the_problems_of_files() {
+    let data = table("time,q", |t| (3.0 * (-t).exp() + 0.01 * (7.0 * t).sin()).to_string());
+    let mut world = world(&[("p.toml", SIMPLE.to_owned()), ("d.csv", data)]);
+    for name in ["package.mo", "Problem.mo", "Free.mo", "Experiment.mo"] {
+        let path = Path::new("GAPILib").join(name);
+        let bytes = crate::models::read(&Path::new(crate::models::FOLDER).join(&path)).unwrap();
+        world = world.with_file(path, bytes);
+    }
+    let streams = world.streams();
+    let mut session = Session::new(Box::new(world));
+    let script = "
+problem = GAPILib.Problem(modelName = \"Free\", files = {\"tank.mo\"},
+  parameters = {GAPILib.Free(\"k\", min = 0.1, max = 5), GAPILib.Free(\"h\", min = 0.1, max = 10, initialValue = true)},
+  experiments = {GAPILib.Experiment(data = \"d.csv\", outputs = {\"q\"})},
+  evaluations = 600)
+(values, fitness, deviations) = identify(problem, folder = \"record\")
+(others, same, alike) = identify(\"p.toml\", folder = \"file\", profile = true, sensitivity = \"morris\")
+";
+    let status = session.run_text("s.mos", script);
+    assert_eq!(status.code, 0, "{}", streams.output() + &streams.errors());
+    for (record, file) in [("values", "others"), ("fitness", "same"), ("deviations", "alike")] {
+        assert_eq!(session.variable(record), session.variable(file), "{record}");
+        assert!(session.variable(record).is_some());
+    }
+    for name in ["profiles.csv", "sensitivity.csv", "report.html"] {
+        let path = session.world.output_dir().join("file").join(name);
+        assert!(session.world.exists(&path), "{name}");
+    }
+}

@@ -11,8 +11,9 @@
 //!
 //! The corrector is solved by Newton's method with the matrix I − c ∂f/∂y over −∂g/∂y, whose
 //! columns are scaled by the nominal values. The Jacobian is kept until the corrector converges
-//! slowly: at once if it fails, with the next change of c if it needed more than two iterations. Between steps the interpolating polynomial of the differences gives y. The first step
-//! after a restart has order 1; v has no slope there and takes no part in its error test.
+//! slowly: at once if it fails, with the next change of c if it needed more than two iterations.
+//! Between steps the interpolating polynomial of the differences gives y. The first step after a
+//! restart has order 1; v has no slope there and takes no part in its error test.
 //!
 //! This is what `dassl` and its relatives name here: our own method of the same family, not
 //! anybody's code.
@@ -45,6 +46,9 @@ const MOST_FAILURES: usize = 4;
 const SAFETY: f64 = 0.25;
 /// The corrector's error relative to the local error allowed.
 const NEWTON_TOLERANCE: f64 = 0.03;
+/// Changes of the corrector below this part of the local error allowed do no harm where they do not
+/// vanish.
+const ROUNDING: f64 = 0.3;
 
 fn alpha(order: usize) -> f64 {
     (1.0 - KAPPA[order]) * GAMMA[order]
@@ -90,7 +94,11 @@ struct Bdf {
 struct IterationMatrix {
     pattern: Pattern,
     factors: Option<Factorization>,
+    /// With columns scaled by nominal values.
     jacobian: Vec<f64>,
+    /// The identity in the rows of differential variables, scaled alike.
+    identity: Vec<f64>,
+    is_differential: Vec<bool>,
     values: Vec<f64>,
     /// Whether the Jacobian was evaluated in this step.
     is_current: bool,
@@ -101,12 +109,24 @@ struct IterationMatrix {
 }
 
 impl IterationMatrix {
-    fn prepare(&mut self, pattern: &Pattern) {
+    fn prepare(&mut self, pattern: &Pattern, nominal: &[f64], n_differential: usize) {
         if self.factors.is_none() || self.pattern != *pattern {
             self.pattern = pattern.clone();
             self.factors = Some(Factorization::new(pattern));
             self.jacobian.resize(pattern.rows.len(), 0.0);
             self.values.resize(pattern.rows.len(), 0.0);
+        }
+        self.identity.clear();
+        self.is_differential.clear();
+        for (column, nominal) in nominal.iter().enumerate() {
+            for row in &pattern.rows[pattern.column(column)] {
+                let on_diagonal = *row == column && column < n_differential;
+                self.identity.push(if on_diagonal { *nominal } else { 0.0 });
+                self.is_differential.push(*row < n_differential);
+            }
+        }
+        if let Some(factors) = &mut self.factors {
+            factors.forget();
         }
         (self.is_current, self.is_evaluated, self.factorized_for) = (false, false, None);
     }
@@ -114,31 +134,23 @@ impl IterationMatrix {
     fn evaluate(&mut self, problem: &mut Problem, t: f64, y: &[f64]) -> Result<(), SimErrorKind> {
         (self.is_evaluated, self.factorized_for) = (false, None);
         problem.jacobian(t, y, &mut self.jacobian)?;
+        for (column, nominal) in problem.nominal.iter().enumerate() {
+            self.jacobian[self.pattern.column(column)]
+                .iter_mut()
+                .for_each(|entry| *entry *= nominal);
+        }
         (self.is_evaluated, self.is_current) = (true, true);
         Ok(())
     }
 
-    fn factorize(
-        &mut self,
-        problem: &mut Problem,
-        c: f64,
-        n_differential: usize,
-    ) -> Result<(), SimErrorKind> {
+    fn factorize(&mut self, problem: &mut Problem, c: f64) -> Result<(), SimErrorKind> {
         if self.factorized_for == Some(c) {
             return Ok(());
         }
         self.factorized_for = None;
-        for column in 0..self.pattern.n {
-            let scale = problem.nominal[column];
-            for k in self.pattern.column(column) {
-                let row = self.pattern.rows[k];
-                let identity = f64::from(u8::from(row == column));
-                self.values[k] = if row < n_differential {
-                    scale * (identity - c * self.jacobian[k])
-                } else {
-                    -scale * self.jacobian[k]
-                };
-            }
+        let entries = self.jacobian.iter().zip(&self.identity).zip(&self.is_differential);
+        for (value, ((entry, identity), is_differential)) in self.values.iter_mut().zip(entries) {
+            *value = identity - if *is_differential { c * entry } else { *entry };
         }
         problem.statistics.factorizations += 1;
         let factors = self.factors.as_mut().expect("prepared at the restart");
@@ -266,7 +278,7 @@ impl Bdf {
         for iteration in 1..=if full { MAX_FULL_ITERATIONS } else { MAX_ITERATIONS } {
             if full && iteration > 1 {
                 self.iteration.evaluate(problem, t_new, &self.y)?;
-                self.iteration.factorize(problem, c, self.n_differential)?;
+                self.iteration.factorize(problem, c)?;
             }
             problem.rhs(t_new, &self.y, &mut self.rhs)?;
             for i in 0..self.n {
@@ -278,7 +290,7 @@ impl Bdf {
             }
             self.iteration.solve(problem.nominal, &mut self.delta);
             let norm = weighted_rms(&self.delta, &self.weights);
-            if !norm.is_finite() || (norm > 2.0 * last && !full) {
+            if !norm.is_finite() || (norm > 2.0 * last && norm > ROUNDING && !full) {
                 return Ok(Corrected::Slow);
             }
             if iteration > 1 {
@@ -296,7 +308,11 @@ impl Bdf {
             }
             last = norm;
         }
-        Ok(Corrected::Slow)
+        // What does not become smaller with a new Jacobian is made of rounding errors.
+        match self.iteration.is_current && last <= ROUNDING {
+            true => Ok(Corrected::Converged(MAX_ITERATIONS)),
+            false => Ok(Corrected::Slow),
+        }
     }
 
     /// Solves the corrector, if need be with a new Jacobian. Returns the number of iterations.
@@ -316,7 +332,7 @@ impl Bdf {
                 self.iteration.evaluate(problem, t_new, &self.predicted)?;
             }
             if self.iteration.factorized_for != Some(c) {
-                self.iteration.factorize(problem, c, self.n_differential)?;
+                self.iteration.factorize(problem, c)?;
                 self.rate = 1.0;
             }
             match self.iterate(problem, t_new, c, full)? {
@@ -408,7 +424,8 @@ impl Integrator for Bdf {
     fn restart(&mut self, problem: &mut Problem, t: f64, y: &[f64]) -> Result<(), SimErrorKind> {
         self.resize(y.len());
         self.n_differential = problem.system.n_differential();
-        self.iteration.prepare(problem.system.pattern());
+        let pattern = problem.system.pattern();
+        self.iteration.prepare(pattern, problem.nominal, self.n_differential);
         self.t = t;
         problem.rhs(t, y, &mut self.rhs)?;
         self.h = problem.first_step(t, y, &self.rhs);

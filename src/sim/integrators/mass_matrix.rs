@@ -22,6 +22,9 @@ impl ShiftedMatrix {
             self.jacobian.resize(pattern.rows.len(), 0.0);
             self.values.resize(pattern.rows.len(), 0.0);
         }
+        if let Some(factors) = &mut self.factors {
+            factors.forget();
+        }
     }
 
     /// Evaluates the Jacobian.

@@ -109,6 +109,9 @@ impl StageMatrix {
             self.pattern = whole;
             self.n = n;
         }
+        if let Some(factors) = &mut self.factors {
+            factors.forget();
+        }
     }
 
     fn factorize(

@@ -44,6 +44,13 @@ impl Factorization {
         }
     }
 
+    /// A new simulation begins: it is to give the same bits whatever was factorised before.
+    pub fn forget(&mut self) {
+        if let Factorization::Sparse(lu) = self {
+            lu.forget();
+        }
+    }
+
     /// Replaces the right-hand side by the solution.
     pub fn solve(&mut self, b: &mut [f64]) {
         match self {

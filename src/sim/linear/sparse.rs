@@ -1,9 +1,9 @@
 //! Sparse LU whose pivots and fill are found once and reused.
 //!
-//! The first matrix is eliminated symbolically and numerically together: the next pivot row is the
-//! one with fewest entries left, its pivot the entry in the shortest column among those not much
-//! smaller than the row's largest (Markowitz's rule with a threshold). Later matrices of the same
-//! pattern are factorised row by row with the same pivots,
+//! A matrix is eliminated symbolically and numerically together: among the rows with fewest entries
+//! left and their entries not much smaller than the row's largest, the pivot is the one that fills
+//! least (Markowitz's rule with a threshold). Later matrices of the same pattern are factorised row
+//! by row with the same pivots,
 //!
 //! ```text
 //! for each row i of the permuted matrix
@@ -11,7 +11,10 @@
 //!         l_ik = w_k / u_kk;  w_j -= l_ik u_kj  for j > k
 //! ```
 //!
-//! and analysed anew when a pivot became too small for its row.
+//! The first pivots are those of a matrix with the pattern and a large diagonal, as an integrator
+//! with a short step has it. They do not depend on any values, so that a simulation gives the same
+//! bits whichever came before it. Where a pivot is too small for its row, others are chosen for the
+//! values at hand, until [`SparseLu::forget`].
 
 use super::SingularMatrix;
 use crate::sim::Pattern;
@@ -19,14 +22,25 @@ use std::collections::BTreeSet;
 
 /// A pivot is at least so much of the largest entry of its row.
 const THRESHOLD: f64 = 0.1;
-/// Reused pivots may become so small before new ones are sought.
+/// Reused pivots may become so small before new ones are sought, those chosen for values and those
+/// chosen without.
 const REUSE_THRESHOLD: f64 = 1e-4;
+const FIRST_THRESHOLD: f64 = 1e-2;
+
+/// Rows among which a pivot is sought.
+const CANDIDATES: usize = 4;
+/// Size of what is not on the diagonal when pivots are chosen without values.
+const OFF_DIAGONAL: f64 = 1e-3;
 
 /// Factors of a sparse matrix.
 #[derive(Debug, Clone)]
 pub struct SparseLu {
     pattern: Pattern,
-    factors: Option<Factors>,
+    /// With the pivots of the pattern; `None` before the first use and if it has none.
+    first: Option<Factors>,
+    is_analysed: bool,
+    /// With pivots for values; taken instead of the first.
+    others: Option<Factors>,
     work: Vec<f64>,
 }
 
@@ -34,20 +48,20 @@ pub struct SparseLu {
 #[derive(Debug, Clone)]
 struct Factors {
     /// The row of the matrix that is row i of the permuted matrix.
-    rows: Vec<usize>,
+    rows: Vec<u32>,
     /// The column of the matrix that is column j of the permuted matrix.
-    columns: Vec<usize>,
+    columns: Vec<u32>,
     /// The nonzeros of the matrix by rows of the permuted matrix: where each row starts, permuted
     /// column and position in the values of the pattern.
-    entry_starts: Vec<usize>,
-    entries: Vec<(usize, usize)>,
+    entry_starts: Vec<u32>,
+    entries: Vec<(u32, u32)>,
     /// L without its diagonal of ones, by rows.
-    lower_starts: Vec<usize>,
-    lower_columns: Vec<usize>,
+    lower_starts: Vec<u32>,
+    lower_columns: Vec<u32>,
     lower: Vec<f64>,
     /// U without its diagonal, by rows.
-    upper_starts: Vec<usize>,
-    upper_columns: Vec<usize>,
+    upper_starts: Vec<u32>,
+    upper_columns: Vec<u32>,
     upper: Vec<f64>,
     /// 1 / u_ii
     inverse_diagonal: Vec<f64>,
@@ -55,35 +69,60 @@ struct Factors {
 
 impl SparseLu {
     pub(super) fn new(pattern: &Pattern) -> SparseLu {
-        SparseLu { pattern: pattern.clone(), factors: None, work: vec![0.0; pattern.n] }
+        let work = vec![0.0; pattern.n];
+        SparseLu { pattern: pattern.clone(), first: None, is_analysed: false, others: None, work }
+    }
+
+    /// Goes back to the pivots that do not depend on values.
+    pub(super) fn forget(&mut self) {
+        self.others = None;
     }
 
     pub(super) fn factorize(&mut self, values: &[f64]) -> Result<(), SingularMatrix> {
-        if let Some(factors) = &mut self.factors
-            && factors.factorize(values, &mut self.work, REUSE_THRESHOLD).is_ok()
+        if !self.is_analysed {
+            let values = large_diagonal(&self.pattern);
+            let pivots = Elimination::new(&self.pattern, &values).run();
+            self.first = pivots.ok().map(|pivots| pivots.factors(&self.pattern));
+            self.is_analysed = true;
+        }
+        let (factors, threshold) = match &mut self.others {
+            Some(others) => (Some(others), REUSE_THRESHOLD),
+            None => (self.first.as_mut(), FIRST_THRESHOLD),
+        };
+        if let Some(factors) = factors
+            && factors.factorize(values, &mut self.work, threshold).is_ok()
         {
             return Ok(());
         }
-        self.factors = None;
         let mut factors = Elimination::new(&self.pattern, values).run()?.factors(&self.pattern);
         factors.factorize(values, &mut self.work, 0.0)?;
-        self.factors = Some(factors);
+        self.others = Some(factors);
         Ok(())
     }
 
     /// Nonzeros of the factors, the diagonal counted once.
     #[cfg(test)]
     pub(super) fn nonzeros(&self) -> usize {
-        self.factors.as_ref().map_or(0, |f| f.rows.len() + f.lower.len() + f.upper.len())
+        let factors = self.others.as_ref().or(self.first.as_ref());
+        factors.map_or(0, |f| f.rows.len() + f.lower.len() + f.upper.len())
     }
 
     /// Leaves NaN if nothing has been factorised.
     pub(super) fn solve(&mut self, b: &mut [f64]) {
-        match &self.factors {
+        match self.others.as_ref().or(self.first.as_ref()) {
             Some(factors) => factors.solve(b, &mut self.work),
             None => b.fill(f64::NAN),
         }
     }
+}
+
+/// Values with which entries of the diagonal are preferred as pivots.
+fn large_diagonal(pattern: &Pattern) -> Vec<f64> {
+    let of_column = |j: usize| pattern.rows[pattern.column(j)].iter().map(move |i| (*i, j));
+    let entries = (0..pattern.n).flat_map(of_column);
+    // Slightly different numbers, so that nothing cancels by chance.
+    let off_diagonal = |at: usize| OFF_DIAGONAL * (1.0 + (at as f64).sin() * 0.25);
+    entries.enumerate().map(|(at, (i, j))| if i == j { 1.0 } else { off_diagonal(at) }).collect()
 }
 
 impl Factors {
@@ -95,33 +134,31 @@ impl Factors {
         threshold: f64,
     ) -> Result<(), SingularMatrix> {
         for i in 0..self.rows.len() {
-            let lower = self.lower_starts[i]..self.lower_starts[i + 1];
-            let upper = self.upper_starts[i]..self.upper_starts[i + 1];
+            let lower = row(&self.lower_starts, i);
+            let upper = row(&self.upper_starts, i);
             work[i] = 0.0;
-            self.lower_columns[lower.clone()].iter().for_each(|j| work[*j] = 0.0);
-            self.upper_columns[upper.clone()].iter().for_each(|j| work[*j] = 0.0);
-            for (column, position) in &self.entries[self.entry_starts[i]..self.entry_starts[i + 1]]
-            {
-                work[*column] = values[*position];
+            self.lower_columns[lower.clone()].iter().for_each(|j| work[*j as usize] = 0.0);
+            self.upper_columns[upper.clone()].iter().for_each(|j| work[*j as usize] = 0.0);
+            for (column, position) in &self.entries[row(&self.entry_starts, i)] {
+                work[*column as usize] = values[*position as usize];
             }
-            for l in lower {
-                let k = self.lower_columns[l];
+            for (k, l) in self.lower_columns[lower.clone()].iter().zip(&mut self.lower[lower]) {
+                let k = *k as usize;
                 let factor = work[k] * self.inverse_diagonal[k];
-                self.lower[l] = factor;
+                *l = factor;
                 if factor != 0.0 {
-                    let row = self.upper_starts[k]..self.upper_starts[k + 1];
+                    let row = row(&self.upper_starts, k);
                     for (j, u) in self.upper_columns[row.clone()].iter().zip(&self.upper[row]) {
-                        work[*j] -= factor * u;
+                        work[*j as usize] -= factor * u;
                     }
                 }
             }
-            let mut largest = work[i].abs();
-            for u in upper {
-                let value = work[self.upper_columns[u]];
-                self.upper[u] = value;
-                largest = largest.max(value.abs());
-            }
             let pivot = work[i];
+            let mut largest = pivot.abs();
+            for (j, u) in self.upper_columns[upper.clone()].iter().zip(&mut self.upper[upper]) {
+                *u = work[*j as usize];
+                largest = largest.max(u.abs());
+            }
             if pivot == 0.0 || !pivot.is_finite() || pivot.abs() < threshold * largest {
                 return Err(SingularMatrix);
             }
@@ -133,23 +170,28 @@ impl Factors {
     fn solve(&self, b: &mut [f64], work: &mut [f64]) {
         let n = self.rows.len();
         for i in 0..n {
-            let mut sum = b[self.rows[i]];
-            let row = self.lower_starts[i]..self.lower_starts[i + 1];
+            let mut sum = b[self.rows[i] as usize];
+            let row = row(&self.lower_starts, i);
             for (k, l) in self.lower_columns[row.clone()].iter().zip(&self.lower[row]) {
-                sum -= l * work[*k];
+                sum -= l * work[*k as usize];
             }
             work[i] = sum;
         }
         for i in (0..n).rev() {
             let mut sum = work[i];
-            let row = self.upper_starts[i]..self.upper_starts[i + 1];
+            let row = row(&self.upper_starts, i);
             for (j, u) in self.upper_columns[row.clone()].iter().zip(&self.upper[row]) {
-                sum -= u * work[*j];
+                sum -= u * work[*j as usize];
             }
             work[i] = sum * self.inverse_diagonal[i];
-            b[self.columns[i]] = work[i];
+            b[self.columns[i] as usize] = work[i];
         }
     }
+}
+
+/// The places of row i.
+fn row(starts: &[u32], i: usize) -> std::ops::Range<usize> {
+    starts[i] as usize..starts[i + 1] as usize
 }
 
 /// Elimination with free choice of pivots.
@@ -161,7 +203,7 @@ struct Elimination {
     /// Rows left by number of entries.
     shortest: BTreeSet<(usize, usize)>,
     /// Pivot steps in which each row was changed, ascending.
-    lower: Vec<Vec<usize>>,
+    lower: Vec<Vec<u32>>,
     /// Pivot row and column of every step.
     pivots: Vec<(usize, usize)>,
 }
@@ -190,21 +232,25 @@ impl Elimination {
             }
             for i in std::mem::take(&mut self.columns[column]) {
                 self.subtract(i, &pivot_row, column, value);
-                self.lower[i].push(step);
+                self.lower[i].push(step as u32);
             }
             self.rows[row] = pivot_row;
         }
         Ok(self)
     }
 
-    /// Among the rows with fewest entries left the first that has an acceptable pivot.
+    /// Among the rows with fewest entries left and their acceptable pivots the one that fills least.
     fn next_pivot(&mut self) -> Result<Option<(usize, usize, f64)>, SingularMatrix> {
         if self.shortest.is_empty() {
             return Ok(None);
         }
         let acceptable =
-            self.shortest.iter().find_map(|(_, i)| self.pivot_of(*i).map(|(j, v)| (*i, j, v)));
-        let (row, column, value) = acceptable.ok_or(SingularMatrix)?;
+            self.shortest.iter().filter_map(|(_, i)| self.pivot_of(*i).map(|(j, v)| (*i, j, v)));
+        let fill = |(i, j, _): &(usize, usize, f64)| {
+            (self.rows[*i].len() - 1) * (self.columns[*j].len() - 1)
+        };
+        let best = acceptable.take(CANDIDATES).min_by_key(fill);
+        let (row, column, value) = best.ok_or(SingularMatrix)?;
         self.shortest.remove(&(self.rows[row].len(), row));
         Ok(Some((row, column, value)))
     }
@@ -258,20 +304,21 @@ impl Elimination {
 
     fn factors(self, pattern: &Pattern) -> Factors {
         let n = pattern.n;
-        let rows: Vec<usize> = self.pivots.iter().map(|(row, _)| *row).collect();
-        let columns: Vec<usize> = self.pivots.iter().map(|(_, column)| *column).collect();
+        let rows: Vec<u32> = self.pivots.iter().map(|(row, _)| *row as u32).collect();
+        let columns: Vec<u32> = self.pivots.iter().map(|(_, column)| *column as u32).collect();
         let new_column = inverse(&columns);
         let new_row = inverse(&rows);
         let mut entries = vec![Vec::new(); n];
         for (j, new_column) in new_column.iter().enumerate() {
             for position in pattern.column(j) {
-                entries[new_row[pattern.rows[position]]].push((*new_column, position));
+                let new_row = new_row[pattern.rows[position]];
+                entries[new_row as usize].push((*new_column, position as u32));
             }
         }
-        let lower: Vec<Vec<usize>> = rows.iter().map(|row| self.lower[*row].clone()).collect();
-        let upper = rows.iter().enumerate().map(|(i, row)| {
-            let columns = self.rows[*row].iter().map(|(j, _)| new_column[*j]);
-            let mut columns: Vec<usize> = columns.filter(|j| *j != i).collect();
+        let lower = rows.iter().map(|row| self.lower[*row as usize].clone()).collect();
+        let upper = (0u32..).zip(&rows).map(|(i, row)| {
+            let columns = self.rows[*row as usize].iter().map(|(j, _)| new_column[*j]);
+            let mut columns: Vec<u32> = columns.filter(|j| *j != i).collect();
             columns.sort_unstable();
             columns
         });
@@ -294,21 +341,21 @@ impl Elimination {
     }
 }
 
-fn inverse(permutation: &[usize]) -> Vec<usize> {
+fn inverse(permutation: &[u32]) -> Vec<u32> {
     let mut inverse = vec![0; permutation.len()];
-    for (new, old) in permutation.iter().enumerate() {
-        inverse[*old] = new;
+    for (new, old) in (0u32..).zip(permutation) {
+        inverse[*old as usize] = new;
     }
     inverse
 }
 
 /// Where each list starts, and all lists one after the other.
-fn compressed<T>(lists: Vec<Vec<T>>) -> (Vec<usize>, Vec<T>) {
+fn compressed<T>(lists: Vec<Vec<T>>) -> (Vec<u32>, Vec<T>) {
     let mut starts = vec![0];
     let mut all = Vec::new();
     for list in lists {
         all.extend(list);
-        starts.push(all.len());
+        starts.push(all.len() as u32);
     }
     (starts, all)
 }

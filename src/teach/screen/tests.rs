@@ -1,3 +1,5 @@
+//! Screens on terminals of several sizes.
+
 use super::{Key, Screen, draw};
 use crate::teach::sample;
 use ratatui::Terminal;

@@ -1,0 +1,21 @@
+within GAPILib;
+record Experiment "An experiment of a problem: what was measured, and under which conditions"
+  String name = "" "Name, for reports";
+  String data "File with the measured columns (CSV, MAT, XLSX)";
+  String x = "time" "Variable that the outputs were measured over";
+  String xColumn = x "Its column";
+  String outputs[:] "Variables that were measured";
+  String columns[:] = outputs "Their columns";
+  Real weights[:] = fill(1.0, size(outputs, 1)) "Every difference counts times this";
+  String inputs[:] = fill("", 0) "Inputs of the model that follow columns of the data";
+  String inputColumns[:] = inputs "Their columns";
+  String settings[:] = fill("", 0) "Parameters that have other values in this experiment";
+  Real settingValues[:] = fill(0.0, 0) "Those values";
+  String states[:] = fill("", 0) "States with other initial values in this experiment";
+  Real stateValues[:] = fill(0.0, 0) "Those values";
+  Real weight = 1 "The whole experiment counts times this";
+  Boolean validation = false "Whether it is compared at the end only";
+  Real stopTime = 0 "End of the simulation; 0 for that of the data";
+  Real tolerance = 0 "Tolerance of the integrator; 0 for that of the model";
+  String integrator = "" "Integrator; empty for that of the model";
+end Experiment;

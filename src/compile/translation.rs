@@ -1,0 +1,401 @@
+//! A tape as code of Cranelift, which makes machine code of it.
+//!
+//! Results stay in registers of the machine; only outputs are written to memory. Where the tape
+//! fails at a value that is not finite, the code goes on and adds up `0 · value`: the sum, which it
+//! returns, is zero if all were finite. Calls of functions and linear systems of more than two
+//! unknowns are not translated.
+
+use super::linear_system::{LinearSolve, SMALLEST_DETERMINANT};
+use super::program::Outputs;
+use super::tape::{Instruction, Register};
+use crate::symbolic::RelationOperator;
+use crate::symbolic::function::FunctionId;
+use cranelift_codegen::Context;
+use cranelift_codegen::ir::condcodes::FloatCC;
+use cranelift_codegen::ir::{
+    AbiParam, Block, InstBuilder, MemFlags, SigRef, Signature, Type, Value, types,
+};
+use cranelift_codegen::isa::CallConv;
+use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext, Variable};
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// Sums of `0 · value` that are added to in turn.
+const CHECKS: usize = 4;
+
+/// Writes the code of a tape into a context; `None` if it has what cannot be translated.
+pub(super) fn translate(
+    code: &Outputs,
+    pointer: Type,
+    call_conv: CallConv,
+    context: &mut Context,
+) -> Option<()> {
+    let signature = &mut context.func.signature;
+    signature.params.extend([AbiParam::new(pointer), AbiParam::new(pointer)]);
+    signature.returns.push(AbiParam::new(types::F64));
+    let mut workspace = FunctionBuilderContext::new();
+    let mut builder = FunctionBuilder::new(&mut context.func, &mut workspace);
+    let start = builder.create_block();
+    builder.append_block_params_for_function_params(start);
+    builder.switch_to_block(start);
+    let (memory, out) = (builder.block_params(start)[0], builder.block_params(start)[1]);
+    let functions = [1, 2].map(|arity| {
+        let mut signature = Signature::new(call_conv);
+        signature.params.push(AbiParam::new(pointer));
+        signature.params.extend(std::iter::repeat_n(AbiParam::new(types::F64), arity));
+        signature.returns.push(AbiParam::new(types::F64));
+        builder.import_signature(signature)
+    });
+    let checks = std::array::from_fn(|_| builder.declare_var(types::F64));
+    let zero = builder.ins().f64const(0.0);
+    checks.iter().for_each(|check| builder.def_var(*check, zero));
+    let mut translation = Translation {
+        builder,
+        code,
+        pointer,
+        memory,
+        out,
+        values: FxHashMap::default(),
+        chosen: FxHashMap::default(),
+        blocks: FxHashMap::default(),
+        matrices: FxHashMap::default(),
+        places: FxHashMap::default(),
+        functions,
+        checks,
+        next_check: 0,
+    };
+    translation.prepare();
+    for (at, instruction) in code.tape.code.iter().enumerate() {
+        translation.enter(at);
+        translation.instruction(*instruction)?;
+    }
+    translation.enter(code.tape.code.len());
+    translation.finish();
+    Some(())
+}
+
+/// Calls a function of the table.
+#[allow(improper_ctypes_definitions, reason = "only code of this process calls it")]
+extern "C" fn unary(function: fn(f64) -> f64, a: f64) -> f64 {
+    function(a)
+}
+
+/// Calls a function of the table.
+#[allow(improper_ctypes_definitions, reason = "only code of this process calls it")]
+extern "C" fn binary(function: fn(f64, f64) -> f64, a: f64, b: f64) -> f64 {
+    function(a, b)
+}
+
+struct Translation<'a> {
+    builder: FunctionBuilder<'a>,
+    code: &'a Outputs,
+    pointer: Type,
+    memory: Value,
+    out: Value,
+    /// Registers that are written once, before they are read.
+    values: FxHashMap<Register, Value>,
+    /// Registers that a branch gives a value.
+    chosen: FxHashMap<Register, Variable>,
+    /// Targets of jumps.
+    blocks: FxHashMap<usize, Block>,
+    /// The entries of the matrix in each workspace, by rows.
+    matrices: FxHashMap<u32, Box<[(u32, Register)]>>,
+    /// Where registers are written to that are outputs.
+    places: FxHashMap<Register, Vec<usize>>,
+    /// Signatures of functions with one and two arguments.
+    functions: [SigRef; 2],
+    checks: [Variable; CHECKS],
+    next_check: usize,
+}
+
+impl Translation<'_> {
+    fn prepare(&mut self) {
+        let code = self.code;
+        let mut targets = FxHashSet::default();
+        for instruction in &code.tape.code {
+            match *instruction {
+                Instruction::Jump { target } | Instruction::JumpUnless { target, .. } => {
+                    targets.insert(target as usize);
+                }
+                Instruction::Move { d, .. } if !self.chosen.contains_key(&d) => {
+                    let variable = self.builder.declare_var(types::F64);
+                    self.chosen.insert(d, variable);
+                }
+                _ => {}
+            }
+        }
+        for target in targets {
+            let block = self.builder.create_block();
+            self.blocks.insert(target, block);
+        }
+        for (place, register) in code.outputs.iter().enumerate() {
+            self.places.entry(*register).or_default().push(place);
+        }
+    }
+
+    /// Begins a block where a jump leads to.
+    fn enter(&mut self, at: usize) {
+        if let Some(block) = self.blocks.get(&at).copied() {
+            let here = self.builder.current_block();
+            if here.is_some() && !self.is_left() {
+                self.builder.ins().jump(block, &[]);
+            }
+            self.builder.switch_to_block(block);
+        }
+    }
+
+    /// Whether the last instruction was a jump.
+    fn is_left(&self) -> bool {
+        let block = self.builder.current_block();
+        let last = block.and_then(|block| self.builder.func.layout.last_inst(block));
+        last.is_some_and(|last| self.builder.func.dfg.insts[last].opcode().is_terminator())
+    }
+
+    fn get(&mut self, register: Register) -> Value {
+        if let Some(value) = self.values.get(&register) {
+            return *value;
+        }
+        if let Some(variable) = self.chosen.get(&register) {
+            return self.builder.use_var(*variable);
+        }
+        let flags = MemFlags::trusted();
+        self.builder.ins().load(types::F64, flags, self.memory, 8 * register as i32)
+    }
+
+    fn set(&mut self, d: Register, value: Value) {
+        for at in self.places.get(&d).into_iter().flatten() {
+            self.builder.ins().store(MemFlags::trusted(), value, self.out, 8 * *at as i32);
+        }
+        self.values.insert(d, value);
+    }
+
+    /// Sets a value that must be finite.
+    fn set_checked(&mut self, d: Register, value: Value) {
+        let zero = self.builder.ins().f64const(0.0);
+        let term = self.builder.ins().fmul(value, zero);
+        let check = self.checks[self.next_check];
+        self.next_check = (self.next_check + 1) % CHECKS;
+        let before = self.builder.use_var(check);
+        let sum = self.builder.ins().fadd(before, term);
+        self.builder.def_var(check, sum);
+        self.set(d, value);
+    }
+
+    /// Sets 1 or 0.
+    fn set_truth(&mut self, d: Register, holds: Value) {
+        let one = self.builder.ins().f64const(1.0);
+        let zero = self.builder.ins().f64const(0.0);
+        let value = self.builder.ins().select(holds, one, zero);
+        self.set(d, value);
+    }
+
+    fn is_true(&mut self, a: Register) -> Value {
+        let a = self.get(a);
+        let zero = self.builder.ins().f64const(0.0);
+        self.builder.ins().fcmp(FloatCC::NotEqual, a, zero)
+    }
+
+    fn instruction(&mut self, instruction: Instruction) -> Option<()> {
+        match instruction {
+            Instruction::Move { d, a } => {
+                let a = self.get(a);
+                self.builder.def_var(self.chosen[&d], a);
+            }
+            Instruction::Neg { d, a } => {
+                let a = self.get(a);
+                let value = self.builder.ins().fneg(a);
+                self.set(d, value);
+            }
+            Instruction::Not { d, a } => {
+                let a = self.get(a);
+                let zero = self.builder.ins().f64const(0.0);
+                let holds = self.builder.ins().fcmp(FloatCC::Equal, a, zero);
+                self.set_truth(d, holds);
+            }
+            Instruction::Add { d, a, b } => {
+                let (a, b) = (self.get(a), self.get(b));
+                let value = self.builder.ins().fadd(a, b);
+                self.set(d, value);
+            }
+            Instruction::Sub { d, a, b } => {
+                let (a, b) = (self.get(a), self.get(b));
+                let value = self.builder.ins().fsub(a, b);
+                self.set(d, value);
+            }
+            Instruction::Mul { d, a, b } => {
+                let (a, b) = (self.get(a), self.get(b));
+                let value = self.builder.ins().fmul(a, b);
+                self.set(d, value);
+            }
+            Instruction::Div { d, a, b } => {
+                let (a, b) = (self.get(a), self.get(b));
+                let value = self.builder.ins().fdiv(a, b);
+                self.set_checked(d, value);
+            }
+            Instruction::Pow { d, a, b } => self.call_binary(d, a, b, f64::powf),
+            Instruction::And { d, a, b } => {
+                let (a, b) = (self.is_true(a), self.is_true(b));
+                let holds = self.builder.ins().band(a, b);
+                self.set_truth(d, holds);
+            }
+            Instruction::Or { d, a, b } => {
+                let (a, b) = (self.is_true(a), self.is_true(b));
+                let holds = self.builder.ins().bor(a, b);
+                self.set_truth(d, holds);
+            }
+            Instruction::Relation { operator, d, a, b } => {
+                let (a, b) = (self.get(a), self.get(b));
+                let holds = self.builder.ins().fcmp(condition(operator), a, b);
+                self.set_truth(d, holds);
+            }
+            Instruction::Unary { id, d, a, function } => self.call_unary(id, d, a, function),
+            Instruction::Binary { d, a, b, function, .. } => self.call_binary(d, a, b, function),
+            Instruction::Call { .. } => return None,
+            Instruction::Solve { solve } => {
+                let code = self.code;
+                self.solve(&code.tape.solves[solve as usize])?;
+            }
+            Instruction::JumpUnless { a, target } => {
+                let holds = self.is_true(a);
+                let next = self.builder.create_block();
+                let target = self.blocks[&(target as usize)];
+                self.builder.ins().brif(holds, next, &[], target, &[]);
+                self.builder.switch_to_block(next);
+            }
+            Instruction::Jump { target } => {
+                let target = self.blocks[&(target as usize)];
+                self.builder.ins().jump(target, &[]);
+            }
+        }
+        Some(())
+    }
+
+    fn call_unary(&mut self, id: FunctionId, d: Register, a: Register, function: fn(f64) -> f64) {
+        let a = self.get(a);
+        let value = match id.get().name {
+            "sqrt" => self.builder.ins().sqrt(a),
+            "abs" => self.builder.ins().fabs(a),
+            _ => {
+                let callee = self.address(unary as *const () as usize);
+                let function = self.address(function as usize);
+                let call =
+                    self.builder.ins().call_indirect(self.functions[0], callee, &[function, a]);
+                self.builder.inst_results(call)[0]
+            }
+        };
+        self.set_checked(d, value);
+    }
+
+    fn call_binary(
+        &mut self,
+        d: Register,
+        a: Register,
+        b: Register,
+        function: fn(f64, f64) -> f64,
+    ) {
+        let (a, b) = (self.get(a), self.get(b));
+        let callee = self.address(binary as *const () as usize);
+        let function = self.address(function as usize);
+        let call = self.builder.ins().call_indirect(self.functions[1], callee, &[function, a, b]);
+        let value = self.builder.inst_results(call)[0];
+        self.set_checked(d, value);
+    }
+
+    fn address(&mut self, address: usize) -> Value {
+        self.builder.ins().iconst(self.pointer, address as i64)
+    }
+
+    /// One or two linear equations, as [`LinearSystem`](super::linear_system::LinearSystem) solves
+    /// regular ones; others give values that are not finite.
+    fn solve(&mut self, solve: &LinearSolve) -> Option<()> {
+        if let Some(entries) = &solve.entries {
+            self.matrices.insert(solve.system, entries.clone());
+        }
+        let n = solve.right.len();
+        if n > 2 {
+            return None;
+        }
+        let mut matrix = [None; 4];
+        for (place, register) in self.matrices.get(&solve.system)?.clone() {
+            matrix[place as usize] = Some(register);
+        }
+        let mut entries = Vec::new();
+        for register in &matrix[..n * n] {
+            let value = match register {
+                Some(register) => self.get(*register),
+                None => self.builder.ins().f64const(0.0),
+            };
+            entries.push(value);
+        }
+        let right: Vec<Value> = solve.right.iter().map(|register| self.get(*register)).collect();
+        match (&entries[..], &right[..]) {
+            (&[a], &[r]) => {
+                let x = self.builder.ins().fdiv(r, a);
+                self.set_checked(solve.d, x);
+            }
+            (&[a, b, c, d], &[r, s]) => {
+                let (ad, bc) = (self.builder.ins().fmul(a, d), self.builder.ins().fmul(b, c));
+                let determinant = self.builder.ins().fsub(ad, bc);
+                let inverse = self.inverse(determinant, ad, bc);
+                let x = self.cross(r, d, b, s, inverse);
+                let y = self.cross(a, s, r, c, inverse);
+                self.set_checked(solve.d, x);
+                self.set_checked(solve.d + 1, y);
+            }
+            _ => return None,
+        }
+        Some(())
+    }
+
+    /// 1 / determinant, not finite if it is small compared with its terms.
+    fn inverse(&mut self, determinant: Value, ad: Value, bc: Value) -> Value {
+        let size = {
+            let (ad, bc) = (self.builder.ins().fabs(ad), self.builder.ins().fabs(bc));
+            self.builder.ins().fadd(ad, bc)
+        };
+        let smallest = self.builder.ins().f64const(SMALLEST_DETERMINANT);
+        let smallest = self.builder.ins().fmul(smallest, size);
+        let magnitude = self.builder.ins().fabs(determinant);
+        let is_regular = self.builder.ins().fcmp(FloatCC::GreaterThan, magnitude, smallest);
+        let one = self.builder.ins().f64const(1.0);
+        let inverse = self.builder.ins().fdiv(one, determinant);
+        let infinite = self.builder.ins().f64const(f64::INFINITY);
+        self.builder.ins().select(is_regular, inverse, infinite)
+    }
+
+    /// (a d − b c) · inverse
+    fn cross(&mut self, a: Value, d: Value, b: Value, c: Value, inverse: Value) -> Value {
+        let (ad, bc) = (self.builder.ins().fmul(a, d), self.builder.ins().fmul(b, c));
+        let difference = self.builder.ins().fsub(ad, bc);
+        self.builder.ins().fmul(difference, inverse)
+    }
+
+    /// Writes the outputs that are not written yet, and returns the check.
+    fn finish(mut self) {
+        let code = self.code;
+        for (place, register) in code.outputs.iter().enumerate() {
+            if !self.values.contains_key(register) {
+                let value = self.get(*register);
+                self.builder.ins().store(MemFlags::trusted(), value, self.out, 8 * place as i32);
+            }
+        }
+        let sums = self.checks.map(|check| self.builder.use_var(check));
+        let mut total = sums[0];
+        for sum in &sums[1..] {
+            total = self.builder.ins().fadd(total, *sum);
+        }
+        self.builder.ins().return_(&[total]);
+        self.builder.seal_all_blocks();
+        self.builder.finalize();
+    }
+}
+
+fn condition(operator: RelationOperator) -> FloatCC {
+    match operator {
+        RelationOperator::Less => FloatCC::LessThan,
+        RelationOperator::LessEqual => FloatCC::LessThanOrEqual,
+        RelationOperator::Greater => FloatCC::GreaterThan,
+        RelationOperator::GreaterEqual => FloatCC::GreaterThanOrEqual,
+        RelationOperator::Equal => FloatCC::Equal,
+        RelationOperator::NotEqual => FloatCC::NotEqual,
+    }
+}

@@ -1,0 +1,175 @@
+//! Profile likelihoods: one parameter held at values about its best, the others fitted again by
+//! least squares. The values whose sum of squares stays below a limit are its 95 % interval, also
+//! where the model is far from linear:
+//!
+//! ```text
+//! S(p) < S_min (1 + t² / (points − parameters)),  t the 97.5 % quantile of Student's distribution
+//! ```
+//!
+//! Reference: [Walter & Pronzato 1997](crate::bibliography#walter-pronzato-1997), §5.
+
+use super::refit::Refit;
+use super::{Evaluation, Free, Problem, student_quantile};
+use crate::diag::Fault;
+use serde::Serialize;
+
+/// Values on each side of the best before the crossing is looked for.
+const SIDE: usize = 24;
+/// The first step, as a part of the half-width of the linear interval; each next one is larger.
+const FIRST: f64 = 0.3;
+const GROWTH: f64 = 1.4;
+/// Limits of the first step, as a fraction of the range.
+const STEPS: [f64; 2] = [1e-7, 0.02];
+/// Fits that locate a crossing.
+const CROSSING: usize = 5;
+/// The sum of squares is this near to the limit at the crossing, relative to its rise.
+const NEAR: f64 = 1e-3;
+/// A fit that is better by more than this, relative, is another optimum.
+const BETTER: f64 = 1e-6;
+
+/// The profile of one parameter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Profile {
+    /// Its name.
+    pub name: String,
+    /// Values of the parameter, ascending, and the smallest sum of squares found there.
+    pub points: Vec<[f64; 2]>,
+    /// The sum of squares that the 95 % interval stays below.
+    pub limit: f64,
+    /// The ends of that interval; `None` where it reaches the end of the range.
+    pub interval: [Option<f64>; 2],
+}
+
+/// All profiles.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Profiles {
+    /// In the order of the parameters.
+    pub profiles: Vec<Profile>,
+    /// Simulations that they took.
+    pub simulations: u64,
+    /// Values with a smaller sum of squares, if the fits came upon such: the search had ended
+    /// beside the best.
+    pub better: Option<(Vec<f64>, f64)>,
+}
+
+/// Profiles of all parameters about `best`. `reach`: the half-widths of the linear intervals where
+/// they are known. `None` when the fitness is no sum of squares or there are not more points than
+/// parameters.
+///
+/// # Errors
+///
+/// Those of the method's maker.
+pub fn profiles(
+    problem: &Problem,
+    evaluation: &Evaluation,
+    best: &[f64],
+    reach: &[Option<f64>],
+) -> Result<Option<Profiles>, Fault> {
+    let freedom = problem.n_points().saturating_sub(best.len());
+    let Some(refit) = Refit::new(problem, evaluation).filter(|_| freedom > 0) else {
+        return Ok(None);
+    };
+    let mut walk = Walk { refit, limit: 0.0, better: None };
+    let Some((best, smallest)) = walk.refit.from(best, None)? else { return Ok(None) };
+    walk.limit = smallest * (1.0 + student_quantile(freedom).powi(2) / freedom as f64);
+    let mut profiles = Vec::new();
+    for (k, free) in problem.parameters.iter().enumerate() {
+        let mut points = vec![[best[k], smallest]];
+        let first = reach.get(k).copied().flatten().map_or(STEPS[1], |half| {
+            (FIRST * half / free.slope(best[k]).abs()).clamp(STEPS[0], STEPS[1])
+        });
+        let mut interval = [None; 2];
+        for (end, step) in interval.iter_mut().zip([-first, first]) {
+            *end = walk.side(free, k, (&best, smallest), step, &mut points)?;
+        }
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let limit = walk.limit;
+        profiles.push(Profile { name: free.name.clone(), points, limit, interval });
+    }
+    let better = walk.better.filter(|(_, sum)| *sum < smallest * (1.0 - BETTER));
+    Ok(Some(Profiles { profiles, simulations: walk.refit.simulations, better }))
+}
+
+struct Walk<'a> {
+    refit: Refit<'a>,
+    limit: f64,
+    better: Option<(Vec<f64>, f64)>,
+}
+
+impl Walk<'_> {
+    /// Goes from the best to one side until the limit is crossed; where that is.
+    fn side(
+        &mut self,
+        free: &Free,
+        k: usize,
+        best: (&[f64], f64),
+        mut step: f64,
+        points: &mut Vec<[f64; 2]>,
+    ) -> Result<Option<f64>, Fault> {
+        let mut inside = (free.fraction(best.0[k]), best.1);
+        let mut values = best.0.to_vec();
+        for _ in 0..SIDE {
+            let place = (inside.0 + step).clamp(0.0, 1.0);
+            if place == inside.0 {
+                break;
+            }
+            let Some(sum) = self.fit(free, k, place, &mut values, points)? else { break };
+            if sum > self.limit {
+                let crossing =
+                    self.crossing(free, k, (inside, (place, sum)), &mut values, points)?;
+                return Ok(Some(free.value(crossing)));
+            }
+            inside = (place, sum);
+            step *= GROWTH;
+        }
+        Ok(None)
+    }
+
+    /// The place between `inside` and `outside` at which the sum of squares reaches the limit; the
+    /// rise is nearly a parabola, so its root is taken along a straight line.
+    fn crossing(
+        &mut self,
+        free: &Free,
+        k: usize,
+        ends: ((f64, f64), (f64, f64)),
+        values: &mut [f64],
+        points: &mut Vec<[f64; 2]>,
+    ) -> Result<f64, Fault> {
+        let (mut inside, mut outside) = ends;
+        let smallest = points[0][1];
+        let root = |sum: f64| (sum - smallest).max(0.0).sqrt();
+        for attempt in 0.. {
+            let part = (root(self.limit) - root(inside.1)) / (root(outside.1) - root(inside.1));
+            let place = inside.0 + part.clamp(0.05, 0.95) * (outside.0 - inside.0);
+            if attempt == CROSSING {
+                return Ok(place);
+            }
+            let Some(sum) = self.fit(free, k, place, values, points)? else { return Ok(place) };
+            if (sum - self.limit).abs() <= NEAR * (self.limit - smallest) {
+                return Ok(place);
+            }
+            *(if sum > self.limit { &mut outside } else { &mut inside }) = (place, sum);
+        }
+        unreachable!("the loop ends after {CROSSING} fits")
+    }
+
+    /// The smallest sum of squares with parameter `k` at `place`; `values` are where the fit begins
+    /// and where it ends.
+    fn fit(
+        &mut self,
+        free: &Free,
+        k: usize,
+        place: f64,
+        values: &mut [f64],
+        points: &mut Vec<[f64; 2]>,
+    ) -> Result<Option<f64>, Fault> {
+        values[k] = free.value(place);
+        let Some((found, sum)) = self.refit.from(values, Some(k))? else { return Ok(None) };
+        values.copy_from_slice(&found);
+        points.push([found[k], sum]);
+        if self.better.as_ref().is_none_or(|known| sum < known.1) {
+            self.better = Some((found, sum));
+        }
+        Ok(Some(sum))
+    }
+}

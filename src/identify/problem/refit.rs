@@ -1,0 +1,118 @@
+//! Least squares of some parameters from a known point, the others held.
+
+use super::{Evaluation, Problem};
+use crate::diag::Fault;
+use crate::ga::optimizer::{Answers, METHODS, Setup};
+use crate::ga::{FAILED_FITNESS, Gene, Genomes, Mrg32k3a};
+use crate::registry::{self, Options};
+
+/// Evaluations of one fit.
+const BUDGET: u64 = 400;
+
+/// Fits again and again about the same problem.
+pub(super) struct Refit<'a> {
+    problem: &'a Problem,
+    evaluation: &'a Evaluation,
+    measured: Vec<f64>,
+    scales: &'a [f64],
+    /// Simulations so far.
+    pub simulations: u64,
+}
+
+/// Values of all parameters and their sum of squares.
+pub(super) type Fitted = (Vec<f64>, f64);
+
+impl<'a> Refit<'a> {
+    /// `None` where the first objective is no sum of squares.
+    pub(super) fn new(problem: &'a Problem, evaluation: &'a Evaluation) -> Option<Refit<'a>> {
+        let measured = problem.series.iter().flat_map(|series| series.y.clone()).collect();
+        let scales = evaluation.scales()?;
+        Some(Refit { problem, evaluation, measured, scales, simulations: 0 })
+    }
+
+    /// The best values from `start`, parameter `held` standing still; `None` where `start` cannot
+    /// be simulated.
+    ///
+    /// # Errors
+    ///
+    /// Those of the method's maker.
+    pub(super) fn from(
+        &mut self,
+        start: &[f64],
+        held: Option<usize>,
+    ) -> Result<Option<Fitted>, Fault> {
+        let Some(first) = self.residuals(&[start.to_vec()]).pop().flatten() else {
+            return Ok(None);
+        };
+        let mut best = (start.to_vec(), square(&first));
+        let varied: Vec<usize> = (0..start.len()).filter(|k| Some(*k) != held).collect();
+        if varied.is_empty() {
+            return Ok(Some(best));
+        }
+        let mut search = self.search(start, &varied)?;
+        let limit = self.simulations + BUDGET;
+        while self.simulations < limit {
+            let mut batch = Genomes::with_capacity(varied.len(), 0);
+            search.ask(&mut batch);
+            if batch.is_empty() {
+                break;
+            }
+            let values: Vec<Vec<f64>> =
+                batch.rows().map(|genome| self.values(start, &varied, genome)).collect();
+            let rows = self.residuals(&values);
+            let sums = rows.iter().map(|row| row.as_deref().map_or(FAILED_FITNESS, square));
+            let fitness: Vec<f64> = sums.collect();
+            for (values, fitness) in values.into_iter().zip(&fitness) {
+                if *fitness < best.1 {
+                    best = (values, *fitness);
+                }
+            }
+            let failed = vec![f64::NAN; self.measured.len()];
+            let flat: Vec<f64> =
+                rows.into_iter().flat_map(|row| row.unwrap_or_else(|| failed.clone())).collect();
+            let answers = Answers { objectives: &fitness, n_objectives: 1, residuals: &flat };
+            search.tell(&batch, &answers);
+        }
+        Ok(Some(best))
+    }
+
+    fn search(
+        &self,
+        start: &[f64],
+        varied: &[usize],
+    ) -> Result<Box<dyn crate::ga::optimizer::Optimizer>, Fault> {
+        let free = |k: usize| &self.problem.parameters[k];
+        let entry = registry::find("method", METHODS, "levenberg_marquardt")?;
+        let genes = varied.iter().map(|&k| Gene::new(&free(k).name, 0.0, 1.0));
+        (entry.make)(&mut Options::default())?.start(Setup {
+            genes: genes.collect::<Result<_, Fault>>()?,
+            n_objectives: 1,
+            budget: None,
+            start: Some(varied.iter().map(|&k| free(k).fraction(start[k])).collect()),
+            difference: self.problem.difference(),
+            rng: Mrg32k3a::new(&self.problem.seed)?,
+        })
+    }
+
+    fn values(&self, start: &[f64], varied: &[usize], genome: &[f64]) -> Vec<f64> {
+        let mut values = start.to_vec();
+        for (&k, &u) in varied.iter().zip(genome) {
+            values[k] = self.problem.parameters[k].value(u);
+        }
+        values
+    }
+
+    fn residuals(&mut self, values: &[Vec<f64>]) -> Vec<Option<Vec<f64>>> {
+        self.simulations += values.len() as u64;
+        let weighted = |row: Vec<f64>| {
+            let points = row.iter().zip(&self.measured).zip(self.scales);
+            points.map(|((s, m), w)| w * (s - m)).collect()
+        };
+        let rows = self.evaluation.simulate_all(values).into_iter();
+        rows.map(|row| row.ok().map(weighted)).collect()
+    }
+}
+
+fn square(row: &[f64]) -> f64 {
+    row.iter().map(|r| r * r).sum()
+}

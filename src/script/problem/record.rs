@@ -1,0 +1,184 @@
+//! From the record `GAPILib.Problem` of a script to the text of a problem's file, so that both
+//! forms mean the same.
+
+use crate::bail;
+use crate::diag::Fault;
+use crate::registry::BAD_OPTION;
+use crate::value::{ArrayValue, Elements, FromValue, RecordValue, Value};
+use toml::{Table, Value as Entry};
+
+/// The file that says what the record says.
+///
+/// # Errors
+///
+/// Components that are missing or of another type, vectors that belong together and differ in size.
+pub(super) fn text(record: &RecordValue) -> Result<String, Fault> {
+    let fields = Fields(record);
+    let mut file = Table::new();
+    put_text(&mut file, "title", fields.text("title")?);
+    put_text(&mut file, "model", fields.text("modelName")?);
+    put(&mut file, "fitness", strings(fields.get("fitness")?));
+    put(&mut file, "files", strings(fields.get("files")?));
+    let seed: Vec<f64> = fields.get("seed")?;
+    if !seed.is_empty() {
+        put(&mut file, "seed", seed);
+    }
+    let mut parameters = Table::new();
+    for entry in fields.records("parameters")? {
+        let name = Fields(&entry).text("name")?;
+        if parameters.insert(name.clone(), Entry::Table(parameter(&Fields(&entry))?)).is_some() {
+            bail!(BAD_OPTION, "the parameter `{name}` is given twice");
+        }
+    }
+    put(&mut file, "parameters", parameters);
+    let experiments = fields.records("experiments")?;
+    let experiments: Result<Vec<Entry>, Fault> =
+        experiments.iter().map(|entry| Ok(Entry::Table(experiment(&Fields(entry))?))).collect();
+    put(&mut file, "experiment", experiments?);
+    let mut method = fields.pairs("settings", "settingValues")?;
+    put_text(&mut method, "name", fields.text("method")?);
+    put(&mut method, "polish", fields.get::<bool>("polish")?);
+    put(&mut file, "method", method);
+    put(&mut file, "stop", stop(&fields)?);
+    Ok(file.to_string())
+}
+
+fn stop(fields: &Fields<'_>) -> Result<Table, Fault> {
+    let mut stop = Table::new();
+    for name in ["generations", "evaluations", "stagnation"] {
+        let limit: i64 = fields.get(name)?;
+        if limit != 0 {
+            put(&mut stop, name, limit);
+        }
+    }
+    put_number(&mut stop, "seconds", fields.get("seconds")?);
+    fields.optional("target", &mut stop)?;
+    Ok(stop)
+}
+
+fn parameter(fields: &Fields<'_>) -> Result<Table, Fault> {
+    let mut entry = Table::new();
+    fields.optional("fixed", &mut entry)?;
+    fields.optional("start", &mut entry)?;
+    put_text(&mut entry, "tied", fields.text("tied")?);
+    let [min, max]: [f64; 2] = [fields.get("min")?, fields.get("max")?];
+    if [min, max] != [0.0, 0.0] || (!entry.contains_key("fixed") && !entry.contains_key("tied")) {
+        put(&mut entry, "min", min);
+        put(&mut entry, "max", max);
+    }
+    put_text(&mut entry, "scale", fields.text("scale")?);
+    put_text(&mut entry, "unit", fields.text("unit")?);
+    put(&mut entry, "initial", fields.get::<bool>("initialValue")?);
+    put(&mut entry, "per_experiment", fields.get::<bool>("perExperiment")?);
+    Ok(entry)
+}
+
+fn experiment(fields: &Fields<'_>) -> Result<Table, Fault> {
+    let mut entry = Table::new();
+    put_text(&mut entry, "name", fields.text("name")?);
+    put_text(&mut entry, "data", fields.text("data")?);
+    put_text(&mut entry, "integrator", fields.text("integrator")?);
+    let mut x = Table::new();
+    put_text(&mut x, "variable", fields.text("x")?);
+    put_text(&mut x, "column", fields.text("xColumn")?);
+    put(&mut entry, "x", x);
+    let names: Vec<String> = fields.get("outputs")?;
+    let columns: Vec<String> = fields.get("columns")?;
+    let weights: Vec<f64> = fields.get("weights")?;
+    same_size("outputs", names.len(), "columns", columns.len())?;
+    same_size("outputs", names.len(), "weights", weights.len())?;
+    let mut outputs = Table::new();
+    for ((name, column), weight) in names.into_iter().zip(columns).zip(weights) {
+        let mut output = Table::new();
+        put(&mut output, "column", column);
+        put(&mut output, "weight", weight);
+        put(&mut outputs, &name, output);
+    }
+    put(&mut entry, "outputs", outputs);
+    let inputs: Vec<String> = fields.get("inputs")?;
+    let columns: Vec<String> = fields.get("inputColumns")?;
+    same_size("inputs", inputs.len(), "inputColumns", columns.len())?;
+    let inputs = inputs.into_iter().zip(columns.into_iter().map(Entry::from));
+    put(&mut entry, "inputs", inputs.collect::<Table>());
+    put(&mut entry, "set", fields.pairs("settings", "settingValues")?);
+    put(&mut entry, "start", fields.pairs("states", "stateValues")?);
+    put(&mut entry, "validation", fields.get::<bool>("validation")?);
+    put(&mut entry, "weight", fields.get::<f64>("weight")?);
+    put_number(&mut entry, "stop_time", fields.get("stopTime")?);
+    put_number(&mut entry, "tolerance", fields.get("tolerance")?);
+    Ok(entry)
+}
+
+/// The components of a record.
+struct Fields<'a>(&'a RecordValue);
+
+impl Fields<'_> {
+    fn get<T: FromValue>(&self, name: &str) -> Result<T, Fault> {
+        let Some((_, value)) = self.0.fields.iter().find(|(own, _)| own.as_str() == name) else {
+            bail!(BAD_OPTION, "`{}` has no component `{name}`", self.0.type_name; help: "use the record `GAPILib.Problem`");
+        };
+        T::from_value(value.clone()).map_err(|mut fault| {
+            fault.message = format!("`{name}` of `{}`: {}", self.0.type_name, fault.message);
+            fault
+        })
+    }
+
+    fn text(&self, name: &str) -> Result<String, Fault> {
+        self.get(name)
+    }
+
+    fn records(&self, name: &str) -> Result<Vec<RecordValue>, Fault> {
+        match self.get(name)? {
+            Value::Array(ArrayValue { elements: Elements::Record(records), .. }) => Ok(records),
+            Value::Record(record) => Ok(vec![record]),
+            _ => bail!(BAD_OPTION, "`{name}` of `{}` must hold records", self.0.type_name),
+        }
+    }
+
+    /// A vector of one number or none.
+    fn optional(&self, name: &str, entry: &mut Table) -> Result<(), Fault> {
+        match self.get::<Vec<f64>>(name)?.as_slice() {
+            [] => {}
+            [value] => put(entry, name, *value),
+            more => {
+                bail!(BAD_OPTION, "`{name}` holds {} values instead of one or none", more.len())
+            }
+        }
+        Ok(())
+    }
+
+    fn pairs(&self, names: &str, values: &str) -> Result<Table, Fault> {
+        let keys: Vec<String> = self.get(names)?;
+        let numbers: Vec<f64> = self.get(values)?;
+        same_size(names, keys.len(), values, numbers.len())?;
+        Ok(keys.into_iter().zip(numbers.into_iter().map(Entry::from)).collect())
+    }
+}
+
+fn same_size(first: &str, count: usize, second: &str, other: usize) -> Result<(), Fault> {
+    if count != other {
+        bail!(BAD_OPTION, "`{first}` has {count} elements, but `{second}` {other}"; help: "make the sizes agree");
+    }
+    Ok(())
+}
+
+fn strings(values: Vec<String>) -> Vec<Entry> {
+    values.into_iter().map(Entry::from).collect()
+}
+
+fn put(table: &mut Table, name: &str, value: impl Into<Entry>) {
+    table.insert(name.to_owned(), value.into());
+}
+
+/// An empty text and 0 say that nothing is said.
+fn put_text(table: &mut Table, name: &str, text: String) {
+    if !text.is_empty() {
+        put(table, name, text);
+    }
+}
+
+fn put_number(table: &mut Table, name: &str, value: f64) {
+    if value != 0.0 {
+        put(table, name, value);
+    }
+}
