@@ -267,7 +267,9 @@ end instantiateModel;
 fn instantiate_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let class: Name = args.take("className")?;
     let flat = simulation::flat_model(session, &class.to_string());
-    Ok(session.or_report_all(flat).map_or(String::new(), |flat| flat.to_string()).into())
+    let flat = session.or_report_all(flat).map_or(String::new(), |flat| flat.to_string());
+    // The word that OpenModelica's flat models begin with.
+    Ok(flat.strip_prefix("model").map_or(String::new(), |rest| format!("class{rest}")).into())
 }
 
 const VAL: &str = r#"
