@@ -21,11 +21,13 @@
 
 mod algorithm;
 mod alias_elimination;
+mod assigned;
 mod blt;
 mod build;
 mod default_values;
 mod discrete;
 mod dummy_derivatives;
+mod dump;
 mod dynamic_states;
 pub mod errors;
 mod events;
@@ -47,6 +49,7 @@ mod temporal;
 mod when;
 
 pub use default_values::DefaultValues;
+pub use dump::{dump, sizes};
 pub use events::*;
 pub use model::*;
 pub use report::report;
@@ -72,14 +75,28 @@ pub const PASSES: &[(&str, &str)] = &[
 
 /// Sorts a flat model.
 pub fn sort(flat: &FlatModel) -> Result<SortedDae, Diagnostic> {
+    sort_and_show(flat, &mut |_, _, _| {})
+}
+
+/// The same; the passes that change the system show it, with the aliases known so far.
+fn sort_and_show(
+    flat: &FlatModel,
+    show: &mut dyn FnMut(&str, &Dae, &[Option<Alias>]),
+) -> Result<SortedDae, Diagnostic> {
     let mut dae = build::build(flat)?;
     zero_inputs(&mut dae, flat);
+    show("build", &dae, &[]);
     let parameters = parameters::order_parameters(&mut dae)?;
+    show("order_parameters", &dae, &[]);
     let parameters = default_values::fold_parameters(&mut dae, parameters);
+    show("fold_parameters", &dae, &[]);
     dae.defaults = DefaultValues::of_parameters(&dae, &parameters);
     let mut aliases = alias_elimination::eliminate_aliases(&mut dae);
+    show("eliminate_aliases", &dae, &aliases);
     discrete::separate_discrete(&mut dae, &aliases)?;
+    show("separate_discrete", &dae, &aliases);
     let chosen = index_reduction::reduce_index(&mut dae, &mut aliases)?;
+    show("reduce_index", &dae, &aliases);
     let dummy_derivatives::ChosenStates { states, selections } = chosen;
     when::check_reinits(&dae, &aliases, &states, &selections)?;
     let unknowns = index_reduction::unknowns(&dae, &aliases, &states);

@@ -13,7 +13,7 @@ use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::symbolic::function::FunctionId;
 use crate::symbolic::{Expr, RelationOperator, VarId};
-use crate::syntax::ast::{ComponentReference, Expression};
+use crate::syntax::ast::{ComponentReference, Expression, ExpressionKind};
 use std::sync::Arc;
 
 impl Target for Builder<'_> {
@@ -191,13 +191,17 @@ impl Target for Builder<'_> {
     fn operator(
         &mut self,
         name: &str,
-        _: &[Expression],
+        arguments: &[Expression],
         span: Span,
     ) -> Option<Result<Operator, Diagnostic>> {
         Some(Ok(match name {
             "der" => Operator::Derivative,
             "noEvent" => Operator::Live(0),
-            "smooth" => Operator::Live(1),
+            // What is continuous alone still has kinks, which no step and no iteration may pass.
+            "smooth" => match arguments.first().map(|order| &order.kind) {
+                Some(ExpressionKind::Integer(0)) => Operator::Plain(1),
+                _ => Operator::Live(1),
+            },
             "pre" | "edge" | "change" => {
                 // Until `temporal`, which follows when the argument is lowered.
                 self.raw += 1;
@@ -290,7 +294,7 @@ impl Builder<'_> {
     }
 
     /// A position from 0 lies inside its array.
-    fn subscript_assertion(&mut self, size: usize, position: Expr, span: Span) {
+    pub(super) fn subscript_assertion(&mut self, size: usize, position: Expr, span: Span) {
         let pool = &mut self.dae.pool;
         let (zero, size) = (pool.constant(0.0), pool.constant(size as f64));
         let below = pool.relation(RelationOperator::Less, position, size);

@@ -14,7 +14,7 @@ use crate::source::Span;
 use crate::value::Value;
 use crate::{bail, dae, fault, syntax};
 use indexmap::IndexMap;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 
@@ -34,6 +34,8 @@ pub struct Translated {
 pub(super) struct Models {
     known: FxHashMap<String, (u64, Arc<Translated>)>,
     last: Option<Current>,
+    /// The warnings reported so far.
+    told: FxHashSet<(Span, String)>,
     /// Where the last simulation ended.
     end: Option<End>,
 }
@@ -99,6 +101,7 @@ impl Models {
     /// Forgets all models.
     pub(super) fn forget(&mut self) {
         self.known.clear();
+        self.told.clear();
         self.last = None;
     }
 
@@ -151,10 +154,17 @@ pub(super) fn compiled(
     let flat = flat_model(session, problem)?;
     let sorted = dae::sort(&flat).map_err(|error| vec![error])?;
     let program = Program::compile(sorted).map_err(|error| vec![error])?;
-    for warning in program.warnings() {
-        session.report(warning.clone());
-    }
+    warn(session, program.warnings());
     Ok(Translated { problem: problem.to_owned(), flat, program })
+}
+
+/// Reports the warnings about a model that were not reported yet, whatever it was asked before.
+fn warn(session: &mut Session, warnings: &[Diagnostic]) {
+    for warning in warnings {
+        if session.models.told.insert((warning.span(), warning.message.clone())) {
+            session.report(warning.clone());
+        }
+    }
 }
 
 /// Flattens a model, `Class` or `Class(modification)`; packages that it needs are loaded.
@@ -163,6 +173,18 @@ pub(super) fn compiled(
 /// Everything that is wrong with it.
 pub fn flat_model(session: &mut Session, problem: &str) -> Result<FlatModel, Vec<Diagnostic>> {
     flattened(session, problem).map(|flattened| flattened.model)
+}
+
+pub use crate::dae::PASSES;
+
+/// The system of a model after a pass of [`PASSES`] as text, in its own names; else the flat model.
+///
+/// # Errors
+/// Everything that is wrong with it up to there.
+pub fn dump(session: &mut Session, problem: &str, pass: &str) -> Result<String, Vec<Diagnostic>> {
+    let flat = flat_model(session, problem)?;
+    let system = dae::dump(&flat, pass).map_err(|error| vec![error])?;
+    Ok(system.unwrap_or_else(|| flat.to_string()))
 }
 
 /// As [`flat_model`], with the local balance; warnings are reported.
@@ -179,7 +201,7 @@ pub(super) fn flattened(
         session.classes.library.set_resources(resources);
         match session.ask_library(|library| flatten::flatten(library, &name, &modification)) {
             Ok(flattened) => {
-                flattened.warnings.iter().for_each(|warning| session.report(warning.clone()));
+                warn(session, &flattened.warnings);
                 return Ok(flattened);
             }
             Err(errors) => {
@@ -315,6 +337,29 @@ fn with_values(current: &Current, model: &Translated) -> Result<Continued, Fault
     let states =
         names.enumerate().filter_map(|(at, name)| Some((at, *current.imported.get(name)?)));
     Ok(Continued { states: states.collect(), system })
+}
+
+/// The next simulations begin with the states and parameters that a result has at a time.
+///
+/// # Errors
+/// A state that the result does not have.
+pub fn begin_with(
+    session: &mut Session,
+    model: &Translated,
+    result: &ResultTable,
+    time: f64,
+) -> Result<(), Fault> {
+    let mut states = IndexMap::new();
+    for name in state_names(model) {
+        states.insert(name.clone(), result.interpolate(name, &[time])?[0]);
+    }
+    for parameter in model.program.parameters() {
+        if let Ok(values) = result.interpolate(&parameter.name, &[time]) {
+            session.set_parameter(&parameter.name, values[0])?;
+        }
+    }
+    session.import_states(states);
+    Ok(())
 }
 
 /// The names of the states, in their order.

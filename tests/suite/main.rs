@@ -17,6 +17,7 @@ mod functions;
 mod gapilib;
 mod grammar;
 mod hybrid;
+mod hybrid_limits;
 mod identification;
 mod identified_models;
 mod identify;

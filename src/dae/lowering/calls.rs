@@ -112,6 +112,9 @@ impl<T: Target> Lowering<'_, T> {
                 return Ok(vec![Lowered::scalar(value)]);
             }
         }
+        if let Some(outputs) = self.vectorized_call(user, &values, span)? {
+            return Ok(outputs);
+        }
         if let Some(outputs) = self.text_call(user, &values, span)? {
             return Ok(outputs);
         }
@@ -135,6 +138,7 @@ impl<T: Target> Lowering<'_, T> {
                 let values = arguments.iter().map(|a| self.array(a)).collect::<Result<_, _>>()?;
                 Ok(Lowered::Array(self.target.temporal(name, values, self.live, span)?))
             }
+            Operator::Plain(position) => self.lower(argument(position)?),
             Operator::Live(position) => {
                 let before = std::mem::replace(&mut self.live, true);
                 let value = self.lower(argument(position)?);

@@ -10,6 +10,7 @@ mod homotopy;
 mod operators;
 mod placed;
 mod texts;
+mod vectorized;
 
 pub(crate) use arrays::Choice;
 pub(crate) use expression::field;
@@ -150,6 +151,8 @@ pub(crate) trait Target {
 pub(crate) enum Operator {
     /// The derivative of the argument.
     Derivative,
+    /// The argument of this position.
+    Plain(usize),
     /// The argument of this position, relations inside it live.
     Live(usize),
     /// Left to [`Target::temporal`].
