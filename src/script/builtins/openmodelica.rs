@@ -9,7 +9,7 @@ use crate::name::{Ident, Name};
 use crate::script::errors::BAD_ARGUMENT;
 use crate::script::simulation::{self, Wishes};
 use crate::script::{Dialect, Session};
-use crate::value::{RecordValue, Value};
+use crate::value::{FromValue, RecordValue, Value};
 use indexmap::IndexMap;
 use regex::{Regex, RegexBuilder};
 
@@ -275,15 +275,15 @@ fn instantiate_model(session: &mut Session, mut args: Args) -> Result<Value, Fai
 const VAL: &str = r#"
 function val "The value of a variable at a time of the last simulation."
   input VariableName var;
-  input Real timePoint = 0.0 "s";
+  input Any timePoint = 0.0 "s; or a vector of points";
   input String fileName = "" "empty: the file of the last simulation";
-  output Real valAtTime;
+  output Any valAtTime "a Real, or a vector of the values at each point";
 end val;
 "#;
 
 fn val(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let name: String = args.take("var")?;
-    let time: f64 = args.take("timePoint")?;
+    let time: Value = args.take("timePoint")?;
     let file: String = args.take("fileName")?;
     let file = match (file.as_str(), &session.extension::<LastResults>().0) {
         ("" | "<default>", Some(last)) => last.clone(),
@@ -293,7 +293,10 @@ fn val(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         (named, _) => named.to_owned(),
     };
     let table = super::results::table(session, &file)?;
-    Ok(table.interpolate(&name, &[time])?[0].into())
+    if time.rank() == 0 {
+        return Ok(table.interpolate(&name, &[f64::from_value(time)?])?[0].into());
+    }
+    Ok(table.interpolate(&name, &Vec::<f64>::from_value(time)?)?.into())
 }
 
 const GET_PARAMETER_NAMES: &str = r#"
