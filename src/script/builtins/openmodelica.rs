@@ -48,7 +48,7 @@ function simulate "Simulates a model. What is not given comes from its experimen
   input String method = "dassl" annotation(optional = true);
   input String fileNamePrefix = "" "empty: the name of the class";
   input String options = "" "has no effect";
-  input String outputFormat = "mat" "mat or csv";
+  input String outputFormat = "mat" "mat, csv, or empty for no file";
   input String variableFilter = ".*" "regular expression of the names that are stored";
   input String cflags = "" "has no effect";
   input String simflags = "" "-override=name=value,… sets parameters and start values";
@@ -151,6 +151,9 @@ pub(super) fn completed(wishes: &Wishes, experiment: &Experiment) -> Wishes {
     }
 }
 
+/// The ending of the format that is written to no file.
+const NO_FILE: &str = ".empty";
+
 /// Simulates and writes the results; the settings used.
 fn run(
     session: &mut Session,
@@ -168,6 +171,9 @@ fn run(
     let done = set.and_then(|()| simulation::simulate(session, &model, &wishes));
     session.restore_values(before);
     let mut done = done.map_err(one)?;
+    if file.ends_with(NO_FILE) {
+        return Ok(wishes);
+    }
     if filter.as_str() != "^(?:.*)$" {
         done.table = done.table.only(|name| filter.is_match(name));
     }
