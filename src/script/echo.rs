@@ -24,8 +24,11 @@ impl Session {
 
     /// The value of an expression that is a statement.
     pub(super) fn echo_value(&mut self, expression: &Expression, value: &Value) {
-        if self.silent > 0 || self.muted || matches!(value, Value::Tuple(v) if v.is_empty()) {
+        if self.silent > 0 || self.muted {
             return;
+        }
+        if matches!(value, Value::Tuple(v) if v.is_empty()) {
+            return self.echo_nothing();
         }
         if self.options.echo != Echo::Everything && self.is_plain_success(expression, value) {
             return;
@@ -77,7 +80,7 @@ impl Session {
             (false, Some(first)) => self.answer(first),
             _ => {
                 let all = values.iter().map(|value| show(value, Style::OpenModelica));
-                let line = format!("({})\n", all.collect::<Vec<_>>().join(","));
+                let line = format!("({})\n", all.collect::<Vec<_>>().join(", "));
                 self.print(&line);
             }
         }

@@ -37,6 +37,9 @@ impl Host for Session {
         let outer = std::mem::replace(&mut self.call, span);
         let result = id.run(self, arguments);
         self.call = outer;
+        if result.as_ref().is_ok_and(is_success) {
+            self.messages.note_success();
+        }
         match result {
             Ok(Value::Tuple(values)) => Ok(values),
             Ok(value) => Ok(vec![value]),
@@ -202,4 +205,13 @@ impl Session {
         }
         all
     }
+}
+
+/// Whether a command says that it succeeded.
+fn is_success(answer: &Value) -> bool {
+    let first = match answer {
+        Value::Tuple(values) => values.first(),
+        value => Some(value),
+    };
+    first == Some(&Value::Boolean(true))
 }

@@ -9,7 +9,7 @@ use crate::name::{Ident, Name};
 use crate::script::errors::BAD_ARGUMENT;
 use crate::script::simulation::{self, Wishes};
 use crate::script::{Dialect, Session};
-use crate::value::{RecordValue, Value};
+use crate::value::{FromValue, RecordValue, Value};
 use indexmap::IndexMap;
 use regex::{Regex, RegexBuilder};
 
@@ -48,7 +48,7 @@ function simulate "Simulates a model. What is not given comes from its experimen
   input String method = "dassl" annotation(optional = true);
   input String fileNamePrefix = "" "empty: the name of the class";
   input String options = "" "has no effect";
-  input String outputFormat = "mat" "mat or csv";
+  input String outputFormat = "mat" "mat, csv, or empty for no file";
   input String variableFilter = ".*" "regular expression of the names that are stored";
   input String cflags = "" "has no effect";
   input String simflags = "" "-override=name=value,… sets parameters and start values";
@@ -151,6 +151,9 @@ pub(super) fn completed(wishes: &Wishes, experiment: &Experiment) -> Wishes {
     }
 }
 
+/// The ending of the format that is written to no file.
+const NO_FILE: &str = ".empty";
+
 /// Simulates and writes the results; the settings used.
 fn run(
     session: &mut Session,
@@ -168,6 +171,9 @@ fn run(
     let done = set.and_then(|()| simulation::simulate(session, &model, &wishes));
     session.restore_values(before);
     let mut done = done.map_err(one)?;
+    if file.ends_with(NO_FILE) {
+        return Ok(wishes);
+    }
     if filter.as_str() != "^(?:.*)$" {
         done.table = done.table.only(|name| filter.is_match(name));
     }
@@ -267,21 +273,23 @@ end instantiateModel;
 fn instantiate_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let class: Name = args.take("className")?;
     let flat = simulation::flat_model(session, &class.to_string());
-    Ok(session.or_report_all(flat).map_or(String::new(), |flat| flat.to_string()).into())
+    let flat = session.or_report_all(flat).map_or(String::new(), |flat| flat.to_string());
+    // The word that OpenModelica's flat models begin with.
+    Ok(flat.strip_prefix("model").map_or(String::new(), |rest| format!("class{rest}")).into())
 }
 
 const VAL: &str = r#"
 function val "The value of a variable at a time of the last simulation."
   input VariableName var;
-  input Real timePoint = 0.0 "s";
+  input Any timePoint = 0.0 "s; or a vector of points";
   input String fileName = "" "empty: the file of the last simulation";
-  output Real valAtTime;
+  output Any valAtTime "a Real, or a vector of the values at each point";
 end val;
 "#;
 
 fn val(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let name: String = args.take("var")?;
-    let time: f64 = args.take("timePoint")?;
+    let time: Value = args.take("timePoint")?;
     let file: String = args.take("fileName")?;
     let file = match (file.as_str(), &session.extension::<LastResults>().0) {
         ("" | "<default>", Some(last)) => last.clone(),
@@ -291,7 +299,10 @@ fn val(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         (named, _) => named.to_owned(),
     };
     let table = super::results::table(session, &file)?;
-    Ok(table.interpolate(&name, &[time])?[0].into())
+    if time.rank() == 0 {
+        return Ok(table.interpolate(&name, &[f64::from_value(time)?])?[0].into());
+    }
+    Ok(table.interpolate(&name, &Vec::<f64>::from_value(time)?)?.into())
 }
 
 const GET_PARAMETER_NAMES: &str = r#"
