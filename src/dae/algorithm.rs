@@ -164,7 +164,7 @@ impl Builder<'_> {
             }
             StatementKind::If { branches, otherwise } => {
                 let branches: Vec<Branch> = branches.iter().map(|(c, b)| (c, &b[..])).collect();
-                return self.if_statement(&branches, otherwise, s.span, loops);
+                return self.if_statement(&branches, otherwise, loops);
             }
             StatementKind::For { indices, body } => {
                 return self.for_statement(indices, body, loops);
@@ -265,7 +265,6 @@ impl Builder<'_> {
         &mut self,
         branches: &[Branch],
         otherwise: &[Statement],
-        span: Span,
         loops: &mut Loops,
     ) -> Result<Broken, Diagnostic> {
         let Some(((condition, body), rest)) = branches.split_first() else {
@@ -277,14 +276,14 @@ impl Builder<'_> {
         if let Some(known) = self.dae.pool.as_constant(condition) {
             return match known != 0.0 {
                 true => self.statements(body, loops),
-                false => self.if_statement(rest, otherwise, span, loops),
+                false => self.if_statement(rest, otherwise, loops),
             };
         }
         self.choose(
             condition,
             loops,
             |builder, loops| builder.statements(body, loops),
-            |builder, loops| builder.if_statement(rest, otherwise, span, loops),
+            |builder, loops| builder.if_statement(rest, otherwise, loops),
         )
     }
 

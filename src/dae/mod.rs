@@ -78,11 +78,11 @@ pub fn sort(flat: &FlatModel) -> Result<SortedDae, Diagnostic> {
     sort_and_show(flat, &mut |_, _, _| {})
 }
 
+/// Is shown the name of a pass, the system after it, and the aliases known so far.
+type Show<'a> = dyn FnMut(&str, &Dae, &[Option<Alias>]) + 'a;
+
 /// The same; the passes that change the system show it, with the aliases known so far.
-fn sort_and_show(
-    flat: &FlatModel,
-    show: &mut dyn FnMut(&str, &Dae, &[Option<Alias>]),
-) -> Result<SortedDae, Diagnostic> {
+fn sort_and_show(flat: &FlatModel, show: &mut Show<'_>) -> Result<SortedDae, Diagnostic> {
     let mut dae = build::build(flat)?;
     zero_inputs(&mut dae, flat);
     show("build", &dae, &[]);
