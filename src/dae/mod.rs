@@ -5,6 +5,7 @@
 //! order_parameters     bindings in order of dependence
 //! fold_parameters      parameters that cannot be set become numbers
 //! eliminate_aliases    a = b and a = -b become names
+//! substitute_constants v = 3 holds in all other equations
 //! separate_discrete    equations of discrete variables become assignments at events
 //! reduce_index         constraints between states differentiated, states chosen
 //! sort_blocks          matching, strongly connected components, tearing
@@ -24,6 +25,7 @@ mod alias_elimination;
 mod assigned;
 mod blt;
 mod build;
+mod constant_variables;
 mod default_values;
 mod discrete;
 mod dummy_derivatives;
@@ -46,6 +48,7 @@ mod settled;
 mod sorted;
 mod symbolic_target;
 mod temporal;
+mod varying_texts;
 mod when;
 
 pub use default_values::DefaultValues;
@@ -66,6 +69,7 @@ pub const PASSES: &[(&str, &str)] = &[
     ("order_parameters", "bindings of parameters in order of dependence"),
     ("fold_parameters", "parameters that cannot be set become numbers"),
     ("eliminate_aliases", "`a = b` and `a = -b` become names"),
+    ("substitute_constants", "where `v = 3`, the number stands for v in all other equations"),
     ("separate_discrete", "equations of discrete variables become assignments at events"),
     ("reduce_index", "constraints between states differentiated, states chosen"),
     ("sort_blocks", "matching, strongly connected components, tearing"),
@@ -93,6 +97,8 @@ fn sort_and_show(
     dae.defaults = DefaultValues::of_parameters(&dae, &parameters);
     let mut aliases = alias_elimination::eliminate_aliases(&mut dae);
     show("eliminate_aliases", &dae, &aliases);
+    constant_variables::substitute_constants(&mut dae);
+    show("substitute_constants", &dae, &aliases);
     discrete::separate_discrete(&mut dae, &aliases)?;
     show("separate_discrete", &dae, &aliases);
     let chosen = index_reduction::reduce_index(&mut dae, &mut aliases)?;
