@@ -1,5 +1,6 @@
 //! A compiled model: immutable, shared by any number of [`System`](super::System)s.
 
+use super::chains::cut_chains;
 use super::errors::*;
 use super::events::{CompiledRounding, Events, compile_events, linear_in_time};
 use super::hoist::Hoisting;
@@ -191,7 +192,7 @@ impl Program {
     /// Compiles a sorted system.
     pub fn compile(mut sorted: SortedDae) -> Result<Arc<Program>, Diagnostic> {
         let n = sorted.dae.variables.len();
-        let sequence: Vec<Assignment> =
+        let mut sequence: Vec<Assignment> =
             sorted.blocks.iter().flat_map(|block| block.assignments()).copied().collect();
         let loops = sorted.blocks.iter().filter_map(|block| match block {
             Block::Loop(torn) => Some(torn),
@@ -237,6 +238,14 @@ impl Program {
             outputs.push(resolved(&mut pool, &sorted, derivatives[state]));
         }
         outputs.extend(&residuals);
+        let unknowns: Vec<VarId> = sorted.states.iter().chain(&iteration).copied().collect();
+        for assignment in cut_chains(&pool, &sorted, &unknowns, &outputs) {
+            let unknown = pool.variable(assignment.variable);
+            outputs.push(pool.sub(unknown, assignment.value));
+            iteration.push(assignment.variable);
+        }
+        let unknowns: FxHashSet<VarId> = iteration.iter().copied().collect();
+        sequence.retain(|assignment| !unknowns.contains(&assignment.variable));
         let rhs = compile_continuous(&pool, &mut registers, &sequence, &outputs, Hoisting::Certain);
 
         let columns: Vec<VarId> = sorted.states.iter().chain(&iteration).copied().collect();

@@ -4,8 +4,9 @@
 
 use super::BaseType;
 use super::errors::TOO_LARGE;
+use super::flat_expression::literal;
 use super::instantiation::Instantiation;
-use super::resolve::{Local, literal};
+use super::resolve::Local;
 use super::scope::ScopeId;
 use crate::diag::Diagnostic;
 use crate::eval::ValueType;

@@ -334,7 +334,7 @@ fn check_type(value: &Value, base: &BaseType) -> Result<(), Fault> {
 struct Functions<'i, 'a>(&'i mut Instantiation<'a>);
 
 /// The most turns of loops and statements that may be run to find the values of one model.
-const MAX_STEPS: usize = 10_000_000;
+const MAX_STEPS: usize = 4_000_000;
 
 impl Host for Functions<'_, '_> {
     fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {

@@ -366,11 +366,21 @@ impl Instantiation<'_> {
         let Some(extends) = extends else { return Ok(None) };
         let is_external = extends.base.name.is_simple()
             && extends.base.name.first().is_some_and(|name| name == "ExternalObject");
-        if text.restriction() != Restriction::Type && !is_external {
+        let is_simple = matches!(text.restriction(), Restriction::Type | Restriction::Connector);
+        if !is_simple && !is_external {
             return Ok(None);
         }
         let parent = self.scope(id).parent.unwrap_or(ScopeId::TOP);
-        Ok(Some((self.lookup_type(parent, &extends.base)?, extends.clone())))
+        let base = self.lookup_type(parent, &extends.base);
+        if text.restriction() == Restriction::Connector {
+            // Most connectors extend connectors, which have components.
+            let is_type = |base: &Type| match base {
+                Type::Predefined(_) => true,
+                Type::Class(class) => self.text(*class).restriction() == Restriction::Type,
+            };
+            return Ok(base.ok().filter(is_type).map(|base| (base, extends.clone())));
+        }
+        Ok(Some((base?, extends.clone())))
     }
 
     /// The enumeration that a type is, through short classes; `None` if it is anything else.

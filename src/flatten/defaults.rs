@@ -2,8 +2,8 @@
 //! modifier, to variables of the model (MLS §12.4.1): the default with the call's own arguments in
 //! place of the inputs is written into the call.
 
+use super::flat_expression::subscripted;
 use super::instantiation::Instantiation;
-use super::resolve::subscripted;
 use crate::eval::Function;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};

@@ -11,7 +11,7 @@ use super::scope::ScopeId;
 use crate::diag::Diagnostic;
 use crate::eval::ValueType;
 use crate::fault;
-use crate::name::Ident;
+use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
     Arguments, ClassSpecifier, ComponentReference, Expression, ExpressionKind, ReferencePart,
@@ -150,7 +150,11 @@ impl Instantiation<'_> {
         }
         match self.lookup(context, &function.name())? {
             Some(Type::Predefined(Predefined::Integer)) => {
-                self.resolve(argument, context, local).map(Some)
+                let value = self.resolve(argument, context, local)?;
+                Ok(Some(match self.type_of(&value) {
+                    Some(BaseType::Enumeration(_)) => ordinal(value),
+                    _ => value,
+                }))
             }
             Some(Type::Predefined(Predefined::String)) => {
                 self.literal_name(argument, context, local)
@@ -166,6 +170,7 @@ impl Instantiation<'_> {
                         definition.name
                     )
                     .at(span)),
+                    ExpressionKind::Reference(_) => Ok(Some(ordinal(value))),
                     _ => Ok(Some(value)),
                 }
             }
@@ -208,7 +213,7 @@ impl Instantiation<'_> {
         };
         let names = ExpressionKind::Array(definition.literals.iter().map(name).collect());
         let base = Expression::new(names, span);
-        Ok(Some(super::resolve::subscripted(base, vec![Subscript::Index(resolved)], span)))
+        Ok(Some(super::flat_expression::subscripted(base, vec![Subscript::Index(resolved)], span)))
     }
 }
 
@@ -216,4 +221,12 @@ impl Instantiation<'_> {
 pub(super) fn all_booleans(span: Span) -> Expression {
     let truth = |truth| Expression::new(ExpressionKind::Boolean(truth), span);
     Expression::new(ExpressionKind::Array(vec![truth(false), truth(true)]), span)
+}
+
+/// A value of Integer or of an enumeration as the Integer that stands for it in the flat model.
+fn ordinal(value: Expression) -> Expression {
+    let span = value.span;
+    let function = ComponentReference::from_name(&Name::parse("Integer"), span);
+    let arguments = Box::new(Arguments { positional: vec![value], ..Arguments::default() });
+    Expression::new(ExpressionKind::Call { function, arguments }, span)
 }

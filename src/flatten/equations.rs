@@ -4,9 +4,10 @@
 use super::FlatModel;
 use super::balance::Written;
 use super::errors::{NOT_SUPPORTED, TYPE_MISMATCH};
+use super::flat_expression::literal;
 use super::instance::{MemberState, NodeId};
 use super::instantiation::Instantiation;
-use super::resolve::{Local, literal};
+use super::resolve::Local;
 use super::scope::ScopeId;
 use crate::diag::Diagnostic;
 use crate::eval::{FunctionBody, ValueType};

@@ -641,12 +641,15 @@ impl<'a> Instantiation<'a> {
                 }
             };
             for one in nodes {
+                // Whatever holds itself or is too large would only be found again and again.
+                if errors.iter().any(is_endless) {
+                    break;
+                }
                 if let Err(more) = self.complete(one) {
                     errors.extend(more);
                 }
             }
-            // Whatever holds itself or is too large would only be found again and again.
-            if errors.iter().any(|error| [CYCLIC_CLASS, TOO_LARGE].contains(&error.code)) {
+            if errors.iter().any(is_endless) {
                 break;
             }
         }
@@ -657,6 +660,10 @@ impl<'a> Instantiation<'a> {
         let members = self.composite_of(node)?.members.as_ref()?;
         members.get_index(at).map(|(name, _)| *name)
     }
+}
+
+fn is_endless(error: &Diagnostic) -> bool {
+    [CYCLIC_CLASS, TOO_LARGE].contains(&error.code)
 }
 
 /// How many times a class may hold a component of its own class.

@@ -109,6 +109,8 @@ pub(super) struct Class {
     pub(super) children: IndexMap<Ident, ClassId>,
     pub(super) imports: Vec<ImportKind>,
     pub(super) extends: Vec<Extends>,
+    /// The number of the element that declares a component, in the order of [`Class::elements`].
+    components: OnceLock<FxHashMap<Ident, usize>>,
     declared: Declared,
     /// What is wrong with its text.
     problems: Vec<Diagnostic>,
@@ -493,6 +495,21 @@ impl Class {
             };
             elements.iter().map(move |element| (visibility, element))
         })
+    }
+
+    /// The element that declares the component of a name.
+    pub(super) fn component_element(&self, name: Ident) -> Option<(Visibility, &Element)> {
+        let numbers = self.components.get_or_init(|| {
+            let mut numbers = FxHashMap::default();
+            for (number, (_, element)) in self.elements().enumerate() {
+                let Element::Component(clause) = element else { continue };
+                for declaration in &clause.components {
+                    numbers.entry(declaration.name.node).or_insert(number);
+                }
+            }
+            numbers
+        });
+        self.elements().nth(*numbers.get(&name)?)
     }
 
     /// The sections of a long class; none for a short one.

@@ -163,7 +163,7 @@ impl Instantiation<'_> {
             match subscripts.get(at) {
                 None | Some(Subscript::All(_)) => left.push(*size),
                 Some(Subscript::Index(index)) => {
-                    let index = super::resolve::at_end(index, *size);
+                    let index = super::flat_expression::at_end(index, *size);
                     left.extend(self.shape_of(&index)?);
                 }
             }

@@ -182,7 +182,7 @@ impl Instantiation<'_> {
         }
         match function.as_ident()?.as_str() {
             name if REAL_FUNCTIONS.contains(&name) => Some(BaseType::Real),
-            "size" | "ndims" | "integer" => Some(BaseType::Integer),
+            "size" | "ndims" | "integer" | "Integer" => Some(BaseType::Integer),
             "fill" => self.type_of(arguments.positional.first()?),
             _ => None,
         }

@@ -3,10 +3,11 @@
 
 use super::FlatModel;
 use super::errors::{SIZE_MISMATCH, TYPE_MISMATCH};
+use super::flat_expression::literal;
 use super::instance::{Leaf, MemberState, NodeId, NodeKind};
 use super::instantiation::{ATTRIBUTES, Instantiation, picked};
 use super::modification::Bound;
-use super::resolve::{Local, literal};
+use super::resolve::Local;
 use super::types::type_name;
 use super::{Attribute, BaseType, Variability, Variable};
 use crate::diag::Diagnostic;

@@ -2,8 +2,8 @@
 //! (MLS §12.4.6).
 
 use super::errors::SIZE_MISMATCH;
+use super::flat_expression::subscripted;
 use super::instantiation::{Instantiation, indices_of};
-use super::resolve::subscripted;
 use crate::diag::Diagnostic;
 use crate::eval::FunctionBody;
 use crate::fault;

@@ -1,6 +1,17 @@
 //! Codes of scripts.
 
 use crate::codes;
+use crate::diag::Code;
+use crate::{dae, eval, flatten};
+
+/// Codes that say that something is not there, rather than that something is wrong.
+pub const OUT_OF_REACH: &[Code] = &[
+    eval::errors::UNKNOWN_FUNCTION,
+    eval::errors::MODEL_ONLY,
+    REFUSED,
+    dae::errors::NOT_SUPPORTED,
+    flatten::errors::NOT_SUPPORTED,
+];
 
 codes! {
     /// A script to run does not exist.

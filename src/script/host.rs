@@ -112,7 +112,7 @@ impl Host for Session {
 
     fn function_names(&mut self) -> Vec<String> {
         let mut names: Vec<String> = builtins::names().into_iter().map(str::to_owned).collect();
-        names.extend(self.classes.function_names());
+        names.extend(self.classes.read_names().iter().map(Name::to_string));
         names
     }
 

@@ -14,7 +14,7 @@ use crate::source::Span;
 use crate::value::Value;
 use crate::{bail, dae, fault, syntax};
 use indexmap::IndexMap;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
 
@@ -34,6 +34,8 @@ pub struct Translated {
 pub(super) struct Models {
     known: FxHashMap<String, (u64, Arc<Translated>)>,
     last: Option<Current>,
+    /// The warnings reported so far.
+    told: FxHashSet<(Span, String)>,
     /// Where the last simulation ended.
     end: Option<End>,
 }
@@ -99,6 +101,7 @@ impl Models {
     /// Forgets all models.
     pub(super) fn forget(&mut self) {
         self.known.clear();
+        self.told.clear();
         self.last = None;
     }
 
@@ -151,10 +154,17 @@ pub(super) fn compiled(
     let flat = flat_model(session, problem)?;
     let sorted = dae::sort(&flat).map_err(|error| vec![error])?;
     let program = Program::compile(sorted).map_err(|error| vec![error])?;
-    for warning in program.warnings() {
-        session.report(warning.clone());
-    }
+    warn(session, program.warnings());
     Ok(Translated { problem: problem.to_owned(), flat, program })
+}
+
+/// Reports the warnings about a model that were not reported yet, whatever it was asked before.
+fn warn(session: &mut Session, warnings: &[Diagnostic]) {
+    for warning in warnings {
+        if session.models.told.insert((warning.span(), warning.message.clone())) {
+            session.report(warning.clone());
+        }
+    }
 }
 
 /// Flattens a model, `Class` or `Class(modification)`; packages that it needs are loaded.
@@ -191,7 +201,7 @@ pub(super) fn flattened(
         session.classes.library.set_resources(resources);
         match session.ask_library(|library| flatten::flatten(library, &name, &modification)) {
             Ok(flattened) => {
-                flattened.warnings.iter().for_each(|warning| session.report(warning.clone()));
+                warn(session, &flattened.warnings);
                 return Ok(flattened);
             }
             Err(errors) => {

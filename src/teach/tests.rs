@@ -1,3 +1,5 @@
+//! Traces written, read and walked.
+
 use super::sample::{self, POPULATION};
 use super::{Step, Trace, Walk, page, plain};
 use proptest::prelude::*;

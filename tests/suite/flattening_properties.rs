@@ -1,11 +1,14 @@
-//! No damaged model makes flattening panic, hang or run out of stack: the corpora with tokens
-//! deleted, doubled, exchanged or replaced by others of the same file.
+//! No damaged model makes flattening or compilation panic, hang or run out of stack: the corpora
+//! with tokens deleted, doubled, exchanged or replaced by others of the same file.
 
+use gapilib::compile::Program;
+use gapilib::dae;
 use gapilib::flatten::{Library, flatten};
 use gapilib::name::Name;
 use gapilib::source::SourceId;
 use gapilib::syntax::parse_stored_definition;
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
@@ -133,28 +136,43 @@ fn damaged(tokens: &[String], damages: &[Damage]) -> String {
     tokens.concat()
 }
 
-/// Flattens every class of a text and makes every function of it ready, whatever comes of it.
-fn flatten_all(text: &str) {
+/// Flattens and compiles every class of a text and makes every function of it ready, whatever comes
+/// of it.
+fn compile_all(text: &str) {
     let Ok(file) = parse_stored_definition(SourceId::NONE, text) else { return };
     let mut library = Library::new();
     if library.load(&file).is_err() {
         return;
     }
     for class in library.all() {
-        let _ = flatten(&library, &class, &[]);
+        if let Ok(flattened) = flatten(&library, &class, &[]) {
+            let _ = dae::sort(&flattened.model).map(Program::compile);
+        }
         let _ = library.function(&class);
     }
 }
 
+/// The same damages everywhere. `PROPTEST_RNG_SEED` and `PROPTEST_CASES` ask for others and more;
+/// each case damages every file of the corpora once.
+fn config() -> ProptestConfig {
+    let asked = ProptestConfig::default();
+    let cases = if std::env::var_os("PROPTEST_CASES").is_some() { asked.cases } else { 4 };
+    let rng_seed = match asked.rng_seed {
+        RngSeed::Random => RngSeed::Fixed(1),
+        fixed => fixed,
+    };
+    ProptestConfig { cases, rng_seed, failure_persistence: None, ..asked }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(config())]
 
     #[test]
-    fn damaged_models_never_make_flattening_panic(
+    fn damaged_models_never_make_the_compiler_panic(
         damages in prop::collection::vec(prop::collection::vec(damage(), 1..3), 8),
     ) {
         for (number, tokens) in CORPUS.iter().enumerate() {
-            flatten_all(&damaged(tokens, &damages[number % damages.len()]));
+            compile_all(&damaged(tokens, &damages[number % damages.len()]));
         }
     }
 }

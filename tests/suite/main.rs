@@ -36,6 +36,7 @@ mod models;
 mod msl;
 mod plot;
 mod reference_problems;
+mod repl;
 mod results;
 mod script_fuzzing;
 mod script_tests;

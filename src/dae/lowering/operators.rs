@@ -10,6 +10,9 @@ use crate::symbolic::RelationOperator;
 use crate::syntax::ast::{BinaryOperator, Expression};
 use std::sync::Arc;
 
+/// The greatest exponent of a matrix.
+const MAX_POWER: f64 = 64.0;
+
 impl<T: Target> Lowering<'_, T> {
     pub(super) fn map_unary(&mut self, op: Unary, mut a: Array<T::Scalar>) -> Array<T::Scalar> {
         for element in &mut a.elements {
@@ -226,24 +229,47 @@ impl<T: Target> Lowering<'_, T> {
             ([], [b]) => self.target.as_constant(*b),
             _ => None,
         };
-        let (&[n, m], Some(exponent)) = (a.dims.as_slice(), exponent) else {
-            return Err(fault!(NOT_SUPPORTED,
-                "`^` needs scalars, or a square matrix and a known whole number";
+        let &[n, m] = a.dims.as_slice() else {
+            return Err(
+                fault!(ARRAY_MISMATCH, "`^` needs scalars, or a square matrix and a whole number";
                 help: "write `.^` for element by element")
-            .at(span));
+                .at(span),
+            );
         };
-        if n != m || exponent < 1.0 || exponent.fract() != 0.0 || exponent > 64.0 {
+        let Some(exponent) = exponent else {
             return Err(fault!(
                 NOT_SUPPORTED,
-                "the power of a matrix needs a square matrix and a whole number from 1 to 64"
+                "a matrix to a power that is not known when compiling"
             )
             .at(span));
+        };
+        if n != m || exponent < 0.0 || exponent.fract() != 0.0 {
+            return Err(fault!(ARRAY_MISMATCH,
+                "the power of a matrix needs a square matrix and a whole number, 0 or more";
+                help: "write `.^` for element by element")
+            .at(span));
+        }
+        if exponent > MAX_POWER {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "the power of a matrix with an exponent above {MAX_POWER}"
+            )
+            .at(span));
+        }
+        if exponent == 0.0 {
+            return Ok(self.identity(n));
         }
         let mut result = a.clone();
         for _ in 1..exponent as usize {
             result = self.product(result, a.clone(), span)?;
         }
         Ok(result)
+    }
+
+    fn identity(&mut self, n: usize) -> Array<T::Scalar> {
+        let element = |at: usize| if at / n == at % n { 1.0 } else { 0.0 };
+        let elements = (0..n * n).map(|at| self.target.constant(element(at))).collect();
+        Array { dims: vec![n, n], elements }
     }
 
     /// `a op b op …`; `empty` without elements.

@@ -1,15 +1,17 @@
-//! Where equations and statements may stand (MLS §8.3, §9.1, §9.4.1, §11.2, §12.2).
+//! Where equations and statements may stand (MLS §4.5, §8.3, §9.1, §9.4.1, §11.2, §12.2).
 
-use super::scope::Scope;
+use super::lookup::Type;
+use super::scope::{Component, Scope};
 use super::variability::is_fixed;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::MISPLACED;
+use crate::flatten::lookup::Predefined;
 use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{
     ComponentReference, Equation, EquationKind, Expression, ExpressionKind, ForIndex, Restriction,
-    Section, Statement, StatementKind, Subscript,
+    Section, Statement, StatementKind, Subscript, VariabilityPrefix,
 };
 
 /// What stands around an equation or a statement.
@@ -33,6 +35,9 @@ struct Around {
 pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     let is_function = matches!(class.restriction(), Restriction::Function { .. });
     let mut walk = Walk { class, loops: Vec::new(), errors };
+    if !is_function {
+        class.components().for_each(|component| walk.discrete_with_value(&component));
+    }
     for section in class.sections() {
         match section {
             Section::Equations { initial, equations, span } => {
@@ -117,6 +122,45 @@ impl Walk<'_, '_> {
         if around.when && !names_result {
             let message = "an equation of a when-clause must have a variable on its left side";
             self.wrong(span, message, "solve the equation for the variable that it determines");
+        }
+        if let (true, ExpressionKind::Reference(target)) = (around.when, &left.kind) {
+            self.discrete_of_component(target);
+        }
+    }
+
+    /// A discrete variable of a model or block is assigned in the when-clauses of that class
+    /// (MLS §4.5).
+    fn discrete_of_component(&mut self, target: &ComponentReference) {
+        let Some(path) = self.class.path(target) else { return };
+        let Some((last, before)) = path.split_last() else { return };
+        let is_model = |component: &Component<'_>| {
+            component.class().is_some_and(|class| {
+                matches!(class.restriction(), Restriction::Model | Restriction::Block)
+            })
+        };
+        if is_discrete(last) && before.iter().any(is_model) {
+            let message =
+                format!("the discrete variable `{}` is assigned outside of its class", last.name());
+            self.wrong(
+                target.span,
+                &message,
+                "write the when-clause in the class that declares it",
+            );
+        }
+    }
+
+    /// What is declared `discrete` has its values from when-clauses (MLS §4.5).
+    fn discrete_with_value(&mut self, component: &Component<'_>) {
+        let modification = component.declaration.modification.as_ref();
+        let has_value = modification.is_some_and(|modification| modification.binding.is_some());
+        let is_real = component.meaning() == Some(Type::Predefined(Predefined::Real));
+        if has_value && is_real && is_discrete(component) {
+            let message = format!(
+                "`{}` is declared `discrete` and is not assigned in a when-clause",
+                component.name()
+            );
+            let span = component.declaration.name.span;
+            self.wrong(span, &message, "remove the prefix, or give the value as `start`");
         }
     }
 
@@ -210,7 +254,12 @@ impl Walk<'_, '_> {
 
     fn statement(&mut self, statement: &Statement, around: &Around) {
         match &statement.kind {
-            StatementKind::Assign { target, .. } => self.assigned(target, around),
+            StatementKind::Assign { target, .. } => {
+                self.assigned(target, around);
+                if around.when {
+                    self.discrete_of_component(target);
+                }
+            }
             StatementKind::MultiAssign { targets, .. } => {
                 targets.iter().flatten().for_each(|target| self.assigned(target, around));
             }
@@ -242,6 +291,10 @@ impl Walk<'_, '_> {
             StatementKind::Break | StatementKind::Return => {}
         }
     }
+}
+
+fn is_discrete(component: &Component<'_>) -> bool {
+    component.clause.type_prefixes.variability == Some(VariabilityPrefix::Discrete)
 }
 
 fn ranges(indices: &[ForIndex]) -> impl Iterator<Item = &Expression> {

@@ -52,8 +52,9 @@ fn names(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     }
     for component in class.components() {
         let name = component.declaration.name;
-        reserved(name, errors);
-        if let Some(other) = classes.get(&name.node) {
+        if PREDEFINED.contains(&name.node.as_str()) {
+            reserved(name, errors);
+        } else if let Some(other) = classes.get(&name.node) {
             errors.push(
                 fault!(DUPLICATE_ELEMENT, "`{}` declares a class and a component named `{}`",
                     class.name(), name.node;

@@ -70,18 +70,23 @@ impl<'a> Scope<'a> {
 
     /// Its own components.
     pub(super) fn components(self) -> impl Iterator<Item = Component<'a>> {
-        self.elements().flat_map(move |(visibility, element)| {
-            let clause = match element {
-                Element::Component(clause) => Some(clause),
-                _ => None,
-            };
-            clause.into_iter().flat_map(move |clause| {
-                clause.components.iter().map(move |declaration| Component {
-                    owner: self,
-                    visibility,
-                    clause,
-                    declaration,
-                })
+        self.elements().flat_map(move |element| self.components_of(element))
+    }
+
+    fn components_of(
+        self,
+        (visibility, element): (Visibility, &'a Element),
+    ) -> impl Iterator<Item = Component<'a>> {
+        let clause = match element {
+            Element::Component(clause) => Some(clause),
+            _ => None,
+        };
+        clause.into_iter().flat_map(move |clause| {
+            clause.components.iter().map(move |declaration| Component {
+                owner: self,
+                visibility,
+                clause,
+                declaration,
             })
         })
     }
@@ -121,7 +126,8 @@ impl<'a> Scope<'a> {
 
     /// The component of a name that it declares itself.
     pub(super) fn own_component(self, name: Ident) -> Option<Component<'a>> {
-        self.components().find(|component| component.declaration.name.node == name)
+        let element = self.library.class(self.class).component_element(name)?;
+        self.components_of(element).find(|component| component.declaration.name.node == name)
     }
 
     /// The components that the parts of a reference name, followed through their classes as they

@@ -3,10 +3,11 @@
 
 use super::super::FlatModel;
 use super::super::errors::INVALID_CONNECTION;
+use super::super::flat_expression::flat_reference;
 use super::super::instance::{NodeId, NodeKind};
 use super::super::instantiation::Instantiation;
 use super::super::lookup::Type;
-use super::super::resolve::{Local, flat_reference};
+use super::super::resolve::Local;
 use super::super::scope::ScopeId;
 use super::ends::End;
 use super::sets::Connections;

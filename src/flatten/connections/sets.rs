@@ -1,9 +1,9 @@
 //! Connection sets and their equations (MLS §9.1, §9.2).
 
 use super::super::errors::INVALID_CONNECTION;
+use super::super::flat_expression::flat_reference;
 use super::super::instance::{MemberState, NodeId, NodeKind};
 use super::super::instantiation::{Instantiation, indices_of};
-use super::super::resolve::flat_reference;
 use super::super::{FlatModel, Variability};
 use super::ends::End;
 use super::graph::Graph;

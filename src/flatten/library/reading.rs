@@ -14,7 +14,7 @@ use crate::syntax::ast::{
 };
 use indexmap::IndexMap;
 use rustc_hash::FxHashMap;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Packages inside each other whose folders are still looked into.
 const MAX_FOLDERS: usize = 20;
@@ -45,6 +45,7 @@ impl Library {
             children: IndexMap::new(),
             imports: Vec::new(),
             extends: Vec::new(),
+            components: OnceLock::new(),
             declared: slot.declared.clone(),
             problems: problem.into_iter().collect(),
         };

@@ -15,6 +15,7 @@ mod loading;
 mod matrices;
 mod messages;
 mod openmodelica;
+mod output;
 mod plotting;
 mod problem;
 mod refused;
@@ -31,6 +32,7 @@ mod upgrade;
 mod windows;
 
 pub use args::Args;
+pub(in crate::script) use classes::component_names;
 pub(in crate::script) use strings::constant;
 
 use crate::diag::{Diagnostic, Fault};
@@ -110,6 +112,7 @@ pub static FAMILIES: &[&Family] = &[
     &matrices::FAMILY,
     &messages::FAMILY,
     &openmodelica::FAMILY,
+    &output::FAMILY,
     &plotting::FAMILY,
     &plotting::OPENMODELICA,
     &refused::FAMILY,

@@ -1,6 +1,7 @@
 //! Settings of the session, and its variables.
 
 use super::{Args, Builtin, Failure, Family};
+use crate::name::Name;
 use crate::script::{Dialect, Session};
 use crate::value::Value;
 
@@ -12,6 +13,7 @@ pub(super) const FAMILY: Family = Family {
         Builtin { header: CLEAR, run: clear },
         Builtin { header: CLEAR_VARIABLES, run: clear_variables },
         Builtin { header: ECHO, run: echo },
+        Builtin { header: LIST_VARIABLES, run: list_variables },
         Builtin { header: VARIABLES, run: variables },
         Builtin { header: SET_COMMAND_LINE_OPTIONS, run: accepted },
         Builtin { header: GET_VERSION, run: get_version },
@@ -62,6 +64,17 @@ fn echo(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let wanted: bool = args.take("setEcho")?;
     session.muted = !wanted;
     Ok(wanted.into())
+}
+
+const LIST_VARIABLES: &str = r#"
+function listVariables "The names of the variables."
+  output TypeName variables[:];
+end listVariables;
+"#;
+
+fn list_variables(session: &mut Session, _: Args) -> Result<Value, Failure> {
+    let names: Vec<String> = session.scope.iter().map(|(name, _)| name.to_string()).collect();
+    Ok(names.into())
 }
 
 const LIST: &str = r#"
@@ -124,12 +137,18 @@ fn accepted(session: &mut Session, args: Args) -> Result<Value, Failure> {
 }
 
 const GET_VERSION: &str = r#"
-function getVersion "The version of this program."
+function getVersion "The version of this program, or of a loaded library."
+  input TypeName cl = OpenModelica;
   output String version;
 end getVersion;
 "#;
 
-fn get_version(_: &mut Session, _: Args) -> Result<Value, Failure> {
+fn get_version(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let class: Name = args.take("cl")?;
+    if class.to_string() != "OpenModelica" {
+        let version = session.class_version(&class);
+        return Ok(session.or_report(version).unwrap_or_default().into());
+    }
     Ok(concat!("gapilib ", env!("CARGO_PKG_VERSION")).into())
 }
 

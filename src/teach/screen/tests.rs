@@ -1,3 +1,5 @@
+//! Screens on terminals of several sizes.
+
 use super::{Key, Screen, draw};
 use crate::teach::sample;
 use ratatui::Terminal;
@@ -76,7 +78,9 @@ fn the_smallest_terminal_is_no_panic() {
     for (width, height) in [(1, 1), (10, 3), (40, 10), (200, 60)] {
         for keys in [vec![], vec![Key::Char('?')], typed('i', ""), vec![Key::Right; 5]] {
             let mut screen = Screen::new(sample::walk(), true);
-            keys.into_iter().for_each(|key| drop(screen.press(key)));
+            for key in keys {
+                screen.press(key);
+            }
             let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
             terminal.draw(|frame| draw(&screen, frame)).unwrap();
         }
