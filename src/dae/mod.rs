@@ -4,8 +4,8 @@
 //! build                every variable a scalar, every relation outside noEvent frozen
 //! order_parameters     bindings in order of dependence
 //! fold_parameters      parameters that cannot be set become numbers
-//! eliminate_aliases    a = b and a = -b become names
 //! substitute_constants v = 3 holds in all other equations
+//! eliminate_aliases    a = b and a = -b become names
 //! separate_discrete    equations of discrete variables become assignments at events
 //! reduce_index         constraints between states differentiated, states chosen
 //! sort_blocks          matching, strongly connected components, tearing
@@ -68,8 +68,8 @@ pub const PASSES: &[(&str, &str)] = &[
     ("build", "every variable a scalar, relations outside `noEvent` frozen"),
     ("order_parameters", "bindings of parameters in order of dependence"),
     ("fold_parameters", "parameters that cannot be set become numbers"),
-    ("eliminate_aliases", "`a = b` and `a = -b` become names"),
     ("substitute_constants", "where `v = 3`, the number stands for v in all other equations"),
+    ("eliminate_aliases", "`a = b` and `a = -b` become names"),
     ("separate_discrete", "equations of discrete variables become assignments at events"),
     ("reduce_index", "constraints between states differentiated, states chosen"),
     ("sort_blocks", "matching, strongly connected components, tearing"),
@@ -95,10 +95,10 @@ fn sort_and_show(
     let parameters = default_values::fold_parameters(&mut dae, parameters);
     show("fold_parameters", &dae, &[]);
     dae.defaults = DefaultValues::of_parameters(&dae, &parameters);
+    constant_variables::substitute_constants(&mut dae);
+    show("substitute_constants", &dae, &[]);
     let mut aliases = alias_elimination::eliminate_aliases(&mut dae);
     show("eliminate_aliases", &dae, &aliases);
-    constant_variables::substitute_constants(&mut dae);
-    show("substitute_constants", &dae, &aliases);
     discrete::separate_discrete(&mut dae, &aliases)?;
     show("separate_discrete", &dae, &aliases);
     let chosen = index_reduction::reduce_index(&mut dae, &mut aliases)?;
