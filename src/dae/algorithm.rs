@@ -12,6 +12,7 @@ use super::lowering::{Lowered, Lowering, Target};
 use super::model::{Equation, Kind};
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::BaseType;
 use crate::name::Ident;
 use crate::source::Span;
 use crate::symbolic::{Expr, VarId};
@@ -204,6 +205,11 @@ impl Builder<'_> {
         loops: &Loops,
     ) -> Result<(), Diagnostic> {
         let places = self.places(target, loops)?;
+        let is_text = |place: &Place| self.dae.variable(place.variable).base == BaseType::String;
+        let value = match places.first().is_some_and(is_text) {
+            true => Lowered::scalar(Lowering::new(self).number_of_text(value, target.span)?),
+            false => value,
+        };
         let mut values = Vec::new();
         value.append_scalars(&mut values);
         let expected = places.last().map_or(0, |place| place.element + 1);
