@@ -309,6 +309,8 @@ Examples:
   gapi teach scripts/GAPILib.mos
   gapi teach scripts/GAPILib.mos --generation 100 --count 2
   gapi teach scripts/twin/GAPILib.mos --html steps.html
+  gapi teach scripts/lessons/07_elites.mos --quiz
+  gapi teach scripts/twin/GAPILib.mos --what-if \"F_Mut := 0.5\" --generation 10
   gapi run my.mos --trace my.trace && gapi teach my.trace")]
 pub(super) struct TeachArgs {
     /// A script (.mos), which is run first, or a trace that `gapi run --trace` has written
@@ -317,6 +319,12 @@ pub(super) struct TeachArgs {
     /// Print the steps as text, also on a terminal
     #[arg(long)]
     pub plain: bool,
+    /// Ask what will happen before it is told; answers are read line by line, as text
+    #[arg(long, conflicts_with = "html")]
+    pub quiz: bool,
+    /// Run once more with this statement carried out at the generation to begin with, and compare
+    #[arg(long, value_name = "STATEMENT", conflicts_with_all = ["html", "quiz"])]
+    pub what_if: Option<String>,
     /// The generation to begin with
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
     pub generation: usize,

@@ -14,6 +14,8 @@ const WITHOUT_SCRIPT: &[&str] = &[
     "limit-reached",
     // `gapi teach` reports it, no script: see `teach.rs`.
     "bad-trace",
+    // `gapi teach --what-if` reports it: see `teach.rs`.
+    "cannot-branch",
     // `gapi compare` reports it, no script: see `cli.rs`.
     "bad-reference",
     // A result table is checked before it is written; only a fault of the program can raise it.

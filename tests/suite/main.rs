@@ -16,6 +16,7 @@ mod fuel_cells;
 mod functions;
 mod gapilib;
 mod grammar;
+mod guide;
 mod hybrid;
 mod hybrid_limits;
 mod identification;

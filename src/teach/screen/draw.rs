@@ -10,7 +10,7 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Borders, Paragraph, Wrap};
 
 const KEYS: &str =
-    "→ next  ← back  ↓↑ generation  Tab part  g go  f follow  i inspect  u until  ? q";
+    "→ next  ← back  ↓↑ generation  Tab part  g go  f follow  i inspect  u until  w if  ? q";
 const HELP: &str = "\
 → space n Enter   the next step
 ← b               one step back
@@ -22,6 +22,7 @@ g                 go to a generation
 f                 follow an individual through the generations
 i                 inspect the simulation of an individual
 u                 go on until something happens
+w                 what if: run again with a change from here on, and compare
 q                 end
 
 Marks: > followed or new, ♛ elite, x failed, ? drawn at random, * mutated.
@@ -42,6 +43,7 @@ pub fn draw(screen: &Screen, frame: &mut Frame) {
     match screen.view {
         View::Steps => step(screen, frame, body),
         View::Individual(k) => inspect::draw(screen, k, frame, body),
+        View::Branches => branches(screen, frame, body),
         View::Help => frame.render_widget(Paragraph::new(HELP).block(titled("keys")), body),
     }
     let block = Block::new().borders(Borders::TOP);
@@ -69,6 +71,15 @@ fn last_line(screen: &Screen) -> Line<'static> {
         (None, "") => Line::styled(KEYS, Style::new().add_modifier(Modifier::DIM)),
         (None, message) => Line::styled(message.to_owned(), screen.styled(Color::Yellow)),
     }
+}
+
+/// Both runs on one chart, and what came of the change.
+fn branches(screen: &Screen, frame: &mut Frame, area: Rect) {
+    let Some(branches) = screen.branches() else { return };
+    let height = usize::from(area.height).saturating_sub(7);
+    let chart = branches.figure().text(usize::from(area.width).saturating_sub(16), height);
+    let text = format!("{chart}{}", branches.verdict());
+    frame.render_widget(Paragraph::new(text).block(titled(" what if ")), area);
 }
 
 fn titled(title: &str) -> Block<'_> {
