@@ -3,6 +3,7 @@
 
 mod args;
 mod classes;
+mod clock;
 mod comparison;
 mod conversion;
 mod extended;
@@ -97,6 +98,8 @@ pub struct Family {
 /// order here.
 pub static FAMILIES: &[&Family] = &[
     &classes::FAMILY,
+    &clock::FAMILY,
+    &clock::FILES,
     &comparison::FAMILY,
     &conversion::FAMILY,
     &extended::FAMILY,

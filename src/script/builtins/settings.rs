@@ -16,6 +16,11 @@ pub(super) const FAMILY: Family = Family {
         Builtin { header: LIST_VARIABLES, run: list_variables },
         Builtin { header: VARIABLES, run: variables },
         Builtin { header: SET_COMMAND_LINE_OPTIONS, run: accepted },
+        Builtin { header: SET_DEBUG_FLAGS, run: accepted },
+        Builtin { header: SET_COMPILER_FLAGS, run: accepted },
+        Builtin { header: SET_MATCHING_ALGORITHM, run: accepted },
+        Builtin { header: SET_INDEX_REDUCTION_METHOD, run: accepted },
+        Builtin { header: SET_TEARING_METHOD, run: accepted },
         Builtin { header: GET_VERSION, run: get_version },
         Builtin { header: HELP, run: help },
     ],
@@ -129,6 +134,41 @@ function setCommandLineOptions "Accepts options of the OpenModelica compiler; th
   input String options;
   output Boolean ok;
 end setCommandLineOptions;
+"#;
+
+const SET_DEBUG_FLAGS: &str = r#"
+function setDebugFlags "Accepts flags of the OpenModelica compiler; they have no effect."
+  input String debugFlags;
+  output Boolean success;
+end setDebugFlags;
+"#;
+
+const SET_COMPILER_FLAGS: &str = r#"
+function setCompilerFlags "Accepts flags of a C compiler; they have no effect: none is used."
+  input String compilerFlags;
+  output Boolean success;
+end setCompilerFlags;
+"#;
+
+const SET_MATCHING_ALGORITHM: &str = r#"
+function setMatchingAlgorithm "Accepts a choice that has no effect: there is one algorithm."
+  input String matchingAlgorithm;
+  output Boolean success;
+end setMatchingAlgorithm;
+"#;
+
+const SET_INDEX_REDUCTION_METHOD: &str = r#"
+function setIndexReductionMethod "Accepts a choice that has no effect: there is one method."
+  input String method;
+  output Boolean success;
+end setIndexReductionMethod;
+"#;
+
+const SET_TEARING_METHOD: &str = r#"
+function setTearingMethod "Accepts a choice that has no effect: there is one method."
+  input String tearingMethod;
+  output Boolean success;
+end setTearingMethod;
 "#;
 
 fn accepted(session: &mut Session, args: Args) -> Result<Value, Failure> {
