@@ -37,8 +37,17 @@ equation
 voltage falls within ten seconds, rises by 33 mV in 40 minutes while the membrane takes up water, and
 falls by 46 mV while liquid water fills the pores of the cathode: what Figure 6b of the paper shows.
 The equations are those of <a href=\"modelica://CaseStudies.Water\">CaseStudies.Water</a>, class by
-class. Figures over time are in <code>docs/water_effect</code> of the project: voltage, water of the
-membrane, saturation of the pores, resistance of the membrane.</p>
+class.</p>
+<p><img src=\"modelica://CaseStudies/Resources/Images/WaterEffect/voltage.svg\" alt=\"Cell voltage over time: a rise, then a fall\"></p>
+<p>The rise: water from the anode spreads through the membrane, lambda goes from 3 to 13, and the resistance
+falls to a fifth. It is the sorption by the ionomer that takes the time (L/ksorb = 1800 s), not the diffusion
+(L^2/Dl = 100 s).</p>
+<p><img src=\"modelica://CaseStudies/Resources/Images/WaterEffect/membrane_water.svg\" alt=\"Water per sulfonic group in each control volume of the membrane\">
+<img src=\"modelica://CaseStudies/Resources/Images/WaterEffect/membrane_resistance.svg\" alt=\"Resistance of the membrane\"></p>
+<p>The fall: with a wet membrane more water reaches the cathode than vapour can carry away; after 2000 s
+the condensed water fills the pores (a saturation of 0.4 in the end), and less oxygen reaches the reaction.</p>
+<p><img src=\"modelica://CaseStudies/Resources/Images/WaterEffect/saturation.svg\" alt=\"Saturation of the pores in each control volume\"></p>
+<p>The figures are drawn by <code>scripts/water_effect/figures.mos</code>.</p>
 <table border=\"1\">
 <tr><th>time, s</th><th>V, n = 10</th><th>n = 20</th><th>n = 40</th><th>lambda, n = 10</th><th>saturation at the membrane</th><th>Rm, Ohm.m2</th></tr>
 <tr><td>60</td><td>0.789282</td><td>0.789297</td><td>0.789301</td><td>3.39</td><td>.0002</td><td>1.218e-3</td></tr>

@@ -309,6 +309,8 @@ Examples:
   gapi teach scripts/GAPILib.mos
   gapi teach scripts/GAPILib.mos --generation 100 --count 2
   gapi teach scripts/twin/GAPILib.mos --html steps.html
+  gapi teach scripts/lessons/07_elites.mos --quiz
+  gapi teach scripts/twin/GAPILib.mos --what-if \"F_Mut := 0.5\" --generation 10
   gapi run my.mos --trace my.trace && gapi teach my.trace")]
 pub(super) struct TeachArgs {
     /// A script (.mos), which is run first, or a trace that `gapi run --trace` has written
@@ -317,6 +319,12 @@ pub(super) struct TeachArgs {
     /// Print the steps as text, also on a terminal
     #[arg(long)]
     pub plain: bool,
+    /// Ask what will happen before it is told; answers are read line by line, as text
+    #[arg(long, conflicts_with = "html")]
+    pub quiz: bool,
+    /// Run once more with this statement carried out at the generation to begin with, and compare
+    #[arg(long, value_name = "STATEMENT", conflicts_with_all = ["html", "quiz"])]
+    pub what_if: Option<String>,
     /// The generation to begin with
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
     pub generation: usize,
@@ -356,6 +364,8 @@ Examples:
   gapi simulate models --model CaseStudies.PolarizationCurve --output curve.csv
   gapi simulate Decay.mo --model Decay --stop-time 5 --intervals 50 --set k=2
   gapi simulate Decay.mo --model Decay --stats --plot x --figure x.svg
+  gapi simulate Decay.mo --model Decay --from first.mat --stop-time 10 --output second.mat
+  gapi simulate Decay.mo --model Decay --dump eliminate_aliases
 
 What the command line does not say comes from the model's experiment annotation.")]
 pub(super) struct SimulateArgs {
@@ -383,9 +393,18 @@ pub(super) struct SimulateArgs {
     /// Give a parameter a value (repeatable)
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = name_and_value)]
     pub set: Vec<(String, f64)>,
+    /// Begin with the states and parameters at the end of these results, or at --start-time
+    #[arg(long, value_name = "FILE.mat|.csv", value_hint = ValueHint::FilePath)]
+    pub from: Option<PathBuf>,
     /// Where the trajectories go; the ending decides the format
     #[arg(long, short, value_name = "FILE.mat|.csv", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
+    /// Keep only the variables whose whole names match
+    #[arg(long, value_name = "REGEX")]
+    pub variable_filter: Option<String>,
+    /// Print the system after a pass instead of simulating it
+    #[arg(long, value_name = "PASS", value_parser = pass_names())]
+    pub dump: Option<String>,
     /// Print what the simulation cost
     #[arg(long)]
     pub stats: bool,
@@ -395,6 +414,19 @@ pub(super) struct SimulateArgs {
     /// Where the drawing of --plot goes
     #[arg(long, value_name = "FILE.svg", requires = "plot", value_hint = ValueHint::FilePath)]
     pub figure: Option<PathBuf>,
+}
+
+/// The passes whose system can be shown, the flat model as the first.
+fn pass_names() -> clap::builder::PossibleValuesParser {
+    let value = |(name, what): &(&'static str, &'static str)| {
+        clap::builder::PossibleValue::new(*name).help(*what)
+    };
+    let flat = ("flatten", "the flat model");
+    std::iter::once(&flat)
+        .chain(crate::script::simulation::PASSES)
+        .map(value)
+        .collect::<Vec<_>>()
+        .into()
 }
 
 /// Arguments of `gapi check`.

@@ -4,13 +4,17 @@ use super::args::{Global, SimulateArgs};
 use super::session;
 use super::terminal::Terminal;
 use crate::diag::{Diagnostic, Fault};
+use crate::fault;
 use crate::plot::{self, Axis, Figure, Mark, Panel};
+use crate::registry::BAD_OPTION;
 use crate::results::{self, ResultTable};
 use crate::script::Session;
-use crate::script::simulation::{self, Simulated, Wishes};
+use crate::script::errors::FILE_ERROR;
+use crate::script::simulation::{self, Simulated, Translated, Wishes};
 use crate::script::world::Progress;
 use crate::sim::Statistics;
 use crate::source::Span;
+use regex::{Regex, RegexBuilder};
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -48,16 +52,29 @@ fn run(
         Some(path) => Some(results::format_of_file(&path.to_string_lossy()).map_err(one)?),
         None => None,
     };
+    if let Some(pass) = &arguments.dump {
+        let text = simulation::dump(session, &arguments.model, pass)?;
+        session.print(&text);
+        return Ok(());
+    }
+    let filter = arguments.variable_filter.as_deref().map(filter).transpose().map_err(one)?;
     let model = simulation::translate(session, &arguments.model)?;
+    let mut wishes = wishes(arguments);
+    if let Some(path) = &arguments.from {
+        let begin = begin_with(session, &model, path, wishes.start).map_err(one)?;
+        wishes.start = Some(begin);
+    }
     for (name, value) in &arguments.set {
         session.set_parameter(name, *value).map_err(one)?;
     }
-    let wishes = wishes(arguments);
     let settings = simulation::settings(&model.program.experiment(), &wishes).map_err(one)?;
     let span = (settings.start, settings.stop);
-    let simulated = with_progress(span, wishes, global, |wishes| {
+    let mut simulated = with_progress(span, wishes, global, |wishes| {
         simulation::simulate(session, &model, &wishes).map_err(|error| vec![error])
     })?;
+    if let Some(filter) = filter {
+        simulated.table.series.retain(|series| filter.is_match(&series.name));
+    }
     session.print(&summary(&arguments.model, &simulated));
     if arguments.stats {
         session.print(&statistics(&simulated.statistics));
@@ -75,6 +92,32 @@ fn run(
         _ => session.print(&last_values(&simulated.table).map_err(one)?),
     }
     Ok(())
+}
+
+/// Matches whole names.
+fn filter(expression: &str) -> Result<Regex, Fault> {
+    let whole = format!("^(?:{expression})$");
+    RegexBuilder::new(&whole).size_limit(1 << 20).build().map_err(|_| {
+        fault!(BAD_OPTION, "`--variable-filter` is no regular expression: `{expression}`")
+    })
+}
+
+/// Takes states and parameters from results; the time that they are of.
+fn begin_with(
+    session: &mut Session,
+    model: &Translated,
+    path: &Path,
+    time: Option<f64>,
+) -> Result<f64, Fault> {
+    let bytes = session
+        .world
+        .read(path)
+        .map_err(|error| fault!(FILE_ERROR, "`{}` cannot be read: {error}", path.display()))?;
+    let table = results::format_of_file(&path.to_string_lossy())?.read(&bytes)?;
+    let last = || table.time.last().copied().unwrap_or(0.0);
+    let time = time.unwrap_or_else(last);
+    simulation::begin_with(session, model, &table, time)?;
+    Ok(time)
 }
 
 /// Simulates beside a thread that shows how far it is, by simulated time.

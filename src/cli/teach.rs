@@ -7,91 +7,184 @@ use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use crate::script::{Echo, Options};
 use crate::source::Span;
+use crate::teach::branches::Branches;
+use crate::teach::quiz::{self, Score};
 use crate::teach::{Trace, Walk, page, plain};
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+/// What changes a run: from which generation on, counted from 1, and the statement.
+type Change<'a> = (usize, &'a str);
+
 /// Runs the script, or reads the trace, and shows its steps.
 pub(super) fn teach(arguments: &TeachArgs, global: &Global) -> ExitCode {
-    let is_script = arguments.input.extension().is_some_and(|extension| extension == "mos");
-    let file = match is_script {
-        true => match record(arguments, global) {
-            Ok(file) => file,
-            Err(code) => return code,
-        },
-        false => arguments.input.clone(),
-    };
-    let read = std::fs::read(&file).map_err(|error| error.to_string());
-    let trace = read.and_then(|bytes| Trace::read(&bytes).map_err(|fault| fault.message));
-    match trace {
-        Ok(trace) => match &arguments.html {
-            Some(page) => write_page(trace, page, is_script.then_some(&arguments.out)),
-            None => show(Walk::new(trace), arguments, global),
-        },
-        Err(message) => {
-            terminal::eprint(&format!("error: `{}`: {message}\n", file.display()));
+    match taught(arguments, global) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Trouble::Told(code)) => code,
+        Err(Trouble::Message(message)) => {
+            terminal::eprint(&format!("error: {message}\n"));
             ExitCode::FAILURE
         }
     }
 }
 
-/// Runs the script with a trace beside its results.
-fn record(arguments: &TeachArgs, global: &Global) -> Result<PathBuf, ExitCode> {
+/// Why there is nothing to show.
+enum Trouble {
+    /// The session has told it.
+    Told(ExitCode),
+    Message(String),
+}
+
+fn taught(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
+    let is_script = arguments.input.extension().is_some_and(|extension| extension == "mos");
+    let trace = match is_script {
+        true => recorded(arguments, global, None)?,
+        false => read(&arguments.input)?,
+    };
+    if let Some(statement) = &arguments.what_if {
+        return compare(arguments, global, &trace, statement);
+    }
+    match &arguments.html {
+        Some(page) => write_page(trace, page, is_script.then_some(&arguments.out)),
+        None => show(Walk::new(trace), arguments, global),
+    }
+}
+
+fn read(file: &Path) -> Result<Trace, Trouble> {
+    let read = std::fs::read(file).map_err(|error| error.to_string());
+    let trace = read.and_then(|bytes| Trace::read(&bytes).map_err(|fault| fault.message));
+    trace.map_err(|message| Trouble::Message(format!("`{}`: {message}", file.display())))
+}
+
+/// Runs the script with a trace beside its results, and reads the trace.
+fn recorded(
+    arguments: &TeachArgs,
+    global: &Global,
+    change: Option<Change<'_>>,
+) -> Result<Trace, Trouble> {
+    let out = match change {
+        Some(_) => arguments.out.join("what_if"),
+        None => arguments.out.clone(),
+    };
     let terminal = Terminal::new(global.color, true);
-    let world = SystemWorld::new(terminal, &arguments.out, None).map_err(|error| {
-        terminal::eprint(&format!("error: the working directory cannot be read: {error}\n"));
-        ExitCode::FAILURE
+    let world = SystemWorld::new(terminal, &out, None).map_err(|error| {
+        Trouble::Message(format!("the working directory cannot be read: {error}"))
     })?;
     world.catch_interrupts();
     let options = Options { echo: Echo::Nothing, ..Options::default() };
     let mut session = session::open(global, world).with_options(options);
-    let file = arguments.out.join("run.trace");
-    if let Err(fault) = session.trace_to(&file) {
-        return Err(session::failed(&mut session, vec![fault.at(Span::NONE)]));
+    let file = out.join("run.trace");
+    let prepared = session.trace_to(&file).map_err(|fault| fault.at(Span::NONE));
+    let prepared = prepared.and_then(|()| match change {
+        Some((generation, statement)) => session.branch_at(generation, statement),
+        None => Ok(()),
+    });
+    if let Err(error) = prepared {
+        return Err(Trouble::Told(session::failed(&mut session, vec![error])));
     }
     let status = session.run_file(&arguments.input);
-    if status.code == 0 || status.interrupted { Ok(file) } else { Err(status.code.into()) }
+    if status.code != 0 && !status.interrupted {
+        return Err(Trouble::Told(status.code.into()));
+    }
+    if session.branch_is_pending() {
+        let generation = change.map_or(0, |(generation, _)| generation);
+        return Err(Trouble::Message(format!("the run has no generation {generation}")));
+    }
+    read(&file)
+}
+
+/// Runs the script once more with a change, and shows both runs on one chart.
+fn compare(
+    arguments: &TeachArgs,
+    global: &Global,
+    original: &Trace,
+    change: &str,
+) -> Result<(), Trouble> {
+    let generation = arguments.generation;
+    let changed = branch(arguments, global, (generation, change))?;
+    let branches = Branches { original, changed: &changed, generation, change };
+    let figure = branches.figure();
+    let file = arguments.out.join("what_if.svg");
+    terminal::print(&format!("{}\n\n{}\n", branches.summary(), figure.text(64, 14)));
+    write(&file, &figure.svg())?;
+    terminal::print(&format!("written to {}\n", file.display()));
+    Ok(())
+}
+
+/// The run with a change.
+fn branch(arguments: &TeachArgs, global: &Global, change: Change<'_>) -> Result<Trace, Trouble> {
+    if arguments.input.extension().is_none_or(|extension| extension != "mos") {
+        let message = "a recorded run cannot be changed; give the script in its place";
+        return Err(Trouble::Message(message.to_owned()));
+    }
+    recorded(arguments, global, Some(change))
+}
+
+fn write(file: &Path, text: &str) -> Result<(), Trouble> {
+    std::fs::write(file, text).map_err(|error| {
+        Trouble::Message(format!("`{}` cannot be written: {error}", file.display()))
+    })
 }
 
 /// Writes the page of a trace; the report of the run lies in the folder `results`.
-fn write_page(trace: Trace, file: &Path, results: Option<&PathBuf>) -> ExitCode {
+fn write_page(trace: Trace, file: &Path, results: Option<&PathBuf>) -> Result<(), Trouble> {
     let report =
         results.and_then(|folder| std::fs::read_to_string(folder.join("result.json")).ok());
-    let text = page::page(trace, report.as_deref());
-    match std::fs::write(file, text) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            terminal::eprint(&format!("error: `{}` cannot be written: {error}\n", file.display()));
-            ExitCode::FAILURE
-        }
-    }
+    write(file, &page::page(trace, report.as_deref()))
 }
 
 /// On the screen of a terminal; as text where there is none.
-fn show(mut walk: Walk, arguments: &TeachArgs, global: &Global) -> ExitCode {
+fn show(mut walk: Walk, arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
     if !walk.go_to(arguments.generation - 1) {
         let has = walk.trace().generations.len();
-        terminal::eprint(&format!("error: the run has {has} generations\n"));
-        return ExitCode::FAILURE;
+        return Err(Trouble::Message(format!("the run has {has} generations")));
     }
-    if !arguments.plain && std::io::stdout().is_terminal() && std::io::stdin().is_terminal() {
-        let colour = Terminal::new(global.color, true).colour();
-        return match teach_screen::walk_through(walk, colour) {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(error) => {
-                terminal::eprint(&format!("error: the terminal cannot be drawn on: {error}\n"));
-                ExitCode::FAILURE
-            }
-        };
+    let as_text = arguments.plain || arguments.quiz;
+    if as_text || !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
+        print(walk, arguments);
+        return Ok(());
     }
+    let colour = Terminal::new(global.color, true).colour();
+    let run_again = |generation, statement: &str| {
+        branch(arguments, global, (generation, statement)).map_err(|trouble| match trouble {
+            Trouble::Told(_) => "the changed run failed; why stands behind this screen".to_owned(),
+            Trouble::Message(message) => message,
+        })
+    };
+    teach_screen::walk_through(walk, colour, run_again)
+        .map_err(|error| Trouble::Message(format!("the terminal cannot be drawn on: {error}")))
+}
+
+fn print(mut walk: Walk, arguments: &TeachArgs) {
     let last = arguments.generation + arguments.count - 1;
+    let mut score = Score::default();
     loop {
+        if arguments.quiz {
+            ask(&walk, &mut score);
+        }
         terminal::print(&format!("{}\n", plain::step(&walk)));
         if !walk.forward() || walk.number() >= last {
             break;
         }
     }
     terminal::print(&plain::summary(&walk));
-    ExitCode::SUCCESS
+    if arguments.quiz {
+        terminal::print(&format!("\n{score}\n"));
+    }
+}
+
+/// Asks what the step will do, if there is something to ask and someone to answer.
+fn ask(walk: &Walk, score: &mut Score) {
+    let Some(question) = quiz::question(walk) else { return };
+    terminal::print(&format!("? {}\n> ", question.text));
+    let mut answer = String::new();
+    match std::io::stdin().read_line(&mut answer) {
+        Ok(length) if length > 0 => {
+            let verdict = question.judge(&answer);
+            score.count(&verdict);
+            terminal::print(&format!("{}\n\n", verdict.text));
+        }
+        _ => terminal::print("(no answer)\n\n"),
+    }
 }

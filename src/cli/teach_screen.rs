@@ -1,19 +1,31 @@
 //! The screen of `gapi teach` on a terminal: draws, waits for a key, draws again.
 
-use crate::teach::Walk;
 use crate::teach::screen::{self, Key, Screen};
+use crate::teach::{Trace, Walk};
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
-/// Walks through a trace until the learner ends it.
+/// Walks through a trace until the learner ends it. `run_again` makes the trace of a run that is
+/// changed from a generation on, or says why there is none.
 ///
 /// # Errors
 ///
 /// The terminal cannot be drawn on, or gives no keys.
-pub(super) fn walk_through(walk: Walk, colour: bool) -> std::io::Result<()> {
+pub(super) fn walk_through(
+    walk: Walk,
+    colour: bool,
+    run_again: impl Fn(usize, &str) -> Result<Trace, String>,
+) -> std::io::Result<()> {
     let mut screen = Screen::new(walk, colour);
     let mut terminal = ratatui::try_init()?;
     let walked = (|| {
         loop {
+            if let Some((generation, change)) = screen.take_wish() {
+                // The run prints and shows its progress; the screen comes back after it.
+                ratatui::restore();
+                let branch = run_again(generation, &change);
+                terminal = ratatui::try_init()?;
+                screen.branched(generation, change, branch);
+            }
             terminal.draw(|frame| screen::draw(&screen, frame))?;
             match event::read()? {
                 Event::Key(key) if key.kind != KeyEventKind::Release => {

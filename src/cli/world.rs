@@ -174,6 +174,10 @@ impl World for SystemWorld {
         SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs())
     }
 
+    fn process_id(&self) -> u32 {
+        std::process::id()
+    }
+
     fn interrupted(&self) -> bool {
         self.interrupt.load(Ordering::Relaxed)
     }

@@ -13,12 +13,15 @@
 //! Samples are true in all rounds of their event; behind it the iteration is done once more with
 //! all of them false, as an event of its own if the model shows them.
 
+use super::relations::Change;
 use super::system::{System, run};
 use crate::sim::{EventOutcome, Failure};
 use crate::symbolic::VarId;
 
 /// Most rounds of an event iteration, and most passes of a round.
 const MAX_ROUNDS: usize = 100;
+/// Passes in which all relations may change; from then on one after the other.
+const PASSES_AT_ONCE: usize = 10;
 /// Relative distance of times that are one.
 const AT_ONCE: f64 = 1e-12;
 
@@ -156,7 +159,15 @@ impl System {
         }
         self.update_previous();
         while self.event(t)? == EventOutcome::Again {}
-        Ok(())
+        // What was before the start is what the events of the first instant lead to.
+        for _ in 0..MAX_ROUNDS {
+            if !self.start_histories(t)? {
+                return Ok(());
+            }
+            self.load_delayed(t);
+            while self.event(t)? == EventOutcome::Again {}
+        }
+        Err(Failure::EventIteration { variable: self.unstable })
     }
 
     /// An event at `t`, the variables being those before it.
@@ -225,12 +236,13 @@ impl System {
         let program = self.program.clone();
         let mut any = false;
         for pass in 0..MAX_ROUNDS {
+            let change = if pass < PASSES_AT_ONCE { Change::All } else { Change::First };
             for (slot, variable) in self.lagged.iter_mut().zip(&program.events.lagged) {
                 *slot = self.registers[variable.0 as usize];
             }
             if let Err(failure) = self.solve(stage) {
                 // The branch may be the wrong one: relations of what was solved before it tell.
-                if pass + 1 < MAX_ROUNDS && self.update_relations(t) {
+                if pass + 1 < MAX_ROUNDS && self.update_relations(t, change) {
                     any = true;
                     continue;
                 }
@@ -241,7 +253,7 @@ impl System {
             let lag = lagged.find(|(old, variable)| **old != self.registers[variable.0 as usize]);
             let lag = lag.map(|(_, variable)| variable.0);
             self.unstable = lag.unwrap_or(self.unstable);
-            let changed = self.update_relations(t);
+            let changed = self.update_relations(t, change);
             any |= changed;
             if lag.is_none() && !changed && (pass > 0 || !any) {
                 return Ok(any);

@@ -79,15 +79,17 @@ impl History {
         let n = (end - first).min(POINTS);
         let behind = self.times.partition_point(|time| *time <= t);
         let start = behind.saturating_sub(n / 2).clamp(first, end - n);
-        let mut value = 0.0;
-        for i in start..start + n {
+        // Differences to one of the values: a constant stays what it is, to the last bit.
+        let one = self.values[start];
+        let mut value = one;
+        for i in start + 1..start + n {
             let mut weight = 1.0;
             for j in start..start + n {
                 if j != i {
                     weight *= (t - self.times[j]) / (self.times[i] - self.times[j]);
                 }
             }
-            value += weight * self.values[i];
+            value += weight * (self.values[i] - one);
         }
         value
     }
@@ -131,16 +133,19 @@ impl System {
         }
     }
 
-    /// Starts the histories with the values at `t`, all variables being known.
-    pub(super) fn start_histories(&mut self, t: f64) -> Result<(), Failure> {
+    /// Starts the histories with the values at `t`, all variables being known; whether one of them
+    /// began with another value.
+    pub(super) fn start_histories(&mut self, t: f64) -> Result<bool, Failure> {
         let program = self.program.clone();
+        let mut changed = false;
         for (at, delay) in program.events.delays.iter().enumerate() {
             let value = self.delayed_expression(delay)?;
+            changed |= self.histories[at].values.front() != Some(&value);
             self.histories[at].start(t, value);
             run(&delay.time.tape, &mut self.registers)?;
             self.delay_times[at] = self.registers[delay.time.outputs[0] as usize];
         }
-        Ok(())
+        Ok(changed)
     }
 
     /// Adds the values at `t`, all registers of states and events being loaded.
@@ -204,6 +209,16 @@ mod tests {
         history.advance(0.0);
         for t in [0.0, 0.05, 1.234, 5.99, 6.0] {
             assert!((history.value(t) - cubic(t)).abs() < 1e-11, "at {t}");
+        }
+    }
+
+    #[test]
+    fn constants_stay_what_they_are() {
+        let history = recorded(0.1 / 3.0, 30, |_| 3.0);
+        let mut passed = history.clone();
+        passed.advance(0.0);
+        for i in 0..1000 {
+            assert_eq!(passed.value(1e-3 * f64::from(i) - 1e-12), 3.0);
         }
     }
 

@@ -36,7 +36,9 @@ impl MachineCode {
     /// Computes outputs from registers; whether it did. If not, the tape must be run.
     pub(super) fn run(&self, code: &Outputs, registers: &[f64], out: &mut [f64]) -> bool {
         if let Some(function) = self.function.get() {
-            return function.as_ref().is_some_and(|function| function.call(registers, out));
+            // Who asks for fewer values than there are gets them from the tape.
+            let function = function.as_ref().filter(|function| function.n_outputs <= out.len());
+            return function.is_some_and(|function| function.call(registers, out));
         }
         if self.runs.fetch_add(1, Ordering::Relaxed) == OFTEN {
             self.function.get_or_init(|| Function::new(code));
@@ -72,11 +74,14 @@ pub(super) struct Function {
 impl Function {
     /// Translates a tape, if it consists of what can be translated and the machine is supported.
     fn new(code: &Outputs) -> Option<Function> {
-        match code.tape.code.len() {
-            0..=LONG => Function::translated(code, "speed", "backtracking"),
+        let length = code.tape.code.len();
+        if length <= LONG {
+            Function::translated(code, "speed", "backtracking")
+        } else if length <= LONGEST {
             // Better code would take too long.
-            ..=LONGEST => Function::translated(code, "none", "single_pass"),
-            _ => None,
+            Function::translated(code, "none", "single_pass")
+        } else {
+            None
         }
     }
 

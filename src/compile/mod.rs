@@ -1,6 +1,7 @@
 //! Compilation: a sorted system becomes a [`Program`] of instruction tapes, and every thread runs
 //! its own [`System`] of it. Tapes that run often become machine code.
 
+mod chains;
 pub mod errors;
 mod event_iteration;
 mod events;
@@ -14,6 +15,7 @@ mod machine_code;
 mod memory;
 mod newton;
 mod program;
+mod relations;
 mod selection;
 mod slopes;
 mod system;

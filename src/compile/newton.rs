@@ -4,6 +4,7 @@
 //! from the values at hand, then with zeros replaced by nominal values (at the start only)
 //!     Newton's method
 //!     otherwise Levenberg and Marquardt's method, then Newton's again
+//!     otherwise Newton's method without damping, which leaps over kinks
 //! ```
 //!
 //! A loop whose Jacobian is singular at the solution has none that is unique. At the start that
@@ -86,6 +87,10 @@ impl LoopSolver {
                 }
                 Err(_) => {}
             }
+        }
+        self.x.copy_from_slice(&self.guess);
+        if self.newton.solve_undamped(equations, &mut self.x, &self.nominal).is_ok() {
+            return Ok(());
         }
         Err(match failure {
             NewtonFailure::Evaluation(failure) => failure,

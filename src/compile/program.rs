@@ -1,5 +1,6 @@
 //! A compiled model: immutable, shared by any number of [`System`](super::System)s.
 
+use super::chains::cut_chains;
 use super::errors::*;
 use super::events::{CompiledRounding, Events, compile_events, linear_in_time};
 use super::hoist::Hoisting;
@@ -177,6 +178,10 @@ pub struct Program {
     pub(super) jacobian: Outputs,
     pub(super) pattern: Pattern,
     pub(super) crossings: Outputs,
+    /// Whether these depend on time otherwise than through states and unknowns of loops.
+    pub(super) crossings_vary_in_time: bool,
+    /// The relations that have crossing functions.
+    pub(super) crossing_relations: Vec<usize>,
     pub(super) selections: Vec<CompiledSelection>,
     pub(super) observe: Outputs,
     pub(super) assertions: Vec<(usize, Outputs)>,
@@ -187,7 +192,7 @@ impl Program {
     /// Compiles a sorted system.
     pub fn compile(mut sorted: SortedDae) -> Result<Arc<Program>, Diagnostic> {
         let n = sorted.dae.variables.len();
-        let sequence: Vec<Assignment> =
+        let mut sequence: Vec<Assignment> =
             sorted.blocks.iter().flat_map(|block| block.assignments()).copied().collect();
         let loops = sorted.blocks.iter().filter_map(|block| match block {
             Block::Loop(torn) => Some(torn),
@@ -233,6 +238,14 @@ impl Program {
             outputs.push(resolved(&mut pool, &sorted, derivatives[state]));
         }
         outputs.extend(&residuals);
+        let unknowns: Vec<VarId> = sorted.states.iter().chain(&iteration).copied().collect();
+        for assignment in cut_chains(&pool, &sorted, &unknowns, &outputs) {
+            let unknown = pool.variable(assignment.variable);
+            outputs.push(pool.sub(unknown, assignment.value));
+            iteration.push(assignment.variable);
+        }
+        let unknowns: FxHashSet<VarId> = iteration.iter().copied().collect();
+        sequence.retain(|assignment| !unknowns.contains(&assignment.variable));
         let rhs = compile_continuous(&pool, &mut registers, &sequence, &outputs, Hoisting::Certain);
 
         let columns: Vec<VarId> = sorted.states.iter().chain(&iteration).copied().collect();
@@ -251,13 +264,17 @@ impl Program {
 
         let mut relations = Vec::new();
         let mut relation_sides = Vec::new();
+        let mut crossing_relations = Vec::new();
         let mut differences = Vec::new();
         let mut rests = Vec::new();
         for relation in &sorted.dae.relations {
             let difference = pool.sub(relation.left, relation.right);
             let time = linear_in_time(&mut pool, &sorted, difference);
             match time {
-                None => differences.push(difference),
+                None => {
+                    crossing_relations.push(relations.len());
+                    differences.extend([relation.left, relation.right]);
+                }
                 Some((_, rest)) => rests.push((relations.len(), rest)),
             }
             relations.push(CompiledRelation {
@@ -294,6 +311,11 @@ impl Program {
                 time.1 = *register;
             }
         }
+        let crossings_vary_in_time = {
+            let needed = slice(&pool, &sequence, &differences);
+            let mut values = needed.iter().map(|a| a.value).chain(differences.iter().copied());
+            values.any(|value| pool.depends_on(value, VarId(0)))
+        };
         let crossings =
             compile_continuous(&pool, &mut registers, &sequence, &differences, Hoisting::Total);
 
@@ -403,6 +425,8 @@ impl Program {
             rhs,
             jacobian,
             pattern,
+            crossing_relations,
+            crossings_vary_in_time,
             crossings,
             selections,
             observe,
@@ -427,6 +451,11 @@ impl Program {
             parameter.min = number(variable.min, f64::NEG_INFINITY);
             parameter.max = number(variable.max, f64::INFINITY);
         }
+    }
+
+    /// Number of crossing functions of relations and roundings.
+    pub(super) fn n_crossings(&self) -> usize {
+        self.crossings.outputs.len() - self.crossing_relations.len()
     }
 
     /// An independent system, one for every thread.
@@ -929,6 +958,8 @@ fn variables(sorted: &SortedDae, observed: &[VarId]) -> Vec<VariableInfo> {
             Kind::Frozen | Kind::Text | Kind::Previous(_) | Kind::Signal | Kind::Delayed => {
                 continue;
             }
+            // A trajectory has no place for texts.
+            Kind::Discrete if v.base == BaseType::String => continue,
             Kind::Discrete if v.name.starts_with('$') => continue,
             Kind::Unknown | Kind::Derivative(_) | Kind::Discrete => {
                 let of = alias.map_or(id, |alias| alias.of);

@@ -6,6 +6,7 @@ use super::hoist::Hoisting;
 use super::memory::Memory;
 use super::newton::LoopSolver;
 use super::program::{Access, Outputs, Program, Step, compile_continuous, resolved};
+use super::relations::Change;
 use super::selection::Choice;
 use super::tape::{Instruction, Tape};
 use crate::dae::Homotopy;
@@ -31,7 +32,11 @@ pub struct System {
     set: Vec<Option<f64>>,
     observed: Option<Outputs>,
     /// Times at which relations on time switch.
-    switches: Vec<Option<f64>>,
+    pub(super) switches: Vec<Option<f64>>,
+    /// Whether relations have changed in the event at hand.
+    pub(super) has_changed: Vec<bool>,
+    /// Whether relations have been kept at a value that their sides did not quite have.
+    pub(super) held: Vec<bool>,
     nominal: Vec<f64>,
     /// One for every loop of the initial system, of the system, and of that at events, in order.
     initial_solvers: Vec<LoopSolver>,
@@ -65,6 +70,8 @@ impl System {
             set: vec![None; program.parameters().len()],
             observed: None,
             switches: vec![None; program.relations.len()],
+            has_changed: vec![false; program.relations.len()],
+            held: vec![false; program.relations.len()],
             nominal: vec![1.0; n],
             initial_solvers: Vec::new(),
             solvers: Vec::new(),
@@ -267,39 +274,6 @@ impl System {
         if usable { value.abs() } else { 1.0 }
     }
 
-    /// Evaluates every relation at the values of the variables; whether one changed.
-    pub(super) fn update_relations(&mut self, t: f64) -> bool {
-        let program = self.program.clone();
-        let mut changed = self.update_roundings(t);
-        let sides = program.relation_sides.iter().zip(&self.switches);
-        for (relation, (sides, switch)) in program.relations.iter().zip(sides) {
-            let holds = match (relation.time, switch) {
-                (Some((factor, _)), Some(switch)) => {
-                    let near = same_time(t, *switch);
-                    // At the instant itself the value is that behind it.
-                    let difference = if near { factor } else { factor * (t - switch) };
-                    relation.operator.holds(difference, 0.0)
-                }
-                _ => match sides.tape.run(&mut self.registers) {
-                    Ok(()) => {
-                        let [a, b] = [sides.outputs[0], sides.outputs[1]];
-                        let (a, b) = (self.registers[a as usize], self.registers[b as usize]);
-                        relation.operator.holds(a, b)
-                    }
-                    Err(_) => self.registers[relation.register as usize] != 0.0,
-                },
-            };
-            let value = f64::from(u8::from(holds));
-            let slot = &mut self.registers[relation.register as usize];
-            if *slot != value {
-                changed = true;
-                self.unstable = relation.register;
-            }
-            *slot = value;
-        }
-        changed
-    }
-
     /// Solves the blocks of a stage one after another.
     pub(super) fn solve(&mut self, stage: Stage) -> Result<(), Failure> {
         let program = self.program.clone();
@@ -346,7 +320,10 @@ impl System {
             run(tape, &mut self.registers)?;
         }
         self.take_start_values_of_events();
-        self.update_relations(t);
+        self.has_changed.fill(false);
+        self.held.fill(false);
+        self.update_relations(t, Change::All);
+        self.has_changed.fill(false);
         for (choice, selection) in self.choices.iter_mut().zip(&program.selections) {
             choice.reset(selection, &mut self.registers);
         }
@@ -360,6 +337,17 @@ impl System {
             improved |= choice.improve(selection, &mut self.registers)?;
         }
         Ok(improved)
+    }
+
+    /// Of several solutions the one that `homotopy` leads to; directly where it leads nowhere.
+    fn solve_initial_system(&mut self, t: f64) -> Result<(), Failure> {
+        if let Some(homotopy) = self.program.sorted.dae.homotopy
+            && self.follow_homotopy(t, homotopy).is_ok()
+        {
+            return Ok(());
+        }
+        self.take_start_values(t)?;
+        self.settle(t, Stage::Initial).map(|_| ())
     }
 
     /// Solves the initial system with the simplified expressions of `homotopy` and goes on from
@@ -441,11 +429,7 @@ impl DaeSystem for System {
     }
 
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
-        let program = self.program.clone();
-        self.take_start_values(t)?;
-        if let Err(failure) = self.settle(t, Stage::Initial) {
-            self.follow_homotopy(t, program.sorted.dae.homotopy.ok_or(failure)?)?;
-        }
+        self.solve_initial_system(t)?;
         self.check_initial_values()?;
         self.improve_choices()?;
         self.start_clocks(t)?;
@@ -457,13 +441,17 @@ impl DaeSystem for System {
     }
 
     fn n_crossings(&self) -> usize {
-        self.program.crossings.outputs.len() + self.choices.len()
+        self.program.n_crossings() + self.choices.len()
+    }
+
+    fn crossings_vary_in_time(&self) -> bool {
+        self.program.crossings_vary_in_time
     }
 
     fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         self.load_solved(t, y)?;
-        read(&self.program.crossings, &mut self.registers, out)?;
-        let last = out.iter_mut().skip(self.program.crossings.outputs.len());
+        let (first, last) = out.split_at_mut(self.program.n_crossings());
+        self.relation_crossings(first)?;
         for ((choice, selection), out) in
             self.choices.iter_mut().zip(&self.program.selections).zip(last)
         {
@@ -487,6 +475,7 @@ impl DaeSystem for System {
     fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
         self.load(t, y);
         self.registers.calls.next_instant();
+        self.has_changed.fill(false);
         let mut outcome = self.event(t)?;
         if self.improve_choices()? {
             outcome = either(outcome, EventOutcome::Continue { y_changed: true });

@@ -4,6 +4,7 @@
 //! At the beginning a continuous variable has its start value, a discrete one its previous value.
 //! Loops of known length are unrolled, branches merged into if-expressions.
 
+use super::assigned::Place;
 use super::build::{Builder, message_text};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNBALANCED_MODEL, UNRESOLVED_REFERENCE};
 use super::events::Termination;
@@ -11,6 +12,7 @@ use super::lowering::{Lowered, Lowering, Target};
 use super::model::{Equation, Kind};
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::BaseType;
 use crate::name::Ident;
 use crate::source::Span;
 use crate::symbolic::{Expr, VarId};
@@ -31,14 +33,10 @@ pub(super) struct Execution {
     in_when: FxHashSet<VarId>,
 }
 
-/// How a sequence of statements ended.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Flow {
-    Next,
-    Break,
-}
+/// How a sequence of statements ended: whether a loop was left, as a condition.
+type Broken = Expr;
 
-type Loops = Vec<(Ident, Expr)>;
+pub(super) type Loops = Vec<(Ident, Expr)>;
 type Branch<'a> = (&'a Expression, &'a [Statement]);
 
 impl Builder<'_> {
@@ -106,77 +104,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// The scalars that statements assign, loops unrolled where their ranges are known.
-    fn targets(&mut self, statements: &[Statement], loops: &mut Loops, found: &mut Vec<VarId>) {
-        for statement in statements {
-            match &statement.kind {
-                StatementKind::Assign { target, .. } => {
-                    found.extend(self.scalars(target, loops).unwrap_or_default());
-                }
-                StatementKind::MultiAssign { targets, .. } => {
-                    for target in targets.iter().flatten() {
-                        found.extend(self.scalars(target, loops).unwrap_or_default());
-                    }
-                }
-                StatementKind::If { branches, otherwise } => {
-                    branches.iter().for_each(|(_, body)| self.targets(body, loops, found));
-                    self.targets(otherwise, loops, found);
-                }
-                StatementKind::When { branches } => {
-                    branches.iter().for_each(|(_, body)| self.targets(body, loops, found));
-                }
-                StatementKind::For { indices, body } => {
-                    self.targets_of_loop(indices, body, loops, found);
-                }
-                StatementKind::While { body, .. } => self.targets(body, loops, found),
-                StatementKind::Call(_) | StatementKind::Break | StatementKind::Return => {}
-            }
-        }
-    }
-
-    fn targets_of_loop(
-        &mut self,
-        indices: &[ForIndex],
-        body: &[Statement],
-        loops: &mut Loops,
-        found: &mut Vec<VarId>,
-    ) {
-        let Some((index, inner)) = indices.split_first() else {
-            return self.targets(body, loops, found);
-        };
-        let mut lowering = Lowering::new(self);
-        lowering.loops = loops.clone();
-        for value in lowering.loop_values(index).unwrap_or_default() {
-            loops.push((index.name.node, value));
-            self.targets_of_loop(inner, body, loops, found);
-            loops.pop();
-        }
-    }
-
-    /// The variables that a left side stands for.
-    fn scalars(
-        &mut self,
-        target: &ComponentReference,
-        loops: &Loops,
-    ) -> Result<Vec<VarId>, Diagnostic> {
-        let e = Expression::new(ExpressionKind::Reference(target.clone()), target.span);
-        let live = self.in_when;
-        let mut lowering = self.statement_lowering(loops);
-        lowering.live = live;
-        lowering.target.raw += 1;
-        let value = lowering.lower(&e);
-        self.raw -= 1;
-        let mut scalars = Vec::new();
-        value?.append_scalars(&mut scalars);
-        let variable = |e: Expr| {
-            self.dae.pool.as_variable(e).ok_or_else(|| {
-                fault!(NOT_SUPPORTED, "`{}` cannot be assigned", target.name()).at(target.span)
-            })
-        };
-        scalars.into_iter().map(variable).collect()
-    }
-
-    fn statement_lowering(&mut self, loops: &Loops) -> Lowering<'_, Self> {
+    pub(super) fn statement_lowering(&mut self, loops: &Loops) -> Lowering<'_, Self> {
         let live = self.in_when;
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.clone();
@@ -184,13 +112,34 @@ impl Builder<'_> {
         lowering
     }
 
-    fn statements(&mut self, list: &[Statement], loops: &mut Loops) -> Result<Flow, Diagnostic> {
+    fn statements(&mut self, list: &[Statement], loops: &mut Loops) -> Result<Broken, Diagnostic> {
+        let mut broken = self.not_broken();
         for statement in list {
-            if self.statement(statement, loops)? == Flow::Break {
-                return Ok(Flow::Break);
+            broken =
+                self.unless(broken, loops, |builder, loops| builder.statement(statement, loops))?;
+            if self.dae.pool.as_constant(broken) == Some(1.0) {
+                break;
             }
         }
-        Ok(Flow::Next)
+        Ok(broken)
+    }
+
+    fn not_broken(&mut self) -> Broken {
+        self.dae.pool.constant(0.0)
+    }
+
+    /// Carries out what follows in a loop that has been left where `broken` holds.
+    fn unless(
+        &mut self,
+        broken: Broken,
+        loops: &mut Loops,
+        body: impl FnOnce(&mut Self, &mut Loops) -> Result<Broken, Diagnostic>,
+    ) -> Result<Broken, Diagnostic> {
+        if self.dae.pool.as_constant(broken) == Some(0.0) {
+            return body(self, loops);
+        }
+        let yes = self.dae.pool.constant(1.0);
+        self.choose(broken, loops, |_, _| Ok(yes), body)
     }
 
     fn count_statement(&mut self, span: Span) -> Result<(), Diagnostic> {
@@ -201,7 +150,7 @@ impl Builder<'_> {
         }
     }
 
-    fn statement(&mut self, s: &Statement, loops: &mut Loops) -> Result<Flow, Diagnostic> {
+    fn statement(&mut self, s: &Statement, loops: &mut Loops) -> Result<Broken, Diagnostic> {
         self.count_statement(s.span)?;
         let asserted = self.dae.assertions.len();
         match &s.kind {
@@ -216,15 +165,18 @@ impl Builder<'_> {
             }
             StatementKind::If { branches, otherwise } => {
                 let branches: Vec<Branch> = branches.iter().map(|(c, b)| (c, &b[..])).collect();
-                return self.if_statement(&branches, otherwise, s.span, loops);
+                return self.if_statement(&branches, otherwise, loops);
             }
             StatementKind::For { indices, body } => {
                 return self.for_statement(indices, body, loops);
             }
             StatementKind::While { condition, body } => {
+                let mut broken = self.not_broken();
                 while self.statement_lowering(loops).known(condition)? != 0.0 {
                     self.count_statement(s.span)?;
-                    if self.statements(body, loops)? == Flow::Break {
+                    broken = self
+                        .unless(broken, loops, |builder, loops| builder.statements(body, loops))?;
+                    if self.dae.pool.as_constant(broken) == Some(1.0) {
                         break;
                     }
                 }
@@ -238,12 +190,12 @@ impl Builder<'_> {
                 self.statement_call(call, loops)?;
                 self.guard_new_assertions(asserted);
             }
-            StatementKind::Break => return Ok(Flow::Break),
+            StatementKind::Break => return Ok(self.dae.pool.constant(1.0)),
             StatementKind::Return => {
                 return Err(fault!(NOT_SUPPORTED, "`return` outside a function").at(s.span));
             }
         }
-        Ok(Flow::Next)
+        Ok(self.not_broken())
     }
 
     fn assign(
@@ -252,27 +204,35 @@ impl Builder<'_> {
         value: Lowered<Expr>,
         loops: &Loops,
     ) -> Result<(), Diagnostic> {
-        let variables = self.scalars(target, loops)?;
+        let places = self.places(target, loops)?;
+        let is_text = |place: &Place| self.dae.variable(place.variable).base == BaseType::String;
+        let value = match places.first().is_some_and(is_text) {
+            true => Lowered::scalar(Lowering::new(self).number_of_text(value, target.span)?),
+            false => value,
+        };
         let mut values = Vec::new();
         value.append_scalars(&mut values);
-        if variables.len() != values.len() {
+        let expected = places.last().map_or(0, |place| place.element + 1);
+        if expected != values.len() {
             return Err(fault!(
                 ARRAY_MISMATCH,
-                "{} elements are assigned to {}",
-                values.len(),
-                variables.len()
+                "{} elements are assigned to {expected}",
+                values.len()
             )
             .at(target.span));
         }
-        for (variable, value) in variables.into_iter().zip(values) {
-            if !self.execution.values.contains_key(&variable) {
+        for Place { variable, element, guard } in places {
+            let Some(before) = self.execution.values.get_mut(&variable) else {
                 let name = self.dae.variable(variable).name.clone();
                 return Err(fault!(NOT_SUPPORTED, "`{name}` cannot be assigned").at(target.span));
-            }
+            };
+            *before = match guard {
+                None => values[element],
+                Some(guard) => self.dae.pool.if_then_else(guard, values[element], *before),
+            };
             if self.in_when {
                 self.execution.in_when.insert(variable);
             }
-            self.execution.values.insert(variable, value);
         }
         Ok(())
     }
@@ -311,9 +271,8 @@ impl Builder<'_> {
         &mut self,
         branches: &[Branch],
         otherwise: &[Statement],
-        span: Span,
         loops: &mut Loops,
-    ) -> Result<Flow, Diagnostic> {
+    ) -> Result<Broken, Diagnostic> {
         let Some(((condition, body), rest)) = branches.split_first() else {
             return self.statements(otherwise, loops);
         };
@@ -323,15 +282,14 @@ impl Builder<'_> {
         if let Some(known) = self.dae.pool.as_constant(condition) {
             return match known != 0.0 {
                 true => self.statements(body, loops),
-                false => self.if_statement(rest, otherwise, span, loops),
+                false => self.if_statement(rest, otherwise, loops),
             };
         }
         self.choose(
             condition,
-            span,
             loops,
             |builder, loops| builder.statements(body, loops),
-            |builder, loops| builder.if_statement(rest, otherwise, span, loops),
+            |builder, loops| builder.if_statement(rest, otherwise, loops),
         )
     }
 
@@ -339,11 +297,10 @@ impl Builder<'_> {
     fn choose(
         &mut self,
         condition: Expr,
-        span: Span,
         loops: &mut Loops,
-        first: impl FnOnce(&mut Self, &mut Loops) -> Result<Flow, Diagnostic>,
-        second: impl FnOnce(&mut Self, &mut Loops) -> Result<Flow, Diagnostic>,
-    ) -> Result<Flow, Diagnostic> {
+        first: impl FnOnce(&mut Self, &mut Loops) -> Result<Broken, Diagnostic>,
+        second: impl FnOnce(&mut Self, &mut Loops) -> Result<Broken, Diagnostic>,
+    ) -> Result<Broken, Diagnostic> {
         let before = self.execution.values.clone();
         self.execution.guards.push(condition);
         let flow = first(self, loops)?;
@@ -353,17 +310,12 @@ impl Builder<'_> {
         self.execution.guards.push(not);
         let other = second(self, loops)?;
         self.execution.guards.pop();
-        if (flow, other) != (Flow::Next, Flow::Next) {
-            return Err(fault!(
-                NOT_SUPPORTED,
-                "`break` under a condition that depends on variables"
-            )
-            .at(span));
-        }
         for ((_, value), (_, taken)) in self.execution.values.iter_mut().zip(&taken) {
             *value = self.dae.pool.if_then_else(condition, *taken, *value);
         }
-        Ok(Flow::Next)
+        let pool = &mut self.dae.pool;
+        let (first, second) = (pool.and(condition, flow), pool.and(not, other));
+        Ok(pool.or(first, second))
     }
 
     /// The branches of a when-statement, unless one `earlier` is active.
@@ -373,9 +325,9 @@ impl Builder<'_> {
         earlier: Expr,
         span: Span,
         loops: &mut Loops,
-    ) -> Result<Flow, Diagnostic> {
+    ) -> Result<Broken, Diagnostic> {
         let Some(((condition, body), rest)) = branches.split_first() else {
-            return Ok(Flow::Next);
+            return Ok(self.not_broken());
         };
         if self.initial || self.in_when {
             return Err(
@@ -388,7 +340,6 @@ impl Builder<'_> {
         let earlier = self.dae.pool.or(earlier, active);
         self.choose(
             guard,
-            span,
             loops,
             |builder, loops| {
                 builder.in_when = true;
@@ -405,20 +356,23 @@ impl Builder<'_> {
         indices: &[ForIndex],
         body: &[Statement],
         loops: &mut Loops,
-    ) -> Result<Flow, Diagnostic> {
+    ) -> Result<Broken, Diagnostic> {
         let Some((index, inner)) = indices.split_first() else {
             return self.statements(body, loops);
         };
+        let mut broken = self.not_broken();
         for value in self.statement_lowering(loops).loop_values(index)? {
             self.count_statement(index.name.span)?;
             loops.push((index.name.node, value));
-            let flow = self.for_statement(inner, body, loops);
+            let turn = self
+                .unless(broken, loops, |builder, loops| builder.for_statement(inner, body, loops));
             loops.pop();
-            if flow? == Flow::Break {
+            broken = turn?;
+            if self.dae.pool.as_constant(broken) == Some(1.0) {
                 break;
             }
         }
-        Ok(Flow::Next)
+        Ok(self.not_broken())
     }
 
     /// `assert`, `terminate`
@@ -435,9 +389,13 @@ impl Builder<'_> {
                 self.dae.events.terminations.push(termination);
                 Ok(())
             }
-            (name, _) => {
-                Err(fault!(NOT_SUPPORTED, "`{name}(…)` as a statement here").at(call.span))
-            }
+            (text, _) => match Target::function(self, &function.name()) {
+                Some(user) => {
+                    let mut lowering = self.statement_lowering(loops);
+                    lowering.user_call(&user, arguments, call.span).map(|_| ())
+                }
+                None => Err(fault!(NOT_SUPPORTED, "`{text}(…)` as a statement here").at(call.span)),
+            },
         }
     }
 

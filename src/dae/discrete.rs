@@ -38,15 +38,11 @@ impl Builder<'_> {
 
     /// The scalars of a target; the whole array where subscripts depend on a loop.
     fn target_scalars(&mut self, target: &ComponentReference) -> Vec<VarId> {
-        let expression =
-            ast::Expression::new(ExpressionKind::Reference(target.clone()), target.span);
         let asserted = self.dae.assertions.len();
-        let lowered = Lowering::new(self).lower(&expression);
+        let places = self.places(target, &Vec::new());
         self.dae.assertions.truncate(asserted);
-        if let Ok(value) = lowered {
-            let mut scalars = Vec::new();
-            value.append_scalars(&mut scalars);
-            return scalars.into_iter().filter_map(|e| self.dae.pool.as_variable(e)).collect();
+        if let Ok(places) = places {
+            return places.into_iter().map(|place| place.variable).collect();
         }
         let Ok(path) = Lowering::new(self).path(target) else { return Vec::new() };
         let Some((position, _, variable)) = self.flat.variables.get_full(path.as_str()) else {

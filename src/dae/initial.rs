@@ -9,13 +9,12 @@
 //! leave `v = pre(v)`.
 
 use super::blt::incidence;
-use super::mixed::{of_kind, sort_mixed, with_initial};
+use super::mixed::{match_mixed, of_kind, sort_mixed, with_initial};
 use super::model::{Dae, Equation, Kind};
 use super::sorted::{Alias, Block, Selection};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
-use crate::graph::match_equations;
 use crate::symbolic::{VarId, substitute};
 
 /// The initial system in solving order.
@@ -78,7 +77,8 @@ pub(super) fn sort_initial(
     }
     with_initial(dae, &mut system.equations, 1.0);
 
-    let matching = match_equations(&incidence(dae, &system.equations, &all));
+    let graph = incidence(dae, &system.equations, &all);
+    let matching = match_mixed(dae, &system.equations, &all, &graph, model);
     let is_used = |number: usize| matching.equation_to_unknown[number].is_some();
     let numbered = || system.equations.iter().copied().enumerate();
     let checks =

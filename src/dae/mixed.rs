@@ -10,7 +10,7 @@ use super::sorted::{Assignment, Block};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::BaseType;
-use crate::graph::{Bipartite, blocks, match_equations};
+use crate::graph::{Bipartite, Matching, blocks, match_equations};
 use crate::symbolic::{Expr, VarId, substitute};
 
 /// Blocks, and the variables that are read before they are written.
@@ -64,7 +64,7 @@ pub(super) fn sort_mixed(
     unknowns: &[VarId],
 ) -> Result<Mixed, Diagnostic> {
     let graph = incidence(dae, equations, unknowns);
-    let matching = match_equations(&graph);
+    let matching = match_mixed(dae, equations, unknowns, &graph, equations.len());
     if equations.len() != unknowns.len() || !matching.is_perfect() {
         return Err(report(dae, system, equations, unknowns, &graph, &matching));
     }
@@ -84,6 +84,37 @@ pub(super) fn sort_mixed(
     }
     sorted.blocks.iter_mut().for_each(|block| renumber(block, origins));
     Ok(sorted)
+}
+
+/// Matches discrete variables with equations that give them a value, if the first `required`
+/// equations can be matched so.
+pub(super) fn match_mixed(
+    dae: &Dae,
+    equations: &[Equation],
+    unknowns: &[VarId],
+    graph: &Bipartite,
+    required: usize,
+) -> Matching {
+    let pool = &dae.pool;
+    let gives = |side: Expr, other: Expr, v: VarId| {
+        pool.as_variable(side) == Some(v) && !pool.depends_on(other, v)
+    };
+    let rows = equations.iter().enumerate().map(|(row, e)| {
+        let determines = |unknown: &usize| {
+            let v = unknowns[*unknown];
+            let is_real = dae.variable(v).base == BaseType::Real;
+            is_real || gives(e.left, e.right, v) || gives(e.right, e.left, v)
+        };
+        graph.unknowns(row).iter().copied().filter(determines).collect::<Vec<_>>()
+    });
+    let given = Bipartite::new(unknowns.len(), rows.collect::<Vec<_>>());
+    let matching = match_equations(&given);
+    let mut found =
+        matching.equation_to_unknown.iter().take(required).chain(&matching.unknown_to_equation);
+    match found.all(Option::is_some) {
+        true => matching,
+        false => match_equations(graph),
+    }
 }
 
 /// Takes the discrete members of a loop as known for the others, and assigns them behind these.

@@ -4,6 +4,7 @@
 //! build                every variable a scalar, every relation outside noEvent frozen
 //! order_parameters     bindings in order of dependence
 //! fold_parameters      parameters that cannot be set become numbers
+//! substitute_constants v = 3 holds in all other equations
 //! eliminate_aliases    a = b and a = -b become names
 //! separate_discrete    equations of discrete variables become assignments at events
 //! reduce_index         constraints between states differentiated, states chosen
@@ -21,11 +22,14 @@
 
 mod algorithm;
 mod alias_elimination;
+mod assigned;
 mod blt;
 mod build;
+mod constant_variables;
 mod default_values;
 mod discrete;
 mod dummy_derivatives;
+mod dump;
 mod dynamic_states;
 pub mod errors;
 mod events;
@@ -44,9 +48,11 @@ mod settled;
 mod sorted;
 mod symbolic_target;
 mod temporal;
+mod varying_texts;
 mod when;
 
 pub use default_values::DefaultValues;
+pub use dump::{dump, sizes};
 pub use events::*;
 pub use model::*;
 pub use report::report;
@@ -63,6 +69,7 @@ pub const PASSES: &[(&str, &str)] = &[
     ("build", "every variable a scalar, relations outside `noEvent` frozen"),
     ("order_parameters", "bindings of parameters in order of dependence"),
     ("fold_parameters", "parameters that cannot be set become numbers"),
+    ("substitute_constants", "where `v = 3`, the number stands for v in all other equations"),
     ("eliminate_aliases", "`a = b` and `a = -b` become names"),
     ("separate_discrete", "equations of discrete variables become assignments at events"),
     ("reduce_index", "constraints between states differentiated, states chosen"),
@@ -73,14 +80,30 @@ pub const PASSES: &[(&str, &str)] = &[
 
 /// Sorts a flat model.
 pub fn sort(flat: &FlatModel) -> Result<SortedDae, Diagnostic> {
+    sort_and_show(flat, &mut |_, _, _| {})
+}
+
+/// Is shown the name of a pass, the system after it, and the aliases known so far.
+type Show<'a> = dyn FnMut(&str, &Dae, &[Option<Alias>]) + 'a;
+
+/// The same; the passes that change the system show it, with the aliases known so far.
+fn sort_and_show(flat: &FlatModel, show: &mut Show<'_>) -> Result<SortedDae, Diagnostic> {
     let mut dae = build::build(flat)?;
     zero_inputs(&mut dae, flat);
+    show("build", &dae, &[]);
     let parameters = parameters::order_parameters(&mut dae)?;
+    show("order_parameters", &dae, &[]);
     let parameters = default_values::fold_parameters(&mut dae, parameters);
+    show("fold_parameters", &dae, &[]);
     dae.defaults = DefaultValues::of_parameters(&dae, &parameters);
+    constant_variables::substitute_constants(&mut dae);
+    show("substitute_constants", &dae, &[]);
     let mut aliases = alias_elimination::eliminate_aliases(&mut dae);
+    show("eliminate_aliases", &dae, &aliases);
     discrete::separate_discrete(&mut dae, &aliases)?;
+    show("separate_discrete", &dae, &aliases);
     let chosen = index_reduction::reduce_index(&mut dae, &mut aliases)?;
+    show("reduce_index", &dae, &aliases);
     let dummy_derivatives::ChosenStates { states, selections } = chosen;
     when::check_reinits(&dae, &aliases, &states, &selections)?;
     let unknowns = index_reduction::unknowns(&dae, &aliases, &states);

@@ -37,13 +37,28 @@ fn write_report(sorted: &SortedDae, out: &mut String) -> std::fmt::Result {
         let name = &dae.variable(relation.variable).name;
         writeln!(out, "event {name} = {left} {} {right}", relation.operator.symbol())?;
     }
-    sorted.blocks.iter().try_for_each(|block| write_block(sorted, block, out))?;
+    write_blocks(sorted, out)?;
     write_events(sorted, out)?;
     if !dae.initial_equations.is_empty() {
         writeln!(out, "initially")?;
-        sorted.initial_blocks.iter().try_for_each(|block| write_block(sorted, block, out))?;
+        write_initial_blocks(sorted, out)?;
     }
     Ok(())
+}
+
+/// The blocks between events.
+pub(super) fn write_blocks(sorted: &SortedDae, out: &mut String) -> std::fmt::Result {
+    sorted.blocks.iter().try_for_each(|block| write_block(sorted, block, out))
+}
+
+/// The blocks at events.
+pub(super) fn write_event_blocks(sorted: &SortedDae, out: &mut String) -> std::fmt::Result {
+    sorted.event_blocks.iter().try_for_each(|block| write_block(sorted, block, out))
+}
+
+/// The blocks of the initial system.
+pub(super) fn write_initial_blocks(sorted: &SortedDae, out: &mut String) -> std::fmt::Result {
+    sorted.initial_blocks.iter().try_for_each(|block| write_block(sorted, block, out))
 }
 
 /// What happens at events beside relations that switch.
@@ -61,7 +76,7 @@ fn write_events(sorted: &SortedDae, out: &mut String) -> std::fmt::Result {
     }
     if !sorted.event_blocks.is_empty() {
         writeln!(out, "at events")?;
-        sorted.event_blocks.iter().try_for_each(|block| write_block(sorted, block, out))?;
+        write_event_blocks(sorted, out)?;
     }
     for reinit in &events.reinits {
         let (value, condition) = (text(sorted, reinit.value), text(sorted, reinit.condition));

@@ -13,7 +13,7 @@ use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::symbolic::function::FunctionId;
 use crate::symbolic::{Expr, RelationOperator, VarId};
-use crate::syntax::ast::{ComponentReference, Expression};
+use crate::syntax::ast::{ComponentReference, Expression, ExpressionKind};
 use std::sync::Arc;
 
 impl Target for Builder<'_> {
@@ -147,7 +147,12 @@ impl Target for Builder<'_> {
             return self.record(path).ok_or_else(|| self.unresolved(path, reference.span));
         };
         if variable.base == BaseType::String {
-            return Ok(Lowered::Text(self.text(position)));
+            let first = self.first[position];
+            return Ok(match self.dae.variable(first).kind {
+                Kind::Discrete if self.raw > 0 => Lowered::Numbered(self.dae.pool.variable(first)),
+                Kind::Discrete => Lowered::Numbered(self.value_now(first)),
+                _ => Lowered::Text(self.text(position)),
+            });
         }
         if variable.variability <= Variability::Parameter {
             self.fold(position)?;
@@ -188,16 +193,24 @@ impl Target for Builder<'_> {
         super::function::call(self, function, arguments, span)
     }
 
+    fn text_number(&mut self, text: &Arc<str>) -> Option<Expr> {
+        Some(self.number_of(text))
+    }
+
     fn operator(
         &mut self,
         name: &str,
-        _: &[Expression],
+        arguments: &[Expression],
         span: Span,
     ) -> Option<Result<Operator, Diagnostic>> {
         Some(Ok(match name {
             "der" => Operator::Derivative,
             "noEvent" => Operator::Live(0),
-            "smooth" => Operator::Live(1),
+            // What is continuous alone still has kinks, which no step and no iteration may pass.
+            "smooth" => match arguments.first().map(|order| &order.kind) {
+                Some(ExpressionKind::Integer(0)) => Operator::Plain(1),
+                _ => Operator::Live(1),
+            },
             "pre" | "edge" | "change" => {
                 // Until `temporal`, which follows when the argument is lowered.
                 self.raw += 1;
@@ -260,7 +273,7 @@ impl Target for Builder<'_> {
 
 impl Builder<'_> {
     /// The text that a variable is bound to, [`UNKNOWN_TEXT`] if that is not known.
-    fn text(&mut self, position: usize) -> Arc<str> {
+    pub(super) fn text(&mut self, position: usize) -> Arc<str> {
         let flat = self.flat;
         let unknown = || Arc::from(UNKNOWN_TEXT);
         let Some(binding) = &flat.variables[position].binding else { return unknown() };
@@ -290,7 +303,7 @@ impl Builder<'_> {
     }
 
     /// A position from 0 lies inside its array.
-    fn subscript_assertion(&mut self, size: usize, position: Expr, span: Span) {
+    pub(super) fn subscript_assertion(&mut self, size: usize, position: Expr, span: Span) {
         let pool = &mut self.dae.pool;
         let (zero, size) = (pool.constant(0.0), pool.constant(size as f64));
         let below = pool.relation(RelationOperator::Less, position, size);

@@ -65,10 +65,11 @@ impl ResultTable {
         std::iter::once(&*self.time_name).chain(self.series.iter().map(|series| &*series.name))
     }
 
-    /// The values of a variable, one per point in time. `time` and `Time` both name time.
+    /// The values of a variable, one per point in time. `time` and `Time` both name time; blanks
+    /// in names do not count.
     pub fn column(&self, name: &str) -> Result<Vec<f64>, Fault> {
-        if let Some(index) = self.series.iter().position(|series| series.name == name) {
-            return Ok(self.expand(index));
+        if let Some(values) = self.column_like(name) {
+            return Ok(values);
         }
         if name == self.time_name || name == "time" || name == "Time" {
             return Ok(self.time.clone());

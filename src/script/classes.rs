@@ -47,8 +47,8 @@ impl Classes {
     }
 
     /// Full names of the loaded functions and of everything else that could be called.
-    pub(super) fn function_names(&self) -> Vec<String> {
-        self.library.known().iter().map(Name::to_string).collect()
+    pub(super) fn read_names(&self) -> Vec<Name> {
+        self.library.known()
     }
 
     /// Folders whose packages are loaded when somebody names them.
@@ -314,7 +314,7 @@ impl Session {
     /// The fault of a class that is not loaded and cannot be found.
     pub(super) fn unknown_class(&self, name: &Name) -> Fault {
         let wanted = name.to_string();
-        let known = self.classes.function_names();
+        let known = self.classes.read_names().iter().map(Name::to_string).collect::<Vec<_>>();
         let last = known.iter().map(|full| full.rsplit('.').next().unwrap_or(full));
         let hint = suggest::did_you_mean(&wanted, known.iter().map(String::as_str))
             .or_else(|| suggest::did_you_mean(&wanted, last));

@@ -57,6 +57,10 @@ impl DaeSystem for Continued {
         self.system.n_crossings()
     }
 
+    fn crossings_vary_in_time(&self) -> bool {
+        self.system.crossings_vary_in_time()
+    }
+
     fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         self.system.crossings(t, y, out)
     }

@@ -1,6 +1,7 @@
 //! What is shown without being asked for, as each dialect shows it.
 
 use super::{Dialect, Echo, Session, builtins};
+use crate::eval::ValueType;
 use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{Expression, ExpressionKind};
@@ -23,17 +24,51 @@ impl Session {
 
     /// The value of an expression that is a statement.
     pub(super) fn echo_value(&mut self, expression: &Expression, value: &Value) {
-        if self.silent > 0 || self.muted || matches!(value, Value::Tuple(v) if v.is_empty()) {
+        if self.silent > 0 || self.muted {
             return;
+        }
+        if matches!(value, Value::Tuple(v) if v.is_empty()) {
+            return self.echo_nothing();
         }
         if self.options.echo != Echo::Everything && self.is_plain_success(expression, value) {
             return;
         }
+        self.echo_finished(expression, value);
         match value {
             Value::Tuple(values) if self.dialect == Dialect::OpenModelica => {
                 self.answer_outputs(expression, values);
             }
+            value if self.answers_names(expression) => {
+                let line = format!("{}\n", show(value, Style::OpenModelica).replace('"', ""));
+                self.print(&line);
+            }
             value => self.answer(value),
+        }
+    }
+
+    /// Whether the value is a list of names, which OpenModelica shows without quotes.
+    fn answers_names(&self, expression: &Expression) -> bool {
+        let ExpressionKind::Call { function, .. } = &expression.kind else { return false };
+        let command = builtins::find(&function.name(), self.dialect);
+        self.dialect == Dialect::OpenModelica
+            && self.options.echo != Echo::Nothing
+            && command.is_some_and(|command| {
+                let outputs = &command.function().outputs;
+                outputs.first().is_some_and(|output| output.value_type == ValueType::TypeName)
+            })
+    }
+
+    /// The word that stands in Dymola's log between a simulation and its answer.
+    fn echo_finished(&mut self, expression: &Expression, value: &Value) {
+        let is_wanted = self.options.echo == Echo::Everything
+            && self.dialect == Dialect::Dymola
+            && *value == Value::Boolean(true);
+        let ExpressionKind::Call { function, .. } = &expression.kind else { return };
+        let name = function.name();
+        let simulates =
+            name.last().is_some_and(|last| matches!(last.as_str(), "simulateModel" | "simulate"));
+        if is_wanted && simulates && builtins::find(&name, self.dialect).is_some() {
+            self.print("Finished\n");
         }
     }
 
@@ -45,7 +80,7 @@ impl Session {
             (false, Some(first)) => self.answer(first),
             _ => {
                 let all = values.iter().map(|value| show(value, Style::OpenModelica));
-                let line = format!("({})\n", all.collect::<Vec<_>>().join(","));
+                let line = format!("({})\n", all.collect::<Vec<_>>().join(", "));
                 self.print(&line);
             }
         }

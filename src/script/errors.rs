@@ -1,6 +1,17 @@
 //! Codes of scripts.
 
 use crate::codes;
+use crate::diag::Code;
+use crate::{dae, eval, flatten};
+
+/// Codes that say that something is not there, rather than that something is wrong.
+pub const OUT_OF_REACH: &[Code] = &[
+    eval::errors::UNKNOWN_FUNCTION,
+    eval::errors::MODEL_ONLY,
+    REFUSED,
+    dae::errors::NOT_SUPPORTED,
+    flatten::errors::NOT_SUPPORTED,
+];
 
 codes! {
     /// A script to run does not exist.
@@ -15,6 +26,9 @@ codes! {
     /// An assignment to a name of the model before any model was translated.
     NO_TRANSLATED_MODEL = "no-translated-model":
         "## What it means\n\nA dotted name was assigned or read, which stands for a parameter or variable of the model translated last; but no model has been translated yet.\n\n## Example\n\n`RL1.R = 0.5;` as the first statement\n\n## What to do\n\nLoad and translate the model first: `openModel(\"file.mo\"); translateModel(\"Package.Model\");`.",
+    /// What is to be changed in the middle of a run cannot be changed there.
+    CANNOT_BRANCH = "cannot-branch":
+        "## What it means\n\n`gapi teach --what-if` changes variables of the script as soon as `Eval` has simulated a generation. Here `Eval` is called in a function, whose variables nothing else can change.\n\n## Example\n\n`gapi teach my.mos --what-if \"F_Mut := 0.5\"` where a function of `my.mos` calls `Eval`\n\n## What to do\n\nCall `Eval` from the script itself, or change the function.",
     /// A name that the translated model does not have, or that is not a parameter.
     UNKNOWN_PARAMETER = "unknown-parameter":
         "## What it means\n\nThe model translated last has no parameter or start value of this name.\n\n## Example\n\n`Decay.k = 2;` where the model declares `rate`\n\n## What to do\n\nUse a name of the model as its flat form shows it (`gapi flatten FILE --model CLASS`).",

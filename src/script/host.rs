@@ -37,6 +37,9 @@ impl Host for Session {
         let outer = std::mem::replace(&mut self.call, span);
         let result = id.run(self, arguments);
         self.call = outer;
+        if result.as_ref().is_ok_and(is_success) {
+            self.messages.note_success();
+        }
         match result {
             Ok(Value::Tuple(values)) => Ok(values),
             Ok(value) => Ok(vec![value]),
@@ -62,14 +65,17 @@ impl Host for Session {
         span: Span,
         scope: &mut Scope,
     ) -> Result<Vec<Value>, Diagnostic> {
-        if !scope.is_script() {
-            return self.call_builtin(header, arguments, span);
+        let outer = std::mem::replace(&mut self.in_function, !scope.is_script());
+        if !self.in_function {
+            std::mem::swap(&mut self.scope, scope);
         }
-        std::mem::swap(&mut self.scope, scope);
         self.silent += 1;
         let result = self.call_builtin(header, arguments, span);
         self.silent -= 1;
-        std::mem::swap(&mut self.scope, scope);
+        if !self.in_function {
+            std::mem::swap(&mut self.scope, scope);
+        }
+        self.in_function = outer;
         result
     }
 
@@ -112,7 +118,7 @@ impl Host for Session {
 
     fn function_names(&mut self) -> Vec<String> {
         let mut names: Vec<String> = builtins::names().into_iter().map(str::to_owned).collect();
-        names.extend(self.classes.function_names());
+        names.extend(self.classes.read_names().iter().map(Name::to_string));
         names
     }
 
@@ -205,4 +211,13 @@ impl Session {
         }
         all
     }
+}
+
+/// Whether a command says that it succeeded.
+fn is_success(answer: &Value) -> bool {
+    let first = match answer {
+        Value::Tuple(values) => values.first(),
+        value => Some(value),
+    };
+    first == Some(&Value::Boolean(true))
 }

@@ -182,6 +182,13 @@ impl Session {
         }
     }
 
+    /// The `version` annotation of a loaded package; empty without.
+    pub(super) fn class_version(&self, name: &Name) -> Result<String, Fault> {
+        let definition = self.classes.library.definition(name);
+        let definition = definition.ok_or_else(|| self.unknown_class(name))?;
+        Ok(version(&definition).unwrap_or_default())
+    }
+
     /// The warning about a library that is older than what was asked for, or of another main
     /// version. The library in the program serves models of all versions.
     fn other_version(&self, name: &Name) -> Option<Fault> {

@@ -32,13 +32,21 @@ impl Messages {
 
     /// The unread messages, one a line, as OpenModelica's scripts expect them
     /// (`[file:l:c-l:c:writable] Error: …`); the buffer is empty afterwards.
-    pub fn take_text(&mut self, sources: &SourceMap) -> String {
-        let text = self.unread.iter().map(|diagnostic| line(diagnostic, sources)).collect();
-        self.clear();
-        text
+    pub fn take_text(&mut self, sources: &SourceMap, warnings_as_errors: bool) -> String {
+        let unread = std::mem::take(self).unread;
+        let severity = |diagnostic: &Diagnostic| match diagnostic.severity {
+            Severity::Warning if warnings_as_errors => Severity::Error,
+            severity => severity,
+        };
+        unread.iter().map(|diagnostic| line(diagnostic, severity(diagnostic), sources)).collect()
     }
 
-    /// The last error's message since the last call, empty after success.
+    /// Notes that a command succeeded: there is no last error, but what was not read stays.
+    pub fn note_success(&mut self) {
+        self.last_error = None;
+    }
+
+    /// The last error's message since the last call or the last success.
     pub fn take_last_error(&mut self) -> String {
         let last = self.last_error.take().unwrap_or_default();
         self.clear();
@@ -57,8 +65,8 @@ impl Messages {
     }
 }
 
-fn line(diagnostic: &Diagnostic, sources: &SourceMap) -> String {
-    let severity = match diagnostic.severity {
+fn line(diagnostic: &Diagnostic, severity: Severity, sources: &SourceMap) -> String {
+    let severity = match severity {
         Severity::Note => "Notification",
         Severity::Warning => "Warning",
         Severity::Error => "Error",

@@ -8,6 +8,7 @@
 //! ```
 
 mod along;
+mod branching;
 pub mod builtins;
 mod callees;
 pub mod checking;

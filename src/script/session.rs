@@ -15,7 +15,7 @@ use crate::source::{SourceMap, Span};
 use crate::value::Value;
 use indexmap::IndexMap;
 use std::any::{Any, TypeId};
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -126,6 +126,8 @@ pub struct Session {
     pub(super) stop: Option<Stop>,
     /// Where the command that is being run was called.
     pub(super) call: Span,
+    /// Whether that was in a function, whose variables the command does not see.
+    pub(super) in_function: bool,
     /// Folders below which files may be written and removed.
     pub(super) trusted: Vec<PathBuf>,
     /// Environment variables that scripts set.
@@ -134,6 +136,8 @@ pub struct Session {
     pub(super) log: Transcript,
     /// Names of script variables that were said to be parameters of the model too.
     pub(super) shared: BTreeSet<Ident>,
+    /// Warnings told, where each is told once.
+    told: Option<HashSet<(Span, String)>>,
     /// Commands that said that they have no window.
     pub(super) windowless: BTreeSet<&'static str>,
     /// How deep the statement being executed lies in loops, branches and nested scripts: answers
@@ -175,7 +179,9 @@ impl Session {
             follow_ups: FollowUps::default(),
             stop: None,
             call: Span::NONE,
+            in_function: false,
             shared: BTreeSet::new(),
+            told: None,
             windowless: BTreeSet::new(),
             silent: 0,
             muted: false,
@@ -262,6 +268,10 @@ impl Session {
     /// The one place where a diagnostic is told to the user without ending a statement: it goes to
     /// standard error, to the transcript, and to the messages that the script can ask for.
     pub fn report(&mut self, diagnostic: Diagnostic) {
+        let told = self.told.as_mut().filter(|_| !diagnostic.is_error());
+        if told.is_some_and(|told| !told.insert((diagnostic.span(), diagnostic.message.clone()))) {
+            return;
+        }
         let plain = render::render(&diagnostic, &self.sources, false);
         match self.world.colour() {
             true => self.world.eprint(&render::render(&diagnostic, &self.sources, true)),
@@ -275,6 +285,11 @@ impl Session {
             self.stop.get_or_insert(Stop::Error);
         }
         self.messages.push(diagnostic);
+    }
+
+    /// From here on a warning at the same place is told once, however many models it concerns.
+    pub fn tell_warnings_once(&mut self) {
+        self.told.get_or_insert_default();
     }
 
     /// Reports the negative answer of a command: an error with the place of the call.

@@ -175,6 +175,18 @@ pub fn flat_model(session: &mut Session, problem: &str) -> Result<FlatModel, Vec
     flattened(session, problem).map(|flattened| flattened.model)
 }
 
+pub use crate::dae::PASSES;
+
+/// The system of a model after a pass of [`PASSES`] as text, in its own names; else the flat model.
+///
+/// # Errors
+/// Everything that is wrong with it up to there.
+pub fn dump(session: &mut Session, problem: &str, pass: &str) -> Result<String, Vec<Diagnostic>> {
+    let flat = flat_model(session, problem)?;
+    let system = dae::dump(&flat, pass).map_err(|error| vec![error])?;
+    Ok(system.unwrap_or_else(|| flat.to_string()))
+}
+
 /// As [`flat_model`], with the local balance; warnings are reported.
 pub(super) fn flattened(
     session: &mut Session,
@@ -327,6 +339,29 @@ fn with_values(current: &Current, model: &Translated) -> Result<Continued, Fault
     let states =
         names.enumerate().filter_map(|(at, name)| Some((at, *current.imported.get(name)?)));
     Ok(Continued { states: states.collect(), system })
+}
+
+/// The next simulations begin with the states and parameters that a result has at a time.
+///
+/// # Errors
+/// A state that the result does not have.
+pub fn begin_with(
+    session: &mut Session,
+    model: &Translated,
+    result: &ResultTable,
+    time: f64,
+) -> Result<(), Fault> {
+    let mut states = IndexMap::new();
+    for name in state_names(model) {
+        states.insert(name.clone(), result.interpolate(name, &[time])?[0]);
+    }
+    for parameter in model.program.parameters() {
+        if let Ok(values) = result.interpolate(&parameter.name, &[time]) {
+            session.set_parameter(&parameter.name, values[0])?;
+        }
+    }
+    session.import_states(states);
+    Ok(())
 }
 
 /// The names of the states, in their order.

@@ -1,6 +1,7 @@
 //! Variables, flags and dotted names of a session.
 
 use super::Session;
+use super::builtins::component_names;
 use super::errors::NO_WINDOW;
 use crate::diag::Diagnostic;
 use crate::name::Name;
@@ -10,6 +11,9 @@ use crate::value::show::{Style, show};
 
 /// First identifiers of dotted names that are flags rather than parts of a model.
 const FLAG_ROOTS: &[&str] = &["Advanced", "Hidden", "Evaluate", "Design", "Check", "Dymola"];
+
+/// Classes whose components are completed.
+const MAX_COMPLETED: usize = 500;
 
 impl Session {
     /// The value of a flag, if the reference names one that was set.
@@ -59,7 +63,13 @@ impl Session {
     /// translated last.
     pub fn names_to_complete(&self) -> Vec<String> {
         let variables = self.scope.iter().map(|(name, _)| name.as_str().to_owned());
-        let mut names: Vec<String> = variables.chain(self.classes.function_names()).collect();
+        let classes = self.classes.read_names();
+        let mut names: Vec<String> = variables.chain(classes.iter().map(Name::to_string)).collect();
+        for class in classes.iter().take(MAX_COMPLETED) {
+            let Some(definition) = self.classes.library.definition(class) else { continue };
+            let components = component_names(&definition).into_iter();
+            names.extend(components.map(|component| format!("{class}.{component}")));
+        }
         if let Some(model) = self.last_model() {
             names.extend(model.flat.variables.keys().map(|name| name.to_string()));
         }

@@ -78,6 +78,10 @@ pub trait World {
     fn monotonic_seconds(&self) -> f64;
     /// Seconds since 1970-01-01 00:00 UTC. Nothing that must be reproducible may depend on it.
     fn unix_seconds(&self) -> u64;
+    /// The number of this process, 0 where there is none.
+    fn process_id(&self) -> u32 {
+        0
+    }
     /// Whether the user asked to stop.
     fn interrupted(&self) -> bool;
     /// What becomes true when the user asks to stop, for work that cannot ask the world.

@@ -3,7 +3,8 @@
 //! Every function has one of three signs, so that leaving zero is an event and so is reaching it.
 //! The bracket of the first change is narrowed by secants of the functions that change within it,
 //! tried a little beyond and a little before, and halved every third time. A function that changes
-//! its sign twice within one step is not noticed.
+//! its sign twice within one step, or within one part of it where functions vary in time, is not
+//! noticed.
 
 use super::{Failure, Integrator, Problem};
 

@@ -35,6 +35,8 @@ pub enum NewtonFailure {
 
 /// Iterations until the attempt is given up.
 const MAX_ITERATIONS: usize = 100;
+/// Iterations without damping.
+const MAX_LEAPS: usize = 30;
 /// Shortest part of a step.
 const SMALLEST_DAMPING: f64 = 1e-4;
 /// A step shorter than this, relative to x, is the last; the error after it is about its square.
@@ -73,8 +75,30 @@ impl Newton {
         x: &mut [f64],
         nominal: &[f64],
     ) -> Result<(), NewtonFailure> {
+        self.iterate(equations, x, nominal, MAX_ITERATIONS, true)
+    }
+
+    /// The same with λ = 1 always: from one straight piece of a function to another, however far
+    /// they lie from each other between.
+    pub fn solve_undamped(
+        &mut self,
+        equations: &mut dyn Equations,
+        x: &mut [f64],
+        nominal: &[f64],
+    ) -> Result<(), NewtonFailure> {
+        self.iterate(equations, x, nominal, MAX_LEAPS, false)
+    }
+
+    fn iterate(
+        &mut self,
+        equations: &mut dyn Equations,
+        x: &mut [f64],
+        nominal: &[f64],
+        iterations: usize,
+        is_damped: bool,
+    ) -> Result<(), NewtonFailure> {
         evaluate(equations, x, &mut self.delta)?;
-        for _ in 0..MAX_ITERATIONS {
+        for _ in 0..iterations {
             equations.jacobian(x, self.lu.matrix()).map_err(NewtonFailure::Evaluation)?;
             self.lu.factorize().map_err(|_| NewtonFailure::Singular)?;
             self.lu.solve(&mut self.delta);
@@ -87,7 +111,12 @@ impl Newton {
                 x.iter_mut().zip(&self.delta).for_each(|(x, delta)| *x -= delta);
                 return Ok(());
             }
-            self.advance(equations, x, length)?;
+            if is_damped {
+                self.advance(equations, x, length)?;
+            } else {
+                x.iter_mut().zip(&self.delta).for_each(|(x, delta)| *x -= delta);
+                evaluate(equations, x, &mut self.delta)?;
+            }
         }
         Err(NewtonFailure::NoProgress)
     }
@@ -139,6 +168,31 @@ fn evaluate(
 
 #[cfg(test)]
 mod tests {
+    /// 0 = u - x + saturated(1e4 x): where u passes a bound, the solution jumps.
+    struct Trigger(f64);
+
+    impl Equations for Trigger {
+        fn residual(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+            out[0] = self.0 - x[0] + (1e4 * x[0]).clamp(-1.0, 1.0);
+            Ok(())
+        }
+
+        fn jacobian(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+            out[0] = if x[0].abs() < 1e-4 { 1e4 - 1.0 } else { -1.0 };
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_solution_on_another_piece_is_reached_without_damping() {
+        let mut newton = Newton::new(1);
+        let mut x = [-0.5];
+        assert!(newton.solve(&mut Trigger(1.5), &mut x, &[1.0]).is_err());
+        x = [-0.5];
+        newton.solve_undamped(&mut Trigger(1.5), &mut x, &[1.0]).unwrap();
+        assert!((x[0] - 2.5).abs() < 1e-12, "{}", x[0]);
+    }
+
     use super::*;
 
     /// Equations and their Jacobian as functions.

@@ -12,6 +12,8 @@ use std::sync::atomic::Ordering;
 const MOST_EVENTS_AT_ONCE: u32 = 200;
 /// Distance of events that count as one place in time, relative to the simulated interval.
 const AT_ONCE: f64 = 1e-10;
+/// Parts of a step that are searched for events of their own, at least.
+const PARTS_SEARCHED: f64 = 8.0;
 /// Points of every step that a system with a memory is shown.
 const POINTS_REMEMBERED: u32 = 4;
 
@@ -263,9 +265,42 @@ impl Run<'_> {
 
     /// The first state event up to `end`, with y there.
     fn first_event(&mut self, end: f64) -> Result<Option<f64>, SimErrorKind> {
-        self.crossings
-            .first_event(&mut self.problem, self.integrator, (self.t, end), self.y)
-            .map_err(SimErrorKind::Evaluation)
+        let begin = self.t;
+        let mut part = begin;
+        loop {
+            let next = self.end_of_part(begin, part, end);
+            if next < end {
+                self.integrator.interpolate(next, self.y);
+            } else if part > begin {
+                self.y.copy_from_slice(self.integrator.state());
+            }
+            let found = self
+                .crossings
+                .first_event(&mut self.problem, self.integrator, (part, next), self.y)
+                .map_err(SimErrorKind::Evaluation)?;
+            if found.is_some() || next >= end {
+                return Ok(found);
+            }
+            part = next;
+        }
+    }
+
+    /// The end of the part of a step that is searched at once: where crossing functions vary in
+    /// time, one of several, and not beyond an output point.
+    fn end_of_part(&self, begin: f64, part: f64, end: f64) -> f64 {
+        if !self.problem.system.crossings_vary_in_time() {
+            return end;
+        }
+        let share = part + (end - begin) / PARTS_SEARCHED;
+        if share <= part {
+            return end;
+        }
+        let settings = self.problem.settings;
+        let numbers = self.output_number..;
+        let mut points =
+            numbers.map_while(|n| settings.output.point(settings.start, settings.stop, n));
+        let point = points.find(|point| *point > part).unwrap_or(end);
+        share.min(point).min(end)
     }
 
     /// Records the output points before `end`; y is y(`end`) afterwards as before.

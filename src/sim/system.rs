@@ -42,6 +42,11 @@ pub trait DaeSystem {
     fn crossings(&mut self, _t: f64, _y: &[f64], _out: &mut [f64]) -> Result<(), Failure> {
         Ok(())
     }
+    /// Whether crossing functions vary with time alone, so that the steps, which are as long as y
+    /// allows, say nothing about how often they change their signs.
+    fn crossings_vary_in_time(&self) -> bool {
+        false
+    }
     /// The next time event after `t`, if any is known.
     fn next_time_event(&self, _t: f64) -> Option<f64> {
         None

@@ -4,8 +4,10 @@
 //!
 //! [`Tracer`] writes the trace while the scripts run, [`Trace`] reads it, also what an interrupted
 //! run has left. A [`Walk`] stands at one [`Step`] of it; [`plain`] shows steps as text, [`page`] makes a page of them
-//! all, [`screen`] a terminal's full of each.
+//! all, [`screen`] a terminal's full of
+//! each. [`quiz`] asks before it tells. [`branches`] compares a run with what it would have been.
 
+pub mod branches;
 pub mod errors;
 mod event;
 pub mod explain;
@@ -14,6 +16,7 @@ mod generation;
 pub mod page;
 pub mod plain;
 mod produced;
+pub mod quiz;
 #[cfg(test)]
 mod sample;
 pub mod screen;

@@ -1,3 +1,5 @@
+//! Traces written, read and walked.
+
 use super::sample::{self, POPULATION};
 use super::{Step, Trace, Walk, page, plain};
 use proptest::prelude::*;
@@ -79,7 +81,7 @@ fn a_trace_cut_anywhere_is_read_up_to_there() {
 #[test]
 fn damaged_traces_are_no_panic() {
     let bytes = sample::run(2, 12345.0).bytes;
-    for at in 16..bytes.len() {
+    for at in (16..bytes.len()).step_by(5) {
         for flip in [1, 0x80, 0xff] {
             let mut damaged = bytes.clone();
             damaged[at] ^= flip;

@@ -26,6 +26,11 @@ impl Walk {
         &self.trace
     }
 
+    /// Ends the walk.
+    pub fn into_trace(self) -> Trace {
+        self.trace
+    }
+
     /// The number of the generation, from 0.
     pub fn number(&self) -> usize {
         self.generation

@@ -78,7 +78,7 @@ impl Writer {
             Value::VariableName(name) => self.push(name),
             Value::Function(function) => self.push(format_args!("function {}", function.name)),
             Value::External(object) => self.push(format_args!("object {}", object.class)),
-            Value::Tuple(values) => self.separated(values.iter(), |writer, v| writer.value(v)),
+            Value::Tuple(values) => self.outputs(values),
         }
     }
 
@@ -98,6 +98,17 @@ impl Writer {
     fn string(&mut self, text: &str) {
         let quoted = quoted(text, self.style != Style::OpenModelica);
         self.text.push_str(&quoted);
+    }
+
+    /// Several outputs; Dymola begins a new line for a matrix.
+    fn outputs(&mut self, values: &[Value]) {
+        for (at, value) in values.iter().enumerate() {
+            if at > 0 {
+                let on_new_line = value.rank() == 2 && self.style != Style::OpenModelica;
+                self.text.push_str(if on_new_line { ", \n" } else { ", " });
+            }
+            self.value(value);
+        }
     }
 
     fn separated<T>(

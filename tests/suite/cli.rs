@@ -25,7 +25,7 @@ pub(crate) fn folder(files: &[(&str, &str)]) -> TempDir {
     folder
 }
 
-fn command(folder: &Path, arguments: &[&str]) -> Command {
+pub(crate) fn command(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_gapi"));
     command.args(arguments).current_dir(folder).env_remove("NO_COLOR").env_remove("MODELICAPATH");
     command

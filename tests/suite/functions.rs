@@ -78,8 +78,8 @@ const CORPUS: &[(&str, &str)] = &[
     (
         "a size that the value in the declaration has",
         "function bent input Real v[:]; output Real w[:] = 2*v; protected Real s[:, :] = [v, v]; \
-         Integer k = 0; algorithm while k < 3 and v[3] < 1000 loop k := k + 1; \
-         w[k] := w[k] + s[k, 2]*k; end while; end bent; function f {h} algorithm y := sum(bent({n, sin(u), u})); end f;",
+         Integer k = 0; algorithm while k < 3 and v[1] > -9 loop k := k + 1; w[k] := w[k] + s[k, 2]*k; \
+         end while; end bent; function f {h} algorithm y := sum(bent({u, sin(u), n})); end f;",
     ),
     (
         "slices that change from turn to turn",

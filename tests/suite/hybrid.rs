@@ -30,7 +30,10 @@ fn compiled(text: &str) -> Result<Arc<Program>, Diagnostic> {
     flat(text).and_then(|flat| sort(&flat)).and_then(Program::compile)
 }
 
-fn attempt(text: &str, stop: f64) -> (Arc<Program>, System, Trajectory, Result<(), SimError>) {
+pub(super) fn attempt(
+    text: &str,
+    stop: f64,
+) -> (Arc<Program>, System, Trajectory, Result<(), SimError>) {
     let program = compiled(text).unwrap_or_else(|d| panic!("{}: {}", d.code.slug, d.message));
     let mut system = program.system();
     let output = OutputGrid::Intervals(50);
@@ -68,15 +71,23 @@ impl Run {
         }
     }
 
-    fn last(&self, name: &str) -> f64 {
+    pub(super) fn last(&self, name: &str) -> f64 {
         *self.column(name).last().expect("a row")
     }
 
     /// The value behind all events at a time of the output grid or of an event.
-    fn at(&self, name: &str, time: f64) -> f64 {
+    pub(super) fn at(&self, name: &str, time: f64) -> f64 {
         let rows = self.rows.time().iter().zip(self.column(name));
         let near = rows.filter(|(t, _)| (**t - time).abs() <= 1e-9);
         near.collect::<Vec<_>>().pop().unwrap_or_else(|| panic!("no row at {time}")).1
+    }
+
+    /// Times of events.
+    pub(super) fn events(&self) -> Vec<f64> {
+        let pairs = self.rows.time().windows(2).filter(|t| t[0] == t[1]);
+        let mut times: Vec<f64> = pairs.map(|t| t[0]).collect();
+        times.dedup();
+        times
     }
 
     /// Times at which a variable jumps.
@@ -88,13 +99,13 @@ impl Run {
 }
 
 #[track_caller]
-fn near(value: f64, expected: f64, tolerance: f64) {
+pub(super) fn near(value: f64, expected: f64, tolerance: f64) {
     let error = (value - expected).abs() / expected.abs().max(1.0);
     assert!(error <= tolerance, "{value} instead of {expected}");
 }
 
 #[track_caller]
-fn all_near(values: &[f64], expected: &[f64], tolerance: f64) {
+pub(super) fn all_near(values: &[f64], expected: &[f64], tolerance: f64) {
     assert_eq!(values.len(), expected.len(), "{values:?} instead of {expected:?}");
     values.iter().zip(expected).for_each(|(value, expected)| near(*value, *expected, tolerance));
 }

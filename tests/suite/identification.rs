@@ -176,6 +176,35 @@ fn other_names_of_variables_do_the_same() {
     assert_eq!(result(&session)["generations"], 3);
 }
 
+/// The script of a case that begins from ten seeds, with two generations: ten reports with ten
+/// seeds, the first as `GAPILib.mos` gives it, and nothing lost by least squares.
+#[test]
+fn ten_seeds_give_ten_runs() {
+    let ini = "scripts/twin/GAPILib_INI.mos";
+    let text = std::fs::read_to_string(shipped::project(ini)).unwrap();
+    let world = shipped::world().with_file(ini, text.replace("N_Cycle = 5000", "N_Cycle = 2"));
+    let shipped::Run { session, errors, .. } = shipped::run_in(world, "scripts/twin/ten_seeds.mos");
+    assert_eq!(errors, "");
+    let read = |name: &str| -> serde_json::Value {
+        serde_json::from_str(&written(&session, name)).unwrap()
+    };
+    let mut seeds = vec![read("result.json")["seed"].to_string()];
+    seeds.extend((2..=10).map(|k| read(&format!("run-{k}/result.json"))["seed"].to_string()));
+    seeds.sort();
+    seeds.dedup();
+    assert_eq!(seeds.len(), 10);
+    let alone = run("twin", 2, "");
+    let two = |text: String| text.lines().take(3).map(str::to_owned).collect::<Vec<String>>();
+    assert_eq!(two(written(&session, "history.csv")), two(written(&alone, "history.csv")));
+    let fits = |name: &str| -> Vec<f64> {
+        let runs = session.variable(name).expect("assigned").as_reals().expect("numbers");
+        runs.chunks(8).map(|run| run[6]).collect()
+    };
+    let (found, refined) = (fits("Runs"), fits("RefinedRuns"));
+    assert_eq!(found.len(), 10);
+    assert!(found.iter().zip(&refined).all(|(found, refined)| refined <= found));
+}
+
 /// Whether the shipped scripts with a changed INI end with this code.
 fn assert_refused(change: &str, code: &str) {
     let run = shortened("", 1, change);

@@ -13,7 +13,8 @@ fn packages_list_their_classes() {
         for entry in std::fs::read_dir(folder).unwrap() {
             let entry = entry.unwrap().path();
             let class = entry.file_stem().unwrap().to_str().unwrap();
-            let is_class = entry.is_dir() || entry.extension().is_some_and(|e| e == "mo");
+            let is_package = entry.join("package.mo").exists();
+            let is_class = is_package || entry.extension().is_some_and(|e| e == "mo");
             let is_listed = class == "package" || listed.contains(class);
             assert!(!is_class || is_listed, "{} does not name {class}", path.display());
         }

@@ -36,6 +36,39 @@ fn an_embedded_result_is_compared_as_the_tests_of_openmodelica_are() {
 }
 
 #[test]
+fn statements_with_an_embedded_result_are_judged_one_by_one() {
+    let text = "x := 1;\nnoSuchFunction(x);\ny := 3;\nz := 4;\n// Result:\n// 1\n// 7\n// 2\n// 4\n// endResult\n";
+    let here = folder(&[("a.mos", text), ("b.mos", "1 + 1;\n// Result:\n// 2\n// endResult\n")]);
+    let (code, out, _) = gapi(&here, &["test", "--junit", "report.xml"]);
+    assert_eq!(code, 1);
+    assert!(out.contains("  4 statements: 2 agreed, 1 differ, 1 unsupported\n"), "{out}");
+    assert!(out.contains("unsupported [unknown-function]: noSuchFunction(x)"), "{out}");
+    assert!(out.contains("\n5 statements: 3 agreed, 1 differ, 1 unsupported\n"), "{out}");
+    let report = fs::read_to_string(here.path().join("report.xml")).expect("a report");
+    assert!(report.contains("tests=\"6\" failures=\"2\" skipped=\"1\""), "{report}");
+    assert!(report.contains("name=\"2: noSuchFunction(x)\">\n    <skipped"), "{report}");
+}
+
+/// At least 99 % of the scripts below `GAPILIB_SCRIPTS` are read; data is not counted.
+#[test]
+fn local_scripts_are_read() {
+    let Ok(scripts) = std::env::var("GAPILIB_SCRIPTS") else {
+        eprintln!("skipped: GAPILIB_SCRIPTS names no folder of scripts");
+        return;
+    };
+    let here = folder(&[]);
+    let (_, out, errors) = gapi(&here, &["run", "--parse-only", &scripts]);
+    let number = |word: &str| {
+        let before = out.split(word).next().expect("a number before the word");
+        let last = before.rsplit(|c: char| !c.is_ascii_digit()).find(|part| !part.is_empty());
+        last.and_then(|digits| digits.parse::<f64>().ok()).expect("a number")
+    };
+    let (accepted, rejected) = (number(" accepted"), number(" rejected"));
+    eprintln!("{}", out.trim());
+    assert!(accepted > 0.0 && rejected <= 0.01 * (accepted + rejected), "{out}{errors}");
+}
+
+#[test]
 fn scripts_are_read_without_being_run() {
     let here = folder(&[
         ("good.mos", "x = 1\n"),

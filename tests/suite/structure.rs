@@ -1,29 +1,81 @@
 //! The sorted system of every model in `tests/structure`.
 
 use super::flat_class::flat;
-use gapilib::dae::{report, sort};
+use super::shipped::{project, world};
+use gapilib::dae::{PASSES, dump, report, sizes, sort};
+use gapilib::diag::Diagnostic;
+use gapilib::flatten::FlatModel;
+use gapilib::script::Session;
+use gapilib::script::simulation::flat_model;
+use std::path::Path;
 
 #[test]
 fn sorted_systems() {
+    shown("", |flat| sort(flat).map(|sorted| report(&sorted)));
+}
+
+#[test]
+fn sizes_after_every_pass() {
+    shown(".sizes", sizes);
+}
+
+#[test]
+fn every_pass_can_be_shown() {
+    let root = env!("CARGO_MANIFEST_DIR");
+    let text = std::fs::read_to_string(format!("{root}/tests/structure/Gear.mo")).expect("a model");
+    let flat = flat(&text);
+    let shown = |pass: &str| dump(&flat, pass).expect("the model can be sorted");
+    for (pass, _) in PASSES {
+        assert!(shown(pass).is_some(), "{pass}");
+    }
+    assert_eq!(shown("nothing"), None);
+    let (before, after) = (shown("build").unwrap(), shown("eliminate_aliases").unwrap());
+    assert!(!before.contains("\nalias ") && after.contains("\nalias "), "{after}");
+}
+
+#[test]
+fn sizes_of_the_shipped_models_after_every_pass() {
+    let mut session = Session::new(Box::new(world()));
+    for model in [
+        "FuelCellLib.casestudies.FC2Layer",
+        "FuelCellLib.casestudies.FC3Layer",
+        "CaseStudies.LoadSteps",
+        "CaseStudies.WaterEffect",
+    ] {
+        let flat = flat_model(&mut session, model)
+            .unwrap_or_else(|errors| panic!("{model}: {}", errors[0].message));
+        let (_, name) = model.rsplit_once('.').expect("a class of a package");
+        let folder = project("tests/structure");
+        snapshot(&folder, &format!("{name}.sizes"), sizes(&flat).expect("it can be sorted"));
+    }
+}
+
+/// What a view shows of every model in `tests/structure`, as snapshots.
+fn shown(suffix: &str, view: impl Fn(&FlatModel) -> Result<String, Diagnostic>) {
     insta::glob!("../structure", "*.mo", |path| {
         let text = std::fs::read_to_string(path).expect("the model can be read");
-        let shown = match sort(&flat(&text)) {
-            Ok(sorted) => report(&sorted),
-            Err(diagnostic) => {
-                format!(
-                    "error[{}]: {}\n{}",
-                    diagnostic.code.slug,
-                    diagnostic.message,
-                    diagnostic.helps.join("\n")
-                )
-            }
-        };
-        let name = path.file_stem().expect("a file has a name").to_string_lossy().into_owned();
-        let mut settings = insta::Settings::clone_current();
-        settings.set_snapshot_path(path.parent().expect("a file lies in a folder"));
-        settings.set_prepend_module_to_snapshot(false);
-        settings.set_snapshot_suffix("");
-        settings.set_omit_expression(true);
-        settings.bind(|| insta::assert_snapshot!(name, shown));
+        let shown = view(&flat(&text)).unwrap_or_else(|diagnostic| {
+            format!(
+                "error[{}]: {}\n{}",
+                diagnostic.code.slug,
+                diagnostic.message,
+                diagnostic.helps.join("\n")
+            )
+        });
+        let name = path.file_stem().expect("a file has a name").to_string_lossy();
+        snapshot(
+            path.parent().expect("a file lies in a folder"),
+            &format!("{name}{suffix}"),
+            shown,
+        );
     });
+}
+
+fn snapshot(folder: &Path, name: &str, text: String) {
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path(folder);
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_snapshot_suffix("");
+    settings.set_omit_expression(true);
+    settings.bind(|| insta::assert_snapshot!(name, text));
 }

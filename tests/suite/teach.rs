@@ -54,3 +54,49 @@ fn what_is_no_trace_is_refused() {
     let (code, _, errors) = gapi(&here, &["teach", "nothing.mos"]);
     assert!(code == 1 && errors.contains("the trace holds no generation"), "{errors}");
 }
+
+#[test]
+fn a_run_is_compared_with_what_it_would_have_been() {
+    let here = with_search();
+    let what_if = |statement: &str, generation: &str| {
+        let options = ["--what-if", statement, "--generation", generation];
+        gapi(&here, &[&["teach", "search.mos"], options.as_slice()].concat())
+    };
+    let (code, out, errors) = what_if("F_Mut := 1.0", "3");
+    assert_eq!(code, 0, "{errors}");
+    assert!(out.contains("What if F_Mut := 1.0 from generation 3?"), "{out}");
+    assert!(here.path().join("results/what_if.svg").exists());
+    let of = |number: &str| -> Vec<String> {
+        let line = out.lines().find(|line| line.trim_start().starts_with(number)).expect("a row");
+        line.split_whitespace().skip(1).map(str::to_owned).collect()
+    };
+    // The change comes after the simulation of its generation.
+    assert_eq!(of("3 ")[0], of("3 ")[1], "{out}");
+    assert_ne!(of("60")[0], of("60")[1], "{out}");
+    let (code, _, errors) = what_if("F_Mut := 1.0", "61");
+    assert!(code == 1 && errors.contains("the run has no generation 61"), "{errors}");
+    let (code, _, errors) = what_if("F_Mut := := 1", "3");
+    assert!(code == 1 && errors.contains("what if:1:"), "{errors}");
+}
+
+#[test]
+fn answers_are_read_and_counted() {
+    let here = with_search();
+    let (code, out, errors) = gapi(&here, &["teach", "search.mos", "--quiz"]);
+    assert_eq!(code, 0, "{errors}");
+    assert!(out.contains("? Which ") || out.contains("become parents"), "{out}");
+    assert!(out.ends_with("No question was answered.\n"), "{out}");
+}
+
+#[test]
+fn a_function_that_calls_eval_cannot_be_changed() {
+    let script = "model Line\n  parameter Real a = 0;\n  output Real y = a*time;\n\
+        annotation(experiment(StopTime = 2));\nend Line;\nfunction Try\n  output Real y;\n\
+        protected\n  Real r[1,2];\nalgorithm\n  \
+        r := Eval(\"\", \"Line\", {0, 1}, [1], {\"a\"}, \"time\", \"y\");\n  y := r[1,2];\n\
+        end Try;\nx := Try();\n";
+    let here = folder(&[("in_function.mos", script)]);
+    let (code, _, errors) =
+        gapi(&here, &["teach", "in_function.mos", "--what-if", "x := 1", "--generation", "1"]);
+    assert!(code == 1 && errors.contains("[cannot-branch]"), "{errors}");
+}

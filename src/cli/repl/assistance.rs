@@ -339,4 +339,31 @@ mod tests {
         assert_eq!(assistance.matching("a"), ["a", "ab"]);
         assert_eq!(assistance.matching("a."), ["a.b", "a.x"]);
     }
+
+    fn completed(assistance: &Assistance, line: &str) -> Vec<String> {
+        let history = rustyline::history::MemHistory::new();
+        let context = Context::new(&history);
+        let (_, pairs) = assistance.complete(line, line.len(), &context).expect("no terminal");
+        pairs.into_iter().map(|pair| pair.replacement).collect()
+    }
+
+    #[test]
+    fn arguments_classes_components_variables_and_files_are_completed() {
+        let mut session = Session::new(Box::new(crate::script::world::MemoryWorld::new()));
+        let text = "model Plant Real level; parameter Real gain = 2; equation level = gain; \
+                    end Plant;\nplanet = 3;\ntranslateModel(\"Plant\");";
+        assert_eq!(session.run_text("m.mos", text).code, 0);
+        let assistance = Assistance::of(&mut session, false);
+        assert_eq!(completed(&assistance, "simulateModel(stopT"), ["stopTime="]);
+        assert_eq!(completed(&assistance, "x = plan"), ["planet"]);
+        assert_eq!(completed(&assistance, "x = Plan"), ["Plant"]);
+        assert_eq!(completed(&assistance, "getParameterValue(Plant.g"), ["Plant.gain"]);
+        assert_eq!(completed(&assistance, "lev"), ["level"]);
+        assert_eq!(completed(&assistance, ":ti"), [":time"]);
+        let folder = tempfile::tempdir().expect("a folder");
+        std::fs::write(folder.path().join("results.mat"), "").expect("writable");
+        let line = format!("readTrajectoryNames(\"{}/res", folder.path().display());
+        let files = completed(&assistance, &line);
+        assert!(files.len() == 1 && files[0].ends_with("results.mat"), "{files:?}");
+    }
 }

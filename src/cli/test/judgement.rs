@@ -1,12 +1,9 @@
 //! Statements compared with the result that their script embeds, one by one.
 
 use super::Verdict;
-use crate::dae::errors::NOT_SUPPORTED;
 use crate::diag::Code;
-use crate::eval::errors::{MODEL_ONLY, UNKNOWN_FUNCTION};
-use crate::flatten::errors::NOT_SUPPORTED as UNSUPPORTED_LANGUAGE;
 use crate::script::Exchange;
-use crate::script::errors::REFUSED;
+use crate::script::errors::OUT_OF_REACH;
 use crate::script::expectation::{Line, agreeing};
 use std::fmt::{self, Write as _};
 use std::path::PathBuf;
@@ -25,14 +22,10 @@ pub(super) enum Judgement {
     Unsupported(Code),
 }
 
-/// Codes of what is not there.
-const UNSUPPORTED: &[Code] =
-    &[UNKNOWN_FUNCTION, MODEL_ONLY, REFUSED, NOT_SUPPORTED, UNSUPPORTED_LANGUAGE];
-
 pub(super) fn judged(lines: &[Line], exchanges: &[Exchange]) -> Vec<Judged> {
     let counts: Vec<usize> = exchanges.iter().map(|one| one.printed.lines().count()).collect();
     let judgements = agreeing(lines, &counts).into_iter().zip(exchanges).map(|(agrees, one)| {
-        let missing = one.codes.iter().find(|code| UNSUPPORTED.contains(code));
+        let missing = one.codes.iter().find(|code| OUT_OF_REACH.contains(code));
         let judgement = match (agrees, missing) {
             (true, _) => Judgement::Agrees,
             (false, Some(code)) => Judgement::Unsupported(*code),

@@ -57,6 +57,10 @@ pub(super) enum Outcome {
 impl Outcome {
     /// The outcome of comparing signals.
     pub(super) fn of(compared: &[Compared]) -> Outcome {
+        if compared.is_empty() {
+            let reason = "it names no signal to compare".to_owned();
+            return Outcome::BadReference { reason };
+        }
         match compared.iter().find(|one| !one.agrees()) {
             None => Outcome::Agreed { signals: compared.len() },
             Some(Compared { signal, agreement }) => {
@@ -191,6 +195,12 @@ mod tests {
             row("C", failed),
             row("D", Outcome::Unjudged),
         ]
+    }
+
+    #[test]
+    fn nothing_compared_is_no_agreement() {
+        let outcome = Outcome::of(&[]);
+        assert!(!outcome.is_good(), "{outcome:?}");
     }
 
     #[test]

@@ -112,6 +112,9 @@ impl<T: Target> Lowering<'_, T> {
                 return Ok(vec![Lowered::scalar(value)]);
             }
         }
+        if let Some(outputs) = self.vectorized_call(user, &values, span)? {
+            return Ok(outputs);
+        }
         if let Some(outputs) = self.text_call(user, &values, span)? {
             return Ok(outputs);
         }
@@ -137,9 +140,20 @@ impl<T: Target> Lowering<'_, T> {
         };
         match operator {
             Operator::Temporal => {
+                if let ("pre" | "change", [text]) = (name, arguments)
+                    && let Lowered::Numbered(text) = self.lower(text)?
+                {
+                    let value = vec![Array::scalar(text)];
+                    let value = self.target.temporal(name, value, self.live, span)?.elements[0];
+                    return Ok(match name {
+                        "pre" => Lowered::Numbered(value),
+                        _ => Lowered::scalar(value),
+                    });
+                }
                 let values = arguments.iter().map(|a| self.array(a)).collect::<Result<_, _>>()?;
                 Ok(Lowered::Array(self.target.temporal(name, values, self.live, span)?))
             }
+            Operator::Plain(position) => self.lower(argument(position)?),
             Operator::Live(position) => {
                 let before = std::mem::replace(&mut self.live, true);
                 let value = self.lower(argument(position)?);

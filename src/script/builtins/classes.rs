@@ -140,6 +140,21 @@ struct Component<'c> {
     protected: bool,
 }
 
+/// The names of the components that a class declares itself.
+pub(in crate::script) fn component_names(class: &ClassDefinition) -> Vec<Ident> {
+    components(class).into_iter().map(|component| component.one.name.node).collect()
+}
+
+/// The names of the public constants that a class declares itself.
+pub(super) fn constant_names(class: &ClassDefinition) -> Vec<Ident> {
+    let is_constant = |component: &Component<'_>| {
+        let variability = component.clause.type_prefixes.variability;
+        !component.protected && variability == Some(VariabilityPrefix::Constant)
+    };
+    let constants = components(class).into_iter().filter(is_constant);
+    constants.map(|component| component.one.name.node).collect()
+}
+
 fn components(class: &ClassDefinition) -> Vec<Component<'_>> {
     let ClassSpecifier::Long(long) = &class.specifier else { return Vec::new() };
     let mut found = Vec::new();

@@ -178,6 +178,7 @@ fn eval(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let columns = request.question.x.len();
     let simulated = session.evaluate_population(request, &genomes)?;
     let messages = simulated.messages();
+    session.generation_simulated()?;
     let rows = RealMatrix { rows: genomes.len(), columns, elements: simulated.rows };
     Ok(Value::Tuple(vec![rows.into(), messages.into()]))
 }

@@ -5,7 +5,7 @@ use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
 use crate::script::errors::{BAD_ARGUMENT, NO_TRANSLATED_MODEL};
-use crate::script::simulation::{Translated, state_names};
+use crate::script::simulation::{Translated, begin_with};
 use crate::script::{Dialect, Session};
 use crate::value::Value;
 use indexmap::IndexMap;
@@ -69,16 +69,7 @@ fn import_initial_result(session: &mut Session, mut args: Args) -> Result<Value,
     let (file, time): (String, f64) = (args.take("dsResName")?, args.take("atTime")?);
     let model = model(session, "importInitialResult")?;
     let table = super::results::table(session, &file)?;
-    let mut states = IndexMap::new();
-    for name in state_names(&model) {
-        states.insert(name.clone(), table.interpolate(name, &[time])?[0]);
-    }
-    for parameter in model.program.parameters() {
-        if let Ok(values) = table.interpolate(&parameter.name, &[time]) {
-            session.set_parameter(&parameter.name, values[0])?;
-        }
-    }
-    session.import_states(states);
+    begin_with(session, &model, &table, time)?;
     session.extension::<Experiment>().0.start = Some(time);
     Ok(true.into())
 }

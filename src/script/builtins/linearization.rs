@@ -127,7 +127,8 @@ fn translated_and_linearized(
     wishes: &Wishes,
     flags: &str,
 ) -> Result<(), Vec<Diagnostic>> {
-    simulation::translate(session, &class.to_string())?;
+    let model = simulation::translate(session, &class.to_string())?;
+    let wishes = &super::openmodelica::completed(wishes, &model.program.experiment());
     let at = session.call_site();
     let before = session.current_values();
     let set = super::openmodelica::set_overrides(session, flags).at(at);

@@ -1,10 +1,13 @@
 //! Loading classes into the session, and asking what is there.
 
+use super::classes::constant_names;
 use super::{Args, Builtin, Failure, Family};
+use crate::bail;
 use crate::diag::Diagnostic;
 use crate::name::Name;
-use crate::script::errors::INTERRUPTED;
+use crate::script::errors::{BAD_ARGUMENT, INTERRUPTED};
 use crate::script::{Dialect, Session};
+use crate::syntax::ast::{ClassSpecifier, Element, Section, Visibility};
 use crate::value::Value;
 use std::path::{Path, PathBuf};
 
@@ -230,7 +233,10 @@ function getClassNames "Names of the classes in a class, or at the top level."
   input Boolean recursive = false;
   input Boolean qualified = false;
   input Boolean sort = false;
-  output String classNames[:];
+  input Boolean builtin = false "true is refused: the predefined types are no classes here";
+  input Boolean showProtected = false "whether protected classes are named too";
+  input Boolean includeConstants = false "whether the constants of the class are named too";
+  output TypeName classNames[:];
 end getClassNames;
 "#;
 
@@ -249,7 +255,18 @@ fn get_class_names(session: &mut Session, mut args: Args) -> Result<Value, Failu
             }
         })
     });
-    let found: Vec<Name> = session.or_report_all(found).unwrap_or_default();
+    let mut found: Vec<Name> = session.or_report_all(found).unwrap_or_default();
+    if args.take("builtin")? {
+        bail!(BAD_ARGUMENT, "`builtin` is refused: the predefined types are no classes here");
+    }
+    if !args.take::<bool>("showProtected")? {
+        found.retain(|name| !is_protected(session, name));
+    }
+    if args.take("includeConstants")?
+        && let Some(definition) = session.library().definition(&class)
+    {
+        found.extend(constant_names(&definition).into_iter().map(|name| class.child(name)));
+    }
     let shown = |name: Name| match (qualified || recursive, name.last()) {
         (false, Some(last)) => last.to_string(),
         _ => name.to_string(),
@@ -259,6 +276,21 @@ fn get_class_names(session: &mut Session, mut args: Args) -> Result<Value, Failu
         names.sort();
     }
     Ok(names.into())
+}
+
+/// Whether a class is declared in a protected section of the class around it.
+fn is_protected(session: &mut Session, name: &Name) -> bool {
+    let Some(own) = name.last().filter(|_| name.parts.len() > 1) else { return false };
+    let Some(around) = session.library().definition(&name.parent()) else { return false };
+    let ClassSpecifier::Long(long) = &around.specifier else { return false };
+    long.sections.iter().any(|section| match section {
+        Section::Elements { visibility: Some(Visibility::Protected), elements } => {
+            elements.iter().any(
+                |element| matches!(element, Element::Class(class) if class.class.name.node == own),
+            )
+        }
+        _ => false,
+    })
 }
 
 const GET_SOURCE_FILE: &str = r#"

@@ -11,7 +11,7 @@ pub(super) const FAMILY: Family = Family {
     dialect: None,
     builtins: &[
         Builtin { header: GET_ERROR_STRING, run: get_error_string },
-        Builtin { header: GET_MESSAGES_STRING, run: get_error_string },
+        Builtin { header: GET_MESSAGES_STRING, run: get_messages_string },
         Builtin { header: GET_LAST_ERROR, run: get_last_error },
         Builtin { header: COUNT_MESSAGES, run: count_messages },
         Builtin { header: CLEAR_MESSAGES, run: clear_messages },
@@ -21,7 +21,7 @@ pub(super) const FAMILY: Family = Family {
 
 const GET_ERROR_STRING: &str = r#"
 function getErrorString "The messages since the last call, one a line; forgets them."
-  input Boolean warningsAsErrors = false;
+  input Boolean warningsAsErrors = false "whether warnings are called errors";
   output String errorString;
 end getErrorString;
 "#;
@@ -32,12 +32,17 @@ function getMessagesString "The messages since the last call, one a line; forget
 end getMessagesString;
 "#;
 
-fn get_error_string(session: &mut Session, _: Args) -> Result<Value, Failure> {
-    Ok(text(session.messages.take_text(&session.sources)))
+fn get_error_string(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let warnings_as_errors = args.take("warningsAsErrors")?;
+    Ok(text(session.messages.take_text(&session.sources, warnings_as_errors)))
+}
+
+fn get_messages_string(session: &mut Session, _: Args) -> Result<Value, Failure> {
+    Ok(text(session.messages.take_text(&session.sources, false)))
 }
 
 const GET_LAST_ERROR: &str = r#"
-function getLastError "The message of the last error, empty after success; forgets the messages."
+function getLastError "The message of the last error since the last call; empty if a command succeeded since (answered true); forgets the messages."
   output String errorMessage;
 end getLastError;
 "#;

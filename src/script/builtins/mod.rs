@@ -3,6 +3,7 @@
 
 mod args;
 mod classes;
+mod clock;
 mod comparison;
 mod conversion;
 mod extended;
@@ -15,6 +16,7 @@ mod loading;
 mod matrices;
 mod messages;
 mod openmodelica;
+mod output;
 mod plotting;
 mod problem;
 mod refused;
@@ -31,6 +33,7 @@ mod upgrade;
 mod windows;
 
 pub use args::Args;
+pub(in crate::script) use classes::component_names;
 pub(in crate::script) use strings::constant;
 
 use crate::diag::{Diagnostic, Fault};
@@ -95,6 +98,8 @@ pub struct Family {
 /// order here.
 pub static FAMILIES: &[&Family] = &[
     &classes::FAMILY,
+    &clock::FAMILY,
+    &clock::FILES,
     &comparison::FAMILY,
     &conversion::FAMILY,
     &extended::FAMILY,
@@ -110,6 +115,7 @@ pub static FAMILIES: &[&Family] = &[
     &matrices::FAMILY,
     &messages::FAMILY,
     &openmodelica::FAMILY,
+    &output::FAMILY,
     &plotting::FAMILY,
     &plotting::OPENMODELICA,
     &refused::FAMILY,

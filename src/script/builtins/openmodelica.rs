@@ -4,11 +4,12 @@ use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
+use crate::flatten::Experiment;
 use crate::name::{Ident, Name};
 use crate::script::errors::BAD_ARGUMENT;
 use crate::script::simulation::{self, Wishes};
 use crate::script::{Dialect, Session};
-use crate::value::{RecordValue, Value};
+use crate::value::{FromValue, RecordValue, Value};
 use indexmap::IndexMap;
 use regex::{Regex, RegexBuilder};
 
@@ -47,10 +48,11 @@ function simulate "Simulates a model. What is not given comes from its experimen
   input String method = "dassl" annotation(optional = true);
   input String fileNamePrefix = "" "empty: the name of the class";
   input String options = "" "has no effect";
-  input String outputFormat = "mat" "mat or csv";
+  input String outputFormat = "mat" "mat, csv, or empty for no file";
   input String variableFilter = ".*" "regular expression of the names that are stored";
   input String cflags = "" "has no effect";
   input String simflags = "" "-override=name=value,… sets parameters and start values";
+  input String resimulateExecutable = "" "has no effect: a model is translated once anyway";
   output Any simulationResults "resultFile, simulationOptions, messages";
 end simulate;
 "#;
@@ -61,22 +63,20 @@ fn simulate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let prefix: String = args.take("fileNamePrefix")?;
     let format: String = args.take("outputFormat")?;
     let flags: String = args.take("simflags")?;
-    let filter = filter(&args.take::<String>("variableFilter")?)?;
+    let given: String = args.take("variableFilter")?;
+    let filter = filter(&given)?;
     let prefix = if prefix.is_empty() { class.to_string() } else { prefix };
     let file = format!("{prefix}_res.{format}");
     let done = run(session, &class, &wishes, &flags, (&file, &filter));
     let messages = match &done {
-        Ok(()) => String::new(),
-        Err(errors) => {
-            let reasons = errors.iter().map(|error| format!("{}\n", error.message));
-            format!("Failed to build model: {class}\n{}", reasons.collect::<String>())
-        }
+        Ok(_) => String::new(),
+        Err(_) => format!("Failed to build model: {class}"),
     };
-    let result_file = match session.or_report_all(done) {
-        Some(()) => session.world.absolute(file.as_ref()).display().to_string(),
-        None => String::new(),
+    let (result_file, wishes) = match session.or_report_all(done) {
+        Some(used) => (session.world.absolute(file.as_ref()).display().to_string(), used),
+        None => (String::new(), completed(&wishes, &Experiment::default())),
     };
-    let options = shown(&wishes, &prefix, &format);
+    let options = shown(&wishes, &prefix, &format, &given, &flags);
     Ok(simulation_result([result_file, options, messages]))
 }
 
@@ -135,21 +135,45 @@ pub(super) fn wishes(args: &mut Args) -> Result<Wishes, Failure> {
     })
 }
 
+/// The settings of a simulation: what is given, what the experiment annotation says, and what is
+/// the default in OpenModelica.
+pub(super) fn completed(wishes: &Wishes, experiment: &Experiment) -> Wishes {
+    let start = wishes.start.or(experiment.start_time).unwrap_or(0.0);
+    let stop = wishes.stop.or(experiment.stop_time).unwrap_or(start + 1.0);
+    let interval = experiment.interval.filter(|interval| *interval > 0.0);
+    let intervals = interval.map(|interval| ((stop - start) / interval).round().max(1.0) as usize);
+    Wishes {
+        start: Some(start),
+        stop: Some(stop),
+        intervals: wishes.intervals.or(intervals).or(Some(500)),
+        tolerance: wishes.tolerance.or(experiment.tolerance).or(Some(1e-6)),
+        ..wishes.clone()
+    }
+}
+
+/// The ending of the format that is written to no file.
+const NO_FILE: &str = ".empty";
+
+/// Simulates and writes the results; the settings used.
 fn run(
     session: &mut Session,
     class: &Name,
     wishes: &Wishes,
     flags: &str,
     (file, filter): (&str, &Regex),
-) -> Result<(), Vec<Diagnostic>> {
+) -> Result<Wishes, Vec<Diagnostic>> {
     let model = simulation::translate(session, &class.to_string())?;
+    let wishes = completed(wishes, &model.program.experiment());
     let at = session.call_site();
     let one = |error: Diagnostic| vec![error];
     let before = session.current_values();
     let set = set_overrides(session, flags).at(at);
-    let done = set.and_then(|()| simulation::simulate(session, &model, wishes));
+    let done = set.and_then(|()| simulation::simulate(session, &model, &wishes));
     session.restore_values(before);
     let mut done = done.map_err(one)?;
+    if file.ends_with(NO_FILE) {
+        return Ok(wishes);
+    }
     if filter.as_str() != "^(?:.*)$" {
         done.table = done.table.only(|name| filter.is_match(name));
     }
@@ -158,7 +182,7 @@ fn run(
     written.at(at).map_err(one)?;
     session.extension::<LastResults>().0 = Some(file.to_owned());
     super::plotting::note_results(session, file);
-    Ok(())
+    Ok(wishes)
 }
 
 /// Sets what `-override=a=1,b.c=2` or `-override a=1` says.
@@ -182,22 +206,34 @@ pub(super) fn set_overrides(session: &mut Session, flags: &str) -> Result<(), Fa
     Ok(())
 }
 
-fn shown(wishes: &Wishes, prefix: &str, format: &str) -> String {
-    let number = |value: Option<f64>| value.map_or("<default>".to_owned(), |v| format!("{v:?}"));
-    let intervals = wishes.intervals.map_or("<default>".to_owned(), |n| n.to_string());
+fn shown(wishes: &Wishes, prefix: &str, format: &str, filter: &str, flags: &str) -> String {
+    let number = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:?}"));
     format!(
-        "startTime = {}, stopTime = {}, numberOfIntervals = {intervals}, tolerance = {}, \
-         method = '{}', fileNamePrefix = '{prefix}', outputFormat = '{format}'",
+        "startTime = {}, stopTime = {}, numberOfIntervals = {}, tolerance = {}, method = '{}', \
+         fileNamePrefix = '{prefix}', options = '', outputFormat = '{format}', \
+         variableFilter = '{filter}', cflags = '', simflags = '{flags}'",
         number(wishes.start),
         number(wishes.stop),
+        wishes.intervals.map_or(String::new(), |count| count.to_string()),
         number(wishes.tolerance),
         wishes.method.as_deref().unwrap_or("dassl"),
     )
 }
 
 const TRANSLATE_MODEL: &str = r#"
-function translateModel "Translates a model."
+function translateModel "Translates a model; what else is given concerns a simulation."
   input TypeName className;
+  input Real startTime = 0.0 "has no effect";
+  input Real stopTime = 1.0 "has no effect";
+  input Integer numberOfIntervals = 500 "has no effect";
+  input Real tolerance = 1e-6 "has no effect";
+  input String method = "dassl" "has no effect";
+  input String fileNamePrefix = "" "has no effect";
+  input String options = "" "has no effect";
+  input String outputFormat = "mat" "has no effect";
+  input String variableFilter = ".*" "has no effect";
+  input String cflags = "" "has no effect";
+  input String simflags = "" "has no effect";
   output Boolean success;
 end translateModel;
 "#;
@@ -237,21 +273,23 @@ end instantiateModel;
 fn instantiate_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let class: Name = args.take("className")?;
     let flat = simulation::flat_model(session, &class.to_string());
-    Ok(session.or_report_all(flat).map_or(String::new(), |flat| flat.to_string()).into())
+    let flat = session.or_report_all(flat).map_or(String::new(), |flat| flat.to_string());
+    // The word that OpenModelica's flat models begin with.
+    Ok(flat.strip_prefix("model").map_or(String::new(), |rest| format!("class{rest}")).into())
 }
 
 const VAL: &str = r#"
 function val "The value of a variable at a time of the last simulation."
   input VariableName var;
-  input Real timePoint = 0.0 "s";
+  input Any timePoint = 0.0 "s; or a vector of points";
   input String fileName = "" "empty: the file of the last simulation";
-  output Real valAtTime;
+  output Any valAtTime "a Real, or a vector of the values at each point";
 end val;
 "#;
 
 fn val(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let name: String = args.take("var")?;
-    let time: f64 = args.take("timePoint")?;
+    let time: Value = args.take("timePoint")?;
     let file: String = args.take("fileName")?;
     let file = match (file.as_str(), &session.extension::<LastResults>().0) {
         ("" | "<default>", Some(last)) => last.clone(),
@@ -261,7 +299,10 @@ fn val(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         (named, _) => named.to_owned(),
     };
     let table = super::results::table(session, &file)?;
-    Ok(table.interpolate(&name, &[time])?[0].into())
+    if time.rank() == 0 {
+        return Ok(table.interpolate(&name, &[f64::from_value(time)?])?[0].into());
+    }
+    Ok(table.interpolate(&name, &Vec::<f64>::from_value(time)?)?.into())
 }
 
 const GET_PARAMETER_NAMES: &str = r#"

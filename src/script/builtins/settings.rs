@@ -1,6 +1,7 @@
 //! Settings of the session, and its variables.
 
 use super::{Args, Builtin, Failure, Family};
+use crate::name::Name;
 use crate::script::{Dialect, Session};
 use crate::value::Value;
 
@@ -12,8 +13,14 @@ pub(super) const FAMILY: Family = Family {
         Builtin { header: CLEAR, run: clear },
         Builtin { header: CLEAR_VARIABLES, run: clear_variables },
         Builtin { header: ECHO, run: echo },
+        Builtin { header: LIST_VARIABLES, run: list_variables },
         Builtin { header: VARIABLES, run: variables },
         Builtin { header: SET_COMMAND_LINE_OPTIONS, run: accepted },
+        Builtin { header: SET_DEBUG_FLAGS, run: accepted },
+        Builtin { header: SET_COMPILER_FLAGS, run: accepted },
+        Builtin { header: SET_MATCHING_ALGORITHM, run: accepted },
+        Builtin { header: SET_INDEX_REDUCTION_METHOD, run: accepted },
+        Builtin { header: SET_TEARING_METHOD, run: accepted },
         Builtin { header: GET_VERSION, run: get_version },
         Builtin { header: HELP, run: help },
     ],
@@ -62,6 +69,17 @@ fn echo(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let wanted: bool = args.take("setEcho")?;
     session.muted = !wanted;
     Ok(wanted.into())
+}
+
+const LIST_VARIABLES: &str = r#"
+function listVariables "The names of the variables."
+  output TypeName variables[:];
+end listVariables;
+"#;
+
+fn list_variables(session: &mut Session, _: Args) -> Result<Value, Failure> {
+    let names: Vec<String> = session.scope.iter().map(|(name, _)| name.to_string()).collect();
+    Ok(names.into())
 }
 
 const LIST: &str = r#"
@@ -118,18 +136,59 @@ function setCommandLineOptions "Accepts options of the OpenModelica compiler; th
 end setCommandLineOptions;
 "#;
 
+const SET_DEBUG_FLAGS: &str = r#"
+function setDebugFlags "Accepts flags of the OpenModelica compiler; they have no effect."
+  input String debugFlags;
+  output Boolean success;
+end setDebugFlags;
+"#;
+
+const SET_COMPILER_FLAGS: &str = r#"
+function setCompilerFlags "Accepts flags of a C compiler; they have no effect: none is used."
+  input String compilerFlags;
+  output Boolean success;
+end setCompilerFlags;
+"#;
+
+const SET_MATCHING_ALGORITHM: &str = r#"
+function setMatchingAlgorithm "Accepts a choice that has no effect: there is one algorithm."
+  input String matchingAlgorithm;
+  output Boolean success;
+end setMatchingAlgorithm;
+"#;
+
+const SET_INDEX_REDUCTION_METHOD: &str = r#"
+function setIndexReductionMethod "Accepts a choice that has no effect: there is one method."
+  input String method;
+  output Boolean success;
+end setIndexReductionMethod;
+"#;
+
+const SET_TEARING_METHOD: &str = r#"
+function setTearingMethod "Accepts a choice that has no effect: there is one method."
+  input String tearingMethod;
+  output Boolean success;
+end setTearingMethod;
+"#;
+
 fn accepted(session: &mut Session, args: Args) -> Result<Value, Failure> {
     session.no_effect(args.command());
     Ok(true.into())
 }
 
 const GET_VERSION: &str = r#"
-function getVersion "The version of this program."
+function getVersion "The version of this program, or of a loaded library."
+  input TypeName cl = OpenModelica;
   output String version;
 end getVersion;
 "#;
 
-fn get_version(_: &mut Session, _: Args) -> Result<Value, Failure> {
+fn get_version(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let class: Name = args.take("cl")?;
+    if class.to_string() != "OpenModelica" {
+        let version = session.class_version(&class);
+        return Ok(session.or_report(version).unwrap_or_default().into());
+    }
     Ok(concat!("gapilib ", env!("CARGO_PKG_VERSION")).into())
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{At, Diagnostic, Fault};
-use crate::results;
+use crate::results::{self, ResultTable};
 use crate::script::errors::NO_TRANSLATED_MODEL;
 use crate::script::simulation::{self, Simulated, Translated, Wishes};
 use crate::script::{Dialect, Session};
@@ -210,19 +210,19 @@ pub(super) fn run_model(
     file: &str,
 ) -> Result<Simulated, Vec<Diagnostic>> {
     let simulated = simulation::simulate(session, model, wishes).map_err(|error| vec![error])?;
-    let written = write(session, &simulated, file).at(session.call_site());
+    let table = super::output::stored(session, model, &simulated.table);
+    let written = write(session, table, file).at(session.call_site());
     written.map_err(|error| vec![error])?;
     Ok(simulated)
 }
 
 /// Writes a result file; without an ending that names a format, `.mat` is added.
-fn write(session: &mut Session, simulated: &Simulated, file: &str) -> Result<(), Fault> {
+fn write(session: &mut Session, mut table: ResultTable, file: &str) -> Result<(), Fault> {
     let path = match results::format_of_file(file) {
         Ok(_) if file.contains('.') => PathBuf::from(file),
         _ => PathBuf::from(format!("{file}.mat")),
     };
     let format = results::format_of_file(&path.to_string_lossy())?;
-    let mut table = simulated.table.clone();
     // The name that Dymola's result files have.
     table.time_name = "Time".to_owned();
     let bytes = format.write(&table)?;

@@ -31,6 +31,7 @@ pub(super) const FAMILY: Family = Family {
         Builtin { header: CONVERT_MODIFIERS, run: convert_modifiers },
         Builtin { header: CONVERT_MESSAGE, run: convert_message },
         Builtin { header: CONVERT_CLEAR, run: convert_clear },
+        Builtin { header: RUN_CONVERSION_SCRIPT, run: run_conversion_script },
     ],
 };
 
@@ -186,15 +187,44 @@ fn rule(text: &str) -> (Ident, Option<String>) {
     }
 }
 
-/// Changes the loaded classes at the top level but for the library of a class. The models are
-/// translated again when they are needed.
+const RUN_CONVERSION_SCRIPT: &str = r#"
+function runConversionScript "Brings one package to another version of a library by the rules in a script."
+  input TypeName packageToConvert;
+  input String scriptFile;
+  output Boolean success;
+end runConversionScript;
+"#;
+
+/// The only top-level class that rules are applied to, while one is chosen.
+#[derive(Default)]
+struct Chosen(Option<Ident>);
+
+fn run_conversion_script(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let package: Name = args.take("packageToConvert")?;
+    let script: String = args.take("scriptFile")?;
+    if session.library().definition(&package).is_none() {
+        return Err(session.unknown_class(&package).into());
+    }
+    let outer = std::mem::replace(&mut session.extension::<Chosen>().0, package.first());
+    session.silent += 1;
+    let done = session.run_nested(&script);
+    session.silent -= 1;
+    session.extension::<Chosen>().0 = outer;
+    done.map(|()| true.into())
+}
+
+/// Changes the loaded classes at the top level, or the chosen one, but for the library of a class.
+/// The models are translated again when they are needed.
 fn apply(
     session: &mut Session,
     of: &Name,
     mut change: impl FnMut(&mut ClassDefinition),
 ) -> Result<(), Failure> {
-    let roots: Vec<Ident> = session.library().roots().collect();
-    for root in roots.into_iter().filter(|root| Some(*root) != of.first()) {
+    let chosen = session.extension::<Chosen>().0;
+    let is_meant =
+        |root: &Ident| Some(*root) != of.first() && chosen.is_none_or(|chosen| chosen == *root);
+    let roots: Vec<Ident> = session.library().roots().filter(is_meant).collect();
+    for root in roots {
         let name = Name::from(root);
         if session.is_lazy(&name) {
             continue;

@@ -35,7 +35,6 @@ pub(super) const FAMILY: Family = Family {
         "plotSetup",
         "trace",
         "beep",
-        "experimentSetupOutput",
         "closeModel",
         "saveSettings",
         "SetDymolaCompiler",

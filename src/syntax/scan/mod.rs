@@ -221,7 +221,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// Whether the `if` that begins a statement of a script is an expression, `if a then b else c`:
-    /// its line has an `else` before anything that ends a statement.
+    /// its line has the `else` of this `if` before anything that ends a statement.
     fn is_conditional_expression(&self, token: &Token<'t>) -> bool {
         if self.dialect != Dialect::Script || self.blocks.in_class() {
             return false;
@@ -229,12 +229,15 @@ impl<'t> Scanner<'t> {
         let line = self.tokens.line_from(token.start);
         let mut tokens = Tokens::new(self.source, line);
         let (mut scratch, mut open) = (line.as_bytes().to_vec(), 0usize);
+        let mut awaiting_else = 0usize;
         while let Ok(Some(next)) = tokens.next(CommandPlace::Nowhere, &mut scratch) {
             match (next.kind, next.text) {
                 (TokenKind::Open, _) => open += 1,
                 (TokenKind::Close, _) => open = open.saturating_sub(1),
                 (TokenKind::Separator, ";") if open == 0 => return false,
                 (TokenKind::Word, "end") if open == 0 => return false,
+                (TokenKind::Word, "if") if open == 0 => awaiting_else += 1,
+                (TokenKind::Word, "else") if open == 0 && awaiting_else > 1 => awaiting_else -= 1,
                 (TokenKind::Word, "else") if open == 0 => {
                     let value = tokens.next(CommandPlace::Nowhere, &mut scratch);
                     return matches!(value, Ok(Some(_)));

@@ -10,24 +10,22 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Borders, Paragraph, Wrap};
 
 const KEYS: &str =
-    "→ next  ← back  ↓↑ generation  Tab part  g go  f follow  i inspect  u until  ? q";
+    "→ next ← back ↓↑ generation Tab part g go f follow i inspect u until w if ? help";
 const HELP: &str = "\
 → space n Enter   the next step
 ← b               one step back
 Tab               the next part: from crossover to mutation, and so on
-↓ Page down       the next generation
-↑ Page up         the generation before
+↓ ↑ Page down, up the next generation, the one before
 Home, End         the first step, the last step
 g                 go to a generation
 f                 follow an individual through the generations
 i                 inspect the simulation of an individual
 u                 go on until something happens
+w                 what if: run again with a change from here on, and compare
 q                 end
 
 Marks: > followed or new, ♛ elite, x failed, ? drawn at random, * mutated.
-Each block is a gene: · low, █ high among this generation.
-
-Any key goes back.";
+Each block is a gene: · low, █ high among this generation.";
 
 /// Draws the screen.
 pub fn draw(screen: &Screen, frame: &mut Frame) {
@@ -42,7 +40,9 @@ pub fn draw(screen: &Screen, frame: &mut Frame) {
     match screen.view {
         View::Steps => step(screen, frame, body),
         View::Individual(k) => inspect::draw(screen, k, frame, body),
-        View::Help => frame.render_widget(Paragraph::new(HELP).block(titled("keys")), body),
+        View::Branches => branches(screen, frame, body),
+        View::Help => frame
+            .render_widget(Paragraph::new(HELP).block(titled(" keys; any key goes back ")), body),
     }
     let block = Block::new().borders(Borders::TOP);
     let text = Paragraph::new(explain(&screen.walk)).wrap(Wrap { trim: true }).block(block);
@@ -69,6 +69,15 @@ fn last_line(screen: &Screen) -> Line<'static> {
         (None, "") => Line::styled(KEYS, Style::new().add_modifier(Modifier::DIM)),
         (None, message) => Line::styled(message.to_owned(), screen.styled(Color::Yellow)),
     }
+}
+
+/// Both runs on one chart, and what came of the change.
+fn branches(screen: &Screen, frame: &mut Frame, area: Rect) {
+    let Some(branches) = screen.branches() else { return };
+    let height = usize::from(area.height).saturating_sub(7);
+    let chart = branches.figure().text(usize::from(area.width).saturating_sub(16), height);
+    let text = format!("{chart}{}", branches.verdict());
+    frame.render_widget(Paragraph::new(text).block(titled(" what if ")), area);
 }
 
 fn titled(title: &str) -> Block<'_> {

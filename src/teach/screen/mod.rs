@@ -9,6 +9,8 @@ mod step_panel;
 #[cfg(test)]
 mod tests;
 
+use super::branches::Branches;
+use super::trace::Trace;
 use super::walk::Walk;
 use prompt::Prompt;
 
@@ -48,6 +50,19 @@ enum View {
     /// The simulation of an individual of this generation, from 0.
     Individual(usize),
     Help,
+    /// The run and a changed one on one chart.
+    Branches,
+}
+
+/// A changed run.
+#[derive(Debug, Clone)]
+struct Branch {
+    generation: usize,
+    change: String,
+    /// Of the run that the walk does not go through.
+    trace: Trace,
+    /// Whether the walk goes through the changed run.
+    is_walked: bool,
 }
 
 /// The state of the screen.
@@ -58,6 +73,9 @@ pub struct Screen {
     /// The individual that is followed, from 0, in the generation of the walk.
     followed: Option<usize>,
     prompt: Option<Prompt>,
+    /// A change that the learner wants to be tried, and from which generation on, from 1.
+    wish: Option<(usize, String)>,
+    branch: Option<Branch>,
     /// What the last key has led to, where that is not plain to see.
     message: String,
     colour: bool,
@@ -67,7 +85,8 @@ impl Screen {
     /// A screen at the place of `walk`.
     pub fn new(walk: Walk, colour: bool) -> Screen {
         let message = String::new();
-        Screen { walk, view: View::Steps, followed: None, prompt: None, message, colour }
+        let (followed, prompt, wish, branch) = (None, None, None, None);
+        Screen { walk, view: View::Steps, followed, prompt, wish, branch, message, colour }
     }
 
     /// Answers a key; whether the learner goes on.
@@ -77,17 +96,65 @@ impl Screen {
             self.answer(prompt, key);
             return true;
         }
+        if self.view == View::Branches && key == Key::Char('x') {
+            self.exchange();
+            return true;
+        }
         if self.view != View::Steps {
             self.view = View::Steps;
             return true;
         }
         match key {
             Key::Char('q') => return false,
-            Key::Char('g' | 'f' | 'i' | 'u') => self.prompt = Prompt::of(key),
+            Key::Char('g' | 'f' | 'i' | 'u' | 'w') => self.prompt = Prompt::of(key),
             Key::Char('?' | 'h') => self.view = View::Help,
             _ => self.step(key),
         }
         true
+    }
+
+    /// The change that is to be tried now, and from which generation on, counted from 1.
+    pub fn take_wish(&mut self) -> Option<(usize, String)> {
+        self.wish.take()
+    }
+
+    /// Shows what has become of a change, or why it could not be tried.
+    pub fn branched(&mut self, generation: usize, change: String, run: Result<Trace, String>) {
+        match run {
+            Ok(trace) => {
+                if self.branch.as_ref().is_some_and(|branch| branch.is_walked) {
+                    self.exchange();
+                }
+                self.branch = Some(Branch { generation, change, trace, is_walked: false });
+                self.view = View::Branches;
+                self.message =
+                    "x walks through the changed run; any other key goes back".to_owned();
+            }
+            Err(why) => self.message = why,
+        }
+    }
+
+    /// The walk goes on in the other run.
+    fn exchange(&mut self) {
+        let Some(branch) = &mut self.branch else { return };
+        let number = self.walk.number();
+        let mut walk = Walk::new(branch.trace.clone());
+        walk.go_to(number.min(branch.trace.generations.len() - 1));
+        branch.trace = std::mem::replace(&mut self.walk, walk).into_trace();
+        branch.is_walked = !branch.is_walked;
+        self.followed = None;
+        self.view = View::Steps;
+        self.message = "this is the other run; w with no statement compares again".to_owned();
+    }
+
+    /// The run and the changed one.
+    fn branches(&self) -> Option<Branches<'_>> {
+        let Branch { generation, change, trace, is_walked } = self.branch.as_ref()?;
+        let (original, changed) = match is_walked {
+            true => (trace, self.walk.trace()),
+            false => (self.walk.trace(), trace),
+        };
+        Some(Branches { original, changed, generation: *generation, change })
     }
 
     fn step(&mut self, key: Key) {

@@ -12,6 +12,7 @@ pub(super) enum Question {
     Follow,
     Inspect,
     Until,
+    WhatIf,
 }
 
 /// A question and the answer so far.
@@ -29,6 +30,7 @@ impl Prompt {
             Key::Char('f') => Question::Follow,
             Key::Char('i') => Question::Inspect,
             Key::Char('u') => Question::Until,
+            Key::Char('w') => Question::WhatIf,
             _ => return None,
         };
         Some(Prompt { question, text: String::new() })
@@ -41,6 +43,7 @@ impl Prompt {
             Question::Follow => "follow individual (empty: the best)",
             Question::Inspect => "inspect individual (empty: the best)",
             Question::Until => "until (better, failure, mutation, stop, or a fitness to reach)",
+            Question::WhatIf => "what if, from here on (such as F_Mut := 0.5)",
         };
         format!("{question}: {}_", self.text)
     }
@@ -68,6 +71,17 @@ pub(super) fn carry_out(screen: &mut Screen, prompt: &Prompt) -> Result<String, 
             Ok(String::new())
         }
         Question::Until => until(&mut screen.walk, text),
+        Question::WhatIf if !text.is_empty() => {
+            screen.wish = Some((screen.walk.number() + 1, text.to_owned()));
+            Ok(String::new())
+        }
+        Question::WhatIf if screen.branch.is_some() => {
+            screen.view = View::Branches;
+            Ok(String::new())
+        }
+        Question::WhatIf => {
+            Err("give a statement that changes a variable of the script".to_owned())
+        }
     }
 }
 

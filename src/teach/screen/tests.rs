@@ -1,5 +1,7 @@
+//! Screens on terminals of several sizes.
+
 use super::{Key, Screen, draw};
-use crate::teach::sample;
+use crate::teach::{Trace, sample};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
@@ -9,8 +11,12 @@ fn shown(keys: &[Key]) -> String {
     for key in keys {
         assert!(screen.press(*key), "the screen has ended");
     }
+    drawn(&screen)
+}
+
+fn drawn(screen: &Screen) -> String {
     let mut terminal = Terminal::new(TestBackend::new(80, 24)).unwrap();
-    terminal.draw(|frame| draw(&screen, frame)).unwrap();
+    terminal.draw(|frame| draw(screen, frame)).unwrap();
     let text = terminal.backend().to_string();
     text.lines()
         .map(|line| line.trim_end_matches('"').trim_start_matches('"').trim_end())
@@ -76,9 +82,35 @@ fn the_smallest_terminal_is_no_panic() {
     for (width, height) in [(1, 1), (10, 3), (40, 10), (200, 60)] {
         for keys in [vec![], vec![Key::Char('?')], typed('i', ""), vec![Key::Right; 5]] {
             let mut screen = Screen::new(sample::walk(), true);
-            keys.into_iter().for_each(|key| drop(screen.press(key)));
+            for key in keys {
+                screen.press(key);
+            }
             let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
             terminal.draw(|frame| draw(&screen, frame)).unwrap();
         }
     }
+}
+
+#[test]
+fn a_changed_run_is_compared_and_walked_through() {
+    let mut screen = Screen::new(sample::walk(), false);
+    let press = |screen: &mut Screen, keys: &[Key]| {
+        assert!(keys.iter().all(|key| screen.press(*key)), "the screen has ended");
+    };
+    press(&mut screen, &[&[Key::Down][..], &typed('w', "F_Mut := 1")].concat());
+    assert_eq!(screen.take_wish(), Some((2, "F_Mut := 1".to_owned())));
+    assert_eq!(screen.take_wish(), None);
+    let changed = Trace::read(&sample::run(3, 54321.0).bytes).unwrap();
+    screen.branched(2, "F_Mut := 1".to_owned(), Ok(changed));
+    let text = drawn(&screen);
+    sample::snapshots().bind(|| insta::assert_snapshot!("screen_what_if", text));
+    let verdict =
+        |text: &str| text.lines().find(|line| line.contains("The change is")).map(str::to_owned);
+    press(&mut screen, &[Key::Char('x')]);
+    assert!(drawn(&screen).starts_with("Generation 2 of 3"));
+    // The chart still tells which run is which.
+    press(&mut screen, &typed('w', ""));
+    assert_eq!(verdict(&drawn(&screen)), verdict(&text));
+    screen.branched(2, "F_Mut := 1".to_owned(), Err("it failed".to_owned()));
+    assert_eq!(drawn(&screen).lines().last(), Some("it failed"));
 }

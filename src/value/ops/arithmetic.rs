@@ -1,8 +1,6 @@
 //! `+ - * / ^` (MLS §10.6).
 
-use super::elementwise::{
-    elementwise_add, elementwise_divide, elementwise_multiply, elementwise_subtract,
-};
+use super::elementwise::{added, divided, multiplied, subtracted};
 use super::matrix;
 use super::unsuitable;
 use crate::diag::Fault;
@@ -21,7 +19,7 @@ pub fn add(left: &Value, right: &Value) -> Result<Value, Fault> {
             Some((a, b)) => Ok(Value::Real(a + b)),
             None => {
                 same_rank("+", left, right)?;
-                elementwise_add(left, right)
+                added("+", left, right)
             }
         },
     }
@@ -38,7 +36,7 @@ pub fn subtract(left: &Value, right: &Value) -> Result<Value, Fault> {
             Some((a, b)) => Ok(Value::Real(a - b)),
             None => {
                 same_rank("-", left, right)?;
-                elementwise_subtract(left, right)
+                subtracted("-", left, right)
             }
         },
     }
@@ -55,7 +53,7 @@ pub fn multiply(left: &Value, right: &Value) -> Result<Value, Fault> {
         (Value::Array(a), Value::Array(b)) => matrix::product(a, b),
         _ => match scalars(left, right) {
             Some((a, b)) => Ok(Value::Real(a * b)),
-            None => elementwise_multiply(left, right),
+            None => multiplied("*", left, right),
         },
     }
 }
@@ -69,7 +67,7 @@ pub fn divide(left: &Value, right: &Value) -> Result<Value, Fault> {
         }
         _ => match scalars(left, right) {
             Some((a, b)) => real_divide(a, b).map(Value::Real),
-            None => elementwise_divide(left, right),
+            None => divided("/", left, right),
         },
     }
 }

@@ -13,11 +13,15 @@ use std::sync::Arc;
 
 /// `a .+ b`; also joins Strings.
 pub fn elementwise_add(left: &Value, right: &Value) -> Result<Value, Fault> {
+    added(".+", left, right)
+}
+
+pub(super) fn added(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
     if left.is_text() && right.is_text() {
         return join(left, right);
     }
     numeric(
-        ".+",
+        symbol,
         left,
         right,
         |a, b| Ok(a + b),
@@ -27,8 +31,12 @@ pub fn elementwise_add(left: &Value, right: &Value) -> Result<Value, Fault> {
 
 /// `a .- b`
 pub fn elementwise_subtract(left: &Value, right: &Value) -> Result<Value, Fault> {
+    subtracted(".-", left, right)
+}
+
+pub(super) fn subtracted(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
     numeric(
-        ".-",
+        symbol,
         left,
         right,
         |a, b| Ok(a - b),
@@ -38,8 +46,12 @@ pub fn elementwise_subtract(left: &Value, right: &Value) -> Result<Value, Fault>
 
 /// `a .* b`
 pub fn elementwise_multiply(left: &Value, right: &Value) -> Result<Value, Fault> {
+    multiplied(".*", left, right)
+}
+
+pub(super) fn multiplied(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
     numeric(
-        ".*",
+        symbol,
         left,
         right,
         |a, b| Ok(a * b),
@@ -49,7 +61,11 @@ pub fn elementwise_multiply(left: &Value, right: &Value) -> Result<Value, Fault>
 
 /// `a ./ b`, always Real.
 pub fn elementwise_divide(left: &Value, right: &Value) -> Result<Value, Fault> {
-    real("./", left, right, real_divide)
+    divided("./", left, right)
+}
+
+pub(super) fn divided(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
+    real(symbol, left, right, real_divide)
 }
 
 /// `a .^ b`, always Real.

@@ -31,4 +31,14 @@ package Plant "Small models with known solutions"
   equation
     T*der(x) = u - x;
   end Lag;
+
+  model Guarded "a state that only the model sees, and what others see of it"
+    parameter Real k = 2;
+    output Real y = 3*x;
+    Real z = y + x;
+  protected
+    Real x(start = 1, fixed = true);
+  equation
+    der(x) = -k*x;
+  end Guarded;
 end Plant;

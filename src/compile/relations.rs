@@ -1,0 +1,117 @@
+//! Relations that keep their values between events (MLS §8.5).
+//!
+//! ```text
+//! a > b   changes in a step and       where a - b > 0 begins or ends to hold
+//!         at first in an event
+//!         changes again in that event where a - b passes -ε while it holds, ε while it does not
+//! ```
+//!
+//! A relation that has so been kept once has these bounds in all later steps.
+//!
+//! ε is a little more than what rounding makes of the sides. Without it the value of a relation
+//! that decides which equations hold, and that they bring to its very limit (a friction element
+//! that just begins to slide), would depend on rounding errors and never come to rest.
+
+use super::event_iteration::same_time;
+use super::system::{System, run};
+use crate::sim::Failure;
+use crate::symbolic::RelationOperator;
+
+/// ε relative to the larger side.
+const RELATIVE: f64 = 1e-12;
+/// ε of sides that are zero.
+const ABSOLUTE: f64 = 1e-13;
+
+/// Which relations may change.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Change {
+    /// All.
+    All,
+    /// The first that does not have its value, as in Murty's method for complementary variables.
+    First,
+}
+
+/// How far a relation is from having another value, given the one it has; negative beyond that.
+fn distance(operator: RelationOperator, holds: bool, a: f64, b: f64) -> f64 {
+    let margin = RELATIVE * a.abs().max(b.abs()) + ABSOLUTE;
+    match operator {
+        RelationOperator::Greater | RelationOperator::GreaterEqual if holds => a - b + margin,
+        RelationOperator::Greater | RelationOperator::GreaterEqual => b - a + margin,
+        RelationOperator::Less | RelationOperator::LessEqual if holds => b - a + margin,
+        RelationOperator::Less | RelationOperator::LessEqual => a - b + margin,
+        RelationOperator::Equal | RelationOperator::NotEqual => {
+            let same = if operator.holds(a, b) == holds { 1.0 } else { -1.0 };
+            same * (a - b).abs().max(ABSOLUTE)
+        }
+    }
+}
+
+impl System {
+    /// Evaluates the relations at the values of the variables; whether one changed.
+    pub(super) fn update_relations(&mut self, t: f64, change: Change) -> bool {
+        let program = self.program.clone();
+        let mut changed = self.update_roundings(t);
+        for at in 0..program.relations.len() {
+            if changed && change == Change::First {
+                break;
+            }
+            let register = program.relations[at].register;
+            let before = self.registers[register as usize] != 0.0;
+            if self.relation_value(at, before, t) != before {
+                changed = true;
+                self.unstable = register;
+                self.has_changed[at] = true;
+                self.registers[register as usize] = f64::from(u8::from(!before));
+            }
+        }
+        changed
+    }
+
+    fn relation_value(&mut self, at: usize, before: bool, t: f64) -> bool {
+        let relation = &self.program.relations[at];
+        let operator = relation.operator;
+        if let (Some((factor, _)), Some(switch)) = (relation.time, self.switches[at]) {
+            // At the instant itself the value is that behind it.
+            let near = same_time(t, switch);
+            let difference = if near { factor } else { factor * (t - switch) };
+            return operator.holds(difference, 0.0);
+        }
+        let sides = &self.program.relation_sides[at];
+        if sides.tape.run(&mut self.registers).is_err() {
+            return before;
+        }
+        let [a, b] = [sides.outputs[0], sides.outputs[1]];
+        let (a, b) = (self.registers[a as usize], self.registers[b as usize]);
+        let exact = operator.holds(a, b);
+        if exact == before || !self.has_changed[at] {
+            return exact;
+        }
+        let keeps = distance(operator, before, a, b) >= 0.0;
+        self.held[at] |= keeps;
+        before == keeps
+    }
+
+    /// Writes the crossing functions of relations and roundings; y is loaded and solved.
+    pub(super) fn relation_crossings(&mut self, out: &mut [f64]) -> Result<(), Failure> {
+        let program = self.program.clone();
+        run(&program.crossings.tape, &mut self.registers)?;
+        let n = program.crossing_relations.len();
+        let (sides, rest) = program.crossings.outputs.split_at(2 * n);
+        let (first, second) = out.split_at_mut(n);
+        let pairs = sides.chunks_exact(2).zip(&program.crossing_relations);
+        for (z, (pair, at)) in first.iter_mut().zip(pairs) {
+            let relation = &program.relations[*at];
+            let holds = self.registers[relation.register as usize] != 0.0;
+            let [a, b] = [pair[0], pair[1]].map(|side| self.registers[side as usize]);
+            *z = match self.held[*at] {
+                true if holds => distance(relation.operator, true, a, b),
+                true => -distance(relation.operator, false, a, b),
+                false => a - b,
+            };
+        }
+        for (z, register) in second.iter_mut().zip(rest) {
+            *z = self.registers[*register as usize];
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,102 @@
+//! Which variables result files hold: `experimentSetupOutput` and
+//! `Advanced.StoreProtectedVariables`.
+
+use super::{Args, Builtin, Failure, Family};
+use crate::compile::VariableInfo;
+use crate::results::ResultTable;
+use crate::script::simulation::{Translated, state_names};
+use crate::script::{Dialect, Session};
+use crate::syntax::ast::CausalityPrefix;
+use crate::value::Value;
+use std::collections::HashSet;
+
+/// The command of this file.
+pub(super) const FAMILY: Family = Family {
+    packages: &["DymolaCommands.SimulatorAPI"],
+    dialect: Some(Dialect::Dymola),
+    builtins: &[Builtin { header: EXPERIMENT_SETUP_OUTPUT, run: experiment_setup_output }],
+};
+
+/// The kinds of variables that are stored; parameters always are.
+#[derive(Debug, Clone, Copy)]
+struct Kinds {
+    states: bool,
+    derivatives: bool,
+    inputs: bool,
+    outputs: bool,
+    auxiliaries: bool,
+}
+
+impl Default for Kinds {
+    fn default() -> Kinds {
+        Kinds { states: true, derivatives: true, inputs: true, outputs: true, auxiliaries: true }
+    }
+}
+
+const EXPERIMENT_SETUP_OUTPUT: &str = r#"
+function experimentSetupOutput "Which kinds of variables the result files of the next simulations hold; parameters always."
+  input Boolean textual = false "has no effect: the ending of the file decides";
+  input Boolean doublePrecision = false "has no effect: results are double";
+  input Boolean states = true;
+  input Boolean derivatives = true;
+  input Boolean inputs = true;
+  input Boolean outputs = true;
+  input Boolean auxiliaries = true;
+  input Boolean equidistant = true "has no effect: results are equidistant, with events";
+  input Boolean events = true "has no effect";
+  input Boolean debug = false "has no effect";
+  output Boolean ok;
+end experimentSetupOutput;
+"#;
+
+fn experiment_setup_output(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let kinds = Kinds {
+        states: args.take("states")?,
+        derivatives: args.take("derivatives")?,
+        inputs: args.take("inputs")?,
+        outputs: args.take("outputs")?,
+        auxiliaries: args.take("auxiliaries")?,
+    };
+    *session.extension::<Kinds>() = kinds;
+    Ok(true.into())
+}
+
+/// The variables of a simulation that its result file is to hold.
+pub(super) fn stored(
+    session: &mut Session,
+    model: &Translated,
+    table: &ResultTable,
+) -> ResultTable {
+    let kinds = *session.extension::<Kinds>();
+    let hides = session.flags.get("Advanced.StoreProtectedVariables") == Some(&false.into());
+    let states: HashSet<&str> = state_names(model).map(|name| &**name).collect();
+    let variables = model.program.variables().iter();
+    let protected: HashSet<&str> =
+        variables.clone().filter(|variable| variable.protected).map(|v| &*v.name).collect();
+    let is_wanted = |variable: &VariableInfo| {
+        let name = &*variable.name;
+        if hides && protected.contains(differentiated(name).unwrap_or(name)) {
+            return false;
+        }
+        match variable.causality {
+            _ if variable.is_known() => true,
+            Some(CausalityPrefix::Input) => kinds.inputs,
+            Some(CausalityPrefix::Output) => kinds.outputs,
+            _ if states.contains(name) => kinds.states,
+            _ if differentiated(name).is_some() => kinds.derivatives,
+            _ => kinds.auxiliaries,
+        }
+    };
+    let left_out: HashSet<&str> =
+        variables.filter(|variable| !is_wanted(variable)).map(|variable| &*variable.name).collect();
+    match left_out.is_empty() {
+        true => table.clone(),
+        false => table.only(|name| !left_out.contains(name)),
+    }
+}
+
+/// The variable of which a name is the derivative, of whatever order.
+fn differentiated(name: &str) -> Option<&str> {
+    let inner = name.strip_prefix("der(")?.strip_suffix(')')?;
+    Some(differentiated(inner).unwrap_or(inner))
+}

@@ -1,0 +1,273 @@
+//! Models at the limits of their events: what rounding decides, what steps do not see, what
+//! statements choose at run time.
+
+use super::hybrid::{all_near, near, simulated};
+
+#[test]
+fn a_crossing_that_time_alone_makes_is_seen_though_steps_are_long() {
+    let text = "model Switch
+        Integer n(start = 0, fixed = true);
+        Real x(start = 1, fixed = true);
+      equation
+        der(x) = 0;
+        when sin(7*time) > 0.5 then
+          n = pre(n) + 1;
+        end when;
+      end Switch;";
+    let run = simulated(text, 9.0);
+    // sin(7 t) > 0.5 begins at (π/6 + 2 π k)/7.
+    let expected =
+        ((7.0 * 9.0 - std::f64::consts::FRAC_PI_6) / std::f64::consts::TAU).floor() + 1.0;
+    assert_eq!(run.last("n"), expected);
+}
+
+#[test]
+fn a_block_at_the_limit_of_its_friction_begins_to_slide_once() {
+    // The force grows to the limit and beyond; a = force - 1 from t = 1 on, so v = (t - 1)²/2.
+    let text = "model Block
+        parameter Real limit = 1;
+        Real v(start = 0, fixed = true);
+        Real s;
+        Real a;
+        Boolean slides(start = false, fixed = true);
+        Boolean begins(start = false, fixed = true);
+      equation
+        begins = not pre(slides) and (s > limit or pre(begins) and s > limit);
+        slides = begins and v > 0 or pre(slides) and v > 0;
+        a = if not (begins or pre(slides)) then 0 else s - limit;
+        a = time - (if not (begins or pre(slides)) then s else limit);
+        der(v) = a;
+      end Block;";
+    let run = simulated(text, 3.0);
+    near(run.last("v"), 2.0, 1e-7);
+    near(run.at("v", 1.5), 0.125, 1e-7);
+}
+
+#[test]
+fn a_loop_is_left_under_a_condition_that_varies() {
+    let text = "model First
+        Integer n(start = 0, fixed = true);
+        Integer first(start = 0, fixed = true);
+        Integer turns(start = 0, fixed = true);
+        constant Integer limits[4] = {2, 4, 6, 8};
+      algorithm
+        when sample(0.5, 1) then
+          n := pre(n) + 1;
+          first := 0;
+          turns := 0;
+          for i in 1:4 loop
+            turns := turns + 1;
+            if limits[i] > n then
+              first := i;
+              break;
+            end if;
+            turns := turns + 10;
+          end for;
+        end when;
+      end First;";
+    let run = simulated(text, 9.0);
+    for (t, n) in (0..9).map(|k| (f64::from(k) + 0.5, k + 1)) {
+        let first = [2, 4, 6, 8].iter().position(|limit| *limit > n);
+        let turns = first.map_or(44, |at| 11 * at + 1);
+        assert_eq!(run.at("first", t), first.map_or(0, |at| at + 1) as f64, "n = {n}");
+        assert_eq!(run.at("turns", t), turns as f64, "n = {n}");
+    }
+}
+
+#[test]
+fn a_subscript_computed_at_an_event_chooses_what_is_assigned() {
+    let text = "model Buffer
+        Integer n(start = 0, fixed = true);
+        Real values[3](each start = 0, each fixed = true);
+        Real pairs[2, 2](each start = 0, each fixed = true);
+      algorithm
+        when sample(0.5, 1) then
+          n := mod(pre(n), 3) + 1;
+          values[n] := time;
+          pairs[if n > 1 then 2 else 1, :] := {time, n};
+        end when;
+      end Buffer;";
+    let run = simulated(text, 5.0);
+    // Written at 0.5, 1.5, 2.5, 3.5, 4.5 with n = 1, 2, 3, 1, 2.
+    near(run.last("values[1]"), 3.5, 1e-12);
+    near(run.last("values[2]"), 4.5, 1e-12);
+    near(run.last("values[3]"), 2.5, 1e-12);
+    near(run.last("pairs[1,1]"), 3.5, 1e-12);
+    near(run.last("pairs[2,1]"), 4.5, 1e-12);
+    assert_eq!(run.last("pairs[2,2]"), 2.0);
+}
+
+#[test]
+fn a_function_without_outputs_checks_its_arguments() {
+    let text = |second: f64| {
+        format!(
+            "model Checked
+               function check
+                 input Real table[:];
+               algorithm
+                 for i in 2:size(table, 1) loop
+                   assert(table[i] > table[i - 1], \"not ascending\");
+                 end for;
+               end check;
+               parameter Real table[3] = {{0, {second}, 2}};
+               Real x(start = 1, fixed = true);
+             initial algorithm
+               check(table);
+             equation
+               der(x) = -x;
+             end Checked;"
+        )
+    };
+    simulated(&text(1.0), 1.0);
+    let (program, _, _, ended) = super::hybrid::attempt(&text(3.0), 1.0);
+    let message = program.explain(&ended.unwrap_err()).message.clone();
+    assert!(message.contains("not ascending"), "{message}");
+}
+
+#[test]
+fn a_function_of_scalars_takes_arrays_element_by_element() {
+    let text = "model Elements
+        function f
+          input Real a;
+          input Real b;
+          output Real y = 2*a + b;
+          output Real z = a - b;
+        end f;
+        Real y[2] = f({time, 1}, 3);
+        Real m[2, 2] = f([1, 2; 3, 4], [time, 0; 0, time]);
+        Real u[2];
+        Real w[2];
+      equation
+        (u, w) = f({1, time}, {time, 2});
+      end Elements;";
+    let run = simulated(text, 2.0);
+    let last = ["y[1]", "y[2]", "m[1,1]", "m[2,1]", "m[2,2]", "u[2]", "w[1]"].map(|n| run.last(n));
+    assert_eq!(last, [7.0, 5.0, 4.0, 6.0, 10.0, 6.0, -1.0]);
+}
+
+#[test]
+fn a_delayed_value_began_as_the_first_events_left_it() {
+    let text = "model Late
+        Integer n(start = 1, fixed = true);
+        Real r;
+        Integer late;
+      equation
+        n = if time < 0.75 then 3 else 2;
+        r = pre(n);
+        late = integer(delay(r, 0.5));
+      end Late;";
+    let run = simulated(text, 2.0);
+    assert_eq!(run.at("late", 0.0), 3.0);
+    assert_eq!(run.at("late", 0.52), 3.0);
+    assert_eq!(run.at("late", 1.2), 3.0);
+    assert_eq!(run.at("late", 1.28), 2.0);
+}
+
+#[test]
+fn a_trigger_jumps_from_one_branch_to_the_other() {
+    // y = limited(1e4 (u + y)/2): up where u passes 1, down where it passes -1.
+    let text = "model Trigger
+        Real u = 3*sin(time);
+        Real v(start = -0.5) = (u + y)/2;
+        Real y(start = -1);
+      equation
+        y = smooth(0, noEvent(if 1e4*v > 1 then 1 elseif 1e4*v < -1 then -1 else 1e4*v));
+      end Trigger;";
+    let run = simulated(text, 10.0);
+    assert_eq!(run.at("y", 0.2), -1.0);
+    assert_eq!(run.at("y", 1.0), 1.0);
+    assert_eq!(run.at("y", 3.4), 1.0);
+    assert_eq!(run.at("y", 4.0), -1.0);
+    assert_eq!(run.at("y", 6.4), -1.0);
+    assert_eq!(run.at("y", 7.0), 1.0);
+}
+
+#[test]
+fn smooth_of_order_zero_has_events_at_its_kinks_and_smooth_of_order_one_has_none() {
+    let text = |order: u32| {
+        format!(
+            "model Kink
+               Real x(start = -1, fixed = true);
+               Real area(start = 0, fixed = true);
+             equation
+               der(x) = 2;
+               der(area) = smooth({order}, if x > 0 then x else 0);
+             end Kink;"
+        )
+    };
+    let zero = simulated(&text(0), 2.0);
+    // x = 2 t - 1, so the area is (2 t - 1)²/4 from t = 1/2 on.
+    near(zero.last("area"), 2.25, 1e-9);
+    all_near(&zero.events(), &[0.5], 1e-9);
+    let one = simulated(&text(1), 2.0);
+    near(one.last("area"), 2.25, 1e-5);
+    assert!(one.events().is_empty(), "{:?}", one.events());
+}
+
+#[test]
+fn semi_linear_has_another_slope_on_each_side() {
+    let text = "model Two
+        Real m(start = -1, fixed = true);
+        Real h;
+        Real sum(start = 0, fixed = true);
+      equation
+        der(m) = 1;
+        h = semiLinear(m, 3, 5);
+        der(sum) = h;
+      end Two;";
+    let run = simulated(text, 3.0);
+    near(run.at("h", 0.6), -2.0, 1e-9);
+    near(run.last("h"), 6.0, 1e-9);
+    near(run.last("sum"), -2.5 + 6.0, 1e-9);
+    all_near(&run.events(), &[1.0], 1e-9);
+}
+
+#[test]
+fn no_event_has_none_and_a_plain_branch_has_one() {
+    let text = |condition: &str| {
+        format!(
+            "model Branch
+               Real x(start = -1, fixed = true);
+               Real y;
+             equation
+               der(x) = 2;
+               y = if {condition} then 1 else 0;
+             end Branch;"
+        )
+    };
+    all_near(&simulated(&text("x > 0"), 2.0).events(), &[0.5], 1e-9);
+    let live = simulated(&text("noEvent(x > 0)"), 2.0);
+    assert!(live.events().is_empty(), "{:?}", live.events());
+    assert_eq!((live.at("y", 0.48), live.at("y", 0.52)), (0.0, 1.0));
+}
+
+#[test]
+fn texts_change_at_events() {
+    let text = "model Label
+        type Mode = enumeration(low, middle, high);
+        Mode mode(start = Mode.low, fixed = true);
+        String label;
+        String last(start = \"none\", fixed = true);
+        String word = if label == \"low\" then \"small\" else \"large\";
+        Real x(start = 0, fixed = true);
+        Integer changes(start = 0, fixed = true);
+        Integer code;
+        Boolean fresh;
+      equation
+        der(x) = 1;
+        mode = if x > 2 then Mode.high elseif x > 1 then Mode.middle else Mode.low;
+        label = if mode == Mode.high then \"high\" elseif mode == Mode.middle then \"mid\" else \"low\";
+        when change(label) then
+          last = pre(label);
+          changes = pre(changes) + 1;
+        end when;
+        fresh = last == \"none\";
+        code = (if label == \"high\" then 100 elseif \"mid\" == label then 200 else 300)
+          + (if last == \"mid\" then 10 elseif last == \"low\" then 20 else 30)
+          + (if word <> \"large\" then 1 else 2);
+      end Label;";
+    let run = simulated(text, 3.0);
+    assert_eq!((run.at("code", 0.6), run.at("fresh", 0.6)), (331.0, 1.0));
+    assert_eq!((run.at("code", 1.5), run.at("fresh", 1.5)), (222.0, 0.0));
+    assert_eq!((run.at("code", 2.4), run.at("changes", 2.4)), (112.0, 2.0));
+}
