@@ -318,6 +318,9 @@ impl Call<'_, '_> {
         };
         let dims = match self.local(&names).ok_or_else(unknown)? {
             Lowered::Array(array) => array.dims.clone(),
+            _ if !last.subscripts.is_empty() => {
+                return Err(fault!(NOT_SUPPORTED, "an array of records").at(target.span));
+            }
             _ => Vec::new(),
         };
         let positions = self.positions(&dims, &last.subscripts, target.span, loops)?;
@@ -457,9 +460,9 @@ pub(super) fn component_shape<T: Target>(
         })?);
     }
     match &component.value_type {
-        ValueType::Record(_, fields) if dims.is_empty() => {
+        ValueType::Record(_, fields) => {
             let shape = |(name, field): (&Ident, &FunctionComponent)| {
-                Ok((*name, component_shape(lowering, field)?))
+                Ok((*name, component_shape(lowering, field)?.repeated(&dims)))
             };
             Ok(Shape::Record(fields.iter().map(shape).collect::<Result<_, Diagnostic>>()?))
         }
@@ -534,6 +537,10 @@ impl Target for Call<'_, '_> {
         reference: &ComponentReference,
     ) -> Result<Lowered<Expr>, Diagnostic> {
         local_value(&self.locals, path, reference)
+    }
+
+    fn own_variable(&self, name: Ident) -> Option<Lowered<Expr>> {
+        self.locals.iter().find(|(own, _)| *own == name).map(|(_, value)| value.clone())
     }
 
     fn function(&self, name: &Name) -> Option<Arc<Function>> {

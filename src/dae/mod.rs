@@ -58,10 +58,11 @@ pub use model::*;
 pub use report::report;
 pub use sorted::*;
 
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Label};
 use crate::fault;
 use crate::flatten::FlatModel;
 use crate::symbolic::VarId;
+use errors::{SINGULAR_SYSTEM, UNBALANCED_MODEL};
 
 /// The passes, in order: the name for `--dump` and what it does.
 pub const PASSES: &[(&str, &str)] = &[
@@ -126,6 +127,18 @@ fn sort_and_show(flat: &FlatModel, show: &mut Show<'_>) -> Result<SortedDae, Dia
         lagged,
         parameters,
     })
+}
+
+/// The error that a model is not balanced, with the variables and equations concerned, if they can
+/// be told.
+pub fn explain_imbalance(flat: &FlatModel, error: Diagnostic) -> Diagnostic {
+    let found = match sort(flat) {
+        Err(found) if [SINGULAR_SYSTEM, UNBALANCED_MODEL].contains(&found.code) => found,
+        _ => return error,
+    };
+    let related = |error: Diagnostic, label: &Label| error.related(label.span, &*label.text);
+    let error = found.labels.iter().fold(error, related);
+    found.helps.iter().cloned().fold(error, Diagnostic::help)
 }
 
 /// An input at the top level without a binding has its start value, which is zero by default.

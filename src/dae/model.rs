@@ -213,6 +213,17 @@ impl Shape {
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
+
+    /// The shape of an array of these; that of an array of records is a record of arrays.
+    pub fn repeated(self, dims: &[usize]) -> Shape {
+        match self {
+            Shape::Array(own) => Shape::Array(dims.iter().copied().chain(own).collect()),
+            Shape::Record(fields) => {
+                let field = |(name, shape): (_, Shape)| (name, shape.repeated(dims));
+                Shape::Record(fields.into_iter().map(field).collect())
+            }
+        }
+    }
 }
 
 impl Dae {

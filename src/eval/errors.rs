@@ -14,7 +14,7 @@ codes! {
         "## What it means\n\nA call gives too many arguments, leaves out one that has no default, names an input that the function does not have, or gives one twice (MLS §12.4.1).\n\n## Example\n\n`sin(1, 2)`\n\n## What to do\n\nCompare the call with the inputs of the function, which the message names.",
     /// A variable or output that is read before anything was assigned to it.
     NO_VALUE_YET = "no-value-yet":
-        "## What it means\n\nA variable, an element of an array or an output is used before it has a value. It is never replaced by zero.\n\n## Example\n\n`function f output Real y; algorithm end f;` never assigns `y`.\n\n## What to do\n\nAssign the variable on every way through the function, or give it a binding in its declaration.",
+        "## What it means\n\nA variable, an element of an array or an output is used before it has a value. It is never replaced by zero. A record that was assigned in part can be read as a whole: its Real elements without a value are NaN.\n\n## Example\n\n`function f output Real y; algorithm end f;` never assigns `y`.\n\n## What to do\n\nAssign the variable on every way through the function, or give it a binding in its declaration.",
     /// An assignment to what cannot be assigned.
     NOT_ASSIGNABLE = "not-assignable":
         "## What it means\n\nThe left side of an assignment is an input of the function, a constant, a loop variable, or nothing that can hold a value.\n\n## Example\n\n`u := 2` where `u` is declared `input Real u`.\n\n## What to do\n\nAssign to a protected variable or an output instead.",

@@ -61,8 +61,8 @@ impl Evaluator<'_> {
             .iter()
             .map(|output| match self.scope.variables.get_mut(&output.name) {
                 Some(variable) => {
-                    variable.check_assigned(output.name, &[]).at(output.span)?;
-                    Ok(std::mem::replace(&mut variable.value, Value::Boolean(false)))
+                    let value = std::mem::replace(&mut variable.value, Value::Boolean(false));
+                    variable.assigned(output.name, &[], value).at(output.span)
                 }
                 None => Err(self.scope.unknown(output.name).at(output.span)),
             })

@@ -35,7 +35,7 @@ impl Evaluator<'_> {
         if let Some(variable) = self.scope.variables.get(&first.name)
             && !self.is_iterator(first.name)
         {
-            variable.check_assigned(first.name, &path).at(reference.span)?;
+            return variable.assigned(first.name, &path, value).at(reference.span);
         }
         Ok(value)
     }

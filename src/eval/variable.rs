@@ -109,14 +109,54 @@ impl Variable {
         }
     }
 
-    /// A fault if the part named by the path has no value yet.
-    pub(super) fn check_assigned(&self, name: Ident, path: &[Step]) -> Result<(), Fault> {
-        match &self.unassigned {
-            Some(unassigned) if count_false(&unassigned.shadow.part(path)?) > 0 => {
-                Err(no_value(name))
-            }
-            _ => Ok(()),
+    /// The value of the part named by the path, which the caller has taken out of this variable.
+    ///
+    /// A record that was assigned in part is a value: its Real scalars that were not are NaN.
+    ///
+    /// # Errors
+    /// The part, or one of its scalars that cannot be NaN, has no value yet.
+    pub(super) fn assigned(
+        &self,
+        name: Ident,
+        path: &[Step],
+        mut part: Value,
+    ) -> Result<Value, Fault> {
+        let Some(unassigned) = &self.unassigned else { return Ok(part) };
+        let shadow = unassigned.shadow.part(path)?;
+        let left = count_false(&shadow);
+        if left == 0 {
+            return Ok(part);
         }
+        let is_partly_assigned = matches!(part, Value::Record(_)) && left < count(&shadow);
+        if is_partly_assigned && fill_with_nan(&mut part, &shadow) {
+            return Ok(part);
+        }
+        Err(no_value(name))
+    }
+}
+
+/// Makes the Real scalars without a value NaN; whether these were all that had none.
+fn fill_with_nan(value: &mut Value, shadow: &Value) -> bool {
+    match (value, shadow) {
+        (Value::Real(value), Value::Boolean(false)) => {
+            *value = f64::NAN;
+            true
+        }
+        (Value::Record(record), Value::Record(shadow)) => {
+            let mut fields = record.fields.values_mut().zip(shadow.fields.values());
+            fields.all(|(field, shadow)| fill_with_nan(field, shadow))
+        }
+        (Value::Array(array), Value::Array(shadow)) => {
+            match (&mut array.elements, &shadow.elements) {
+                (Elements::Real(values), Elements::Boolean(assigned)) => {
+                    let without = values.iter_mut().zip(assigned).filter(|(_, known)| !**known);
+                    without.for_each(|(value, _)| *value = f64::NAN);
+                    true
+                }
+                _ => count_false(&Value::Array(shadow.clone())) == 0,
+            }
+        }
+        (_, shadow) => count_false(shadow) == 0,
     }
 }
 
@@ -144,6 +184,19 @@ fn count_false(shadow: &Value) -> usize {
             _ => 0,
         },
         _ => 0,
+    }
+}
+
+/// The number of scalars.
+fn count(shadow: &Value) -> usize {
+    let in_record = |record: &RecordValue| record.fields.values().map(count).sum::<usize>();
+    match shadow {
+        Value::Record(record) => in_record(record),
+        Value::Array(array) => match &array.elements {
+            Elements::Record(records) => records.iter().map(in_record).sum(),
+            elements => elements.len(),
+        },
+        _ => 1,
     }
 }
 

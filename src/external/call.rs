@@ -73,6 +73,11 @@ pub trait Outside {
         Err(refused(&format!("to look for `{path}`")))
     }
 
+    /// Seconds since 1970-01-01 00:00 UTC.
+    fn unix_seconds(&mut self) -> Result<u64, Fault> {
+        Err(refused("to know the time"))
+    }
+
     /// The hidden state of the random numbers.
     fn random(&mut self) -> Result<&mut Random, Fault> {
         Err(refused("to remember a random number"))

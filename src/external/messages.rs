@@ -1,8 +1,8 @@
 //! `ModelicaError`, `ModelicaInternal_*` and `ModelicaIO_*`: messages and files, through
 //! [`Outside`](super::Outside).
 //!
-//! Not handled, and refused by name: what changes files and folders, the environment, the clock in
-//! parts.
+//! Not handled, and refused by name: what changes files and folders, and the environment. The time
+//! is that of Greenwich: time zones are not known.
 
 use super::Entry;
 use super::call::Call;
@@ -16,6 +16,7 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaInternal_readLine", "fnN->t", read_line),
     Entry::pure("ModelicaInternal_countLines", "f->n", count_lines),
     Entry::impure("ModelicaInternal_stat", "t->n", stat),
+    Entry::impure("ModelicaInternal_getTime", "NNNNNNN", time),
     Entry::pure("ModelicaStreams_closeFile", "t", nothing),
     Entry::pure("ModelicaIO_readMatrixSizes", "ftA", matrix_sizes),
     Entry::pure("ModelicaIO_readRealMatrix", "ftAnnn", real_matrix),
@@ -70,6 +71,38 @@ fn stat(call: &mut Call<'_>) -> Result<(), Fault> {
         Some(true) => 3.0,
     };
     call.give(kind)
+}
+
+/// `(ms, sec, min, hour, day, mon, year)`
+fn time(call: &mut Call<'_>) -> Result<(), Fault> {
+    let seconds = call.outside.unix_seconds()?;
+    let (year, month, day) = date(seconds / 86_400);
+    let parts = [0, seconds % 60, seconds / 60 % 60, seconds / 3600 % 24, day, month, year];
+    for (argument, part) in parts.into_iter().enumerate() {
+        call.set(argument, part as f64);
+    }
+    Ok(())
+}
+
+/// Year, month and day, `days` days after 1970-01-01.
+fn date(days: u64) -> (u64, u64, u64) {
+    let is_leap = |year: u64| year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    // Whole periods of 400 years are skipped, so that few years are counted.
+    let (mut year, mut days) = (1970 + days / 146_097 * 400, days % 146_097);
+    while days >= 365 + u64::from(is_leap(year)) {
+        days -= 365 + u64::from(is_leap(year));
+        year += 1;
+    }
+    let february = 28 + u64::from(is_leap(year));
+    let mut month = 1;
+    for length in [31, february, 31, 30, 31, 30, 31, 31, 30, 31, 30] {
+        if days < length {
+            break;
+        }
+        days -= length;
+        month += 1;
+    }
+    (year, month, days + 1)
 }
 
 fn matrix(call: &mut Call<'_>) -> Result<crate::mat::Matrix, Fault> {

@@ -358,11 +358,26 @@ impl Instantiation<'_> {
 
     /// The diagnostic for a class that is not there.
     pub(super) fn unknown_class(&mut self, scope: ScopeId, name: &Name, span: Span) -> Diagnostic {
+        let suggestion = self.suggestion(scope, name);
+        fault!(UNKNOWN_CLASS, "no class named `{name}`").help_if(suggestion).at(span)
+    }
+
+    /// The diagnostic for a function that is not there.
+    pub(super) fn unknown_function(
+        &mut self,
+        scope: ScopeId,
+        name: &Name,
+        span: Span,
+    ) -> Diagnostic {
+        let suggestion = self.suggestion(scope, name);
+        fault!(UNKNOWN_CLASS, "there is no function `{name}`").help_if(suggestion).at(span)
+    }
+
+    fn suggestion(&mut self, scope: ScopeId, name: &Name) -> Option<String> {
         let wanted = name.last().map_or("", Ident::as_str);
         let (package, candidates) = self.siblings(scope, name);
-        let suggestion = suggest::nearest(wanted, candidates.iter().map(|c| c.as_str()))
-            .map(|near| format!("did you mean `{}`?", package.child(Ident::new(near))));
-        fault!(UNKNOWN_CLASS, "no class named `{name}`").help_if(suggestion).at(span)
+        suggest::nearest(wanted, candidates.iter().map(|c| c.as_str()))
+            .map(|near| format!("did you mean `{}`?", package.child(Ident::new(near))))
     }
 
     /// The names among which the last part of a name was looked up, and the package they lie in.

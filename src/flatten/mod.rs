@@ -86,6 +86,19 @@ pub fn flatten(
     class: &Name,
     modification: &[Argument],
 ) -> Result<Flattened, Vec<Diagnostic>> {
+    match flatten_unbalanced(library, class, modification)? {
+        (flattened, None) => Ok(flattened),
+        (_, Some(imbalance)) => Err(vec![imbalance]),
+    }
+}
+
+/// The same, also of a model that is not balanced, with the error that says so: whoever sorts the
+/// equations can tell which of them are concerned.
+pub fn flatten_unbalanced(
+    library: &Library,
+    class: &Name,
+    modification: &[Argument],
+) -> Result<(Flattened, Option<Diagnostic>), Vec<Diagnostic>> {
     on_deep_stack(|| flattened(library, class, modification))
         .unwrap_or_else(|error| Err(vec![error]))
 }
@@ -115,7 +128,7 @@ fn flattened(
     library: &Library,
     class: &Name,
     modification: &[Argument],
-) -> Result<Flattened, Vec<Diagnostic>> {
+) -> Result<(Flattened, Option<Diagnostic>), Vec<Diagnostic>> {
     let one = |error: Diagnostic| vec![error];
     let mut tree = Instantiation::new(library);
     let specifier = TypeSpecifier { name: class.clone(), span: Span::NONE };
@@ -159,11 +172,11 @@ fn flattened(
     for (name, function) in tree.functions {
         model.functions.extend(function.map(|function| (name, function)));
     }
-    balance::check(&model, &classes).map_err(one)?;
+    let imbalance = balance::check(&model, &classes).err();
     warnings.extend(balance::warnings(&classes));
     warnings.extend(unit_warnings);
     let balance = classes.into_iter().find(|class| class.path.is_empty());
-    Ok(Flattened { model, balance, warnings: distinct(warnings) })
+    Ok((Flattened { model, balance, warnings: distinct(warnings) }, imbalance))
 }
 
 /// The errors without those that say the same of the same place, as those of the elements of an

@@ -285,19 +285,19 @@ impl Instantiation<'_> {
         } else {
             self.function_name(&function.name(), context, function.span)?
         };
+        let in_model = context != ScopeId::TOP && !self.in_package(self.node_of(context));
         let name = match self.lookup(context, &function.name())? {
             Some(Type::Class(class)) => {
                 self.overloaded_constructor(class, &arguments, local)?.unwrap_or(name)
+            }
+            _ if in_model && !name.is_simple() && !self.functions.contains_key(&name) => {
+                return Err(self.unknown_function(context, &name, function.span));
             }
             _ => name,
         };
         let impure =
             self.functions.get(&name).is_some_and(|f| f.as_ref().is_some_and(|f| f.impure));
-        if impure
-            && !local.impure
-            && !self.in_package(self.node_of(context))
-            && context != ScopeId::TOP
-        {
+        if impure && !local.impure && in_model {
             return Err(
                 fault!(NOT_SUPPORTED, "`{name}` is impure and cannot be called in a model yet";
                 help: "declare it `pure` if equal arguments always give equal values")

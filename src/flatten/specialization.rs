@@ -28,6 +28,17 @@ struct Passed {
     bound: Vec<NamedArgument>,
 }
 
+impl Passed {
+    /// What a partial application binds, as arguments of the copy.
+    fn arguments(&self) -> impl Iterator<Item = NamedArgument> {
+        self.bound.iter().map(|bound| {
+            let node = input_name(self.input, bound.name.node);
+            let name = Spanned { node, span: bound.name.span };
+            NamedArgument { name, value: bound.value.clone() }
+        })
+    }
+}
+
 impl Instantiation<'_> {
     /// The function and the arguments of a call without functions among the arguments. A call
     /// inside a function that passes on an input of its own stays until that function is copied.
@@ -65,26 +76,23 @@ impl Instantiation<'_> {
                 )
                 .at(span));
             };
-            match self.passed(input.name, value)? {
+            match self.passed(input.name, value, depth)? {
                 Some(one) => passed.push(one),
                 None => return Ok((name, arguments)),
             }
         }
-        if depth > MAX_DEPTH {
-            return Err(fault!(TYPE_MISMATCH, "`{name}` passes functions without end").at(span));
-        }
-        for one in &passed {
-            for bound in &one.bound {
-                let argument = Spanned { node: input_name(one.input, bound.name.node), span };
-                left.named.push(NamedArgument { name: argument, value: bound.value.clone() });
-            }
-        }
+        left.named.extend(passed.iter().flat_map(Passed::arguments));
         let copy = self.copy_of(&name, &function, &passed, span, depth)?;
         Ok((copy, left))
     }
 
     /// The function that an argument names; `None` for a variable of a function.
-    fn passed(&self, input: Ident, value: &Expression) -> Result<Option<Passed>, Diagnostic> {
+    fn passed(
+        &mut self,
+        input: Ident,
+        value: &Expression,
+        depth: usize,
+    ) -> Result<Option<Passed>, Diagnostic> {
         let (function, bound) = match &value.kind {
             ExpressionKind::Reference(reference) => (reference.name(), Vec::new()),
             ExpressionKind::PartialApplication { function, named } => {
@@ -99,7 +107,40 @@ impl Instantiation<'_> {
         if !self.functions.contains_key(&function) {
             return Ok(None);
         }
-        Ok(Some(Passed { input, function, bound }))
+        let bound = self.without_functions(function, bound, value.span, depth)?;
+        Ok(bound.map(|(function, bound)| Passed { input, function, bound }))
+    }
+
+    /// A partial application that binds functions as one of a copy that binds none; `None` if one
+    /// of them is a variable of a function.
+    fn without_functions(
+        &mut self,
+        name: Name,
+        bound: Vec<NamedArgument>,
+        span: Span,
+        depth: usize,
+    ) -> Result<Option<(Name, Vec<NamedArgument>)>, Diagnostic> {
+        let Some(Some(function)) = self.functions.get(&name).cloned() else {
+            return Ok(Some((name, bound)));
+        };
+        let is_function = |argument: &NamedArgument| {
+            let name = argument.name.node;
+            function.inputs.iter().any(|i| i.name == name && i.value_type == ValueType::Function)
+        };
+        let (functions, mut left): (Vec<_>, Vec<_>) = bound.into_iter().partition(is_function);
+        if functions.is_empty() {
+            return Ok(Some((name, left)));
+        }
+        let mut passed = Vec::new();
+        for argument in functions {
+            match self.passed(argument.name.node, &argument.value, depth)? {
+                Some(one) => passed.push(one),
+                None => return Ok(None),
+            }
+        }
+        left.extend(passed.iter().flat_map(Passed::arguments));
+        let copy = self.copy_of(&name, &function, &passed, span, depth)?;
+        Ok(Some((copy, left)))
     }
 
     /// A copy of a function for what is passed to it, made once.
@@ -123,10 +164,13 @@ impl Instantiation<'_> {
         if self.functions.contains_key(&copy) {
             return Ok(copy);
         }
+        if depth > MAX_DEPTH {
+            return Err(fault!(TYPE_MISMATCH, "`{name}` passes functions without end").at(span));
+        }
         self.functions.insert(copy.clone(), None);
         let mut made = function.clone();
         made.name = copy.clone();
-        made.inputs.retain(|input| input.value_type != ValueType::Function);
+        made.inputs.retain(|input| passed.iter().all(|one| one.input != input.name));
         for one in passed {
             made.inputs.extend(self.bound_inputs(one, span)?);
         }
@@ -178,6 +222,7 @@ impl Instantiation<'_> {
 
 /// The input of a copy for one that a partial application binds.
 fn input_name(input: Ident, bound: Ident) -> Ident {
+    let [input, bound] = [input, bound].map(|name| name.as_str().trim_matches('\''));
     Ident::new(&format!("'{input}.{bound}'"))
 }
 

@@ -16,7 +16,7 @@ use crate::syntax::ast::{
 };
 use crate::syntax::{self, Outline};
 use crate::value::{EnumerationDefinition, EnumerationValue, Value};
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -26,6 +26,8 @@ pub(super) struct Classes {
     pub(super) library: Library,
     /// Those that are nowhere.
     nowhere: HashSet<Ident>,
+    /// Functions that loaded ones call and that are no classes: copies for functions passed to them.
+    copies: HashMap<Name, Arc<Function>>,
     /// Counts what changes what a name can stand for.
     revision: u64,
     /// Folders whose packages are loaded when somebody names them.
@@ -77,6 +79,7 @@ impl Classes {
     fn changed(&mut self) {
         self.revision += 1;
         self.nowhere.clear();
+        self.copies.clear();
     }
 }
 
@@ -335,11 +338,19 @@ impl Session {
 
     fn function_named(&mut self, name: &Name) -> Result<Option<Arc<Function>>, Diagnostic> {
         let first = |mut errors: Vec<Diagnostic>| errors.swap_remove(0);
+        if let Some(copy) = self.classes.copies.get(name) {
+            return Ok(Some(copy.clone()));
+        }
         loop {
             let one = |error: Diagnostic| vec![error];
             match self.ask_library(|library| library.function(name).map_err(one)) {
-                Ok(functions) => {
-                    return Ok(functions.and_then(|all| all.into_values().next()));
+                Ok(None) => return Ok(None),
+                Ok(Some(functions)) => {
+                    let mut functions = functions.into_iter();
+                    let own = functions.next().map(|(_, own)| own);
+                    let Classes { library, copies, .. } = &mut self.classes;
+                    copies.extend(functions.filter(|(called, _)| !library.contains(called)));
+                    return Ok(own);
                 }
                 Err(errors) => {
                     if !self.load_wanted().map_err(first)? {

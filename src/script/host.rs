@@ -134,8 +134,7 @@ impl Host for Session {
     }
 }
 
-/// External functions read files and print as commands do; the clock is not theirs, so that a
-/// script gives the same numbers in every run.
+/// External functions read files, print and ask for the time as commands do.
 impl Outside for Session {
     fn read(&mut self, path: &str) -> Result<Vec<u8>, Fault> {
         let path = self.resource(path)?;
@@ -145,6 +144,10 @@ impl Outside for Session {
     fn print(&mut self, text: &str) -> Result<(), Fault> {
         Session::print(self, &format!("{text}\n"));
         Ok(())
+    }
+
+    fn unix_seconds(&mut self) -> Result<u64, Fault> {
+        Ok(self.world.unix_seconds())
     }
 
     fn random(&mut self) -> Result<&mut Random, Fault> {

@@ -199,18 +199,20 @@ pub(super) fn flattened(
     loop {
         let resources = session.resources_for(&name);
         session.classes.library.set_resources(resources);
-        match session.ask_library(|library| flatten::flatten(library, &name, &modification)) {
-            Ok(flattened) => {
-                warn(session, &flattened.warnings);
-                return Ok(flattened);
-            }
-            Err(errors) => {
-                if !session.load_wanted()? {
-                    let call = session.call;
-                    return Err(errors.into_iter().map(|error| placed(error, call)).collect());
-                }
-            }
+        let found = session
+            .ask_library(|library| flatten::flatten_unbalanced(library, &name, &modification));
+        // Functions that only other functions call are missed without an error.
+        if session.load_wanted()? {
+            continue;
         }
+        let (flattened, imbalance) = found.map_err(|errors| {
+            errors.into_iter().map(|error| placed(error, session.call)).collect::<Vec<_>>()
+        })?;
+        if let Some(imbalance) = imbalance {
+            return Err(vec![dae::explain_imbalance(&flattened.model, imbalance)]);
+        }
+        warn(session, &flattened.warnings);
+        return Ok(flattened);
     }
 }
 

@@ -3,7 +3,8 @@
 use super::function::{self, FunctionId};
 use super::node::{Expr, Node, Number, VarId};
 use indexmap::IndexSet;
-use rustc_hash::{FxBuildHasher, FxHashSet};
+use rustc_hash::FxBuildHasher;
+use std::cell::RefCell;
 
 /// All nodes of all expressions of a model. The constructors ([`Pool::add`] …) simplify locally.
 #[derive(Debug, Clone, Default)]
@@ -102,29 +103,64 @@ impl Pool {
 
     /// All nodes that the roots are made of, each once, operands before their nodes.
     pub fn reachable(&self, roots: &[Expr]) -> Vec<Expr> {
-        let mut seen: FxHashSet<Expr> = FxHashSet::default();
         let mut found = Vec::new();
-        let mut stack = roots.to_vec();
-        while let Some(expr) = stack.pop() {
-            if seen.insert(expr) {
-                found.push(expr);
-                self.node(expr).for_each_operand(|operand| stack.push(operand));
-            }
-        }
+        self.visit(roots, |expr| found.push(expr));
         found.sort_unstable();
         found
     }
 
     /// The variables that an expression is made of, ascending.
     pub fn variables(&self, expr: Expr) -> Vec<VarId> {
-        let mut variables: Vec<VarId> =
-            self.reachable(&[expr]).into_iter().filter_map(|e| self.as_variable(e)).collect();
+        let mut variables = Vec::new();
+        self.visit(&[expr], |expr| variables.extend(self.as_variable(expr)));
         variables.sort_unstable();
         variables
     }
 
     /// Whether an expression contains a variable.
     pub fn depends_on(&self, expr: Expr, variable: VarId) -> bool {
-        self.reachable(&[expr]).into_iter().any(|e| self.as_variable(e) == Some(variable))
+        let mut found = false;
+        self.visit(&[expr], |expr| found |= self.as_variable(expr) == Some(variable));
+        found
+    }
+
+    /// Visits all nodes that the roots are made of, each once.
+    fn visit(&self, roots: &[Expr], mut visit: impl FnMut(Expr)) {
+        VISITS.with_borrow_mut(|visits| {
+            let this = visits.begin(self.len());
+            let mut stack = roots.to_vec();
+            while let Some(expr) = stack.pop() {
+                if std::mem::replace(&mut visits.last[expr.index()], this) != this {
+                    visit(expr);
+                    self.node(expr).for_each_operand(|operand| stack.push(operand));
+                }
+            }
+        });
+    }
+}
+
+thread_local! {
+    /// Kept from visit to visit: expressions are visited too often for a set made each time.
+    static VISITS: RefCell<Visits> = RefCell::default();
+}
+
+/// The number of the last visit to each node, of whatever pool.
+#[derive(Default)]
+struct Visits {
+    count: u32,
+    last: Vec<u32>,
+}
+
+impl Visits {
+    /// The number of a new visit to a pool of `len` nodes.
+    fn begin(&mut self, len: usize) -> u32 {
+        if self.last.len() < len {
+            self.last.resize(len, 0);
+        }
+        self.count = self.count.checked_add(1).unwrap_or_else(|| {
+            self.last.fill(0);
+            1
+        });
+        self.count
     }
 }

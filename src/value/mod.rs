@@ -74,6 +74,14 @@ pub struct EnumerationDefinition {
 }
 
 impl EnumerationValue {
+    /// The literal of a number, from 1, of the same enumeration.
+    pub fn of_number(&self, ordinal: i64) -> Option<EnumerationValue> {
+        let known = 1..=self.definition.literals.len() as i64;
+        known
+            .contains(&ordinal)
+            .then(|| EnumerationValue { definition: self.definition.clone(), ordinal })
+    }
+
     /// The literal's own name.
     pub fn literal(&self) -> &'static str {
         let at = usize::try_from(self.ordinal - 1).ok();

@@ -38,6 +38,29 @@ impl Outside for OneFile {
     }
 }
 
+/// A clock that stands still.
+struct Clock(u64);
+
+impl Outside for Clock {
+    fn unix_seconds(&mut self) -> Result<u64, Fault> {
+        Ok(self.0)
+    }
+}
+
+#[test]
+fn the_time_is_a_date_and_a_time_of_day() {
+    let at = |seconds: u64| {
+        let args = vec![Number(f64::NAN); 7];
+        let done = call_with("ModelicaInternal_getTime", &args, &mut Clock(seconds));
+        done.expect("a time").numbers[..7].to_vec()
+    };
+    assert_eq!(at(0), [0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1970.0]);
+    assert_eq!(at(951_782_399), [0.0, 59.0, 59.0, 23.0, 28.0, 2.0, 2000.0]);
+    assert_eq!(at(951_868_799), [0.0, 59.0, 59.0, 23.0, 29.0, 2.0, 2000.0]);
+    assert_eq!(at(1_798_761_599), [0.0, 59.0, 59.0, 23.0, 31.0, 12.0, 2026.0]);
+    assert_eq!(at(4_107_542_400), [0.0, 0.0, 0.0, 0.0, 1.0, 3.0, 2100.0]);
+}
+
 fn call_with(name: &str, args: &[Arg<'_>], outside: &mut dyn Outside) -> Result<Done, Fault> {
     let entry = external::find(name).unwrap_or_else(|| panic!("there is no `{name}`"));
     let (mut numbers, mut texts, mut objects) = (vec![0.0], Vec::<Arc<str>>::new(), Vec::new());

@@ -59,6 +59,16 @@ const CORPUS: &[(&str, &str)] = &[
          y := r.a + r.b[2]; end f;",
     ),
     (
+        "arrays of records",
+        "record R Real a; Real b[2]; end R; function total input R r[:]; output Real t = 0; \
+         output R last; algorithm for i in 1:size(r, 1) loop t := t + r[i].a*r[i].b[2]; end for; \
+         last := r[end]; end total; function f {h} protected R v[3]; R last; Real t; \
+         Integer k = 0; algorithm for i in 1:3 loop v[i] := R(i*u, {cos(u), i}); end for; \
+         v[2].a := u^2; v[3].b[1] := n; while k < 3 and u < 1000 loop k := k + 1; \
+         v[k].b[2] := v[k].b[2] + k; end while; (t, last) := total(v); \
+         y := t + last.b[1] + sum(v.a); end f;",
+    ),
+    (
         "sizes that depend on a known argument",
         "function powers input Real u; input Integer m; output Real p[m]; algorithm p[1] := u; \
          for i in 2:m loop p[i] := p[i - 1]*u; end for; end powers; \
@@ -316,6 +326,30 @@ fn a_function_with_bound_inputs_is_passed_to_loops() {
     let program = compiled(&library).expect("it compiles");
     let mut system = program.system();
     assert_eq!(of_model(&mut system, 0.5, 4).expect("a value"), (8.5, 1.0));
+}
+
+#[test]
+fn a_partial_application_may_bind_an_input_that_is_a_function() {
+    // Twice a u + b at 3, with a = n and b = u.
+    let functions = "partial function Of input Real u; output Real y; end Of; \
+        function line extends Of; input Real a; input Real b; algorithm y := a*u + b; end line; \
+        function scaled extends Of; input Of g; input Real k; algorithm y := k*g(u); end scaled; \
+        function at3 input Of g; output Real y; algorithm y := g(3); end at3; \
+        function twice input Of g; output Real y; \
+        algorithm y := at3(function scaled(g = g, k = 2)); end twice; \
+        function f {h} algorithm y := twice(function line(a = n, b = u)); end f;";
+    let program = compiled(&library(functions)).expect("it compiles");
+    assert_eq!(of_model(&mut program.system(), 0.5, 4).expect("a value"), (25.0, 2.0));
+}
+
+#[test]
+fn what_cannot_be_compiled_is_run_for_known_arguments() {
+    // The size of `kept` is that of what is assigned to it.
+    let functions = "function positive input Real v[:]; output Real s; protected Real kept[:]; \
+        algorithm kept := v; s := sum(kept); end positive; \
+        function f {h} algorithm y := u + positive({1, 2, 4}); end f;";
+    let program = compiled(&library(functions)).expect("it compiles");
+    assert_eq!(of_model(&mut program.system(), 0.5, 4).expect("a value"), (7.5, 1.0));
 }
 
 #[test]

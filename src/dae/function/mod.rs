@@ -22,7 +22,7 @@ use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use super::inline::{MAX_INLINED, MAX_STATEMENTS, inline};
 use super::lowering::{Lowered, field};
 use crate::diag::Diagnostic;
-use crate::eval::{Function, ValueType};
+use crate::eval::{Function, FunctionComponent, ValueType};
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
@@ -151,12 +151,17 @@ pub(super) fn local_value<T: Copy>(
 
 /// The type of a variable of a function, or of a field of it.
 pub(super) fn component_type(function: &Function, path: &str) -> Option<ValueType> {
+    component_of(function, path).map(|component| component.value_type.clone())
+}
+
+/// The declaration of a variable of a function, or of a field of it.
+fn component_of<'f>(function: &'f Function, path: &str) -> Option<&'f FunctionComponent> {
     let mut parts = Name::parse(path).parts.into_iter();
     let first = parts.next();
     let mut all = function.inputs.iter().chain(&function.outputs).chain(&function.locals);
     let component = all.find(|component| Some(component.name) == first)?;
-    parts.try_fold(component.value_type.clone(), |value_type, part| match value_type {
-        ValueType::Record(_, fields) => Some(fields.get(&part)?.value_type.clone()),
+    parts.try_fold(component, |component, part| match &component.value_type {
+        ValueType::Record(_, fields) => fields.get(&part),
         _ => None,
     })
 }

@@ -151,37 +151,77 @@ impl Body<'_, '_> {
         value: Lowered<Operand>,
         loops: &Loops,
     ) -> Result<(), Diagnostic> {
-        let Some((last, path)) = target.parts.split_last() else { return Ok(()) };
-        if path.iter().any(|part| !part.subscripts.is_empty()) {
-            return Err(fault!(NOT_SUPPORTED, "an array of records").at(target.span));
-        }
-        let names: Vec<Ident> = path.iter().chain([last]).map(|part| part.name).collect();
+        let names: Vec<Ident> = target.parts.iter().map(|part| part.name).collect();
         let place = self.local(&names).cloned().ok_or_else(|| {
             fault!(UNRESOLVED_REFERENCE, "there is no variable `{}`", target.name()).at(target.span)
         })?;
+        let subscripts = self.subscripts_of(target)?;
+        if !subscripts.is_empty() {
+            return self.assign_elements(&place, &subscripts, &value, target, loops);
+        }
         let mut scalars = Vec::new();
         value.append_scalars(&mut scalars);
-        if last.subscripts.is_empty() {
-            if place.shape().is_none() || place.shape() != value.shape() {
-                return Err(fault!(
-                    ARRAY_MISMATCH,
-                    "the value of `{}` has another size",
-                    target.name()
-                )
-                .at(target.span));
+        if place.shape().is_none() || place.shape() != value.shape() {
+            return Err(fault!(
+                ARRAY_MISMATCH,
+                "the value of `{}` has another size",
+                target.name()
+            )
+            .at(target.span));
+        }
+        let mut places = Vec::new();
+        place.append_scalars(&mut places);
+        if let Some(Operand::Register(first)) = places.first().copied() {
+            let scalars = self.unaliased(first, places.len(), scalars);
+            self.emitter.copy(first, &scalars);
+        }
+        Ok(())
+    }
+
+    /// The subscripts of all parts of `v[i].x[j]`, which are those of the array that `v.x` is.
+    fn subscripts_of(&self, target: &ComponentReference) -> Result<Vec<Subscript>, Diagnostic> {
+        let refused =
+            || Err(fault!(NOT_SUPPORTED, "a slice of an array of records").at(target.span));
+        let mut subscripts = Vec::new();
+        let mut is_whole = false;
+        let mut path = String::new();
+        for (position, part) in target.parts.iter().enumerate() {
+            path.push_str(if position > 0 { "." } else { "" });
+            path.push_str(part.name.as_str());
+            let rank = super::component_of(&self.function, &path).map_or(0, |c| c.dims.len());
+            let is_last = position + 1 == target.parts.len();
+            let given = part.subscripts.len();
+            if given > 0 && is_whole || !is_last && given > 0 && given != rank {
+                return refused();
             }
-            let mut places = Vec::new();
-            place.append_scalars(&mut places);
-            if let Some(Operand::Register(first)) = places.first().copied() {
-                let scalars = self.unaliased(first, places.len(), scalars);
-                self.emitter.copy(first, &scalars);
+            is_whole |= given == 0 && rank > 0;
+            subscripts.extend(part.subscripts.iter().cloned());
+        }
+        Ok(subscripts)
+    }
+
+    /// `target[subscripts] := value`, for each array of a record.
+    fn assign_elements(
+        &mut self,
+        place: &Lowered<Operand>,
+        subscripts: &[Subscript],
+        value: &Lowered<Operand>,
+        target: &ComponentReference,
+        loops: &Loops,
+    ) -> Result<(), Diagnostic> {
+        if let (Lowered::Record(places), Lowered::Record(values)) = (place, value) {
+            for (name, place) in places {
+                let Some((_, value)) = values.iter().find(|(field, _)| field == name) else {
+                    continue;
+                };
+                self.assign_elements(place, subscripts, value, target, loops)?;
             }
             return Ok(());
         }
-        let (Some(array), Some(value)) = (elements(&place), elements(&value)) else {
+        let (Some(array), Some(value)) = (elements(place), elements(value)) else {
             return Err(fault!(NOT_SUPPORTED, "subscripts of a record").at(target.span));
         };
-        let choices = self.lowering(loops).choices(&array.dims, &last.subscripts, target.span)?;
+        let choices = self.lowering(loops).choices(&array.dims, subscripts, target.span)?;
         let chosen = self.chosen(&array.dims, choices, target.span)?;
         if chosen.positions.len() != value.elements.len() {
             return Err(fault!(
@@ -195,7 +235,7 @@ impl Body<'_, '_> {
         let Some(Operand::Register(first)) = array.elements.first().copied() else {
             return Ok(());
         };
-        let scalars = self.unaliased(first, array.elements.len(), scalars);
+        let scalars = self.unaliased(first, array.elements.len(), value.elements.clone());
         for (position, element) in chosen.positions.iter().zip(scalars) {
             let base = first + *position as Register;
             match chosen.offset {

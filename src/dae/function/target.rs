@@ -8,7 +8,7 @@ use crate::dae::lowering::{Array, Binary, Branch, Choice, Lowered, Operator, Tar
 use crate::diag::Diagnostic;
 use crate::eval::{Function, ValueType};
 use crate::fault;
-use crate::name::Name;
+use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::{FunctionId, Value};
@@ -185,6 +185,10 @@ impl Target for Body<'_, '_> {
         reference: &ComponentReference,
     ) -> Result<Lowered<Operand>, Diagnostic> {
         super::local_value(&self.locals, path, reference)
+    }
+
+    fn own_variable(&self, name: Ident) -> Option<Lowered<Operand>> {
+        self.locals.iter().find(|(own, _)| *own == name).map(|(_, value)| value.clone())
     }
 
     fn function(&self, name: &Name) -> Option<Arc<Function>> {

@@ -3,7 +3,7 @@
 
 use super::arrays::concatenate;
 use super::{Array, Binary, Lowered, Lowering, Operator, Target, placed};
-use crate::dae::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
+use crate::dae::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use crate::diag::{Diagnostic, suggest};
 use crate::eval::FunctionBody;
 use crate::fault;
@@ -118,7 +118,12 @@ impl<T: Target> Lowering<'_, T> {
         if let Some(outputs) = self.text_call(user, &values, span)? {
             return Ok(outputs);
         }
-        self.target.call(user, values, span)
+        match self.target.call(user, values.clone(), span) {
+            Err(error) if [NOT_SUPPORTED, NO_CONSTANT_VALUE].contains(&error.code) => {
+                self.settled_call(user, &values, span).ok_or(error)
+            }
+            outputs => outputs,
+        }
     }
 
     fn time_operator(
@@ -312,7 +317,7 @@ impl<T: Target> Lowering<'_, T> {
                 Ok(Array::vector(sizes))
             }
             [a, dimension] => {
-                let dims = self.array(a)?.dims;
+                let dims = self.leading_sizes(a)?;
                 let dimension = self.known_size(dimension)?;
                 match dims.get(dimension.wrapping_sub(1)) {
                     Some(size) => Ok(Array::scalar(self.target.constant(*size as f64))),
@@ -322,6 +327,19 @@ impl<T: Target> Lowering<'_, T> {
                 }
             }
             _ => Err(fault!(ARRAY_MISMATCH, "`size` takes an array and a dimension").at(span)),
+        }
+    }
+
+    /// The sizes of an array; those of an array of records and then some of a component.
+    fn leading_sizes(&mut self, e: &Expression) -> Result<Vec<usize>, Diagnostic> {
+        let mut value = &self.lower(e)?;
+        while let Lowered::Record(fields) = value {
+            let Some((_, first)) = fields.first() else { break };
+            value = first;
+        }
+        match value {
+            Lowered::Array(array) => Ok(array.dims.clone()),
+            _ => self.array(e).map(|array| array.dims),
         }
     }
 

@@ -1,5 +1,6 @@
 //! The forms of expressions.
 
+use super::records::stacked;
 use super::{Array, Lowered, Lowering, MAX_DEPTH, MAX_SCALARS, Target, size_fault};
 use crate::dae::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
 use crate::diag::Diagnostic;
@@ -75,8 +76,8 @@ impl<T: Target> Lowering<'_, T> {
                 .at(e.span));
             }
             ExpressionKind::Subscripted { base, subscripts } => {
-                let base = self.array(base)?;
-                self.subscripted(base, subscripts, e.span)?
+                let base = self.lower(base)?;
+                return self.elements_of(base, subscripts, e.span);
             }
             ExpressionKind::Field { base, name } => {
                 let base = self.lower(base)?;
@@ -108,18 +109,13 @@ impl<T: Target> Lowering<'_, T> {
         {
             return Ok(Lowered::scalar(*value));
         }
+        if let Some(value) = self.part_of_own(reference)? {
+            return Ok(value);
+        }
         let path = self.path(reference)?;
         let value = self.target.reference(&path, reference)?;
         let subscripts = &reference.parts[reference.parts.len() - 1].subscripts;
-        if subscripts.is_empty() {
-            return Ok(value);
-        }
-        match value {
-            Lowered::Array(array) => {
-                Ok(Lowered::Array(self.subscripted(array, subscripts, reference.span)?))
-            }
-            _ => Err(fault!(NOT_SUPPORTED, "subscripts of a record").at(reference.span)),
-        }
+        self.elements_of(value, subscripts, reference.span)
     }
 
     /// The flat name without the last part's subscripts: `c[2].x`.
@@ -271,8 +267,8 @@ impl<T: Target> Lowering<'_, T> {
         elements: &[Expression],
         span: Span,
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
-        let arrays = elements.iter().map(|e| self.array(e)).collect::<Result<Vec<_>, _>>()?;
-        Ok(Lowered::Array(stack(arrays, span)?))
+        let values = elements.iter().map(|e| self.lower(e)).collect::<Result<Vec<_>, _>>()?;
+        stacked(values, span)
     }
 }
 
@@ -292,7 +288,7 @@ pub(crate) fn field<S: Copy>(
 }
 
 /// Arrays of one size as the elements of an array with one more dimension.
-fn stack<S: Copy>(arrays: Vec<Array<S>>, span: Span) -> Result<Array<S>, Diagnostic> {
+pub(super) fn stack<S: Copy>(arrays: Vec<Array<S>>, span: Span) -> Result<Array<S>, Diagnostic> {
     let mut dims = vec![arrays.len()];
     let Some(first) = arrays.first() else {
         return Ok(Array { dims, elements: Vec::new() });

@@ -9,6 +9,7 @@ mod expression;
 mod homotopy;
 mod operators;
 mod placed;
+mod records;
 mod texts;
 mod varying_texts;
 mod vectorized;
@@ -115,6 +116,11 @@ pub(crate) trait Target {
         path: &str,
         reference: &ComponentReference,
     ) -> Result<Lowered<Self::Scalar>, Diagnostic>;
+    /// A variable of the function being compiled; `None` where no function is.
+    fn own_variable(&self, name: Ident) -> Option<Lowered<Self::Scalar>> {
+        let _ = name;
+        None
+    }
     /// A user function; `None` if there is none of this name.
     fn function(&self, name: &Name) -> Option<Arc<crate::eval::Function>>;
     /// The type of the scalars of a variable that has this path.

@@ -50,19 +50,48 @@ impl<T: Target> Lowering<'_, T> {
                 None => return Ok(None),
             }
         }
-        let resources = self.target.resources();
         if let ([Value::String(name)], true) =
             (values.as_slice(), FIND_FILES.contains(&function.name.to_string().as_str()))
         {
-            let path = resources.path(name).map_err(|fault| fault.at(span))?;
+            let path = self.target.resources().path(name).map_err(|fault| fault.at(span))?;
             return Ok(Some(vec![Lowered::Text(path.into())]));
         }
-        let mut host = Compiling { target: &*self.target, resources };
-        match eval::call_function(function, values.into(), span, &mut host) {
-            Ok(outputs) => Ok(outputs.iter().map(|value| self.lowered_value(value)).collect()),
-            Err(error) if gives_text => Err(error),
-            Err(_) => Ok(None),
+        match self.interpreted(function, values, span) {
+            Err(_) if !gives_text => Ok(None),
+            outputs => outputs,
         }
+    }
+
+    /// The outputs of a function that cannot be compiled, run now; `None` if an argument is not
+    /// known or the interpreter cannot run it either. Parameters among the arguments are settled.
+    pub(super) fn settled_call(
+        &mut self,
+        function: &Arc<Function>,
+        arguments: &[Lowered<T::Scalar>],
+        span: Span,
+    ) -> Option<Vec<Lowered<T::Scalar>>> {
+        if function.impure {
+            return None;
+        }
+        let known = function
+            .inputs
+            .iter()
+            .zip(arguments)
+            .map(|(input, argument)| self.known_value(argument, &input.value_type, true));
+        let values = known.collect::<Option<Vec<Value>>>()?;
+        self.interpreted(function, values, span).ok().flatten()
+    }
+
+    /// The outputs of a function as numbers and texts; `None` if one of them is neither.
+    fn interpreted(
+        &mut self,
+        function: &Arc<Function>,
+        arguments: Vec<Value>,
+        span: Span,
+    ) -> Result<Option<Vec<Lowered<T::Scalar>>>, Diagnostic> {
+        let mut host = Compiling { target: &*self.target, resources: self.target.resources() };
+        let outputs = eval::call_function(function, arguments.into(), span, &mut host)?;
+        Ok(outputs.iter().map(|value| self.lowered_value(value)).collect())
     }
 
     /// `String(x, …)` (MLS §3.7.1), [`UNKNOWN_TEXT`] if that is not known.

@@ -308,7 +308,8 @@ impl Instantiation<'_> {
     }
 
     /// A connection set of a class has one source of a signal at most: an output of a component, or
-    /// an input of the class itself (MLS §9.3).
+    /// an input of the class itself (MLS §9.3). Expandable connectors pass signals on in either
+    /// direction (MLS §9.1.3).
     fn two_sources(
         &self,
         set: &[Face],
@@ -327,7 +328,8 @@ impl Instantiation<'_> {
                 None => false,
             }
         };
-        let mut sources = set.iter().filter(is_source);
+        let mut sources =
+            set.iter().filter(|face| is_source(face) && !self.is_inside_expandable(face.leaf));
         let (one, other) = (sources.next()?, sources.next()?);
         let edge = edges.iter().find(|edge| edge.faces.contains(other))?;
         let [one, other] = [one, other].map(|face| &self.nodes[face.leaf.0].path);

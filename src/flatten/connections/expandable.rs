@@ -261,7 +261,7 @@ impl Instantiation<'_> {
         }
     }
 
-    fn is_inside_expandable(&self, leaf: NodeId) -> bool {
+    pub(in super::super) fn is_inside_expandable(&self, leaf: NodeId) -> bool {
         let mut node = self.nodes[leaf.0].parent;
         while let Some(id) = node {
             if self.is_expandable(id) {

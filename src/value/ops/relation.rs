@@ -40,7 +40,7 @@ pub fn not_equal(left: &Value, right: &Value) -> Result<bool, Fault> {
 
 /// How two scalars of simple types compare: numbers by value (an Integer and a Real exactly),
 /// Strings by their characters' codes, `false` before `true`, literals of one enumeration in order
-/// of declaration. `None` if one is not a number (NaN).
+/// of declaration, with an Integer by their numbers. `None` if one is not a number (NaN).
 pub fn order(symbol: &str, left: &Value, right: &Value) -> Result<Option<Ordering>, Fault> {
     match (left, right) {
         (Value::Real(a), Value::Real(b)) => Ok(a.partial_cmp(b)),
@@ -49,6 +49,9 @@ pub fn order(symbol: &str, left: &Value, right: &Value) -> Result<Option<Orderin
         (Value::Real(a), Value::Integer(b)) => Ok(compare_mixed(*b, *a).map(Ordering::reverse)),
         (Value::String(a), Value::String(b)) => Ok(Some(a.cmp(b))),
         (Value::Boolean(a), Value::Boolean(b)) => Ok(Some(a.cmp(b))),
+        // In the functions of loaded classes literals are ordinals.
+        (Value::Enumeration(a), Value::Integer(b)) => Ok(Some(a.ordinal.cmp(b))),
+        (Value::Integer(a), Value::Enumeration(b)) => Ok(Some(a.cmp(&b.ordinal))),
         (Value::Enumeration(a), Value::Enumeration(b)) if a.definition == b.definition => {
             Ok(Some(a.ordinal.cmp(&b.ordinal)))
         }

@@ -1,0 +1,86 @@
+//! Arrays of records, as records of arrays: the sizes of the array stand before those of each
+//! component, so that `v.x` of an array of records `v` is the component `x` itself (MLS §10.6.1).
+
+use super::expression::{field, stack};
+use super::{Array, Lowered, Lowering, Target};
+use crate::dae::errors::ARRAY_MISMATCH;
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::source::Span;
+use crate::syntax::ast::{ComponentReference, Subscript};
+
+impl<T: Target> Lowering<'_, T> {
+    /// What subscripts choose of an array, or of an array of records.
+    pub(super) fn elements_of(
+        &mut self,
+        value: Lowered<T::Scalar>,
+        subscripts: &[Subscript],
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        if subscripts.is_empty() {
+            return Ok(value);
+        }
+        match value {
+            Lowered::Array(array) => self.subscripted(array, subscripts, span).map(Lowered::Array),
+            Lowered::Record(fields) => {
+                let mut chosen = Vec::with_capacity(fields.len());
+                for (name, value) in fields {
+                    chosen.push((name, self.elements_of(value, subscripts, span)?));
+                }
+                Ok(Lowered::Record(chosen))
+            }
+            Lowered::Text(_) => Err(fault!(ARRAY_MISMATCH, "subscripts of a text").at(span)),
+        }
+    }
+
+    /// A reference of which a part before the last has subscripts, such as `v[i].x`, to a variable
+    /// of a function; `None` elsewhere.
+    pub(super) fn part_of_own(
+        &mut self,
+        reference: &ComponentReference,
+    ) -> Result<Option<Lowered<T::Scalar>>, Diagnostic> {
+        let Some((_, before)) = reference.parts.split_last() else { return Ok(None) };
+        if before.iter().all(|part| part.subscripts.is_empty()) {
+            return Ok(None);
+        }
+        let Some(mut value) = self.target.own_variable(before[0].name) else { return Ok(None) };
+        for (position, part) in reference.parts.iter().enumerate() {
+            if position > 0 {
+                value = field(value, part.name, reference.span)?;
+            }
+            value = self.elements_of(value, &part.subscripts, reference.span)?;
+        }
+        Ok(Some(value))
+    }
+}
+
+/// Values of one shape as the elements of an array with one more dimension.
+pub(super) fn stacked<S: Copy>(
+    values: Vec<Lowered<S>>,
+    span: Span,
+) -> Result<Lowered<S>, Diagnostic> {
+    let Some(Lowered::Record(first)) = values.first() else {
+        return stack(arrays(values, span)?, span).map(Lowered::Array);
+    };
+    let names: Vec<_> = first.iter().map(|(name, _)| *name).collect();
+    let mut fields = Vec::with_capacity(names.len());
+    for name in names {
+        let of_one = |value: &Lowered<S>| field(value.clone(), name, span);
+        let column = values.iter().map(of_one).collect::<Result<Vec<_>, _>>()?;
+        fields.push((name, stacked(column, span)?));
+    }
+    Ok(Lowered::Record(fields))
+}
+
+fn arrays<S: Copy>(values: Vec<Lowered<S>>, span: Span) -> Result<Vec<Array<S>>, Diagnostic> {
+    let array = |value| match value {
+        Lowered::Array(array) => Ok(array),
+        Lowered::Record(_) => {
+            Err(fault!(ARRAY_MISMATCH, "a record stands where a number is needed").at(span))
+        }
+        Lowered::Text(_) => {
+            Err(fault!(ARRAY_MISMATCH, "a text stands where a number is needed").at(span))
+        }
+    };
+    values.into_iter().map(array).collect()
+}
