@@ -1,6 +1,6 @@
 //! FC2Layer and FC3Layer on meshes from 10 to 2,000 control volumes in each layer of the same
-//! thickness: processor time of one simulation (0.5 s, tolerance 1e-4, 100 output intervals, compiled once) and of
-//! one step, which must grow with the number of states and no faster.
+//! thickness: processor time of one simulation (0.5 s, tolerance 1e-4, 100 output intervals, compiled
+//! once) and of one step, which must grow with the number of states and no faster.
 //!
 //! Prints a table and writes the figure that the model's documentation shows. Arguments that are
 //! numbers limit the meshes: `cargo bench --bench mesh -- 200`.
@@ -14,17 +14,23 @@ use gapilib::sim::{DaeSystem, OutputGrid, Settings, Simulator, Trajectory};
 use gapilib::source::SourceMap;
 use gapilib::syntax;
 use std::path::Path;
-use std::sync::{Arc, LazyLock};
-use std::time::Instant;
+use std::sync::Arc;
+use std::time::Duration;
 
 #[path = "disk.rs"]
 mod disk;
 use disk::Disk;
+#[path = "processor_time.rs"]
+mod processor_time;
+use processor_time::processor_time;
 
 const MESHES: [usize; 8] = [10, 20, 50, 100, 200, 500, 1000, 2000];
 /// Name of a layer and its thickness in m.
 const LAYERS: [(&str, f64); 3] =
     [("mem_layer1", 110e-6), ("act_layer1", 11e-6), ("dif_layer1", 210e-6)];
+
+/// Simulations of one mesh are measured for so long.
+const ENOUGH: Duration = Duration::from_secs(1);
 
 /// What was measured on one mesh.
 struct Row {
@@ -56,18 +62,10 @@ fn program(model: &str, layers: usize, n: usize) -> Arc<Program> {
     Program::compile(sort(&flat).expect("it can be sorted")).expect("it compiles")
 }
 
-/// Seconds of processor time of this thread; where the system does not tell, those of the clock.
-fn seconds() -> f64 {
-    static BEGIN: LazyLock<Instant> = LazyLock::new(Instant::now);
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
-    let nanoseconds = told.split(' ').next().and_then(|number| number.parse::<f64>().ok());
-    nanoseconds.map_or_else(|| BEGIN.elapsed().as_secs_f64(), |number| 1e-9 * number)
-}
-
 fn measure(model: &str, layers: usize, n: usize) -> Row {
-    let begin = seconds();
+    let begin = processor_time();
     let program = program(model, layers, n);
-    let translation = seconds() - begin;
+    let translation = (processor_time() - begin).as_secs_f64();
     let mut system = program.system();
     system.observe_only(&[program.find_variable("V").expect("declared")]);
     let settings = Settings {
@@ -78,13 +76,13 @@ fn measure(model: &str, layers: usize, n: usize) -> Row {
     };
     let (mut simulator, mut trajectory) = (Simulator::new(), Trajectory::default());
     let (mut runs, mut steps) = (0, 0);
-    let begin = seconds();
-    while runs == 0 || seconds() - begin < 1.0 {
+    let begin = processor_time();
+    while runs == 0 || processor_time() - begin < ENOUGH {
         let statistics = simulator.run(&mut system, &settings, &mut trajectory);
         steps = statistics.expect("the simulation succeeds").steps;
         runs += 1;
     }
-    let simulation = (seconds() - begin) / f64::from(runs);
+    let simulation = (processor_time() - begin).as_secs_f64() / f64::from(runs);
     Row { states: system.n_differential(), translation, steps, simulation }
 }
 

@@ -1,4 +1,4 @@
-//! Simulations at tolerance 1e-4 with 100 output intervals, initialisation included, as an
+//! Processor time of simulations at tolerance 1e-4 with 100 output intervals, initialisation included, as an
 //! identification makes them: compiled once, two variables observed.
 //!
 //! | model | at most |
@@ -14,6 +14,7 @@
 //! The folder that `GAPILIB_MSL` names holds the standard library, of which two examples are
 //! simulated; without it they are left out.
 
+use criterion::measurement::{Measurement, ValueFormatter, WallTime};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use gapilib::compile::Program;
 use gapilib::dae::sort;
@@ -22,10 +23,14 @@ use gapilib::name::Name;
 use gapilib::sim::{OutputGrid, Settings, Simulator, Trajectory};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 #[path = "disk.rs"]
 mod disk;
 use disk::Disk;
+#[path = "processor_time.rs"]
+mod processor_time;
+use processor_time::processor_time;
 
 /// Class, observed variables, end in seconds, what is aimed at.
 const SHIPPED: &[(&str, &[&str], f64, &str)] = &[
@@ -45,6 +50,39 @@ const STANDARD: &[(&str, &[&str], f64)] = &[
     ("Modelica.Electrical.Analog.Examples.CauerLowPassAnalog", &["C9.v"], 60.0),
     ("Modelica.Mechanics.MultiBody.Examples.Elementary.DoublePendulum", &["revolute1.phi"], 3.0),
 ];
+
+/// What is measured.
+struct ProcessorTime;
+
+impl Measurement for ProcessorTime {
+    type Intermediate = Duration;
+    type Value = Duration;
+
+    fn start(&self) -> Duration {
+        processor_time()
+    }
+
+    fn end(&self, begin: Duration) -> Duration {
+        processor_time() - begin
+    }
+
+    fn add(&self, a: &Duration, b: &Duration) -> Duration {
+        *a + *b
+    }
+
+    fn zero(&self) -> Duration {
+        Duration::ZERO
+    }
+
+    fn to_f64(&self, value: &Duration) -> f64 {
+        WallTime.to_f64(value)
+    }
+
+    fn formatter(&self) -> &dyn ValueFormatter {
+        static FORMATTER: WallTime = WallTime;
+        FORMATTER.formatter()
+    }
+}
 
 fn program(folder: &Path, packages: &[&str], class: &str) -> Arc<Program> {
     let files: Arc<dyn LibraryFiles> = Arc::new(Disk::default());
@@ -102,7 +140,7 @@ fn run(program: &Arc<Program>, observed: &[&str], stop: f64) -> impl FnMut() -> 
     }
 }
 
-fn simulations(criterion: &mut Criterion) {
+fn simulations(criterion: &mut Criterion<ProcessorTime>) {
     let mut group = criterion.benchmark_group("simulation");
     for (class, observed, stop, target) in SHIPPED {
         let mut simulate = run(&shipped(class), observed, *stop);
@@ -120,7 +158,7 @@ fn simulations(criterion: &mut Criterion) {
 }
 
 /// What a control volume costs must not grow with their number.
-fn control_volumes(criterion: &mut Criterion) {
+fn control_volumes(criterion: &mut Criterion<ProcessorTime>) {
     let mut group = criterion.benchmark_group("LoadSteps by control volumes");
     group.sample_size(10);
     for n in VOLUMES {
@@ -131,7 +169,7 @@ fn control_volumes(criterion: &mut Criterion) {
     group.finish();
 }
 
-fn first_result(criterion: &mut Criterion) {
+fn first_result(criterion: &mut Criterion<ProcessorTime>) {
     let mut group = criterion.benchmark_group("source to first result");
     group.sample_size(10);
     group.bench_function("FC3Layer, at most 400 ms", |bencher| {
@@ -140,5 +178,9 @@ fn first_result(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, simulations, control_volumes, first_result);
+criterion_group! {
+    name = benches;
+    config = Criterion::default().with_measurement(ProcessorTime);
+    targets = simulations, control_volumes, first_result
+}
 criterion_main!(benches);
