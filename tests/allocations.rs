@@ -4,6 +4,7 @@
 //! with as many random parameters in one process.
 
 #![allow(unsafe_code, reason = "an allocator cannot be written without")]
+#![allow(clippy::print_stdout, reason = "the figures are asked for with --nocapture")]
 
 use gapilib::compile::{Program, System};
 use gapilib::dae::sort;

@@ -74,11 +74,14 @@ pub(super) struct Function {
 impl Function {
     /// Translates a tape, if it consists of what can be translated and the machine is supported.
     fn new(code: &Outputs) -> Option<Function> {
-        match code.tape.code.len() {
-            0..=LONG => Function::translated(code, "speed", "backtracking"),
+        let length = code.tape.code.len();
+        if length <= LONG {
+            Function::translated(code, "speed", "backtracking")
+        } else if length <= LONGEST {
             // Better code would take too long.
-            ..=LONGEST => Function::translated(code, "none", "single_pass"),
-            _ => None,
+            Function::translated(code, "none", "single_pass")
+        } else {
+            None
         }
     }
 

@@ -958,6 +958,8 @@ fn variables(sorted: &SortedDae, observed: &[VarId]) -> Vec<VariableInfo> {
             Kind::Frozen | Kind::Text | Kind::Previous(_) | Kind::Signal | Kind::Delayed => {
                 continue;
             }
+            // A trajectory has no place for texts.
+            Kind::Discrete if v.base == BaseType::String => continue,
             Kind::Discrete if v.name.starts_with('$') => continue,
             Kind::Unknown | Kind::Derivative(_) | Kind::Discrete => {
                 let of = alias.map_or(id, |alias| alias.of);

@@ -339,6 +339,17 @@ impl System {
         Ok(improved)
     }
 
+    /// Of several solutions the one that `homotopy` leads to; directly where it leads nowhere.
+    fn solve_initial_system(&mut self, t: f64) -> Result<(), Failure> {
+        if let Some(homotopy) = self.program.sorted.dae.homotopy
+            && self.follow_homotopy(t, homotopy).is_ok()
+        {
+            return Ok(());
+        }
+        self.take_start_values(t)?;
+        self.settle(t, Stage::Initial).map(|_| ())
+    }
+
     /// Solves the initial system with the simplified expressions of `homotopy` and goes on from
     /// there to the actual ones, in shorter steps where a solution is missed.
     fn follow_homotopy(&mut self, t: f64, homotopy: Homotopy) -> Result<(), Failure> {
@@ -418,11 +429,7 @@ impl DaeSystem for System {
     }
 
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
-        let program = self.program.clone();
-        self.take_start_values(t)?;
-        if let Err(failure) = self.settle(t, Stage::Initial) {
-            self.follow_homotopy(t, program.sorted.dae.homotopy.ok_or(failure)?)?;
-        }
+        self.solve_initial_system(t)?;
         self.check_initial_values()?;
         self.improve_choices()?;
         self.start_clocks(t)?;

@@ -17,7 +17,8 @@ use cranelift_codegen::ir::{
 };
 use cranelift_codegen::isa::CallConv;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext, Variable};
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
+use std::collections::BTreeSet;
 
 /// Sums of `0 · value` that are added to in turn.
 const CHECKS: usize = 4;
@@ -110,7 +111,7 @@ struct Translation<'a> {
 impl Translation<'_> {
     fn prepare(&mut self) {
         let code = self.code;
-        let mut targets = FxHashSet::default();
+        let mut targets = BTreeSet::new();
         for instruction in &code.tape.code {
             match *instruction {
                 Instruction::Jump { target } | Instruction::JumpUnless { target, .. } => {

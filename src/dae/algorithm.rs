@@ -12,6 +12,7 @@ use super::lowering::{Lowered, Lowering, Target};
 use super::model::{Equation, Kind};
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::BaseType;
 use crate::name::Ident;
 use crate::source::Span;
 use crate::symbolic::{Expr, VarId};
@@ -164,7 +165,7 @@ impl Builder<'_> {
             }
             StatementKind::If { branches, otherwise } => {
                 let branches: Vec<Branch> = branches.iter().map(|(c, b)| (c, &b[..])).collect();
-                return self.if_statement(&branches, otherwise, s.span, loops);
+                return self.if_statement(&branches, otherwise, loops);
             }
             StatementKind::For { indices, body } => {
                 return self.for_statement(indices, body, loops);
@@ -204,6 +205,11 @@ impl Builder<'_> {
         loops: &Loops,
     ) -> Result<(), Diagnostic> {
         let places = self.places(target, loops)?;
+        let is_text = |place: &Place| self.dae.variable(place.variable).base == BaseType::String;
+        let value = match places.first().is_some_and(is_text) {
+            true => Lowered::scalar(Lowering::new(self).number_of_text(value, target.span)?),
+            false => value,
+        };
         let mut values = Vec::new();
         value.append_scalars(&mut values);
         let expected = places.last().map_or(0, |place| place.element + 1);
@@ -265,7 +271,6 @@ impl Builder<'_> {
         &mut self,
         branches: &[Branch],
         otherwise: &[Statement],
-        span: Span,
         loops: &mut Loops,
     ) -> Result<Broken, Diagnostic> {
         let Some(((condition, body), rest)) = branches.split_first() else {
@@ -277,14 +282,14 @@ impl Builder<'_> {
         if let Some(known) = self.dae.pool.as_constant(condition) {
             return match known != 0.0 {
                 true => self.statements(body, loops),
-                false => self.if_statement(rest, otherwise, span, loops),
+                false => self.if_statement(rest, otherwise, loops),
             };
         }
         self.choose(
             condition,
             loops,
             |builder, loops| builder.statements(body, loops),
-            |builder, loops| builder.if_statement(rest, otherwise, span, loops),
+            |builder, loops| builder.if_statement(rest, otherwise, loops),
         )
     }
 

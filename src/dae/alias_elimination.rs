@@ -41,7 +41,7 @@ pub(super) fn eliminate_aliases(dae: &mut Dae) -> Vec<Option<Alias>> {
 }
 
 /// `a = b` or `a = -b` in any form.
-fn alias(pool: &Pool, equation: Equation) -> Option<(VarId, VarId, bool)> {
+pub(super) fn alias(pool: &Pool, equation: Equation) -> Option<(VarId, VarId, bool)> {
     let side = |e: Expr| match pool.node(e) {
         Node::Variable(v) => Some((*v, false)),
         Node::Neg(inner) => pool.as_variable(*inner).map(|v| (v, true)),

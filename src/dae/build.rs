@@ -10,6 +10,7 @@ use crate::flatten::{self, BaseType, FlatModel, Variability};
 use crate::source::Span;
 use crate::symbolic::{Expr, Pool, VarId};
 use crate::syntax::ast::{self, EquationKind, Expression, ExpressionKind};
+use indexmap::IndexSet;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
@@ -63,6 +64,8 @@ pub(super) struct Builder<'a> {
     pub(super) raw: usize,
     /// How many assertions there were when the branches of if-expressions began.
     pub(super) asserted: Vec<usize>,
+    /// The texts that have numbers.
+    pub(super) texts: IndexSet<Arc<str>>,
 }
 
 /// The scalar system of a flat model.
@@ -93,8 +96,10 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         execution: Execution::default(),
         raw: 0,
         asserted: Vec::new(),
+        texts: IndexSet::new(),
     };
     builder.declare();
+    builder.find_varying_texts();
     builder.find_discrete();
     builder.fold_constants()?;
     builder.bindings()?;
@@ -170,6 +175,7 @@ impl<'a> Builder<'a> {
     fn bindings(&mut self) -> Result<(), Diagnostic> {
         for (position, variable) in self.flat.variables.values().enumerate() {
             if variable.base == BaseType::String {
+                self.varying_text(position)?;
                 continue;
             }
             let first = self.first[position].0 as usize;
@@ -341,6 +347,11 @@ impl<'a> Builder<'a> {
         lowering.loops = loops.to_vec();
         lowering.live = live;
         let (a, b) = (lowering.lower(left)?, lowering.lower(right)?);
+        if matches!(a, Lowered::Numbered(_)) || matches!(b, Lowered::Numbered(_)) {
+            let left = lowering.number_of_text(a, span)?;
+            let right = lowering.number_of_text(b, span)?;
+            return Ok(vec![Equation { left, right, span }]);
+        }
         pairs(&a, &b, span)
     }
 

@@ -430,7 +430,7 @@ fn check_rank(
             input.dims.len()
         )
         .at(span)),
-        Lowered::Text(_) => {
+        Lowered::Text(_) | Lowered::Numbered(_) => {
             Err(fault!(NOT_SUPPORTED, "the text argument `{}` of `{}`", input.name, function.name)
                 .at(span))
         }

@@ -4,6 +4,7 @@
 //! build                every variable a scalar, every relation outside noEvent frozen
 //! order_parameters     bindings in order of dependence
 //! fold_parameters      parameters that cannot be set become numbers
+//! substitute_constants v = 3 holds in all other equations
 //! eliminate_aliases    a = b and a = -b become names
 //! separate_discrete    equations of discrete variables become assignments at events
 //! reduce_index         constraints between states differentiated, states chosen
@@ -24,6 +25,7 @@ mod alias_elimination;
 mod assigned;
 mod blt;
 mod build;
+mod constant_variables;
 mod default_values;
 mod discrete;
 mod dummy_derivatives;
@@ -46,6 +48,7 @@ mod settled;
 mod sorted;
 mod symbolic_target;
 mod temporal;
+mod varying_texts;
 mod when;
 
 pub use default_values::DefaultValues;
@@ -65,6 +68,7 @@ pub const PASSES: &[(&str, &str)] = &[
     ("build", "every variable a scalar, relations outside `noEvent` frozen"),
     ("order_parameters", "bindings of parameters in order of dependence"),
     ("fold_parameters", "parameters that cannot be set become numbers"),
+    ("substitute_constants", "where `v = 3`, the number stands for v in all other equations"),
     ("eliminate_aliases", "`a = b` and `a = -b` become names"),
     ("separate_discrete", "equations of discrete variables become assignments at events"),
     ("reduce_index", "constraints between states differentiated, states chosen"),
@@ -78,11 +82,11 @@ pub fn sort(flat: &FlatModel) -> Result<SortedDae, Diagnostic> {
     sort_and_show(flat, &mut |_, _, _| {})
 }
 
+/// Is shown the name of a pass, the system after it, and the aliases known so far.
+type Show<'a> = dyn FnMut(&str, &Dae, &[Option<Alias>]) + 'a;
+
 /// The same; the passes that change the system show it, with the aliases known so far.
-fn sort_and_show(
-    flat: &FlatModel,
-    show: &mut dyn FnMut(&str, &Dae, &[Option<Alias>]),
-) -> Result<SortedDae, Diagnostic> {
+fn sort_and_show(flat: &FlatModel, show: &mut Show<'_>) -> Result<SortedDae, Diagnostic> {
     let mut dae = build::build(flat)?;
     zero_inputs(&mut dae, flat);
     show("build", &dae, &[]);
@@ -91,6 +95,8 @@ fn sort_and_show(
     let parameters = default_values::fold_parameters(&mut dae, parameters);
     show("fold_parameters", &dae, &[]);
     dae.defaults = DefaultValues::of_parameters(&dae, &parameters);
+    constant_variables::substitute_constants(&mut dae);
+    show("substitute_constants", &dae, &[]);
     let mut aliases = alias_elimination::eliminate_aliases(&mut dae);
     show("eliminate_aliases", &dae, &aliases);
     discrete::separate_discrete(&mut dae, &aliases)?;

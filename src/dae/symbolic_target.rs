@@ -147,7 +147,12 @@ impl Target for Builder<'_> {
             return self.record(path).ok_or_else(|| self.unresolved(path, reference.span));
         };
         if variable.base == BaseType::String {
-            return Ok(Lowered::Text(self.text(position)));
+            let first = self.first[position];
+            return Ok(match self.dae.variable(first).kind {
+                Kind::Discrete if self.raw > 0 => Lowered::Numbered(self.dae.pool.variable(first)),
+                Kind::Discrete => Lowered::Numbered(self.value_now(first)),
+                _ => Lowered::Text(self.text(position)),
+            });
         }
         if variable.variability <= Variability::Parameter {
             self.fold(position)?;
@@ -186,6 +191,10 @@ impl Target for Builder<'_> {
         span: Span,
     ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
         super::function::call(self, function, arguments, span)
+    }
+
+    fn text_number(&mut self, text: &Arc<str>) -> Option<Expr> {
+        Some(self.number_of(text))
     }
 
     fn operator(
@@ -264,7 +273,7 @@ impl Target for Builder<'_> {
 
 impl Builder<'_> {
     /// The text that a variable is bound to, [`UNKNOWN_TEXT`] if that is not known.
-    fn text(&mut self, position: usize) -> Arc<str> {
+    pub(super) fn text(&mut self, position: usize) -> Arc<str> {
         let flat = self.flat;
         let unknown = || Arc::from(UNKNOWN_TEXT);
         let Some(binding) = &flat.variables[position].binding else { return unknown() };

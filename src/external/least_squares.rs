@@ -93,10 +93,9 @@ fn dgglse(call: &mut Call<'_>) -> Result<(), Fault> {
 }
 
 /// All of U, the singular values, all of Vᵀ.
-fn singular_values(
-    call: &Call<'_>,
-    a: DMatrix<f64>,
-) -> Result<(DMatrix<f64>, DMatrix<f64>, DMatrix<f64>), Fault> {
+type SingularValues = (DMatrix<f64>, DMatrix<f64>, DMatrix<f64>);
+
+fn singular_values(call: &Call<'_>, a: DMatrix<f64>) -> Result<SingularValues, Fault> {
     let svd = a.svd(true, true);
     let (Some(u), Some(v_t)) = (svd.u, svd.v_t) else {
         return Err(call.fault("the singular vectors were not found"));

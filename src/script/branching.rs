@@ -42,7 +42,7 @@ impl Session {
         let Some((_, script)) = branching.pending.take_if(|(at, _)| *at == simulated) else {
             return Ok(());
         };
-        if !self.scope.is_script() {
+        if self.in_function {
             let reason = "`Eval` is called in a function, whose variables nothing else can change";
             return Err(fault!(CANNOT_BRANCH, "{reason}";
                 help: "call `Eval` from the script itself")

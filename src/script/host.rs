@@ -65,14 +65,17 @@ impl Host for Session {
         span: Span,
         scope: &mut Scope,
     ) -> Result<Vec<Value>, Diagnostic> {
-        if !scope.is_script() {
-            return self.call_builtin(header, arguments, span);
+        let outer = std::mem::replace(&mut self.in_function, !scope.is_script());
+        if !self.in_function {
+            std::mem::swap(&mut self.scope, scope);
         }
-        std::mem::swap(&mut self.scope, scope);
         self.silent += 1;
         let result = self.call_builtin(header, arguments, span);
         self.silent -= 1;
-        std::mem::swap(&mut self.scope, scope);
+        if !self.in_function {
+            std::mem::swap(&mut self.scope, scope);
+        }
+        self.in_function = outer;
         result
     }
 

@@ -126,6 +126,8 @@ pub struct Session {
     pub(super) stop: Option<Stop>,
     /// Where the command that is being run was called.
     pub(super) call: Span,
+    /// Whether that was in a function, whose variables the command does not see.
+    pub(super) in_function: bool,
     /// Folders below which files may be written and removed.
     pub(super) trusted: Vec<PathBuf>,
     /// Environment variables that scripts set.
@@ -177,6 +179,7 @@ impl Session {
             follow_ups: FollowUps::default(),
             stop: None,
             call: Span::NONE,
+            in_function: false,
             shared: BTreeSet::new(),
             told: None,
             windowless: BTreeSet::new(),

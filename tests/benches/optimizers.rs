@@ -2,6 +2,8 @@
 //! minima, hypervolumes of fronts, and CPU seconds per 100,000 evaluations that cost nothing.
 //! `cargo bench --bench optimizers`; a name behind `--` keeps the methods that contain it.
 
+#![allow(clippy::print_stdout, reason = "it prints a table")]
+
 use gapilib::ga::optimizer::{Answers, METHODS, Method, Polished, Setup, survivors};
 use gapilib::ga::{FAILED_FITNESS, Gene, Genomes, Mrg32k3a, hypervolume};
 use gapilib::registry::{self, Options};

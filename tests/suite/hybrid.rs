@@ -82,6 +82,14 @@ impl Run {
         near.collect::<Vec<_>>().pop().unwrap_or_else(|| panic!("no row at {time}")).1
     }
 
+    /// Times of events.
+    pub(super) fn events(&self) -> Vec<f64> {
+        let pairs = self.rows.time().windows(2).filter(|t| t[0] == t[1]);
+        let mut times: Vec<f64> = pairs.map(|t| t[0]).collect();
+        times.dedup();
+        times
+    }
+
     /// Times at which a variable jumps.
     fn jumps(&self, name: &str) -> Vec<f64> {
         let (values, times) = (self.column(name), self.rows.time());
@@ -97,7 +105,7 @@ pub(super) fn near(value: f64, expected: f64, tolerance: f64) {
 }
 
 #[track_caller]
-fn all_near(values: &[f64], expected: &[f64], tolerance: f64) {
+pub(super) fn all_near(values: &[f64], expected: &[f64], tolerance: f64) {
     assert_eq!(values.len(), expected.len(), "{values:?} instead of {expected:?}");
     values.iter().zip(expected).for_each(|(value, expected)| near(*value, *expected, tolerance));
 }

@@ -1,7 +1,7 @@
 //! Models at the limits of their events: what rounding decides, what steps do not see, what
 //! statements choose at run time.
 
-use super::hybrid::{near, simulated};
+use super::hybrid::{all_near, near, simulated};
 
 #[test]
 fn a_crossing_that_time_alone_makes_is_seen_though_steps_are_long() {
@@ -180,4 +180,94 @@ fn a_trigger_jumps_from_one_branch_to_the_other() {
     assert_eq!(run.at("y", 4.0), -1.0);
     assert_eq!(run.at("y", 6.4), -1.0);
     assert_eq!(run.at("y", 7.0), 1.0);
+}
+
+#[test]
+fn smooth_of_order_zero_has_events_at_its_kinks_and_smooth_of_order_one_has_none() {
+    let text = |order: u32| {
+        format!(
+            "model Kink
+               Real x(start = -1, fixed = true);
+               Real area(start = 0, fixed = true);
+             equation
+               der(x) = 2;
+               der(area) = smooth({order}, if x > 0 then x else 0);
+             end Kink;"
+        )
+    };
+    let zero = simulated(&text(0), 2.0);
+    // x = 2 t - 1, so the area is (2 t - 1)²/4 from t = 1/2 on.
+    near(zero.last("area"), 2.25, 1e-9);
+    all_near(&zero.events(), &[0.5], 1e-9);
+    let one = simulated(&text(1), 2.0);
+    near(one.last("area"), 2.25, 1e-5);
+    assert!(one.events().is_empty(), "{:?}", one.events());
+}
+
+#[test]
+fn semi_linear_has_another_slope_on_each_side() {
+    let text = "model Two
+        Real m(start = -1, fixed = true);
+        Real h;
+        Real sum(start = 0, fixed = true);
+      equation
+        der(m) = 1;
+        h = semiLinear(m, 3, 5);
+        der(sum) = h;
+      end Two;";
+    let run = simulated(text, 3.0);
+    near(run.at("h", 0.6), -2.0, 1e-9);
+    near(run.last("h"), 6.0, 1e-9);
+    near(run.last("sum"), -2.5 + 6.0, 1e-9);
+    all_near(&run.events(), &[1.0], 1e-9);
+}
+
+#[test]
+fn no_event_has_none_and_a_plain_branch_has_one() {
+    let text = |condition: &str| {
+        format!(
+            "model Branch
+               Real x(start = -1, fixed = true);
+               Real y;
+             equation
+               der(x) = 2;
+               y = if {condition} then 1 else 0;
+             end Branch;"
+        )
+    };
+    all_near(&simulated(&text("x > 0"), 2.0).events(), &[0.5], 1e-9);
+    let live = simulated(&text("noEvent(x > 0)"), 2.0);
+    assert!(live.events().is_empty(), "{:?}", live.events());
+    assert_eq!((live.at("y", 0.48), live.at("y", 0.52)), (0.0, 1.0));
+}
+
+#[test]
+fn texts_change_at_events() {
+    let text = "model Label
+        type Mode = enumeration(low, middle, high);
+        Mode mode(start = Mode.low, fixed = true);
+        String label;
+        String last(start = \"none\", fixed = true);
+        String word = if label == \"low\" then \"small\" else \"large\";
+        Real x(start = 0, fixed = true);
+        Integer changes(start = 0, fixed = true);
+        Integer code;
+        Boolean fresh;
+      equation
+        der(x) = 1;
+        mode = if x > 2 then Mode.high elseif x > 1 then Mode.middle else Mode.low;
+        label = if mode == Mode.high then \"high\" elseif mode == Mode.middle then \"mid\" else \"low\";
+        when change(label) then
+          last = pre(label);
+          changes = pre(changes) + 1;
+        end when;
+        fresh = last == \"none\";
+        code = (if label == \"high\" then 100 elseif \"mid\" == label then 200 else 300)
+          + (if last == \"mid\" then 10 elseif last == \"low\" then 20 else 30)
+          + (if word <> \"large\" then 1 else 2);
+      end Label;";
+    let run = simulated(text, 3.0);
+    assert_eq!((run.at("code", 0.6), run.at("fresh", 0.6)), (331.0, 1.0));
+    assert_eq!((run.at("code", 1.5), run.at("fresh", 1.5)), (222.0, 0.0));
+    assert_eq!((run.at("code", 2.4), run.at("changes", 2.4)), (112.0, 2.0));
 }

@@ -22,6 +22,23 @@ fn homotopy_leads_where_newton_does_not() {
 }
 
 #[test]
+fn homotopy_chooses_among_solutions() {
+    // x³ = x has three solutions, of which the start value 0 is one; x = ±0.8 leads to ±1.
+    for (simplified, root) in [("x - 0.8", 1.0), ("x + 0.8", -1.0)] {
+        let text = format!(
+            "model C Real x(start = 0); equation homotopy(x^3 - x, {simplified}) = 0; end C;"
+        );
+        Run::of(&text, 1.0).follows("x", 1e-9, |_| root);
+    }
+}
+
+#[test]
+fn homotopy_that_leads_nowhere_is_left_aside() {
+    let text = "model N Real x(start = 1); equation homotopy(x^2 - 4, x^2 + 1) = 0; end N;";
+    Run::of(text, 1.0).follows("x", 1e-9, |_| 2.0);
+}
+
+#[test]
 fn homotopy_is_its_actual_argument_after_the_start() {
     let text = "model H Real x(start = 1, fixed = true); Real y;
         equation y = homotopy(actual = 2*x, simplified = 7); der(x) = -y; end H;";
@@ -56,6 +73,40 @@ fn start_values_are_propagated_along_alias_sets() {
     // The guess of an alias leads to the second root.
     let root = "model B Real x; Real y(start = -3); equation x = y; x^2 = 4; end B;";
     Run::of(root, 1.0).follows("x", 1e-9, |_| -2.0);
+}
+
+#[test]
+fn a_fixed_start_value_goes_before_one_that_is_not() {
+    for text in [
+        "model F Real x(start = 1); Real y(start = 2, fixed = true); equation x = y; der(x) = 1; end F;",
+        "model F Real x(start = 2, fixed = true); Real y(start = 1); equation x = y; der(y) = 1; end F;",
+        "model F Real x(start = 1); Real y(start = -2, fixed = true); equation x = -y; der(x) = 1; end F;",
+    ] {
+        Run::of(text, 1.0).follows("x", 1e-9, |t| 2.0 + t);
+    }
+}
+
+#[test]
+fn fixed_start_values_of_one_alias_set_must_agree() {
+    let text = |second: f64| {
+        format!(
+            "model T Real x(start = 1, fixed = true); Real y(start = {second}, fixed = true);
+             equation x = -y; der(x) = 1; end T;"
+        )
+    };
+    Run::of(&text(-1.0), 1.0).follows("y", 1e-9, |t| -1.0 - t);
+    let program = compiled(&text(1.0));
+    let error = simulate(&mut program.system(), &Settings::default()).unwrap_err();
+    let message = program.explain(&error).message.clone();
+    assert!(message.contains("initial"), "{message}");
+}
+
+#[test]
+fn the_nominal_value_of_an_alias_scales_the_errors() {
+    // Relative to 1 the state is noise; relative to 1e-9 it is followed.
+    let text = "model N Real x(start = 0, fixed = true); Real y(nominal = 1e-9);
+        equation x = y; der(x) = 1e-9 - x; end N;";
+    Run::of(text, 1.0).follows("x", 1e-16, |t| -1e-9 * (-t).exp_m1());
 }
 
 #[test]

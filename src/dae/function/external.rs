@@ -123,6 +123,9 @@ impl Body<'_, '_> {
             Lowered::Record(_) => {
                 Err(fault!(NOT_SUPPORTED, "a record for an external function").at(span))
             }
+            Lowered::Numbered(_) => {
+                Err(fault!(NOT_SUPPORTED, "a text that changes for an external function").at(span))
+            }
         }
     }
 }

@@ -248,6 +248,11 @@ fn signature(
                 )
                 .at(span));
             }
+            Lowered::Numbered(_) => {
+                return Err(
+                    fault!(NOT_SUPPORTED, "a text that changes for `{}`", input.name).at(span)
+                );
+            }
             Lowered::Text(text) => Argument::Text(text.clone()),
             Lowered::Array(array) => match array.elements.as_slice() {
                 [Some(value)] if array.dims.is_empty() && whole && with_values => {

@@ -193,7 +193,7 @@ impl Target for Body<'_, '_> {
     }
 
     fn value_type(&self, path: &str) -> Option<ValueType> {
-        super::component_type(&self.function, path)
+        super::component_type(self.function, path)
     }
 
     fn call(

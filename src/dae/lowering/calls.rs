@@ -135,6 +135,16 @@ impl<T: Target> Lowering<'_, T> {
         };
         match operator {
             Operator::Temporal => {
+                if let ("pre" | "change", [text]) = (name, arguments)
+                    && let Lowered::Numbered(text) = self.lower(text)?
+                {
+                    let value = vec![Array::scalar(text)];
+                    let value = self.target.temporal(name, value, self.live, span)?.elements[0];
+                    return Ok(match name {
+                        "pre" => Lowered::Numbered(value),
+                        _ => Lowered::scalar(value),
+                    });
+                }
                 let values = arguments.iter().map(|a| self.array(a)).collect::<Result<_, _>>()?;
                 Ok(Lowered::Array(self.target.temporal(name, values, self.live, span)?))
             }

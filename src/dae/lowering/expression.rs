@@ -176,10 +176,16 @@ impl<T: Target> Lowering<'_, T> {
             if a == b {
                 return Ok(first);
             }
-            return match self.target.settle(condition) {
-                Some(holds) => Ok(if holds != 0.0 { first } else { second }),
-                None => Err(fault!(NOT_SUPPORTED, "texts that depend on conditions").at(span)),
-            };
+            if let Some(holds) = self.target.settle(condition) {
+                return Ok(if holds != 0.0 { first } else { second });
+            }
+            let numbers = [self.number_of_text(first, span)?, self.number_of_text(second, span)?];
+            return Ok(self.choice_of_texts(condition, numbers));
+        }
+        if let (Lowered::Numbered(_), _) | (_, Lowered::Numbered(_)) = (&first, &second) {
+            self.target.end_if(branch, &[]);
+            let numbers = [self.number_of_text(first, span)?, self.number_of_text(second, span)?];
+            return Ok(self.choice_of_texts(condition, numbers));
         }
         let shape = match (first.shape(), second.shape()) {
             (Some(a), Some(b)) if a == b => a,

@@ -10,6 +10,7 @@ mod homotopy;
 mod operators;
 mod placed;
 mod texts;
+mod varying_texts;
 mod vectorized;
 
 pub(crate) use arrays::Choice;
@@ -83,6 +84,11 @@ pub(crate) trait Target {
     /// it is not known.
     fn settle(&mut self, condition: Self::Scalar) -> Option<f64> {
         let _ = condition;
+        None
+    }
+    /// The number that stands for a text where texts change at events; `None` where none do.
+    fn text_number(&mut self, text: &Arc<str>) -> Option<Self::Scalar> {
+        let _ = text;
         None
     }
     /// Whether the right operand of `and` and `or` is computed only where it decides.
@@ -202,8 +208,10 @@ pub(crate) enum Lowered<S> {
     Array(Array<S>),
     /// A record.
     Record(Vec<(Ident, Lowered<S>)>),
-    /// A text, for messages.
+    /// A text known when compiling, but for the parts of messages that are not.
     Text(Arc<str>),
+    /// The number of a text that changes at events.
+    Numbered(S),
 }
 
 /// An array of scalars; no sizes for a scalar.
@@ -238,7 +246,7 @@ impl<S: Copy> Lowered<S> {
                 let shape = |(name, field): &(Ident, Lowered<S>)| Some((*name, field.shape()?));
                 Some(Shape::Record(fields.iter().map(shape).collect::<Option<_>>()?))
             }
-            Lowered::Text(_) => None,
+            Lowered::Text(_) | Lowered::Numbered(_) => None,
         }
     }
 
@@ -253,6 +261,7 @@ impl<S: Copy> Lowered<S> {
                 Lowered::Record(fields.iter().map(|(n, f)| (*n, f.map(replace))).collect())
             }
             Lowered::Text(text) => Lowered::Text(text.clone()),
+            Lowered::Numbered(number) => Lowered::Numbered(replace(*number)),
         }
     }
 
@@ -261,6 +270,7 @@ impl<S: Copy> Lowered<S> {
         match self {
             Lowered::Array(array) => out.extend(&array.elements),
             Lowered::Record(fields) => fields.iter().for_each(|(_, f)| f.append_scalars(out)),
+            Lowered::Numbered(number) => out.push(*number),
             Lowered::Text(_) => {}
         }
     }
@@ -319,7 +329,7 @@ impl<'a, T: Target> Lowering<'a, T> {
             Lowered::Record(_) => {
                 Err(fault!(ARRAY_MISMATCH, "a record stands where a number is needed").at(e.span))
             }
-            Lowered::Text(_) => {
+            Lowered::Text(_) | Lowered::Numbered(_) => {
                 Err(fault!(ARRAY_MISMATCH, "a text stands where a number is needed").at(e.span))
             }
         }

@@ -8,6 +8,7 @@ use crate::fault;
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
 use crate::syntax::ast::{BinaryOperator, Expression};
+use std::sync::Arc;
 
 /// The greatest exponent of a matrix.
 const MAX_POWER: f64 = 64.0;
@@ -28,7 +29,8 @@ impl<T: Target> Lowering<'_, T> {
         span: Span,
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
         let a = match self.lower(left)? {
-            Lowered::Text(a) => return self.texts(operator, &a, right, span),
+            Lowered::Text(a) => return self.texts(operator, a, right, span),
+            Lowered::Numbered(a) => return self.varying_texts(operator, a, right, span),
             Lowered::Array(a) => a,
             Lowered::Record(_) => self.array(left)?,
         };
@@ -98,13 +100,20 @@ impl<T: Target> Lowering<'_, T> {
     fn texts(
         &mut self,
         operator: BinaryOperator,
-        a: &str,
+        a: Arc<str>,
         right: &Expression,
         span: Span,
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
-        let Lowered::Text(b) = self.lower(right)? else {
-            return Err(fault!(ARRAY_MISMATCH, "a text and a number").at(span));
+        let b = match self.lower(right)? {
+            Lowered::Text(b) => b,
+            Lowered::Numbered(_) if operator == BinaryOperator::Add => UNKNOWN_TEXT.into(),
+            Lowered::Numbered(b) => {
+                let a = self.number_of_text(Lowered::Text(a), span)?;
+                return self.compare_texts(operator, a, b, span);
+            }
+            _ => return Err(fault!(ARRAY_MISMATCH, "a text and a number").at(span)),
         };
+        let a = &*a;
         if operator == BinaryOperator::Add {
             return Ok(Lowered::Text(format!("{a}{b}").into()));
         }

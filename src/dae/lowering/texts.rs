@@ -105,7 +105,7 @@ impl<T: Target> Lowering<'_, T> {
             Lowered::Text(text) => {
                 (!text.contains(UNKNOWN_TEXT)).then(|| Value::String(text.clone()))
             }
-            Lowered::Record(_) => None,
+            Lowered::Record(_) | Lowered::Numbered(_) => None,
             Lowered::Array(array) => {
                 let mut values = Vec::with_capacity(array.elements.len());
                 for element in &array.elements {

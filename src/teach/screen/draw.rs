@@ -10,13 +10,12 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Borders, Paragraph, Wrap};
 
 const KEYS: &str =
-    "→ next  ← back  ↓↑ generation  Tab part  g go  f follow  i inspect  u until  w if  ? q";
+    "→ next ← back ↓↑ generation Tab part g go f follow i inspect u until w if ? help";
 const HELP: &str = "\
 → space n Enter   the next step
 ← b               one step back
 Tab               the next part: from crossover to mutation, and so on
-↓ Page down       the next generation
-↑ Page up         the generation before
+↓ ↑ Page down, up the next generation, the one before
 Home, End         the first step, the last step
 g                 go to a generation
 f                 follow an individual through the generations
@@ -26,9 +25,7 @@ w                 what if: run again with a change from here on, and compare
 q                 end
 
 Marks: > followed or new, ♛ elite, x failed, ? drawn at random, * mutated.
-Each block is a gene: · low, █ high among this generation.
-
-Any key goes back.";
+Each block is a gene: · low, █ high among this generation.";
 
 /// Draws the screen.
 pub fn draw(screen: &Screen, frame: &mut Frame) {
@@ -44,7 +41,8 @@ pub fn draw(screen: &Screen, frame: &mut Frame) {
         View::Steps => step(screen, frame, body),
         View::Individual(k) => inspect::draw(screen, k, frame, body),
         View::Branches => branches(screen, frame, body),
-        View::Help => frame.render_widget(Paragraph::new(HELP).block(titled("keys")), body),
+        View::Help => frame
+            .render_widget(Paragraph::new(HELP).block(titled(" keys; any key goes back ")), body),
     }
     let block = Block::new().borders(Borders::TOP);
     let text = Paragraph::new(explain(&screen.walk)).wrap(Wrap { trim: true }).block(block);

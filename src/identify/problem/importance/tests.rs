@@ -65,9 +65,9 @@ fn shares_of_the_ishigami_function() {
     let all = v1 + v2 + v13;
     let exact = [[v1, v1 + v13], [v2, v2], [0.0, v13]];
     for (parameter, exact) in found.parameters.iter().zip(exact) {
-        for k in 0..2 {
+        for (k, exact) in exact.iter().enumerate() {
             let share = parameter.figures[k].unwrap();
-            assert!((share - exact[k] / all).abs() < 0.06, "{parameter:?} {}", exact[k] / all);
+            assert!((share - exact / all).abs() < 0.06, "{parameter:?} {}", exact / all);
             assert!(parameter.errors[k].unwrap() < 0.1);
         }
     }
