@@ -1,6 +1,7 @@
 //! The commands that linearize models.
 
 use super::openmodelica::simulation_result;
+use super::simflags::SimulationFlags;
 use super::simulation::{Request, translated_model};
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{At, Diagnostic, Fault};
@@ -128,10 +129,12 @@ fn translated_and_linearized(
     flags: &str,
 ) -> Result<(), Vec<Diagnostic>> {
     let model = simulation::translate(session, &class.to_string())?;
-    let wishes = &super::openmodelica::completed(wishes, &model.program.experiment());
     let at = session.call_site();
+    let flags = SimulationFlags::parse(flags).at(at).map_err(|error| vec![error])?;
+    let wishes = super::openmodelica::completed(wishes, &model.program.experiment());
+    let wishes = &flags.applied_to(wishes);
     let before = session.current_values();
-    let set = super::openmodelica::set_overrides(session, flags).at(at);
+    let set = flags.apply(session).at(at);
     let linear = set.map_err(|error| vec![error]).and_then(|()| linearized(session, wishes));
     session.restore_values(before);
     let linear = linear?;

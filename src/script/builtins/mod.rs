@@ -25,6 +25,7 @@ mod results;
 mod scanning;
 mod scripts;
 mod settings;
+mod simflags;
 mod simulation;
 mod streams;
 mod strings;

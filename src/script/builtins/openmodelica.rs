@@ -1,5 +1,6 @@
 //! Models as OpenModelica's scripts handle them.
 
+use super::simflags::SimulationFlags;
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::{At, Diagnostic, Fault};
@@ -51,7 +52,7 @@ function simulate "Simulates a model. What is not given comes from its experimen
   input String outputFormat = "mat" "mat, csv, or empty for no file";
   input String variableFilter = ".*" "regular expression of the names that are stored";
   input String cflags = "" "has no effect";
-  input String simflags = "" "-override=name=value,… sets parameters and start values";
+  input String simflags = "" "-override=name=value,… sets parameters and start values; also -startTime, -stopTime, -stepSize, -tolerance, -s, -r";
   input String resimulateExecutable = "" "has no effect: a model is translated once anyway";
   output Any simulationResults "resultFile, simulationOptions, messages";
 end simulate;
@@ -73,7 +74,7 @@ fn simulate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         Err(_) => format!("Failed to build model: {class}"),
     };
     let (result_file, wishes) = match session.or_report_all(done) {
-        Some(used) => (session.world.absolute(file.as_ref()).display().to_string(), used),
+        Some((used, file)) => (session.world.absolute(file.as_ref()).display().to_string(), used),
         None => (String::new(), completed(&wishes, &Experiment::default())),
     };
     let options = shown(&wishes, &prefix, &format, &given, &flags);
@@ -154,25 +155,28 @@ pub(super) fn completed(wishes: &Wishes, experiment: &Experiment) -> Wishes {
 /// The ending of the format that is written to no file.
 const NO_FILE: &str = ".empty";
 
-/// Simulates and writes the results; the settings used.
+/// Simulates and writes the results; the settings used, and the file.
 fn run(
     session: &mut Session,
     class: &Name,
     wishes: &Wishes,
     flags: &str,
     (file, filter): (&str, &Regex),
-) -> Result<Wishes, Vec<Diagnostic>> {
-    let model = simulation::translate(session, &class.to_string())?;
-    let wishes = completed(wishes, &model.program.experiment());
+) -> Result<(Wishes, String), Vec<Diagnostic>> {
     let at = session.call_site();
     let one = |error: Diagnostic| vec![error];
+    let flags = SimulationFlags::parse(flags).at(at).map_err(one)?;
+    let model = simulation::translate(session, &class.to_string())?;
+    let wishes = completed(wishes, &model.program.experiment());
+    let file = flags.result.as_deref().unwrap_or(file);
     let before = session.current_values();
-    let set = set_overrides(session, flags).at(at);
-    let done = set.and_then(|()| simulation::simulate(session, &model, &wishes));
+    let set = flags.apply(session).at(at);
+    let done =
+        set.and_then(|()| simulation::simulate(session, &model, &flags.applied_to(wishes.clone())));
     session.restore_values(before);
     let mut done = done.map_err(one)?;
     if file.ends_with(NO_FILE) {
-        return Ok(wishes);
+        return Ok((wishes, file.to_owned()));
     }
     if filter.as_str() != "^(?:.*)$" {
         done.table = done.table.only(|name| filter.is_match(name));
@@ -182,28 +186,7 @@ fn run(
     written.at(at).map_err(one)?;
     session.extension::<LastResults>().0 = Some(file.to_owned());
     super::plotting::note_results(session, file);
-    Ok(wishes)
-}
-
-/// Sets what `-override=a=1,b.c=2` or `-override a=1` says.
-pub(super) fn set_overrides(session: &mut Session, flags: &str) -> Result<(), Fault> {
-    let Some((_, list)) = flags.split_once("-override") else { return Ok(()) };
-    let list = list.trim_start_matches(['=', ' ']).split_whitespace().next().unwrap_or("");
-    for setting in list.split(',').filter(|setting| !setting.is_empty()) {
-        let parsed = setting.split_once('=').and_then(|(name, value)| {
-            let value = match value.trim() {
-                "true" => 1.0,
-                "false" => 0.0,
-                number => number.parse().ok()?,
-            };
-            Some((name.trim(), value))
-        });
-        let Some((name, value)) = parsed else {
-            bail!(BAD_ARGUMENT, "`{setting}` in `-override` is not `name=value`")
-        };
-        session.set_parameter(name, value)?;
-    }
-    Ok(())
+    Ok((wishes, file.to_owned()))
 }
 
 fn shown(wishes: &Wishes, prefix: &str, format: &str, filter: &str, flags: &str) -> String {

@@ -1,0 +1,158 @@
+//! The flags that OpenModelica's simulation programs take (`simflags`): those that act, those that
+//! are refused because results would differ without them, and the rest, which have no effect.
+
+use crate::bail;
+use crate::diag::Fault;
+use crate::script::Session;
+use crate::script::errors::{BAD_ARGUMENT, NO_WINDOW};
+use crate::script::simulation::Wishes;
+
+/// What `simflags` asks for.
+#[derive(Debug, Default, PartialEq)]
+pub(super) struct SimulationFlags {
+    overrides: Vec<(String, f64)>,
+    start: Option<f64>,
+    stop: Option<f64>,
+    step: Option<f64>,
+    tolerance: Option<f64>,
+    method: Option<String>,
+    /// `-r`: the file for the results.
+    pub(super) result: Option<String>,
+    idle: Vec<String>,
+}
+
+/// Flags that stand for input that is not read, with what to do instead.
+const REFUSED: &[(&str, &str)] = &[
+    ("csvInput", "inputs are not read from a file: write a model that reads a table"),
+    ("exInputFile", "inputs are not read from a file: write a model that reads a table"),
+    ("overrideFile", "values are not read from a file: name them in `-override`"),
+    ("iif", "start values are not read from a file: use `importInitialResult`"),
+    ("iim", "there is one method of initialization"),
+    ("iit", "start values are not read from a file: use `importInitialResult`"),
+    ("l", "use `linearize`"),
+    ("steadyState", "simulate longer instead"),
+];
+
+impl SimulationFlags {
+    /// Reads flags as `-name`, `-name=value` and `-name value`.
+    pub(super) fn parse(text: &str) -> Result<SimulationFlags, Fault> {
+        let mut flags = SimulationFlags::default();
+        let mut words = text.split_whitespace().peekable();
+        while let Some(word) = words.next() {
+            let Some(flag) = word.strip_prefix('-') else {
+                bail!(BAD_ARGUMENT, "`{word}` in `simflags` is no flag: flags begin with `-`")
+            };
+            let (name, value) = match flag.split_once('=') {
+                Some((name, value)) => (name, value.to_owned()),
+                None => (flag, words.next_if(|next| !next.starts_with('-')).unwrap_or("").into()),
+            };
+            flags.take(name, value)?;
+        }
+        Ok(flags)
+    }
+
+    fn take(&mut self, name: &str, value: String) -> Result<(), Fault> {
+        if let Some((_, instead)) = REFUSED.iter().find(|(refused, _)| *refused == name) {
+            bail!(BAD_ARGUMENT, "`-{name}` in `simflags` is refused: {instead}")
+        }
+        match name {
+            "override" => {
+                for setting in value.split(',').filter(|setting| !setting.is_empty()) {
+                    self.set(setting)?;
+                }
+            }
+            "startTime" | "stopTime" | "stepSize" | "tolerance" => {
+                self.set(&format!("{name}={value}"))?;
+            }
+            "s" => self.method = Some(value),
+            "r" => self.result = Some(value),
+            _ => self.idle.push(format!("-{name}")),
+        }
+        Ok(())
+    }
+
+    /// `name=value`, of the experiment or the model.
+    fn set(&mut self, setting: &str) -> Result<(), Fault> {
+        let parsed = setting.split_once('=').and_then(|(name, value)| {
+            let value = match value.trim() {
+                "true" => 1.0,
+                "false" => 0.0,
+                number => number.parse().ok()?,
+            };
+            Some((name.trim(), value))
+        });
+        let Some((name, value)) = parsed else {
+            bail!(BAD_ARGUMENT, "`{setting}` in `simflags` is not `name=value`")
+        };
+        match name {
+            "startTime" => self.start = Some(value),
+            "stopTime" => self.stop = Some(value),
+            "stepSize" => self.step = Some(value),
+            "tolerance" => self.tolerance = Some(value),
+            _ => self.overrides.push((name.to_owned(), value)),
+        }
+        Ok(())
+    }
+
+    /// Sets the values of the model, and says which flags have no effect.
+    pub(super) fn apply(&self, session: &mut Session) -> Result<(), Fault> {
+        if !self.idle.is_empty() {
+            let flags = self.idle.join("`, `");
+            session.note(NO_WINDOW, format!("`{flags}` in `simflags` has no effect here"));
+        }
+        self.overrides.iter().try_for_each(|(name, value)| session.set_parameter(name, *value))
+    }
+
+    /// The settings of a simulation, complete, with those of the flags. The length of the output
+    /// intervals stays unless it is given.
+    pub(super) fn applied_to(&self, wishes: Wishes) -> Wishes {
+        let length = match (wishes.start, wishes.stop, wishes.intervals) {
+            (Some(start), Some(stop), Some(count)) => Some((stop - start) / count as f64),
+            _ => wishes.interval,
+        };
+        let moved = self.start.is_some() || self.stop.is_some() || self.step.is_some();
+        Wishes {
+            start: self.start.or(wishes.start),
+            stop: self.stop.or(wishes.stop),
+            intervals: wishes.intervals.filter(|_| !moved),
+            interval: self.step.or(length),
+            tolerance: self.tolerance.or(wishes.tolerance),
+            method: self.method.clone().or(wishes.method),
+            ..wishes
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::SimulationFlags;
+    use crate::script::simulation::Wishes;
+
+    #[test]
+    fn flags_are_read_in_all_their_forms() {
+        let text = "-lv=LOG_STATS -override=k=1,stopTime=2 -override b=true -s euler -r x.mat";
+        let flags = SimulationFlags::parse(text).expect("flags");
+        assert_eq!(flags.overrides, [("k".to_owned(), 1.0), ("b".to_owned(), 1.0)]);
+        assert_eq!((flags.stop, flags.method.as_deref()), (Some(2.0), Some("euler")));
+        assert_eq!((flags.result.as_deref(), flags.idle), (Some("x.mat"), vec!["-lv".to_owned()]));
+    }
+
+    #[test]
+    fn flags_that_would_change_results_are_refused() {
+        for wrong in ["-csvInput=u.csv", "-override=k", "-stopTime=soon", "k=1"] {
+            assert!(SimulationFlags::parse(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn the_length_of_output_intervals_stays() {
+        let whole =
+            Wishes { start: Some(0.0), stop: Some(1.0), intervals: Some(10), ..Wishes::default() };
+        let flags = SimulationFlags::parse("-stopTime=2").expect("flags");
+        let applied = flags.applied_to(whole.clone());
+        assert_eq!((applied.stop, applied.intervals), (Some(2.0), None));
+        assert_eq!(applied.interval, Some(0.1));
+        let none = SimulationFlags::default().applied_to(whole);
+        assert_eq!(none.intervals, Some(10));
+    }
+}
