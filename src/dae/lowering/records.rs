@@ -29,7 +29,9 @@ impl<T: Target> Lowering<'_, T> {
                 }
                 Ok(Lowered::Record(chosen))
             }
-            Lowered::Text(_) => Err(fault!(ARRAY_MISMATCH, "subscripts of a text").at(span)),
+            Lowered::Text(_) | Lowered::Numbered(_) => {
+                Err(fault!(ARRAY_MISMATCH, "subscripts of a text").at(span))
+            }
         }
     }
 
@@ -78,7 +80,7 @@ fn arrays<S: Copy>(values: Vec<Lowered<S>>, span: Span) -> Result<Vec<Array<S>>,
         Lowered::Record(_) => {
             Err(fault!(ARRAY_MISMATCH, "a record stands where a number is needed").at(span))
         }
-        Lowered::Text(_) => {
+        Lowered::Text(_) | Lowered::Numbered(_) => {
             Err(fault!(ARRAY_MISMATCH, "a text stands where a number is needed").at(span))
         }
     };
