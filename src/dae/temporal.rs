@@ -3,7 +3,7 @@
 use super::build::{Builder, scalar_of_nothing};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
 use super::events::{Delay, Rounding, Sample};
-use super::lowering::{Array, Target};
+use super::lowering::{Array, Target, size_fault};
 use super::model::{Assertion, Equation, Kind};
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -46,14 +46,7 @@ impl Builder<'_> {
                 let (start, interval) = (scalar(0)?, scalar(1)?);
                 self.sample(start, interval, span)?
             }
-            "delay" => {
-                let (argument, time) = (scalar(0)?, scalar(1)?);
-                self.delay(argument, time, span)?
-            }
-            "semiLinear" => {
-                let (x, positive, negative) = (scalar(0)?, scalar(1)?, scalar(2)?);
-                self.semi_linear(x, positive, negative, live, span)
-            }
+            "delay" | "semiLinear" => return self.of_each_element(name, &arguments, live, span),
             _ => {
                 let mut array = arguments.swap_remove(0);
                 for element in &mut array.elements {
@@ -67,6 +60,37 @@ impl Builder<'_> {
             }
         };
         Ok(Array::scalar(value))
+    }
+
+    /// A function of scalars applied to the elements of arrays of one size, and to the scalars
+    /// among the arguments (MLS §12.4.6).
+    fn of_each_element(
+        &mut self,
+        name: &str,
+        arguments: &[Array<Expr>],
+        live: bool,
+        span: Span,
+    ) -> Result<Array<Expr>, Diagnostic> {
+        let arrays = || arguments.iter().map(|a| &a.dims).filter(|dims| !dims.is_empty());
+        let dims = arrays().next().cloned().unwrap_or_default();
+        if let Some(other) = arrays().find(|other| **other != dims) {
+            return Err(size_fault(&dims, other).at(span));
+        }
+        let mut elements = Vec::new();
+        for at in 0..dims.iter().product() {
+            let of = |argument: &Array<Expr>| match argument.dims.is_empty() {
+                true => argument.elements[0],
+                false => argument.elements[at],
+            };
+            elements.push(match (name, arguments) {
+                ("semiLinear", [x, positive, negative]) => {
+                    self.semi_linear(of(x), of(positive), of(negative), live, span)
+                }
+                (_, [argument, time, ..]) => self.delay(of(argument), of(time), span)?,
+                _ => return Err(fault!(ARRAY_MISMATCH, "`{name}` needs more arguments").at(span)),
+            });
+        }
+        Ok(Array { dims, elements })
     }
 
     /// `pre(a)`: the value of a variable before the event iteration in progress.

@@ -334,6 +334,15 @@ fn a_sample_next_to_an_output_point_is_not_lost() {
 }
 
 #[test]
+fn semi_linear_takes_arrays() {
+    let text = "model S Real m = time - 1; Real y[2] = semiLinear(m, {2, 3}, {4, 5}); end S;";
+    let run = simulated(text, 3.0);
+    assert_eq!([run.last("y[1]"), run.last("y[2]")], [4.0, 6.0]);
+    let before = simulated(text, 0.5);
+    assert_eq!([before.last("y[1]"), before.last("y[2]")], [-2.0, -2.5]);
+}
+
+#[test]
 fn samples_do_not_drift() {
     let text = "model S Integer n(start = 0); discrete Real t(start = 0); Integer both(start = 0);
         equation when sample(0, 0.1) then n = pre(n) + 1; t = time; end when;
