@@ -77,10 +77,10 @@ fn list(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         let roots: Vec<Name> = session.library().roots().map(Name::from).collect();
         let library = session.library();
         let all = roots.iter().filter_map(|root| library.definition(root));
-        return Ok(text(all.map(|class| print::class(&class) + ";\n").collect::<String>()));
+        return Ok(text(all.map(|class| print::dense_class(&class) + ";\n").collect::<String>()));
     }
     let class = asked(session, &name);
-    Ok(text(class.map_or(String::new(), |class| print::class(&class) + ";")))
+    Ok(text(class.map_or(String::new(), |class| print::dense_class(&class) + ";")))
 }
 
 const GET_COMPONENTS: &str = r#"

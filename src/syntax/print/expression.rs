@@ -204,9 +204,14 @@ impl Printer {
         let level = operator_level(operator);
         let associates = !matches!(level, Level::Relation | Level::Power);
         self.at_least(if associates { level } else { level.tighter() }, left);
-        self.word(" ");
+        let is_tight = matches!(
+            operator,
+            BinaryOperator::Multiply | BinaryOperator::Divide | BinaryOperator::Power
+        );
+        let blank = if self.dense && is_tight { "" } else { " " };
+        self.word(blank);
         self.word(operator.symbol());
-        self.word(" ");
+        self.word(blank);
         self.at_least(level.tighter(), right);
     }
 

@@ -25,6 +25,13 @@ pub fn class(class: &ast::ClassDefinition) -> String {
     printed(|printer| printer.class(class))
 }
 
+/// A class definition without its semicolon, and without blanks around `*`, `/` and `^`.
+pub fn dense_class(class: &ast::ClassDefinition) -> String {
+    let mut printer = Printer { dense: true, ..Printer::default() };
+    printer.class(class);
+    printer.out
+}
+
 /// An expression.
 pub fn expression(expression: &ast::Expression) -> String {
     printed(|printer| printer.expression(expression))
@@ -61,15 +68,18 @@ pub fn string_literal(text: &str) -> String {
 }
 
 fn printed(print: impl FnOnce(&mut Printer)) -> String {
-    let mut printer = Printer { out: String::new(), indent: 0 };
+    let mut printer = Printer::default();
     print(&mut printer);
     printer.out
 }
 
 /// The text so far and the depth of its blocks.
+#[derive(Default)]
 struct Printer {
     out: String,
     indent: usize,
+    /// Whether `*`, `/` and `^` have no blanks around them.
+    dense: bool,
 }
 
 impl Printer {
