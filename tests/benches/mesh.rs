@@ -5,6 +5,8 @@
 //! Prints a table and writes the figure that the model's documentation shows. Arguments that are
 //! numbers limit the meshes: `cargo bench --bench mesh -- 200`.
 
+#![allow(clippy::print_stdout, reason = "it prints a table")]
+
 use gapilib::compile::Program;
 use gapilib::dae::sort;
 use gapilib::flatten::{self, Library, LibraryFiles};
