@@ -197,16 +197,20 @@ a := {P(1, {1, 2}), P(2, {3, 4}), P(3, {5, 6})};
 }
 
 #[test]
-fn a_record_output_is_nan_where_nothing_was_assigned() {
+fn a_record_output_is_complete_when_all_its_components_are() {
     let script = "
 record P Real x; Real v[2]; end P;
 function full output P p; algorithm p.x := 1; for i in 1:2 loop p.v[i] := i; end for; end full;
 function half output P p; algorithm p.x := 1; p.v[1] := 1; end half;
+record C Real x; Boolean b; end C;
+function undecided output C c; algorithm c.x := 1; end undecided;
 function none output P p; algorithm end none;
 function many output P p[2]; algorithm for i in 1:2 loop p[i].x := i; p[i].v := {i, i}; end for; end many;
 ";
     assert_eq!(run(&format!("{script} r := full();"), "r.v"), "{1.0, 2.0}");
+    // Real scalars can be NaN, others cannot.
     assert_eq!(run(&format!("{script} r := half();"), "r.v"), "{1.0, NaN}");
+    assert!(run_fails(&format!("{script} y := undecided();")).starts_with("no-value-yet: `c`"));
     assert!(run_fails(&format!("{script} y := none();")).starts_with("no-value-yet: `p`"));
     assert_eq!(run(&format!("{script} r := many();"), "r.x"), "{1.0, 2.0}");
 }
