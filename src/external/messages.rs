@@ -86,7 +86,9 @@ fn time(call: &mut Call<'_>) -> Result<(), Fault> {
 
 /// Year, month and day, `days` days after 1970-01-01.
 fn date(days: u64) -> (u64, u64, u64) {
-    let is_leap = |year: u64| year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    let is_leap = |year: u64| {
+        year.is_multiple_of(4) && (!year.is_multiple_of(100) || year.is_multiple_of(400))
+    };
     // Whole periods of 400 years are skipped, so that few years are counted.
     let (mut year, mut days) = (1970 + days / 146_097 * 400, days % 146_097);
     while days >= 365 + u64::from(is_leap(year)) {

@@ -189,8 +189,8 @@ fn chosen_eigenvalues_come_first() {
             orthogonal(q);
             same(&(q * t * q.transpose()), &a);
             assert_eq!(results[10][0], chosen);
-            for i in 0..k {
-                assert_eq!(side * results[8][i] < 0.0, (i as f64) < chosen, "{t}");
+            for (i, part) in results[8].iter().enumerate().take(k) {
+                assert_eq!(side * part < 0.0, (i as f64) < chosen, "{t}");
             }
             assert!((results[9].norm() - im.norm()).abs() < 1e-10);
             assert!((0.0..=1.0).contains(&results[11][0]));

@@ -51,6 +51,7 @@ fn statements_with_an_embedded_result_are_judged_one_by_one() {
 
 /// At least 99 % of the scripts below `GAPILIB_SCRIPTS` are read; data is not counted.
 #[test]
+#[allow(clippy::print_stderr, reason = "a test that is skipped has to say so")]
 fn local_scripts_are_read() {
     let Ok(scripts) = std::env::var("GAPILIB_SCRIPTS") else {
         eprintln!("skipped: GAPILIB_SCRIPTS names no folder of scripts");

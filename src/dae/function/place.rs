@@ -188,7 +188,7 @@ impl Body<'_, '_> {
         for (position, part) in target.parts.iter().enumerate() {
             path.push_str(if position > 0 { "." } else { "" });
             path.push_str(part.name.as_str());
-            let rank = super::component_of(&self.function, &path).map_or(0, |c| c.dims.len());
+            let rank = super::component_of(self.function, &path).map_or(0, |c| c.dims.len());
             let is_last = position + 1 == target.parts.len();
             let given = part.subscripts.len();
             if given > 0 && is_whole || !is_last && given > 0 && given != rank {
