@@ -329,15 +329,15 @@ impl System {
         jumps.chain(samples).filter(|time| time.is_finite())
     }
 
-    /// Values of all discrete variables and their previous ones, for an event at the end.
-    pub(super) fn final_event(&mut self, t: f64, terminal: VarId) -> Result<bool, Failure> {
+    /// Values of all discrete variables and their previous ones, for an event at the end;
+    /// `terminal()` stays true for what is computed from them.
+    pub(super) fn final_event(&mut self, t: f64, terminal: VarId) -> Result<(), Failure> {
         self.registers[terminal.0 as usize] = 1.0;
         let mut outcome = self.event(t);
         while outcome == Ok(EventOutcome::Again) {
             outcome = self.event(t);
         }
-        self.registers[terminal.0 as usize] = 0.0;
-        Ok(outcome? != EventOutcome::Continue { y_changed: false })
+        outcome.map(|_| ())
     }
 }
 

@@ -500,9 +500,10 @@ impl DaeSystem for System {
     fn finish(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
         let Some(terminal) = self.program.events.terminal else { return Ok(false) };
         self.load(t, y);
-        let changed = self.final_event(t, terminal)?;
+        self.final_event(t, terminal)?;
         self.unload(y);
-        Ok(changed)
+        // Continuous variables may depend on `terminal()`, too.
+        Ok(true)
     }
 
     fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {

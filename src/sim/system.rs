@@ -69,7 +69,7 @@ pub trait DaeSystem {
     fn longest_step(&self) -> f64 {
         f64::INFINITY
     }
-    /// The event at the end of a simulation (`terminal()`); whether anything changed.
+    /// The event at the end of a simulation (`terminal()`); whether there is one.
     fn finish(&mut self, _t: f64, _y: &mut [f64]) -> Result<bool, Failure> {
         Ok(false)
     }

@@ -308,6 +308,17 @@ fn terminate_ends_and_terminal_acts_at_the_end() {
 }
 
 #[test]
+fn what_depends_on_the_end_changes_at_the_end() {
+    let text = "model T Real a(start = 0.1); Real b = if terminal() then 2*time else 0;
+        algorithm if terminal() then a := 1; end if; end T;";
+    let run = simulated(text, 1.0);
+    near(run.at("a", 0.5), 0.1, 0.0);
+    near(run.at("b", 0.5), 0.0, 0.0);
+    near(run.last("a"), 1.0, 0.0);
+    near(run.last("b"), 2.0, 0.0);
+}
+
+#[test]
 fn an_assertion_at_an_event_holds_at_that_event_only() {
     let text = |limit: f64| {
         format!(
