@@ -1,16 +1,15 @@
 //! Sorting: a flat model becomes a sequence of assignments and torn algebraic loops.
 //!
 //! ```text
-//! build                every variable a scalar, every relation outside noEvent frozen
-//! order_parameters     bindings in order of dependence
-//! fold_parameters      parameters that cannot be set become numbers
-//! substitute_constants v = 3 holds in all other equations
-//! eliminate_aliases    a = b and a = -b become names
-//! separate_discrete    equations of discrete variables become assignments at events
-//! reduce_index         constraints between states differentiated, states chosen
-//! sort_blocks          matching, strongly connected components, tearing
-//! sort_events          the same for the system at events, discrete equations included
-//! sort_initial         the same for the system at the start
+//! build              every variable a scalar, every relation outside noEvent frozen
+//! order_parameters   bindings in order of dependence
+//! fold_parameters    parameters that cannot be set become numbers
+//! eliminate_aliases  a = b and a = -b become names
+//! separate_discrete  equations of discrete variables become assignments at events
+//! reduce_index       constraints between states differentiated, states chosen
+//! sort_blocks        matching, strongly connected components, tearing
+//! sort_events        the same for the system at events, discrete equations included
+//! sort_initial       the same for the system at the start
 //! ```
 //!
 //! Between events the blocks give derivatives and algebraic variables; discrete variables and
@@ -25,7 +24,6 @@ mod alias_elimination;
 mod assigned;
 mod blt;
 mod build;
-mod constant_variables;
 mod default_values;
 mod discrete;
 mod dummy_derivatives;
@@ -69,7 +67,6 @@ pub const PASSES: &[(&str, &str)] = &[
     ("build", "every variable a scalar, relations outside `noEvent` frozen"),
     ("order_parameters", "bindings of parameters in order of dependence"),
     ("fold_parameters", "parameters that cannot be set become numbers"),
-    ("substitute_constants", "where `v = 3`, the number stands for v in all other equations"),
     ("eliminate_aliases", "`a = b` and `a = -b` become names"),
     ("separate_discrete", "equations of discrete variables become assignments at events"),
     ("reduce_index", "constraints between states differentiated, states chosen"),
@@ -96,8 +93,6 @@ fn sort_and_show(flat: &FlatModel, show: &mut Show<'_>) -> Result<SortedDae, Dia
     let parameters = default_values::fold_parameters(&mut dae, parameters);
     show("fold_parameters", &dae, &[]);
     dae.defaults = DefaultValues::of_parameters(&dae, &parameters);
-    constant_variables::substitute_constants(&mut dae);
-    show("substitute_constants", &dae, &[]);
     let mut aliases = alias_elimination::eliminate_aliases(&mut dae);
     show("eliminate_aliases", &dae, &aliases);
     discrete::separate_discrete(&mut dae, &aliases)?;
