@@ -2,7 +2,7 @@
 //! page's own.
 //!
 //! A long run would make a page that no browser opens: the page has the steps of the first
-//! generations only, as many as [`MOST_GENES`] allows, and the curve of convergence of all.
+//! generations only, as many as `MOST_GENES` allows, and the curve of convergence of all.
 
 use super::explain::explain;
 use super::generation::{Generation, Origin};
