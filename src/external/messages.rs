@@ -75,13 +75,18 @@ fn stat(call: &mut Call<'_>) -> Result<(), Fault> {
 
 /// `(ms, sec, min, hour, day, mon, year)`
 fn time(call: &mut Call<'_>) -> Result<(), Fault> {
-    let seconds = call.outside.unix_seconds()?;
-    let (year, month, day) = date(seconds / 86_400);
-    let parts = [0, seconds % 60, seconds / 60 % 60, seconds / 3600 % 24, day, month, year];
+    let parts = date_and_time(call.outside.unix_seconds()?);
     for (argument, part) in parts.into_iter().enumerate() {
         call.set(argument, part as f64);
     }
     Ok(())
+}
+
+/// Milliseconds (always 0), second, minute, hour, day, month and year in UTC, so many seconds after
+/// the beginning of 1970.
+pub(crate) fn date_and_time(seconds: u64) -> [u64; 7] {
+    let (year, month, day) = date(seconds / 86_400);
+    [0, seconds % 60, seconds / 60 % 60, seconds / 3600 % 24, day, month, year]
 }
 
 /// Year, month and day, `days` days after 1970-01-01.
@@ -137,4 +142,21 @@ fn real_matrix(call: &mut Call<'_>) -> Result<(), Fault> {
         *element = matrix.get(position / columns, position % columns);
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::date;
+
+    #[test]
+    fn days_have_dates() {
+        assert_eq!(date(0), (1970, 1, 1));
+        assert_eq!(date(59), (1970, 3, 1));
+        assert_eq!(date(11_016), (2000, 2, 29));
+        assert_eq!(date(11_322), (2000, 12, 31));
+        assert_eq!(date(20_778), (2026, 11, 21));
+        assert_eq!(date(47_540), (2100, 2, 28));
+        assert_eq!(date(47_541), (2100, 3, 1));
+        assert_eq!(date(146_097), (2370, 1, 1));
+    }
 }

@@ -32,6 +32,7 @@ mod sylvester;
 mod tables;
 
 pub use call::{Call, Kind, Object, Outside, Slot};
+pub(crate) use messages::date_and_time;
 pub use objects::Objects;
 pub use random::Random;
 pub use resources::{Contents, Provide, Resources};

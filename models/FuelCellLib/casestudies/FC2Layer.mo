@@ -21,7 +21,7 @@ equation
 original's voltages: 1.0524, 0.9877, 0.8619, 0.7902, 0.6550, 0.5756, 0.5297, 0.4531, 0.3991, 0.3763, 0.3241 V
 at 1.02, 0.1, 0.02, 0.01, 3e-3, 1.5e-3, 1e-3, 5e-4, 3e-4, 2.4e-4 and 1.4e-4 Ohm.m2.</p>
 <p>Processor time of one simulation (0.5 s, tolerance 1e-4, 100 output intervals) and of a step, for each state, on finer
-meshes of the same layers (<code>cargo bench --bench mesh</code>, on a machine that did other work as well). From n = 200 to 2,000 the time of a simulation grows by a factor of 15, from n = 10 to 200 by 37:</p>
+meshes of the same layers (<code>cargo bench --bench mesh</code>, on a machine that did other work as well, with about a tenth fewer iterations than now). From n = 200 to 2,000 the time of a simulation grows by a factor of 15, from n = 10 to 200 by 37:</p>
 <table border=\"1\">
 <tr><th>n</th><th>states</th><th>translation, s</th><th>steps</th><th>simulation, ms</th><th>step and state, us</th></tr>
 <tr><td>10</td><td>55</td><td>0.03</td><td>52</td><td>1.55</td><td>0.54</td></tr>

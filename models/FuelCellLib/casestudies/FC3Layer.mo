@@ -21,7 +21,7 @@ equation
 </table>
 <p>The error falls with the square of the size of a control volume. The default mesh has n = 20 in the diffusion layer.</p>
 <p>Processor time of one simulation (0.5 s, tolerance 1e-4, 100 output intervals) and of a step, for each state, on finer
-meshes of the same layers (<code>cargo bench --bench mesh</code>, on a machine that did other work as well). From n = 200 to 2,000 the time of a simulation grows by a factor of 11, from n = 10 to 200 by 47:</p>
+meshes of the same layers (<code>cargo bench --bench mesh</code>, on a machine that did other work as well, with about a tenth fewer iterations than now). From n = 200 to 2,000 the time of a simulation grows by a factor of 11, from n = 10 to 200 by 47:</p>
 <table border=\"1\">
 <tr><th>n</th><th>states</th><th>translation, s</th><th>steps</th><th>simulation, ms</th><th>step and state, us</th></tr>
 <tr><td>10</td><td>88</td><td>0.14</td><td>44</td><td>2.38</td><td>0.61</td></tr>
