@@ -73,7 +73,7 @@ fn run(
         simulation::simulate(session, &model, &wishes).map_err(|error| vec![error])
     })?;
     if let Some(filter) = filter {
-        simulated.table.series.retain(|series| filter.is_match(&series.name));
+        simulated.table = simulated.table.only(|name| filter.is_match(name));
     }
     session.print(&summary(&arguments.model, &simulated));
     if arguments.stats {

@@ -65,6 +65,22 @@ fn version_and_help() {
 
 /// The small standard library is part of the program; one that the user names takes its place.
 #[test]
+fn a_filter_keeps_the_values_of_aliases() {
+    let text = "model M Real x(start = 3); Real a; Real b; Real y; Real z; equation \
+                der(x) = 0; a = time; b = 2*time; y = -x; z = y; end M;";
+    let here = folder(&[("M.mo", text)]);
+    let base = ["simulate", "M.mo", "--model", "M", "--intervals", "1", "--output", "out.csv"];
+    for (filter, expected) in [
+        ("y", "\"time\",\"y\"\n0.0,-3.0\n1.0,-3.0\n"),
+        ("[zb]", "\"time\",\"b\",\"z\"\n0.0,0.0,-3.0\n1.0,2.0,-3.0\n"),
+    ] {
+        let (code, _, error) = gapi(&here, &[&base[..], &["--variable-filter", filter]].concat());
+        assert_eq!(code, 0, "{error}");
+        assert_eq!(std::fs::read_to_string(here.path().join("out.csv")).unwrap(), expected);
+    }
+}
+
+#[test]
 fn models_find_their_library_anywhere() {
     let here = folder(&[(
         "Circuit.mo",
