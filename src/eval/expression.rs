@@ -213,7 +213,7 @@ impl Evaluator<'_> {
     }
 }
 
-fn apply(operator: BinaryOperator, a: &Value, b: &Value) -> Result<Value, Fault> {
+pub(super) fn apply(operator: BinaryOperator, a: &Value, b: &Value) -> Result<Value, Fault> {
     match operator {
         BinaryOperator::Add => ops::add(a, b),
         BinaryOperator::Subtract => ops::subtract(a, b),
