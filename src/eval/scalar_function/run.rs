@@ -16,13 +16,63 @@ impl Compiled {
         given: &[Option<Value>],
         host: &mut dyn Host,
     ) -> Option<Vec<Value>> {
-        let compiled = function.compiled.0.get_or_init(|| compile::compile(function, host));
-        let compiled = compiled.as_ref()?;
-        let mut run = Run { slots: [None; MAX_SLOTS], host };
-        run.declare(compiled, given)?;
-        run.instructions(&compiled.body)?;
-        let outputs = &run.slots[compiled.inputs..compiled.inputs + compiled.outputs];
+        let compiled = Compiled::of(function, host)?;
+        let scalar = |at: usize| match given.get(at).and_then(Option::as_ref) {
+            Some(value) => Scalar::of(value).map(Some),
+            None => Some(None),
+        };
+        let slots = compiled.slots(scalar, host)?;
+        let outputs = &slots[compiled.inputs..compiled.inputs + compiled.outputs];
         outputs.iter().map(|output| output.map(Value::from)).collect()
+    }
+
+    /// The first output for arguments that `scalar` gives by their position, `count` of them.
+    pub(in crate::eval) fn first_output(
+        function: &Function,
+        count: usize,
+        scalar: impl Fn(usize) -> Option<Scalar>,
+        host: &mut dyn Host,
+    ) -> Option<Scalar> {
+        let compiled = Compiled::of(function, host)?;
+        if count > compiled.inputs || compiled.outputs == 0 {
+            return None;
+        }
+        let given = |at: usize| match at < count {
+            true => scalar(at).map(Some),
+            false => Some(None),
+        };
+        compiled.slots(given, host)?[compiled.inputs]
+    }
+
+    fn of<'f>(function: &'f Function, host: &mut dyn Host) -> Option<&'f ScalarFunction> {
+        let compiled = &function.compiled.0;
+        compiled.get_or_init(|| compile::compile(function, host)).as_ref()
+    }
+}
+
+impl ScalarFunction {
+    /// The values of all slots once the function has run. `given` knows the arguments by position:
+    /// `Some(None)` where the default counts, `None` where one is no scalar.
+    fn slots(
+        &self,
+        given: impl Fn(usize) -> Option<Option<Scalar>>,
+        host: &mut dyn Host,
+    ) -> Option<[Option<Scalar>; MAX_SLOTS]> {
+        let mut run = Run { slots: [None; MAX_SLOTS], host };
+        for (slot, component) in self.components.iter().enumerate() {
+            let given = if slot < self.inputs { given(slot)? } else { None };
+            let value = match (given, &component.binding) {
+                (Some(value), _) => value,
+                (None, Some(binding)) => run.value(binding)?,
+                (None, None) if slot < self.inputs => return None,
+                (None, None) => continue,
+            };
+            run.slots[slot] = Some(component.kind.convert(value)?);
+        }
+        run.instructions(&self.body)?;
+        // Every output has a value, or the general way says which has none.
+        let outputs = &run.slots[self.inputs..self.inputs + self.outputs];
+        outputs.iter().all(Option::is_some).then_some(run.slots)
     }
 }
 
@@ -34,18 +84,6 @@ struct Run<'h> {
 }
 
 impl Run<'_> {
-    fn declare(&mut self, function: &ScalarFunction, given: &[Option<Value>]) -> Option<()> {
-        for (slot, component) in function.components.iter().enumerate() {
-            let value = match (given.get(slot).and_then(Option::as_ref), &component.binding) {
-                (Some(value), _) => Scalar::of(value)?,
-                (None, Some(binding)) => self.value(binding)?,
-                (None, None) => continue,
-            };
-            self.slots[slot] = Some(component.kind.convert(value)?);
-        }
-        Some(())
-    }
-
     fn instructions(&mut self, instructions: &[Instruction]) -> Option<Flow> {
         for instruction in instructions {
             let flow = self.instruction(instruction)?;
