@@ -1,6 +1,8 @@
 //! The commands that linearize models.
 
-use super::openmodelica::{completed, shown, simulation_result, wishes, write_results};
+use super::openmodelica::{
+    completed, shown, simulation_result, wishes, with_method_of_ours, write_results,
+};
 use super::simflags::SimulationFlags;
 use super::simulation::{Request, translated_model};
 use super::{Args, Builtin, Failure, Family};
@@ -144,6 +146,7 @@ fn translated_and_linearized(
     let at = session.call_site();
     let flags = SimulationFlags::parse(flags).at(at).map_err(|error| vec![error])?;
     let wishes = flags.applied_to(completed(wishes, &model.program.experiment()));
+    let wishes = with_method_of_ours(session, wishes);
     let before = session.current_values();
     let set = flags.apply(session).at(at);
     let linear = set.map_err(|error| vec![error]).and_then(|()| linearized(session, &wishes));

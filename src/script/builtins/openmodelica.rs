@@ -8,7 +8,7 @@ use crate::fault;
 use crate::flatten::Experiment;
 use crate::name::{Ident, Name};
 use crate::results::ResultTable;
-use crate::script::errors::BAD_ARGUMENT;
+use crate::script::errors::{BAD_ARGUMENT, METHOD_REPLACED};
 use crate::script::flat_text::{flat_text, trivial_equations};
 use crate::script::simulation::{self, Wishes};
 use crate::script::{Dialect, Session};
@@ -154,6 +154,33 @@ pub(super) fn completed(wishes: &Wishes, experiment: &Experiment) -> Wishes {
     }
 }
 
+/// Methods of OpenModelica that are not here. All of them keep the tolerance or have a fixed step;
+/// what is taken instead keeps the tolerance.
+const NOT_HERE: &[&str] = &[
+    "gbode",
+    "heun",
+    "impeuler",
+    "imprungekutta",
+    "irksco",
+    "qss",
+    "rungekuttaSsc",
+    "symSolver",
+    "symSolverSsc",
+    "trapezoid",
+];
+
+/// The wishes with a method that there is.
+pub(super) fn with_method_of_ours(session: &mut Session, wishes: Wishes) -> Wishes {
+    match wishes.method.as_deref().filter(|method| NOT_HERE.contains(method)) {
+        Some(method) => {
+            let text = format!("the integration method `{method}` is not here: `dassl` is taken");
+            session.note(METHOD_REPLACED, text);
+            Wishes { method: Some("dassl".to_owned()), ..wishes }
+        }
+        None => wishes,
+    }
+}
+
 /// The ending of the format that is written to no file.
 const NO_FILE: &str = ".empty";
 
@@ -173,8 +200,8 @@ fn run(
     let file = flags.result.as_deref().unwrap_or(file);
     let before = session.current_values();
     let set = flags.apply(session).at(at);
-    let done =
-        set.and_then(|()| simulation::simulate(session, &model, &flags.applied_to(wishes.clone())));
+    let applied = with_method_of_ours(session, flags.applied_to(wishes.clone()));
+    let done = set.and_then(|()| simulation::simulate(session, &model, &applied));
     session.restore_values(before);
     let mut done = done.map_err(one)?;
     if filter.as_str() != "^(?:.*)$" {

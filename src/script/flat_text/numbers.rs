@@ -133,6 +133,10 @@ fn make_real(e: &mut Expression) {
         ExpressionKind::Integer(value) => e.kind = ExpressionKind::Real(*value as f64),
         ExpressionKind::Unary { operand, .. } => make_real(operand),
         ExpressionKind::Array(elements) => elements.iter_mut().for_each(make_real),
+        ExpressionKind::If { branches, otherwise } => {
+            branches.iter_mut().for_each(|(_, value)| make_real(value));
+            make_real(otherwise);
+        }
         ExpressionKind::Binary { operator, left, right } => {
             use BinaryOperator as Op;
             if matches!(operator, Op::Add | Op::Subtract | Op::Multiply) {
