@@ -1,7 +1,8 @@
 //! Equations of a flat model taken apart into equations of scalars: loops written out, arrays
 //! element by element.
 
-use super::parts::{Apart, Value, integer};
+use super::operations::integer;
+use super::parts::{Apart, MAX_SCALARS, Value};
 use crate::syntax::ast::{Equation, EquationKind, Expression, ExpressionKind, ForIndex};
 use crate::syntax::visit::Rewrite;
 
@@ -72,6 +73,9 @@ impl Apart<'_> {
             let mut body = body.to_vec();
             body.iter_mut().for_each(|equation| writer.equation(equation));
             all.extend(self.written_out(&inner, &body)?);
+            if all.len() > MAX_SCALARS {
+                return None;
+            }
         }
         Some(all)
     }

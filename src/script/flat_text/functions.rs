@@ -5,6 +5,14 @@ use crate::eval::{Function, FunctionBody, FunctionComponent};
 use crate::syntax::ast::{External, Subscript};
 use crate::syntax::print;
 
+/// Whether a function is another name of one that every reader of the text knows.
+pub(super) fn is_of_language(function: &Function) -> bool {
+    match &function.body {
+        FunctionBody::External(external) => external.language.as_deref() == Some("builtin"),
+        _ => false,
+    }
+}
+
 /// A function as Modelica.
 pub(super) fn function_text(function: &Function) -> String {
     let name = &function.name;

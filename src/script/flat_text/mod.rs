@@ -3,6 +3,7 @@
 mod equations;
 mod functions;
 mod numbers;
+mod operations;
 mod parts;
 mod trivial;
 
@@ -16,7 +17,7 @@ use crate::syntax::ast::{
 };
 use crate::syntax::print;
 use crate::syntax::visit::Rewrite;
-use functions::function_text;
+use functions::{function_text, is_of_language};
 use numbers::Numbers;
 use parts::{Apart, selected};
 
@@ -27,7 +28,8 @@ const ATTRIBUTES: &[&str] =
 /// A flat model as text.
 pub(in crate::script) fn flat_text(model: &FlatModel) -> String {
     let writer = Writer { apart: Apart(model), numbers: Numbers(model) };
-    let mut text: String = model.functions.values().map(|f| function_text(f)).collect();
+    let functions = model.functions.values().filter(|function| !is_of_language(function));
+    let mut text: String = functions.map(|function| function_text(function)).collect();
     text += &format!("class {}{}\n", model.name, comment(model.description.as_deref()));
     for variable in model.variables.values() {
         text.extend(writer.declarations(variable).iter().map(|line| format!("  {line};\n")));
@@ -216,4 +218,43 @@ fn positions(dims: &[usize]) -> Vec<Vec<usize>> {
         };
         before.iter().flat_map(extended).collect()
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::script::Session;
+    use crate::script::world::MemoryWorld;
+    use crate::value::Value;
+
+    fn instantiated(model: &str) -> String {
+        let mut session = Session::new(Box::new(MemoryWorld::new()));
+        session.load_text("m", model).expect("a model");
+        session.run_text("s.mos", "text := OpenModelica.Scripting.instantiateModel(M);");
+        match session.variable("text") {
+            Some(Value::String(text)) => text.to_string(),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn what_would_grow_without_bound_stays_whole() {
+        let text = instantiated(
+            "model M parameter Real A[9, 9] = identity(9); Real x[9]; \
+             equation x = A*A*A*A*A*A*{time for i in 1:9}; end M;",
+        );
+        assert!(text.contains("x = A * A"), "{text}");
+    }
+
+    #[test]
+    fn parts_of_arrays_are_named_one_by_one() {
+        let text = instantiated(
+            "model M Real x[2, 3]; Real y[3]; Integer k = 2; equation \
+             x[1, :] = {time, 2, 3}; x[2, 1:2] = fill(time, 2); x[2, 3] = y[k]; \
+             y = {{x[2, 1], time}*{1, 2}, -x[1, 2], if time > 1 then 1 else 2}; end M;",
+        );
+        assert!(text.contains("x[2,2] = time;"), "{text}");
+        assert!(text.contains("x[2,3] = y[k];"), "{text}");
+        assert!(text.contains("y[1] = x[2,1] * 1.0 + time * 2.0;"), "{text}");
+        assert!(text.contains("y[3] = if time > 1.0 then 1.0 else 2.0;"), "{text}");
+    }
 }

@@ -1,5 +1,6 @@
 //! Array expressions of a flat model taken apart into their scalars.
 
+use super::operations::{binary, counted, filled, integer, operation, transposed};
 use crate::flatten::FlatModel;
 use crate::name::Ident;
 use crate::syntax::ast::{
@@ -8,7 +9,7 @@ use crate::syntax::ast::{
 use crate::syntax::visit::{Rewrite, rewrite_expression};
 
 /// Scalars that one expression may have.
-const MAX_SCALARS: usize = 1 << 16;
+pub(super) const MAX_SCALARS: usize = 1 << 16;
 
 /// Functions whose value has the sizes of their last argument, of which they are one by one.
 const ONE_BY_ONE: &[&str] = &["der", "pre", "noEvent", "smooth", "previous"];
@@ -25,7 +26,7 @@ impl Parts {
         Parts { dims: Vec::new(), scalars: vec![e] }
     }
 
-    fn map(self, each: impl FnMut(Expression) -> Expression) -> Parts {
+    pub(super) fn map(self, each: impl FnMut(Expression) -> Expression) -> Parts {
         Parts { dims: self.dims, scalars: self.scalars.into_iter().map(each).collect() }
     }
 
@@ -39,6 +40,14 @@ impl Parts {
         let scalars: Vec<Expression> = rows.into_iter().flat_map(|row| row.scalars).collect();
         (scalars.len() <= MAX_SCALARS).then_some(Parts { dims, scalars })
     }
+}
+
+/// What a subscript takes of a dimension.
+enum Pick {
+    One(i64),
+    Several(Vec<i64>),
+    /// One that is known only while the model runs.
+    Changing,
 }
 
 /// Takes expressions of a model apart.
@@ -102,47 +111,55 @@ impl Apart<'_> {
     }
 
     fn reference(&self, reference: &ComponentReference, e: &Expression) -> Option<Parts> {
-        let Some(variable) = self.0.variables.get(Self::key(reference).as_str()) else {
+        let known = self.0.variables.get(Self::key(reference).as_str());
+        let Some(variable) = known.filter(|variable| !variable.dims.is_empty()) else {
             return Some(Parts::scalar(e.clone()));
         };
         let subscripts = &reference.parts.last()?.subscripts;
-        if variable.dims.is_empty() {
-            return Some(Parts::scalar(e.clone()));
+        let picks =
+            (0..variable.dims.len()).map(|at| self.pick(subscripts.get(at), variable.dims[at]));
+        let picks = picks.collect::<Option<Vec<_>>>()?;
+        if picks.iter().any(|pick| matches!(pick, Pick::Changing)) {
+            // A subscript that changes names one scalar, whichever it is.
+            let is_one = picks.iter().all(|pick| !matches!(pick, Pick::Several(_)));
+            return is_one.then(|| Parts::scalar(e.clone()));
         }
-        let mut dims = Vec::new();
-        let mut picked: Vec<Vec<i64>> = vec![Vec::new()];
-        for (dimension, size) in variable.dims.iter().enumerate() {
-            let every = (1..=*size as i64).collect::<Vec<_>>();
-            let (indices, is_one) = match subscripts.get(dimension) {
-                None | Some(Subscript::All(_)) => (every, false),
-                Some(Subscript::Index(index)) => match self.parts(index) {
-                    Some(parts) => {
-                        let known = parts.scalars.iter().map(integer).collect::<Option<Vec<_>>>();
-                        let is_one = parts.dims.is_empty();
-                        // A subscript that changes names one scalar, whichever it is.
-                        let all_one = subscripts.len() == variable.dims.len() && is_one;
-                        match known {
-                            Some(known) => (known, is_one),
-                            None if all_one => return Some(Parts::scalar(e.clone())),
-                            None => return None,
-                        }
-                    }
-                    None => return None,
-                },
+        let mut parts = Parts { dims: Vec::new(), scalars: Vec::new() };
+        let mut positions: Vec<Vec<i64>> = vec![Vec::new()];
+        for pick in picks {
+            let indices = match pick {
+                Pick::One(index) => vec![index],
+                Pick::Several(indices) => {
+                    parts.dims.push(indices.len());
+                    indices
+                }
+                Pick::Changing => return None,
             };
-            if !is_one {
-                dims.push(indices.len());
-            }
-            if picked.len().saturating_mul(indices.len()) > MAX_SCALARS {
+            if positions.len().saturating_mul(indices.len()) > MAX_SCALARS {
                 return None;
             }
-            picked = picked
-                .iter()
-                .flat_map(|before| indices.iter().map(|at| [before.as_slice(), &[*at]].concat()))
-                .collect();
+            let extended = |before: &Vec<i64>| {
+                indices.iter().map(|at| [before.as_slice(), &[*at]].concat()).collect::<Vec<_>>()
+            };
+            positions = positions.iter().flat_map(extended).collect();
         }
-        let scalars = picked.into_iter().map(|at| element_of(reference, &at, e)).collect();
-        Some(Parts { dims, scalars })
+        parts.scalars = positions.iter().map(|at| element_of(reference, at, e)).collect();
+        Some(parts)
+    }
+
+    /// What a subscript takes of a dimension.
+    fn pick(&self, subscript: Option<&Subscript>, size: usize) -> Option<Pick> {
+        let Some(Subscript::Index(index)) = subscript else {
+            return Some(Pick::Several((1..=size as i64).collect()));
+        };
+        let parts = self.parts(index)?;
+        let known = parts.scalars.iter().map(integer).collect::<Option<Vec<_>>>();
+        match (known, parts.dims.is_empty()) {
+            (Some(known), true) => known.first().copied().map(Pick::One),
+            (Some(known), false) => Some(Pick::Several(known)),
+            (None, true) => Some(Pick::Changing),
+            (None, false) => None,
+        }
     }
 
     fn chosen(
@@ -248,17 +265,6 @@ fn sizes_behind_first(arguments: &Arguments) -> Option<Vec<usize>> {
     arguments.positional.get(1..)?.iter().map(size).collect()
 }
 
-fn filled(dims: Vec<usize>, value: Expression) -> Option<Parts> {
-    let count = dims.iter().try_fold(1usize, |all, size| all.checked_mul(*size))?;
-    (count <= MAX_SCALARS).then(|| Parts { dims, scalars: vec![value; count] })
-}
-
-fn transposed(parts: Parts) -> Option<Parts> {
-    let [rows, columns] = *parts.dims.as_slice() else { return None };
-    let at = |k: usize| parts.scalars[(k % rows) * columns + k / rows].clone();
-    Some(Parts { dims: vec![columns, rows], scalars: (0..rows * columns).map(at).collect() })
-}
-
 fn element_of(reference: &ComponentReference, at: &[i64], e: &Expression) -> Expression {
     let mut element = reference.clone();
     if let Some(last) = element.parts.last_mut() {
@@ -268,115 +274,6 @@ fn element_of(reference: &ComponentReference, at: &[i64], e: &Expression) -> Exp
         last.subscripts = at.iter().map(index).collect();
     }
     Expression::new(ExpressionKind::Reference(element), e.span)
-}
-
-/// An operator of scalars; two Integers are calculated, as subscripts of loops written out need.
-pub(super) fn operation(operator: BinaryOperator, a: Expression, b: Expression) -> Expression {
-    if let (ExpressionKind::Integer(a), ExpressionKind::Integer(b)) = (&a.kind, &b.kind) {
-        let value = match operator {
-            BinaryOperator::Add => a.checked_add(*b),
-            BinaryOperator::Subtract => a.checked_sub(*b),
-            BinaryOperator::Multiply => a.checked_mul(*b),
-            _ => None,
-        };
-        if let Some(value) = value {
-            return Expression::new(ExpressionKind::Integer(value), crate::source::Span::NONE);
-        }
-    }
-    let span = a.span;
-    let kind = ExpressionKind::Binary { operator, left: Box::new(a), right: Box::new(b) };
-    Expression::new(kind, span)
-}
-
-fn binary(operator: BinaryOperator, a: Parts, b: Parts) -> Option<Parts> {
-    use BinaryOperator as Op;
-    match (a.dims.as_slice(), b.dims.as_slice()) {
-        (one, other) if one == other && (one.is_empty() || is_by_element(operator)) => {
-            let pairs = a.scalars.into_iter().zip(b.scalars);
-            let scalars = pairs.map(|(a, b)| operation(of_scalars(operator), a, b)).collect();
-            Some(Parts { dims: b.dims, scalars })
-        }
-        ([], _) if is_with_scalar(operator) => {
-            let a = a.scalars.into_iter().next()?;
-            Some(b.map(|b| operation(of_scalars(operator), a.clone(), b)))
-        }
-        (_, []) if is_with_scalar(operator) || operator == Op::Divide => {
-            let b = b.scalars.into_iter().next()?;
-            Some(a.map(|a| operation(of_scalars(operator), a, b.clone())))
-        }
-        _ if operator == Op::Multiply => product(&a, &b),
-        _ => None,
-    }
-}
-
-/// Products of vectors and matrices (MLS §10.6.5).
-fn product(a: &Parts, b: &Parts) -> Option<Parts> {
-    let ((rows, n), (m, columns)) = match (a.dims.as_slice(), b.dims.as_slice()) {
-        ([n], [m]) => ((1, *n), (*m, 1)),
-        ([rows, n], [m]) => ((*rows, *n), (*m, 1)),
-        ([n], [m, columns]) => ((1, *n), (*m, *columns)),
-        ([rows, n], [m, columns]) => ((*rows, *n), (*m, *columns)),
-        _ => return None,
-    };
-    if n != m || n == 0 {
-        return None;
-    }
-    let entry = |i: usize, j: usize| {
-        let terms = (0..n).map(|k| {
-            let (left, right) = (&a.scalars[i * n + k], &b.scalars[k * columns + j]);
-            operation(BinaryOperator::Multiply, left.clone(), right.clone())
-        });
-        terms.reduce(|a, b| operation(BinaryOperator::Add, a, b))
-    };
-    let all = (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j)));
-    let scalars = all.map(|(i, j)| entry(i, j)).collect::<Option<Vec<_>>>()?;
-    let outer = |parts: &Parts, kept: std::ops::Range<usize>| parts.dims[kept].to_vec();
-    let dims = [outer(a, 0..a.dims.len() - 1), outer(b, 1..b.dims.len())].concat();
-    Some(Parts { dims, scalars })
-}
-
-fn is_by_element(operator: BinaryOperator) -> bool {
-    use BinaryOperator as Op;
-    matches!(operator, Op::Add | Op::Subtract) || of_scalars(operator) != operator
-}
-
-fn is_with_scalar(operator: BinaryOperator) -> bool {
-    operator == BinaryOperator::Multiply || of_scalars(operator) != operator
-}
-
-/// `.*` as `*`: the same of scalars.
-fn of_scalars(operator: BinaryOperator) -> BinaryOperator {
-    use BinaryOperator as Op;
-    match operator {
-        Op::ElementwiseAdd => Op::Add,
-        Op::ElementwiseSubtract => Op::Subtract,
-        Op::ElementwiseMultiply => Op::Multiply,
-        Op::ElementwiseDivide => Op::Divide,
-        Op::ElementwisePower => Op::Power,
-        other => other,
-    }
-}
-
-fn counted(start: i64, step: i64, stop: i64) -> Option<Vec<i64>> {
-    let count = stop.checked_sub(start)?.checked_div(step)?.saturating_add(1).max(0);
-    let is_possible = usize::try_from(count).is_ok_and(|count| count <= MAX_SCALARS);
-    is_possible.then(|| (0..count).map(|at| start + at * step).collect())
-}
-
-pub(super) fn integer(e: &Expression) -> Option<i64> {
-    match &e.kind {
-        ExpressionKind::Integer(value) => Some(*value),
-        ExpressionKind::Unary { operand, operator: crate::syntax::ast::UnaryOperator::Minus } => {
-            integer(operand)?.checked_neg()
-        }
-        ExpressionKind::Binary { operator, left, right } => {
-            match operation(*operator, (**left).clone(), (**right).clone()).kind {
-                ExpressionKind::Integer(value) => Some(value),
-                _ => None,
-            }
-        }
-        _ => None,
-    }
 }
 
 fn size(e: &Expression) -> Option<usize> {
