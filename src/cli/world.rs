@@ -3,7 +3,7 @@
 use super::limits::Reason;
 use super::terminal::Terminal;
 use crate::models;
-use crate::script::world::{Files, Progress, Stamp, World};
+use crate::script::world::{Files, Progress, Stamp, World, normalized};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Write as _};
@@ -217,9 +217,32 @@ impl World for SystemWorld {
         self.terminal.progress(progress);
     }
 
+    fn resolved(&self, path: &Path) -> PathBuf {
+        followed(&self.absolute(path), MAX_LINKS)
+    }
+
     fn colour(&self) -> bool {
         self.terminal.colour()
     }
+}
+
+/// Links that lead to links; as many as operating systems follow.
+const MAX_LINKS: usize = 40;
+
+/// The path with its links followed, those too that lead to nothing yet.
+fn followed(path: &Path, links: usize) -> PathBuf {
+    for known in path.ancestors() {
+        let rest = path.strip_prefix(known).unwrap_or(Path::new(""));
+        if let Ok(real) = known.canonicalize() {
+            return real.join(rest);
+        }
+        if let (Ok(target), Some(folder)) = (std::fs::read_link(known), known.parent())
+            && links > 0
+        {
+            return followed(&normalized(&folder.join(target).join(rest)), links - 1);
+        }
+    }
+    path.to_path_buf()
 }
 
 /// Writes beside the file and renames, so that an interrupted write leaves the old file whole.
@@ -256,5 +279,24 @@ mod tests {
         write_atomically(&path, b"two").expect("a writable folder");
         assert_eq!(fs::read(&path).expect("the file"), b"two");
         assert_eq!(fs::read_dir(folder.path()).expect("the folder").count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed_where_they_lead_to_nothing_too() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let root = folder.path().canonicalize().expect("an absolute path");
+        std::fs::create_dir(root.join("inside")).expect("made");
+        let link = |target: &str, name: &str| {
+            std::os::unix::fs::symlink(target, root.join("inside").join(name)).expect("a link");
+        };
+        link("..", "up");
+        link("../missing", "dangling");
+        link("round", "round");
+        let resolved = |path: &str| followed(&root.join("inside").join(path), MAX_LINKS);
+        assert_eq!(resolved("new/file.txt"), root.join("inside/new/file.txt"));
+        assert_eq!(resolved("up/file.txt"), root.join("file.txt"));
+        assert_eq!(resolved("dangling"), root.join("missing"));
+        assert_eq!(resolved("round").file_name(), Some("round".as_ref()));
     }
 }

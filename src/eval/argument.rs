@@ -20,6 +20,13 @@ impl Evaluator<'_> {
         given: &[(Ident, Value)],
         span: Span,
     ) -> Result<Vec<Option<Value>>, Diagnostic> {
+        let all_positional = given.is_empty() && arguments.named.is_empty();
+        if all_positional && arguments.positional.len() == function.inputs.len() {
+            let pairs = function.inputs.iter().zip(&arguments.positional);
+            return pairs
+                .map(|(input, argument)| self.argument(input, argument).map(Some))
+                .collect();
+        }
         let mut binding = Binding::new(function);
         for (name, value) in given {
             let at = binding.named(*name).at(span)?;
@@ -46,7 +53,10 @@ impl Evaluator<'_> {
             ValueType::TypeName | ValueType::VariableName => self.name_argument(input, argument),
             ValueType::Expression => Ok(Value::VariableName(print::expression(argument).into())),
             ValueType::Function => self.function_argument(argument),
-            _ => self.expression(argument),
+            _ => match self.scalar(argument) {
+                Some(scalar) => Ok(scalar.into()),
+                None => self.expression(argument),
+            },
         }
     }
 

@@ -98,12 +98,18 @@ impl Evaluator<'_> {
         self.call_bound(function, given, span)
     }
 
-    fn target(&mut self, reference: &ComponentReference) -> Result<Target, Diagnostic> {
+    pub(super) fn target(&mut self, reference: &ComponentReference) -> Result<Target, Diagnostic> {
         let address = std::ptr::from_ref(reference).addr();
         if let Some(target) = self.scope.callees.get(&address) {
             return Ok(target.clone());
         }
-        let target = self.look_up(&reference.name(), reference.span)?;
+        let target = match reference.as_ident() {
+            Some(name) => {
+                let callee = self.host.simple_callee(name);
+                self.known_or_of_language(callee, &[name], reference.span)?
+            }
+            None => self.look_up(&reference.name(), reference.span)?,
+        };
         if !self.scope.is_script() {
             self.scope.callees.insert(address, target.clone());
         }
@@ -112,11 +118,24 @@ impl Evaluator<'_> {
 
     fn look_up(&mut self, name: &Name, span: Span) -> Result<Target, Diagnostic> {
         let callee = self.host.callee(name);
-        let callee = callee.map_err(|error| error.called_from(span, format!("function `{name}`")));
+        self.known_or_of_language(callee, &name.parts, span)
+    }
+
+    /// What the host says a name stands for, else the function of the language.
+    fn known_or_of_language(
+        &mut self,
+        callee: Result<Option<Callee>, Diagnostic>,
+        name: &[Ident],
+        span: Span,
+    ) -> Result<Target, Diagnostic> {
+        let callee = callee.map_err(|error| {
+            let name = Name::new(name.iter().copied());
+            error.called_from(span, format!("function `{name}`"))
+        });
         Ok(match callee? {
             Some(Callee::Function(function)) => Target::Function(function),
             Some(Callee::Builtin(header)) => Target::Builtin(header),
-            None => match name.parts.as_slice() {
+            None => match name {
                 [ident] => special::find(ident.as_str())
                     .map(Target::Special)
                     .or_else(|| intrinsics::find(ident.as_str()).map(Target::Intrinsic))

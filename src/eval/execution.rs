@@ -1,7 +1,7 @@
 //! Executing a function: its components, its algorithm, its outputs (MLS §12.4).
 
 use super::variable::Variable;
-use super::{Evaluator, Function, FunctionBody, Scope, ValueType, depth};
+use super::{Compiled, Evaluator, Function, FunctionBody, Scope, ValueType, depth};
 use crate::diag::{At, Diagnostic};
 use crate::source::Span;
 use crate::value::{RecordValue, Value};
@@ -18,6 +18,9 @@ impl Evaluator<'_> {
     ) -> Result<Vec<Value>, Diagnostic> {
         let _call = depth::Call::new(&function.name).at(span)?;
         self.check_interrupted(span)?;
+        if let Some(outputs) = Compiled::call(function, &given, self.host) {
+            return Ok(outputs);
+        }
         let mut scope = Scope::of_function(function.clone(), given, span);
         let mut inner = Evaluator { scope: &mut scope, host: self.host };
         inner.body(function).map_err(|error| traced(error, function, span))

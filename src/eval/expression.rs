@@ -1,8 +1,9 @@
 //! Expressions (MLS ch. 3).
 
+use super::call::Target;
 use super::errors::{MISPLACED, WRONG_OUTPUTS};
-use super::scalar::Scalar;
-use super::{Evaluator, depth};
+use super::scalar::{MAX_DEPTH, Scalar, scalar};
+use super::{Compiled, Evaluator, depth};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
 use crate::name::Name;
@@ -103,12 +104,30 @@ impl Evaluator<'_> {
     }
 
     fn first_output(&mut self, call: &Expression) -> Result<Value, Diagnostic> {
+        if let Some(value) = self.scalar_call(call)? {
+            return Ok(value);
+        }
         let mut outputs = self.outputs(call)?;
         if outputs.is_empty() {
             let message = "a value is wanted here, but the function called has no output";
             return Err(Fault::new(WRONG_OUTPUTS, message).at(call.span));
         }
         Ok(outputs.swap_remove(0))
+    }
+
+    /// The quick way to call a function of scalars with scalars; `None` where the general way has
+    /// to be taken. Nothing with an effect is evaluated.
+    fn scalar_call(&mut self, call: &Expression) -> Result<Option<Value>, Diagnostic> {
+        let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(None) };
+        let is_plain = arguments.named.is_empty() && arguments.iterators.is_empty();
+        if !is_plain || function.as_ident().is_some_and(|name| self.scope.get(name).is_some()) {
+            return Ok(None);
+        }
+        let Target::Function(function) = self.target(function)? else { return Ok(None) };
+        let (scope, given) = (&*self.scope, &arguments.positional);
+        let argument = |at: usize| scalar(scope, &given[at], MAX_DEPTH);
+        let output = Compiled::first_output(&function, given.len(), argument, self.host);
+        Ok(output.map(Value::from))
     }
 
     fn end(&mut self, span: Span) -> Result<Value, Diagnostic> {
@@ -213,7 +232,7 @@ impl Evaluator<'_> {
     }
 }
 
-fn apply(operator: BinaryOperator, a: &Value, b: &Value) -> Result<Value, Fault> {
+pub(super) fn apply(operator: BinaryOperator, a: &Value, b: &Value) -> Result<Value, Fault> {
     match operator {
         BinaryOperator::Add => ops::add(a, b),
         BinaryOperator::Subtract => ops::subtract(a, b),

@@ -1,5 +1,6 @@
 //! A function ready to be called: inheritance resolved, names absolute. Data only.
 
+use super::Compiled;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast;
@@ -31,6 +32,8 @@ pub struct Function {
     pub impure: bool,
     /// Where it is defined.
     pub span: Span,
+    /// Made of the rest by the first call.
+    pub compiled: Compiled,
 }
 
 impl Function {

@@ -26,6 +26,11 @@ pub trait Host {
     /// none, an error if it is malformed. Functions of MLS §3.7 and §10.3 are answered by `eval` itself after the host declined.
     fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic>;
 
+    /// As [`Host::callee`], for a name of one identifier.
+    fn simple_callee(&mut self, name: Ident) -> Result<Option<Callee>, Diagnostic> {
+        self.callee(&Name::from(name))
+    }
+
     /// Runs a builtin: `arguments` are complete, in the order of the header's inputs, defaults
     /// filled in. Returns its outputs, as many as the header declares.
     fn call_builtin(

@@ -21,6 +21,7 @@ mod intrinsics;
 mod iteration;
 mod reference;
 mod scalar;
+mod scalar_function;
 mod scope;
 mod special;
 mod statement;
@@ -37,6 +38,7 @@ pub use flow::Flow;
 pub use function::{Function, FunctionBody, FunctionComponent, ValueType};
 pub use host::{Callee, Host, Intrinsic};
 pub use intrinsics::{call_intrinsic, intrinsic_names, is_builtin};
+pub use scalar_function::Compiled;
 pub use scope::Scope;
 
 use crate::diag::Diagnostic;

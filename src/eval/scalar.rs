@@ -19,6 +19,16 @@ pub(super) enum Scalar {
 }
 
 impl Scalar {
+    /// A scalar value; `None` of any other.
+    pub(super) fn of(value: &Value) -> Option<Scalar> {
+        match value {
+            Value::Real(value) => Some(Scalar::Real(*value)),
+            Value::Integer(value) => Some(Scalar::Integer(*value)),
+            Value::Boolean(value) => Some(Scalar::Boolean(*value)),
+            _ => None,
+        }
+    }
+
     fn real(self) -> Option<f64> {
         match self {
             Scalar::Real(value) => Some(value),
@@ -55,32 +65,30 @@ pub(super) fn scalar(scope: &Scope, expression: &Expression, depth: usize) -> Op
         ExpressionKind::Real(value) => Some(Scalar::Real(*value)),
         ExpressionKind::Integer(value) => Some(Scalar::Integer(*value)),
         ExpressionKind::Boolean(value) => Some(Scalar::Boolean(*value)),
-        ExpressionKind::Reference(reference) => match scope.get(reference.as_ident()?)? {
-            Value::Real(value) => Some(Scalar::Real(*value)),
-            Value::Integer(value) => Some(Scalar::Integer(*value)),
-            Value::Boolean(value) => Some(Scalar::Boolean(*value)),
-            _ => None,
-        },
+        ExpressionKind::Reference(reference) => Scalar::of(scope.get(reference.as_ident()?)?),
         ExpressionKind::Binary { operator, left, right } => {
             let depth = depth.checked_sub(1)?;
             let a = scalar(scope, left, depth)?;
             binary(*operator, a, scalar(scope, right, depth)?)
         }
         ExpressionKind::Unary { operator, operand } => {
-            match (operator, scalar(scope, operand, depth.checked_sub(1)?)?) {
-                (UnaryOperator::Minus, Scalar::Real(value)) => Some(Scalar::Real(-value)),
-                (UnaryOperator::Minus, Scalar::Integer(value)) => {
-                    value.checked_neg().map(Scalar::Integer)
-                }
-                (UnaryOperator::Not, Scalar::Boolean(value)) => Some(Scalar::Boolean(!value)),
-                _ => None,
-            }
+            unary(*operator, scalar(scope, operand, depth.checked_sub(1)?)?)
         }
         _ => None,
     }
 }
 
-fn binary(operator: BinaryOperator, a: Scalar, b: Scalar) -> Option<Scalar> {
+pub(super) fn unary(operator: UnaryOperator, operand: Scalar) -> Option<Scalar> {
+    match (operator, operand) {
+        (UnaryOperator::Minus, Scalar::Real(value)) => Some(Scalar::Real(-value)),
+        (UnaryOperator::Minus, Scalar::Integer(value)) => value.checked_neg().map(Scalar::Integer),
+        (UnaryOperator::Not, Scalar::Boolean(value)) => Some(Scalar::Boolean(!value)),
+        (UnaryOperator::Plus, Scalar::Real(_) | Scalar::Integer(_)) => Some(operand),
+        _ => None,
+    }
+}
+
+pub(super) fn binary(operator: BinaryOperator, a: Scalar, b: Scalar) -> Option<Scalar> {
     use BinaryOperator as Op;
     if let (Scalar::Integer(a), Scalar::Integer(b)) = (a, b) {
         let integer = match operator {

@@ -43,8 +43,12 @@ impl Evaluator<'_> {
             StatementKind::While { condition, body } => {
                 return self.while_statement(condition, body);
             }
+            // Every statement of a script is an event.
+            StatementKind::When { branches } if self.scope.is_script() => {
+                return self.if_statement(branches, &[]);
+            }
             StatementKind::When { .. } => {
-                let message = "a `when` has a meaning in models only";
+                let message = "a `when` has a meaning in models and scripts only";
                 return Err(Fault::new(MODEL_ONLY, message).at(statement.span));
             }
             StatementKind::Break if self.scope.loops == 0 => {

@@ -10,7 +10,7 @@ use super::modification::Modifier;
 use super::resolve::Local;
 use super::scope::{ScopeId, Text};
 use crate::diag::Diagnostic;
-use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
+use crate::eval::{Compiled, Function, FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
@@ -303,6 +303,7 @@ impl Instantiation<'_> {
             annotation: annotations,
             impure: purity == Some(Purity::Impure),
             span: text.span(),
+            compiled: Compiled::default(),
         })
     }
 
@@ -329,6 +330,7 @@ impl Instantiation<'_> {
             annotation: Vec::new(),
             impure: false,
             span,
+            compiled: Compiled::default(),
         })
     }
 

@@ -30,7 +30,7 @@ impl Session {
         if matches!(value, Value::Tuple(v) if v.is_empty()) {
             return self.echo_nothing();
         }
-        if self.options.echo != Echo::Everything && self.is_plain_success(expression, value) {
+        if self.options.echo == Echo::Usual && self.is_plain_success(expression, value) {
             return;
         }
         self.echo_finished(expression, value);
@@ -60,7 +60,7 @@ impl Session {
 
     /// The word that stands in Dymola's log between a simulation and its answer.
     fn echo_finished(&mut self, expression: &Expression, value: &Value) {
-        let is_wanted = self.options.echo == Echo::Everything
+        let is_wanted = matches!(self.options.echo, Echo::Everything | Echo::Dialogue)
             && self.dialect == Dialect::Dymola
             && *value == Value::Boolean(true);
         let ExpressionKind::Call { function, .. } = &expression.kind else { return };
@@ -102,7 +102,7 @@ impl Session {
     /// A variable that an assignment made, as Dymola announces it.
     pub(super) fn echo_declaration(&mut self, name: Ident) {
         let wanted = self.dialect == Dialect::Dymola
-            && self.options.echo == Echo::Everything
+            && matches!(self.options.echo, Echo::Everything | Echo::Dialogue)
             && self.may_echo();
         let Some(value) = self.scope.get(name).filter(|_| wanted) else { return };
         let sizes: Vec<String> = value.dims().iter().map(usize::to_string).collect();

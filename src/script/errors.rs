@@ -47,6 +47,9 @@ codes! {
     /// A command that only concerns a graphical window.
     NO_WINDOW = "no-window":
         "## What it means\n\nThe command concerns a window of a graphical tool. There is none here, so it has no effect. Said once per command.\n\n## Example\n\n`animationSetup()`\n\n## What to do\n\nNothing; results are not affected.",
+    /// An integration method of another tool, in whose place one of this program is taken.
+    METHOD_REPLACED = "method-replaced":
+        "## What it means\n\nThe script asks for an integration method of OpenModelica that is not here. `dassl` is taken with the same tolerance. Said once for each method.\n\n## Example\n\n`simulate(M, method = \"gbode\");`\n\n## What to do\n\nNothing where the tolerance is what matters; else name `dassl`, `radau`, `rodas4`, `dopri5`, `rungekutta` or `euler`.",
     /// A statement that could not be done because an earlier one failed.
     FOLLOW_UP = "follow-up":
         "## What it means\n\nA statement uses a variable that has no value because the statement that should have given it one failed before. The cause is reported where it happened; later consequences are not reported one by one.\n\n## Example\n\n`a = 1/\"x\"; b = a + 1;`\n\n## What to do\n\nCorrect the first error.",

@@ -25,6 +25,16 @@ impl Host for Session {
         Ok(callee)
     }
 
+    fn simple_callee(&mut self, name: Ident) -> Result<Option<Callee>, Diagnostic> {
+        let revision = self.classes.revision();
+        if let Some(known) = self.callees.get_simple(name, revision, self.dialect) {
+            return Ok(known);
+        }
+        let callee = self.callee(&Name::from(name))?;
+        self.callees.put_simple(name, callee.as_ref());
+        Ok(callee)
+    }
+
     fn call_builtin(
         &mut self,
         header: &Arc<Function>,

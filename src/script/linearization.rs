@@ -18,6 +18,7 @@ use crate::dae;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
 use crate::flatten::{Attribute, BaseType, FlatModel, Variability, Variable};
+use crate::results::ResultTable;
 use crate::sim::{DaeSystem, Failure};
 use crate::source::{SourceId, Span};
 use crate::syntax;
@@ -39,6 +40,8 @@ pub(super) struct Linear {
     pub(super) b: DMatrix<f64>,
     pub(super) c: DMatrix<f64>,
     pub(super) d: DMatrix<f64>,
+    /// The simulation before.
+    pub(super) results: ResultTable,
 }
 
 /// Simulates the model translated last and linearizes it where the simulation ends.
@@ -86,7 +89,10 @@ fn linearized_variant(session: &mut Session, wishes: &Wishes) -> Result<Linear, 
         });
     let slopes = slopes.at(at).map_err(one)?;
     places.check(&slopes, &inputs, &model.problem).at(at).map_err(one)?;
-    Ok(places.linear(&model, &slopes, &y0, inputs, &outputs))
+    let own: Vec<String> = inputs.iter().map(|input| slope_element(input)).collect();
+    let is_of_model = |name: &str| !own.iter().any(|slope| name.contains(slope.as_str()));
+    let results = done.table.only(is_of_model);
+    Ok(places.linear(&model, &slopes, &y0, inputs, &outputs, results))
 }
 
 /// The variant of a model whose continuous inputs are states, `None` without such; `inputs` are
@@ -268,6 +274,7 @@ impl Places {
         y0: &[f64],
         inputs: Vec<String>,
         outputs: &[usize],
+        results: ResultTable,
     ) -> Linear {
         let n = y0.len();
         let part = |rows: &[usize], columns: &[(usize, f64)]| {
@@ -290,6 +297,7 @@ impl Places {
             b: part(&self.states, &self.inputs),
             c: part(&of_y, &of_x),
             d: part(&of_y, &self.inputs),
+            results,
         }
     }
 }

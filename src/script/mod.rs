@@ -19,6 +19,7 @@ mod echo;
 pub mod errors;
 pub mod expectation;
 mod files;
+mod flat_text;
 mod follow_up;
 mod host;
 mod identification;

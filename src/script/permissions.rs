@@ -37,8 +37,8 @@ const HARMLESS: &[&str] = &[
 impl Session {
     /// A fault unless a file of this path may be written, made or removed.
     pub(super) fn may_change(&self, path: &Path) -> Result<(), Fault> {
-        let wanted = self.world.absolute(path);
-        let output = super::world::normalized(&self.world.output_dir());
+        let wanted = self.world.resolved(path);
+        let output = self.world.resolved(&self.world.output_dir());
         let is_inside = |folder: &PathBuf| wanted.starts_with(folder);
         if self.options.permissions.write
             || self.trusted.iter().any(is_inside)
@@ -56,7 +56,7 @@ impl Session {
 
     /// Files below this folder may be written and removed.
     pub(super) fn trust(&mut self, folder: &Path) {
-        let folder = super::world::normalized(&self.world.absolute(folder));
+        let folder = self.world.resolved(folder);
         if !self.trusted.contains(&folder) {
             self.trusted.push(folder);
         }

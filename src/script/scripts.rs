@@ -143,6 +143,10 @@ impl Session {
             self.report_failed(diagnostic);
             self.echo_nothing();
         }
+        // A command that was interrupted may have answered with what it had.
+        if let (Some(last), true) = (statements.last(), outermost && self.world.interrupted()) {
+            self.interrupt(last.span);
+        }
         Ok(())
     }
 
@@ -186,7 +190,7 @@ impl Session {
         let mut with_ending = plain.clone().into_os_string();
         with_ending.push(".mos");
         let with_ending = PathBuf::from(with_ending);
-        let folders = [folder.to_path_buf(), self.world.current_dir()];
+        let folders = [self.world.absolute(folder), self.world.current_dir()];
         let candidates = || {
             folders.iter().flat_map(|folder| [&plain, &with_ending].map(|name| folder.join(name)))
         };
@@ -203,11 +207,14 @@ impl Session {
             return Ok(path);
         }
         let fault = Fault::new(SCRIPT_NOT_FOUND, format!("there is no script `{name}`"));
-        Err(fault.help_if(self.similar_script(&folders[0].join(&plain))).help(format!(
-            "searched in `{}` and in the working directory `{}`",
-            folders[0].display(),
-            folders[1].display()
-        )))
+        let [own, working] = folders.each_ref().map(|folder| folder.display());
+        let is_one = normalized(&folders[0]) == normalized(&folders[1]);
+        let searched = match Path::new(name).is_absolute() {
+            true => "an absolute path is looked at as it is".to_owned(),
+            false if is_one => format!("searched in the working directory `{working}`"),
+            false => format!("searched in `{own}` and in the working directory `{working}`"),
+        };
+        Err(fault.help_if(self.similar_script(&folders[0].join(&plain))).help(searched))
     }
 
     fn similar_script(&self, path: &Path) -> Option<String> {

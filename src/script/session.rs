@@ -35,6 +35,9 @@ pub enum Echo {
     /// In Dymola's dialect the values of expressions alone; in OpenModelica's everything.
     #[default]
     Usual,
+    /// As the dialect's tool answers at its prompt: values and declared variables, not the
+    /// statements, which stand there already.
+    Dialogue,
     /// Statements and values, as the dialect's tool shows them.
     Everything,
     /// Nothing.

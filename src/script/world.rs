@@ -123,6 +123,11 @@ pub trait World {
     fn absolute(&self, path: &Path) -> PathBuf {
         normalized(&self.current_dir().join(path))
     }
+
+    /// Where a path leads when its links are followed, absolute; what does not exist yet is kept.
+    fn resolved(&self, path: &Path) -> PathBuf {
+        self.absolute(path)
+    }
 }
 
 /// A path with `.` and `..` resolved in the text.

@@ -337,8 +337,188 @@ package Matrices "Functions of matrices"
     Aflip := A[{size(A, 1) + 1 - i for i in 1:size(A, 1)}, :];
     annotation(Inline = true);
   end flipUpDown;
+
+  function eigenValues "Eigenvalues and right eigenvectors of a matrix"
+    extends Modelica.Icons.Function;
+    input Real A[:, size(A, 1)] "matrix";
+    output Real eigenvalues[size(A, 1), 2] "real and imaginary parts, a row each";
+    output Real eigenvectors[size(A, 1), size(A, 2)] "columns; of a conjugate pair the real part, then the imaginary part";
+  protected
+    Integer info "0: found";
+    Real re[size(A, 1)] "real parts";
+    Real im[size(A, 1)] "imaginary parts";
+  algorithm
+    if size(A, 1) > 0 then
+      (re, im, eigenvectors, info) := LAPACK.dgeev(A);
+      assert(info == 0, "the eigenvalues are not found: the iteration does not converge");
+      eigenvalues[:, 1] := re;
+      eigenvalues[:, 2] := im;
+    end if;
+  end eigenValues;
+
+  function singularValues "Singular values and vectors of a matrix, A = U*S*VT"
+    extends Modelica.Icons.Function;
+    input Real A[:, :] "matrix";
+    output Real sigma[min(size(A, 1), size(A, 2))] "singular values, the largest first";
+    output Real U[size(A, 1), size(A, 1)] = identity(size(A, 1)) "left singular vectors, in columns";
+    output Real VT[size(A, 2), size(A, 2)] = identity(size(A, 2)) "right singular vectors, in rows";
+  protected
+    Integer info "0: found";
+  algorithm
+    if min(size(A, 1), size(A, 2)) > 0 then
+      (sigma, U, VT, info) := LAPACK.dgesvd(A);
+      assert(info == 0, "the singular values are not found: the iteration does not converge");
+    end if;
+  end singularValues;
+
+  function QR "Orthogonal and triangular factors of a matrix with at least as many rows as columns"
+    extends Modelica.Icons.Function;
+    input Real A[:, :] "matrix";
+    input Boolean pivoting = true "whether columns are exchanged";
+    output Real Q[size(A, 1), size(A, 2)] "orthonormal columns: Q*R = A[:, p]";
+    output Real R[size(A, 2), size(A, 2)] "upper triangle";
+    output Integer p[size(A, 2)] "columns of A in the order in which they are taken";
+  protected
+    Integer n = size(A, 2) "number of columns";
+    Real packed[size(A, 1), size(A, 2)] "R and the reflections below it";
+    Real tau[size(A, 2)] "factors of the reflections";
+  algorithm
+    assert(size(A, 1) >= n, "QR needs a matrix with at least as many rows as columns");
+    if n > 0 then
+      if pivoting then
+        (packed, tau, p) := LAPACK.dgeqp3(A);
+      else
+        (packed, tau) := LAPACK.dgeqrf(A);
+        p := 1:n;
+      end if;
+      Q := LAPACK.dorgqr(packed, tau);
+      for i in 1:n loop
+        for j in 1:n loop
+          R[i, j] := if j >= i then packed[i, j] else 0;
+        end for;
+      end for;
+    end if;
+  end QR;
+
+  function rank "Number of singular values that are not negligible"
+    extends Modelica.Icons.Function;
+    input Real A[:, :] "matrix";
+    input Real eps = 0 "a singular value up to this counts as zero; if not positive, max(size(A))*norm(A)*Modelica.Constants.eps";
+    output Integer result "rank";
+  protected
+    Real sigma[min(size(A, 1), size(A, 2))] "singular values";
+    Real bound "what counts as zero";
+  algorithm
+    result := 0;
+    if min(size(A, 1), size(A, 2)) > 0 then
+      sigma := singularValues(A);
+      bound := if eps > 0 then eps else max(size(A))*sigma[1]*Modelica.Constants.eps;
+      for i in 1:size(sigma, 1) loop
+        result := if sigma[i] > bound then result + 1 else result;
+      end for;
+    end if;
+  end rank;
+
+  function conditionNumber "Ratio of the largest and the smallest singular value"
+    extends Modelica.Icons.Function;
+    input Real A[:, :] "matrix";
+    input Real p(min = 1) = 2 "the norm: 1, 2 or Modelica.Constants.inf; any other than 2 of regular square matrices only";
+    output Real result "condition number; Modelica.Constants.inf of a singular matrix";
+  protected
+    Real sigma[min(size(A, 1), size(A, 2))] "singular values";
+  algorithm
+    if min(size(A, 1), size(A, 2)) == 0 then
+      result := 0;
+    elseif p == 2 then
+      sigma := singularValues(A);
+      result := if sigma[size(sigma, 1)] > 0 then sigma[1]/sigma[size(sigma, 1)] else Modelica.Constants.inf;
+    else
+      result := norm(A, p)*norm(inv(A), p);
+    end if;
+  end conditionNumber;
+
+  package LAPACK "Routines of LAPACK that the functions above call"
+    extends Modelica.Icons.Package;
+
+    function dgeev "Eigenvalues and right eigenvectors"
+      extends Modelica.Icons.Function;
+      input Real A[:, size(A, 1)] "matrix";
+      output Real eigenReal[size(A, 1)] "real parts";
+      output Real eigenImag[size(A, 1)] "imaginary parts";
+      output Real eigenVectors[size(A, 1), size(A, 1)] "right eigenvectors";
+      output Integer info "0: found";
+    protected
+      Integer n = size(A, 1) "order";
+      Integer lwork = 12*size(A, 1) "size of the work space";
+      Real work[12*size(A, 1)] "work space";
+      Real reduced[size(A, 1), size(A, 1)] = A "overwritten";
+      Real left[size(A, 1), size(A, 1)] "left eigenvectors, not wanted";
+      external "FORTRAN 77" dgeev("N", "V", n, reduced, n, eigenReal, eigenImag, left, n, eigenVectors, n, work, lwork, info);
+    end dgeev;
+
+    function dgesvd "Singular values and vectors"
+      extends Modelica.Icons.Function;
+      input Real A[:, :] "matrix";
+      output Real sigma[min(size(A, 1), size(A, 2))] "singular values";
+      output Real U[size(A, 1), size(A, 1)] "left singular vectors";
+      output Real VT[size(A, 2), size(A, 2)] "right singular vectors, in rows";
+      output Integer info "0: found";
+    protected
+      Integer m = size(A, 1) "rows";
+      Integer n = size(A, 2) "columns";
+      Integer lwork = 5*size(A, 1) + 5*size(A, 2) "size of the work space";
+      Real work[5*size(A, 1) + 5*size(A, 2)] "work space";
+      Real reduced[size(A, 1), size(A, 2)] = A "overwritten";
+      external "FORTRAN 77" dgesvd("A", "A", m, n, reduced, m, sigma, U, m, VT, n, work, lwork, info);
+    end dgesvd;
+
+    function dgeqp3 "Factors of a matrix whose columns are exchanged"
+      extends Modelica.Icons.Function;
+      input Real A[:, :] "matrix";
+      output Real QR[size(A, 1), size(A, 2)] = A "upper triangle, and reflections below it";
+      output Real tau[min(size(A, 1), size(A, 2))] "factors of the reflections";
+      output Integer p[size(A, 2)] = zeros(size(A, 2)) "order of the columns";
+      output Integer info "0: found";
+    protected
+      Integer m = size(A, 1) "rows";
+      Integer n = size(A, 2) "columns";
+      Integer lwork = 3*size(A, 2) + 3 "size of the work space";
+      Real work[3*size(A, 2) + 3] "work space";
+      external "FORTRAN 77" dgeqp3(m, n, QR, m, p, tau, work, lwork, info);
+    end dgeqp3;
+
+    function dgeqrf "Factors of a matrix"
+      extends Modelica.Icons.Function;
+      input Real A[:, :] "matrix";
+      output Real QR[size(A, 1), size(A, 2)] = A "upper triangle, and reflections below it";
+      output Real tau[min(size(A, 1), size(A, 2))] "factors of the reflections";
+      output Integer info "0: found";
+    protected
+      Integer m = size(A, 1) "rows";
+      Integer n = size(A, 2) "columns";
+      Integer lwork = 3*size(A, 2) + 3 "size of the work space";
+      Real work[3*size(A, 2) + 3] "work space";
+      external "FORTRAN 77" dgeqrf(m, n, QR, m, tau, work, lwork, info);
+    end dgeqrf;
+
+    function dorgqr "The orthonormal columns of a factorization"
+      extends Modelica.Icons.Function;
+      input Real QR[:, :] "of dgeqp3 or dgeqrf";
+      input Real tau[min(size(QR, 1), size(QR, 2))] "of dgeqp3 or dgeqrf";
+      output Real Q[size(QR, 1), size(QR, 2)] = QR "orthonormal columns";
+      output Integer info "0: found";
+    protected
+      Integer m = size(QR, 1) "rows";
+      Integer n = size(QR, 2) "columns";
+      Integer k = size(tau, 1) "reflections";
+      Integer lwork = 3*size(QR, 2) + 3 "size of the work space";
+      Real work[3*size(QR, 2) + 3] "work space";
+      external "FORTRAN 77" dorgqr(m, n, k, Q, m, tau, work, lwork, info);
+    end dorgqr;
+  end LAPACK;
   annotation(Documentation(info = "<html>
-<p>Functions that are written in Modelica: linear equations, least squares, determinants, norms and
-the exponential function. Eigenvalues, singular values and matrix equations are not here.</p>
+<p>Linear equations, least squares, determinants, norms and the exponential function are written in
+Modelica; eigenvalues, singular values and orthogonal factors are those of LAPACK. Matrix equations
+are not here.</p>
 </html>"));
 end Matrices;

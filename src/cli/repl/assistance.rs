@@ -132,26 +132,32 @@ impl Completer for Assistance {
     ) -> rustyline::Result<(usize, Vec<Pair>)> {
         let before = &line[..pos];
         let in_string = before.matches('"').count() % 2 == 1;
-        if in_string || before.starts_with(":load ") {
-            return self.files.complete(line, pos, context);
-        }
         let start = name_start(before);
         let typed = &before[start..];
+        if in_string || before.starts_with(":load ") {
+            let files = self.files.complete(line, pos, context)?;
+            // Strings name models too: `simulateModel("Plant.…`.
+            return match files.1.is_empty() && !typed.is_empty() {
+                true => Ok((start, self.matching(typed).into_iter().map(pair).collect())),
+                false => Ok(files),
+            };
+        }
         let mut pairs: Vec<Pair> = Vec::new();
         if let Some(function) = enclosing_call(before) {
             let inputs = builtins::inputs(function).into_iter();
-            pairs.extend(inputs.filter(|input| input.starts_with(typed)).map(|input| Pair {
-                replacement: format!("{input}="),
-                display: format!("{input}="),
-            }));
+            let inputs = inputs.filter(|input| input.starts_with(typed));
+            pairs.extend(inputs.map(|input| pair(format!("{input}="))));
         }
         let own = COMMANDS.iter().filter(|name| start == 0 && name.starts_with(typed));
         let own = own.map(|name| (*name).to_owned());
         let names = if typed.is_empty() { Vec::new() } else { self.matching(typed) };
-        pairs
-            .extend(own.chain(names).map(|name| Pair { display: name.clone(), replacement: name }));
+        pairs.extend(own.chain(names).map(pair));
         Ok((start, pairs))
     }
+}
+
+fn pair(text: String) -> Pair {
+    Pair { display: text.clone(), replacement: text }
 }
 
 impl Hinter for Assistance {

@@ -11,7 +11,7 @@ Statements are executed and answered; an open bracket or a `for` goes on in the 
   :vars          the variables
   :type EXPR     the type of an expression's value
   :load FILE     run a script, or load a Modelica file
-  :dump CLASS    a model, sorted
+  :dump [CLASS]  a model, or the one translated last, sorted
   :time STMT     execute a statement and say how long it took
   :quit          leave (also Ctrl-D); Ctrl-C stops what is running
 ";
@@ -81,7 +81,14 @@ fn load(session: &mut Session, file: &str) -> Option<u8> {
 }
 
 fn dump(session: &mut Session, class: &str) {
-    match simulation::translated(session, class) {
+    let found = match session.last_model().filter(|_| class.is_empty()) {
+        Some(last) => Ok(last),
+        None if class.is_empty() => {
+            return terminal::eprint("error: no model is translated; write `:dump CLASS`\n");
+        }
+        None => simulation::translated(session, class),
+    };
+    match found {
         Ok(model) => {
             let report = checking::report(session, &model);
             terminal::print(&report);

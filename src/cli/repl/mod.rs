@@ -7,7 +7,7 @@ use super::args::{Global, ReplArgs};
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, session};
-use crate::script::{Dialect, Options, Session};
+use crate::script::{Dialect, Echo, Options, Session};
 use assistance::Assistance;
 use rustyline::error::ReadlineError;
 use rustyline::history::FileHistory;
@@ -35,7 +35,11 @@ pub(super) fn repl(arguments: &ReplArgs, global: &Global) -> ExitCode {
     }
     let options = arguments.freedom.options();
     let dialect = Some(options.dialect.unwrap_or(Dialect::Dymola));
-    let mut session = session::open(global, world).with_options(Options { dialect, ..options });
+    let mut session = session::open(global, world).with_options(Options {
+        dialect,
+        echo: Echo::Dialogue,
+        ..options
+    });
     if let Some(script) = &arguments.script {
         session.run_file(script);
     }

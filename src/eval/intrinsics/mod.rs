@@ -60,6 +60,14 @@ impl Entry {
         }
     }
 
+    /// Whether this many scalars have one, calculated without anything else.
+    pub(super) fn is_of_scalars(&self, count: usize) -> bool {
+        match self.run {
+            Run::Scalars(_) | Run::Mathematical(_) => true,
+            Run::Values(_) => count == 2 && matches!(self.name, "min" | "max"),
+        }
+    }
+
     fn wrong_count(&self, given: usize) -> Fault {
         let wanted = match (self.least, self.most) {
             (1, 1) => "one argument".to_owned(),

@@ -2,7 +2,7 @@
 
 use crate::diag::{Code, Diagnostic, Fault};
 use crate::eval::{
-    Callee, Function, FunctionBody, FunctionComponent, Host, Scope, ValueType, evaluate,
+    Callee, Compiled, Function, FunctionBody, FunctionComponent, Host, Scope, ValueType, evaluate,
     evaluate_dimensions,
 };
 use crate::name::{Ident, Name};
@@ -19,7 +19,7 @@ const STOPPED: Code = Code { slug: "stopped", explanation: "For tests." };
 
 #[derive(Default)]
 pub(super) struct TestHost {
-    functions: IndexMap<String, Arc<Function>>,
+    pub(super) functions: IndexMap<String, Arc<Function>>,
     builtins: IndexMap<String, Arc<Function>>,
     records: IndexMap<String, Arc<IndexMap<Ident, FunctionComponent>>>,
     enumerations: IndexMap<String, Arc<EnumerationDefinition>>,
@@ -181,6 +181,7 @@ fn function(
         annotation: Vec::new(),
         impure: false,
         span: Span::NONE,
+        compiled: Compiled::default(),
     })
 }
 

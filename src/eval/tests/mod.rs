@@ -5,6 +5,7 @@ mod functions;
 mod host;
 mod intrinsics;
 mod robustness;
+mod scalar_functions;
 mod scalars;
 mod shipped;
 mod statements;

@@ -91,10 +91,21 @@ fn several_outputs_need_a_call() {
     assert!(run_fails("(a, b) := sin(1);").starts_with("wrong-outputs"));
 }
 
+/// Every statement of a script is an event, so what stands in a `when` is done where the condition
+/// holds.
+#[test]
+fn a_when_of_a_script_is_a_branch() {
+    let script = "x := 2; when x > 3 then y := 1; elsewhen x > 1 then y := 2; end when;";
+    assert_eq!(run(script, "y"), "2");
+    assert_eq!(run("y := 0; when false then y := 1; end when;", "y"), "0");
+}
+
 #[test]
 fn what_belongs_to_models_is_refused() {
     assert!(run_fails("x := 1; y := der(x);").starts_with("model-only"));
-    assert!(run_fails("when true then x := 1; end when;").starts_with("model-only"));
+    let script =
+        "function f output Real y; algorithm when true then y := 1; end when; end f; x := f();";
+    assert!(run_fails(script).starts_with("model-only"));
     assert!(run_fails("if true then break; end if;").starts_with("misplaced"));
 }
 

@@ -1,10 +1,13 @@
 //! The commands that linearize models.
 
-use super::openmodelica::simulation_result;
+use super::openmodelica::{
+    completed, shown, simulation_result, wishes, with_method_of_ours, write_results,
+};
 use super::simflags::SimulationFlags;
 use super::simulation::{Request, translated_model};
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{At, Diagnostic, Fault};
+use crate::flatten::Experiment;
 use crate::mat::{self, Matrix};
 use crate::name::Name;
 use crate::script::linearization::{Linear, linearized};
@@ -106,40 +109,53 @@ end linearize;
 
 fn linearize(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let class: Name = args.take("className")?;
-    let wishes = super::openmodelica::wishes(&mut args)?;
+    let wishes = wishes(&mut args)?;
+    let prefix: String = args.take("fileNamePrefix")?;
+    let format: String = args.take("outputFormat")?;
+    let filter: String = args.take("variableFilter")?;
     let flags: String = args.take("simflags")?;
-    let done = translated_and_linearized(session, &class, &wishes, &flags);
-    let (file, messages) = match done {
-        Ok(()) => (session.world.absolute(Path::new(FILE)).display().to_string(), String::new()),
+    let prefix = if prefix.is_empty() { class.to_string() } else { prefix };
+    let file = format!("{prefix}_res.{format}");
+    let done = translated_and_linearized(session, &class, &wishes, &flags, &file);
+    let (file, used, messages) = match done {
+        Ok(used) => {
+            let file = session.world.absolute(Path::new(&file)).display().to_string();
+            (file, used, String::new())
+        }
         Err(errors) => {
             let messages = errors.iter().map(|error| format!("{}\n", error.message)).collect();
             session.or_report_all::<()>(Err(errors));
-            (String::new(), messages)
+            (String::new(), completed(&wishes, &Experiment::default()), messages)
         }
     };
-    Ok(simulation_result([file, String::new(), messages]))
+    let options = shown(&used, &prefix, &format, &filter, &flags);
+    Ok(simulation_result([file, options, messages]))
 }
 
 const FILE: &str = "linearized_model.mo";
 
+/// Writes the results to `file` and the linear model to its own; the settings used.
 fn translated_and_linearized(
     session: &mut Session,
     class: &Name,
     wishes: &Wishes,
     flags: &str,
-) -> Result<(), Vec<Diagnostic>> {
+    file: &str,
+) -> Result<Wishes, Vec<Diagnostic>> {
     let model = simulation::translate(session, &class.to_string())?;
     let at = session.call_site();
     let flags = SimulationFlags::parse(flags).at(at).map_err(|error| vec![error])?;
-    let wishes = super::openmodelica::completed(wishes, &model.program.experiment());
-    let wishes = &flags.applied_to(wishes);
+    let wishes = flags.applied_to(completed(wishes, &model.program.experiment()));
+    let wishes = with_method_of_ours(session, wishes);
     let before = session.current_values();
     let set = flags.apply(session).at(at);
-    let linear = set.map_err(|error| vec![error]).and_then(|()| linearized(session, wishes));
+    let linear = set.map_err(|error| vec![error]).and_then(|()| linearized(session, &wishes));
     session.restore_values(before);
     let linear = linear?;
-    let written = session.write_file(Path::new(FILE), as_model(&linear, class).as_bytes());
-    written.at(at).map_err(|error| vec![error])
+    let written = write_results(session, &linear.results, file)
+        .and_then(|()| session.write_file(Path::new(FILE), as_model(&linear, class).as_bytes()));
+    written.at(at).map_err(|error| vec![error])?;
+    Ok(wishes)
 }
 
 /// The model as Modelica.
@@ -160,9 +176,13 @@ fn as_model(linear: &Linear, class: &Name) -> String {
         ("D", ["p", "m"], &linear.d),
     ];
     for (name, [rows, columns], values) in matrices {
-        let _ = writeln!(text, "  parameter Real {name}[{rows}, {columns}] = {};", matrix(values));
+        let value = match values.is_empty() {
+            true => format!("zeros({rows}, {columns})"),
+            false => matrix(values),
+        };
+        let _ = writeln!(text, "  parameter Real {name}[{rows}, {columns}] = {value};");
     }
-    text += "  Real x[n](start = x0);\n  input Real u[m](start = u0);\n  output Real y[p];\n";
+    text += "  Real x[n](start = x0);\n  input Real u[m];\n  output Real y[p];\n";
     for (letter, names) in [("x", x), ("u", u), ("y", y)] {
         for (at, name) in names.iter().enumerate() {
             let name = name.replace('\'', "\"");
@@ -180,13 +200,18 @@ fn vector(values: &[f64]) -> String {
 }
 
 fn matrix(values: &DMatrix<f64>) -> String {
-    if values.is_empty() {
-        return format!("zeros({}, {})", values.nrows(), values.ncols());
-    }
     let rows: Vec<String> = values.row_iter().map(|row| numbers(row.iter())).collect();
     format!("[{}]", rows.join("; "))
 }
 
 fn numbers<'v>(values: impl Iterator<Item = &'v f64>) -> String {
-    values.map(|value| format!("{value:?}")).collect::<Vec<_>>().join(", ")
+    values.map(|value| number(*value)).collect::<Vec<_>>().join(", ")
+}
+
+/// The shortest text that reads back; a whole number without a point.
+fn number(value: f64) -> String {
+    match value.abs() {
+        size if size != 0.0 && !(1e-5..1e15).contains(&size) => format!("{value:e}"),
+        _ => format!("{value}"),
+    }
 }

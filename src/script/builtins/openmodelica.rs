@@ -7,7 +7,9 @@ use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
 use crate::flatten::Experiment;
 use crate::name::{Ident, Name};
-use crate::script::errors::BAD_ARGUMENT;
+use crate::results::ResultTable;
+use crate::script::errors::{BAD_ARGUMENT, METHOD_REPLACED};
+use crate::script::flat_text::{flat_text, trivial_equations};
 use crate::script::simulation::{self, Wishes};
 use crate::script::{Dialect, Session};
 use crate::value::{FromValue, RecordValue, Value};
@@ -152,6 +154,33 @@ pub(super) fn completed(wishes: &Wishes, experiment: &Experiment) -> Wishes {
     }
 }
 
+/// Methods of OpenModelica that are not here. All of them keep the tolerance or have a fixed step;
+/// what is taken instead keeps the tolerance.
+const NOT_HERE: &[&str] = &[
+    "gbode",
+    "heun",
+    "impeuler",
+    "imprungekutta",
+    "irksco",
+    "qss",
+    "rungekuttaSsc",
+    "symSolver",
+    "symSolverSsc",
+    "trapezoid",
+];
+
+/// The wishes with a method that there is.
+pub(super) fn with_method_of_ours(session: &mut Session, wishes: Wishes) -> Wishes {
+    match wishes.method.as_deref().filter(|method| NOT_HERE.contains(method)) {
+        Some(method) => {
+            let text = format!("the integration method `{method}` is not here: `dassl` is taken");
+            session.note(METHOD_REPLACED, text);
+            Wishes { method: Some("dassl".to_owned()), ..wishes }
+        }
+        None => wishes,
+    }
+}
+
 /// The ending of the format that is written to no file.
 const NO_FILE: &str = ".empty";
 
@@ -171,25 +200,41 @@ fn run(
     let file = flags.result.as_deref().unwrap_or(file);
     let before = session.current_values();
     let set = flags.apply(session).at(at);
-    let done =
-        set.and_then(|()| simulation::simulate(session, &model, &flags.applied_to(wishes.clone())));
+    let applied = with_method_of_ours(session, flags.applied_to(wishes.clone()));
+    let done = set.and_then(|()| simulation::simulate(session, &model, &applied));
     session.restore_values(before);
     let mut done = done.map_err(one)?;
-    if file.ends_with(NO_FILE) {
-        return Ok((wishes, file.to_owned()));
-    }
     if filter.as_str() != "^(?:.*)$" {
         done.table = done.table.only(|name| filter.is_match(name));
     }
-    let bytes = crate::results::format_of_file(file).and_then(|f| f.write(&done.table));
-    let written = bytes.and_then(|bytes| session.write_file(file.as_ref(), &bytes));
-    written.at(at).map_err(one)?;
-    session.extension::<LastResults>().0 = Some(file.to_owned());
-    super::plotting::note_results(session, file);
+    write_results(session, &done.table, file).at(at).map_err(one)?;
     Ok((wishes, file.to_owned()))
 }
 
-fn shown(wishes: &Wishes, prefix: &str, format: &str, filter: &str, flags: &str) -> String {
+/// Writes the results of a simulation, which `val` and `plot` look at from now on.
+pub(super) fn write_results(
+    session: &mut Session,
+    table: &ResultTable,
+    file: &str,
+) -> Result<(), Fault> {
+    if file.ends_with(NO_FILE) {
+        return Ok(());
+    }
+    let bytes = crate::results::format_of_file(file)?.write(table)?;
+    session.write_file(file.as_ref(), &bytes)?;
+    session.extension::<LastResults>().0 = Some(file.to_owned());
+    super::plotting::note_results(session, file);
+    Ok(())
+}
+
+/// The settings of a simulation as `simulationOptions` has them.
+pub(super) fn shown(
+    wishes: &Wishes,
+    prefix: &str,
+    format: &str,
+    filter: &str,
+    flags: &str,
+) -> String {
     let number = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:?}"));
     format!(
         "startTime = {}, stopTime = {}, numberOfIntervals = {}, tolerance = {}, method = '{}', \
@@ -241,7 +286,9 @@ fn check_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
     let unknowns = simulation::unknowns(&model.flat);
     Ok(format!(
         "Check of {class} completed successfully.\n\
-         Class {class} has {unknowns} equation(s) and {unknowns} variable(s)."
+         Class {class} has {unknowns} equation(s) and {unknowns} variable(s).\n\
+         {} of these are trivial equation(s).",
+        trivial_equations(&model.flat)
     )
     .into())
 }
@@ -256,9 +303,7 @@ end instantiateModel;
 fn instantiate_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let class: Name = args.take("className")?;
     let flat = simulation::flat_model(session, &class.to_string());
-    let flat = session.or_report_all(flat).map_or(String::new(), |flat| flat.to_string());
-    // The word that OpenModelica's flat models begin with.
-    Ok(flat.strip_prefix("model").map_or(String::new(), |rest| format!("class{rest}")).into())
+    Ok(session.or_report_all(flat).map_or(String::new(), |flat| flat_text(&flat)).into())
 }
 
 const VAL: &str = r#"

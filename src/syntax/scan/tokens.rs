@@ -177,10 +177,10 @@ impl<'t> Tokens<'t> {
         self.text[start..].lines().next().unwrap_or("")
     }
 
-    /// Whether `$TypeName` or `$Code` is here.
+    /// Whether `$TypeName`, `$Code` or `$annotation` is here.
     fn quotes(&self) -> bool {
         let rest = &self.text[self.at + 1..];
-        ["TypeName(", "Code("].iter().any(|word| rest.starts_with(word))
+        ["TypeName(", "Code(", "annotation("].iter().any(|word| rest.starts_with(word))
     }
 
     fn single(&mut self, kind: TokenKind) -> TokenKind {
