@@ -9,9 +9,10 @@ use crate::script::{Echo, Options};
 use crate::source::Span;
 use crate::teach::branches::Branches;
 use crate::teach::quiz::{self, Score};
+use crate::teach::screen::Screen;
 use crate::teach::{Trace, Walk, page, plain};
 use std::io::IsTerminal as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
 /// What changes a run: from which generation on, counted from 1, and the statement.
@@ -46,7 +47,7 @@ fn taught(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
         return compare(arguments, global, &trace, statement);
     }
     match &arguments.html {
-        Some(page) => write_page(trace, page, is_script.then_some(&arguments.out)),
+        Some(page) => write_page(trace, page, &arguments.out, is_script),
         None => show(Walk::new(trace), arguments, global),
     }
 }
@@ -127,11 +128,14 @@ fn write(file: &Path, text: &str) -> Result<(), Trouble> {
     })
 }
 
-/// Writes the page of a trace; the report of the run lies in the folder `results`.
-fn write_page(trace: Trace, file: &Path, results: Option<&PathBuf>) -> Result<(), Trouble> {
-    let report =
-        results.and_then(|folder| std::fs::read_to_string(folder.join("result.json")).ok());
-    write(file, &page::page(trace, report.as_deref()))
+/// Writes the page of a trace. The report of the run lies in the folder `results`; where the run was
+/// recorded earlier, only if it is the report of that run.
+fn write_page(trace: Trace, file: &Path, results: &Path, is_new: bool) -> Result<(), Trouble> {
+    let report = std::fs::read_to_string(results.join("result.json")).ok();
+    let report = report.filter(|report| is_new || page::belongs(&trace, report));
+    write(file, &page::page(trace, report.as_deref()))?;
+    terminal::print(&format!("written to {}\n", file.display()));
+    Ok(())
 }
 
 /// On the screen of a terminal; as text where there is none.
@@ -140,8 +144,7 @@ fn show(mut walk: Walk, arguments: &TeachArgs, global: &Global) -> Result<(), Tr
         let has = walk.trace().generations.len();
         return Err(Trouble::Message(format!("the run has {has} generations")));
     }
-    let as_text = arguments.plain || arguments.quiz;
-    if as_text || !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
+    if arguments.plain || !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
         print(walk, arguments);
         return Ok(());
     }
@@ -152,8 +155,14 @@ fn show(mut walk: Walk, arguments: &TeachArgs, global: &Global) -> Result<(), Tr
             Trouble::Message(message) => message,
         })
     };
-    teach_screen::walk_through(walk, colour, run_again)
-        .map_err(|error| Trouble::Message(format!("the terminal cannot be drawn on: {error}")))
+    let screen = Screen::new(walk, colour);
+    let screen = if arguments.quiz { screen.with_quiz() } else { screen };
+    let score = teach_screen::walk_through(screen, run_again)
+        .map_err(|error| Trouble::Message(format!("the terminal cannot be drawn on: {error}")))?;
+    if let Some(score) = score {
+        terminal::print(&format!("{score}\n"));
+    }
+    Ok(())
 }
 
 fn print(mut walk: Walk, arguments: &TeachArgs) {

@@ -11,6 +11,7 @@ pub mod branches;
 pub mod errors;
 mod event;
 pub mod explain;
+pub mod family;
 mod file;
 mod generation;
 pub mod page;

@@ -29,10 +29,11 @@ Each block is a gene: · low, █ high among this generation.";
 
 /// Draws the screen.
 pub fn draw(screen: &Screen, frame: &mut Frame) {
+    let question = screen.question();
     let [top, body, story, bottom] = Layout::vertical([
         Constraint::Length(1),
         Constraint::Min(6),
-        Constraint::Length(6),
+        Constraint::Length(if question.is_some() { 9 } else { 6 }),
         Constraint::Length(1),
     ])
     .areas(frame.area());
@@ -45,7 +46,8 @@ pub fn draw(screen: &Screen, frame: &mut Frame) {
             .render_widget(Paragraph::new(HELP).block(titled(" keys; any key goes back ")), body),
     }
     let block = Block::new().borders(Borders::TOP);
-    let text = Paragraph::new(explain(&screen.walk)).wrap(Wrap { trim: true }).block(block);
+    let told = question.unwrap_or_else(|| explain(&screen.walk));
+    let text = Paragraph::new(told).wrap(Wrap { trim: true }).block(block);
     frame.render_widget(text, story);
     frame.render_widget(Paragraph::new(last_line(screen)), bottom);
 }
@@ -64,6 +66,9 @@ fn heading(screen: &Screen) -> Line<'static> {
 }
 
 fn last_line(screen: &Screen) -> Line<'static> {
+    if let Some(keys) = screen.answer_keys() {
+        return Line::styled(keys, screen.styled(Color::Yellow));
+    }
     match (&screen.prompt, screen.message.as_str()) {
         (Some(prompt), _) => Line::styled(prompt.shown(), screen.styled(Color::Yellow)),
         (None, "") => Line::styled(KEYS, Style::new().add_modifier(Modifier::DIM)),

@@ -2,6 +2,7 @@
 //! what happens and why below. What is coloured also has a mark, so that nothing is lost without
 //! colours.
 
+mod asking;
 mod draw;
 mod inspect;
 mod prompt;
@@ -12,6 +13,7 @@ mod tests;
 use super::branches::Branches;
 use super::trace::Trace;
 use super::walk::Walk;
+use asking::Quiz;
 use prompt::Prompt;
 
 pub use draw::draw;
@@ -76,6 +78,7 @@ pub struct Screen {
     /// A change that the learner wants to be tried, and from which generation on, from 1.
     wish: Option<(usize, String)>,
     branch: Option<Branch>,
+    quiz: Option<Quiz>,
     /// What the last key has led to, where that is not plain to see.
     message: String,
     colour: bool,
@@ -85,13 +88,25 @@ impl Screen {
     /// A screen at the place of `walk`.
     pub fn new(walk: Walk, colour: bool) -> Screen {
         let message = String::new();
-        let (followed, prompt, wish, branch) = (None, None, None, None);
-        Screen { walk, view: View::Steps, followed, prompt, wish, branch, message, colour }
+        Screen {
+            walk,
+            view: View::Steps,
+            followed: None,
+            prompt: None,
+            wish: None,
+            branch: None,
+            quiz: None,
+            message,
+            colour,
+        }
     }
 
     /// Answers a key; whether the learner goes on.
     pub fn press(&mut self, key: Key) -> bool {
         self.message.clear();
+        if self.is_asked(key) {
+            return true;
+        }
         if let Some(prompt) = self.prompt.take() {
             self.answer(prompt, key);
             return true;
@@ -179,6 +194,11 @@ impl Screen {
         };
         if !moved {
             self.message = "there is nothing further".to_owned();
+        }
+        let is_forward =
+            !matches!(key, Key::Left | Key::Char('b') | Key::Up | Key::Home | Key::End);
+        if moved && is_forward {
+            self.ask();
         }
         self.keep_following(before);
     }
