@@ -243,6 +243,9 @@ pub(super) struct HelpArgs {
     /// What other tools' scripts may expect: supported, partial, absent, and the difference
     #[arg(long, value_enum, value_name = "DIALECT", num_args = 0..=1)]
     pub compat: Option<Option<DialectName>>,
+    /// The declarations of all commands as a chapter of the guide
+    #[arg(long, conflicts_with_all = ["name", "compat"])]
+    pub reference: bool,
 }
 
 /// Arguments of `gapi identify`.
@@ -319,7 +322,7 @@ pub(super) struct TeachArgs {
     /// Print the steps as text, also on a terminal
     #[arg(long)]
     pub plain: bool,
-    /// Ask what will happen before it is told; answers are read line by line, as text
+    /// Ask what will happen before it is told, and count the right answers
     #[arg(long, conflicts_with = "html")]
     pub quiz: bool,
     /// Run once more with this statement carried out at the generation to begin with, and compare
