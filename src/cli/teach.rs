@@ -5,7 +5,7 @@ use super::session;
 use super::teach_screen;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
-use crate::script::{Echo, Options};
+use crate::script::{Echo, Options, Session};
 use crate::source::Span;
 use crate::teach::branches::Branches;
 use crate::teach::quiz::{self, Score};
@@ -39,16 +39,16 @@ enum Trouble {
 
 fn taught(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
     let is_script = arguments.input.extension().is_some_and(|extension| extension == "mos");
-    let trace = match is_script {
-        true => recorded(arguments, global, None)?,
-        false => read(&arguments.input)?,
+    let (trace, session) = match is_script {
+        true => recorded(arguments, global, None).map(|(trace, session)| (trace, Some(session)))?,
+        false => (read(&arguments.input)?, None),
     };
     if let Some(statement) = &arguments.what_if {
         return compare(arguments, global, &trace, statement);
     }
     match &arguments.html {
         Some(page) => write_page(trace, page, &arguments.out, is_script),
-        None => show(Walk::new(trace), arguments, global),
+        None => show(Walk::new(trace), session, arguments, global),
     }
 }
 
@@ -58,12 +58,12 @@ fn read(file: &Path) -> Result<Trace, Trouble> {
     trace.map_err(|message| Trouble::Message(format!("`{}`: {message}", file.display())))
 }
 
-/// Runs the script with a trace beside its results, and reads the trace.
+/// Runs the script with a trace beside its results, and reads the trace; the session remains.
 fn recorded(
     arguments: &TeachArgs,
     global: &Global,
     change: Option<Change<'_>>,
-) -> Result<Trace, Trouble> {
+) -> Result<(Trace, Session), Trouble> {
     let out = match change {
         Some(_) => arguments.out.join("what_if"),
         None => arguments.out.clone(),
@@ -92,7 +92,7 @@ fn recorded(
         let generation = change.map_or(0, |(generation, _)| generation);
         return Err(Trouble::Message(format!("the run has no generation {generation}")));
     }
-    read(&file)
+    Ok((read(&file)?, session))
 }
 
 /// Runs the script once more with a change, and shows both runs on one chart.
@@ -119,7 +119,7 @@ fn branch(arguments: &TeachArgs, global: &Global, change: Change<'_>) -> Result<
         let message = "a recorded run cannot be changed; give the script in its place";
         return Err(Trouble::Message(message.to_owned()));
     }
-    recorded(arguments, global, Some(change))
+    recorded(arguments, global, Some(change)).map(|(trace, _)| trace)
 }
 
 fn write(file: &Path, text: &str) -> Result<(), Trouble> {
@@ -139,7 +139,12 @@ fn write_page(trace: Trace, file: &Path, results: &Path, is_new: bool) -> Result
 }
 
 /// On the screen of a terminal; as text where there is none.
-fn show(mut walk: Walk, arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
+fn show(
+    mut walk: Walk,
+    mut session: Option<Session>,
+    arguments: &TeachArgs,
+    global: &Global,
+) -> Result<(), Trouble> {
     if !walk.go_to(arguments.generation - 1) {
         let has = walk.trace().generations.len();
         return Err(Trouble::Message(format!("the run has {has} generations")));
@@ -155,9 +160,15 @@ fn show(mut walk: Walk, arguments: &TeachArgs, global: &Global) -> Result<(), Tr
             Trouble::Message(message) => message,
         })
     };
+    let simulate = |genes: &[f64]| match &mut session {
+        Some(session) => session.simulate_again(genes),
+        None => Err("a trace keeps the curve of the best of each generation; give the script in \
+                     its place to see all"
+            .to_owned()),
+    };
     let screen = Screen::new(walk, colour);
     let screen = if arguments.quiz { screen.with_quiz() } else { screen };
-    let score = teach_screen::walk_through(screen, run_again)
+    let score = teach_screen::walk_through(screen, run_again, simulate)
         .map_err(|error| Trouble::Message(format!("the terminal cannot be drawn on: {error}")))?;
     if let Some(score) = score {
         terminal::print(&format!("{score}\n"));

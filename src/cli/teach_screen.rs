@@ -6,7 +6,8 @@ use crate::teach::screen::{self, Key, Screen};
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
 /// Walks through a trace until the learner ends it, and returns the score of the quiz. `run_again`
-/// makes the trace of a run that is changed from a generation on, or says why there is none.
+/// makes the trace of a run that is changed from a generation on, `simulate` the curve of an
+/// individual that the trace does not have; both may say why there is none.
 ///
 /// # Errors
 ///
@@ -14,6 +15,7 @@ use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, Ke
 pub(super) fn walk_through(
     mut screen: Screen,
     run_again: impl Fn(usize, &str) -> Result<Trace, String>,
+    mut simulate: impl FnMut(&[f64]) -> Result<Vec<f64>, String>,
 ) -> std::io::Result<Option<Score>> {
     let mut terminal = ratatui::try_init()?;
     let walked = (|| {
@@ -24,6 +26,9 @@ pub(super) fn walk_through(
                 let branch = run_again(generation, &change);
                 terminal = ratatui::try_init()?;
                 screen.branched(generation, change, branch);
+            }
+            if let Some(genes) = screen.take_unknown() {
+                screen.simulated(simulate(&genes));
             }
             terminal.draw(|frame| screen::draw(&screen, frame))?;
             match event::read()? {

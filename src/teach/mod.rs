@@ -22,6 +22,7 @@ pub mod quiz;
 mod sample;
 pub mod screen;
 mod step;
+mod stop_test;
 #[cfg(test)]
 mod tests;
 mod trace;

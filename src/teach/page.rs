@@ -134,7 +134,7 @@ fn shown(generations: &[Generation]) -> usize {
 
 fn step(walk: &Walk) -> Value {
     let step = walk.step();
-    let place = step.place(walk.generation(), walk.next_generation());
+    let place = walk.place();
     let of = match step {
         Step::Cross(k) | Step::Mutate(k) | Step::Complete(k) => Some(k),
         _ => None,

@@ -3,6 +3,7 @@
 //! colours.
 
 mod asking;
+mod compare;
 mod draw;
 mod inspect;
 mod prompt;
@@ -78,6 +79,10 @@ pub struct Screen {
     /// A change that the learner wants to be tried, and from which generation on, from 1.
     wish: Option<(usize, String)>,
     branch: Option<Branch>,
+    /// An individual of this generation whose curve is not known and is to be simulated.
+    unknown: Option<usize>,
+    /// Generation and individual that were simulated again, and their curve or why there is none.
+    again: Option<(usize, usize, Result<Vec<f64>, String>)>,
     quiz: Option<Quiz>,
     /// What the last key has led to, where that is not plain to see.
     message: String,
@@ -95,6 +100,8 @@ impl Screen {
             prompt: None,
             wish: None,
             branch: None,
+            unknown: None,
+            again: None,
             quiz: None,
             message,
             colour,
@@ -131,6 +138,20 @@ impl Screen {
     /// The change that is to be tried now, and from which generation on, counted from 1.
     pub fn take_wish(&mut self) -> Option<(usize, String)> {
         self.wish.take()
+    }
+
+    /// The genes of an individual whose simulation is to be shown, but is not in the trace.
+    pub fn take_unknown(&mut self) -> Option<Vec<f64>> {
+        let k = self.unknown.take()?;
+        self.again = Some((self.walk.number(), k, Err(String::new())));
+        Some(self.walk.generation().genome(k).to_vec())
+    }
+
+    /// The simulation of [`Screen::take_unknown`], Y at every measured point, or why there is none.
+    pub fn simulated(&mut self, row: Result<Vec<f64>, String>) {
+        if let Some((_, _, known)) = &mut self.again {
+            *known = row;
+        }
     }
 
     /// Shows what has become of a change, or why it could not be tried.

@@ -104,6 +104,25 @@ fn an_individual_is_followed() {
 }
 
 #[test]
+fn every_individual_can_be_inspected() {
+    let inspect = |which: &str| {
+        let mut screen = Screen::new(sample::walk(), false);
+        let keys = [vec![Key::Right; 2], typed('i', which)].concat();
+        assert!(keys.into_iter().all(|key| screen.press(key)), "the screen has ended");
+        screen
+    };
+    // The best is in the trace, as number 6 and by default.
+    assert_eq!((inspect("").take_unknown(), inspect("6").take_unknown()), (None, None));
+    let mut screen = inspect("4");
+    assert_eq!(screen.take_unknown(), Some(screen.walk.generation().genome(3).to_vec()));
+    screen.simulated(Ok(vec![2.0, 4.0, 9.0]));
+    let text = drawn(&screen);
+    sample::snapshots().bind(|| insta::assert_snapshot!("screen_inspect_again", text));
+    screen.simulated(Err("no script is at hand".to_owned()));
+    assert!(drawn(&screen).contains("no script is at hand"));
+}
+
+#[test]
 fn the_smallest_terminal_is_no_panic() {
     for (width, height) in [(1, 1), (10, 3), (40, 10), (200, 60)] {
         for keys in [vec![], vec![Key::Char('?')], typed('i', ""), vec![Key::Right; 5]] {
