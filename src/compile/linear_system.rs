@@ -3,6 +3,7 @@
 //! ```text
 //! regular     P A = L U, rows scaled by their largest entry
 //! up to 2     x = b / a; by determinants where the determinant is no small difference
+//! up to 6     the same factors without a workspace where no pivot is small
 //! singular    A V = W with orthogonal columns wⱼ; x = Σ vⱼ (wⱼ·b)/(wⱼ·wⱼ) over those that are not
 //!             zero: of all solutions the smallest
 //! ```
@@ -25,6 +26,11 @@ const CONSISTENT_TO_ONE: f64 = 1e-9;
 const MAX_SWEEPS: usize = 60;
 /// Two equations are solved by determinants where theirs is more than this part of its terms.
 pub(super) const SMALLEST_DETERMINANT: f64 = 1e-4;
+/// More equations are solved in a workspace.
+pub(super) const MOST_SMALL: usize = 6;
+/// Up to so many equations are clearly regular where the pivots are more than this part of the
+/// largest entry of their column.
+const CLEAR_PIVOT: f64 = 1e-8;
 
 /// Solves A x = b.
 #[derive(Debug, Clone)]
@@ -116,7 +122,7 @@ impl LinearSystem {
         Ok(())
     }
 
-    /// Solves one or two equations that are clearly regular; whether they are.
+    /// Solves few equations that are clearly regular; whether they are.
     fn run_small(&mut self, solve: &LinearSolve, r: &mut [f64]) -> bool {
         let solution = match (&self.given[..], &solve.right[..]) {
             (&[a], &[right]) => [r[right as usize] / a, 0.0],
@@ -130,6 +136,17 @@ impl LinearSystem {
                 }
                 let inverse = 1.0 / determinant;
                 [(right * d - b * s) * inverse, (a * s - right * c) * inverse]
+            }
+            (given, right) if right.len() <= MOST_SMALL => {
+                let mut a = [0.0; MOST_SMALL * MOST_SMALL];
+                let mut b = [0.0; MOST_SMALL];
+                a[..given.len()].copy_from_slice(given);
+                b.iter_mut().zip(right).for_each(|(b, register)| *b = r[*register as usize]);
+                let is_regular = eliminate(&mut a[..given.len()], &mut b[..self.n]);
+                if is_regular {
+                    r[solve.d as usize..][..self.n].copy_from_slice(&b[..self.n]);
+                }
+                return is_regular;
             }
             _ => return false,
         };
@@ -271,6 +288,39 @@ fn is_solved(matrix: &[f64], x: &[f64], b: &[f64]) -> bool {
     })
 }
 
+/// Replaces b by the solution of A x = b, A by rows, if that is clearly regular; whether it is.
+pub(super) fn eliminate(a: &mut [f64], b: &mut [f64]) -> bool {
+    let n = b.len();
+    let mut largest = [0.0; MOST_SMALL];
+    for (row, b) in a.chunks_exact_mut(n).zip(b.iter_mut()) {
+        let scale = row.iter().fold(0.0, |a: f64, b| a.max(b.abs())).recip();
+        *b *= scale;
+        for (entry, largest) in row.iter_mut().zip(&mut largest) {
+            *entry *= scale;
+            *largest = entry.abs().max(*largest);
+        }
+    }
+    for k in 0..n {
+        let size = |i: usize| a[i * n + k].abs();
+        let best = (k + 1..n).fold(k, |best, i| if size(i) > size(best) { i } else { best });
+        if size(best) <= CLEAR_PIVOT * largest[k] {
+            return false;
+        }
+        b.swap(k, best);
+        (k..n).for_each(|j| a.swap(k * n + j, best * n + j));
+        for i in k + 1..n {
+            let factor = a[i * n + k] / a[k * n + k];
+            (k + 1..n).for_each(|j| a[i * n + j] -= factor * a[k * n + j]);
+            b[i] -= factor * b[k];
+        }
+    }
+    for k in (0..n).rev() {
+        let known: f64 = (k + 1..n).map(|j| a[k * n + j] * b[j]).sum();
+        b[k] = (b[k] - known) / a[k * n + k];
+    }
+    b.iter().all(|x| x.is_finite())
+}
+
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
@@ -316,6 +366,15 @@ mod tests {
     fn badly_scaled_rows_are_not_singular() {
         let x = solve(&[1e-12, 2e-12, 1e9, -1e9], &[5e-12, -1e9], false).unwrap();
         assert!((x[0] - 1.0).abs() < 1e-12 && (x[1] - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn unknowns_may_be_in_very_different_units() {
+        let x = [1e5, 2e-3, 3.0];
+        let a = [0.0, 500.0, 1.0, 2e3, -5e13, 1e8, 1e-15, 5e-8, -1e-10];
+        let b: Vec<f64> = a.chunks(3).map(|row| dot(row, &x)).collect();
+        let found = solve(&a, &b, false).unwrap();
+        x.iter().zip(found).for_each(|(x, found)| assert!((x / found - 1.0).abs() < 1e-12));
     }
 
     proptest! {

@@ -180,7 +180,7 @@ mod tests {
         known.extend([0.0, 1.5, -2.0].map(|value| pool.constant(value)));
         for (kind, operands) in steps {
             let [a, b, c, d] = operands.map(|at| known[at as usize % known.len()]);
-            let new = match kind % 18 {
+            let new = match kind % 19 {
                 0 => pool.add(a, b),
                 1 => pool.sub(a, b),
                 2 => pool.mul(a, b),
@@ -199,6 +199,11 @@ mod tests {
                 16 => {
                     let (matrix, right) = (pool.list(&[a]), pool.list(&[b]));
                     pool.solution(matrix, right, 0)
+                }
+                17 => {
+                    let matrix = pool.list(&[a, b, c, d, a, b, c, d, a]);
+                    let right = pool.list(&[b, c, d]);
+                    pool.solution(matrix, right, u32::from(operands[0] % 3))
                 }
                 _ => {
                     let (matrix, right) = (pool.list(&[a, b, c, d]), pool.list(&[b, c]));
@@ -242,7 +247,7 @@ mod tests {
                 let succeeds = code.tape.run(&mut memory).is_ok();
                 // Machine code may leave to the tape what is nearly singular, but nothing else.
                 prop_assert!(!done || succeeds);
-                let is_system = |(kind, _): &Step| kind % 18 >= 16;
+                let is_system = |(kind, _): &Step| kind % 19 >= 16;
                 prop_assert!(done || !succeeds || steps.iter().any(is_system));
                 for (out, register) in out.iter().zip(&code.outputs).filter(|_| done) {
                     let expected = memory[*register as usize];

@@ -5,6 +5,7 @@ mod chains;
 pub mod errors;
 mod event_iteration;
 mod events;
+mod explanation;
 mod history;
 mod hoist;
 mod jacobian;

@@ -7,17 +7,14 @@ use super::hoist::Hoisting;
 use super::jacobian::differentiate_sequence;
 use super::lower::{Registers, TapeBuilder};
 use super::machine_code::MachineCode;
-use super::memory::Memory;
 use super::system::System;
 use super::tape::{Register, Tape};
-use crate::bytecode::{self, Reason};
 use crate::dae::{Assignment, Block, Kind, SortedDae, Variable};
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::flatten::{BaseType, Experiment, Variability};
-use crate::sim::{Failure, Pattern, SimError, SimErrorKind};
-use crate::source::Span;
-use crate::symbolic::{Expr, Pool, VarId, function};
+use crate::sim::Pattern;
+use crate::symbolic::{Expr, Pool, VarId};
 use crate::syntax::ast::CausalityPrefix;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
@@ -518,194 +515,6 @@ impl Program {
             .help_if(suggest::did_you_mean(name, known)))
     }
 
-    /// A failed simulation in the model's words.
-    pub fn explain(&self, error: &SimError) -> Diagnostic {
-        let when = format!("at t = {}", error.time);
-        match error.kind {
-            SimErrorKind::Evaluation(failure) => self.explain_failure(failure, &when),
-            SimErrorKind::Initialization(Failure::Newton { .. })
-            | SimErrorKind::Initialization(Failure::Singular { .. }) => {
-                fault!(INITIALIZATION_FAILED, "no initial values of `{}` could be found {when}",
-                    self.name(); help: "give start values near the solution")
-                .at(self.first_span())
-            }
-            SimErrorKind::Initialization(failure) => self.explain_failure(failure, &when),
-            other => {
-                let reason = match other {
-                    SimErrorKind::StepSize => "the step became too small",
-                    SimErrorKind::StepBudget => "the number of steps is used up",
-                    SimErrorKind::TimeBudget => "the time allowed is used up",
-                    SimErrorKind::Singular => "the Jacobian is singular",
-                    SimErrorKind::Chattering => "events follow each other without end",
-                    _ => "a value is not finite",
-                };
-                fault!(
-                    SIMULATION_FAILED,
-                    "the simulation of `{}` stopped {when}: {reason}",
-                    self.name()
-                )
-                .at(self.first_span())
-            }
-        }
-    }
-
-    fn first_span(&self) -> Span {
-        self.sorted.dae.equations.first().map_or(Span::NONE, |equation| equation.span)
-    }
-
-    fn explain_failure(&self, failure: Failure, when: &str) -> Diagnostic {
-        match failure {
-            Failure::Domain { place } => {
-                let what = match (place & 0xff) as usize {
-                    0 => "a division by zero or an overflow of a division".to_owned(),
-                    1 => "a power without a finite value".to_owned(),
-                    code => match function::functions().nth(code - 2) {
-                        Some((_, function)) => format!(
-                            "`{}` has no value: {}",
-                            function.name,
-                            function.domain.map_or("the result is not finite", |d| d.words)
-                        ),
-                        None => "an operation without a finite value".to_owned(),
-                    },
-                };
-                let place = place >> 8;
-                match self.linear_loop(place) {
-                    Some(names) => fault!(
-                        SIMULATION_FAILED,
-                        "the linear algebraic loop of {names} has no unique solution {when}"
-                    )
-                    .at(self.place(place)),
-                    None => fault!(DOMAIN_ERROR, "{what} {when}").at(self.place(place)),
-                }
-            }
-            Failure::Function { function, at, reason } => {
-                let reason = Reason::ALL.get(usize::from(reason)).copied();
-                let reason = reason.unwrap_or(Reason::NotFinite);
-                let failure = bytecode::Failure { function, at, reason };
-                let (mut words, span) = self.sorted.dae.functions.explain(&failure);
-                if let Some(message) = self.external_message(failure) {
-                    words = format!("{words}: {message}");
-                }
-                let code = match reason {
-                    Reason::Assertion => ASSERTION_FAILED,
-                    _ => DOMAIN_ERROR,
-                };
-                fault!(code, "{words} ({when})").at(span)
-            }
-            Failure::Assertion { assertion } => {
-                let dae = &self.sorted.dae;
-                let mut all = dae.assertions.iter().chain(&dae.events.assertions);
-                match all.nth(assertion as usize) {
-                    Some(failed) => {
-                        fault!(ASSERTION_FAILED, "{} ({when})", failed.message).at(failed.span)
-                    }
-                    None => {
-                        fault!(ASSERTION_FAILED, "an assertion fails {when}").at(self.first_span())
-                    }
-                }
-            }
-            Failure::Newton { block } | Failure::Singular { block } => {
-                self.explain_block(block, when, SIMULATION_FAILED)
-            }
-            Failure::Initialization { block } => {
-                self.explain_block(block, when, INITIALIZATION_FAILED)
-            }
-            Failure::Inconsistent { check } => {
-                let place = self.sorted.initial_checks.get(check as usize).map(|e| e.span);
-                fault!(INITIALIZATION_FAILED,
-                    "the initial values of `{}` contradict each other: this does not hold {when}",
-                    self.name(); help: "remove this initial equation or `fixed` start value, or change its value")
-                .at(place.unwrap_or(Span::NONE))
-            }
-            Failure::EventIteration { variable } => self.explain_iteration(variable, when),
-        }
-    }
-
-    /// Why an external function has no result, if it fails with the default parameters too.
-    fn external_message(&self, failure: bytecode::Failure) -> Option<String> {
-        if failure.reason != Reason::External {
-            return None;
-        }
-        let mut memory = Memory::new(&self.registers);
-        for (_, tape) in &self.parameter_tapes {
-            if tape.run(&mut memory).is_err() && memory.calls.failure == Some(failure) {
-                return Some(memory.calls.message().to_owned());
-            }
-        }
-        None
-    }
-
-    fn explain_iteration(&self, variable: u32, when: &str) -> Diagnostic {
-        let dae = &self.sorted.dae;
-        let (relations, roundings) = (dae.relations.iter(), dae.events.roundings.iter());
-        let mut frozen = relations.map(|r| (r.variable, r.span));
-        let switching = frozen
-            .find(|(v, _)| v.0 == variable)
-            .or_else(|| roundings.map(|r| (r.variable, r.span)).find(|(v, _)| v.0 == variable));
-        let (what, span) = match (switching, dae.variables.get(variable as usize)) {
-            (Some((_, span)), _) => ("a relation".to_owned(), span),
-            (None, Some(v)) if v.name.starts_with('$') => ("a condition".to_owned(), v.span),
-            (None, Some(v)) => (format!("`{}`", v.name), v.span),
-            (None, None) => ("a discrete variable".to_owned(), self.first_span()),
-        };
-        fault!(SIMULATION_FAILED, "event iteration does not end {when}: {what} keeps changing";
-            help: "use `pre(…)` where a variable depends on itself, or a hysteresis")
-        .labelled(span, "keeps changing")
-    }
-
-    fn explain_block(&self, block: u32, when: &str, code: crate::diag::Code) -> Diagnostic {
-        let block = block as usize;
-        let sorted = &self.sorted;
-        let found = match (code == INITIALIZATION_FAILED, block.checked_sub(sorted.blocks.len())) {
-            (true, _) => sorted.initial_blocks.get(block),
-            (false, None) => sorted.blocks.get(block),
-            (false, Some(at_events)) => sorted.event_blocks.get(at_events),
-        };
-        let Some(Block::Loop(torn)) = found else {
-            return fault!(code, "an algebraic loop of `{}` did not converge {when}", self.name())
-                .at(self.first_span());
-        };
-        let names: Vec<String> = torn
-            .iteration
-            .iter()
-            .map(|v| format!("`{}`", self.sorted.dae.variable(*v).name))
-            .collect();
-        let equation = torn.residuals.first().map_or(u32::MAX, |(_, equation)| *equation as u32);
-        fault!(code, "the algebraic loop of {} did not converge {when}", names.join(", ");
-            help: "give these variables start values near the solution")
-        .at(self.place(equation))
-    }
-
-    /// The unknowns of the linear loop that this equation solves for one of them.
-    fn linear_loop(&self, equation: u32) -> Option<String> {
-        let sorted = &self.sorted;
-        let blocks = sorted.blocks.iter().chain(&sorted.event_blocks);
-        let unknowns = blocks.chain(&sorted.initial_blocks).find_map(|block| match block {
-            Block::Linear(solved) => {
-                let first = solved.assignments.iter().take(solved.unknowns.len());
-                first
-                    .map(|a| a.equation)
-                    .any(|e| e == equation as usize)
-                    .then_some(&solved.unknowns)
-            }
-            _ => None,
-        })?;
-        let name = |v: &VarId| format!("`{}`", self.sorted.dae.variable(*v).name);
-        Some(unknowns.iter().map(name).collect::<Vec<_>>().join(", "))
-    }
-
-    /// Where an origin is written: equations, initial equations, those of events, then variables.
-    fn place(&self, origin: u32) -> Span {
-        let dae = &self.sorted.dae;
-        let equations = dae.equations.iter().chain(&dae.initial_equations);
-        let mut spans = equations.chain(&dae.events.equations).map(|e| e.span);
-        let declared = || {
-            let position = (origin as usize).checked_sub(number_of_equations(&self.sorted))?;
-            dae.variables.get(position).map(|v| v.span)
-        };
-        spans.nth(origin as usize).or_else(declared).unwrap_or(Span::NONE)
-    }
-
     /// The expression of a variable of [`Program::variables`], aliases resolved, with its sign.
     pub(super) fn resolve(&self, variable: VarId) -> (VarId, bool) {
         match self.sorted.aliases[variable.0 as usize] {
@@ -778,7 +587,7 @@ impl Program {
 }
 
 /// Equations, initial equations and those of events.
-fn number_of_equations(sorted: &SortedDae) -> usize {
+pub(super) fn number_of_equations(sorted: &SortedDae) -> usize {
     let dae = &sorted.dae;
     dae.equations.len() + dae.initial_equations.len() + dae.events.equations.len()
 }

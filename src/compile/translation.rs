@@ -2,10 +2,10 @@
 //!
 //! Results stay in registers of the machine; only outputs are written to memory. Where the tape
 //! fails at a value that is not finite, the code goes on and adds up `0 · value`: the sum, which it
-//! returns, is zero if all were finite. Calls of functions and linear systems of more than two
-//! unknowns are not translated.
+//! returns, is zero if all were finite. Calls of functions and linear systems that need a workspace
+//! are not translated.
 
-use super::linear_system::{LinearSolve, SMALLEST_DETERMINANT};
+use super::linear_system::{LinearSolve, MOST_SMALL, SMALLEST_DETERMINANT, eliminate};
 use super::program::Outputs;
 use super::tape::{Instruction, Register};
 use crate::symbolic::RelationOperator;
@@ -13,7 +13,8 @@ use crate::symbolic::function::FunctionId;
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{
-    AbiParam, Block, InstBuilder, MemFlags, SigRef, Signature, Type, Value, types,
+    AbiParam, Block, InstBuilder, MemFlags, SigRef, Signature, StackSlotData, StackSlotKind, Type,
+    Value, types,
 };
 use cranelift_codegen::isa::CallConv;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext, Variable};
@@ -46,6 +47,9 @@ pub(super) fn translate(
         signature.returns.push(AbiParam::new(types::F64));
         builder.import_signature(signature)
     });
+    let mut signature = Signature::new(call_conv);
+    signature.params.extend([AbiParam::new(pointer), AbiParam::new(pointer)]);
+    let elimination = builder.import_signature(signature);
     let checks = std::array::from_fn(|_| builder.declare_var(types::F64));
     let zero = builder.ins().f64const(0.0);
     checks.iter().for_each(|check| builder.def_var(*check, zero));
@@ -61,6 +65,7 @@ pub(super) fn translate(
         matrices: FxHashMap::default(),
         places: FxHashMap::default(),
         functions,
+        elimination,
         checks,
         next_check: 0,
     };
@@ -86,6 +91,18 @@ extern "C" fn binary(function: fn(f64, f64) -> f64, a: f64, b: f64) -> f64 {
     function(a, b)
 }
 
+/// Room for A by rows and b behind it.
+const SMALL_SYSTEM: usize = MOST_SMALL * (MOST_SMALL + 1);
+
+/// Replaces b by the solution of n equations, by what is not a number if they are not clearly
+/// regular.
+extern "C" fn small_system(system: &mut [f64; SMALL_SYSTEM], n: usize) {
+    let (a, b) = system[..n * (n + 1)].split_at_mut(n * n);
+    if !eliminate(a, b) {
+        b[0] = f64::NAN;
+    }
+}
+
 struct Translation<'a> {
     builder: FunctionBuilder<'a>,
     code: &'a Outputs,
@@ -104,6 +121,8 @@ struct Translation<'a> {
     places: FxHashMap<Register, Vec<usize>>,
     /// Signatures of functions with one and two arguments.
     functions: [SigRef; 2],
+    /// The signature of [`small_system`].
+    elimination: SigRef,
     checks: [Variable; CHECKS],
     next_check: usize,
 }
@@ -305,17 +324,17 @@ impl Translation<'_> {
         self.builder.ins().iconst(self.pointer, address as i64)
     }
 
-    /// One or two linear equations, as [`LinearSystem`](super::linear_system::LinearSystem) solves
-    /// regular ones; others give values that are not finite.
+    /// Few linear equations, as [`LinearSystem`](super::linear_system::LinearSystem) solves regular
+    /// ones; others give values that are not finite.
     fn solve(&mut self, solve: &LinearSolve) -> Option<()> {
         if let Some(entries) = &solve.entries {
             self.matrices.insert(solve.system, entries.clone());
         }
         let n = solve.right.len();
-        if n > 2 {
+        if n > MOST_SMALL {
             return None;
         }
-        let mut matrix = [None; 4];
+        let mut matrix = [None; MOST_SMALL * MOST_SMALL];
         for (place, register) in self.matrices.get(&solve.system)?.clone() {
             matrix[place as usize] = Some(register);
         }
@@ -342,9 +361,28 @@ impl Translation<'_> {
                 self.set_checked(solve.d, x);
                 self.set_checked(solve.d + 1, y);
             }
-            _ => return None,
+            _ => self.eliminate(&entries, &right, solve.d),
         }
         Some(())
+    }
+
+    /// Writes a system to the stack, calls [`small_system`] and reads the solution.
+    fn eliminate(&mut self, entries: &[Value], right: &[Value], d: Register) {
+        let size = (8 * SMALL_SYSTEM) as u32;
+        let slot = StackSlotData::new(StackSlotKind::ExplicitSlot, size, 3);
+        let slot = self.builder.create_sized_stack_slot(slot);
+        for (place, value) in (0..).zip(entries.iter().chain(right)) {
+            self.builder.ins().stack_store(*value, slot, 8 * place);
+        }
+        let system = self.builder.ins().stack_addr(self.pointer, slot, 0);
+        let n = self.builder.ins().iconst(self.pointer, right.len() as i64);
+        let callee = self.address(small_system as *const () as usize);
+        self.builder.ins().call_indirect(self.elimination, callee, &[system, n]);
+        for (at, register) in (0..right.len()).zip(d..) {
+            let place = 8 * (entries.len() + at) as i32;
+            let x = self.builder.ins().stack_load(types::F64, slot, place);
+            self.set_checked(register, x);
+        }
     }
 
     /// 1 / determinant, not finite if it is small compared with its terms.

@@ -53,7 +53,8 @@ impl Builder<'_> {
         let execution = std::mem::take(&mut self.execution);
         for (variable, right) in execution.values {
             let left = self.dae.pool.variable(variable);
-            let equation = Equation { left, right, span: first.span };
+            let instance = self.instance;
+            let equation = Equation { instance, ..Equation::new(left, right, first.span) };
             let is_discrete = self.dae.variable(variable).kind == Kind::Discrete;
             match (self.initial, is_discrete) {
                 (true, _) => self.dae.initial_equations.push(equation),

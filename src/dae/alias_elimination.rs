@@ -26,7 +26,7 @@ pub(super) fn eliminate_aliases(dae: &mut Dae) -> Vec<Option<Alias>> {
     }
     for (zero, span) in std::mem::take(&mut sets.zeros) {
         let (left, right) = (dae.pool.variable(VarId(zero)), dae.pool.constant(0.0));
-        kept.push(Equation { left, right, span });
+        kept.push(Equation::new(left, right, span));
     }
     dae.equations = kept;
     let aliases: Vec<Option<Alias>> = (0..dae.variables.len() as u32)
@@ -161,7 +161,7 @@ fn merge_attributes(dae: &mut Dae, aliases: &[Option<Alias>]) {
         kept.state_select = kept.state_select.merged_with(state_select);
         if fixed && kept.fixed && start != kept.start {
             let (left, zero) = (dae.pool.variable(alias.of), dae.pool.constant(0.0));
-            dae.initial_equations.push(Equation { left, right: start.unwrap_or(zero), span });
+            dae.initial_equations.push(Equation::new(left, start.unwrap_or(zero), span));
             continue;
         }
         if (start.is_some() && kept.start.is_none()) || (fixed && !kept.fixed) {

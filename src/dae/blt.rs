@@ -7,8 +7,13 @@ use super::sorted::{Assignment, Block, Loop};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::graph::{Bipartite, Matching, blocks, dulmage_mendelsohn, match_equations, tear};
+use crate::source::Span;
 use crate::symbolic::{Expr, VarId, solve};
+use indexmap::{IndexMap, IndexSet};
 use rustc_hash::FxHashMap;
+
+/// The most instances named for an equation.
+const MAX_OWNERS: usize = 4;
 
 /// Sorts equations for unknowns.
 pub(super) fn sort_blocks(
@@ -149,6 +154,26 @@ pub(super) fn is_safe(dae: &Dae, divisor: Expr) -> bool {
     }
 }
 
+/// Where equations are written and, where instances share the place, whose they are.
+fn places(dae: &Dae, equations: impl Iterator<Item = Equation>) -> IndexMap<Span, String> {
+    let mut owners: IndexMap<Span, IndexSet<&str>> = IndexMap::new();
+    for equation in equations {
+        let owners = owners.entry(equation.span).or_default();
+        let path = equation.instance.map_or("", |of| &*dae.instances[of.0 as usize]);
+        owners.extend((!path.is_empty()).then_some(path));
+    }
+    let words = |owners: IndexSet<&str>| match owners.len() {
+        0 => String::new(),
+        n => {
+            let shown: Vec<String> =
+                owners.iter().take(MAX_OWNERS).map(|path| format!("`{path}`")).collect();
+            let more = if n > MAX_OWNERS { ", …" } else { "" };
+            format!(", in {}{more}", shown.join(", "))
+        }
+    };
+    owners.into_iter().map(|(span, owners)| (span, words(owners))).collect()
+}
+
 /// Names the variables and equations that do not fit.
 pub(super) fn report(
     dae: &Dae,
@@ -188,17 +213,18 @@ pub(super) fn report(
             ),
         });
     }
-    let place = parts.under_unknowns.first().map(|u| dae.variable(unknowns[*u]).span);
-    let mut spans: Vec<_> = parts.over_equations.iter().map(|e| equations[*e].span).collect();
-    spans.dedup();
-    let mut spans = spans.into_iter();
-    let (first, text) = match (place, &parts.under_unknowns) {
-        (Some(place), _) => (place, "no equation determines this"),
-        (None, _) => (spans.next().unwrap_or(crate::source::Span::NONE), "one equation too many"),
+    let undetermined = parts.under_unknowns.first().map(|u| dae.variable(unknowns[*u]).span);
+    let mut places = places(dae, parts.over_equations.iter().map(|e| equations[*e])).into_iter();
+    let (first, text) = match undetermined {
+        Some(span) => (span, "no equation determines this".to_owned()),
+        None => {
+            let (span, whose) = places.next().unwrap_or((Span::NONE, String::new()));
+            (span, format!("one equation too many{whose}"))
+        }
     };
     let mut diagnostic = fault.labelled(first, text);
-    for span in spans.take(6) {
-        diagnostic = diagnostic.related(span, "one of too many equations");
+    for (span, whose) in places.take(6) {
+        diagnostic = diagnostic.related(span, format!("one of too many equations{whose}"));
     }
     diagnostic
 }

@@ -3,15 +3,16 @@
 use super::algorithm::Execution;
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, PARAMETER_CYCLE, UNRESOLVED_REFERENCE};
 use super::lowering::{Array, Lowered, Lowering, Target, size_fault};
-use super::model::{Assertion, Dae, Equation, Kind, StateSelect, Variable};
+use super::model::{Assertion, Dae, Equation, Instance, Kind, StateSelect, Variable};
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
-use crate::flatten::{self, BaseType, FlatModel, Variability};
+use crate::flatten::{self, BaseType, FlatModel, Part, Variability};
 use crate::source::Span;
 use crate::symbolic::{Expr, Pool, VarId};
 use crate::syntax::ast::{self, EquationKind, Expression, ExpressionKind};
 use indexmap::IndexSet;
 use rustc_hash::{FxHashMap, FxHashSet};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Stands for a text, or a part of one, that is not known when compiling; messages show it.
@@ -46,6 +47,8 @@ pub(super) struct Builder<'a> {
     pub(super) functions: super::function::Instances,
     /// How many calls of impure functions were read.
     pub(super) impure_calls: u32,
+    /// Whose equations are being read.
+    pub(super) instance: Option<Instance>,
     /// Whether initial equations are being read.
     pub(super) initial: bool,
     /// Whether the body of a when-clause is being read.
@@ -87,6 +90,7 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         inlined: 0,
         functions: super::function::Instances::default(),
         impure_calls: 0,
+        instance: None,
         initial: false,
         in_when: false,
         branches: 0,
@@ -103,16 +107,25 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
     builder.find_discrete();
     builder.fold_constants()?;
     builder.bindings()?;
-    for equation in &flat.equations {
+    builder.dae.instances = flat.parts.iter().map(|part| part.instance.clone()).collect();
+    let owners_of = |range| owners(&flat.parts, range);
+    let owners = owners_of(|part| &part.equations);
+    for (position, equation) in flat.equations.iter().enumerate() {
+        builder.instance = owners.get(&position).copied();
         builder.equation(equation, &mut Vec::new())?;
     }
-    for statements in &flat.algorithms {
+    let owners = owners_of(|part| &part.algorithms);
+    for (position, statements) in flat.algorithms.iter().enumerate() {
+        builder.instance = owners.get(&position).copied();
         builder.algorithm(statements)?;
     }
     builder.initial = true;
-    for equation in &flat.initial_equations {
+    let owners = owners_of(|part| &part.initial_equations);
+    for (position, equation) in flat.initial_equations.iter().enumerate() {
+        builder.instance = owners.get(&position).copied();
         builder.equation(equation, &mut Vec::new())?;
     }
+    builder.instance = None;
     for statements in &flat.initial_algorithms {
         builder.algorithm(statements)?;
     }
@@ -173,12 +186,17 @@ impl<'a> Builder<'a> {
 
     /// Bindings of parameters, binding equations of variables, attributes.
     fn bindings(&mut self) -> Result<(), Diagnostic> {
+        let parts = self.flat.parts.iter().zip(0..);
+        let instances: FxHashMap<&str, Instance> =
+            parts.map(|(part, number)| (&*part.instance, Instance(number))).collect();
         for (position, variable) in self.flat.variables.values().enumerate() {
             if variable.base == BaseType::String {
                 self.varying_text(position)?;
                 continue;
             }
             let first = self.first[position].0 as usize;
+            let holder = variable.name.rsplit_once('.').map_or("", |(holder, _)| holder);
+            let instance = instances.get(holder).copied();
             let is_parameter = variable.variability <= Variability::Parameter
                 || matches!(variable.base, BaseType::ExternalObject(_));
             if let Some(binding) = &variable.binding {
@@ -188,8 +206,8 @@ impl<'a> Builder<'a> {
                         self.dae.variables[first + at].binding = Some(element);
                     } else {
                         let left = self.dae.pool.variable(VarId((first + at) as u32));
-                        let equation = Equation { left, right: element, span: binding.span };
-                        self.dae.equations.push(equation);
+                        let equation = Equation::new(left, element, binding.span);
+                        self.dae.equations.push(Equation { instance, ..equation });
                     }
                 }
             }
@@ -324,7 +342,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn push(&mut self, equation: Equation) {
+    pub(super) fn push(&mut self, equation: Equation) {
+        let equation = Equation { instance: self.instance, ..equation };
         match self.initial {
             true => self.dae.initial_equations.push(equation),
             false => self.dae.equations.push(equation),
@@ -350,7 +369,7 @@ impl<'a> Builder<'a> {
         if matches!(a, Lowered::Numbered(_)) || matches!(b, Lowered::Numbered(_)) {
             let left = lowering.number_of_text(a, span)?;
             let right = lowering.number_of_text(b, span)?;
-            return Ok(vec![Equation { left, right, span }]);
+            return Ok(vec![Equation::new(left, right, span)]);
         }
         pairs(&a, &b, span)
     }
@@ -451,11 +470,11 @@ impl<'a> Builder<'a> {
         let merged = first.into_iter().zip(second).map(|(a, b)| {
             if a.left == b.left {
                 let right = pool.if_then_else(condition, a.right, b.right);
-                return Equation { left: a.left, right, span: a.span };
+                return Equation { right, ..a };
             }
             let (x, y) = (pool.sub(a.left, a.right), pool.sub(b.left, b.right));
             let left = pool.constant(0.0);
-            Equation { left, right: pool.if_then_else(condition, x, y), span: a.span }
+            Equation { left, right: pool.if_then_else(condition, x, y), ..a }
         });
         Ok(merged.collect())
     }
@@ -579,8 +598,16 @@ fn pairs(a: &Lowered<Expr>, b: &Lowered<Expr>, span: Span) -> Result<Vec<Equatio
     let (mut left, mut right) = (Vec::new(), Vec::new());
     a.append_scalars(&mut left);
     b.append_scalars(&mut right);
-    let equation = |(left, right)| Equation { left, right, span };
+    let equation = |(left, right)| Equation::new(left, right, span);
     Ok(left.into_iter().zip(right).map(equation).collect())
+}
+
+/// Whose the equations at these positions are.
+fn owners(parts: &[Part], range: fn(&Part) -> &Range<usize>) -> FxHashMap<usize, Instance> {
+    let parts = parts.iter().zip(0..);
+    parts
+        .flat_map(|(part, number)| range(part).clone().map(move |at| (at, Instance(number))))
+        .collect()
 }
 
 /// The scalar at a position of a flat variable.

@@ -160,7 +160,7 @@ pub(super) fn separate_discrete(
         let left = dae.pool.variable(open[*unknown]);
         let right = if equation.left == left { equation.right } else { equation.left };
         check_constant_between_events(dae, open[*unknown], right, equation)?;
-        dae.events.equations.push(Equation { left, right, span: equation.span });
+        dae.events.equations.push(Equation { left, right, ..equation });
     }
     Ok(())
 }

@@ -64,7 +64,7 @@ pub(super) fn declare_selection(
         let slopes: Vec<Expr> = candidates.iter().map(|c| c.derivative).collect();
         for (left, terms) in [(id, values), (derivative, slopes)] {
             let (left, right) = (dae.pool.variable(left), weighted_sum(dae, &weights, &terms));
-            dae.equations.push(Equation { left, right, span });
+            dae.equations.push(Equation::new(left, right, span));
         }
         selection.states.push(id);
         selection.weights.push(weights);

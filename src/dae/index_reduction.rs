@@ -150,7 +150,7 @@ impl Continuous {
                     }
                     self.equations.push(dae.equations.len());
                     let span = dae.variable(of).span;
-                    dae.equations.push(Equation { left, right, span });
+                    dae.equations.push(Equation::new(left, right, span));
                 } else {
                     target = (alias.of, alias.negated);
                 }
@@ -216,7 +216,8 @@ impl Continuous {
             }
         }
         for origin in &origins[self.equations.len()..] {
-            let Equation { left, right, span } = dae.equations[self.equations[*origin]];
+            let equation = dae.equations[self.equations[*origin]];
+            let Equation { left, right, span, .. } = equation;
             let delayed = |v: &VarId| dae.variable(*v).kind == Kind::Delayed;
             if [left, right].iter().any(|side| dae.pool.variables(*side).iter().any(delayed)) {
                 return Err(fault!(
@@ -229,7 +230,7 @@ impl Continuous {
             let left = differentiate(&mut dae.pool, left, &seed);
             let right = differentiate(&mut dae.pool, right, &seed);
             self.equations.push(dae.equations.len());
-            dae.equations.push(Equation { left, right, span });
+            dae.equations.push(Equation { left, right, ..equation });
         }
         Ok(())
     }

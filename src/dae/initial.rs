@@ -127,14 +127,14 @@ fn model_equations(dae: &mut Dae) -> Numbered {
     let first = first_variable(dae);
     for delay in dae.events.delays.clone() {
         let (left, right) = (dae.pool.variable(delay.variable), delay.argument);
-        let equation = Equation { left, right, span: delay.span };
+        let equation = Equation::new(left, right, delay.span);
         system.push(equation, first + delay.variable.0 as usize);
     }
     for previous in of_kind(dae, |kind| matches!(kind, Kind::Previous(_))) {
         let Kind::Previous(of) = dae.variable(previous).kind else { continue };
         if dae.variable(of).kind != Kind::Discrete {
             let (left, right) = (dae.pool.variable(previous), dae.pool.variable(of));
-            let equation = Equation { left, right, span: dae.variable(of).span };
+            let equation = Equation::new(left, right, dae.variable(of).span);
             system.push(equation, first + of.0 as usize);
         }
     }
@@ -214,7 +214,7 @@ fn reinits(dae: &mut Dae, aliases: &[Option<Alias>]) -> Vec<(VarId, Equation)> {
                 left = dae.pool.neg(left);
             }
             let right = substitute(&mut dae.pool, reinit.value, &start);
-            equations.push((state, Equation { left, right, span: reinit.span }));
+            equations.push((state, Equation::new(left, right, reinit.span)));
         }
     }
     equations
@@ -229,5 +229,5 @@ fn start_equation(dae: &mut Dae, variable: VarId, of: VarId) -> Equation {
     };
     let default = dae.pool.constant(default);
     let of = dae.variable(of);
-    Equation { left, right: of.start.unwrap_or(default), span: of.span }
+    Equation::new(left, of.start.unwrap_or(default), of.span)
 }

@@ -160,7 +160,7 @@ fn zero_inputs(dae: &mut Dae, flat: &FlatModel) {
             );
             dae.warnings.push(warning.at(span).warning());
             let left = dae.pool.variable(VarId(position as u32));
-            dae.equations.push(Equation { left, right, span });
+            dae.equations.push(Equation::new(left, right, span));
         }
     }
 }

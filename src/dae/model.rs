@@ -23,6 +23,8 @@ pub struct Dae {
     pub equations: Vec<Equation>,
     /// Equations of the initial system alone.
     pub initial_equations: Vec<Equation>,
+    /// Full paths of the instances whose equations these are; that of the model itself is empty.
+    pub instances: Vec<Arc<str>>,
     /// What must hold.
     pub assertions: Vec<Assertion>,
     /// Functions that expressions call.
@@ -161,7 +163,20 @@ pub struct Equation {
     pub right: Expr,
     /// Where it is written.
     pub span: Span,
+    /// Whose equation it is, if of one instance.
+    pub instance: Option<Instance>,
 }
+
+impl Equation {
+    /// `left = right`, written at `span`; whose it is, is not known.
+    pub fn new(left: Expr, right: Expr, span: Span) -> Equation {
+        Equation { left, right, span, instance: None }
+    }
+}
+
+/// Position of a path in [`Dae::instances`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Instance(pub u32);
 
 /// `assert(condition, message)` of level error.
 #[derive(Debug, Clone, PartialEq)]

@@ -51,7 +51,7 @@ fn without_solved(dae: &mut Dae, sorted: Vec<VarId>) -> Vec<VarId> {
         match binding {
             Some(right) if uses.iter().any(|v| dae.variable(*v).kind == Kind::Solved) => {
                 let left = dae.pool.variable(parameter);
-                dae.initial_equations.push(Equation { left, right, span });
+                dae.initial_equations.push(Equation::new(left, right, span));
                 let variable = &mut dae.variables[parameter.0 as usize];
                 variable.kind = Kind::Solved;
                 variable.binding = None;

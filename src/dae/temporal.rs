@@ -175,7 +175,7 @@ impl Builder<'_> {
         let id = self.declare_scalar(variable);
         self.conditions.insert(b, id);
         let left = self.dae.pool.variable(id);
-        self.dae.events.equations.push(Equation { left, right: b, span });
+        self.dae.events.equations.push(Equation::new(left, b, span));
         Ok(left)
     }
 

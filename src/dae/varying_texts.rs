@@ -34,7 +34,7 @@ impl Builder<'_> {
             let text = Lowering::new(self).lower(binding)?;
             let right = Lowering::new(self).number_of_text(text, binding.span)?;
             let left = self.dae.pool.variable(first);
-            self.dae.equations.push(Equation { left, right, span: binding.span });
+            self.dae.equations.push(Equation::new(left, right, binding.span));
         }
         // The default is the empty text (MLS §4.9.4).
         let mut start = self.number_of(&Arc::from(""));

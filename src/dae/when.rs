@@ -134,7 +134,8 @@ impl Builder<'_> {
             right = self.dae.pool.if_then_else(value.guard, value.value, right);
         }
         let span = values.first().map_or(span, |value| value.span);
-        self.dae.events.equations.push(Equation { left, right, span });
+        let equation = Equation { instance: self.instance, ..Equation::new(left, right, span) };
+        self.dae.events.equations.push(equation);
         Ok(())
     }
 

@@ -1,7 +1,6 @@
 //! Equations of the instances: names resolved, loops unrolled, branches on parameters chosen
 //! where they must be (MLS §8.3, §8.6).
 
-use super::FlatModel;
 use super::balance::Written;
 use super::errors::{NOT_SUPPORTED, TYPE_MISMATCH};
 use super::flat_expression::literal;
@@ -9,6 +8,7 @@ use super::instance::{MemberState, NodeId};
 use super::instantiation::Instantiation;
 use super::resolve::Local;
 use super::scope::ScopeId;
+use super::{FlatModel, Part};
 use crate::diag::Diagnostic;
 use crate::eval::{FunctionBody, ValueType};
 use crate::fault;
@@ -49,6 +49,7 @@ impl Instantiation<'_> {
             }
         }
         let (equations, algorithms) = (model.equations.len(), model.algorithms.len());
+        let initial_equations = model.initial_equations.len();
         for context in elements.lineage.iter().copied() {
             let text = self.text(context).clone();
             for section in text.sections() {
@@ -58,7 +59,14 @@ impl Instantiation<'_> {
             }
         }
         let equations = equations..model.equations.len();
+        let initial_equations = initial_equations..model.initial_equations.len();
         let algorithms = algorithms..model.algorithms.len();
+        model.parts.push(Part {
+            instance: self.nodes[node.0].path.as_str().into(),
+            equations: equations.clone(),
+            initial_equations,
+            algorithms: algorithms.clone(),
+        });
         self.written.push(Written { node, equations, algorithms });
     }
 

@@ -15,6 +15,7 @@ use crate::source::Span;
 use crate::syntax::ast::{self, CausalityPrefix, Expression, Statement};
 use crate::value::EnumerationDefinition;
 use indexmap::IndexMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A flat model.
@@ -34,6 +35,8 @@ pub struct FlatModel {
     pub algorithms: Vec<Vec<Statement>>,
     /// Initial algorithm sections.
     pub initial_algorithms: Vec<Vec<Statement>>,
+    /// Whose equations and algorithms these are; those of connections belong to none.
+    pub parts: Vec<Part>,
     /// Functions called, directly and indirectly, by full name.
     pub functions: IndexMap<Name, Arc<Function>>,
     /// The files that it may use.
@@ -42,6 +45,19 @@ pub struct FlatModel {
     pub experiment: Experiment,
     /// Where the class is defined.
     pub span: Option<Span>,
+}
+
+/// What an instance of a class contributes to a flat model.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Part {
+    /// Its full path, empty for the model itself.
+    pub instance: Arc<str>,
+    /// Positions in [`FlatModel::equations`].
+    pub equations: Range<usize>,
+    /// Positions in [`FlatModel::initial_equations`].
+    pub initial_equations: Range<usize>,
+    /// Positions in [`FlatModel::algorithms`].
+    pub algorithms: Range<usize>,
 }
 
 /// The `experiment` annotation (MLS §18.4): `None` where it says nothing.

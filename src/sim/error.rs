@@ -58,6 +58,18 @@ pub struct SimError {
     pub time: f64,
     /// Why.
     pub kind: SimErrorKind,
+    /// What was in the way, if that is known.
+    pub culprit: Option<Culprit>,
+}
+
+/// What was in the way of a simulation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Culprit {
+    /// A component of (x, v): it or its derivative is not finite, or it changes faster than the
+    /// others, relative to its nominal value.
+    Unknown(u32),
+    /// The crossing function that changed its sign last.
+    Crossing(u32),
 }
 
 /// The kinds of failure of a simulation.

@@ -20,6 +20,8 @@ pub(super) struct CrossingSearch {
     left: Vec<f64>,
     right: Vec<f64>,
     trial: Vec<f64>,
+    /// One that changed its sign at the last event.
+    last: Option<usize>,
 }
 
 fn sign(z: f64) -> i8 {
@@ -29,6 +31,7 @@ fn sign(z: f64) -> i8 {
 impl CrossingSearch {
     pub(super) fn resize(&mut self, n_crossings: usize) {
         self.signs.resize(n_crossings, 0);
+        self.last = None;
         for vector in [&mut self.left, &mut self.right, &mut self.trial] {
             vector.resize(n_crossings, 0.0);
         }
@@ -90,7 +93,14 @@ impl CrossingSearch {
             }
         }
         integrator.interpolate(b, y);
+        let mut signs = self.signs.iter().zip(&self.right);
+        self.last = signs.position(|(old, z)| *old != sign(*z));
         Ok(Some(b))
+    }
+
+    /// A function that changed its sign at the last event.
+    pub(super) fn last(&self) -> Option<usize> {
+        self.last
     }
 
     fn changed(&self, z: &[f64]) -> bool {

@@ -69,7 +69,7 @@ mod system;
 mod tests;
 mod trajectory;
 
-pub use error::{Failure, SimError, SimErrorKind};
+pub use error::{Culprit, Failure, SimError, SimErrorKind};
 pub use integrators::{INTEGRATORS, Integrator, Problem, find_integrator};
 pub use linear::{DenseLu, Factorization, SingularMatrix};
 pub use newton::{Equations, Newton, NewtonFailure};

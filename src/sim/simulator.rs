@@ -3,7 +3,8 @@
 use super::event::CrossingSearch;
 use super::integrators::{Integrator, Problem, WithoutUnknowns};
 use super::{
-    DaeSystem, EventOutcome, Failure, Settings, SimError, SimErrorKind, Statistics, Trajectory,
+    Culprit, DaeSystem, EventOutcome, Failure, Settings, SimError, SimErrorKind, Statistics,
+    Trajectory,
 };
 use crate::registry::Options;
 use std::sync::atomic::Ordering;
@@ -78,7 +79,7 @@ impl Simulator {
         };
         let mut statistics = Statistics::default();
         if let Some(kind) = refused(settings, integrator, system) {
-            return Err(SimError { time: settings.start, kind });
+            return Err(SimError { time: settings.start, kind, culprit: None });
         }
         let mut run = Run {
             problem: Problem {
@@ -100,8 +101,7 @@ impl Simulator {
             events_at_once: 0,
         };
         let ended = run.run();
-        let time = run.t;
-        ended.map_err(|kind| SimError { time, kind })?;
+        ended.map_err(|kind| SimError { time: run.t, kind, culprit: run.culprit(kind) })?;
         Ok(statistics)
     }
 
@@ -382,6 +382,33 @@ impl Run<'_> {
         self.check()?;
         self.record()?;
         Ok(outcome)
+    }
+
+    /// What is in the way where `kind` does not say it.
+    fn culprit(&mut self, kind: SimErrorKind) -> Option<Culprit> {
+        match kind {
+            SimErrorKind::StepSize | SimErrorKind::Singular | SimErrorKind::NotFinite => {
+                self.fastest_unknown().map(|at| Culprit::Unknown(at as u32))
+            }
+            SimErrorKind::Chattering => {
+                self.crossings.last().map(|at| Culprit::Crossing(at as u32))
+            }
+            _ => None,
+        }
+    }
+
+    /// The unknown that is not finite, or else changes fastest.
+    fn fastest_unknown(&mut self) -> Option<usize> {
+        if let Some(at) = self.y.iter().position(|y| !y.is_finite()) {
+            return Some(at);
+        }
+        let mut slopes = vec![0.0; self.y.len()];
+        self.problem.system.rhs(self.t, self.y, &mut slopes).ok()?;
+        if let Some(at) = slopes.iter().position(|slope| !slope.is_finite()) {
+            return Some(at);
+        }
+        let speed = |at: usize| slopes[at].abs() / self.y[at].abs().max(self.problem.nominal[at]);
+        (0..self.problem.system.n_differential()).max_by(|a, b| speed(*a).total_cmp(&speed(*b)))
     }
 
     fn watch_for_chattering(&mut self) -> Result<(), SimErrorKind> {
