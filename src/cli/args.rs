@@ -334,6 +334,9 @@ pub(super) struct TeachArgs {
     /// How many generations to print as text
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
     pub count: usize,
+    /// Write a picture of the generation to begin with and the next one (SVG), in place of the text
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["html", "quiz", "what_if"], value_hint = ValueHint::FilePath)]
+    pub svg: Option<PathBuf>,
     /// Write one page with all steps, for any browser, in place of the text
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub html: Option<PathBuf>,

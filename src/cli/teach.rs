@@ -10,7 +10,7 @@ use crate::source::Span;
 use crate::teach::branches::Branches;
 use crate::teach::quiz::{self, Score};
 use crate::teach::screen::Screen;
-use crate::teach::{Trace, Walk, page, plain};
+use crate::teach::{Trace, Walk, page, picture, plain};
 use std::io::IsTerminal as _;
 use std::path::Path;
 use std::process::ExitCode;
@@ -45,6 +45,9 @@ fn taught(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
     };
     if let Some(statement) = &arguments.what_if {
         return compare(arguments, global, &trace, statement);
+    }
+    if let Some(file) = &arguments.svg {
+        return draw(&trace, file, arguments.generation);
     }
     match &arguments.html {
         Some(page) => write_page(trace, page, &arguments.out, is_script),
@@ -134,6 +137,17 @@ fn write_page(trace: Trace, file: &Path, results: &Path, is_new: bool) -> Result
     let report = std::fs::read_to_string(results.join("result.json")).ok();
     let report = report.filter(|report| is_new || page::belongs(&trace, report));
     write(file, &page::page(trace, report.as_deref()))?;
+    terminal::print(&format!("written to {}\n", file.display()));
+    Ok(())
+}
+
+/// Writes the picture of a generation, counted from 1.
+fn draw(trace: &Trace, file: &Path, generation: usize) -> Result<(), Trouble> {
+    let has = trace.generations.len();
+    if generation > has {
+        return Err(Trouble::Message(format!("the run has {has} generations")));
+    }
+    write(file, &picture::picture(trace, generation - 1))?;
     terminal::print(&format!("written to {}\n", file.display()));
     Ok(())
 }

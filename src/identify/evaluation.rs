@@ -358,6 +358,8 @@ fn quantity(model: &dyn Model, name: &str) -> Result<Quantity, Fault> {
         None => {
             let names = model.names();
             let hint = suggest::did_you_mean(name, names.iter().map(String::as_str));
+            let few = || format!("its variables: {}", names.join(", "));
+            let hint = hint.or_else(|| (1..=12).contains(&names.len()).then(few));
             Err(fault!(UNKNOWN_OUTPUT, "`{}` has no Real variable `{name}`", model.name())
                 .help_if(hint))
         }
