@@ -14,7 +14,7 @@ use crate::diag::{Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::flatten::{BaseType, Experiment, Variability};
 use crate::sim::Pattern;
-use crate::symbolic::{Expr, Pool, VarId};
+use crate::symbolic::{Expr, Pool, VarId, VariableCollection};
 use crate::syntax::ast::CausalityPrefix;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
@@ -594,9 +594,12 @@ pub(super) fn number_of_equations(sorted: &SortedDae) -> usize {
 
 /// A set of variables with all that they are computed from.
 fn close(pool: &Pool, sequence: &[Assignment], mut wanted: FxHashSet<VarId>) -> FxHashSet<VarId> {
+    let mut collection = VariableCollection::new(pool);
     for assignment in sequence.iter().rev() {
         if wanted.contains(&assignment.variable) {
-            wanted.extend(pool.variables(assignment.value));
+            collection.add(assignment.value, |variable| {
+                wanted.insert(variable);
+            });
         }
     }
     wanted
@@ -604,7 +607,13 @@ fn close(pool: &Pool, sequence: &[Assignment], mut wanted: FxHashSet<VarId>) -> 
 
 /// The assignments that outputs need, in order.
 pub(super) fn slice(pool: &Pool, sequence: &[Assignment], outputs: &[Expr]) -> Vec<Assignment> {
-    let wanted = outputs.iter().flat_map(|output| pool.variables(*output)).collect();
+    let mut wanted = FxHashSet::default();
+    let mut collection = VariableCollection::new(pool);
+    for output in outputs {
+        collection.add(*output, |variable| {
+            wanted.insert(variable);
+        });
+    }
     let wanted = close(pool, sequence, wanted);
     sequence.iter().filter(|a| wanted.contains(&a.variable)).copied().collect()
 }

@@ -207,6 +207,9 @@ impl<'a> Builder<'a> {
                     } else {
                         let left = self.dae.pool.variable(VarId((first + at) as u32));
                         let equation = Equation::new(left, element, binding.span);
+                        if matches!(binding.kind, ExpressionKind::Field { .. }) {
+                            self.allow_continuous(equation);
+                        }
                         self.dae.equations.push(Equation { instance, ..equation });
                     }
                 }
@@ -371,7 +374,27 @@ impl<'a> Builder<'a> {
             let right = lowering.number_of_text(b, span)?;
             return Ok(vec![Equation::new(left, right, span)]);
         }
-        pairs(&a, &b, span)
+        let pairs = pairs(&a, &b, span)?;
+        let of_record = |e: &Expression| matches!(e.kind, ExpressionKind::Field { .. });
+        let is_record = matches!(a, Lowered::Record(_)) || of_record(left) || of_record(right);
+        if is_record && !live && !self.initial {
+            pairs.iter().for_each(|pair| self.allow_continuous(*pair));
+        }
+        Ok(pairs)
+    }
+
+    /// Lets an Integer within a record, such as the phase in the state of a medium, change between
+    /// events where the function that computes the record lets it.
+    fn allow_continuous(&mut self, pair: Equation) {
+        for (side, other) in [(pair.left, pair.right), (pair.right, pair.left)] {
+            if let Some(variable) = self.dae.pool.as_variable(side)
+                && self.dae.variable(variable).kind == Kind::Discrete
+                && self.dae.variable(variable).base != BaseType::Real
+                && self.varies(other)
+            {
+                self.dae.variables[variable.0 as usize].kind = Kind::Unknown;
+            }
+        }
     }
 
     /// `(a, , b) = f(x)`

@@ -329,46 +329,53 @@ fn pivots(mut rows: Vec<Vec<(f64, bool)>>, wishes: &[Wish], known: bool) -> Opti
         }
         row.iter_mut().for_each(|entry| entry.0 /= scale);
     }
+    let n = rows.len();
+    // By columns: they are sought through for pivots, and an elimination changes few of them.
+    let mut matrix: Vec<Vec<(f64, bool)>> =
+        (0..wishes.len()).map(|column| rows.iter().map(|row| row[column]).collect()).collect();
     let mut chosen: Vec<usize> = Vec::new();
+    let mut is_chosen = vec![false; wishes.len()];
     let mut end = 0;
     for group in wishes.chunk_by(|a, b| a == b) {
         let columns = end..end + group.len();
         end = columns.end;
-        while chosen.len() < rows.len() {
+        while chosen.len() < n {
             let done = chosen.len();
-            let open = columns.clone().filter(|column| !chosen.contains(column));
-            let places = open.flat_map(|column| (done..rows.len()).map(move |row| (row, column)));
             let mut best = (SMALLEST_PIVOT, None);
-            for (row, column) in places {
-                let (value, is_known) = rows[row][column];
-                // A little more than equal: rounding must not decide.
-                if value.abs() > best.0 * (1.0 + 1e-9) && (is_known || !known) {
-                    best = (value.abs(), Some((row, column)));
+            for column in columns.clone().filter(|column| !is_chosen[*column]) {
+                for (row, (value, is_known)) in matrix[column].iter().enumerate().skip(done) {
+                    // A little more than equal: rounding must not decide.
+                    if value.abs() > best.0 * (1.0 + 1e-9) && (*is_known || !known) {
+                        best = (value.abs(), Some((row, column)));
+                    }
                 }
             }
             let (_, Some((row, column))) = best else { break };
-            rows.swap(done, row);
-            eliminate(&mut rows, done, column);
+            matrix.iter_mut().for_each(|column| column.swap(done, row));
+            eliminate(&mut matrix, done, column);
             chosen.push(column);
+            is_chosen[column] = true;
         }
     }
-    (chosen.len() == rows.len()).then_some(chosen)
+    (chosen.len() == n).then_some(chosen)
 }
 
 /// Subtracts the row `pivot` from those below it so that their entries in `column` vanish.
-fn eliminate(rows: &mut [Vec<(f64, bool)>], pivot: usize, column: usize) {
-    let (above, below) = rows.split_at_mut(pivot + 1);
-    let line = &above[pivot];
-    for row in below {
-        let factor = (row[column].0 / line[column].0, row[column].1 && line[column].1);
-        if factor.0 == 0.0 && factor.1 {
+fn eliminate(matrix: &mut [Vec<(f64, bool)>], pivot: usize, column: usize) {
+    let entry = matrix[column][pivot];
+    let below = matrix[column].iter().enumerate().skip(pivot + 1);
+    let factors = below.map(|(row, of)| (row, of.0 / entry.0, of.1 && entry.1));
+    let factors: Vec<(usize, f64, bool)> =
+        factors.filter(|(_, factor, is_known)| *factor != 0.0 || !is_known).collect();
+    for column in matrix.iter_mut() {
+        let other = column[pivot];
+        // What is added never changes if one of its factors is always zero.
+        if other == (0.0, true) {
             continue;
         }
-        for (entry, other) in row.iter_mut().zip(line) {
-            entry.0 -= factor.0 * other.0;
-            // What is added never changes if one of its factors is always zero.
-            let is_zero = *other == (0.0, true);
-            entry.1 &= is_zero || (factor.1 && other.1);
+        for (row, factor, is_known) in &factors {
+            column[*row].0 -= factor * other.0;
+            column[*row].1 &= *is_known && other.1;
         }
     }
 }

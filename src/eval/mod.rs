@@ -36,7 +36,7 @@ pub use depth::{MAX_CALLS, with_stack};
 pub use flow::Flow;
 pub use function::{Function, FunctionBody, FunctionComponent, ValueType};
 pub use host::{Callee, Host, Intrinsic};
-pub use intrinsics::{call_intrinsic, intrinsic_names};
+pub use intrinsics::{call_intrinsic, intrinsic_names, is_builtin};
 pub use scope::Scope;
 
 use crate::diag::Diagnostic;

@@ -337,7 +337,7 @@ impl Instantiation<'_> {
         Ok(())
     }
 
-    fn range_values(&mut self, range: &Expression) -> Result<Vec<Value>, Diagnostic> {
+    pub(super) fn range_values(&mut self, range: &Expression) -> Result<Vec<Value>, Diagnostic> {
         match self.flat_value(range)? {
             Value::Array(ArrayValue { dims, elements }) if dims.len() == 1 => {
                 Ok((0..Elements::len(&elements)).map(|at| elements.get(at)).collect())

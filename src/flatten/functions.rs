@@ -1,6 +1,7 @@
 //! Functions made ready to be called: inherited elements collected, names resolved (MLS ch. 12).
 
 use super::errors::{NOT_SUPPORTED, PROTECTED_ACCESS, TYPE_MISMATCH, UNKNOWN_CLASS};
+use super::flat_expression::literal;
 use super::instance::{MemberState, Shape};
 use super::instantiation::Instantiation;
 use super::library::Library;
@@ -15,7 +16,7 @@ use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
     Argument, Arguments, Binding, CausalityPrefix, ClassSpecifier, ComponentReference, Element,
-    Expression, ExpressionKind, NamedArgument, Purity, Restriction, Section, Statement,
+    Expression, ExpressionKind, ForIndex, NamedArgument, Purity, Restriction, Section, Statement,
     StatementKind, Subscript, Visibility,
 };
 use crate::syntax::visit::Visit;
@@ -534,7 +535,10 @@ impl Instantiation<'_> {
                 let visit =
                     |uses: &mut dyn Visit| body.iter().for_each(|inner| uses.statement(inner));
                 let indices = self.with_ranges(indices, context, local, &visit)?;
-                let (indices, inner) = self.iterators(&indices, context, local)?;
+                let (mut indices, inner) = self.iterators(&indices, context, local)?;
+                if context != ScopeId::TOP && !self.in_package(self.node_of(context)) {
+                    indices.iter_mut().for_each(|index| self.settle_range(index));
+                }
                 StatementKind::For { indices, body: self.statements(body, context, &inner)? }
             }
             StatementKind::While { condition, body } => StatementKind::While {
@@ -551,6 +555,17 @@ impl Instantiation<'_> {
             StatementKind::Return => StatementKind::Return,
         };
         Ok(Statement { kind, comment: statement.comment.clone(), span: statement.span })
+    }
+
+    /// Writes the values of a loop variable out where parameters tell them: an algorithm of a model
+    /// is unrolled, as loops of equations are.
+    fn settle_range(&mut self, index: &mut ForIndex) {
+        let Some(range) = &mut index.range else { return };
+        if let Ok(values) = self.range_values(range) {
+            let span = range.span;
+            let values = values.iter().map(|value| literal(value, span)).collect();
+            *range = Expression::new(ExpressionKind::Array(values), span);
+        }
     }
 
     fn statement_branches(

@@ -7,9 +7,9 @@ use super::instantiation::Instantiation;
 use super::lookup::Type;
 use super::scope::ScopeId;
 use crate::diag::{Diagnostic, suggest};
-use crate::eval::ValueType;
+use crate::eval::{self, ValueType};
 use crate::fault;
-use crate::name::Ident;
+use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
     Arguments, ComponentReference, Expression, ExpressionKind, NamedArgument, ReferencePart,
@@ -276,6 +276,11 @@ impl Instantiation<'_> {
             return Ok(Expression::new(ExpressionKind::String(name.into()), span));
         }
         if self.is_array_constructor(function, arguments, context)? {
+            if let ([element], false) =
+                (arguments.positional.as_slice(), arguments.iterators.is_empty())
+            {
+                return self.comprehension(element, &arguments.iterators, span, context, local);
+            }
             let elements = self.all(&arguments.positional, context, local)?;
             return Ok(Expression::new(ExpressionKind::Array(elements), span));
         }
@@ -290,7 +295,7 @@ impl Instantiation<'_> {
             Some(Type::Class(class)) => {
                 self.overloaded_constructor(class, &arguments, local)?.unwrap_or(name)
             }
-            _ if in_model && !name.is_simple() && !self.functions.contains_key(&name) => {
+            _ if in_model && !self.functions.contains_key(&name) && !is_builtin(&name, local) => {
                 return Err(self.unknown_function(context, &name, function.span));
             }
             _ => name,
@@ -322,9 +327,7 @@ impl Instantiation<'_> {
         context: ScopeId,
     ) -> Result<bool, Diagnostic> {
         let is_named = function.as_ident().is_some_and(|name| name == "array");
-        let lists = arguments.iterators.is_empty()
-            && arguments.named.is_empty()
-            && !arguments.positional.is_empty();
+        let lists = arguments.named.is_empty() && !arguments.positional.is_empty();
         Ok(is_named && lists && self.lookup(context, &function.name())?.is_none())
     }
 
@@ -412,4 +415,11 @@ fn booleans(start: &Expression, stop: &Expression) -> Vec<Expression> {
     };
     let literal = |truth| Expression::new(ExpressionKind::Boolean(truth), start.span.to(stop.span));
     [false, true].into_iter().filter(is_in).map(literal).collect()
+}
+
+/// Whether a call means a function that stands in no class: of the language, or one that is passed
+/// to the function in progress.
+fn is_builtin(name: &Name, local: &Local) -> bool {
+    let ident = name.first().filter(|_| name.is_simple());
+    ident.is_some_and(|ident| eval::is_builtin(ident.as_str()) || local.get(ident).is_some())
 }

@@ -11,7 +11,8 @@ use rustc_hash::FxHashMap;
 /// ∂/∂`variable`.
 pub fn derivative(pool: &mut Pool, expr: Expr, variable: VarId) -> Expr {
     let one = pool.constant(1.0);
-    differentiate(pool, expr, &|candidate| (candidate == variable).then_some(one))
+    let nodes = pool.reachable_with(&[expr], variable);
+    differentiate_nodes(pool, &nodes, &[expr], &|v| (v == variable).then_some(one))[0]
 }
 
 /// The total derivative Σ ∂/∂v · v′ where `seed` gives v′, `None` for zero. With v′ = dv/dt it is
@@ -26,8 +27,20 @@ pub fn differentiate_all(
     exprs: &[Expr],
     seed: &dyn Fn(VarId) -> Option<Expr>,
 ) -> Vec<Expr> {
+    let nodes = pool.reachable(exprs);
+    differentiate_nodes(pool, &nodes, exprs, seed)
+}
+
+/// Derivatives of some expressions, of whose nodes only these, in ascending order, have others than
+/// zero.
+fn differentiate_nodes(
+    pool: &mut Pool,
+    nodes: &[Expr],
+    exprs: &[Expr],
+    seed: &dyn Fn(VarId) -> Option<Expr>,
+) -> Vec<Expr> {
     let mut slopes = Slopes { pool, of: FxHashMap::default(), rights: FxHashMap::default() };
-    for node in slopes.pool.reachable(exprs) {
+    for &node in nodes {
         if let Some(slope) = slopes.slope(node, seed) {
             slopes.of.insert(node, slope);
         }

@@ -109,6 +109,21 @@ impl Pool {
         found
     }
 
+    /// Those of [`Pool::reachable`] that may contain a variable: all but nodes older than it, as
+    /// operands stand before their nodes.
+    pub(super) fn reachable_with(&self, roots: &[Expr], variable: VarId) -> Vec<Expr> {
+        let mut found = Vec::new();
+        if let Some(from) = self.nodes.get_index_of(&Node::Variable(variable)) {
+            let roots: Vec<Expr> = roots.iter().copied().filter(|e| e.index() >= from).collect();
+            self.visit_while(&roots, |expr| {
+                found.push(expr);
+                Next::Operands { from }
+            });
+        }
+        found.sort_unstable();
+        found
+    }
+
     /// The variables that an expression is made of, ascending.
     pub fn variables(&self, expr: Expr) -> Vec<VarId> {
         let mut variables = Vec::new();
@@ -119,23 +134,85 @@ impl Pool {
 
     /// Whether an expression contains a variable.
     pub fn depends_on(&self, expr: Expr, variable: VarId) -> bool {
+        let Some(sought) = self.nodes.get_index_of(&Node::Variable(variable)) else { return false };
         let mut found = false;
-        self.visit(&[expr], |expr| found |= self.as_variable(expr) == Some(variable));
+        self.visit_while(&[expr], |expr| {
+            found |= expr.index() == sought;
+            if found { Next::Stop } else { Next::Operands { from: sought } }
+        });
         found
     }
 
     /// Visits all nodes that the roots are made of, each once.
     fn visit(&self, roots: &[Expr], mut visit: impl FnMut(Expr)) {
+        self.visit_while(roots, |expr| {
+            visit(expr);
+            Next::Operands { from: 0 }
+        });
+    }
+
+    fn visit_while(&self, roots: &[Expr], mut visit: impl FnMut(Expr) -> Next) {
         VISITS.with_borrow_mut(|visits| {
             let this = visits.begin(self.len());
-            let mut stack = roots.to_vec();
+            let Visits { last, stack, .. } = visits;
+            stack.clear();
+            stack.extend_from_slice(roots);
             while let Some(expr) = stack.pop() {
-                if std::mem::replace(&mut visits.last[expr.index()], this) != this {
-                    visit(expr);
-                    self.node(expr).for_each_operand(|operand| stack.push(operand));
+                if std::mem::replace(&mut last[expr.index()], this) == this {
+                    continue;
+                }
+                match visit(expr) {
+                    Next::Stop => break,
+                    Next::Operands { from } => self.node(expr).for_each_operand(|operand| {
+                        if operand.index() >= from && last[operand.index()] != this {
+                            stack.push(operand);
+                        }
+                    }),
                 }
             }
         });
+    }
+}
+
+/// Where a visit goes on.
+enum Next {
+    /// With the operands whose ids are not less.
+    Operands {
+        from: usize,
+    },
+    Stop,
+}
+
+/// The variables of one expression after another; what they share is looked through once.
+pub struct VariableCollection<'a> {
+    pool: &'a Pool,
+    seen: Vec<bool>,
+    open: Vec<Expr>,
+}
+
+impl<'a> VariableCollection<'a> {
+    /// Of no expression yet.
+    pub fn new(pool: &'a Pool) -> VariableCollection<'a> {
+        VariableCollection { pool, seen: vec![false; pool.len()], open: Vec::new() }
+    }
+
+    /// Tells the variables of an expression that it did not tell before.
+    pub fn add(&mut self, expr: Expr, mut found: impl FnMut(VarId)) {
+        self.open.push(expr);
+        while let Some(expr) = self.open.pop() {
+            if std::mem::replace(&mut self.seen[expr.index()], true) {
+                continue;
+            }
+            if let Some(variable) = self.pool.as_variable(expr) {
+                found(variable);
+            }
+            let (seen, open) = (&self.seen, &mut self.open);
+            self.pool.node(expr).for_each_operand(|operand| {
+                if !seen[operand.index()] {
+                    open.push(operand);
+                }
+            });
+        }
     }
 }
 
@@ -149,6 +226,7 @@ thread_local! {
 struct Visits {
     count: u32,
     last: Vec<u32>,
+    stack: Vec<Expr>,
 }
 
 impl Visits {

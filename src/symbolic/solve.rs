@@ -27,7 +27,7 @@ pub struct Solution {
 pub fn linear_in(pool: &mut Pool, expr: Expr, variable: VarId) -> Option<Linear> {
     let (zero, one) = (pool.constant(0.0), pool.constant(1.0));
     let mut parts: FxHashMap<Expr, Option<Linear>> = FxHashMap::default();
-    for node in pool.reachable(&[expr]) {
+    for node in pool.reachable_with(&[expr], variable) {
         let of = |operand: &Expr| {
             parts
                 .get(operand)

@@ -213,6 +213,18 @@ fn the_first_active_branch_of_a_when_clause_acts() {
 }
 
 #[test]
+fn an_integer_of_a_record_may_change_between_events() {
+    let run = simulated(&file("Phase"), 1.0);
+    for k in 0..50 {
+        let t = 0.02 * f64::from(k);
+        let phase = |h: f64| if h > 0.51 { 2.0 } else { 1.0 };
+        near(run.at("bound.phase", t), phase(t), 0.0);
+        near(run.at("equal.phase", t), phase(2.0 * t), 0.0);
+        near(run.at("density", t), if t > 0.51 { 10.0 } else { 1000.0 }, 0.0);
+    }
+}
+
+#[test]
 fn functions_that_jump_cause_events() {
     let run = simulated(&file("Rounding"), 2.0);
     for k in 1..50 {

@@ -514,10 +514,12 @@ fn symmetric<S: Copy>(a: Array<S>, span: Span) -> Result<Array<S>, Diagnostic> {
 }
 
 fn transposed<S: Copy>(a: Array<S>, span: Span) -> Result<Array<S>, Diagnostic> {
-    let &[rows, columns] = a.dims.as_slice() else {
+    let &[rows, columns, ref rest @ ..] = a.dims.as_slice() else {
         return Err(fault!(ARRAY_MISMATCH, "`transpose` takes a matrix").at(span));
     };
-    let position = |at: usize| (at % rows.max(1)) * columns + at / rows.max(1);
-    let elements = (0..a.elements.len()).map(|at| a.elements[position(at)]).collect();
-    Ok(Array { dims: vec![columns, rows], elements })
+    let each: usize = rest.iter().product();
+    let blocks = (0..columns).flat_map(|column| (0..rows).map(move |row| row * columns + column));
+    let elements = blocks.flat_map(|block| block * each..(block + 1) * each);
+    let elements = elements.map(|at| a.elements[at]).collect();
+    Ok(Array { dims: [&[columns, rows], rest].concat(), elements })
 }

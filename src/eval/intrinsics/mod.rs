@@ -105,6 +105,11 @@ pub(super) fn find(name: &str) -> Option<&'static Entry> {
     BY_NAME.get(name).copied()
 }
 
+/// Whether the language has a function or an operator of this name.
+pub fn is_builtin(name: &str) -> bool {
+    find(name).is_some() || special::find(name).is_some()
+}
+
 /// Calls the function of this name, which takes positional arguments only.
 pub fn call_intrinsic(name: &str, arguments: &[Value]) -> Result<Value, Fault> {
     match find(name) {
