@@ -65,7 +65,11 @@ pub struct FailedSimulation {
 impl std::fmt::Display for FailedSimulation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self.time {
-            Some(time) => write!(f, "{} (at {time} s)", self.cause),
+            Some(time) => {
+                // Six digits say when; the rest is the solver's.
+                let time: f64 = format!("{time:.5e}").parse().unwrap_or(time);
+                write!(f, "{} (at {time} s)", self.cause)
+            }
             None => f.write_str(&self.cause),
         }
     }

@@ -51,6 +51,8 @@
     const fills = all("drawing", "rect").map(r => r.getAttribute("fill"));
     check("children's boxes have their parents' colours", new Set(fills.slice(-data.generations[0].n)).size === 2, fills.join());
     mutation();
+    visit(find("selection", 0));
+    check("a line parts the parents from the others", all("population", ".cut").length === 1);
     visit(find("fitness", 0));
     check("all measured points are drawn", all("fit", "circle").length === data.x.length, all("fit", "circle").length);
     check("the sum is told", /sum of the squared distances.*: [\d.]+/.test(at("fit").textContent), at("fit").textContent);

@@ -37,6 +37,7 @@ fn reports(dom: &str) -> Vec<String> {
 }
 
 #[test]
+#[allow(clippy::print_stderr, reason = "a test that is skipped has to say so")]
 fn every_control_of_the_page_does_what_it_should() {
     let Some(chromium) = chromium() else {
         eprintln!("skipped: no Chromium; GAPILIB_CHROMIUM names one");

@@ -53,6 +53,10 @@ function showPopulation(step) {
   const heading = "generation " + (step.g + 1) + (known(step, "selection") ? ", best first" : "");
   image.append(label(44, 14, heading));
   order.forEach((k, place) => image.append(individual(present(step, generation, k), 44, 20 + place * height, width, height)));
+  if (step.title === "selection" && generation.parents < count) {
+    const y = 19.5 + generation.parents * height;
+    image.append(svg("line", { class: "cut", x1: 20, y1: y, x2: 44 + width + 90, y2: y, stroke: "var(--ink)", "stroke-width": 1.5, "stroke-dasharray": "7 4" }));
+  }
   if (made) {
     image.append(label(right, 14, "generation " + (step.g + 2)));
     made.forEach((child, row) => {

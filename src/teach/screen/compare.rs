@@ -14,7 +14,7 @@ use ratatui::widgets::{Axis, Block, Borders, Chart, Dataset, GraphType, Paragrap
 pub(super) fn draw(screen: &Screen, frame: &mut Frame, area: Rect) {
     let Some(branches) = screen.branches() else { return };
     let [above, below] = Layout::vertical([Constraint::Min(4), Constraint::Length(2)]).areas(area);
-    let (original, changed) = branches.curves();
+    let [original, changed] = branches.curves();
     let logarithm = |curve: &[(f64, f64)]| -> Vec<(f64, f64)> {
         let positive = curve.iter().filter(|(_, fitness)| *fitness > 0.0);
         positive.map(|(generation, fitness)| (*generation, fitness.log10())).collect()
