@@ -243,6 +243,9 @@ pub(super) struct HelpArgs {
     /// What other tools' scripts may expect: supported, partial, absent, and the difference
     #[arg(long, value_enum, value_name = "DIALECT", num_args = 0..=1)]
     pub compat: Option<Option<DialectName>>,
+    /// The declarations of all commands as a chapter of the guide
+    #[arg(long, conflicts_with_all = ["name", "compat"])]
+    pub reference: bool,
 }
 
 /// Arguments of `gapi identify`.
@@ -319,7 +322,7 @@ pub(super) struct TeachArgs {
     /// Print the steps as text, also on a terminal
     #[arg(long)]
     pub plain: bool,
-    /// Ask what will happen before it is told; answers are read line by line, as text
+    /// Ask what will happen before it is told, and count the right answers
     #[arg(long, conflicts_with = "html")]
     pub quiz: bool,
     /// Run once more with this statement carried out at the generation to begin with, and compare
@@ -331,6 +334,9 @@ pub(super) struct TeachArgs {
     /// How many generations to print as text
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
     pub count: usize,
+    /// Write a picture of the generation to begin with and the next one (SVG), in place of the text
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["html", "quiz", "what_if"], value_hint = ValueHint::FilePath)]
+    pub svg: Option<PathBuf>,
     /// Write one page with all steps, for any browser, in place of the text
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub html: Option<PathBuf>,

@@ -18,6 +18,10 @@ pub(super) fn help(arguments: &HelpArgs) -> ExitCode {
         all.for_each(|(_, title, ledger)| terminal::print(&table(title, ledger)));
         return ExitCode::SUCCESS;
     }
+    if arguments.reference {
+        terminal::print(&builtins::reference());
+        return ExitCode::SUCCESS;
+    }
     match &arguments.name {
         None => {
             let names: String = builtins::names().iter().map(|name| format!("{name}\n")).collect();

@@ -47,13 +47,28 @@ pub(super) fn lesson(arguments: &LessonArgs, global: &Global) -> ExitCode {
     match copied(&arguments.folder.join(name), text) {
         Ok((file, text)) => {
             terminal::print(&format!("{}:\n\n{text}\n", file.display()));
-            run(&file, arguments, global)
+            let code = run(&file, arguments, global);
+            terminal::print(&ending(&file, &text, number));
+            code
         }
         Err(message) => {
             terminal::eprint(&message);
             ExitCode::FAILURE
         }
     }
+}
+
+/// How to go on.
+fn ending(file: &Path, text: &str, number: usize) -> String {
+    let file = file.display();
+    let mut told = format!("\nTo try something, change {file} and give the command again.\n");
+    if text.contains("Cross(") && text.contains("Eval(") {
+        told.push_str(&format!("Step by step: gapi teach {file}\n"));
+    }
+    if number < LESSONS.len() {
+        told.push_str(&format!("The next lesson: gapi lesson {}\n", number + 1));
+    }
+    told
 }
 
 fn list() {

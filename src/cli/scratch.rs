@@ -95,7 +95,7 @@ impl World for ScratchWorld {
     fn stamp(&self, path: &Path) -> Option<Stamp> {
         let path = self.absolute(path);
         match self.files.get(&path) {
-            Some(bytes) => Some(Stamp(self.changes, bytes.len() as u64)),
+            Some(bytes) => Some(Stamp(0, bytes.len() as u64, self.changes)),
             None => self.disk.stamp(&path),
         }
     }

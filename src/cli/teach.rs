@@ -5,13 +5,14 @@ use super::session;
 use super::teach_screen;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
-use crate::script::{Echo, Options};
+use crate::script::{Echo, Options, Session};
 use crate::source::Span;
 use crate::teach::branches::Branches;
 use crate::teach::quiz::{self, Score};
-use crate::teach::{Trace, Walk, page, plain};
+use crate::teach::screen::Screen;
+use crate::teach::{Trace, Walk, page, picture, plain};
 use std::io::IsTerminal as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
 /// What changes a run: from which generation on, counted from 1, and the statement.
@@ -38,16 +39,19 @@ enum Trouble {
 
 fn taught(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
     let is_script = arguments.input.extension().is_some_and(|extension| extension == "mos");
-    let trace = match is_script {
-        true => recorded(arguments, global, None)?,
-        false => read(&arguments.input)?,
+    let (trace, session) = match is_script {
+        true => recorded(arguments, global, None).map(|(trace, session)| (trace, Some(session)))?,
+        false => (read(&arguments.input)?, None),
     };
     if let Some(statement) = &arguments.what_if {
         return compare(arguments, global, &trace, statement);
     }
+    if let Some(file) = &arguments.svg {
+        return draw(&trace, file, arguments.generation);
+    }
     match &arguments.html {
-        Some(page) => write_page(trace, page, is_script.then_some(&arguments.out)),
-        None => show(Walk::new(trace), arguments, global),
+        Some(page) => write_page(trace, page, &arguments.out, is_script),
+        None => show(Walk::new(trace), session, arguments, global),
     }
 }
 
@@ -57,12 +61,12 @@ fn read(file: &Path) -> Result<Trace, Trouble> {
     trace.map_err(|message| Trouble::Message(format!("`{}`: {message}", file.display())))
 }
 
-/// Runs the script with a trace beside its results, and reads the trace.
+/// Runs the script with a trace beside its results, and reads the trace; the session remains.
 fn recorded(
     arguments: &TeachArgs,
     global: &Global,
     change: Option<Change<'_>>,
-) -> Result<Trace, Trouble> {
+) -> Result<(Trace, Session), Trouble> {
     let out = match change {
         Some(_) => arguments.out.join("what_if"),
         None => arguments.out.clone(),
@@ -91,7 +95,7 @@ fn recorded(
         let generation = change.map_or(0, |(generation, _)| generation);
         return Err(Trouble::Message(format!("the run has no generation {generation}")));
     }
-    read(&file)
+    Ok((read(&file)?, session))
 }
 
 /// Runs the script once more with a change, and shows both runs on one chart.
@@ -118,7 +122,7 @@ fn branch(arguments: &TeachArgs, global: &Global, change: Change<'_>) -> Result<
         let message = "a recorded run cannot be changed; give the script in its place";
         return Err(Trouble::Message(message.to_owned()));
     }
-    recorded(arguments, global, Some(change))
+    recorded(arguments, global, Some(change)).map(|(trace, _)| trace)
 }
 
 fn write(file: &Path, text: &str) -> Result<(), Trouble> {
@@ -127,21 +131,39 @@ fn write(file: &Path, text: &str) -> Result<(), Trouble> {
     })
 }
 
-/// Writes the page of a trace; the report of the run lies in the folder `results`.
-fn write_page(trace: Trace, file: &Path, results: Option<&PathBuf>) -> Result<(), Trouble> {
-    let report =
-        results.and_then(|folder| std::fs::read_to_string(folder.join("result.json")).ok());
-    write(file, &page::page(trace, report.as_deref()))
+/// Writes the page of a trace. The report of the run lies in the folder `results`; where the run was
+/// recorded earlier, only if it is the report of that run.
+fn write_page(trace: Trace, file: &Path, results: &Path, is_new: bool) -> Result<(), Trouble> {
+    let report = std::fs::read_to_string(results.join("result.json")).ok();
+    let report = report.filter(|report| is_new || page::belongs(&trace, report));
+    write(file, &page::page(trace, report.as_deref()))?;
+    terminal::print(&format!("written to {}\n", file.display()));
+    Ok(())
+}
+
+/// Writes the picture of a generation, counted from 1.
+fn draw(trace: &Trace, file: &Path, generation: usize) -> Result<(), Trouble> {
+    let has = trace.generations.len();
+    if generation > has {
+        return Err(Trouble::Message(format!("the run has {has} generations")));
+    }
+    write(file, &picture::picture(trace, generation - 1))?;
+    terminal::print(&format!("written to {}\n", file.display()));
+    Ok(())
 }
 
 /// On the screen of a terminal; as text where there is none.
-fn show(mut walk: Walk, arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
+fn show(
+    mut walk: Walk,
+    mut session: Option<Session>,
+    arguments: &TeachArgs,
+    global: &Global,
+) -> Result<(), Trouble> {
     if !walk.go_to(arguments.generation - 1) {
         let has = walk.trace().generations.len();
         return Err(Trouble::Message(format!("the run has {has} generations")));
     }
-    let as_text = arguments.plain || arguments.quiz;
-    if as_text || !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
+    if arguments.plain || !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
         print(walk, arguments);
         return Ok(());
     }
@@ -152,8 +174,20 @@ fn show(mut walk: Walk, arguments: &TeachArgs, global: &Global) -> Result<(), Tr
             Trouble::Message(message) => message,
         })
     };
-    teach_screen::walk_through(walk, colour, run_again)
-        .map_err(|error| Trouble::Message(format!("the terminal cannot be drawn on: {error}")))
+    let simulate = |genes: &[f64]| match &mut session {
+        Some(session) => session.simulate_again(genes),
+        None => Err("a trace keeps the curve of the best of each generation; give the script in \
+                     its place to see all"
+            .to_owned()),
+    };
+    let screen = Screen::new(walk, colour);
+    let screen = if arguments.quiz { screen.with_quiz() } else { screen };
+    let score = teach_screen::walk_through(screen, run_again, simulate)
+        .map_err(|error| Trouble::Message(format!("the terminal cannot be drawn on: {error}")))?;
+    if let Some(score) = score {
+        terminal::print(&format!("{score}\n"));
+    }
+    Ok(())
 }
 
 fn print(mut walk: Walk, arguments: &TeachArgs) {

@@ -1,21 +1,22 @@
 //! The screen of `gapi teach` on a terminal: draws, waits for a key, draws again.
 
+use crate::teach::Trace;
+use crate::teach::quiz::Score;
 use crate::teach::screen::{self, Key, Screen};
-use crate::teach::{Trace, Walk};
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
-/// Walks through a trace until the learner ends it. `run_again` makes the trace of a run that is
-/// changed from a generation on, or says why there is none.
+/// Walks through a trace until the learner ends it, and returns the score of the quiz. `run_again`
+/// makes the trace of a run that is changed from a generation on, `simulate` the curve of an
+/// individual that the trace does not have; both may say why there is none.
 ///
 /// # Errors
 ///
 /// The terminal cannot be drawn on, or gives no keys.
 pub(super) fn walk_through(
-    walk: Walk,
-    colour: bool,
+    mut screen: Screen,
     run_again: impl Fn(usize, &str) -> Result<Trace, String>,
-) -> std::io::Result<()> {
-    let mut screen = Screen::new(walk, colour);
+    mut simulate: impl FnMut(&[f64]) -> Result<Vec<f64>, String>,
+) -> std::io::Result<Option<Score>> {
     let mut terminal = ratatui::try_init()?;
     let walked = (|| {
         loop {
@@ -26,13 +27,16 @@ pub(super) fn walk_through(
                 terminal = ratatui::try_init()?;
                 screen.branched(generation, change, branch);
             }
+            if let Some(genes) = screen.take_unknown() {
+                screen.simulated(simulate(&genes));
+            }
             terminal.draw(|frame| screen::draw(&screen, frame))?;
             match event::read()? {
                 Event::Key(key) if key.kind != KeyEventKind::Release => {
                     let go_on =
                         !is_interrupt(key) && named(key).is_none_or(|key| screen.press(key));
                     if !go_on {
-                        return Ok(());
+                        return Ok(screen.score());
                     }
                 }
                 _ => {}

@@ -65,7 +65,11 @@ pub struct FailedSimulation {
 impl std::fmt::Display for FailedSimulation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self.time {
-            Some(time) => write!(f, "{} (at {time} s)", self.cause),
+            Some(time) => {
+                // Six digits say when; the rest is the solver's.
+                let time: f64 = format!("{time:.5e}").parse().unwrap_or(time);
+                write!(f, "{} (at {time} s)", self.cause)
+            }
             None => f.write_str(&self.cause),
         }
     }
@@ -358,6 +362,8 @@ fn quantity(model: &dyn Model, name: &str) -> Result<Quantity, Fault> {
         None => {
             let names = model.names();
             let hint = suggest::did_you_mean(name, names.iter().map(String::as_str));
+            let few = || format!("its variables: {}", names.join(", "));
+            let hint = hint.or_else(|| (1..=12).contains(&names.len()).then(few));
             Err(fault!(UNKNOWN_OUTPUT, "`{}` has no Real variable `{name}`", model.name())
                 .help_if(hint))
         }

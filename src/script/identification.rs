@@ -114,6 +114,20 @@ impl Session {
         Ok(simulated)
     }
 
+    /// Simulates one individual once more, with the model and at the points of the last `Eval`: Y
+    /// there, or why there is none. Nothing of it is counted or recorded.
+    pub fn simulate_again(&mut self, genes: &[f64]) -> Result<Vec<f64>, String> {
+        let Some((_, _, evaluator)) = &mut self.extension::<Identification>().prepared else {
+            return Err("no model was simulated".to_owned());
+        };
+        let genomes = Genomes::new(genes.len(), genes.to_vec()).map_err(|fault| fault.message)?;
+        let simulated = evaluator.evaluate(&genomes).map_err(|fault| fault.message)?;
+        match simulated.failures.first() {
+            Some(Some(failed)) => Err(failed.to_string()),
+            _ => Ok(simulated.rows),
+        }
+    }
+
     fn trace_simulation(
         &mut self,
         (study, x): (&Study, &[f64]),
@@ -191,7 +205,7 @@ fn report_run(session: &mut Session) -> Result<(), Fault> {
     let identification = session.extension::<Identification>();
     let started = identification.started.take().unwrap_or(seconds);
     let recorder = identification.recorder.begin_next();
-    let evaluator = identification.prepared.take().map(|(_, _, evaluator)| evaluator);
+    let evaluator = identification.prepared.as_mut().map(|(_, _, evaluator)| evaluator);
     let (uncertainty, evaluations) = what_the_data_tell(&recorder, evaluator);
     let Some(mut outcome) = Outcome::of(&recorder, uncertainty.as_ref(), evaluations) else {
         return Ok(());
@@ -204,12 +218,12 @@ fn report_run(session: &mut Session) -> Result<(), Fault> {
 
 fn what_the_data_tell(
     recorder: &Recorder,
-    evaluator: Option<Evaluator>,
+    evaluator: Option<&mut Evaluator>,
 ) -> (Option<Uncertainty>, u64) {
-    let (Some(best), Some(mut evaluator)) = (&recorder.best, evaluator) else { return (None, 0) };
+    let (Some(best), Some(evaluator)) = (&recorder.best, evaluator) else { return (None, 0) };
     match recorder.measured_y() {
         Some(measured) if *evaluator.study() == best.study => {
-            deviations(&mut evaluator, best, measured).unwrap_or((None, 0))
+            deviations(evaluator, best, measured).unwrap_or((None, 0))
         }
         _ => (None, 0),
     }

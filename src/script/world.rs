@@ -26,9 +26,10 @@ pub struct Progress {
     pub failures: u64,
 }
 
-/// A stamp of a file's state: another stamp means that the content may have changed.
+/// A stamp of a file's state: another stamp means that the content may have changed. When it was
+/// changed, its size, and how often the world itself has changed files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Stamp(pub u64, pub u64);
+pub struct Stamp(pub u64, pub u64, pub u64);
 
 /// The files of a world, for reading alone: what a library keeps to read its classes when they are
 /// needed, from any thread. Paths are absolute.
@@ -303,7 +304,7 @@ impl World for MemoryWorld {
     }
 
     fn stamp(&self, path: &Path) -> Option<Stamp> {
-        self.stamps.get(&self.absolute(path)).map(|change| Stamp(*change, 0))
+        self.stamps.get(&self.absolute(path)).map(|change| Stamp(0, 0, *change))
     }
 
     fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {

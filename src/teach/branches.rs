@@ -43,6 +43,15 @@ impl Branches<'_> {
         }
     }
 
+    /// Generation, from 1, and best fitness, where there is one, of the run and the changed one.
+    pub fn curves(&self) -> [Vec<(f64, f64)>; 2] {
+        let points = |trace: &Trace| {
+            let numbered = best(trace).into_iter().enumerate();
+            numbered.filter_map(|(k, fitness)| Some((k as f64 + 1.0, fitness?))).collect()
+        };
+        [points(self.original), points(self.changed)]
+    }
+
     /// What came of it, in words and numbers.
     pub fn summary(&self) -> String {
         let (original, changed) = (best(self.original), best(self.changed));

@@ -17,11 +17,7 @@ pub fn explain(walk: &Walk) -> String {
         Step::Elite => elite(generation),
         Step::Cross(rank) => cross(generation, rank),
         Step::Mutate(row) => mutate(walk, row),
-        Step::Complete(row) => format!(
-            "Individual {} of the next generation is drawn at random between Param_Min and \
-             Param_Max: new blood, so that the search does not end where it happens to be.",
-            row + 1
-        ),
+        Step::Complete(row) => complete(walk, row),
         Step::Renew => renew(walk),
         Step::Stop => stop(walk),
     }
@@ -163,6 +159,23 @@ fn mutate(walk: &Walk, row: usize) -> String {
             changes.join("; ")
         ),
     }
+}
+
+fn complete(walk: &Walk, row: usize) -> String {
+    let numbers: Vec<String> = walk
+        .next_generation()
+        .and_then(|next| next.random_numbers(row))
+        .map(|numbers| numbers.iter().map(|u| format!("{u:.3}")).collect())
+        .unwrap_or_default();
+    let drawn = match numbers.is_empty() {
+        true => String::new(),
+        false => format!(" (u = {})", numbers.join(", ")),
+    };
+    format!(
+        "Individual {} of the next generation is drawn at random between Param_Min and \
+         Param_Max{drawn}: new blood, so that the search does not end where it happens to be.",
+        row + 1
+    )
 }
 
 fn renew(walk: &Walk) -> String {

@@ -155,6 +155,18 @@ impl Generation {
         order.into_iter().filter(|&k| k < self.len()).collect()
     }
 
+    /// The numbers that placed the genes of individual `k`, which completes this generation at
+    /// random; `None` where as many were not drawn for those who do.
+    pub fn random_numbers(&self, k: usize) -> Option<Vec<f64>> {
+        let random = |origin: &&Origin| **origin == Origin::Random;
+        let before = self.origins.get(..k)?.iter().filter(random).count();
+        let all = self.origins.iter().filter(random).count();
+        let numbers: Vec<f64> =
+            self.drawn.iter().flat_map(|drawn| &drawn.numbers).copied().collect();
+        let own = before * self.n_genes..(before + 1) * self.n_genes;
+        (numbers.len() == all * self.n_genes).then(|| numbers.get(own).map(<[f64]>::to_vec))?
+    }
+
     /// Who goes on for individual `k` of the generation before: its copy as elite, or its first
     /// child.
     pub fn successor(&self, k: usize) -> Option<usize> {

@@ -3,17 +3,20 @@
 //! back.
 //!
 //! [`Tracer`] writes the trace while the scripts run, [`Trace`] reads it, also what an interrupted
-//! run has left. A [`Walk`] stands at one [`Step`] of it; [`plain`] shows steps as text, [`page`] makes a page of them
-//! all, [`screen`] a terminal's full of
-//! each. [`quiz`] asks before it tells. [`branches`] compares a run with what it would have been.
+//! run has left. A [`Walk`] stands at one [`Step`] of it; [`plain`] shows steps as text, [`page`]
+//! makes a page of them all, [`picture`] a picture of one generation, [`screen`] a terminal's full
+//! of each step. [`quiz`] asks before it tells. [`branches`] compares a run with what it would have
+//! been.
 
 pub mod branches;
 pub mod errors;
 mod event;
 pub mod explain;
+pub mod family;
 mod file;
 mod generation;
 pub mod page;
+pub mod picture;
 pub mod plain;
 mod produced;
 pub mod quiz;
@@ -21,6 +24,7 @@ pub mod quiz;
 mod sample;
 pub mod screen;
 mod step;
+mod stop_test;
 #[cfg(test)]
 mod tests;
 mod trace;

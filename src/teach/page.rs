@@ -5,6 +5,7 @@
 //! generations only, as many as `MOST_GENES` allows, and the curve of convergence of all.
 
 use super::explain::explain;
+use super::family::{Member, family};
 use super::generation::{Generation, Origin};
 use super::plain::title;
 use super::step::Step;
@@ -36,6 +37,17 @@ pub fn page(trace: Trace, result: Option<&str>) -> String {
         .replacen("{{data}}", &data, 1)
 }
 
+/// Whether `result`, the content of a `result.json`, reports the run of this trace: model, number of
+/// generations and best fitness agree.
+pub fn belongs(trace: &Trace, result: &str) -> bool {
+    let Ok(result) = serde_json::from_str::<Value>(result) else { return false };
+    let best = trace.generations.iter().filter_map(Generation::best);
+    let best = best.map(|(_, fitness)| fitness).min_by(f64::total_cmp);
+    result["model"] == json!(trace.subject.model)
+        && result["generations"] == json!(trace.generations.len())
+        && best.is_some_and(|best| result["best_fit"] == json!(best))
+}
+
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
@@ -53,6 +65,7 @@ fn data(trace: Trace, result: Value) -> Value {
     let scripts: Vec<Value> =
         trace.scripts.iter().map(|s| json!({"name": s.name, "lines": s.lines})).collect();
     let generations: Vec<Value> = trace.generations[..shown].iter().map(generation).collect();
+    let (families, family_of, winner) = families(&trace.generations, shown);
     json!({
         "model": subject.model,
         "parameters": subject.parameters,
@@ -67,9 +80,45 @@ fn data(trace: Trace, result: Value) -> Value {
         "generations": generations,
         "of": trace.generations.len(),
         "curve": curve(&trace.generations),
-        "last_simulated": trace.generations.last().map(|last| rounded(&last.best_simulated)),
+        "families": families,
+        "family_of": family_of,
+        "winner": winner,
         "steps": steps,
         "result": result,
+    })
+}
+
+/// The families of the best of the generations that are shown and of the best of all, each once;
+/// which of them belongs to which generation; which belongs to the best of all.
+fn families(generations: &[Generation], shown: usize) -> (Vec<Value>, Vec<Value>, Value) {
+    let mut found: Vec<Vec<Member>> = Vec::new();
+    let mut place = |generation: usize, number: usize| {
+        let family = family(generations, generation, number);
+        let known = found.iter().rposition(|known| known[0] == family[0]);
+        known.unwrap_or_else(|| {
+            found.push(family);
+            found.len() - 1
+        })
+    };
+    let best = |generation: usize| generations[generation].best();
+    let of = (0..shown).map(|g| json!(best(g).map(|(number, _)| place(g, number)))).collect();
+    let all = (0..generations.len()).filter_map(|g| best(g).map(|(number, f)| (g, number, f)));
+    let winner = all.min_by(|a, b| a.2.total_cmp(&b.2)).map(|(g, number, _)| place(g, number));
+    let told = |family: &Vec<Member>| {
+        family.iter().map(|member| relative(member, &generations[member.generation])).collect()
+    };
+    (found.iter().map(told).collect(), of, json!(winner))
+}
+
+fn relative(member: &Member, generation: &Generation) -> Value {
+    json!({
+        "g": member.generation,
+        "k": member.number,
+        "depth": member.depth,
+        "from": member.parents,
+        "genes": rounded(generation.genome(member.number)),
+        "fitness": generation.fitness.get(member.number).copied().map(six_digits),
+        "origin": generation.origins.get(member.number).map(origin),
     })
 }
 
@@ -85,7 +134,7 @@ fn shown(generations: &[Generation]) -> usize {
 
 fn step(walk: &Walk) -> Value {
     let step = walk.step();
-    let place = step.place(walk.generation(), walk.next_generation());
+    let place = walk.place();
     let of = match step {
         Step::Cross(k) | Step::Mutate(k) | Step::Complete(k) => Some(k),
         _ => None,

@@ -187,11 +187,8 @@ fn elites(walk: &Walk) -> String {
 fn completed(walk: &Walk, row: usize) -> String {
     let Some(next) = walk.next_generation() else { return String::new() };
     let mut text = heading(walk, &["", ""], "");
-    let drawn = next.drawn.iter().map(|drawn| &drawn.numbers);
-    let random = |k: &usize| next.origins.get(*k) == Some(&Origin::Random);
-    let before = (0..row).filter(random).count();
-    if let Some(numbers) = drawn.filter(|numbers| numbers.len() == next.n_genes).nth(before) {
-        let _ = writeln!(text, "{:<16}{}", "u", cells(numbers));
+    if let Some(numbers) = next.random_numbers(row) {
+        let _ = writeln!(text, "{:<16}{}", "u", cells(&numbers));
     }
     let _ = writeln!(text, "{:<16}{}", "genes", cells(next.genome(row)));
     text

@@ -71,8 +71,7 @@ impl Step {
             Step::Elite | Step::Cross(_) => crossed,
             Step::Mutate(_) => mutated,
             Step::Complete(_) => next.and_then(|next| next.drawn.last()).map(|drawn| drawn.place),
-            Step::Renew => next.map(|next| next.simulated),
-            Step::Stop => sorted.or(generation.rated),
+            Step::Renew | Step::Stop => sorted.or(generation.rated),
         }
     }
 }

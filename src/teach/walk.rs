@@ -1,7 +1,9 @@
 //! Walking through a trace, forward and back.
 
+use super::event::Place;
 use super::generation::Generation;
 use super::step::{Step, steps};
+use super::stop_test::loop_around;
 use super::trace::{Script, Trace};
 
 /// A place in a trace: one step of one generation.
@@ -58,8 +60,19 @@ impl Walk {
 
     /// The script and the line, from 1, behind the step.
     pub fn line(&self) -> Option<(&Script, usize)> {
-        let place = self.step().place(self.generation(), self.next_generation())?;
+        let place = self.place()?;
         Some((self.trace.scripts.get(place.script as usize)?, place.line as usize))
+    }
+
+    /// The same as a place. The stop test is where the loop of the generations begins.
+    pub fn place(&self) -> Option<Place> {
+        let place = self.step().place(self.generation(), self.next_generation())?;
+        let script = self.trace.scripts.get(place.script as usize)?;
+        let head = match self.step() {
+            Step::Renew | Step::Stop => loop_around(&script.lines, place.line as usize),
+            _ => None,
+        };
+        Some(head.map_or(place, |line| Place { line: line as u32, ..place }))
     }
 
     /// One step on; whether there was one.

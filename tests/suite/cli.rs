@@ -369,3 +369,16 @@ fn simulations_tell_their_cost_and_draw() {
     let (code, _, said) = gapi(&here, &wrong);
     assert!(code == 1 && said.contains("[unknown-result-variable]"), "{said}");
 }
+
+#[test]
+fn a_result_file_that_is_written_again_is_read_again() {
+    let sweep = "openModel(\"Decay.mo\", changeDirectory=false)\nfor k in 1:40 loop\n  \
+        simulateModel(\"Decay(rate=\" + String(k) + \")\", stopTime=1, numberOfIntervals=2, resultFile=\"decay\");\n  \
+        r = readTrajectory(\"decay.mat\", {\"der(x)\"}, 3);\n  \
+        print(String(k) + \" \" + String(r[1,1]));\nend for;\n";
+    let here = folder(&[("Decay.mo", DECAY), ("sweep.mos", sweep)]);
+    let (code, out, errors) = gapi(&here, &["run", "sweep.mos"]);
+    assert_eq!(code, 0, "{errors}");
+    let expected: String = (1..=40).map(|k| format!("{k} -{k}\n")).collect();
+    assert_eq!(out, expected);
+}

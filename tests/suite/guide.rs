@@ -5,6 +5,9 @@ use crate::cli::{folder, gapi};
 use crate::shipped::project;
 use tempfile::TempDir;
 
+/// The chapter that the program writes itself.
+const REFERENCE: &str = "reference.md";
+
 /// The fenced blocks of a chapter: what stands behind the fence, and the lines.
 fn blocks(chapter: &str) -> Vec<(String, String)> {
     let mut found = Vec::new();
@@ -21,14 +24,32 @@ fn blocks(chapter: &str) -> Vec<(String, String)> {
     found
 }
 
+/// The words of a command; what stands in quotation marks is one.
+fn words(command: &str) -> Vec<&str> {
+    let parts = command.split('"').enumerate();
+    let words = |(k, part)| -> Vec<&str> {
+        if k % 2 == 1 { vec![part] } else { str::split_whitespace(part).collect() }
+    };
+    parts.flat_map(words).collect()
+}
+
+/// Pictures whose title names a file that the examples of the chapter have made: they are the same.
+fn compare_figures(here: &TempDir, chapter: &str, text: &str) {
+    for picture in text.lines().filter_map(|line| line.strip_prefix("![")?.split_once("](")) {
+        let (file, made) = picture.1.trim_end_matches("\")").split_once(" \"").expect("a title");
+        let shown = std::fs::read_to_string(project("docs/src").join(file)).unwrap();
+        let made = std::fs::read_to_string(here.path().join(made)).unwrap();
+        assert!(shown == made, "{chapter}: {file} is not what the examples make");
+    }
+}
+
 /// Gives the commands of a block, and compares each line of the block with what they say.
 fn carry_out(here: &TempDir, chapter: &str, block: &str) {
     let mut said = String::new();
     for line in block.lines() {
         match line.strip_prefix("$ gapi ") {
             Some(command) => {
-                let arguments: Vec<&str> = command.split_whitespace().collect();
-                let (code, out, errors) = gapi(here, &arguments);
+                let (code, out, errors) = gapi(here, &words(command));
                 assert_eq!(code, 0, "{chapter}: gapi {command}\n{out}{errors}");
                 said = out + &errors;
             }
@@ -52,8 +73,20 @@ fn every_example_of_the_guide_does_what_it_says() {
             match (kind.split_once(" file="), kind.as_str()) {
                 (Some((_, name)), _) => std::fs::write(here.path().join(name), block).unwrap(),
                 (None, "console") => carry_out(&here, chapter, &block),
+                (None, "modelica") if chapter == REFERENCE => {}
                 (None, _) => panic!("{chapter}: a block `{kind}` that nothing tries"),
             }
         }
+        compare_figures(&here, chapter, &text);
     }
+}
+
+#[test]
+fn the_reference_is_what_the_program_says() {
+    let (code, said, _) = gapi(&folder(&[]), &["help", "--reference"]);
+    let chapter = std::fs::read_to_string(project("docs/src").join(REFERENCE)).unwrap();
+    assert!(
+        code == 0 && said == chapter,
+        "write it anew: gapi help --reference > docs/src/reference.md"
+    );
 }

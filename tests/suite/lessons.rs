@@ -34,6 +34,7 @@ fn the_command_runs_the_copy_of_the_learner() {
     assert_eq!((code, out.matches("\nLesson ").count()), (0, 11));
     let (code, out, _) = gapi(&here, &["lesson", "1"]);
     assert!(code == 0 && out.contains("Lesson 1 passed."), "{out}");
+    assert!(out.ends_with("The next lesson: gapi lesson 2\n"), "{out}");
     let copy = here.path().join("lessons/01_one_parameter_by_hand.mos");
     let text = std::fs::read_to_string(&copy).unwrap();
     std::fs::write(&copy, text.replace("Guess := 4;", "Guess := 5;")).unwrap();

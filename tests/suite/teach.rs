@@ -29,6 +29,11 @@ fn a_recorded_run_is_walked_through() {
     ] {
         assert!(out.contains(part), "`{part}` is missing:\n{out}");
     }
+    // The file may lie anywhere: it is the user who names it.
+    let elsewhere = folder(&[]);
+    let there = elsewhere.path().join("there.trace");
+    let (code, _, errors) = gapi(&here, &["run", "search.mos", "--trace", there.to_str().unwrap()]);
+    assert!(code == 0 && std::fs::read(there).unwrap() == bytes, "{errors}");
     // What an interrupted run leaves is read up to there.
     std::fs::write(here.path().join("cut.trace"), &bytes[..bytes.len() / 2]).unwrap();
     let (code, out, _) = gapi(&here, &["teach", "cut.trace"]);

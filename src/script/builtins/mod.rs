@@ -19,6 +19,7 @@ mod openmodelica;
 mod output;
 mod plotting;
 mod problem;
+mod reference;
 mod refused;
 mod regular;
 mod results;
@@ -35,6 +36,7 @@ mod windows;
 
 pub use args::Args;
 pub(in crate::script) use classes::component_names;
+pub use reference::reference;
 pub(in crate::script) use strings::constant;
 
 use crate::diag::{Diagnostic, Fault};

@@ -1,29 +1,47 @@
 // The charts: fit, convergence, landscape, family, and what the data can tell.
 
+// Round numbers between two ends: steps of 1, 2 or 5, on a logarithmic scale decades where there
+// are enough of them.
+function ticks(low, high, logarithmic) {
+  if (logarithmic && high / low >= 10) {
+    const every = Math.ceil(Math.log10(high / low) / 6), mantissas = Math.log10(high / low) > 2 ? [1] : [1, 2, 5];
+    const found = [];
+    for (let e = Math.floor(Math.log10(low)); e <= Math.log10(high); e++) {
+      if (e % every === 0) mantissas.forEach(m => found.push(m * 10 ** e));
+    }
+    return found.filter(v => v >= low * 0.999 && v <= high * 1.001);
+  }
+  const rough = (high - low) / 5, decade = 10 ** Math.floor(Math.log10(rough));
+  const step = decade * [1, 2, 5, 10].find(m => m * decade >= rough * 0.999);
+  const found = [];
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + step * 1e-9; k++) found.push(k * step);
+  return found;
+}
+// A place for each value between two ends of the paper.
+function scale(values, from, to, logarithmic) {
+  const kept = values.filter(v => v !== null && Number.isFinite(v));
+  let low = Math.min(...kept), high = Math.max(...kept);
+  if (!(high > low)) { const pad = Math.abs(low) * 0.05 || 1; low -= pad; high += pad; }
+  const forward = logarithmic && low > 0 ? Math.log : v => v;
+  const at = v => from + (forward(v) - forward(low)) / (forward(high) - forward(low)) * (to - from);
+  return { at, ticks: ticks(low, high, logarithmic && low > 0) };
+}
 // A frame with axes: places for numbers and the elements to draw on.
-function frame(xs, ys, xTitle, yTitle, logarithmic) {
-  const [w, h, left, bottom, top] = [WIDE, 300, 66, 40, 24];
-  const forward = logarithmic ? v => Math.log10(v) : v => v;
-  const range = values => {
-    const kept = values.filter(v => v !== null && Number.isFinite(v));
-    let low = Math.min(...kept), high = Math.max(...kept);
-    if (!(high > low)) { const pad = Math.abs(low) * 0.05 || 1; low -= pad; high += pad; }
-    return [low, high];
-  };
-  const [x0, x1] = range(xs), [y0, y1] = range(ys.map(v => v === null ? null : forward(v)));
-  const px = v => left + (v - x0) / (x1 - x0) * (w - left - 12);
-  const py = v => h - bottom - (forward(v) - y0) / (y1 - y0) * (h - bottom - top);
+function frame(xs, ys, xTitle, yTitle, logX, logY) {
+  const [w, h, left, bottom, top, right] = [WIDE, 300, 66, 40, 24, 16];
+  const x = scale(xs, left, w - right, logX), y = scale(ys, h - bottom, top, logY);
   const image = svg("svg", { viewBox: "0 0 " + w + " " + h, role: "img" });
-  for (let k = 0; k <= 4; k++) {
-    const x = x0 + (x1 - x0) * k / 4, y = y0 + (y1 - y0) * k / 4;
-    const line = h - bottom - (h - bottom - top) * k / 4;
-    image.append(svg("line", { x1: left, y1: line, x2: w - 12, y2: line, stroke: "var(--line)" }));
-    image.append(label(left - 6, line + 4, short(logarithmic ? 10 ** y : y), { "text-anchor": "end" }));
-    image.append(label(px(x), h - bottom + 16, short(x), { "text-anchor": "middle" }));
+  for (const tick of y.ticks) {
+    image.append(svg("line", { x1: left, y1: y.at(tick), x2: w - right, y2: y.at(tick), stroke: "var(--line)" }));
+    image.append(label(left - 6, y.at(tick) + 4, short(tick), { "text-anchor": "end" }));
+  }
+  for (const tick of x.ticks) {
+    image.append(svg("line", { x1: x.at(tick), y1: h - bottom, x2: x.at(tick), y2: h - bottom + 4, stroke: "var(--soft)" }));
+    image.append(label(x.at(tick), h - bottom + 16, short(tick), { "text-anchor": "middle" }));
   }
   image.append(label((w + left) / 2, h - 6, xTitle, { "text-anchor": "middle" }));
   image.append(label(4, 12, yTitle));
-  return { image, px, py };
+  return { image, px: x.at, py: y.at };
 }
 const path = (xs, ys, f) => xs.map((x, k) => (k ? "L" : "M") + f.px(x).toFixed(1) + " " + f.py(ys[k]).toFixed(1)).join("");
 
@@ -37,6 +55,9 @@ function note(id, text) {
 function showFit(step) {
   let g = known(step, "fitness") ? step.g : step.g - 1;
   while (g > 0 && !DATA.generations[g].best.length) g -= 1;
+  once("fit", g, () => drawFit(g));
+}
+function drawFit(g) {
   const best = g >= 0 ? DATA.generations[g].best : [];
   if (!DATA.x.length) return note("fit", "The script has read no measured data with Exp_Adq_SISO.");
   const drawn = best.length === DATA.x.length ? best : [];
@@ -54,9 +75,12 @@ function showFit(step) {
 }
 
 function showCurve(step) {
+  once("curve", step.g, () => drawCurve(step));
+}
+function drawCurve(step) {
   const points = DATA.curve.filter(point => !failed(point[1]) && point[1] > 0);
   if (points.length < 2) return note("curve", "There is no curve of less than two generations.");
-  const f = frame(points.map(p => p[0]), points.map(p => p[1]), "generation", "best fitness (logarithmic)", true);
+  const f = frame(points.map(p => p[0]), points.map(p => p[1]), "generation", "best fitness (logarithmic)", false, true);
   f.image.append(svg("path", { d: path(points.map(p => p[0]), points.map(p => p[1]), f), fill: "none", stroke: "var(--blue)", "stroke-width": 2 }));
   const x = f.px(step.g + 1);
   f.image.append(svg("line", { x1: x, y1: 24, x2: x, y2: 260, stroke: "var(--orange)", "stroke-width": 2, "stroke-dasharray": "4 3" }));
@@ -64,71 +88,78 @@ function showCurve(step) {
   at("curve").replaceChildren(f.image);
 }
 
-// Every individual that was simulated up to the step, at two of its genes.
+// What the search knows of the fitness over two of the genes, up to the step: each field has the
+// shade of the best that was simulated in it, and the individuals of this generation lie on top.
+const FIELDS = [22, 15];
 function showLandscape(step) {
   const [a, b] = [Number(at("across").value), Number(at("up").value)];
-  const seen = [];
-  for (let g = 0; g <= step.g; g++) {
-    const generation = DATA.generations[g];
-    if (!generation.fitness.length || (g === step.g && !known(step, "fitness"))) continue;
-    for (let k = 0; k < generation.fitness.length; k++) {
-      const values = genome(generation.genes, generation.n, k);
-      seen.push({ x: values[a], y: values[b], fitness: generation.fitness[k], now: g === step.g });
+  const last = known(step, "fitness") ? step.g : step.g - 1;
+  once("landscape", [a, b, last].join(), () => drawLandscape(a, b, last));
+}
+function drawLandscape(a, b, last) {
+  const field = (v, j, count) => Math.min(count - 1, Math.max(0, Math.floor(part(v, j) * count)));
+  const best = new Map();
+  for (let g = 0; g <= last; g++) {
+    const { n, genes, fitness } = DATA.generations[g];
+    for (let k = 0; k < fitness.length; k++) {
+      const key = field(genes[k * n + a], a, FIELDS[0]) + FIELDS[0] * field(genes[k * n + b], b, FIELDS[1]);
+      const value = failed(fitness[k]) ? Infinity : Math.max(fitness[k], Number.MIN_VALUE);
+      best.set(key, Math.min(value, best.has(key) ? best.get(key) : Infinity));
     }
   }
-  const thin = Math.ceil(seen.length / 3000);
-  const f = frame([DATA.minima[a], DATA.maxima[a]], [DATA.minima[b], DATA.maxima[b]], titled(a), titled(b));
-  const good = seen.filter(point => !failed(point.fitness) && point.fitness > 0).map(point => Math.log(point.fitness));
+  const good = [...best.values()].filter(Number.isFinite).map(Math.log);
   const [low, high] = [good.reduce((m, v) => Math.min(m, v), Infinity), good.reduce((m, v) => Math.max(m, v), -Infinity)];
-  seen.filter((point, k) => point.now || k % thin === 0).forEach(point => {
-    const [x, y] = [f.px(point.x), f.py(point.y)];
-    if (failed(point.fitness)) {
-      f.image.append(svg("path", { d: "M" + (x - 4) + " " + (y - 4) + "l8 8m0 -8l-8 8", stroke: "var(--red)", "stroke-width": 1.5 }));
-    } else {
-      const shade = high > low ? (high - Math.log(point.fitness)) / (high - low) : 1;
-      f.image.append(svg("circle", { cx: x, cy: y, r: point.now ? 5 : 3, fill: colour(shade), stroke: point.now ? "#000" : "none" }));
-    }
+  const shade = fitness => high > low ? Math.max(0, (high - Math.log(Math.max(fitness, Number.MIN_VALUE))) / (high - low)) : 1;
+  const f = frame([DATA.minima[a], DATA.maxima[a]], [DATA.minima[b], DATA.maxima[b]], titled(a), titled(b), LOGARITHMIC[a], LOGARITHMIC[b]);
+  const [x0, x1, y0, y1] = [f.px(DATA.minima[a]), f.px(DATA.maxima[a]), f.py(DATA.minima[b]), f.py(DATA.maxima[b])];
+  const [wide, tall] = [(x1 - x0) / FIELDS[0], (y0 - y1) / FIELDS[1]];
+  for (const [key, value] of best) {
+    if (!Number.isFinite(value)) continue;
+    const x = x0 + (key % FIELDS[0]) * wide, y = y0 - (Math.floor(key / FIELDS[0]) + 1) * tall;
+    f.image.append(svg("rect", { class: "field", x, y, width: wide, height: tall, fill: colour(shade(value)) }));
+  }
+  const now = last >= 0 ? DATA.generations[last] : { fitness: [] };
+  now.fitness.forEach((fitness, k) => {
+    const [x, y] = [f.px(now.genes[k * now.n + a]), f.py(now.genes[k * now.n + b])];
+    if (failed(fitness)) f.image.append(svg("path", { d: "M" + (x - 4) + " " + (y - 4) + "l8 8m0 -8l-8 8", stroke: "var(--red)", "stroke-width": 2 }));
+    else f.image.append(svg("circle", { cx: x, cy: y, r: 4, fill: colour(shade(fitness)), stroke: "var(--ink)" }));
   });
-  const text = "Each dot was simulated: the lighter, the fitter; crosses failed; this generation has a black edge.";
+  const text = last < 0 ? "Nothing has been simulated yet." :
+    "Each field: the best that was simulated there so far, the lighter, the fitter; empty fields have not been tried or all failed there. Dots: generation " + (last + 1) + "; crosses failed. The other parameters differ from dot to dot.";
   f.image.setAttribute("aria-label", text);
   note("landscape", text);
   at("landscape").prepend(f.image);
 }
 
-// The best of this generation and its forebears, at most five generations back.
+// The best and its forebears, each where it came into being; an elite that lives on is drawn once.
 function showFamily(step) {
-  const generation = DATA.generations[step.g];
-  if (!generation.fitness.length || !known(step, "fitness")) return note("family", "Who is the best is not known yet.");
-  const levels = [[generation.order[0]]];
-  for (let depth = 0; depth < 5 && step.g - depth > 0; depth++) {
-    const origins = levels[depth].map(k => DATA.generations[step.g - depth].origins[k] || {});
-    const before = origins.flatMap(o => o.of ? o.of : o.elite !== undefined ? [o.elite] : []);
-    if (!before.length) break;
-    levels.push([...new Set(before)].slice(0, 12));
-  }
-  const high = 58;
-  const image = svg("svg", { viewBox: "0 0 " + WIDE + " " + (levels.length * high + 8), role: "img", "aria-label": "forebears of individual " + (generation.order[0] + 1) });
-  const x = (level, place) => 80 + (WIDE - 90) * (place + 0.5) / levels[level].length;
-  levels.forEach((level, depth) => level.forEach((k, place) => {
-    const origin = DATA.generations[step.g - depth].origins[k] || {};
-    const from = origin.of || (origin.elite !== undefined ? [origin.elite] : []);
-    if (depth + 1 < levels.length) from.forEach((parent, which) => {
-      const there = levels[depth + 1].indexOf(parent);
-      if (there >= 0) image.append(svg("line", { x1: x(depth, place), y1: depth * high + 34, x2: x(depth + 1, there), y2: (depth + 1) * high + 8,
-        stroke: which ? "var(--orange)" : "var(--blue)", "stroke-dasharray": which ? "6 3" : "none", "stroke-width": 1.8 }));
-    });
+  const winner = at("whose").value === "winner";
+  const which = winner ? DATA.winner : known(step, "fitness") ? DATA.family_of[step.g] : null;
+  once("family", String(which), () => drawFamily(which));
+}
+function drawFamily(which) {
+  if (which === null || which === undefined) return note("family", "Who is the best is not known yet.");
+  const family = DATA.families[which];
+  const levels = [];
+  family.forEach((member, k) => (levels[member.depth] = levels[member.depth] || []).push(k));
+  const high = 74;
+  const image = svg("svg", { viewBox: "0 0 " + WIDE + " " + (levels.length * high - 10), role: "img", "aria-label": "forebears of individual " + (family[0].k + 1) + " of generation " + (family[0].g + 1) });
+  const x = family.map(member => { const level = levels[member.depth]; return WIDE * (level.indexOf(family.indexOf(member)) + 0.5) / level.length; });
+  family.forEach((member, k) => member.from.forEach((parent, which) => {
+    if (parent !== null) image.append(svg("line", { x1: x[k], y1: member.depth * high + 46, x2: x[parent], y2: family[parent].depth * high + 8,
+      stroke: which ? "var(--orange)" : "var(--blue)", "stroke-dasharray": which ? "6 3" : "none", "stroke-width": 1.8 }));
   }));
-  levels.forEach((level, depth) => {
-    const g = step.g - depth;
-    image.append(label(0, depth * high + 25, "gen. " + (g + 1)));
-    level.forEach((k, place) => {
-      const origin = DATA.generations[g].origins[k] || {};
-      const mark = origin.elite !== undefined ? "\u265B " : origin.random ? "? " : origin.mutated && origin.mutated.length ? "\u25CF " : "";
-      image.append(svg("rect", { x: x(depth, place) - 20, y: depth * high + 8, width: 40, height: 26, rx: 5, fill: "#fff", stroke: "#333" }, svg("title", {}, describe(DATA.generations[g], k, { title: "fitness" }))));
-      image.append(label(x(depth, place), depth * high + 26, mark + (k + 1), { "text-anchor": "middle" }));
-    });
+  family.forEach((member, k) => {
+    const y = member.depth * high + 8, room = WIDE / levels[member.depth].length;
+    const wide = Math.min(92, room - 4), size = Math.min(12, wide / 5.5);
+    const origin = member.origin;
+    const mark = origin.random ? "? " : origin.mutated && origin.mutated.length ? "\u25CF " : "";
+    const text = "Individual " + (member.k + 1) + " of generation " + (member.g + 1) + ", " + cameAs(origin) + ", fitness " + short(member.fitness) + ": " + member.genes.map((v, j) => name(j) + " = " + short(v) + unit(j)).join(", ");
+    image.append(svg("rect", { class: "member", x: x[k] - wide / 2, y, width: wide, height: 38, rx: 5, fill: "var(--plain)", stroke: "var(--soft)" }, svg("title", {}, text)));
+    image.append(label(x[k], y + 16, mark + (member.k + 1), { "text-anchor": "middle", "font-size": size }));
+    image.append(label(x[k], y + 31, (wide > 60 ? "gen. " : "g") + (member.g + 1), { "text-anchor": "middle", "font-size": size }));
   });
-  note("family", "\u265B passed on as elite, \u25CF mutated, ? drawn at random. Solid: the parent of the genes before the crossing point, dashed: the other.");
+  note("family", "Above: the number of the individual, below: the generation it came in. \u25CF mutated, ? drawn at random. Solid: to the parent of the genes before the crossing point, dashed: to the other." + (levels.length > 5 ? " Earlier forebears are left out." : ""));
   at("family").prepend(image);
 }
 

@@ -35,13 +35,24 @@ function colour(part) {
   const mix = STOPS[low].map((c, k) => Math.round(c + (STOPS[low + 1][k] - c) * (place - low)));
   return "rgb(" + mix.join(",") + ")";
 }
-// Where a gene lies within its range; logarithmically where the range spans more than a decade.
+// A gene is shown on a logarithmic scale where the first population is drawn so: half of it would
+// lie at the lower end of a linear one.
+const LOGARITHMIC = DATA.minima.map((low, j) => {
+  const high = DATA.maxima[j], first = DATA.generations[0];
+  const column = first.genes.filter((_, k) => k % first.n === j).sort((a, b) => a - b);
+  return low > 0 && high / low > 10 && column[column.length >> 1] < low + 0.25 * (high - low);
+});
+// Where a gene lies within its range, from 0 to 1.
 function part(value, j) {
   const [low, high] = [DATA.minima[j], DATA.maxima[j]];
   if (!(high > low)) return 0.5;
-  if (low > 0 && high / low > 10) return Math.log(value / low) / Math.log(high / low);
+  if (LOGARITHMIC[j]) return Math.log(value / low) / Math.log(high / low);
   return (value - low) / (high - low);
 }
+
+// Which steps begin a generation; the sliders are one for the generation and one for its steps.
+const STARTS = DATA.generations.map((_, g) => DATA.steps.findIndex(step => step.g === g));
+const stepsOf = g => (g + 1 < STARTS.length ? STARTS[g + 1] : DATA.steps.length) - STARTS[g];
 
 function go(step, keepLink) {
   current = Math.min(Math.max(step, 0), DATA.steps.length - 1);
@@ -49,8 +60,7 @@ function go(step, keepLink) {
   if (!keepLink) history.replaceState(null, "", "#step=" + (current + 1));
 }
 function goGeneration(number) {
-  const step = DATA.steps.findIndex(step => step.g === number);
-  if (step >= 0) go(step);
+  if (STARTS[number] >= 0) go(STARTS[number]);
 }
 function stop() {
   clearInterval(timer);
@@ -58,25 +68,41 @@ function stop() {
   at("play").textContent = "Play";
   at("play").setAttribute("aria-pressed", "false");
 }
+// Where playing goes next: the next step, part or generation.
+function ahead() {
+  const { g, title } = DATA.steps[current], pace = at("pace").value;
+  if (pace === "1") return current + 1 < DATA.steps.length ? current + 1 : -1;
+  return DATA.steps.findIndex((step, k) => k > current && (step.g !== g || (pace === "2" && step.title !== title)));
+}
 function play() {
   if (timer !== null) return stop();
-  if (current === DATA.steps.length - 1) go(0);
-  timer = setInterval(() => current + 1 < DATA.steps.length ? go(current + 1) : stop(), 900);
+  if (ahead() < 0) go(0);
+  timer = setInterval(() => ahead() < 0 ? stop() : go(ahead()), 900);
   at("play").textContent = "Pause";
   at("play").setAttribute("aria-pressed", "true");
 }
 
+// Draws a panel only when what it shows has changed.
+const shown = {};
+function once(id, key, draw) {
+  if (shown[id] === key) return;
+  shown[id] = key;
+  draw();
+}
 function show() {
   const step = DATA.steps[current];
-  at("slider").value = current;
-  at("generation").value = step.g + 1;
+  const place = current - STARTS[step.g];
+  at("slider").max = stepsOf(step.g);
+  at("slider").value = place + 1;
+  at("step").textContent = (place + 1) + " of " + stepsOf(step.g);
+  at("generation").value = at("generations").value = step.g + 1;
   at("title").textContent = "Generation " + (step.g + 1) + " of " + DATA.of + ": " + step.title;
   at("text").textContent = step.text;
   at("link").href = "#step=" + (current + 1);
   at("first").disabled = at("back").disabled = current === 0;
   at("previous-generation").disabled = current === 0;
   at("next").disabled = at("last").disabled = current === DATA.steps.length - 1;
-  at("next-generation").disabled = !DATA.steps.some(other => other.g > step.g);
+  at("next-generation").disabled = step.g + 1 >= STARTS.length;
   showScript(step);
   showPopulation(step);
   showDrawing(step);
@@ -87,9 +113,8 @@ function show() {
 }
 
 function previousGeneration() {
-  const number = DATA.steps[current].g;
-  const first = DATA.steps.findIndex(step => step.g === number);
-  if (current > first) go(first); else goGeneration(number - 1);
+  const { g } = DATA.steps[current];
+  if (current > STARTS[g]) go(STARTS[g]); else goGeneration(g - 1);
 }
 const ACTIONS = {
   "first": () => go(0),
@@ -113,14 +138,16 @@ function begin() {
     event.preventDefault();
     at(KEYS[event.key]).click();
   });
-  at("slider").max = DATA.steps.length - 1;
-  at("slider").addEventListener("input", event => go(Number(event.target.value)));
-  at("generation").max = DATA.generations.length;
+  at("slider").addEventListener("input", event => go(STARTS[DATA.steps[current].g] + Number(event.target.value) - 1));
+  at("generations").max = at("generation").max = DATA.generations.length;
+  at("generations").addEventListener("input", event => goGeneration(Number(event.target.value) - 1));
   at("generation").addEventListener("change", event => goGeneration(Number(event.target.value) - 1));
   for (const id of ["across", "up"]) {
     DATA.parameters.forEach((_, j) => at(id).append(new Option(name(j), j)));
     at(id).addEventListener("change", () => showLandscape(DATA.steps[current]));
   }
+  at("whose").addEventListener("change", () => showFamily(DATA.steps[current]));
+  at("population").addEventListener("keydown", alongRows);
   at("up").value = Math.min(1, DATA.parameters.length - 1);
   const left = DATA.of - DATA.generations.length;
   at("subject").textContent = DATA.model + ": " + DATA.parameters.map((_, j) => titled(j)).join(", ") +

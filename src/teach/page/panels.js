@@ -3,15 +3,18 @@
 function showScript(step) {
   const place = step.place && DATA.scripts[step.place[0]];
   at("script-name").textContent = place ? place.name + ", line " + step.place[1] : "no line is known";
-  const lines = place ? place.lines : [];
-  at("script").replaceChildren(...lines.map((line, k) => {
+  once("script", place && step.place[0], () => at("script").replaceChildren(...(place ? place.lines : []).map((line, k) => {
     const row = document.createElement("span");
     row.textContent = String(k + 1).padStart(3) + "  " + line;
-    if (k + 1 === step.place[1]) { row.className = "now"; row.setAttribute("aria-current", "step"); }
     return row;
-  }));
-  const now = at("script").querySelector(".now");
-  if (now) at("script").scrollTop = now.offsetTop - at("script").offsetTop - at("script").clientHeight / 2;
+  })));
+  const before = at("script").querySelector(".now");
+  if (before) { before.className = ""; before.removeAttribute("aria-current"); }
+  const now = place && at("script").children[step.place[1] - 1];
+  if (!now) return;
+  now.className = "now";
+  now.setAttribute("aria-current", "step");
+  at("script").scrollTop = now.offsetTop - at("script").offsetTop - at("script").clientHeight / 2;
 }
 
 // What is known at a step: nothing about the fitness before it was computed.
@@ -40,30 +43,96 @@ function showPopulation(step) {
   const generation = DATA.generations[step.g];
   const count = generation.genes.length / generation.n;
   const order = known(step, "selection") ? generation.order : [...Array(count).keys()];
-  const next = known(step, "crossover") && DATA.generations[step.g + 1];
-  const rows = Math.max(count, next ? next.genes.length / next.n : 0);
+  const made = known(step, "elite") ? offspring(step, generation) : null;
+  const rows = Math.max(count, made ? made.length : 0);
   const height = Math.max(9, Math.min(26, 520 / rows));
-  const width = next ? WIDE * 0.34 : WIDE - 150;
+  const width = made ? WIDE * 0.34 : WIDE - 150;
+  const right = WIDE - width - 20;
+  const focused = [...at("population").querySelectorAll(".row")].indexOf(document.activeElement);
   const image = svg("svg", { viewBox: "0 0 " + WIDE + " " + (24 + rows * height + 4), role: "group", "aria-label": "population of generation " + (step.g + 1) });
-  image.append(label(44, 14, next ? "generation " + (step.g + 1) + (known(step, "selection") ? ", best first" : "") : "generation " + (step.g + 1)));
-  order.forEach((k, place) => image.append(individual(generation, k, 44, 20 + place * height, width, height, step, next)));
-  if (next) {
-    image.append(label(WIDE - width - 20, 14, "generation " + (step.g + 2)));
-    const here = k => order.indexOf(k);
-    const lines = (k, place, colours, strong) => k.forEach((from, which) => {
-      if (here(from) < 0) return;
-      image.append(svg("line", { x1: 44 + width + 8, y1: 20 + (here(from) + 0.5) * height, x2: WIDE - width - 26, y2: 20 + (place + 0.5) * height,
-        stroke: colours[which], "stroke-width": strong ? 2.5 : 0.7, "stroke-dasharray": which ? "6 3" : "none", opacity: strong ? 1 : 0.35 }));
+  const heading = "generation " + (step.g + 1) + (known(step, "selection") ? ", best first" : "");
+  image.append(label(44, 14, heading));
+  order.forEach((k, place) => image.append(individual(present(step, generation, k), 44, 20 + place * height, width, height)));
+  if (step.title === "selection" && generation.parents < count) {
+    const y = 19.5 + generation.parents * height;
+    image.append(svg("line", { class: "cut", x1: 20, y1: y, x2: 44 + width + 90, y2: y, stroke: "var(--ink)", "stroke-width": 1.5, "stroke-dasharray": "7 4" }));
+  }
+  if (made) {
+    image.append(label(right, 14, "generation " + (step.g + 2)));
+    made.forEach((child, row) => {
+      const y = 20 + row * height;
+      const strong = concerns(step, generation, row);
+      if (child) child.from.forEach((from, which) => {
+        const place = order.indexOf(from);
+        if (place >= 0) image.append(svg("line", { x1: 44 + width + 8, y1: 20 + (place + 0.5) * height, x2: right - 26, y2: y + 0.5 * height,
+          stroke: child.from.length < 2 ? "var(--ink)" : which ? "var(--orange)" : "var(--blue)", "stroke-width": strong ? 2.5 : 0.7, "stroke-dasharray": which ? "6 3" : "none", opacity: strong ? 1 : 0.35 }));
+      });
+      image.append(child ? individual(child, right, y, width, height) : svg("rect", { x: right, y, width: width - 1, height: height - 1, fill: "none", stroke: "var(--line)" }));
     });
-    for (let place = 0; place < next.genes.length / next.n; place++) {
-      const origin = next.origins[place];
-      image.append(individual(next, place, WIDE - width - 20, 20 + place * height, width, height, { title: "initial population" }, true));
-      const strong = concerns(step, generation, place);
-      if (origin && origin.of) lines(origin.of, place, ["var(--blue)", "var(--orange)"], strong);
-      if (origin && origin.elite !== undefined) lines([origin.elite], place, ["var(--ink)"], strong);
-    }
   }
   at("population").replaceChildren(image);
+  const all = at("population").querySelectorAll(".row");
+  const stop = all[Math.max(0, Math.min(focused, all.length - 1))];
+  if (stop) stop.setAttribute("tabindex", 0);
+  if (focused >= 0 && stop) stop.focus();
+}
+// The rows of the population are one stop of the tab key; the arrows go from row to row.
+function alongRows(event) {
+  const rows = [...at("population").querySelectorAll(".row")];
+  const to = rows[rows.indexOf(document.activeElement) + { ArrowDown: 1, ArrowUp: -1 }[event.key]];
+  if (!to) return;
+  event.preventDefault();
+  document.activeElement.setAttribute("tabindex", -1);
+  to.setAttribute("tabindex", 0);
+  to.focus();
+}
+
+// An individual of this generation, as far as it is known at the step.
+function present(step, generation, k) {
+  const origin = generation.origins[k] || {};
+  const failed = known(step, "simulation") && generation.failures.some(failure => failure[0] === k);
+  const rated = known(step, "fitness") && generation.fitness.length && !known(step, "elite");
+  return {
+    number: k, values: genome(generation.genes, generation.n, k), text: describe(generation, k, step), failed,
+    crown: origin.elite !== undefined, changed: origin.mutated || [],
+    fitness: rated ? (failed ? "failed" : short(generation.fitness[k])) : "",
+  };
+}
+// The rows of the next generation as far as the step has made them; null where nothing stands yet.
+function offspring(step, generation) {
+  const n = generation.n, elites = generation.elites || 0;
+  const next = DATA.generations[step.g + 1];
+  const children = generation.children ? generation.children.length / n : 0;
+  const rows = Math.max(children, next ? next.genes.length / n : 0);
+  const second = step.title === "crossover" ? mate(step.of, generation.parents) : 0;
+  const crossed = row => step.title === "crossover" ? row - elites <= Math.max(step.of, second) : known(step, "mutation");
+  const mutated = row => generation.after && (step.title === "mutation" ? row <= step.of : known(step, "random completion"));
+  const filled = row => step.title === "random completion" ? row <= step.of : known(step, "next generation");
+  const made = [];
+  for (let row = 0; row < rows; row++) {
+    if (next && filled(row)) made.push(born(next, row));
+    else if (row < children && (row < elites || crossed(row))) made.push(child(generation, row, mutated(row)));
+    else made.push(null);
+  }
+  return made;
+}
+// What stands in this row of the next generation after completion.
+function born(next, row) {
+  const origin = next.origins[row] || {};
+  const from = origin.of || (origin.elite !== undefined ? [origin.elite] : []);
+  return { number: row, values: genome(next.genes, next.n, row), from, text: describe(next, row, { title: "initial population" }), crown: origin.elite !== undefined, changed: origin.mutated || [] };
+}
+// What stands in this row after crossover, or after mutation.
+function child(generation, row, mutated) {
+  const n = generation.n, elites = generation.elites || 0, rank = row - elites, order = generation.order;
+  const values = genome(mutated ? generation.after : generation.children, n, row);
+  const crown = rank < 0;
+  const from = crown ? [order[row]] : [order[rank], order[mate(rank, generation.parents)]];
+  const u = mutated && !crown ? genome(generation.u, n, row) : [];
+  const changed = u.map((value, j) => value < generation.factor ? j : -1).filter(j => j >= 0);
+  const origin = crown ? { elite: from[0] } : { of: from, mutated: changed };
+  const genes = values.map((v, j) => name(j) + " = " + short(v) + unit(j)).join(", ");
+  return { number: row, values, from, crown, changed, text: "Row " + (row + 1) + " of the next generation, " + cameAs(origin) + ": " + genes };
 }
 // Whether a step is about the individual at this row of the next generation.
 function concerns(step, generation, row) {
@@ -74,27 +143,24 @@ function concerns(step, generation, row) {
 }
 const mate = (rank, parents) => rank % 2 ? rank - 1 : rank + 1 < parents ? rank + 1 : 0;
 
-function individual(generation, k, x, y, width, height, step, small) {
-  const cell = width / generation.n;
-  const origin = generation.origins[k] || {};
-  const broken = known(step, "simulation") && generation.failures.some(failure => failure[0] === k);
-  const text = describe(generation, k, step);
-  const group = svg("g", { class: "row", tabindex: 0, role: "img", "aria-label": text });
+// One row: a box for each gene, its number, marks, and the fitness where it is told.
+function individual({ number, values, text, failed, crown, changed, fitness }, x, y, width, height) {
+  const cell = width / values.length;
+  const group = svg("g", { class: "row", tabindex: -1, role: "img", "aria-label": text });
   group.append(svg("title", {}, text));
-  genome(generation.genes, generation.n, k).forEach((value, j) => {
+  values.forEach((value, j) => {
     group.append(svg("rect", { x: x + j * cell, y, width: cell - 1, height: height - 1, fill: colour(part(value, j)) }));
-    if (origin.mutated && origin.mutated.includes(j)) {
+    if (changed.includes(j)) {
       group.append(svg("circle", { cx: x + (j + 0.5) * cell, cy: y + height / 2, r: Math.min(4, height / 3), fill: "#fff", stroke: "#000" }));
     }
   });
-  group.append(svg("rect", { class: "box", x, y, width: width - 1, height: height - 1, fill: "none",
-    stroke: broken ? "var(--red)" : "none", "stroke-width": 2.5 }));
+  group.append(svg("rect", { class: "box", x, y: y - 0.5, width: width - 1, height: height - 0.5, fill: "none",
+    stroke: failed ? "var(--red)" : "none", "stroke-width": Math.min(2.5, height / 8) }));
   const size = Math.min(12, height);
-  const mark = broken ? "\u2715" : origin.elite !== undefined ? "\u265B" : "";
-  group.append(label(x - 6, y + height * 0.75, mark + " " + (k + 1), { "text-anchor": "end", "font-size": size }));
-  if (!small && known(step, "fitness") && generation.fitness.length) {
-    group.append(label(x + width + 8, y + height * 0.75, broken ? "failed" : short(generation.fitness[k]), { "font-size": size }));
-  }
+  const mark = failed ? "\u2715" : crown ? "\u265B" : "";
+  const colours = failed ? { style: "fill: var(--red)" } : {};
+  group.append(label(x - 6, y + height * 0.75, mark + " " + (number + 1), Object.assign({ "text-anchor": "end", "font-size": size }, colours)));
+  if (fitness) group.append(label(x + width + 8, y + height * 0.75, fitness, Object.assign({ "font-size": size }, colours)));
   const tell = () => { at("individual").textContent = text; };
   group.addEventListener("mouseenter", tell);
   group.addEventListener("focus", tell);
@@ -106,7 +172,7 @@ function genes(values, y, title, fills, marks) {
   const group = svg("g", {}, label(0, y + 20, title));
   const cell = (WIDE - 90) / values.length;
   values.forEach((value, j) => {
-    group.append(svg("rect", { x: 90 + j * cell, y, width: cell - 2, height: 30, rx: 3, fill: fills(j), stroke: marks(j) ? "#000" : "#888", "stroke-width": marks(j) ? 3 : 1 }));
+    group.append(svg("rect", { x: 90 + j * cell, y, width: cell - 2, height: 30, rx: 3, fill: fills(j), stroke: marks(j) ? "var(--ink)" : "var(--soft)", "stroke-width": marks(j) ? 3 : 1 }));
     group.append(label(90 + (j + 0.5) * cell, y + 20, short(value), { "text-anchor": "middle", "font-size": Math.min(13, cell / 5) }));
   });
   return group;
@@ -114,12 +180,7 @@ function genes(values, y, title, fills, marks) {
 function showDrawing(step) {
   const generation = DATA.generations[step.g];
   const parts = step.title === "crossover" ? crossover(step, generation) : step.title === "mutation" ? mutation(step, generation) : null;
-  if (!parts) {
-    const note = document.createElement("p");
-    note.className = "note";
-    note.textContent = "Crossover and mutation are drawn here.";
-    return at("drawing").replaceChildren(note);
-  }
+  if (!parts) return note("drawing", "Crossover and mutation are drawn here, one child after the other.");
   const cell = (WIDE - 90) / generation.n;
   const heads = DATA.parameters.map((_, j) => label(90 + (j + 0.5) * cell, 14, name(j), { "text-anchor": "middle", "font-size": Math.min(13, cell / 5) }));
   at("drawing").replaceChildren(svg("svg", { viewBox: "0 0 " + WIDE + " " + parts.height, role: "img", "aria-label": step.text }, ...heads, ...parts.rows));
@@ -128,31 +189,42 @@ function crossover(step, generation) {
   const n = generation.n, elites = generation.elites || 0, other = mate(step.of, generation.parents);
   const cell = (WIDE - 90) / n;
   const second = j => generation.points.filter(point => point <= j).length % 2;
-  const light = ["#cfe3f7", "#ffd9b0"];
+  const light = ["var(--first)", "var(--second)"];
   const parent = rank => genome(generation.genes, n, generation.order[rank]);
   const none = () => false;
+  const pair = other > step.of;
   const rows = [
     genes(parent(step.of), 24, "rank " + (step.of + 1), () => light[0], none),
     genes(parent(other), 60, "rank " + (other + 1), () => light[1], none),
     genes(genome(generation.children, n, elites + step.of), 116, "child " + (step.of + 1), j => light[second(j)], none),
   ];
-  if (other > step.of) rows.push(genes(genome(generation.children, n, elites + other), 152, "child " + (other + 1), j => light[1 - second(j)], none));
+  if (pair) rows.push(genes(genome(generation.children, n, elites + other), 152, "child " + (other + 1), j => light[1 - second(j)], none));
   for (const point of generation.points) {
     const x = 90 + point * cell - 1;
-    rows.push(svg("line", { x1: x, y1: 20, x2: x, y2: 186, stroke: "#000", "stroke-width": 2, "stroke-dasharray": "5 4" }));
+    rows.push(svg("line", { x1: x, y1: 20, x2: x, y2: pair ? 186 : 150, stroke: "var(--ink)", "stroke-width": 2, "stroke-dasharray": "5 4" }));
   }
-  return { rows, height: 192 };
+  rows.push(label(90, 107, "exchanged behind a dashed line", { style: "fill: var(--soft)" }));
+  return { rows, height: pair ? 192 : 156 };
 }
 function mutation(step, generation) {
   const n = generation.n;
   const u = genome(generation.u, n, step.of);
   const hit = j => u[j] < generation.factor;
-  const fill = j => hit(j) ? "#ffd9b0" : "#eee";
+  const fill = j => hit(j) ? "var(--second)" : "var(--plain)";
   const rows = [
-    genes(genome(generation.children, n, step.of), 24, "before", () => "#eee", () => false),
+    genes(genome(generation.children, n, step.of), 24, "before", () => "var(--plain)", () => false),
     genes(u, 70, "u", fill, hit),
     genes(genome(generation.after, n, step.of), 116, "after", fill, hit),
-    label(0, 170, "a gene mutates where u < F_Mut = " + generation.factor + " (thick edge)"),
+    label(0, 166, "place"),
+    label(0, 192, "a gene mutates where u < F_Mut = " + generation.factor + " (thick edge); u/F_Mut is its new"),
+    label(0, 207, "place in its range, from Param_Min on the left to Param_Max"),
   ];
-  return { rows, height: 180 };
+  const cell = (WIDE - 90) / n;
+  u.forEach((value, j) => {
+    if (!hit(j)) return;
+    const [x, wide] = [90 + j * cell, cell - 2];
+    rows.push(svg("line", { x1: x, y1: 162, x2: x + wide, y2: 162, stroke: "var(--soft)", "stroke-width": 2 }));
+    rows.push(svg("circle", { cx: x + wide * value / generation.factor, cy: 162, r: 5, fill: "var(--orange)", stroke: "var(--ink)" }));
+  });
+  return { rows, height: 214 };
 }

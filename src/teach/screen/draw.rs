@@ -1,6 +1,6 @@
 //! The frame: heading, script, panel, explanation, and the line of keys.
 
-use super::{Screen, View, inspect, step_panel};
+use super::{Screen, View, compare, inspect, step_panel};
 use crate::teach::explain::explain;
 use crate::teach::plain::title;
 use ratatui::Frame;
@@ -29,10 +29,11 @@ Each block is a gene: · low, █ high among this generation.";
 
 /// Draws the screen.
 pub fn draw(screen: &Screen, frame: &mut Frame) {
+    let question = screen.question();
     let [top, body, story, bottom] = Layout::vertical([
         Constraint::Length(1),
         Constraint::Min(6),
-        Constraint::Length(6),
+        Constraint::Length(if question.is_some() { 9 } else { 6 }),
         Constraint::Length(1),
     ])
     .areas(frame.area());
@@ -40,12 +41,13 @@ pub fn draw(screen: &Screen, frame: &mut Frame) {
     match screen.view {
         View::Steps => step(screen, frame, body),
         View::Individual(k) => inspect::draw(screen, k, frame, body),
-        View::Branches => branches(screen, frame, body),
+        View::Branches => compare::draw(screen, frame, body),
         View::Help => frame
             .render_widget(Paragraph::new(HELP).block(titled(" keys; any key goes back ")), body),
     }
     let block = Block::new().borders(Borders::TOP);
-    let text = Paragraph::new(explain(&screen.walk)).wrap(Wrap { trim: true }).block(block);
+    let told = question.unwrap_or_else(|| explain(&screen.walk));
+    let text = Paragraph::new(told).wrap(Wrap { trim: true }).block(block);
     frame.render_widget(text, story);
     frame.render_widget(Paragraph::new(last_line(screen)), bottom);
 }
@@ -64,20 +66,14 @@ fn heading(screen: &Screen) -> Line<'static> {
 }
 
 fn last_line(screen: &Screen) -> Line<'static> {
+    if let Some(keys) = screen.answer_keys() {
+        return Line::styled(keys, screen.styled(Color::Yellow));
+    }
     match (&screen.prompt, screen.message.as_str()) {
         (Some(prompt), _) => Line::styled(prompt.shown(), screen.styled(Color::Yellow)),
         (None, "") => Line::styled(KEYS, Style::new().add_modifier(Modifier::DIM)),
         (None, message) => Line::styled(message.to_owned(), screen.styled(Color::Yellow)),
     }
-}
-
-/// Both runs on one chart, and what came of the change.
-fn branches(screen: &Screen, frame: &mut Frame, area: Rect) {
-    let Some(branches) = screen.branches() else { return };
-    let height = usize::from(area.height).saturating_sub(7);
-    let chart = branches.figure().text(usize::from(area.width).saturating_sub(16), height);
-    let text = format!("{chart}{}", branches.verdict());
-    frame.render_widget(Paragraph::new(text).block(titled(" what if ")), area);
 }
 
 fn titled(title: &str) -> Block<'_> {
@@ -104,16 +100,31 @@ fn script(screen: &Screen, frame: &mut Frame, area: Rect) {
     };
     let height = usize::from(area.height.saturating_sub(2));
     let first = now.saturating_sub(1 + height / 2).min(script.lines.len().saturating_sub(height));
-    let lines = script.lines.iter().enumerate().skip(first).take(height).map(|(k, text)| {
+    let width = usize::from(area.width.saturating_sub(7)).max(1);
+    let lines = script.lines.iter().enumerate().skip(first).flat_map(|(k, text)| {
         let current = k + 1 == now;
         let pointer = if current { '>' } else { ' ' };
         let style = match current {
             true => screen.styled(Color::Yellow).add_modifier(Modifier::BOLD),
             false => Style::new(),
         };
-        Line::from(Span::styled(format!("{pointer}{:>3} {text}", k + 1), style))
+        // The current line is shown whole.
+        let pieces = if current { pieces(text, width) } else { vec![text.clone()] };
+        let row = move |(part, piece): (usize, String)| {
+            let number = if part == 0 { format!("{:>3}", k + 1) } else { " ".repeat(3) };
+            Line::from(Span::styled(format!("{pointer}{number} {piece}"), style))
+        };
+        pieces.into_iter().enumerate().map(row)
     });
+    let lines = lines.take(height);
     let name = script.name.rsplit('/').next().unwrap_or_default();
     let title = format!(" {name} ");
     frame.render_widget(Paragraph::new(lines.collect::<Vec<_>>()).block(titled(&title)), area);
+}
+
+/// A line in rows of at most `width` characters.
+fn pieces(text: &str, width: usize) -> Vec<String> {
+    let characters: Vec<char> = text.chars().collect();
+    let rows: Vec<String> = characters.chunks(width).map(|row| row.iter().collect()).collect();
+    if rows.is_empty() { vec![String::new()] } else { rows }
 }

@@ -2,6 +2,8 @@
 //! what happens and why below. What is coloured also has a mark, so that nothing is lost without
 //! colours.
 
+mod asking;
+mod compare;
 mod draw;
 mod inspect;
 mod prompt;
@@ -12,6 +14,7 @@ mod tests;
 use super::branches::Branches;
 use super::trace::Trace;
 use super::walk::Walk;
+use asking::Quiz;
 use prompt::Prompt;
 
 pub use draw::draw;
@@ -76,6 +79,11 @@ pub struct Screen {
     /// A change that the learner wants to be tried, and from which generation on, from 1.
     wish: Option<(usize, String)>,
     branch: Option<Branch>,
+    /// An individual of this generation whose curve is not known and is to be simulated.
+    unknown: Option<usize>,
+    /// Generation and individual that were simulated again, and their curve or why there is none.
+    again: Option<(usize, usize, Result<Vec<f64>, String>)>,
+    quiz: Option<Quiz>,
     /// What the last key has led to, where that is not plain to see.
     message: String,
     colour: bool,
@@ -85,13 +93,27 @@ impl Screen {
     /// A screen at the place of `walk`.
     pub fn new(walk: Walk, colour: bool) -> Screen {
         let message = String::new();
-        let (followed, prompt, wish, branch) = (None, None, None, None);
-        Screen { walk, view: View::Steps, followed, prompt, wish, branch, message, colour }
+        Screen {
+            walk,
+            view: View::Steps,
+            followed: None,
+            prompt: None,
+            wish: None,
+            branch: None,
+            unknown: None,
+            again: None,
+            quiz: None,
+            message,
+            colour,
+        }
     }
 
     /// Answers a key; whether the learner goes on.
     pub fn press(&mut self, key: Key) -> bool {
         self.message.clear();
+        if self.is_asked(key) {
+            return true;
+        }
         if let Some(prompt) = self.prompt.take() {
             self.answer(prompt, key);
             return true;
@@ -116,6 +138,20 @@ impl Screen {
     /// The change that is to be tried now, and from which generation on, counted from 1.
     pub fn take_wish(&mut self) -> Option<(usize, String)> {
         self.wish.take()
+    }
+
+    /// The genes of an individual whose simulation is to be shown, but is not in the trace.
+    pub fn take_unknown(&mut self) -> Option<Vec<f64>> {
+        let k = self.unknown.take()?;
+        self.again = Some((self.walk.number(), k, Err(String::new())));
+        Some(self.walk.generation().genome(k).to_vec())
+    }
+
+    /// The simulation of [`Screen::take_unknown`], Y at every measured point, or why there is none.
+    pub fn simulated(&mut self, row: Result<Vec<f64>, String>) {
+        if let Some((_, _, known)) = &mut self.again {
+            *known = row;
+        }
     }
 
     /// Shows what has become of a change, or why it could not be tried.
@@ -179,6 +215,11 @@ impl Screen {
         };
         if !moved {
             self.message = "there is nothing further".to_owned();
+        }
+        let is_forward =
+            !matches!(key, Key::Left | Key::Char('b') | Key::Up | Key::Home | Key::End);
+        if moved && is_forward {
+            self.ask();
         }
         self.keep_following(before);
     }

@@ -1,6 +1,6 @@
 //! Questions that a key asks: which generation, which individual, until when.
 
-use super::{Key, Screen, View};
+use super::{Key, Screen, View, inspect};
 use crate::ga::has_failed;
 use crate::teach::step::Step;
 use crate::teach::walk::Walk;
@@ -67,7 +67,9 @@ pub(super) fn carry_out(screen: &mut Screen, prompt: &Prompt) -> Result<String, 
             Ok(format!("individual {} is followed", k + 1))
         }
         Question::Inspect => {
-            screen.view = View::Individual(individual(&screen.walk, text)?);
+            let k = individual(&screen.walk, text)?;
+            screen.view = View::Individual(k);
+            screen.unknown = inspect::must_simulate(screen, k).then_some(k);
             Ok(String::new())
         }
         Question::Until => until(&mut screen.walk, text),

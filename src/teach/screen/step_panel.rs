@@ -38,6 +38,8 @@ fn population(screen: &Screen) -> (Vec<Line<'static>>, usize) {
         true => generation.order(),
         false => (0..generation.len()).collect(),
     };
+    let selects = phase == Phase::Selecting;
+    let parents = generation.sorted.as_ref().filter(|_| selects).map(|sorted| sorted.parents);
     let mut lines = vec![Line::from(format!("  no    fitness  {}", names(screen)))];
     let mut shown = 0;
     for (place, &k) in order.iter().enumerate() {
@@ -57,6 +59,9 @@ fn population(screen: &Screen) -> (Vec<Line<'static>>, usize) {
         let style = if failed { screen.styled(Color::Red) } else { Style::new() };
         let mut spans = vec![Span::styled(text, style)];
         spans.extend(shades(screen, generation, k));
+        if parents == Some(place) {
+            lines.push(Line::from("- - - no parents from here on - - -"));
+        }
         lines.push(Line::from(spans));
     }
     (lines, shown)

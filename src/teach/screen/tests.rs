@@ -60,6 +60,32 @@ fn keys_move() {
 }
 
 #[test]
+fn before_a_step_its_outcome_is_asked() {
+    let mut screen = Screen::new(sample::walk(), false).with_quiz();
+    let press = |screen: &mut Screen, keys: &[Key]| {
+        assert!(keys.iter().all(|key| screen.press(*key)), "the screen has ended");
+        drawn(screen)
+    };
+    let answer =
+        |text: &str| -> Vec<Key> { text.chars().map(Key::Char).chain([Key::Enter]).collect() };
+    let asked = press(&mut screen, &[Key::Right; 3]);
+    sample::snapshots().bind(|| insta::assert_snapshot!("screen_quiz_question", asked));
+    let judged = press(&mut screen, &answer("3 4 5 6"));
+    sample::snapshots().bind(|| insta::assert_snapshot!("screen_quiz_verdict", judged));
+    assert!(press(&mut screen, &[Key::Right]).contains(": selection"));
+    // Wrong, put right; then no answer to the last question, and nothing is asked twice.
+    let crossed = press(&mut screen, &[&[Key::Tab][..], &answer("aa")].concat());
+    assert!(crossed.contains("No: the answer is ab."), "{crossed}");
+    assert!(crossed.contains("1 of 2 answers were right."), "{crossed}");
+    let mutation = press(&mut screen, &[Key::Right, Key::Tab]);
+    assert!(mutation.contains("Does the gene"), "{mutation}");
+    let skipped = press(&mut screen, &[Key::Escape, Key::Right]);
+    assert!(skipped.contains(": mutation"), "{skipped}");
+    assert!(press(&mut screen, &[Key::Left, Key::Right]).contains(": mutation"));
+    assert_eq!(screen.score().map(|score| (score.right, score.asked)), Some((1, 2)));
+}
+
+#[test]
 fn answers_that_do_not_fit_say_why() {
     let last = |keys: &[Key]| shown(keys).lines().last().unwrap_or_default().to_owned();
     assert_eq!(last(&typed('g', "9")), "there are the generations 1 to 3");
@@ -75,6 +101,25 @@ fn an_individual_is_followed() {
     let followed = shown(&[&typed('f', "")[..], &[Key::Down]].concat());
     assert!(followed.contains("followed on as individual 1"), "{followed}");
     assert!(followed.lines().any(|line| line.contains(">♛  1")), "{followed}");
+}
+
+#[test]
+fn every_individual_can_be_inspected() {
+    let inspect = |which: &str| {
+        let mut screen = Screen::new(sample::walk(), false);
+        let keys = [vec![Key::Right; 2], typed('i', which)].concat();
+        assert!(keys.into_iter().all(|key| screen.press(key)), "the screen has ended");
+        screen
+    };
+    // The best is in the trace, as number 6 and by default.
+    assert_eq!((inspect("").take_unknown(), inspect("6").take_unknown()), (None, None));
+    let mut screen = inspect("4");
+    assert_eq!(screen.take_unknown(), Some(screen.walk.generation().genome(3).to_vec()));
+    screen.simulated(Ok(vec![2.0, 4.0, 9.0]));
+    let text = drawn(&screen);
+    sample::snapshots().bind(|| insta::assert_snapshot!("screen_inspect_again", text));
+    screen.simulated(Err("no script is at hand".to_owned()));
+    assert!(drawn(&screen).contains("no script is at hand"));
 }
 
 #[test]

@@ -1,0 +1,127 @@
+// Uses every control of the page as a reader would, and reports what does not do what it should.
+(() => {
+  const reports = [];
+  const check = (what, holds, more) => reports.push((holds ? "ok: " : "WRONG: ") + what + (holds || more === undefined ? "" : " (" + more + ")"));
+  const at = id => document.getElementById(id);
+  const all = (id, selector) => [...at(id).querySelectorAll(selector)];
+  const data = JSON.parse(at("data").textContent);
+  const title = () => at("title").textContent;
+  const click = id => at(id).click();
+  const key = (name, target) => (target || document.body).dispatchEvent(new KeyboardEvent("keydown", { key: name, bubbles: true, cancelable: true }));
+  const choose = (id, value, event) => { at(id).value = value; at(id).dispatchEvent(new Event(event || "change", { bubbles: true })); };
+  const step = () => Number(/^#step=(\d+)$/.exec(location.hash)[1]);
+  const find = (part, g) => data.steps.findIndex(s => s.title === part && s.g === g) + 1;
+  const visit = number => { click("first"); for (let k = 1; k < number; k++) click("next"); };
+
+  function buttonsAndKeys() {
+    check("the first step is shown first", title().startsWith("Generation 1 of") && at("back").disabled && at("first").disabled);
+    click("next"); check("next", step() === 2, step());
+    click("back"); check("back", step() === 1, step());
+    click("next-generation"); check("next generation", title().startsWith("Generation 2 "), title());
+    click("next"); click("previous-generation"); check("to the beginning of this generation", step() === find(data.steps.find(s => s.g === 1).title, 1), step());
+    click("previous-generation"); check("previous generation", title().startsWith("Generation 1 "), title());
+    click("last"); check("last", step() === data.steps.length && at("next").disabled && at("last").disabled && at("next-generation").disabled, step());
+    click("first"); check("first", step() === 1, step());
+    const moves = [["ArrowRight", 2], ["ArrowRight", 3], ["ArrowLeft", 2], ["End", data.steps.length], ["Home", 1]];
+    for (const [name, to] of moves) { key(name); check("key " + name, step() === to, step()); }
+    key("PageDown"); check("key PageDown", title().startsWith("Generation 2 "), title());
+    key("PageUp"); check("key PageUp", title().startsWith("Generation 1 "), title());
+    key("ArrowRight", at("generation")); check("keys in a field are the field's own", step() === 1, step());
+  }
+
+  function slidersAndLink() {
+    choose("generations", "3", "input"); check("slider of generations", title().startsWith("Generation 3 ") && at("generation").value === "3", title());
+    const before = step();
+    choose("slider", "4", "input"); check("slider of steps", step() === before + 3, step());
+    choose("generation", "2"); check("number of the generation", title().startsWith("Generation 2 "), title());
+    check("the link leads to this step", at("link").hash === location.hash && step() === find(data.steps.find(s => s.g === 1).title, 1));
+    check("no control is without a name", [...document.querySelectorAll("button, input, select, a")].every(e => e.getAttribute("aria-label") || e.textContent.trim() || e.closest("label")));
+  }
+
+  function panels() {
+    visit(find("crossover", 0));
+    const line = at("script").querySelector("[aria-current]");
+    check("the script shows the line of Cross", line && line.textContent.includes("Cross("), line && line.textContent);
+    const strong = all("population", "line").filter(l => l.getAttribute("stroke-width") === "2.5");
+    check("lines lead from two parents to two children", strong.length === 4, strong.length);
+    const count = data.generations[0].genes.length / data.generations[0].n;
+    const born = data.generations[0].elites + 2;
+    check("the children so far stand beside their parents", all("population", ".row").length === count + born, all("population", ".row").length);
+    check("crossover has four rows of boxes", all("drawing", "rect").length === 4 * data.generations[0].n, all("drawing", "rect").length);
+    const fills = all("drawing", "rect").map(r => r.getAttribute("fill"));
+    check("children's boxes have their parents' colours", new Set(fills.slice(-data.generations[0].n)).size === 2, fills.join());
+    mutation();
+    visit(find("selection", 0));
+    check("a line parts the parents from the others", all("population", ".cut").length === 1);
+    visit(find("fitness", 0));
+    check("all measured points are drawn", all("fit", "circle").length === data.x.length, all("fit", "circle").length);
+    check("the sum is told", /sum of the squared distances.*: [\d.]+/.test(at("fit").textContent), at("fit").textContent);
+    check("the fitness stands behind each row", all("population", ".row").every(row => row.querySelectorAll("text").length === 2));
+    check("convergence is drawn", all("curve", "path").length === 1);
+    check("the generation is marked on it", all("curve", "line[stroke-dasharray]").length === 1);
+    check("every parameter is judged", !data.result || all("tell", "tr").length === data.parameters.length + 1, all("tell", "tr").length);
+    landscapeAndFamily();
+  }
+  function mutation() {
+    const first = data.steps.findIndex(s => s.g === 0 && s.title === "mutation" && s.text.includes("becomes"));
+    visit(first + 1);
+    const thick = all("drawing", "rect").filter(r => r.getAttribute("stroke-width") === "3").length;
+    const n = data.generations[0].n, of = data.steps[first].of;
+    const hits = data.generations[0].u.slice(of * n, (of + 1) * n).filter(u => u < data.generations[0].factor).length;
+    check("genes that mutate have a thick edge", thick === 2 * hits && hits > 0, thick);
+    check("the place of the new gene in its range", all("drawing", "circle").length === hits);
+    check("the mutated gene is marked in the matrix", all("population", "circle").length >= hits);
+  }
+  function landscapeAndFamily() {
+    const picture = id => at(id).innerHTML;
+    const before = picture("landscape");
+    check("both genes can be chosen", at("across").options.length === data.parameters.length && at("up").options.length === data.parameters.length);
+    choose("across", String(data.parameters.length - 1)); check("another gene across", picture("landscape") !== before);
+    const between = picture("landscape");
+    choose("up", "0"); check("another gene up", picture("landscape") !== between);
+    check("fields and dots", all("landscape", ".field").length > 0 && all("landscape", "circle, path").length === data.generations[0].fitness.length);
+    choose("whose", "winner");
+    check("the winner's family", all("family", ".member").length === data.families[data.winner].length, all("family", ".member").length);
+    check("lines lead to its parents", all("family", "line").length === data.families[data.winner].flatMap(m => m.from).filter(p => p !== null).length);
+    choose("whose", "now"); check("the family of this generation's best", all("family", ".member").length === data.families[data.family_of[0]].length);
+  }
+
+  function rows() {
+    const first = at("population").querySelector(".row[tabindex='0']");
+    first.focus(); check("a row tells its numbers", at("individual").textContent.includes(data.parameters[0] + " = "), at("individual").textContent);
+    const text = at("individual").textContent;
+    key("ArrowDown", document.activeElement); check("the arrows go from row to row", at("individual").textContent !== text);
+    key("ArrowUp", document.activeElement); check("and back", at("individual").textContent === text);
+    check("the rows are one stop of the tab key", all("population", ".row[tabindex='0']").length === 1);
+    key("ArrowRight", document.activeElement); check("the place is kept from step to step", at("population").contains(document.activeElement));
+    document.activeElement.blur();
+  }
+
+  const wait = time => new Promise(done => setTimeout(done, time));
+  async function playing() {
+    click("first"); click("play"); check("play can be paused", at("play").textContent === "Pause");
+    await wait(2000); check("play goes on step by step", step() === 3, step());
+    key(" "); check("the space key pauses", at("play").textContent === "Play");
+    await wait(2000); check("paused", step() === 3, step());
+    choose("pace", "3"); click("play"); await wait(2000); check("play by generations", title().startsWith("Generation 3 "), title());
+    click("next"); check("a step stops playing", at("play").textContent === "Play");
+    choose("pace", "2"); click("first"); click("play"); await wait(1000); check("play by parts", step() > 1 && data.steps[step() - 1].title !== data.steps[0].title);
+    click("play"); choose("pace", "1"); click("last"); click("back"); click("play"); await wait(3000);
+    check("play ends at the end", step() === data.steps.length && at("play").textContent === "Play", step());
+    location.hash = "#step=5"; await wait(100); check("a link is followed", at("link").hash === "#step=5");
+  }
+  function outside() {
+    check("nothing is loaded", performance.getEntriesByType("resource").length === 0);
+    check("the page is not wider than the window", document.documentElement.scrollWidth <= innerWidth, document.documentElement.scrollWidth + " in " + innerWidth);
+    const texts = [...document.querySelectorAll("svg text")].filter(t => t.getBBox().x < -1 || t.getBBox().x + t.getBBox().width > t.ownerSVGElement.viewBox.baseVal.width + 1);
+    check("no text of a drawing is cut off", texts.length === 0, texts.map(t => t.textContent).join());
+  }
+
+  window.addEventListener("error", event => reports.push("WRONG: " + event.message));
+  window.addEventListener("load", async () => {
+    try { buttonsAndKeys(); slidersAndLink(); panels(); outside(); rows(); await playing(); outside(); } catch (error) { reports.push("WRONG: " + error.stack); }
+    const told = "[[" + reports.join("\n") + "\nwidth " + innerWidth + "]]";
+    if (parent !== window) return parent.postMessage(told, "*");
+    document.body.replaceChildren(told);
+  });
+})();

@@ -1,0 +1,63 @@
+//! The page of `gapi teach --html` in a real browser: every control is used, on a desktop and on a
+//! phone. `GAPILIB_CHROMIUM` names the browser; else `chromium`, `chromium-browser` or
+//! `google-chrome` on the path is taken. Where there is none, the test says so and passes.
+
+use crate::cli::{folder, gapi};
+use crate::shipped::project;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn chromium() -> Option<PathBuf> {
+    if let Some(named) = std::env::var_os("GAPILIB_CHROMIUM") {
+        return Some(PathBuf::from(named));
+    }
+    let folders: Vec<PathBuf> =
+        std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default()).collect();
+    let names = ["chromium", "chromium-browser", "google-chrome"];
+    let mut all = names.iter().flat_map(|name| folders.iter().map(move |f| f.join(name)));
+    all.find(|path| path.is_file())
+}
+
+/// The page after all that its scripts do, as the browser has it then.
+fn shown(chromium: &Path, here: &Path, page: &str) -> String {
+    let out = Command::new(chromium)
+        .args(["--headless", "--no-sandbox", "--disable-gpu", "--window-size=1280,800"])
+        .args(["--virtual-time-budget=60000", "--dump-dom"])
+        .arg(format!("--user-data-dir={}", here.join("profile").display()))
+        .arg(format!("file://{}", here.join(page).display()))
+        .output()
+        .expect("the browser starts");
+    String::from_utf8_lossy(&out.stdout).into_owned()
+}
+
+/// What the script of the test has reported: one line for each check.
+fn reports(dom: &str) -> Vec<String> {
+    let inner = dom.split_once("[[").and_then(|(_, rest)| Some(rest.split_once("]]")?.0));
+    inner.unwrap_or_else(|| panic!("no report in\n{dom}")).lines().map(str::to_owned).collect()
+}
+
+#[test]
+#[allow(clippy::print_stderr, reason = "a test that is skipped has to say so")]
+fn every_control_of_the_page_does_what_it_should() {
+    let Some(chromium) = chromium() else {
+        eprintln!("skipped: no Chromium; GAPILIB_CHROMIUM names one");
+        return;
+    };
+    let lesson = std::fs::read_to_string(project("scripts/lessons/07_elites.mos")).unwrap();
+    let here = folder(&[("search.mos", &lesson)]);
+    let (code, _, errors) = gapi(&here, &["teach", "search.mos", "--html", "steps.html"]);
+    assert_eq!(code, 0, "{errors}");
+    let page = std::fs::read_to_string(here.path().join("steps.html")).unwrap();
+    let walk = std::fs::read_to_string(project("tests/page/use_every_control.js")).unwrap();
+    let page = page.replace("</body>", &format!("<script>{walk}</script></body>"));
+    std::fs::write(here.path().join("tested.html"), page).unwrap();
+    let phone = "<body><script>onmessage = e => document.body.replaceChildren(e.data)</script>\
+        <iframe src=\"tested.html\" width=\"390\" height=\"844\" style=\"border: 0\"></iframe>";
+    std::fs::write(here.path().join("phone.html"), phone).unwrap();
+    for (page, width) in [("tested.html", 1280), ("phone.html", 390)] {
+        let mut reports = reports(&shown(&chromium, here.path(), page));
+        assert_eq!(reports.pop(), Some(format!("width {width}")), "{reports:#?}");
+        let wrong: Vec<&String> = reports.iter().filter(|line| !line.starts_with("ok")).collect();
+        assert!(wrong.is_empty() && reports.len() > 50, "{page}: {wrong:#?}");
+    }
+}
