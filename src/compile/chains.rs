@@ -47,7 +47,7 @@ fn loop_assignments(sorted: &SortedDae) -> impl Iterator<Item = &Assignment> {
     sorted
         .blocks
         .iter()
-        .filter(|block| !matches!(block, Block::Assignment(_)))
+        .filter(|block| matches!(block, Block::Loop(_)))
         .flat_map(|block| block.assignments())
 }
 
