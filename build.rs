@@ -17,7 +17,12 @@ fn main() -> io::Result<()> {
         let parts = file.strip_prefix(&models).unwrap_or(file).iter();
         let name: Vec<_> = parts.map(|part| part.to_string_lossy()).collect();
         let name = name.join("/");
-        let _ = writeln!(table, "({name:?}, include_bytes!({:?})),", file.display().to_string());
+        // Where the project is now, not where it was when this ran: it may be moved.
+        let path = format!("/models/{name}");
+        let _ = writeln!(
+            table,
+            "({name:?}, include_bytes!(concat!(env!(\"CARGO_MANIFEST_DIR\"), {path:?}))),"
+        );
     }
     table.push(']');
     fs::write(folder("OUT_DIR")?.join("models.rs"), table)
