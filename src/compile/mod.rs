@@ -8,6 +8,7 @@ mod events;
 mod explanation;
 mod history;
 mod hoist;
+mod inquiry;
 mod jacobian;
 mod least_squares;
 mod linear_system;
