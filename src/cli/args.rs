@@ -97,6 +97,7 @@ Examples:
   gapi run scripts/GAPILib.mos
   gapi run scripts/twin/GAPILib.mos --out twin --threads 1
   gapi run my.mos --transcript my.txt --quiet --strict
+  gapi run my.mos --resume              go on after Ctrl-C, a crash or a power cut
   gapi run --parse-only scripts
 
 Exit code: 0 if all went well, 1 if an error happened that the script did not read,
@@ -114,6 +115,12 @@ pub(super) struct RunArgs {
     /// Write every statement with its answer to a file
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub transcript: Option<PathBuf>,
+    /// Go on with a run that was killed, from the checkpoint in the output folder
+    #[arg(long)]
+    pub resume: bool,
+    /// A progress bar only, no live view of the run (shown on a terminal after a second)
+    #[arg(long)]
+    pub plain: bool,
     /// Record what the genetic algorithm did, for `gapi teach`
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub trace: Option<PathBuf>,
@@ -300,6 +307,9 @@ pub(super) struct IdentifyArgs {
     /// A file with settings (name = number) that may change while it runs
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub watch: Option<PathBuf>,
+    /// A progress bar only, no live view of the run (shown on a terminal after a second)
+    #[arg(long)]
+    pub plain: bool,
     /// Show errors only
     #[arg(long, short)]
     pub quiet: bool,

@@ -10,6 +10,7 @@ mod help;
 mod identify;
 mod lesson;
 mod limits;
+mod live;
 mod parsing;
 mod repl;
 mod run;

@@ -3,6 +3,7 @@
 use super::limits::Reason;
 use super::terminal::Terminal;
 use crate::models;
+use crate::script::view::View;
 use crate::script::world::{Files, Progress, Stamp, World, normalized};
 use std::collections::BTreeMap;
 use std::fs;
@@ -38,10 +39,10 @@ impl SystemWorld {
         Ok(SystemWorld {
             output: current.join(output),
             current,
+            interrupt: terminal.interrupt(),
             terminal,
             threads: threads.unwrap_or(available).max(1),
             started: Instant::now(),
-            interrupt: Arc::default(),
             reason: Reason::default(),
             changes: 0,
         })
@@ -221,6 +222,26 @@ impl World for SystemWorld {
 
     fn progress(&mut self, progress: &Progress) {
         self.terminal.progress(progress);
+    }
+
+    fn wants_view(&mut self) -> bool {
+        self.terminal.wants_view()
+    }
+
+    fn show_view(&mut self, view: &View) {
+        self.terminal.show_view(view);
+    }
+
+    fn end_view(&mut self) {
+        self.terminal.end_view();
+    }
+
+    fn wants_pause(&mut self) -> bool {
+        self.terminal.wants_pause()
+    }
+
+    fn ask(&mut self, prompt: &str) -> Option<String> {
+        self.terminal.ask(prompt)
     }
 
     fn resolved(&self, path: &Path) -> PathBuf {

@@ -67,6 +67,21 @@ pub struct Options {
     pub strictness: Strictness,
     /// What scripts may do outside.
     pub permissions: Permissions,
+    /// Whether what the simulations answer is kept on the way.
+    pub journaling: Journaling,
+}
+
+/// Whether a run of scripts keeps a journal of its simulations in the output folder, from which it
+/// can go on when it was killed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Journaling {
+    /// It does not.
+    #[default]
+    Off,
+    /// It does, and begins anew.
+    Fresh,
+    /// It does, and goes on from what an earlier run has left.
+    Resume,
 }
 
 /// How a run ended.

@@ -9,6 +9,7 @@
 mod evaluation;
 mod experiment;
 mod failure;
+mod fingerprint;
 mod html;
 mod importance;
 mod journal;
@@ -24,8 +25,9 @@ mod text;
 pub use evaluation::Evaluation;
 pub use experiment::{Experiment, ModelSimulator, Observation};
 pub use failure::{Failed, FailureKind};
+pub use fingerprint::Fingerprint;
 pub use importance::{ANALYSES, Analysis, Importance, ParameterImportance, analysis};
-pub use journal::{Journal, Record, decode, encode, header};
+pub use journal::{Journal, Record, decode, encode, first_frame, frame, header};
 pub use profile::{Profile, Profiles, profiles};
 pub use run::{Best, Run};
 pub use space::Free;

@@ -10,8 +10,8 @@ use crate::fault;
 use crate::ga::optimizer::METHODS;
 use crate::identify::fitness::FITNESSES;
 use crate::identify::problem::{
-    Experiment, Free, ModelSimulator, NOISE_OF_FORMULAS, Observation, Problem, Series, Simulate,
-    Stop,
+    Experiment, Fingerprint, Free, ModelSimulator, NOISE_OF_FORMULAS, Observation, Problem, Series,
+    Simulate, Stop,
 };
 use crate::identify::{CompiledModel, Model};
 use crate::mat::{self, MatFile};
@@ -55,14 +55,14 @@ pub(super) fn build(
         session.load_path(&folder.join(models))?;
     }
     let free = free_parameters(file).map_err(one)?;
-    let mut hash = Hash::default();
-    hash.add(text.as_bytes());
+    let mut fingerprint = Fingerprint::default();
+    fingerprint.add(text.as_bytes());
     let (mut experiments, mut series, mut validation) = (Vec::new(), Vec::new(), Vec::new());
     let mut noise: f64 = NOISE_OF_FORMULAS;
     for (number, entry) in file.experiment.iter().enumerate() {
         let data = folder.join(&entry.data);
         let bytes = session.read_bytes(&data).map_err(one)?;
-        hash.add(&bytes);
+        fingerprint.add(&bytes);
         let table = mat::read_named(&data.to_string_lossy(), &bytes).map_err(one)?;
         let built = experiment(session, file, entry, number, &table, &free)?;
         let (experiment, own, has_states) = built;
@@ -85,7 +85,7 @@ pub(super) fn build(
     drop(ModelSimulator::new(&experiments).map_err(one)?);
     let simulator = move || Ok(Box::new(ModelSimulator::new(&experiments)?) as Box<dyn Simulate>);
     let problem = assemble(file, parameters, series, noise, Box::new(simulator)).map_err(one)?;
-    Ok(Built { problem, validation, fingerprint: hash.0 })
+    Ok(Built { problem, validation, fingerprint: fingerprint.number() })
 }
 
 fn assemble(
@@ -387,22 +387,5 @@ fn check_unit(name: &str, unit: &str, entry: &ColumnEntry) -> Result<(), Fault> 
             help: "give the `factor` that turns the column's values into the model's unit"
         ),
         _ => Ok(()),
-    }
-}
-
-/// FNV-1a.
-struct Hash(u64);
-
-impl Default for Hash {
-    fn default() -> Hash {
-        Hash(0xcbf2_9ce4_8422_2325)
-    }
-}
-
-impl Hash {
-    fn add(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
-        }
     }
 }

@@ -210,3 +210,33 @@ problem = GAPILib.Problem(modelName = \"Free\", files = {\"tank.mo\"},
         assert!(session.world.exists(&path), "{name}");
     }
 }
+
+#[test]
+fn what_is_changed_in_a_pause_is_recorded_and_done_again() {
+    let data = table("time,q", |t| (3.0 * (-t).exp() + 0.01 * (7.0 * t).sin()).to_string());
+    let files = [("p.toml", SIMPLE.to_owned()), ("d.csv", data)];
+    let lines =
+        ["mutation = 0.5", "min k = 0.2", "colour = 3", "nothing", "evaluations = 400", "stop"];
+    let run = |world: MemoryWorld, resume: bool| {
+        let streams = world.streams();
+        let mut session = Session::new(Box::new(world));
+        let options = RunOptions { resume, ..RunOptions::default() };
+        let solution = solve(&mut session, Path::new("p.toml"), &options);
+        let text = streams.output() + &streams.errors();
+        (solution.unwrap_or_else(|errors| panic!("{}", errors[0].message)), text, session)
+    };
+    let (whole, text, _) = run(world(&files).paused_after(4, &lines[..5]), false);
+    let changes: Vec<_> = whole.changes.iter().map(|(at, what, _)| (*at, what.as_str())).collect();
+    assert_eq!(changes, [(4, "mutation"), (4, "min k"), (4, "evaluations")]);
+    assert!(text.contains("mutation = 0.5 from generation 5 on"), "{text}");
+    assert!(text.contains("`colour`") && text.contains("no NAME = NUMBER"), "{text}");
+    assert_eq!(whole.parameters[0].range, [0.2, 5.0]);
+    // Ended in a later pause, it goes on from there with the changes that were made.
+    let twice = world(&files).paused_after(4, &lines);
+    let (ended, text, session) = run(twice, false);
+    assert!(ended.evaluations < whole.evaluations && text.contains("--resume"), "{text}");
+    let path = session.world.output_dir().join(JOURNAL);
+    let journal = session.world.read(&path).unwrap();
+    let (_, _, session) = run(world(&files).with_file(&path, journal), true);
+    assert!(!session.world.exists(&path));
+}
