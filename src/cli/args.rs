@@ -80,6 +80,8 @@ pub(super) enum Command {
     Check(CheckArgs),
     /// Print a model as flat Modelica
     Flatten(FlattenArgs),
+    /// Draw the report of an identification again from its files
+    Report(ReportArgs),
     /// Compare results with reference results
     Compare(CompareArgs),
     /// Check a library against a collection of reference results
@@ -473,6 +475,25 @@ pub(super) struct FlattenArgs {
     /// The class to flatten
     #[arg(long, value_name = "CLASS")]
     pub model: String,
+}
+
+/// Arguments of `gapi report`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi report results
+  gapi report results --output fit.html
+
+It reads result.json, history.csv and individuals.csv, as `gapi identify` has written them.
+
+Exit code: 0 if the report was written, 1 if a file is missing or damaged.")]
+pub(super) struct ReportArgs {
+    /// The folder with the results of `gapi identify`
+    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub folder: PathBuf,
+    /// The page [default: report.html in the folder]
+    #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
 }
 
 /// Arguments of `gapi compare`.

@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, LazyLock};
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 /// The operating system as scripts see it. The working directory is the session's own, so that
@@ -175,6 +175,11 @@ impl World for SystemWorld {
 
     fn monotonic_seconds(&self) -> f64 {
         self.started.elapsed().as_secs_f64()
+    }
+
+    fn clock(&self) -> Option<fn() -> f64> {
+        static STARTED: LazyLock<Instant> = LazyLock::new(Instant::now);
+        Some(|| STARTED.elapsed().as_secs_f64())
     }
 
     fn unix_seconds(&self) -> u64 {

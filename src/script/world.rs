@@ -78,6 +78,10 @@ pub trait World {
     fn eprint(&mut self, text: &str);
     /// Seconds since an arbitrary moment, never decreasing.
     fn monotonic_seconds(&self) -> f64;
+    /// Seconds since an arbitrary moment for work that cannot ask the world, if there is a clock.
+    fn clock(&self) -> Option<fn() -> f64> {
+        None
+    }
     /// Seconds since 1970-01-01 00:00 UTC. Nothing that must be reproducible may depend on it.
     fn unix_seconds(&self) -> u64;
     /// The number of this process, 0 where there is none.

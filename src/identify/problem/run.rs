@@ -201,7 +201,8 @@ impl Run {
         self.converged = !self.asked;
     }
 
-    /// One question and its answers; `None` when the method has converged. `seconds` of work so
+    /// One question and its answers; `None` when the method has converged or the simulations were
+    /// cancelled, after which it can be asked again. `seconds` of work so
     /// far go into the record.
     pub fn step(&mut self, seconds: f64) -> Option<Record> {
         self.ask();
@@ -209,7 +210,7 @@ impl Run {
             return None;
         }
         let residuals = self.optimizer.wants_residuals();
-        let answered = self.evaluation.evaluate(&self.problem, &self.batch, residuals);
+        let answered = self.evaluation.evaluate(&self.problem, &self.batch, residuals)?;
         let record = Record {
             seconds,
             changes: std::mem::take(&mut self.changes),

@@ -65,6 +65,7 @@ impl Solution {
         for (generation, setting, value) in &self.changes {
             facts.push(("changed", format!("{setting} = {value} after generation {generation}")));
         }
+        facts.push(("version", format!("gapilib {}", self.version)));
         facts.push(("seed", self.seed.map(|entry| entry.to_string()).join(" ")));
         facts
     }

@@ -9,6 +9,7 @@ mod build;
 mod control;
 mod file;
 mod live;
+mod own_fitness;
 mod record;
 
 use super::Session;
@@ -116,6 +117,7 @@ fn solve_built(
     let mut checkpoint = open(session, &mut run, &folder, fingerprint, options, every)?;
     let mut watched = options.watch.clone().map(Watched::new);
     let mut live = Live::default();
+    run.evaluation.cancel_by(session.world.interrupt_flag());
     let before = run.seconds;
     let mut started = session.world.monotonic_seconds();
     let mut looked = f64::NEG_INFINITY;
@@ -143,6 +145,7 @@ fn solve_built(
         live.show(session, &run);
     };
     session.world.end_view();
+    run.evaluation.cancel_by(None);
     checkpoint.flush(session, run.seconds);
     let validation = validated(&run, &validation)?;
     let mut solution = Solution::of(&run, &stop, validation)?;
