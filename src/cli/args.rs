@@ -120,6 +120,9 @@ pub(super) struct RunArgs {
     /// Go on with a run that was killed, from the checkpoint in the output folder
     #[arg(long)]
     pub resume: bool,
+    /// Seconds between two checkpoints
+    #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = seconds)]
+    pub checkpoint: f64,
     /// A progress bar only, no live view of the run (shown on a terminal after a second)
     #[arg(long)]
     pub plain: bool,

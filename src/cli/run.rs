@@ -57,7 +57,9 @@ fn options(arguments: &RunArgs) -> Options {
         _ => Strictness::Usual,
     };
     let echo = if arguments.echo { Echo::Everything } else { Echo::Usual };
-    let journaling = if arguments.resume { Journaling::Resume } else { Journaling::Fresh };
+    let seconds = arguments.checkpoint;
+    let journaling =
+        if arguments.resume { Journaling::Resume(seconds) } else { Journaling::Fresh(seconds) };
     Options { echo, strictness, journaling, ..arguments.freedom.options() }
 }
 

@@ -8,7 +8,7 @@
 //! ```
 
 use super::builtins::Failure;
-use super::checkpoint::{self, Checkpoint};
+use super::checkpoint::Checkpoint;
 use super::identification::Request;
 use super::{Journaling, Session};
 use crate::bail;
@@ -52,11 +52,13 @@ impl Session {
         request: &Request,
         genomes: &Genomes,
     ) -> Result<Option<Simulated>, Failure> {
-        if self.options.journaling == Journaling::Off {
-            return Ok(None);
-        }
+        let (seconds, resumes) = match self.options.journaling {
+            Journaling::Off => return Ok(None),
+            Journaling::Fresh(seconds) => (seconds, false),
+            Journaling::Resume(seconds) => (seconds, true),
+        };
         if self.extension::<Journal>().checkpoint.is_none() {
-            self.open_journal()?;
+            self.open_journal(seconds, resumes)?;
         }
         let Some(entry) = self.extension::<Journal>().replay.pop_front() else { return Ok(None) };
         match entry {
@@ -125,12 +127,12 @@ impl Session {
         self.extension::<Journal>().checkpoint = Some(checkpoint);
     }
 
-    fn open_journal(&mut self) -> Result<(), Failure> {
+    fn open_journal(&mut self, seconds: f64, resumes: bool) -> Result<(), Failure> {
         let path = self.world.output_dir().join(FILE);
         let now = self.world.monotonic_seconds();
-        let mut checkpoint = Checkpoint::new(path.clone(), (None, checkpoint::SECONDS), now);
+        let mut checkpoint = Checkpoint::new(path.clone(), (None, seconds), now);
         let exists = self.world.exists(&path);
-        if exists && self.options.journaling == Journaling::Resume {
+        if exists && resumes {
             let old = self.read_bytes(&path)?;
             let Some((entries, whole)) = decode(&old) else {
                 bail!(BAD_OPTION, "`{}` is no checkpoint of a script", path.display(); help: "begin anew without `--resume`")

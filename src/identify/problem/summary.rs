@@ -70,6 +70,9 @@ pub struct Solution {
     pub front: Vec<(Vec<f64>, Vec<f64>)>,
     /// The place in the front that is farthest from the line between its ends.
     pub knee: Option<usize>,
+    /// The hypervolume of the front, and the reference point that it is measured from: a tenth of
+    /// the front's width beyond its worst values.
+    pub hypervolume: Option<(f64, Vec<f64>)>,
     /// Names of the objectives.
     pub objectives: Vec<String>,
     /// The seed.
@@ -231,6 +234,7 @@ impl Solution {
             importance: None,
             profiles: None,
             knee: knee(&run.front),
+            hypervolume: front_volume(&run.front),
             front: run.front.clone(),
             objectives: problem.objectives.iter().map(|(name, _)| name.clone()).collect(),
             seed: problem.seed,
@@ -324,6 +328,19 @@ fn correlations(statistics: &Statistics, n: usize) -> Option<Vec<Vec<Option<f64>
     let found = statistics.uncertainty.as_ref()?;
     let entry = |k: usize, l: usize| Some(found.correlations[k * n + l]).filter(|c| c.is_finite());
     Some((0..n).map(|k| (0..n).map(|l| entry(k, l)).collect()).collect())
+}
+
+fn front_volume(front: &[(Vec<f64>, Vec<f64>)]) -> Option<(f64, Vec<f64>)> {
+    let m = front.first()?.1.len();
+    let column = |j: usize| front.iter().map(move |(_, objectives)| objectives[j]);
+    let reference: Vec<f64> = (0..m)
+        .map(|j| {
+            let worst = column(j).fold(f64::NEG_INFINITY, f64::max);
+            worst + 0.1 * (worst - column(j).fold(f64::INFINITY, f64::min))
+        })
+        .collect();
+    let points: Vec<f64> = front.iter().flat_map(|(_, objectives)| objectives.clone()).collect();
+    Some((crate::ga::hypervolume(&points, m, &reference), reference))
 }
 
 /// The member of a front of two objectives that is farthest from the line between its ends, both
