@@ -217,7 +217,7 @@ impl System {
         let (mut changed, mut terminated) = (false, false);
         for _ in 0..MAX_ROUNDS {
             changed |= self.settle(t, Stage::Event)?;
-            terminated |= self.check_at_event()?;
+            terminated |= self.check_at_event(t)?;
             let set = self.reinitialize()?;
             let moved = self.update_previous();
             changed |= set;
@@ -263,15 +263,15 @@ impl System {
     }
 
     /// Checks the assertions of when-clauses; whether one of them ends the simulation.
-    fn check_at_event(&mut self) -> Result<bool, Failure> {
+    fn check_at_event(&mut self, t: f64) -> Result<bool, Failure> {
         let program = self.program.clone();
         let (assertions, ends) = (&program.events.assertions, &program.events.terminations);
         run(&assertions.tape, &mut self.registers)?;
         let value = |register: &u32| self.registers[*register as usize];
         if let Some(failed) = assertions.outputs.iter().position(|a| value(a) == 0.0) {
-            let number = program.sorted.dae.assertions.len() + failed;
-            return Err(Failure::Assertion { assertion: number as u32 });
+            return Err(Failure::Assertion { assertion: program.events.asserted[failed] });
         }
+        self.notice_at_event(t)?;
         run(&ends.tape, &mut self.registers)?;
         Ok(ends.outputs.iter().any(|end| self.registers[*end as usize] != 0.0))
     }

@@ -1,9 +1,10 @@
 //! What a program does at events, as code.
 
 use super::lower::Registers;
+use super::notices::Notice;
 use super::program::{Outputs, Step, compile_outputs};
 use super::tape::Register;
-use crate::dae::{Assignment, Equation, Kind, SortedDae};
+use crate::dae::{Assignment, Equation, Kind, Level, SortedDae};
 use crate::flatten::BaseType;
 use crate::symbolic::{Expr, Pool, VarId, linear_in};
 
@@ -34,6 +35,10 @@ pub(super) struct Events {
     pub(super) reinits: Outputs,
     /// Conditions of the assertions at events.
     pub(super) assertions: Outputs,
+    /// Their numbers among all.
+    pub(super) asserted: Vec<u32>,
+    /// Warnings and texts that are printed.
+    pub(super) notices: Vec<Notice>,
     /// Conditions of `terminate`.
     pub(super) terminations: Outputs,
     pub(super) delays: Vec<CompiledDelay>,
@@ -84,6 +89,7 @@ impl Events {
             && self.initial.is_none()
             && self.terminal.is_none()
             && self.assertions.outputs.is_empty()
+            && self.notices.is_empty()
             && self.terminations.outputs.is_empty()
     }
 
@@ -108,6 +114,9 @@ pub(super) fn compile_events(
         time: compile_outputs(pool, registers, &[], &[delay.time]),
     });
     let delays = delays.collect();
+    let first = dae.assertions.len();
+    let numbered = || events.assertions.iter().enumerate().map(|(at, a)| (first + at, a));
+    let errors = || numbered().filter(|(_, assertion)| assertion.level == Level::Error);
     let mut outputs = |list: &[Expr]| compile_outputs(pool, registers, &[], list);
     let all = (0..dae.variables.len() as u32).map(VarId);
     let previous = all.clone().filter_map(|v| match dae.variable(v).kind {
@@ -136,7 +145,15 @@ pub(super) fn compile_events(
         clocks: outputs(&pairs(events.samples.iter().map(|s| (s.start, s.interval)))),
         reinitialized: events.reinits.iter().map(|r| resolve(r.state)).collect(),
         reinits: outputs(&pairs(events.reinits.iter().map(|r| (r.condition, r.value)))),
-        assertions: outputs(&events.assertions.iter().map(|a| a.condition).collect::<Vec<_>>()),
+        assertions: outputs(&errors().map(|(_, a)| a.condition).collect::<Vec<_>>()),
+        asserted: errors().map(|(at, _)| at as u32).collect(),
+        notices: numbered()
+            .filter(|(_, assertion)| assertion.level != Level::Error)
+            .map(|(at, assertion)| {
+                let values = std::iter::once(assertion.condition).chain(assertion.values());
+                Notice { assertion: at as u32, code: outputs(&values.collect::<Vec<_>>()) }
+            })
+            .collect(),
         terminations: outputs(&events.terminations.iter().map(|t| t.condition).collect::<Vec<_>>()),
         delays,
         initial: events.initial,

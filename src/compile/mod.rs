@@ -16,6 +16,7 @@ mod lower;
 mod machine_code;
 mod memory;
 mod newton;
+mod notices;
 mod program;
 mod relations;
 mod selection;
@@ -24,5 +25,6 @@ mod system;
 mod tape;
 mod translation;
 
+pub use notices::Told;
 pub use program::{Access, ParameterInfo, Program, VariableInfo};
 pub use system::System;

@@ -6,9 +6,10 @@ use super::hoist::Hoisting;
 use super::jacobian::differentiate_sequence;
 use super::lower::{Registers, TapeBuilder};
 use super::machine_code::MachineCode;
+use super::notices::Notice;
 use super::system::System;
 use super::tape::{Register, Tape};
-use crate::dae::{Assignment, Block, Kind, SortedDae, Variable};
+use crate::dae::{Assertion, Assignment, Block, Kind, Level, SortedDae, Variable};
 use crate::diag::Diagnostic;
 use crate::flatten::{BaseType, Variability};
 use crate::sim::Pattern;
@@ -180,6 +181,8 @@ pub struct Program {
     pub(super) selections: Vec<CompiledSelection>,
     pub(super) observe: Outputs,
     pub(super) assertions: Vec<(usize, Outputs)>,
+    /// Warnings: they do not end a simulation.
+    pub(super) notices: Vec<Notice>,
     pub(super) events: Events,
 }
 
@@ -340,7 +343,7 @@ impl Program {
             .assertions
             .iter()
             .enumerate()
-            .filter(|(_, assertion)| assertion.is_error)
+            .filter(|(_, assertion)| assertion.level == Level::Error)
             .map(|(at, assertion)| {
                 (
                     at,
@@ -353,6 +356,19 @@ impl Program {
                     ),
                 )
             })
+            .collect();
+
+        let mut notice = |at: usize, assertion: &Assertion| {
+            let outputs: Vec<Expr> =
+                std::iter::once(assertion.condition).chain(assertion.values()).collect();
+            let code =
+                compile_continuous(&pool, &mut registers, &sequence, &outputs, Hoisting::Total);
+            Notice { assertion: at as u32, code }
+        };
+        let notices = sorted.dae.assertions.iter().enumerate();
+        let notices = notices
+            .filter(|(_, assertion)| assertion.level != Level::Error)
+            .map(|(at, assertion)| notice(at, assertion))
             .collect();
 
         let initial_checks = sorted
@@ -426,6 +442,7 @@ impl Program {
             selections,
             observe,
             assertions,
+            notices,
             events,
         };
         program.fill_defaults();

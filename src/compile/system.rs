@@ -5,6 +5,7 @@ use super::history::History;
 use super::hoist::Hoisting;
 use super::memory::Memory;
 use super::newton::LoopSolver;
+use super::notices::Notices;
 use super::program::{Access, Outputs, Program, Step, compile_continuous, resolved};
 use super::relations::Change;
 use super::selection::Choice;
@@ -59,6 +60,8 @@ pub struct System {
     pub(super) sampled: bool,
     /// The variable that changed last in an event iteration.
     pub(super) unstable: u32,
+    /// What is told of a simulation, where somebody listens.
+    pub(super) notices: Option<Notices>,
 }
 
 impl System {
@@ -85,6 +88,7 @@ impl System {
             delay_times: vec![0.0; program.events.delays.len()],
             sampled: false,
             unstable: 0,
+            notices: None,
             program,
         };
         system.evaluate_nominals();
@@ -429,15 +433,18 @@ impl DaeSystem for System {
     }
 
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        self.forget_notices();
         self.solve_initial_system(t)?;
         self.check_initial_values()?;
+        self.notice_at_event(t)?;
         self.improve_choices()?;
         self.start_clocks(t)?;
         self.start_histories(t)?;
         self.iterate_at_start(t)?;
         self.improve_choices()?;
         self.unload(y);
-        self.violated().map_or(Ok(()), Err)
+        self.violated().map_or(Ok(()), Err)?;
+        self.notice(t)
     }
 
     fn n_crossings(&self) -> usize {
@@ -507,11 +514,13 @@ impl DaeSystem for System {
     }
 
     fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
-        if self.program.assertions.is_empty() {
+        let tells = self.notices.is_some() && !self.program.notices.is_empty();
+        if self.program.assertions.is_empty() && !tells {
             return Ok(());
         }
         self.load_solved(t, y)?;
-        self.violated().map_or(Ok(()), Err)
+        self.violated().map_or(Ok(()), Err)?;
+        self.notice(t)
     }
 
     fn n_observed(&self) -> usize {

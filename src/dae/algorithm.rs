@@ -390,6 +390,7 @@ impl Builder<'_> {
                 self.dae.events.terminations.push(termination);
                 Ok(())
             }
+            _ if self.in_when && self.printing(call, loops)?.is_some() => Ok(()),
             (text, _) => match Target::function(self, &function.name()) {
                 Some(user) => {
                     let mut lowering = self.statement_lowering(loops);

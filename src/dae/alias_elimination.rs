@@ -189,7 +189,7 @@ fn rewrite(dae: &mut Dae, aliases: &[Option<Alias>]) {
         replace(&mut equation.left);
         replace(&mut equation.right);
     }
-    dae.assertions.iter_mut().for_each(|assertion| replace(&mut assertion.condition));
+    dae.assertions.iter_mut().for_each(|assertion| assertion.for_each_expression(&mut replace));
     for relation in &mut dae.relations {
         replace(&mut relation.left);
         replace(&mut relation.right);

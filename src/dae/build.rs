@@ -3,7 +3,8 @@
 use super::algorithm::Execution;
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, PARAMETER_CYCLE, UNRESOLVED_REFERENCE};
 use super::lowering::{Array, Lowered, Lowering, Target, size_fault};
-use super::model::{Assertion, Dae, Equation, Instance, Kind, StateSelect, Variable};
+use super::message::message_parts;
+use super::model::{Assertion, Dae, Equation, Instance, Kind, Level, StateSelect, Variable};
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::flatten::{self, BaseType, FlatModel, Part, Variability};
@@ -564,12 +565,12 @@ impl<'a> Builder<'a> {
         lowering.loops = loops.to_vec();
         lowering.live = true;
         let condition = lowering.scalar(condition)?;
-        let is_error = match find(2, "level") {
-            Some(level) => lowering.known(level)? != 1.0,
-            None => true,
+        let level = match find(2, "level") {
+            Some(level) if lowering.known(level)? == 1.0 => Level::Warning,
+            _ => Level::Error,
         };
-        let message = message_text(&mut lowering, find(1, "message"));
-        self.dae.assertions.push(Assertion { condition, message: message.into(), is_error, span });
+        let parts = message_parts(&mut lowering, find(1, "message"));
+        self.dae.assertions.push(Assertion::new(condition, parts, level, span));
         Ok(())
     }
 }

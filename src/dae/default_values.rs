@@ -133,7 +133,7 @@ fn replace_everywhere(dae: &mut Dae, replacements: &[Option<Expr>]) {
         replace(&mut equation.left);
         replace(&mut equation.right);
     }
-    assertions.iter_mut().for_each(|assertion| replace(&mut assertion.condition));
+    assertions.iter_mut().for_each(|assertion| assertion.for_each_expression(&mut replace));
     for relation in relations {
         replace(&mut relation.left);
         replace(&mut relation.right);

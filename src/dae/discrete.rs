@@ -177,7 +177,9 @@ fn drop_unused_previous(dae: &mut Dae) {
         mark(relation.left);
         mark(relation.right);
     }
-    dae.assertions.iter().for_each(|assertion| mark(assertion.condition));
+    for assertion in &mut dae.assertions {
+        assertion.for_each_expression(|e| mark(*e));
+    }
     dae.events.for_each_expression(|e| mark(*e));
     for (variable, used) in dae.variables.iter_mut().zip(used) {
         if matches!(variable.kind, Kind::Previous(_)) && !used {

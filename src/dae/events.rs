@@ -103,7 +103,7 @@ impl Events {
             visit(&mut reinit.condition);
             visit(&mut reinit.value);
         }
-        self.assertions.iter_mut().for_each(|a| visit(&mut a.condition));
+        self.assertions.iter_mut().for_each(|a| a.for_each_expression(&mut visit));
         self.terminations.iter_mut().for_each(|t| visit(&mut t.condition));
     }
 }

@@ -9,7 +9,7 @@ use super::build::{Builder, message_text};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use super::function::{component_type, local_value};
 use super::lowering::{Array, Binary, Branch, Choice, Lowered, Lowering, Operator, Target, Unary};
-use super::model::{Assertion, Shape};
+use super::model::{Assertion, Level, Part, Shape};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
@@ -285,17 +285,17 @@ impl Call<'_, '_> {
         let Some(condition) = find(0, "condition") else {
             return Err(fault!(ARRAY_MISMATCH, "`assert` needs a condition").at(call.span));
         };
-        let is_error = match find(2, "level") {
-            Some(level) => self.lowering(loops).known(level)? != 1.0,
-            None => true,
+        let level = match find(2, "level") {
+            Some(level) if self.lowering(loops).known(level)? == 1.0 => Level::Warning,
+            _ => Level::Error,
         };
         let mut condition = self.lowering(loops).scalar(condition)?;
         for guard in self.guards.clone() {
             let not = self.unary(Unary::Not, guard);
             condition = self.binary(Binary::Or, not, condition);
         }
-        let message = message_text(&mut self.lowering(loops), find(1, "message")).into();
-        let assertion = Assertion { condition, message, is_error, span: call.span };
+        let text = message_text(&mut self.lowering(loops), find(1, "message")).into();
+        let assertion = Assertion::new(condition, vec![Part::Text(text)], level, call.span);
         self.builder.dae.assertions.push(assertion);
         Ok(())
     }

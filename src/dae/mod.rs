@@ -38,6 +38,7 @@ mod initial;
 mod inline;
 mod linear_loops;
 mod lowering;
+mod message;
 mod mixed;
 mod model;
 mod parameters;

@@ -178,15 +178,39 @@ impl Equation {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Instance(pub u32);
 
-/// `assert(condition, message)` of level error.
+/// What it means that a condition does not hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Level {
+    /// The simulation ends (`AssertionLevel.error`).
+    Error,
+    /// The user is warned (`AssertionLevel.warning`).
+    Warning,
+    /// A function prints the text.
+    Message,
+}
+
+/// A part of a text for people.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Part {
+    /// Known when compiling.
+    Text(Arc<str>),
+    /// A number of this value.
+    Number(Expr),
+    /// `true` or `false`.
+    Boolean(Expr),
+}
+
+/// `assert(condition, message, level)`, or a text that is printed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assertion {
     /// Must hold; its relations are evaluated as they are.
     pub condition: Expr,
-    /// The text for people.
+    /// The text for people as far as it is known when compiling.
     pub message: Arc<str>,
-    /// Whether a violation ends the simulation.
-    pub is_error: bool,
+    /// The same in parts.
+    pub parts: Vec<Part>,
+    /// What a violation means.
+    pub level: Level,
     /// Where it is written.
     pub span: Span,
 }

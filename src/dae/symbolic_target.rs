@@ -4,7 +4,7 @@ use super::build::{Builder, Folding, UNKNOWN_TEXT, scalar_of_nothing};
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::index_reduction::derivative_of;
 use super::lowering::{Array, Binary, Branch, Lowered, Lowering, Operator, Target, Unary};
-use super::model::{Assertion, Homotopy, Kind, Relation};
+use super::model::{Assertion, Homotopy, Kind, Level, Part, Relation};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, ValueType};
 use crate::fault;
@@ -311,7 +311,8 @@ impl Builder<'_> {
         let condition = pool.and(above, below);
         if self.dae.assertions.last().is_none_or(|last| last.condition != condition) {
             let message = "a subscript lies outside its array".into();
-            self.dae.assertions.push(Assertion { condition, message, is_error: true, span });
+            let parts = vec![Part::Text(message)];
+            self.dae.assertions.push(Assertion::new(condition, parts, Level::Error, span));
         }
     }
 

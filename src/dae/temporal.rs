@@ -4,7 +4,7 @@ use super::build::{Builder, scalar_of_nothing};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
 use super::events::{Delay, Rounding, Sample};
 use super::lowering::{Array, Target, size_fault};
-use super::model::{Assertion, Equation, Kind};
+use super::model::{Assertion, Equation, Kind, Level, Part};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
@@ -220,12 +220,8 @@ impl Builder<'_> {
         }
         let zero = self.dae.pool.constant(0.0);
         let condition = self.dae.pool.relation(RelationOperator::Greater, interval, zero);
-        self.dae.assertions.push(Assertion {
-            condition,
-            message: "the interval of `sample` must be positive".into(),
-            is_error: true,
-            span,
-        });
+        let parts = vec![Part::Text("the interval of `sample` must be positive".into())];
+        self.dae.assertions.push(Assertion::new(condition, parts, Level::Error, span));
         let variable = self.signal(&format!("$sample[{}]", self.dae.events.samples.len() + 1));
         self.dae.events.samples.push(Sample { variable, start, interval, span });
         Ok(self.dae.pool.variable(variable))
@@ -247,7 +243,8 @@ impl Builder<'_> {
         let zero = self.dae.pool.constant(0.0);
         let condition = self.dae.pool.relation(RelationOperator::Greater, time, zero);
         let message = "the time of `delay` must be positive".into();
-        self.dae.assertions.push(Assertion { condition, message, is_error: true, span });
+        let parts = vec![Part::Text(message)];
+        self.dae.assertions.push(Assertion::new(condition, parts, Level::Error, span));
         let name = format!("$delay[{}]", self.dae.events.delays.len() + 1);
         let variable = self.declare_scalar(scalar_of_nothing(&name, Kind::Delayed, span));
         self.dae.events.delays.push(Delay { variable, argument, time, span });

@@ -252,7 +252,10 @@ impl Builder<'_> {
                 let (states, values) = (lowering.array(state)?, lowering.array(value)?);
                 self.reinit(&states, &values, guard, call.span)
             }
-            (name, _) => Err(fault!(NOT_SUPPORTED, "`{name}(…)` in a when-clause").at(call.span)),
+            (name, _) => match self.printing(call, loops)? {
+                Some(()) => Ok(()),
+                None => Err(fault!(NOT_SUPPORTED, "`{name}(…)` in a when-clause").at(call.span)),
+            },
         }
     }
 

@@ -4,7 +4,8 @@ use super::Session;
 use super::continuation::Continued;
 use super::errors::{BAD_PARAMETER_VALUE, INTERRUPTED, SHARED_NAME, UNKNOWN_PARAMETER};
 use super::retranslation::{self, Changed, Changes};
-use crate::compile::{Access, Program, System};
+use crate::compile::errors::ASSERTION_FAILED;
+use crate::compile::{Access, Program, System, Told};
 use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::flatten::{self, Experiment, FlatModel, Variability};
 use crate::name::Ident;
@@ -286,7 +287,10 @@ pub fn simulate(
     let (changed, mut system) = prepared(session, model)?;
     let model = changed.as_deref().unwrap_or(model);
     let mut trajectory = Trajectory::default();
-    match Simulator::new().run(&mut system, &settings, &mut trajectory) {
+    system.system.listen();
+    let run = Simulator::new().run(&mut system, &settings, &mut trajectory);
+    tell(session, &system.system);
+    match run {
         Ok(statistics) => {
             let table = result_table(model, &system.system, &trajectory);
             session.models.end = Some(end(model, &settings, &table));
@@ -296,6 +300,22 @@ pub fn simulate(
             Err(Fault::new(INTERRUPTED, "interrupted").at(call))
         }
         Err(error) => Err(model.program.explain(&error)),
+    }
+}
+
+/// What the model has told while it was simulated.
+fn tell(session: &mut Session, system: &System) {
+    let (told, omitted) = system.told();
+    for Told { time, text, is_warning, span } in told {
+        if is_warning {
+            let message = format!("{text} (at t = {time})");
+            session.report(Fault::new(ASSERTION_FAILED, message).at(span).warning());
+        } else {
+            session.print(&(text + "\n"));
+        }
+    }
+    if omitted > 0 {
+        session.print(&format!("... and {omitted} messages more\n"));
     }
 }
 

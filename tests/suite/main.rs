@@ -35,6 +35,7 @@ mod modelica;
 mod modelica_models;
 mod models;
 mod msl;
+mod notices;
 mod page;
 mod plot;
 mod reference_problems;

@@ -41,6 +41,17 @@ pub(super) fn is_message(function: &Function) -> bool {
     }
 }
 
+/// Whether a function does nothing but to print its first argument.
+pub(in crate::dae) fn prints(function: &Function) -> bool {
+    match &function.body {
+        FunctionBody::External(clause) => matches!(
+            external_name(function, clause).as_str(),
+            "ModelicaMessage" | "ModelicaWarning" | "ModelicaInternal_print"
+        ),
+        _ => false,
+    }
+}
+
 /// Whether external objects go in or out: such a call is not the number that it returns.
 pub(super) fn handles_objects(function: &Function) -> bool {
     function.inputs.iter().chain(&function.outputs).any(is_object)

@@ -15,6 +15,7 @@ mod single_assignment;
 mod statements;
 mod target;
 
+pub(super) use external::prints;
 pub(super) use instances::Instances;
 
 use super::build::Builder;
