@@ -62,6 +62,23 @@ pub trait Outside {
         Err(refused(&format!("to read the file `{path}`")))
     }
 
+    /// Writes a file anew.
+    fn write(&mut self, path: &str, bytes: &[u8]) -> Result<(), Fault> {
+        let _ = bytes;
+        Err(refused(&format!("to write the file `{path}`")))
+    }
+
+    /// Writes behind the end of a file.
+    fn append(&mut self, path: &str, bytes: &[u8]) -> Result<(), Fault> {
+        let _ = bytes;
+        Err(refused(&format!("to write the file `{path}`")))
+    }
+
+    /// Removes a file.
+    fn remove(&mut self, path: &str) -> Result<(), Fault> {
+        Err(refused(&format!("to remove the file `{path}`")))
+    }
+
     /// Takes a line for the user.
     fn print(&mut self, text: &str) -> Result<(), Fault> {
         let _ = text;

@@ -1,12 +1,13 @@
 //! `ModelicaError`, `ModelicaInternal_*` and `ModelicaIO_*`: messages and files, through
 //! [`Outside`](super::Outside).
 //!
-//! Not handled, and refused by name: what changes files and folders, and the environment. The time
+//! Not handled, and refused by name: what changes folders and the environment. The time
 //! is that of Greenwich: time zones are not known.
 
 use super::Entry;
 use super::call::Call;
 use crate::diag::Fault;
+use crate::mat::Matrix;
 
 pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaError", "t", error),
@@ -16,10 +17,12 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaInternal_readLine", "fnN->t", read_line),
     Entry::pure("ModelicaInternal_countLines", "f->n", count_lines),
     Entry::impure("ModelicaInternal_stat", "t->n", stat),
+    Entry::impure("ModelicaInternal_removeFile", "t", remove),
     Entry::impure("ModelicaInternal_getTime", "NNNNNNN", time),
     Entry::pure("ModelicaStreams_closeFile", "t", nothing),
     Entry::pure("ModelicaIO_readMatrixSizes", "ftA", matrix_sizes),
     Entry::pure("ModelicaIO_readRealMatrix", "ftAnnn", real_matrix),
+    Entry::impure("ModelicaIO_writeRealMatrix", "ttannnt->n", write_matrix),
 ];
 
 fn error(call: &mut Call<'_>) -> Result<(), Fault> {
@@ -36,10 +39,16 @@ fn message(call: &mut Call<'_>) -> Result<(), Fault> {
 }
 
 fn print(call: &mut Call<'_>) -> Result<(), Fault> {
-    if !call.text(1).is_empty() {
-        return Err(call.fault("printing to a file is not supported"));
+    if call.text(1).is_empty() {
+        return message(call);
     }
-    message(call)
+    let (line, path) = (format!("{}\n", call.text(0)), call.text(1).to_owned());
+    call.outside.append(&path, line.as_bytes())
+}
+
+fn remove(call: &mut Call<'_>) -> Result<(), Fault> {
+    let path = call.text(0).to_owned();
+    call.outside.remove(&path)
 }
 
 /// The content of the file that an argument names.
@@ -142,6 +151,36 @@ fn real_matrix(call: &mut Call<'_>) -> Result<(), Fault> {
         *element = matrix.get(position / columns, position % columns);
     }
     Ok(())
+}
+
+/// `(file, name, matrix, rows, columns, append, version)`; whether it was written.
+fn write_matrix(call: &mut Call<'_>) -> Result<(), Fault> {
+    let (path, name) = (call.text(0).to_owned(), call.text(1).to_owned());
+    let [rows, columns] = *call.dims(2) else {
+        return Err(call.fault("what is written is a matrix"));
+    };
+    let values = call.array(2).to_vec();
+    let columns_first = (0..values.len()).map(|at| {
+        let (column, row) = (at / rows as usize, at % rows as usize);
+        values[row * columns as usize + column]
+    });
+    let matrix = Matrix::from_columns(rows as usize, columns as usize, columns_first.collect());
+    let mut arrays: Vec<(String, Matrix)> = Vec::new();
+    if call.truth(5) {
+        let known = call.outside.read(&path)?;
+        arrays.extend(
+            crate::mat::read(&known)?.arrays.into_iter().filter(|(known, _)| *known != name),
+        );
+    }
+    arrays.push((name, matrix));
+    let arrays = arrays.iter().map(|(name, matrix)| (name.as_str(), matrix));
+    let bytes = match call.text(6) {
+        "4" => crate::mat::write_v4(arrays),
+        "6" | "7" => crate::mat::write_v5(arrays),
+        other => Err(call.fault(format!("there is no version `{other}` of MAT files"))),
+    }?;
+    call.outside.write(&path, &bytes)?;
+    call.give(1.0)
 }
 
 #[cfg(test)]

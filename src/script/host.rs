@@ -151,6 +151,21 @@ impl Outside for Session {
         self.read_bytes(&path)
     }
 
+    fn write(&mut self, path: &str, bytes: &[u8]) -> Result<(), Fault> {
+        let path = self.expanded(Path::new(path));
+        self.write_file(&path, bytes)
+    }
+
+    fn append(&mut self, path: &str, bytes: &[u8]) -> Result<(), Fault> {
+        let path = self.expanded(Path::new(path));
+        self.append_file(&path, bytes)
+    }
+
+    fn remove(&mut self, path: &str) -> Result<(), Fault> {
+        let path = self.expanded(Path::new(path));
+        self.remove_file(&path)
+    }
+
     fn print(&mut self, text: &str) -> Result<(), Fault> {
         Session::print(self, &format!("{text}\n"));
         Ok(())
