@@ -242,23 +242,24 @@ impl Run<'_> {
         let settings = self.problem.settings;
         let ahead = self.t + BEHIND * (settings.stop - settings.start);
         let is_near = self.t - self.last_jump <= FARTHER * (ahead - self.t);
-        if kind != SimErrorKind::StepSize || !self.has_unknowns || is_near || ahead > settings.stop
-        {
+        let is_algebraic = self.problem.system.n_algebraic() > 0;
+        if kind != SimErrorKind::StepSize || !is_algebraic || is_near || ahead > settings.stop {
             return Err(kind);
         }
-        let before = self.y.to_vec();
-        let mut slopes = vec![0.0; before.len()];
-        self.problem.system.rhs(self.t, self.y, &mut slopes).map_err(SimErrorKind::Evaluation)?;
         let n = self.problem.system.n_differential();
+        let (begin, before) = (self.t, self.y[n..].to_vec());
+        let mut slopes = vec![0.0; self.y.len()];
+        self.problem.system.rhs(self.t, self.y, &mut slopes).map_err(SimErrorKind::Evaluation)?;
         for (y, slope) in self.y[..n].iter_mut().zip(&slopes) {
             *y += (ahead - self.t) * slope;
         }
         self.last_jump = ahead;
         self.problem.statistics.state_events += 1;
         let after = self.handle_event(ahead, false).map_err(|_| kind)?;
-        let pairs = self.y.iter().zip(&before).zip(self.problem.nominal);
+        let pairs = self.y[n..].iter().zip(&before).zip(&self.problem.nominal[n..]);
         let mut moved = pairs.map(|((y, old), nominal)| (y - old).abs() / old.abs().max(*nominal));
         if !moved.any(|part| part > SMALLEST_JUMP) {
+            self.t = begin;
             return Err(kind);
         }
         if after == After::Resume {
