@@ -1,7 +1,8 @@
 //! What simulations allocate. A test binary of its own, because its allocator counts.
 //!
 //! `GAPILIB_RUNS=100000 cargo test --release --test allocations -- --nocapture` simulates a cell
-//! with as many random parameters in one process.
+//! with as many random parameters in one process, and evaluates ten times as many individuals of a
+//! static curve.
 
 #![allow(unsafe_code, reason = "an allocator cannot be written without")]
 #![allow(clippy::print_stdout, reason = "the figures are asked for with --nocapture")]
@@ -9,14 +10,21 @@
 use gapilib::compile::{Program, System};
 use gapilib::dae::sort;
 use gapilib::flatten::{self, Library, LibraryFiles};
+use gapilib::ga::optimizer::METHODS;
+use gapilib::identify::CompiledModel;
+use gapilib::identify::fitness::FITNESSES;
+use gapilib::identify::problem::{
+    Experiment, Free, ModelSimulator, Observation, Problem, Run, Series, Stop,
+};
 use gapilib::name::Name;
+use gapilib::registry::{self, Options};
 use gapilib::sim::{OutputGrid, Settings, SimErrorKind, Simulator, Trajectory};
 use gapilib::source::SourceId;
 use gapilib::syntax::parse_stored_definition;
 use std::alloc::{GlobalAlloc, Layout, System as Malloc};
 use std::cell::Cell;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 #[path = "benches/disk.rs"]
 mod disk;
@@ -83,17 +91,21 @@ fn chain() -> System {
     Program::compile(sort(&flat).expect("it can be sorted")).expect("it compiles").system()
 }
 
-/// A cell whose voltage is observed.
-fn cell(class: &str) -> System {
+/// A model of the packages that come with the program.
+fn shipped(class: &str) -> Arc<Program> {
     let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
     let files: Arc<dyn LibraryFiles> = Arc::new(disk::Disk::default());
     let mut library = Library::new();
-    for name in ["Modelica", "FuelCellLib"] {
+    for name in ["Modelica", "FuelCellLib", "CaseStudies"] {
         library.load_lazily(&files, &models.join(name), &Name::default()).expect("it is there");
     }
-    let class = Name::parse(&format!("FuelCellLib.casestudies.{class}"));
-    let flat = flatten::flatten(&library, &class, &[]).expect("a model").model;
-    let program = Program::compile(sort(&flat).expect("it can be sorted")).expect("it compiles");
+    let flat = flatten::flatten(&library, &Name::parse(class), &[]).expect("a model").model;
+    Program::compile(sort(&flat).expect("it can be sorted")).expect("it compiles")
+}
+
+/// A cell whose voltage is observed.
+fn cell(class: &str) -> System {
+    let program = shipped(&format!("FuelCellLib.casestudies.{class}"));
     let mut system = program.system();
     system.observe_only(&[program.find_variable("V").expect("declared")]);
     system
@@ -107,6 +119,7 @@ fn settings(method: &str, tolerance: f64) -> Settings {
 
 #[test]
 fn steps_allocate_nothing() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let mut system = chain();
     for method in ["dassl", "rodas4", "radau"] {
         let (mut simulator, mut trajectory) = (Simulator::new(), Trajectory::default());
@@ -135,6 +148,7 @@ fn random(seed: &mut u64) -> f64 {
 
 #[test]
 fn memory_stays_the_same_over_many_simulations() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let runs = std::env::var("GAPILIB_RUNS").ok().and_then(|runs| runs.parse().ok());
     let runs: u64 = runs.unwrap_or(300);
     let mut system = cell("FC2Layer");
@@ -166,4 +180,93 @@ fn memory_stays_the_same_over_many_simulations() {
     println!("{runs} simulations, {failures} failed, {grown} bytes more than after half of them");
     assert!(failures < runs, "every simulation failed");
     assert!(grown.abs() < 100_000, "{grown} bytes");
+}
+
+/// Held by the tests one after the other: what a process holds is that of all its threads.
+static ALONE: Mutex<()> = Mutex::new(());
+
+/// Pages in memory and open files of this process; `None` where the system does not tell.
+fn held() -> Option<(u64, usize)> {
+    let memory = std::fs::read_to_string("/proc/self/statm").ok()?;
+    let pages = memory.split(' ').nth(1)?.parse().ok()?;
+    Some((pages, std::fs::read_dir("/proc/self/fd").ok()?.count()))
+}
+
+/// The polarization curve, with residuals that no parameters make vanish.
+fn curve(evaluations: u64) -> Problem {
+    let program = shipped("CaseStudies.PolarizationCurve");
+    let settings = Settings { stop: 1.0, ..Settings::default() };
+    let x: Vec<f64> = (1..=30).map(|k| f64::from(k) / 31.0).collect();
+    let y: Vec<f64> = x.iter().map(|x| 1.0 - 0.3 * x + 0.01 * (9.0 * x).sin()).collect();
+    let names = ["A", "Io", "B", "R", "In"];
+    let experiment = Experiment {
+        name: "curve".to_owned(),
+        model: Arc::new(CompiledModel::new("PolarizationCurve", program)),
+        settings,
+        x_name: "time".to_owned(),
+        observations: vec![Observation { y_name: "V".to_owned(), x: x.clone() }],
+        parameters: names.iter().enumerate().map(|(k, name)| (k, (*name).to_owned())).collect(),
+    };
+    let free = |name| Free::new(name, "", [1e-4, 0.5], None, None).expect("a range");
+    let method = registry::find("method", METHODS, "lshade").expect("a method");
+    Problem {
+        title: String::new(),
+        model: String::new(),
+        text: String::new(),
+        parameters: names.map(free).to_vec(),
+        series: vec![Series {
+            experiment: "curve".to_owned(),
+            y_name: "V".to_owned(),
+            y_unit: "V".to_owned(),
+            x_name: "time".to_owned(),
+            x_unit: "s".to_owned(),
+            file: String::new(),
+            x,
+            y,
+            weight: 1.0,
+        }],
+        objectives: vec![(
+            "sse".to_owned(),
+            (FITNESSES[0].make)(&mut Options::default()).expect("a fitness"),
+        )],
+        method_name: method.name.to_owned(),
+        method: (method.make)(&mut Options::default()).expect("usual settings"),
+        polish: false,
+        seed: [12345.0; 6],
+        stop: Stop { evaluations: Some(evaluations), ..Stop::default() },
+        noise: 1e-12,
+        simulator: Box::new(move || {
+            Ok(Box::new(ModelSimulator::new(std::slice::from_ref(&experiment))?) as Box<_>)
+        }),
+    }
+}
+
+#[test]
+fn memory_stays_the_same_over_many_evaluations() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let runs = std::env::var("GAPILIB_RUNS").ok().and_then(|runs| runs.parse().ok());
+    let evaluations = 10 * runs.unwrap_or(1000);
+    let mut run = Run::new(curve(evaluations), 2).expect("a problem");
+    let (mut half, mut failed) = (None, 0);
+    while run.stop().is_none() {
+        let record = run.step(0.0).expect("an answer");
+        failed += record.answered.failures.len();
+        if half.is_none() && run.evaluations >= evaluations / 2 {
+            half = Some((held(), run.generations()));
+        }
+    }
+    let (held_then, generations) = half.expect("half of the evaluations were made");
+    let Some(((pages_then, files_then), (pages, files))) = held_then.zip(held()) else {
+        println!("this system does not tell what a process holds");
+        return;
+    };
+    let grown = pages.saturating_sub(pages_then) * 4096;
+    println!(
+        "{} evaluations, {failed} failed, {grown} bytes more than after half of them, {files} open files",
+        run.evaluations
+    );
+    assert_eq!(files, files_then, "open files");
+    // What is kept is one line of the history for each generation.
+    let lines = 400 * (run.generations() - generations);
+    assert!(grown < 4_000_000 + lines, "{grown} bytes");
 }

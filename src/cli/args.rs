@@ -80,6 +80,8 @@ pub(super) enum Command {
     Check(CheckArgs),
     /// Print a model as flat Modelica
     Flatten(FlattenArgs),
+    /// Draw the report of an identification again from its files
+    Report(ReportArgs),
     /// Compare results with reference results
     Compare(CompareArgs),
     /// Check a library against a collection of reference results
@@ -97,6 +99,7 @@ Examples:
   gapi run scripts/GAPILib.mos
   gapi run scripts/twin/GAPILib.mos --out twin --threads 1
   gapi run my.mos --transcript my.txt --quiet --strict
+  gapi run my.mos --resume              go on after Ctrl-C, a crash or a power cut
   gapi run --parse-only scripts
 
 Exit code: 0 if all went well, 1 if an error happened that the script did not read,
@@ -114,6 +117,15 @@ pub(super) struct RunArgs {
     /// Write every statement with its answer to a file
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub transcript: Option<PathBuf>,
+    /// Go on with a run that was killed, from the checkpoint in the output folder
+    #[arg(long)]
+    pub resume: bool,
+    /// Seconds between two checkpoints
+    #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = seconds)]
+    pub checkpoint: f64,
+    /// A progress bar only, no live view of the run (shown on a terminal after a second)
+    #[arg(long)]
+    pub plain: bool,
     /// Record what the genetic algorithm did, for `gapi teach`
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub trace: Option<PathBuf>,
@@ -300,6 +312,9 @@ pub(super) struct IdentifyArgs {
     /// A file with settings (name = number) that may change while it runs
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub watch: Option<PathBuf>,
+    /// A progress bar only, no live view of the run (shown on a terminal after a second)
+    #[arg(long)]
+    pub plain: bool,
     /// Show errors only
     #[arg(long, short)]
     pub quiet: bool,
@@ -463,6 +478,25 @@ pub(super) struct FlattenArgs {
     /// The class to flatten
     #[arg(long, value_name = "CLASS")]
     pub model: String,
+}
+
+/// Arguments of `gapi report`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi report results
+  gapi report results --output fit.html
+
+It reads result.json, history.csv and individuals.csv, as `gapi identify` has written them.
+
+Exit code: 0 if the report was written, 1 if a file is missing or damaged.")]
+pub(super) struct ReportArgs {
+    /// The folder with the results of `gapi identify`
+    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub folder: PathBuf,
+    /// The page [default: report.html in the folder]
+    #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
 }
 
 /// Arguments of `gapi compare`.

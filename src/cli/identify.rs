@@ -9,7 +9,10 @@ use std::process::ExitCode;
 
 /// Solves the problem.
 pub(super) fn identify(arguments: &IdentifyArgs, global: &Global) -> ExitCode {
-    let terminal = Terminal::new(global.color, arguments.quiet);
+    let mut terminal = Terminal::new(global.color, arguments.quiet);
+    if arguments.plain {
+        terminal.forbid_view();
+    }
     let threads = arguments.threads.map(usize::from);
     let world = match SystemWorld::new(terminal, &arguments.out, threads) {
         Ok(world) => world,

@@ -10,8 +10,10 @@ mod help;
 mod identify;
 mod lesson;
 mod limits;
+mod live;
 mod parsing;
 mod repl;
+mod report;
 mod run;
 mod scratch;
 mod session;
@@ -62,6 +64,7 @@ fn dispatch(cli: &Cli) -> ExitCode {
         Command::Completions(arguments) => completions::completions(arguments),
         Command::Simulate(arguments) => simulate::simulate(arguments, &cli.global),
         Command::Check(arguments) => check::check(arguments, &cli.global),
+        Command::Report(arguments) => report::report(arguments, &cli.global),
         Command::Compare(arguments) => compare::compare(arguments, &cli.global),
         Command::Verify(arguments) => verify::verify(arguments, &cli.global),
         Command::Flatten(arguments) => check::flatten(arguments, &cli.global),

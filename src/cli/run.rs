@@ -4,7 +4,7 @@ use super::args::{Global, RunArgs};
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, parsing, session};
-use crate::script::{Echo, Options, Session, Strictness, Transcript};
+use crate::script::{Echo, Journaling, Options, Session, Strictness, Transcript};
 use crate::source::Span;
 use std::path::Path;
 use std::process::ExitCode;
@@ -14,7 +14,10 @@ pub(super) fn run(arguments: &RunArgs, global: &Global) -> ExitCode {
     let Some(script) = &arguments.script else {
         return parsing::parse_only(&arguments.parse_only);
     };
-    let terminal = Terminal::new(global.color, arguments.quiet);
+    let mut terminal = Terminal::new(global.color, arguments.quiet);
+    if arguments.plain {
+        terminal.forbid_view();
+    }
     let threads = arguments.threads.map(usize::from);
     let world = match SystemWorld::new(terminal, &arguments.out, threads) {
         Ok(world) => world,
@@ -54,7 +57,10 @@ fn options(arguments: &RunArgs) -> Options {
         _ => Strictness::Usual,
     };
     let echo = if arguments.echo { Echo::Everything } else { Echo::Usual };
-    Options { echo, strictness, ..arguments.freedom.options() }
+    let seconds = arguments.checkpoint;
+    let journaling =
+        if arguments.resume { Journaling::Resume(seconds) } else { Journaling::Fresh(seconds) };
+    Options { echo, strictness, journaling, ..arguments.freedom.options() }
 }
 
 fn write_transcript(

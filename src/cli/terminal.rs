@@ -2,9 +2,13 @@
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is where printing happens")]
 
 use super::args::Colour;
+use super::live::Live;
+use crate::script::view::View;
 use crate::script::world::Progress;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::io::{IsTerminal, Write as _};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// Standard output, standard error and the progress bar between them.
@@ -12,6 +16,12 @@ pub(super) struct Terminal {
     colour: bool,
     quiet: bool,
     bar: Option<ProgressBar>,
+    live: Live,
+    interrupt: Arc<AtomicBool>,
+    /// Whether runs may be drawn.
+    draws: bool,
+    /// What is said while a run is drawn: for standard output or not, and the text.
+    kept: Vec<(bool, String)>,
 }
 
 impl Terminal {
@@ -23,7 +33,59 @@ impl Terminal {
             Colour::Never => false,
             Colour::Auto => wanted && std::io::stderr().is_terminal(),
         };
-        Terminal { colour, quiet, bar: None }
+        let interrupt = Arc::new(AtomicBool::new(false));
+        let live = Live::new(Arc::clone(&interrupt));
+        let draws = !quiet && std::io::stderr().is_terminal() && std::io::stdin().is_terminal();
+        Terminal { colour, quiet, bar: None, live, interrupt, draws, kept: Vec::new() }
+    }
+
+    /// What becomes true when the user presses Ctrl-C.
+    pub(super) fn interrupt(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.interrupt)
+    }
+
+    /// Runs are not drawn.
+    pub(super) fn forbid_view(&mut self) {
+        self.draws = false;
+    }
+
+    /// Whether a run would be drawn now.
+    pub(super) fn wants_view(&mut self) -> bool {
+        self.draws && self.live.is_due()
+    }
+
+    /// Draws a run.
+    pub(super) fn show_view(&mut self, view: &View) {
+        self.finish_progress();
+        let said = self.kept.iter().rev().flat_map(|(_, text)| text.lines().rev());
+        let last = said.map(str::trim).find(|line| !line.is_empty()).unwrap_or_default();
+        self.live.show(view, last);
+    }
+
+    /// Takes the drawing away, and says what was said meanwhile.
+    pub(super) fn end_view(&mut self) {
+        self.live.close();
+        for (out, text) in std::mem::take(&mut self.kept) {
+            if out { self.print(&text) } else { self.eprint(&text) }
+        }
+    }
+
+    /// Whether the user wants to pause.
+    pub(super) fn wants_pause(&mut self) -> bool {
+        let wants = self.live.pause_was_pressed();
+        if wants {
+            self.end_view();
+        }
+        wants
+    }
+
+    /// A line that the user types; `None` at the end of the input.
+    pub(super) fn ask(&mut self, prompt: &str) -> Option<String> {
+        let line = rustyline::DefaultEditor::new().and_then(|mut editor| editor.readline(prompt));
+        if matches!(line, Err(rustyline::error::ReadlineError::Interrupted)) {
+            self.interrupt.store(true, Ordering::SeqCst);
+        }
+        line.ok()
     }
 
     /// Whether diagnostics are coloured.
@@ -36,6 +98,10 @@ impl Terminal {
         if self.quiet {
             return;
         }
+        if self.live.is_shown() && std::io::stdout().is_terminal() {
+            self.kept.push((true, text.to_owned()));
+            return;
+        }
         self.suspended(|| {
             let mut out = std::io::stdout().lock();
             let _ = out.write_all(text.as_bytes());
@@ -45,6 +111,10 @@ impl Terminal {
 
     /// Writes to standard error.
     pub(super) fn eprint(&mut self, text: &str) {
+        if self.live.is_shown() {
+            self.kept.push((false, text.to_owned()));
+            return;
+        }
         self.suspended(|| {
             let _ = std::io::stderr().lock().write_all(text.as_bytes());
         });
@@ -52,7 +122,7 @@ impl Terminal {
 
     /// Draws how far the work is; on a terminal only.
     pub(super) fn progress(&mut self, progress: &Progress) {
-        if self.quiet || !std::io::stderr().is_terminal() {
+        if self.quiet || self.live.is_shown() || !std::io::stderr().is_terminal() {
             return;
         }
         let bar = self.bar.get_or_insert_with(|| new_bar(progress));
@@ -79,6 +149,13 @@ impl Terminal {
             Some(bar) => bar.suspend(work),
             None => work(),
         }
+    }
+}
+
+/// What was said while a run was drawn is said although the run ended otherwise.
+impl Drop for Terminal {
+    fn drop(&mut self) {
+        self.end_view();
     }
 }
 

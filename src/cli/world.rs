@@ -3,13 +3,14 @@
 use super::limits::Reason;
 use super::terminal::Terminal;
 use crate::models;
+use crate::script::view::View;
 use crate::script::world::{Files, Progress, Stamp, World, normalized};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, LazyLock};
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 /// The operating system as scripts see it. The working directory is the session's own, so that
@@ -38,10 +39,10 @@ impl SystemWorld {
         Ok(SystemWorld {
             output: current.join(output),
             current,
+            interrupt: terminal.interrupt(),
             terminal,
             threads: threads.unwrap_or(available).max(1),
             started: Instant::now(),
-            interrupt: Arc::default(),
             reason: Reason::default(),
             changes: 0,
         })
@@ -176,6 +177,11 @@ impl World for SystemWorld {
         self.started.elapsed().as_secs_f64()
     }
 
+    fn clock(&self) -> Option<fn() -> f64> {
+        static STARTED: LazyLock<Instant> = LazyLock::new(Instant::now);
+        Some(|| STARTED.elapsed().as_secs_f64())
+    }
+
     fn unix_seconds(&self) -> u64 {
         SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs())
     }
@@ -221,6 +227,26 @@ impl World for SystemWorld {
 
     fn progress(&mut self, progress: &Progress) {
         self.terminal.progress(progress);
+    }
+
+    fn wants_view(&mut self) -> bool {
+        self.terminal.wants_view()
+    }
+
+    fn show_view(&mut self, view: &View) {
+        self.terminal.show_view(view);
+    }
+
+    fn end_view(&mut self) {
+        self.terminal.end_view();
+    }
+
+    fn wants_pause(&mut self) -> bool {
+        self.terminal.wants_pause()
+    }
+
+    fn ask(&mut self, prompt: &str) -> Option<String> {
+        self.terminal.ask(prompt)
     }
 
     fn resolved(&self, path: &Path) -> PathBuf {

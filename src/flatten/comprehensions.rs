@@ -33,8 +33,14 @@ impl Instantiation<'_> {
         let visit = |uses: &mut dyn Visit| uses.expression(element);
         let indices = self.with_ranges(indices, context, local, &visit)?;
         match self.iterated(element, &indices, context, local) {
-            Ok((element, indices)) => {
-                let element = Box::new(element);
+            Ok((resolved, iterators)) => {
+                // Records are told apart element by element.
+                if self.record_of(&resolved, local).is_some()
+                    && let Some(written) = self.written_out(element, &indices, context, local)
+                {
+                    return written;
+                }
+                let (element, indices) = (Box::new(resolved), iterators);
                 Ok(Expression::new(ExpressionKind::Comprehension { element, indices }, span))
             }
             Err(error) => self.written_out(element, &indices, context, local).unwrap_or(Err(error)),
@@ -59,7 +65,13 @@ impl Instantiation<'_> {
         let visit = |uses: &mut dyn Visit| uses.expression(element);
         let indices = self.with_ranges(&arguments.iterators, context, local, &visit)?;
         let (element, iterators) = match self.iterated(element, &indices, context, local) {
-            Ok(iterated) => iterated,
+            Ok((resolved, iterators)) => match self.record_of(&resolved, local) {
+                Some(_) => match self.written_out(element, &indices, context, local) {
+                    Some(elements) => (elements?, Vec::new()),
+                    None => (resolved, iterators),
+                },
+                None => (resolved, iterators),
+            },
             Err(error) => match self.written_out(element, &indices, context, local) {
                 Some(elements) => (elements?, Vec::new()),
                 None => return Err(error),

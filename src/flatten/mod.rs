@@ -34,6 +34,7 @@ mod instantiation;
 mod library;
 mod lookup;
 mod modification;
+mod overloaded_arrays;
 mod overloading;
 mod own_sizes;
 mod paths;

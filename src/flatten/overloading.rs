@@ -51,6 +51,11 @@ impl Instantiation<'_> {
                 pairs.into_iter().map(operation).collect();
             return Ok(Some(Expression::new(ExpressionKind::Array(elements?), span)));
         }
+        if operator == BinaryOperator::Multiply
+            && let Some(product) = self.overloaded_product(left, right, local, span)?
+        {
+            return Ok(Some(product));
+        }
         // One operand may be converted by a constructor of the other's record (MLS §14.3).
         for record in &records {
             for at in 0..2 {
@@ -108,6 +113,11 @@ impl Instantiation<'_> {
         }
     }
 
+    /// The record that an expression, or the elements of an array constructor, are of.
+    pub(super) fn record_of(&self, e: &Expression, local: &Local) -> Option<Name> {
+        record_name(self.element_type_of(e, local).as_ref())
+    }
+
     /// The constructor of an operator record that fits resolved arguments; `None` if it has none,
     /// or none that fits, and the record's own constructor is meant.
     pub(super) fn overloaded_constructor(
@@ -127,7 +137,7 @@ impl Instantiation<'_> {
         Ok(None)
     }
 
-    fn operator_call(
+    pub(super) fn operator_call(
         &mut self,
         record: &Name,
         sign: &str,

@@ -285,6 +285,12 @@ impl Instantiation<'_> {
             return Ok(Expression::new(ExpressionKind::Array(elements), span));
         }
         let arguments = self.arguments(arguments, context, local)?;
+        if function.as_ident().is_some_and(|name| name == "sum")
+            && let ([argument], true) = (&arguments.positional[..], arguments.iterators.is_empty())
+            && let Some(sum) = self.overloaded_sum(argument, local, span)?
+        {
+            return Ok(sum);
+        }
         let name = if function.as_ident().is_some_and(|name| local.get(name).is_some()) {
             function.name()
         } else {

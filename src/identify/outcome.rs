@@ -43,6 +43,10 @@ pub struct Outcome {
     pub failures: u64,
     /// Why they failed.
     pub failure_causes: indexmap::IndexMap<String, u64>,
+    /// What the user changed while the run went on: the first generation that it held for, and the
+    /// statement.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub changes: Vec<(usize, String)>,
     /// Simulations behind the search, for the standard deviations.
     pub evaluations_for_deviations: u64,
     /// The first seed.
@@ -134,6 +138,7 @@ impl Outcome {
             evaluations: recorder.evaluations,
             failures: recorder.failures,
             failure_causes: recorder.causes.clone(),
+            changes: recorder.changes.clone(),
             evaluations_for_deviations,
             seed: recorder.seed,
             data: recorder.measurement.as_ref().map(|measurement| measurement.file.clone()),

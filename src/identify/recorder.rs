@@ -99,6 +99,8 @@ pub struct Recorder {
     pub failures: u64,
     /// Why simulations failed, and how often.
     pub causes: IndexMap<String, u64>,
+    /// What the user changed while the run went on, and from which generation on.
+    pub changes: Vec<(usize, String)>,
     /// The random numbers being drawn: the seed they began with, and the one they go on with.
     chain: Option<Chain>,
     /// Individuals of the generation that ended last.

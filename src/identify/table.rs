@@ -40,6 +40,9 @@ impl Outcome {
         for (cause, count) in causes.iter().take(CAUSES_SHOWN) {
             facts.push(("", format!("{count} x {cause}")));
         }
+        for (generation, statement) in &self.changes {
+            facts.push(("changed", format!("{statement} in generation {generation}")));
+        }
         if let Some(seed) = self.seed {
             facts.push(("seed", seed.map(|entry| entry.to_string()).join(" ")));
         }

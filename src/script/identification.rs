@@ -2,7 +2,6 @@
 //! report at the end of a run.
 
 use super::builtins::Failure;
-use super::world::Progress;
 use super::{Session, simulation, tracing};
 use crate::bail;
 use crate::diag::{Diagnostic, Fault};
@@ -102,7 +101,14 @@ impl Session {
             Some((known, at, evaluator)) if known == request && at == revision => evaluator,
             _ => self.prepare(&request)?,
         };
-        let simulated = evaluator.evaluate(genomes)?;
+        let simulated = match self.journaled(&request, genomes)? {
+            Some(known) => known,
+            None => {
+                let simulated = evaluator.evaluate(genomes)?;
+                self.journal(&request, genomes, &simulated);
+                simulated
+            }
+        };
         // Loading the model may have changed the classes.
         let revision = self.classes.revision();
         let identification = self.identification();
@@ -110,7 +116,7 @@ impl Session {
         let (study, x) = (evaluator.study().clone(), evaluator.x().to_vec());
         identification.prepared = Some((request, revision, evaluator));
         self.trace_simulation((&study, &x), genomes, &simulated)?;
-        self.show_progress();
+        self.show_run(&study, genomes);
         Ok(simulated)
     }
 
@@ -159,24 +165,6 @@ impl Session {
         let threads = self.world.threads();
         Ok(Evaluator::new(&model, request.question.clone(), threads)?)
     }
-
-    /// How far the run is: the generations seen, of as many as the loop that the script is in has
-    /// turns.
-    fn show_progress(&mut self) {
-        let turns = match self.loop_turn() {
-            Some((_, Some(turns))) => turns as u64,
-            _ => 0,
-        };
-        let recorder = &self.identification().recorder;
-        let progress = Progress {
-            label: "generation".to_owned(),
-            done: recorder.history.generations.len() as u64,
-            total: turns,
-            best: recorder.best.as_ref().map(|best| best.fitness),
-            failures: recorder.failures,
-        };
-        self.world.progress(&progress);
-    }
 }
 
 /// The elements of a matrix, row by row; usually it is one row or one column.
@@ -212,6 +200,7 @@ fn report_run(session: &mut Session) -> Result<(), Fault> {
     };
     outcome.interrupted = interrupted;
     outcome.wall_seconds = seconds - started;
+    session.world.end_view();
     session.print(&outcome.table());
     write_files(session, &outcome)
 }

@@ -57,7 +57,7 @@ pub enum Strictness {
 }
 
 /// How a session behaves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Options {
     /// The dialect; `None` to recognise it from the script.
     pub dialect: Option<Dialect>,
@@ -67,6 +67,21 @@ pub struct Options {
     pub strictness: Strictness,
     /// What scripts may do outside.
     pub permissions: Permissions,
+    /// Whether what the simulations answer is kept on the way.
+    pub journaling: Journaling,
+}
+
+/// Whether a run of scripts keeps a journal of its simulations in the output folder, from which it
+/// can go on when it was killed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Journaling {
+    /// It does not.
+    #[default]
+    Off,
+    /// It does, written again whenever so many seconds have passed, and begins anew.
+    Fresh(f64),
+    /// It does, and goes on from what an earlier run has left.
+    Resume(f64),
 }
 
 /// How a run ended.

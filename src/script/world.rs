@@ -3,8 +3,9 @@
 //! Nothing below `cli/` touches the system in any other way, so a script runs in a [`MemoryWorld`]
 //! exactly as it runs on a disk.
 
+use super::view::View;
 use std::cell::Cell;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fmt;
 use std::io;
 use std::path::{Component, Path, PathBuf};
@@ -77,6 +78,10 @@ pub trait World {
     fn eprint(&mut self, text: &str);
     /// Seconds since an arbitrary moment, never decreasing.
     fn monotonic_seconds(&self) -> f64;
+    /// Seconds since an arbitrary moment for work that cannot ask the world, if there is a clock.
+    fn clock(&self) -> Option<fn() -> f64> {
+        None
+    }
     /// Seconds since 1970-01-01 00:00 UTC. Nothing that must be reproducible may depend on it.
     fn unix_seconds(&self) -> u64;
     /// The number of this process, 0 where there is none.
@@ -108,6 +113,22 @@ pub trait World {
     fn output_dir(&self) -> PathBuf;
     /// Shows how far a long piece of work is.
     fn progress(&mut self, progress: &Progress);
+    /// Whether a view of the run would be drawn now: asked often, so that none is made in vain.
+    fn wants_view(&mut self) -> bool {
+        false
+    }
+    /// Draws the run as it is now.
+    fn show_view(&mut self, _view: &View) {}
+    /// The run has ended: what was drawn goes away.
+    fn end_view(&mut self) {}
+    /// Whether the user wants the run to pause; true once for each time.
+    fn wants_pause(&mut self) -> bool {
+        false
+    }
+    /// A line that the user types during a pause; `None` when nothing more comes.
+    fn ask(&mut self, _prompt: &str) -> Option<String> {
+        None
+    }
     /// Whether diagnostics may be coloured.
     fn colour(&self) -> bool {
         false
@@ -185,7 +206,14 @@ pub struct MemoryWorld {
     streams: Streams,
     /// How many more times the answer is that nobody asked to stop.
     patience: Cell<u64>,
+    /// How many more times the answer is that nobody asks to pause, and what is typed then.
+    pause: (u64, VecDeque<String>),
+    /// What was drawn, where anybody looks.
+    views: Option<Views>,
 }
+
+/// The views that were drawn, readable while a session owns the world.
+pub type Views = Arc<Mutex<Vec<View>>>;
 
 impl Default for MemoryWorld {
     fn default() -> MemoryWorld {
@@ -197,6 +225,8 @@ impl Default for MemoryWorld {
             stamps: BTreeMap::new(),
             streams: Streams::default(),
             patience: Cell::new(u64::MAX),
+            pause: (u64::MAX, VecDeque::new()),
+            views: None,
         }
     }
 }
@@ -218,6 +248,21 @@ impl MemoryWorld {
     #[must_use]
     pub fn interrupted_after(mut self, questions: u64) -> MemoryWorld {
         self.patience = Cell::new(questions);
+        self
+    }
+
+    /// The same where the user pauses after `questions` questions whether he does, and types these
+    /// lines then.
+    #[must_use]
+    pub fn paused_after(mut self, questions: u64, lines: &[&str]) -> MemoryWorld {
+        self.pause = (questions, lines.iter().map(|line| (*line).to_owned()).collect());
+        self
+    }
+
+    /// The same where somebody looks at the runs; what he sees goes into `views`.
+    #[must_use]
+    pub fn watched(mut self, views: &Views) -> MemoryWorld {
+        self.views = Some(Arc::clone(views));
         self
     }
 
@@ -373,6 +418,26 @@ impl World for MemoryWorld {
     }
 
     fn progress(&mut self, _progress: &Progress) {}
+
+    fn wants_view(&mut self) -> bool {
+        self.views.is_some()
+    }
+
+    fn show_view(&mut self, view: &View) {
+        if let Some(Ok(mut views)) = self.views.as_ref().map(|views| views.lock()) {
+            views.push(view.clone());
+        }
+    }
+
+    fn wants_pause(&mut self) -> bool {
+        let pauses = self.pause.0 == 0;
+        self.pause.0 = if pauses { u64::MAX } else { self.pause.0 - 1 };
+        pauses
+    }
+
+    fn ask(&mut self, _prompt: &str) -> Option<String> {
+        self.pause.1.pop_front()
+    }
 }
 
 #[cfg(test)]

@@ -73,7 +73,7 @@ pub use error::{Culprit, Failure, SimError, SimErrorKind};
 pub use integrators::{INTEGRATORS, Integrator, Problem, find_integrator};
 pub use linear::{DenseLu, Factorization, SingularMatrix};
 pub use newton::{Equations, Newton, NewtonFailure};
-pub use settings::{OutputGrid, Settings};
+pub use settings::{OutputGrid, Settings, TimeBudget};
 pub use simulator::{Simulator, simulate};
 pub use statistics::Statistics;
 pub use system::{DaeSystem, EventOutcome, Pattern};

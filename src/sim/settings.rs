@@ -27,10 +27,21 @@ pub struct Settings {
     pub max_step: f64,
     /// Steps, rejected ones included, after which the simulation is given up.
     pub max_steps: u64,
+    /// The time on the clock that the simulation may take.
+    pub time_budget: Option<TimeBudget>,
     /// Looked at before every step: whoever sets it to true ends the simulation.
     pub cancel: Option<Arc<AtomicBool>>,
     /// The time recorded last, seconds, as the bits of an `f64`: for whoever shows progress.
     pub reached: Option<Arc<AtomicU64>>,
+}
+
+/// How long a simulation may take. What is given up depends on the machine.
+#[derive(Debug, Clone, Copy)]
+pub struct TimeBudget {
+    /// Seconds from its beginning.
+    pub seconds: f64,
+    /// Seconds since an arbitrary moment.
+    pub clock: fn() -> f64,
 }
 
 /// When to record.
@@ -56,6 +67,7 @@ impl Default for Settings {
             initial_step: None,
             max_step: f64::INFINITY,
             max_steps: 1_000_000,
+            time_budget: None,
             cancel: None,
             reached: None,
         }

@@ -93,6 +93,7 @@ impl Simulator {
                 system,
                 nominal: &self.nominal,
                 settings,
+                deadline: settings.time_budget.map(|budget| (budget.clock)() + budget.seconds),
                 statistics: &mut statistics,
             },
             integrator,

@@ -51,3 +51,4 @@ mod structure;
 mod syntax_properties;
 mod teach;
 mod transcripts;
+mod watching;

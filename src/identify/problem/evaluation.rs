@@ -4,11 +4,12 @@
 use super::{Failed, Problem, Simulate};
 use crate::diag::Fault;
 use crate::fault;
-use crate::ga::Genomes;
+use crate::ga::{Genomes, has_failed};
 use crate::registry::BAD_OPTION;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Individuals remembered.
 const REMEMBERED: usize = 8192;
@@ -37,6 +38,7 @@ pub struct Evaluation {
     workers: Vec<Mutex<Box<dyn Simulate>>>,
     rows: Vec<f64>,
     memory: Memory,
+    cancel: Option<Arc<AtomicBool>>,
 }
 
 /// Answers by genes; the oldest give way.
@@ -76,6 +78,7 @@ impl Evaluation {
             weights,
             rows: Vec::new(),
             memory: Memory::default(),
+            cancel: None,
         })
     }
 
@@ -101,8 +104,23 @@ impl Evaluation {
         (square / a.len() as f64).sqrt()
     }
 
-    /// Evaluates every individual; the genomes are those of the method.
-    pub fn evaluate(&mut self, problem: &Problem, batch: &Genomes, residuals: bool) -> Answered {
+    /// From now on simulations end when the flag is set.
+    pub fn cancel_by(&mut self, flag: Option<Arc<AtomicBool>>) {
+        for worker in &self.workers {
+            let mut worker = worker.lock().unwrap_or_else(PoisonError::into_inner);
+            worker.cancel_by(flag.clone());
+        }
+        self.cancel = flag;
+    }
+
+    /// Evaluates every individual; the genomes are those of the method. `None` when simulations
+    /// were cancelled.
+    pub fn evaluate(
+        &mut self,
+        problem: &Problem,
+        batch: &Genomes,
+        residuals: bool,
+    ) -> Option<Answered> {
         let (n, m, points) = (batch.len(), self.n_objectives, self.measured.len());
         let mut objectives = vec![f64::NAN; n * m];
         let mut failed: Vec<Option<Failed>> = vec![None; n];
@@ -127,6 +145,10 @@ impl Evaluation {
         self.pool.install(|| {
             rows.par_chunks_mut(points).zip(&wanted).map(evaluate).collect_into_vec(&mut outcomes);
         });
+        if self.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+            self.rows = rows;
+            return None;
+        }
         for (&k, (values, failure)) in wanted.iter().zip(outcomes) {
             objectives[k * m..(k + 1) * m].copy_from_slice(&values);
             failed[k] = failure;
@@ -139,7 +161,7 @@ impl Evaluation {
         };
         self.rows = rows;
         self.remember(batch, &answered);
-        answered
+        Some(answered)
     }
 
     /// The simulated points of one individual.
@@ -197,7 +219,9 @@ impl Evaluation {
                 let value = |(_, f): &(String, Box<dyn super::Fitness>)| {
                     f.fitness(row, &self.measured, &self.weights)
                 };
-                (problem.objectives.iter().map(value).collect(), None)
+                let values: Vec<f64> = problem.objectives.iter().map(value).collect();
+                let unrated = values.iter().position(|value| has_failed(*value));
+                (values, unrated.map(|k| unrated_by(&problem.objectives[k].0)))
             }
             Err(failed) => {
                 row.fill(f64::NAN);
@@ -214,6 +238,11 @@ impl Evaluation {
         };
         rows.chunks_exact(self.measured.len()).flat_map(row).collect()
     }
+}
+
+fn unrated_by(name: &str) -> Failed {
+    let cause = format!("the fitness function `{name}` gives no number");
+    Failed { kind: super::FailureKind::Points, cause, progress: 1.0 }
 }
 
 impl Memory {

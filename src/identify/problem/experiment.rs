@@ -9,6 +9,7 @@ use crate::sim::{
     Failure, Settings, SimError, SimErrorKind, Simulator, Trajectory, find_integrator,
 };
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// A failed simulation is tried once more with the tolerance times this and another integrator.
 const TIGHTER: f64 = 0.01;
@@ -96,6 +97,15 @@ impl Simulate for ModelSimulator {
             })?;
         }
         Ok(())
+    }
+
+    fn cancel_by(&mut self, flag: Option<Arc<AtomicBool>>) {
+        for stage in &mut self.stages {
+            stage.settings.cancel.clone_from(&flag);
+            if let Some(retry) = &mut stage.retry {
+                retry.cancel.clone_from(&flag);
+            }
+        }
     }
 }
 

@@ -41,6 +41,7 @@ impl Solution {
         }
         page += &self.landscapes();
         page += &self.front_figure();
+        page += &self.tables();
         page += "</body></html>\n";
         page
     }
@@ -67,6 +68,36 @@ impl Solution {
                 significant(parameter.value, 5),
                 escaped(&parameter.unit),
                 points.join(" ")
+            );
+        }
+        html
+    }
+
+    /// Every generation and the problem as it was written.
+    fn tables(&self) -> String {
+        let names: String =
+            self.parameters.iter().map(|p| format!("<th>{}</th>", escaped(&p.name))).collect();
+        let mut html = format!(
+            "<h2>Everything</h2>\n<details><summary>Generations</summary><table><tr><th>generation</th><th>best</th><th>mean</th><th>worst</th><th>failures</th>{names}</tr>\n"
+        );
+        let every = self.history.len().div_ceil(DRAWN).max(1);
+        for (k, generation) in self.history.iter().enumerate().step_by(every) {
+            let crate::ga::Generation { best, mean, worst, failures } = generation;
+            _ = write!(
+                html,
+                "<tr><td>{}</td><td>{best:.6e}</td><td>{mean:.6e}</td><td>{worst:.6e}</td><td>{failures}</td>",
+                k + 1
+            );
+            let values = self.trace.get(k).into_iter().flatten();
+            values.for_each(|value| _ = write!(html, "<td>{}</td>", significant(*value, 7)));
+            html += "</tr>\n";
+        }
+        html += "</table></details>\n";
+        if !self.problem.is_empty() {
+            _ = writeln!(
+                html,
+                "<details><summary>The problem as it was written</summary><pre>{}</pre></details>",
+                escaped(&self.problem)
             );
         }
         html

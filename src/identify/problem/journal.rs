@@ -69,10 +69,24 @@ pub fn encode(record: &Record) -> Vec<u8> {
         payload.extend(failed.progress.to_le_bytes());
         put_text(&mut payload, &failed.cause);
     }
+    frame(&payload)
+}
+
+/// A payload with its length and its checksum before it.
+pub fn frame(payload: &[u8]) -> Vec<u8> {
     let mut bytes = (payload.len() as u64).to_le_bytes().to_vec();
-    bytes.extend(checksum(&payload).to_le_bytes());
+    bytes.extend(checksum(payload).to_le_bytes());
     bytes.extend(payload);
     bytes
+}
+
+/// The first frame's payload and what follows it; `None` where it is damaged or not finished.
+pub fn first_frame(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
+    let mut reader = Reader { bytes };
+    let length = usize::try_from(reader.integer()?).ok()?;
+    let sum = u32::from_le_bytes(reader.take(4)?.try_into().ok()?);
+    let payload = reader.take(length)?;
+    (checksum(payload) == sum).then_some((payload, reader.bytes))
 }
 
 /// Reads a journal as far as it is whole; `None` when it is none at all.
@@ -92,13 +106,10 @@ pub fn decode(bytes: &[u8]) -> Option<Journal> {
 }
 
 fn whole_record(reader: &mut Reader<'_>) -> Option<Record> {
-    let length = usize::try_from(reader.integer()?).ok()?;
-    let sum = u32::from_le_bytes(reader.take(4)?.try_into().ok()?);
-    let payload = reader.take(length)?;
-    if checksum(payload) != sum {
-        return None;
-    }
-    record(&mut Reader { bytes: payload })
+    let (payload, rest) = first_frame(reader.bytes)?;
+    let record = record(&mut Reader { bytes: payload })?;
+    reader.bytes = rest;
+    Some(record)
 }
 
 fn record(reader: &mut Reader<'_>) -> Option<Record> {

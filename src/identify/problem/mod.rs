@@ -9,13 +9,17 @@
 mod evaluation;
 mod experiment;
 mod failure;
+mod failure_region;
+mod fingerprint;
 mod html;
 mod importance;
+mod inseparable;
 mod journal;
 mod notes;
 mod profile;
 mod refit;
 mod run;
+mod saved;
 mod space;
 mod statistics;
 mod summary;
@@ -24,8 +28,11 @@ mod text;
 pub use evaluation::Evaluation;
 pub use experiment::{Experiment, ModelSimulator, Observation};
 pub use failure::{Failed, FailureKind};
+pub use failure_region::{FailureRegion, failure_region};
+pub use fingerprint::Fingerprint;
 pub use importance::{ANALYSES, Analysis, Importance, ParameterImportance, analysis};
-pub use journal::{Journal, Record, decode, encode, header};
+pub use inseparable::{Form, Inseparable};
+pub use journal::{Journal, Record, decode, encode, first_frame, frame, header};
 pub use profile::{Profile, Profiles, profiles};
 pub use run::{Best, Run};
 pub use space::Free;
@@ -35,6 +42,8 @@ pub use summary::{Solution, SolvedParameter, SolvedSeries};
 use super::fitness::Fitness;
 use crate::diag::Fault;
 use crate::ga::optimizer::Method;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// Relative error of simulated values where nothing is integrated.
 pub const NOISE_OF_FORMULAS: f64 = 1e-12;
@@ -53,6 +62,8 @@ pub trait Simulate: Send {
     ///
     /// Why the simulation failed.
     fn simulate(&mut self, parameters: &[f64], out: &mut [f64]) -> Result<(), Failed>;
+    /// From now on simulations end when the flag is set; what they answer then is not used.
+    fn cancel_by(&mut self, _flag: Option<Arc<AtomicBool>>) {}
 }
 
 /// A measured series.
@@ -99,6 +110,8 @@ pub struct Problem {
     pub title: String,
     /// The model, for the report.
     pub model: String,
+    /// The problem as it was written, for the report; empty where it is put in Rust.
+    pub text: String,
     /// The parameters to identify.
     pub parameters: Vec<Free>,
     /// The measured series.

@@ -1,6 +1,8 @@
 //! What must be known about a solution, in words.
 
-use super::{Profiles, Solution, SolvedParameter, SolvedSeries, Statistics};
+use super::{
+    FailureRegion, Form, Inseparable, Profiles, Solution, SolvedParameter, SolvedSeries, Statistics,
+};
 use crate::identify::table::significant;
 
 /// Residuals whose runs are less probable than this are no noise.
@@ -9,6 +11,9 @@ const NO_NOISE: f64 = 0.01;
 const FROM_THE_SOLVER: f64 = 100.0;
 /// Beyond this condition number digits of the sensitivities are lost.
 const ILL_CONDITIONED: f64 = 1e4;
+
+/// Factors and exponents below this are those of rounding.
+const NEGLIGIBLE: f64 = 1e-12;
 
 /// The sentences, most important first. `noise`: relative error of the simulated values.
 pub(super) fn notes(solution: &Solution, statistics: &Statistics, noise: f64) -> Vec<String> {
@@ -22,7 +27,7 @@ pub(super) fn notes(solution: &Solution, statistics: &Statistics, noise: f64) ->
     }
     let alone = |k: usize| {
         !statistics.without_effect.contains(&k)
-            && !statistics.inseparable.iter().flatten().any(|part| part.0 == k)
+            && !statistics.inseparable.iter().any(|group| group.parameters.contains(&k))
     };
     for (k, parameter) in solution.parameters.iter().enumerate() {
         if parameter.determined == Some(false) && alone(k) {
@@ -57,6 +62,7 @@ pub(super) fn notes(solution: &Solution, statistics: &Statistics, noise: f64) ->
         ));
     }
     notes.extend(solution.series.iter().filter_map(|series| about_residuals(series, noise)));
+    notes.extend(solution.failure_region.as_ref().map(about_failures));
     if statistics.uncertainty.is_none() {
         notes.push(
             "Deviations could not be computed: there are not more points than parameters, or the \
@@ -67,15 +73,61 @@ pub(super) fn notes(solution: &Solution, statistics: &Statistics, noise: f64) ->
     notes
 }
 
-fn inseparable<'a>(group: &[(usize, f64)], name: &impl Fn(usize) -> &'a str) -> String {
-    let names: Vec<&str> = group.iter().map(|part| name(part.0)).collect();
-    let change = |(k, part): &(usize, f64)| format!("{} by {} %", name(*k), significant(*part, 3));
-    let changes: Vec<String> = group.iter().map(change).collect();
+fn inseparable<'a>(group: &Inseparable, name: &impl Fn(usize) -> &'a str) -> String {
+    let names: Vec<&str> = group.parameters.iter().map(|&k| name(k)).collect();
+    let all = names.join(", ");
+    let what = |combination: &Vec<f64>| {
+        let parts = names.iter().zip(combination).filter(|(_, part)| part.abs() > NEGLIGIBLE);
+        match group.form {
+            Form::Sum => sum(parts),
+            Form::Product => product(parts),
+            Form::Local => {
+                let change =
+                    |(name, part): (&&str, &f64)| format!("{name} by {} %", significant(*part, 3));
+                parts.map(change).collect::<Vec<_>>().join(", ")
+            }
+        }
+    };
+    let combinations: Vec<String> = group.combinations.iter().map(what).collect();
+    let fix = match group.excess {
+        1 => "one".to_owned(),
+        excess => excess.to_string(),
+    };
+    if group.form == Form::Local {
+        return format!(
+            "{all} cannot be determined separately about the best values: changing {} together changes nothing. Fix {fix} of them.",
+            combinations.join(", or ")
+        );
+    }
     format!(
-        "{} cannot be determined separately: changing {} together changes nothing. Fix one of them.",
-        names.join(", "),
-        changes.join(", ")
+        "{all} cannot be determined separately by any data of this kind: the model depends on {} alone. Fix {fix} of them.",
+        combinations.join(" and ")
     )
+}
+
+fn sum<'a>(parts: impl Iterator<Item = (&'a &'a str, &'a f64)>) -> String {
+    let mut text = String::new();
+    for (name, factor) in parts {
+        let sign = match (text.is_empty(), *factor < 0.0) {
+            (true, false) => "",
+            (true, true) => "-",
+            (false, false) => " + ",
+            (false, true) => " - ",
+        };
+        let size = significant(factor.abs(), 4);
+        text += sign;
+        text += &if size == "1" { (*name).to_owned() } else { format!("{size}*{name}") };
+    }
+    text
+}
+
+fn product<'a>(parts: impl Iterator<Item = (&'a &'a str, &'a f64)>) -> String {
+    let power = |(name, exponent): (&&str, &f64)| match significant(*exponent, 4).as_str() {
+        "1" => (*name).to_owned(),
+        negative if negative.starts_with('-') => format!("{name}^({negative})"),
+        exponent => format!("{name}^{exponent}"),
+    };
+    parts.map(power).collect::<Vec<_>>().join("*")
 }
 
 fn undetermined(parameter: &SolvedParameter) -> String {
@@ -124,6 +176,15 @@ pub(super) fn profile_notes(solution: &Solution, found: &Profiles) -> Vec<String
         ));
     }
     notes
+}
+
+fn about_failures(region: &FailureRegion) -> String {
+    let [inside, outside] = region.failed.map(|part| format!("{:.0} %", 100.0 * part));
+    let [low, high] = region.range.map(|end| significant(end, 3));
+    format!(
+        "Simulations fail where {} is between {low} and {high}: {inside} of the individuals there failed, {outside} elsewhere.",
+        region.parameter
+    )
 }
 
 fn about_residuals(series: &SolvedSeries, noise: f64) -> Option<String> {

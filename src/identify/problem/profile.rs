@@ -11,7 +11,7 @@
 use super::refit::Refit;
 use super::{Evaluation, Free, Problem, student_quantile};
 use crate::diag::Fault;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Values on each side of the best before the crossing is looked for.
 const SIDE: usize = 24;
@@ -28,7 +28,7 @@ const NEAR: f64 = 1e-3;
 const BETTER: f64 = 1e-6;
 
 /// The profile of one parameter.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Profile {
     /// Its name.
     pub name: String,
@@ -41,7 +41,7 @@ pub struct Profile {
 }
 
 /// All profiles.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Profiles {
     /// In the order of the parameters.
     pub profiles: Vec<Profile>,

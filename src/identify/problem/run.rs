@@ -1,7 +1,7 @@
 //! A run: the method asks, the simulator answers, until a stop condition holds.
 
 use super::evaluation::{Answered, Evaluation};
-use super::{FailureKind, Problem, Record};
+use super::{FailureKind, Fingerprint, Problem, Record};
 use crate::bail;
 use crate::diag::Fault;
 use crate::fault;
@@ -201,7 +201,8 @@ impl Run {
         self.converged = !self.asked;
     }
 
-    /// One question and its answers; `None` when the method has converged. `seconds` of work so
+    /// One question and its answers; `None` when the method has converged or the simulations were
+    /// cancelled, after which it can be asked again. `seconds` of work so
     /// far go into the record.
     pub fn step(&mut self, seconds: f64) -> Option<Record> {
         self.ask();
@@ -209,7 +210,7 @@ impl Run {
             return None;
         }
         let residuals = self.optimizer.wants_residuals();
-        let answered = self.evaluation.evaluate(&self.problem, &self.batch, residuals);
+        let answered = self.evaluation.evaluate(&self.problem, &self.batch, residuals)?;
         let record = Record {
             seconds,
             changes: std::mem::take(&mut self.changes),
@@ -318,6 +319,16 @@ impl Run {
         self.front = front;
     }
 
+    /// Where the individuals of the last question lie in the range of a parameter, as fractions.
+    pub fn fractions(&self, parameter: usize) -> Vec<f64> {
+        let natural = self.problem.method.in_natural_units();
+        let fraction = |gene: f64| match natural {
+            true => self.problem.parameters[parameter].fraction(gene),
+            false => gene.clamp(0.0, 1.0),
+        };
+        self.batch.rows().map(|genome| fraction(genome[parameter])).collect()
+    }
+
     /// The generation evaluated last.
     pub fn last(&self) -> Option<&Generation> {
         self.history.generations.last()
@@ -353,12 +364,7 @@ fn optimizer(problem: &Problem, evaluation: &Evaluation) -> Result<Box<dyn Optim
 }
 
 fn fingerprint(batch: &Genomes) -> u64 {
-    // FNV-1a over the bits: the same on every machine.
-    batch
-        .values()
-        .iter()
-        .flat_map(|value| value.to_bits().to_le_bytes())
-        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-        })
+    let mut fingerprint = Fingerprint::default();
+    fingerprint.add_numbers(batch.values());
+    fingerprint.number()
 }

@@ -8,14 +8,15 @@
 //! References: [Walter & Pronzato 1997](crate::bibliography#walter-pronzato-1997), chapter 5;
 //! [Wald & Wolfowitz 1940](crate::bibliography#wald-wolfowitz-1940) (runs).
 
+use super::inseparable::{self, Form, Inseparable, Sensitivities};
 use super::{Evaluation, Problem};
 use crate::identify::{Uncertainty, uncertainty};
-use nalgebra::DMatrix;
 
-/// A singular value this far below the largest is none.
-const RANK: f64 = 1e-7;
-/// A component of a direction below this takes no part in it.
-const PART: f64 = 0.05;
+/// A singular value this far below the largest is none, however exact the simulation is, and
+/// however inexact.
+const RANK: [f64; 2] = [1e-7, 1e-4];
+/// Errors of a simulation beyond which a lack of rank must show at several points to be believed.
+const EXACT: f64 = 1e-9;
 
 /// What the data tell.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,9 +27,8 @@ pub struct Statistics {
     pub factor: f64,
     /// Condition number of the sensitivities, columns of unit length.
     pub condition: Option<f64>,
-    /// Groups of parameters that only together have an effect: their places, with the exponents of
-    /// the product that may change without changing the simulation.
-    pub inseparable: Vec<Vec<(usize, f64)>>,
+    /// Groups of parameters that only together have an effect.
+    pub inseparable: Vec<Inseparable>,
     /// Parameters without any effect on the compared points.
     pub without_effect: Vec<usize>,
     /// Sensitivities of the simulated points by the parameters, column by column.
@@ -51,22 +51,21 @@ pub struct ResidualTest {
 }
 
 impl Statistics {
-    /// Computes them at `values`, where the simulated points are `simulated`.
+    /// Computes them at `values`, where the simulated points are `simulated`. `others`: points
+    /// elsewhere in the search space, which tell how far a lack of rank goes.
     pub fn at(
         problem: &Problem,
         evaluation: &Evaluation,
         values: &[f64],
         simulated: &[f64],
+        others: &[Vec<f64>],
     ) -> Statistics {
         let measured: Vec<f64> =
             problem.series.iter().flat_map(|series| series.y.clone()).collect();
         let ones = vec![1.0; measured.len()];
         let scales = evaluation.scales().unwrap_or(&ones);
-        let (jacobian, simulations) = sensitivities(problem, evaluation, values, simulated);
-        let weighted: Vec<Vec<f64>> = jacobian
-            .iter()
-            .map(|column| column.iter().zip(scales).map(|(j, s)| j * s).collect())
-            .collect();
+        let (jacobian, mut simulations) = sensitivities(problem, evaluation, values, simulated);
+        let weighted = weighted(&jacobian, scales);
         let residuals: Vec<f64> = measured
             .iter()
             .zip(simulated)
@@ -74,17 +73,53 @@ impl Statistics {
             .map(|((m, s), scale)| scale * (m - s))
             .collect();
         let freedom = residuals.len().saturating_sub(values.len());
-        let (inseparable, without_effect, condition) = directions(&weighted, values);
+        let uncertainty = uncertainty(&weighted, &residuals);
+        let best = Sensitivities { values: values.to_vec(), columns: weighted };
+        let tolerance = problem.noise.powf(2.0 / 3.0).clamp(RANK[0], RANK[1]);
+        let mut rank = inseparable::rank(&best, &[], tolerance);
+        if !rank.inseparable.is_empty() {
+            let elsewhere = elsewhere(problem, evaluation, others, scales, &mut simulations);
+            rank = inseparable::rank(&best, &elsewhere, tolerance);
+            rank.inseparable.retain(|group| problem.noise < EXACT || group.form != Form::Local);
+        }
         Statistics {
-            uncertainty: uncertainty(&weighted, &residuals),
+            uncertainty,
             factor: student_quantile(freedom),
-            condition,
-            inseparable,
-            without_effect,
+            condition: rank.condition,
+            inseparable: rank.inseparable,
+            without_effect: rank.without_effect,
             jacobian,
             simulations,
         }
     }
+}
+
+fn weighted(jacobian: &[Vec<f64>], scales: &[f64]) -> Vec<Vec<f64>> {
+    let column =
+        |column: &Vec<f64>| column.iter().zip(scales).map(|(j, s)| j * s).collect::<Vec<f64>>();
+    jacobian.iter().map(column).collect()
+}
+
+/// The sensitivities at other points, as far as these can be simulated.
+fn elsewhere(
+    problem: &Problem,
+    evaluation: &Evaluation,
+    others: &[Vec<f64>],
+    scales: &[f64],
+    simulations: &mut u64,
+) -> Vec<Sensitivities> {
+    let mut found = Vec::new();
+    for (values, simulated) in others.iter().zip(evaluation.simulate_all(others)) {
+        *simulations += 1;
+        let Ok(simulated) = simulated else { continue };
+        let (jacobian, took) = sensitivities(problem, evaluation, values, &simulated);
+        *simulations += took;
+        let columns = weighted(&jacobian, scales);
+        if columns.iter().flatten().all(|value| value.is_finite()) {
+            found.push(Sensitivities { values: values.clone(), columns });
+        }
+    }
+    found
 }
 
 /// Central differences, one-sided at bounds and failures.
@@ -115,46 +150,6 @@ fn sensitivities(
         low.iter().zip(high).map(|(low, high)| (high - low) / (to - from)).collect()
     };
     ((0..values.len()).map(column).collect(), ends.len() as u64)
-}
-
-type Directions = (Vec<Vec<(usize, f64)>>, Vec<usize>, Option<f64>);
-
-/// Null directions of the sensitivities by the logarithms of the parameters.
-fn directions(jacobian: &[Vec<f64>], values: &[f64]) -> Directions {
-    let (n, points) = (jacobian.len(), jacobian.first().map_or(0, Vec::len));
-    if points == 0 || jacobian.iter().flatten().any(|v| !v.is_finite()) {
-        return (Vec::new(), Vec::new(), None);
-    }
-    let norms: Vec<f64> =
-        jacobian.iter().map(|c| c.iter().map(|v| v * v).sum::<f64>().sqrt()).collect();
-    let without: Vec<usize> = (0..n).filter(|&k| norms[k] == 0.0).collect();
-    let used: Vec<usize> = (0..n).filter(|&k| norms[k] > 0.0).collect();
-    if used.is_empty() {
-        return (Vec::new(), without, None);
-    }
-    let scaled = DMatrix::from_fn(points.max(used.len()), used.len(), |row, k| {
-        if row < points { jacobian[used[k]][row] / norms[used[k]] } else { 0.0 }
-    });
-    let svd = scaled.svd(false, true);
-    let Some(right) = svd.v_t else { return (Vec::new(), without, None) };
-    let largest = svd.singular_values.max();
-    let condition = largest / svd.singular_values.min();
-    let mut groups = Vec::new();
-    for (d, &value) in svd.singular_values.iter().enumerate() {
-        if value > RANK * largest {
-            continue;
-        }
-        // From columns of unit length to relative changes of the parameters.
-        let change = |k: usize| {
-            let size = if values[used[k]] == 0.0 { 1.0 } else { values[used[k]] };
-            right[(d, k)] / (norms[used[k]] * size)
-        };
-        let most = (0..used.len()).map(|k| change(k).abs()).fold(0.0, f64::max);
-        let part =
-            |k: usize| Some((used[k], change(k) / most)).filter(|(_, part)| part.abs() > PART);
-        groups.push((0..used.len()).filter_map(part).collect());
-    }
-    (groups, without, Some(condition))
 }
 
 /// The tests of residuals in their order; `None` for fewer than three.
@@ -234,19 +229,5 @@ mod tests {
         let mut rng = crate::ga::Mrg32k3a::new(&[12345.0; 6]).unwrap();
         let noise: Vec<f64> = (0..60).map(|_| rng.normal()).collect();
         assert!(residual_test(&noise).unwrap().runs_probability > 0.01);
-    }
-
-    #[test]
-    fn products_are_inseparable() {
-        // y = a b x + c: the columns of a and b are parallel.
-        let (a, b) = (2.0, 5.0);
-        let x = [0.0, 1.0, 2.0, 3.0];
-        let column = |f: fn(f64) -> f64, s: f64| x.iter().map(|x| s * f(*x)).collect::<Vec<f64>>();
-        let jacobian = [column(|x| x, b), column(|x| x, a), column(|_| 1.0, 1.0), vec![0.0; 4]];
-        let (groups, without, _) = directions(&jacobian, &[a, b, 1.0, 1.0]);
-        assert_eq!(without, [3]);
-        assert_eq!(groups.len(), 1);
-        assert_eq!(groups[0].iter().map(|part| part.0).collect::<Vec<_>>(), [0, 1]);
-        assert!((groups[0][0].1 + groups[0][1].1).abs() < 1e-9, "a may grow as b falls");
     }
 }

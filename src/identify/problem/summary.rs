@@ -1,11 +1,13 @@
 //! The solution: what was found, how well it fits, and what the data cannot tell.
 
-use super::{FailureKind, Importance, Profiles, Run, Statistics, profiles, residual_test};
+use super::{
+    FailureKind, FailureRegion, Importance, Profiles, Run, Statistics, profiles, residual_test,
+};
 use crate::diag::Fault;
 use crate::fault;
 use crate::ga::Generation;
 use crate::registry::BAD_OPTION;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A parameter counts as determined when its deviation is below this fraction of its value.
 const DETERMINED_BELOW: f64 = 0.5;
@@ -14,8 +16,11 @@ const STRONG: f64 = 0.95;
 /// Values nearer to a bound than this fraction of the range are at it.
 const AT_BOUND: f64 = 1e-3;
 
+/// Points beside the best at which a lack of rank is looked at.
+const ELSEWHERE: usize = 5;
+
 /// The solution of a problem.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Solution {
     /// The heading.
     pub title: String,
@@ -50,9 +55,11 @@ pub struct Solution {
     /// Further simulations for the statistics.
     pub simulations_for_statistics: u64,
     /// Failed individuals by kind.
-    pub failures: indexmap::IndexMap<&'static str, u64>,
+    pub failures: indexmap::IndexMap<String, u64>,
     /// Failed individuals by cause.
     pub causes: indexmap::IndexMap<String, u64>,
+    /// Where in the search space simulations failed, if that is a region.
+    pub failure_region: Option<FailureRegion>,
     /// Settings changed during the run.
     pub changes: Vec<(u64, String, f64)>,
     /// How much each parameter matters, where that was asked before the fit.
@@ -63,12 +70,17 @@ pub struct Solution {
     pub front: Vec<(Vec<f64>, Vec<f64>)>,
     /// The place in the front that is farthest from the line between its ends.
     pub knee: Option<usize>,
+    /// The hypervolume of the front, and the reference point that it is measured from: a tenth of
+    /// the front's width beyond its worst values.
+    pub hypervolume: Option<(f64, Vec<f64>)>,
     /// Names of the objectives.
     pub objectives: Vec<String>,
     /// The seed.
     pub seed: [f64; 6],
     /// Version of the program.
-    pub version: &'static str,
+    pub version: String,
+    /// The problem as it was written; empty where it was put in Rust.
+    pub problem: String,
     /// Every generation: best, mean, worst, failures.
     #[serde(skip)]
     pub history: Vec<Generation>,
@@ -81,7 +93,7 @@ pub struct Solution {
 }
 
 /// An identified parameter.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct SolvedParameter {
     /// Its name.
     pub name: String,
@@ -104,7 +116,7 @@ pub struct SolvedParameter {
 }
 
 /// A series with its simulation.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct SolvedSeries {
     /// The experiment.
     pub experiment: String,
@@ -115,6 +127,7 @@ pub struct SolvedSeries {
     /// Where the data come from.
     pub file: String,
     /// Root of the mean squared residual.
+    #[serde(deserialize_with = "super::saved::number")]
     pub rmse: f64,
     /// Coefficient of determination.
     pub r_squared: Option<f64>,
@@ -122,6 +135,7 @@ pub struct SolvedSeries {
     /// correlation of neighbours.
     pub residual_test: Option<[f64; 4]>,
     /// X, measured, simulated.
+    #[serde(deserialize_with = "super::saved::points")]
     pub points: Vec<[f64; 3]>,
 }
 
@@ -173,7 +187,9 @@ impl Solution {
         };
         let simulated = run.evaluation.simulate(&best.values);
         let simulated = simulated.map_err(|failed| fault!(BAD_OPTION, "{}", failed.cause))?;
-        let statistics = Statistics::at(problem, &run.evaluation, &best.values, &simulated);
+        let others = elsewhere(run);
+        let statistics =
+            Statistics::at(problem, &run.evaluation, &best.values, &simulated, &others);
         let mut rest = simulated.as_slice();
         let mut series = Vec::new();
         for measured in &problem.series {
@@ -211,16 +227,19 @@ impl Solution {
             evaluations: run.evaluations,
             simulations: run.simulations,
             simulations_for_statistics: statistics.simulations,
-            failures: kinds.map(|(kind, count)| (kind.name(), *count)).collect(),
+            failures: kinds.map(|(kind, count)| (kind.name().to_owned(), *count)).collect(),
             causes: run.causes.clone(),
+            failure_region: super::failure_region(&problem.parameters, &run.kept),
             changes: run.changed.clone(),
             importance: None,
             profiles: None,
             knee: knee(&run.front),
+            hypervolume: front_volume(&run.front),
             front: run.front.clone(),
             objectives: problem.objectives.iter().map(|(name, _)| name.clone()).collect(),
             seed: problem.seed,
-            version: env!("CARGO_PKG_VERSION"),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            problem: problem.text.clone(),
             history: run.history.generations.clone(),
             trace: run.trace.clone(),
             individuals: run.kept.clone(),
@@ -263,6 +282,18 @@ impl Solution {
     }
 }
 
+/// Some individuals that were simulated successfully, from the whole run.
+fn elsewhere(run: &Run) -> Vec<Vec<f64>> {
+    let good: Vec<&Vec<f64>> = run
+        .kept
+        .iter()
+        .filter(|(_, fitness)| !crate::ga::has_failed(*fitness))
+        .map(|(values, _)| values)
+        .collect();
+    let every = good.len().div_ceil(ELSEWHERE).max(1);
+    good.iter().step_by(every).map(|values| (*values).clone()).collect()
+}
+
 fn parameters(run: &Run, values: &[f64], statistics: &Statistics) -> Vec<SolvedParameter> {
     let one = |(k, free): (usize, &super::Free)| {
         let value = values[k];
@@ -297,6 +328,19 @@ fn correlations(statistics: &Statistics, n: usize) -> Option<Vec<Vec<Option<f64>
     let found = statistics.uncertainty.as_ref()?;
     let entry = |k: usize, l: usize| Some(found.correlations[k * n + l]).filter(|c| c.is_finite());
     Some((0..n).map(|k| (0..n).map(|l| entry(k, l)).collect()).collect())
+}
+
+fn front_volume(front: &[(Vec<f64>, Vec<f64>)]) -> Option<(f64, Vec<f64>)> {
+    let m = front.first()?.1.len();
+    let column = |j: usize| front.iter().map(move |(_, objectives)| objectives[j]);
+    let reference: Vec<f64> = (0..m)
+        .map(|j| {
+            let worst = column(j).fold(f64::NEG_INFINITY, f64::max);
+            worst + 0.1 * (worst - column(j).fold(f64::INFINITY, f64::min))
+        })
+        .collect();
+    let points: Vec<f64> = front.iter().flat_map(|(_, objectives)| objectives.clone()).collect();
+    Some((crate::ga::hypervolume(&points, m, &reference), reference))
 }
 
 /// The member of a front of two objectives that is farthest from the line between its ends, both

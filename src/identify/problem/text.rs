@@ -47,7 +47,11 @@ impl Solution {
             let knee = self.knee.map_or(String::new(), |knee| {
                 format!(", knee at {}", objectives(&self.front[knee].1))
             });
-            facts.push(("front", format!("{} points{knee}", self.front.len())));
+            let volume = self.hypervolume.as_ref().map_or(String::new(), |(volume, reference)| {
+                let reference = objectives(reference);
+                format!(", hypervolume {} from {reference}", significant(*volume, 4))
+            });
+            facts.push(("front", format!("{} points{knee}{volume}", self.front.len())));
         }
         facts.push(("method", self.method.clone()));
         facts.push(("stopped", self.stop.clone()));
@@ -65,6 +69,7 @@ impl Solution {
         for (generation, setting, value) in &self.changes {
             facts.push(("changed", format!("{setting} = {value} after generation {generation}")));
         }
+        facts.push(("version", format!("gapilib {}", self.version)));
         facts.push(("seed", self.seed.map(|entry| entry.to_string()).join(" ")));
         facts
     }

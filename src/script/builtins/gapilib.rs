@@ -179,6 +179,7 @@ fn eval(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let simulated = session.evaluate_population(request, &genomes)?;
     let messages = simulated.messages();
     session.generation_simulated()?;
+    session.pause()?;
     let rows = RealMatrix { rows: genomes.len(), columns, elements: simulated.rows };
     Ok(Value::Tuple(vec![rows.into(), messages.into()]))
 }

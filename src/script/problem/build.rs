@@ -4,20 +4,22 @@
 //! data) becomes a class around the model, so that it means what it means in Modelica.
 
 use super::file::{ColumnEntry, ExperimentEntry, OneOrMany, ProblemFile, Role};
+use super::own_fitness;
 use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::ga::optimizer::METHODS;
-use crate::identify::fitness::FITNESSES;
+use crate::identify::fitness::{FITNESSES, Fitness};
 use crate::identify::problem::{
-    Experiment, Free, ModelSimulator, NOISE_OF_FORMULAS, Observation, Problem, Series, Simulate,
-    Stop,
+    Experiment, Fingerprint, Free, ModelSimulator, NOISE_OF_FORMULAS, Observation, Problem, Series,
+    Simulate, Stop,
 };
 use crate::identify::{CompiledModel, Model};
 use crate::mat::{self, MatFile};
 use crate::registry::{self, BAD_OPTION, Options};
 use crate::script::Session;
 use crate::script::simulation::{self, Wishes};
+use crate::sim::{Settings, TimeBudget};
 use crate::source::Span;
 use std::fmt::Write;
 use std::path::Path;
@@ -55,14 +57,14 @@ pub(super) fn build(
         session.load_path(&folder.join(models))?;
     }
     let free = free_parameters(file).map_err(one)?;
-    let mut hash = Hash::default();
-    hash.add(text.as_bytes());
+    let mut fingerprint = Fingerprint::default();
+    fingerprint.add(text.as_bytes());
     let (mut experiments, mut series, mut validation) = (Vec::new(), Vec::new(), Vec::new());
     let mut noise: f64 = NOISE_OF_FORMULAS;
     for (number, entry) in file.experiment.iter().enumerate() {
         let data = folder.join(&entry.data);
         let bytes = session.read_bytes(&data).map_err(one)?;
-        hash.add(&bytes);
+        fingerprint.add(&bytes);
         let table = mat::read_named(&data.to_string_lossy(), &bytes).map_err(one)?;
         let built = experiment(session, file, entry, number, &table, &free)?;
         let (experiment, own, has_states) = built;
@@ -80,31 +82,52 @@ pub(super) fn build(
         return Err(one(fault!(BAD_OPTION, "there is no experiment to fit")
             .help("add a table `[[experiment]]`")));
     }
+    let objectives = objectives(session, file, &series)?;
     let parameters = with_units(free, &experiments);
     // Made once here, so that what is wrong shows before the run.
     drop(ModelSimulator::new(&experiments).map_err(one)?);
     let simulator = move || Ok(Box::new(ModelSimulator::new(&experiments)?) as Box<dyn Simulate>);
-    let problem = assemble(file, parameters, series, noise, Box::new(simulator)).map_err(one)?;
-    Ok(Built { problem, validation, fingerprint: hash.0 })
+    let parts = (parameters, series, objectives);
+    let mut problem = assemble(file, parts, noise, Box::new(simulator)).map_err(one)?;
+    problem.text = text.to_owned();
+    Ok(Built { problem, validation, fingerprint: fingerprint.number() })
 }
 
-fn assemble(
+/// The fitness functions by name: those of the program, else functions written in Modelica.
+fn objectives(
+    session: &mut Session,
     file: &ProblemFile,
-    parameters: Vec<Free>,
-    series: Vec<Series>,
-    noise: f64,
-    simulator: Box<dyn Fn() -> Result<Box<dyn Simulate>, Fault> + Send + Sync>,
-) -> Result<Problem, Fault> {
+    series: &[Series],
+) -> Result<Vec<Objective>, Vec<Diagnostic>> {
     let names = match &file.fitness {
         None => vec![FITNESSES[0].name.to_owned()],
         Some(OneOrMany::One(name)) => vec![name.clone()],
         Some(OneOrMany::Many(names)) => names.clone(),
     };
+    let one = |fault: Fault| vec![fault.at(Span::NONE)];
     let mut objectives = Vec::new();
-    for name in &names {
-        let entry = registry::find("fitness function", FITNESSES, name)?;
-        objectives.push((entry.name.to_owned(), (entry.make)(&mut Options::default())?));
+    for name in names {
+        let entry = registry::find("fitness function", FITNESSES, &name);
+        if entry.is_err() && own_fitness::is_function(session, &name) {
+            let own = own_fitness::compiled(session, &name, series)?;
+            objectives.push((name, Box::new(own) as Box<dyn Fitness>));
+            continue;
+        }
+        let entry = entry.map_err(one)?;
+        let made = (entry.make)(&mut Options::default()).map_err(one)?;
+        objectives.push((entry.name.to_owned(), made));
     }
+    Ok(objectives)
+}
+
+type Objective = (String, Box<dyn Fitness>);
+
+fn assemble(
+    file: &ProblemFile,
+    (parameters, series, objectives): (Vec<Free>, Vec<Series>, Vec<Objective>),
+    noise: f64,
+    simulator: Box<dyn Fn() -> Result<Box<dyn Simulate>, Fault> + Send + Sync>,
+) -> Result<Problem, Fault> {
     let several = objectives.len() > 1;
     let default = if several { "nsga2" } else { METHODS[0].name };
     let wanted = file.method.name.as_deref().unwrap_or(default);
@@ -127,6 +150,7 @@ fn assemble(
     Ok(Problem {
         title: file.title.clone().unwrap_or_else(|| format!("Identification of {}", file.model)),
         model: file.model.clone(),
+        text: String::new(),
         parameters,
         series,
         objectives,
@@ -211,7 +235,8 @@ fn experiment(
         method: entry.integrator.clone(),
         ..Wishes::default()
     };
-    let settings = simulation::settings(&program.experiment(), &wishes).map_err(one)?;
+    let mut settings = simulation::settings(&program.experiment(), &wishes).map_err(one)?;
+    limit(session, entry, &mut settings).map_err(one)?;
     let (mut observations, mut series) = (Vec::new(), Vec::new());
     for (y_name, wanted) in &entry.outputs {
         let wanted = wanted.entry();
@@ -248,6 +273,20 @@ fn experiment(
         return Err(one(fault!(BAD_OPTION, "{name} has no outputs to compare")));
     }
     Ok((Experiment { name, model, settings, x_name, observations, parameters }, series, has_states))
+}
+
+/// What a simulation may cost.
+fn limit(session: &Session, entry: &ExperimentEntry, settings: &mut Settings) -> Result<(), Fault> {
+    if let Some(steps) = entry.max_steps {
+        settings.max_steps = steps;
+    }
+    let Some(seconds) = entry.max_seconds else { return Ok(()) };
+    if seconds.is_nan() || seconds <= 0.0 {
+        bail!(BAD_OPTION, "`max_seconds` is {seconds}, but a simulation takes some time");
+    }
+    // Where there is no clock, nothing is late.
+    settings.time_budget = session.world.clock().map(|clock| TimeBudget { seconds, clock });
+    Ok(())
 }
 
 /// Over time, the simulation goes as far as it was measured.
@@ -387,22 +426,5 @@ fn check_unit(name: &str, unit: &str, entry: &ColumnEntry) -> Result<(), Fault> 
             help: "give the `factor` that turns the column's values into the model's unit"
         ),
         _ => Ok(()),
-    }
-}
-
-/// FNV-1a.
-struct Hash(u64);
-
-impl Default for Hash {
-    fn default() -> Hash {
-        Hash(0xcbf2_9ce4_8422_2325)
-    }
-}
-
-impl Hash {
-    fn add(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
-        }
     }
 }

@@ -43,14 +43,20 @@ impl Watched {
             if self.known.get(&setting) == Some(&value) {
                 continue;
             }
-            match run.change(&setting, value) {
-                Ok(()) => session.print(&format!(
-                    "{setting} = {value} from generation {} on\n",
-                    run.generations() + 1
-                )),
-                Err(fault) => session.world.eprint(&format!("warning: {}\n", fault.message)),
-            }
+            change(session, run, &setting, value);
             self.known.insert(setting, value);
+        }
+    }
+}
+
+/// Changes one setting; what cannot be is told and left.
+pub(super) fn change(session: &mut Session, run: &mut Run, setting: &str, value: f64) {
+    match run.change(setting, value) {
+        Ok(()) => session
+            .print(&format!("{setting} = {value} from generation {} on\n", run.generations() + 1)),
+        Err(fault) => {
+            let help = fault.helps.iter().map(|help| format!("; {help}")).collect::<String>();
+            session.world.eprint(&format!("warning: {}{help}\n", fault.message));
         }
     }
 }

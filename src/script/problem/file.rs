@@ -79,6 +79,10 @@ pub(super) struct ExperimentEntry {
     pub stop_time: Option<f64>,
     pub tolerance: Option<f64>,
     pub integrator: Option<String>,
+    /// Steps after which a simulation is given up.
+    pub max_steps: Option<u64>,
+    /// Seconds on the clock after which a simulation is given up.
+    pub max_seconds: Option<f64>,
 }
 
 /// A column of the data: its name, or its name with more.

@@ -8,10 +8,12 @@
 mod build;
 mod control;
 mod file;
+mod live;
+mod own_fitness;
 mod record;
 
 use super::Session;
-use super::world::Progress;
+use super::checkpoint::{self, Checkpoint};
 use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
@@ -23,12 +25,11 @@ use crate::source::Span;
 use crate::value::RecordValue;
 use build::Built;
 use control::Watched;
+use live::Live;
 use std::path::{Path, PathBuf};
 
 /// The journal's file.
 const JOURNAL: &str = "run.journal";
-/// Seconds between two checkpoints unless the problem says otherwise.
-const SECONDS: f64 = 2.0;
 /// Seconds between two looks at the watched settings.
 const LOOK: f64 = 0.2;
 
@@ -51,18 +52,6 @@ pub struct RunOptions {
     pub samples: usize,
     /// Ends the run after so many evaluations, whatever the problem says.
     pub evaluations: Option<u64>,
-}
-
-/// The journal being written.
-struct Checkpoint {
-    path: PathBuf,
-    pending: Vec<u8>,
-    questions: u64,
-    written: f64,
-    /// Limits from the problem.
-    every: (Option<u64>, f64),
-    /// Why it could not be written.
-    broken: Option<String>,
 }
 
 /// Solves the problem in the file `path`; writes the results into the world's folder for them.
@@ -110,7 +99,8 @@ fn solve_text(
     if let Some(limit) = options.evaluations {
         built.problem.stop.evaluations = Some(limit);
     }
-    let every = (file.checkpoint.generations, file.checkpoint.seconds.unwrap_or(SECONDS));
+    let every =
+        (file.checkpoint.generations, file.checkpoint.seconds.unwrap_or(checkpoint::SECONDS));
     solve_built(session, built, options, every).map_err(one)
 }
 
@@ -126,8 +116,10 @@ fn solve_built(
     let importance = analysed(session, &run, &folder, options)?;
     let mut checkpoint = open(session, &mut run, &folder, fingerprint, options, every)?;
     let mut watched = options.watch.clone().map(Watched::new);
+    let mut live = Live::default();
+    run.evaluation.cancel_by(session.world.interrupt_flag());
     let before = run.seconds;
-    let started = session.world.monotonic_seconds();
+    let mut started = session.world.monotonic_seconds();
     let mut looked = f64::NEG_INFINITY;
     let (stop, interrupted) = loop {
         if let Some(stop) = run.stop() {
@@ -141,10 +133,19 @@ fn solve_built(
             looked = seconds;
             watched.apply(session, &mut run);
         }
+        if session.world.wants_pause() {
+            let paused = session.world.monotonic_seconds();
+            if live::pause(session, &mut run) {
+                break ("ended by the user: these are the best values so far".to_owned(), true);
+            }
+            started += session.world.monotonic_seconds() - paused;
+        }
         let Some(record) = run.step(seconds) else { continue };
         checkpoint.note(session, &solving::encode(&record), seconds);
-        show(session, &run);
+        live.show(session, &run);
     };
+    session.world.end_view();
+    run.evaluation.cancel_by(None);
     checkpoint.flush(session, run.seconds);
     let validation = validated(&run, &validation)?;
     let mut solution = Solution::of(&run, &stop, validation)?;
@@ -154,14 +155,14 @@ fn solve_built(
     }
     session.print(&solution.text());
     write(session, &folder, &solution)?;
-    if let Some(why) = checkpoint.broken {
+    if let Some(why) = checkpoint.broken() {
         session.report_fault(fault!(BAD_OPTION, "the checkpoint could not be written: {why}"));
     }
     if interrupted {
         session.print("\n  the run can go on from here with --resume\n");
-    } else if session.world.exists(&checkpoint.path) {
+    } else if session.world.exists(checkpoint.path()) {
         // What cannot be removed does no harm.
-        let _ = session.world.remove(&checkpoint.path);
+        let _ = session.world.remove(checkpoint.path());
     }
     Ok(solution)
 }
@@ -228,61 +229,7 @@ fn open(
         bytes = old[..journal.whole].to_vec();
     }
     session.write_file(&path, &bytes)?;
-    Ok(Checkpoint {
-        path,
-        pending: Vec::new(),
-        questions: 0,
-        written: run.seconds,
-        every,
-        broken: None,
-    })
-}
-
-impl Checkpoint {
-    fn note(&mut self, session: &mut Session, record: &[u8], seconds: f64) {
-        self.pending.extend_from_slice(record);
-        self.questions += 1;
-        let enough = self.every.0.is_some_and(|limit| self.questions >= limit);
-        if enough || seconds - self.written >= self.every.1 {
-            self.flush(session, seconds);
-        }
-    }
-
-    fn flush(&mut self, session: &mut Session, seconds: f64) {
-        self.written = seconds;
-        self.questions = 0;
-        if self.pending.is_empty() || self.broken.is_some() {
-            return;
-        }
-        match session.world.append(&self.path, &self.pending) {
-            Ok(()) => self.pending.clear(),
-            Err(error) => {
-                // A part may have been written; what stands before it is whole.
-                self.broken = Some(format!("{error}; the run goes on without"));
-                let text = format!(
-                    "warning: `{}` cannot be written: {error}; the run goes on without checkpoints\n",
-                    self.path.display()
-                );
-                session.world.eprint(&text);
-            }
-        }
-    }
-}
-
-fn show(session: &mut Session, run: &Run) {
-    let limits = run.problem.stop;
-    let (done, total) = match (limits.evaluations, limits.generations) {
-        (_, Some(total)) => (run.generations(), total),
-        (Some(total), None) => (run.evaluations.min(total), total),
-        (None, None) => (run.evaluations, 0),
-    };
-    session.world.progress(&Progress {
-        label: run.phase().to_owned(),
-        done,
-        total,
-        best: run.best.as_ref().map(|best| best.fitness),
-        failures: run.failed.iter().sum(),
-    });
+    Ok(Checkpoint::new(path, every, run.seconds))
 }
 
 /// The experiments kept for validation, at the best values.

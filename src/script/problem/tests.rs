@@ -210,3 +210,103 @@ problem = GAPILib.Problem(modelName = \"Free\", files = {\"tank.mo\"},
         assert!(session.world.exists(&path), "{name}");
     }
 }
+
+#[test]
+fn what_is_changed_in_a_pause_is_recorded_and_done_again() {
+    let data = table("time,q", |t| (3.0 * (-t).exp() + 0.01 * (7.0 * t).sin()).to_string());
+    let files = [("p.toml", SIMPLE.to_owned()), ("d.csv", data)];
+    let lines =
+        ["mutation = 0.5", "min k = 0.2", "colour = 3", "nothing", "evaluations = 400", "stop"];
+    let run = |world: MemoryWorld, resume: bool| {
+        let streams = world.streams();
+        let mut session = Session::new(Box::new(world));
+        let options = RunOptions { resume, ..RunOptions::default() };
+        let solution = solve(&mut session, Path::new("p.toml"), &options);
+        let text = streams.output() + &streams.errors();
+        (solution.unwrap_or_else(|errors| panic!("{}", errors[0].message)), text, session)
+    };
+    let (whole, text, _) = run(world(&files).paused_after(4, &lines[..5]), false);
+    let changes: Vec<_> = whole.changes.iter().map(|(at, what, _)| (*at, what.as_str())).collect();
+    assert_eq!(changes, [(4, "mutation"), (4, "min k"), (4, "evaluations")]);
+    assert!(text.contains("mutation = 0.5 from generation 5 on"), "{text}");
+    assert!(text.contains("`colour`") && text.contains("no NAME = NUMBER"), "{text}");
+    assert_eq!(whole.parameters[0].range, [0.2, 5.0]);
+    // Ended in a later pause, it goes on from there with the changes that were made.
+    let twice = world(&files).paused_after(4, &lines);
+    let (ended, text, session) = run(twice, false);
+    assert!(ended.evaluations < whole.evaluations && text.contains("--resume"), "{text}");
+    let path = session.world.output_dir().join(JOURNAL);
+    let journal = session.world.read(&path).unwrap();
+    let (_, _, session) = run(world(&files).with_file(&path, journal), true);
+    assert!(!session.world.exists(&path));
+}
+
+const DATA: fn(f64) -> String = |t| (3.0 * (-t).exp() + 0.01 * (7.0 * t).sin()).to_string();
+
+#[test]
+fn fitness_may_be_a_function_written_in_modelica() {
+    let functions = "
+function distance
+  input Real simulated[:];
+  input Real measured[:];
+  output Real largest = max(abs(simulated - measured));
+end distance;
+function squares
+  input Real simulated[:];
+  input Real measured[:];
+  input Real weights[:];
+  output Real sum;
+algorithm
+  sum := 0;
+  for k in 1:size(simulated, 1) loop
+    sum := sum + (weights[k]*(simulated[k] - measured[k]))^2;
+  end for;
+end squares;
+function undecided
+  input Real x;
+  output Real y = x;
+end undecided;";
+    let with = |name: &str| {
+        let own = format!("fitness = \"{name}\"\nfiles = [\"tank.mo\", \"f.mo\"]\n");
+        let problem = SIMPLE.replace("files = [\"tank.mo\"]\n", &own);
+        assert!(problem.contains("f.mo"), "{problem}");
+        [("p.toml", problem), ("d.csv", table("time,q", DATA)), ("f.mo", functions.to_owned())]
+    };
+    let own = solved(&with("squares"));
+    let sum: f64 = own.series[0].points.iter().map(|p| (p[1] - p[2]).powi(2)).sum();
+    assert!((own.fitness - sum).abs() < 1e-12 && sum < 0.01, "{} {sum}", own.fitness);
+    // That it is a sum of squares is not known, so least squares do not refine it.
+    assert!(own.method == "genetic" && own.fitness_name == "squares", "{}", own.method);
+    let largest = solved(&with("distance"));
+    let points = largest.series[0].points.iter();
+    let expected = points.map(|p| (p[1] - p[2]).abs()).fold(0.0, f64::max);
+    assert!((largest.fitness - expected).abs() < 1e-12, "{} {expected}", largest.fitness);
+    for (name, reason) in [("undecided", "has 1 inputs"), ("sqares", "unknown fitness function")] {
+        let mut session = Session::new(Box::new(world(&with(name))));
+        let wrong = solve(&mut session, Path::new("p.toml"), &RunOptions::default()).unwrap_err();
+        assert!(wrong[0].message.contains(reason), "{}", wrong[0].message);
+    }
+}
+
+#[test]
+fn simulations_that_cost_too_much_are_failures() {
+    let data = table("time,q", DATA);
+    let limited =
+        |limit: &str| SIMPLE.replace("[[experiment]]", &format!("[[experiment]]\n{limit}"));
+    let text = refusal(&limited("max_steps = 3"), &data);
+    assert!(text.contains("none of") && text.contains("steps"), "{text}");
+    let text = refusal(&limited("max_seconds = -1"), &data);
+    assert!(text.contains("`max_seconds` is -1"), "{text}");
+    // Here the clock stands still, so nothing is late.
+    solved(&[("p.toml", limited("max_seconds = 1e-9")), ("d.csv", data)]);
+}
+
+/// The sensitivities of simulations tell products, too, although they are not exact.
+#[test]
+fn a_product_in_a_dynamic_model_is_named() {
+    let problem = SIMPLE.replace("k = {", "gain = {").replace("q = \"q\"", "p = \"q\"");
+    let solution = solved(&[("p.toml", problem), ("d.csv", table("time,q", DATA))]);
+    let note = &solution.notes[0];
+    assert!(note.starts_with("gain, h cannot be determined separately by any data"), "{note}");
+    assert!(note.contains("depends on gain*h alone"), "{note}");
+}

@@ -10,7 +10,7 @@ mod rodas;
 mod rungekutta;
 mod without_unknowns;
 
-use super::{DaeSystem, Settings, SimErrorKind, Statistics};
+use super::{DaeSystem, Settings, SimErrorKind, Statistics, TimeBudget};
 use crate::diag::Fault;
 use crate::registry::{self, Entry};
 use std::sync::atomic::Ordering;
@@ -65,6 +65,8 @@ pub struct Problem<'a> {
     pub settings: &'a Settings,
     /// What it cost so far.
     pub statistics: &'a mut Statistics,
+    /// When the clock of the time budget ends the simulation.
+    pub deadline: Option<f64>,
 }
 
 impl Problem<'_> {
@@ -96,6 +98,10 @@ impl Problem<'_> {
         let attempts = statistics.steps + statistics.error_failures + statistics.newton_failures;
         if attempts >= self.settings.max_steps {
             return Err(SimErrorKind::StepBudget);
+        }
+        let late = |(deadline, budget): (f64, TimeBudget)| (budget.clock)() > deadline;
+        if self.deadline.zip(self.settings.time_budget).is_some_and(late) {
+            return Err(SimErrorKind::TimeBudget);
         }
         let cancelled =
             self.settings.cancel.as_ref().is_some_and(|cancel| cancel.load(Ordering::Relaxed));

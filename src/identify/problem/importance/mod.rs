@@ -9,19 +9,19 @@ use super::{Evaluation, Problem};
 use crate::diag::Fault;
 use crate::identify::table::significant;
 use crate::registry::{Entry, Options};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
 /// A parameter whose figure is below this part of the largest hardly matters.
 const HARDLY: f64 = 0.01;
 
 /// How much each parameter matters.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Importance {
     /// The name of the way.
-    pub method: &'static str,
+    pub method: String,
     /// What the two figures are.
-    pub headings: [&'static str; 2],
+    pub headings: [String; 2],
     /// The parameters in their order.
     pub parameters: Vec<ParameterImportance>,
     /// Simulations that it took.
@@ -31,7 +31,7 @@ pub struct Importance {
 }
 
 /// How much one parameter matters.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ParameterImportance {
     /// Its name.
     pub name: String,
@@ -73,7 +73,7 @@ impl Importance {
     pub fn text(&self) -> String {
         let mut text = format!("\nSensitivity ({})\n\n", self.method);
         let width = self.parameters.iter().map(|p| p.name.len()).max().unwrap_or(0).max(9);
-        let [first, second] = self.headings;
+        let [first, second] = &self.headings;
         // Writing into a String cannot fail.
         _ = writeln!(text, "  {:<width$}  {first:<20}  {second}", "parameter");
         for parameter in &self.parameters {
@@ -105,7 +105,7 @@ impl Importance {
 
     /// One line for each parameter.
     pub fn csv(&self) -> String {
-        let [first, second] = self.headings.map(|heading| heading.replace(' ', "_"));
+        let [first, second] = self.headings.clone().map(|heading| heading.replace(' ', "_"));
         let mut text = format!("parameter,{first},{second},{first}_deviation,{second}_deviation\n");
         for parameter in &self.parameters {
             text += &parameter.name;

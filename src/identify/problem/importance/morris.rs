@@ -61,8 +61,8 @@ impl Analysis for Morris {
             }
         };
         Ok(Importance {
-            method: ENTRY.name,
-            headings: ["mean effect", "spread of the effect"],
+            method: ENTRY.name.to_owned(),
+            headings: ["mean effect", "spread of the effect"].map(str::to_owned),
             parameters: problem.parameters.iter().zip(&effects).map(parameter).collect(),
             simulations: (trajectories * (n + 1)) as u64,
             failed,

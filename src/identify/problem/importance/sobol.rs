@@ -78,8 +78,8 @@ impl Analysis for Sobol {
         let variance = weighted.sum::<f64>() / (sums.count - 1.0).max(1.0) / points as f64;
         let parameters = problem.parameters.iter().zip(&sums.distances);
         Ok(Importance {
-            method: ENTRY.name,
-            headings: ["first order", "total"],
+            method: ENTRY.name.to_owned(),
+            headings: ["first order", "total"].map(str::to_owned),
             parameters: parameters.map(|(free, all)| shares(&free.name, all, variance)).collect(),
             simulations: (samples * (n + 2)) as u64,
             failed: sums.failed,

@@ -26,6 +26,7 @@ fn analysed(
     let free = |name| Free::new(name, "", range, Some(false), None).unwrap();
     let method = crate::ga::optimizer::METHODS[0];
     let problem = Problem {
+        text: String::new(),
         title: String::new(),
         model: String::new(),
         parameters: ["a", "b", "c"].map(free).to_vec(),

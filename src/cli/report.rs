@@ -1,0 +1,41 @@
+//! `gapi report`: draws the report of `gapi identify` again from its files.
+
+use super::args::{Global, ReportArgs};
+use super::session;
+use crate::diag::Fault;
+use crate::identify::problem::Solution;
+use crate::script::Session;
+use crate::source::Span;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Reads the folder and writes the page.
+pub(super) fn report(arguments: &ReportArgs, global: &Global) -> ExitCode {
+    let mut session = match session::with_files(global, &[]) {
+        Ok((session, _)) => session,
+        Err(code) => return code,
+    };
+    match draw(&mut session, arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(fault) => session::failed(&mut session, vec![fault.at(Span::NONE)]),
+    }
+}
+
+fn draw(session: &mut Session, arguments: &ReportArgs) -> Result<(), Fault> {
+    let read = |name: &str| session.read_text(&arguments.folder.join(name));
+    let (json, history) = (read("result.json")?, read("history.csv")?);
+    let solution = Solution::read(&json, &history, &read("individuals.csv")?)?;
+    let page = arguments.output.clone().unwrap_or_else(|| arguments.folder.join("report.html"));
+    session.print(&solution.text());
+    write(session, &page, &solution)?;
+    session.print(&format!("\n  written to {}\n", page.display()));
+    Ok(())
+}
+
+fn write(session: &mut Session, page: &Path, solution: &Solution) -> Result<(), Fault> {
+    let written = session.world.write(page, solution.html().as_bytes());
+    written.map_err(|error| {
+        let message = format!("`{}` cannot be written: {error}", page.display());
+        Fault::new(crate::registry::BAD_OPTION, message)
+    })
+}

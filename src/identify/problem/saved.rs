@@ -1,0 +1,57 @@
+//! A solution read back from the files of a run, so that its report can be drawn again.
+
+use super::Solution;
+use crate::diag::Fault;
+use crate::fault;
+use crate::ga::Generation;
+use crate::registry::BAD_OPTION;
+use serde::{Deserialize, Deserializer};
+
+impl Solution {
+    /// The solution that `result.json`, `history.csv` and `individuals.csv` hold.
+    ///
+    /// # Errors
+    ///
+    /// Files of another kind, or damaged ones.
+    pub fn read(json: &str, history: &str, individuals: &str) -> Result<Solution, Fault> {
+        let solution: Result<Solution, _> = serde_json::from_str(json);
+        let mut solution = solution.map_err(|error| {
+            fault!(BAD_OPTION, "`result.json` is not that of `gapi identify`: {error}")
+        })?;
+        let n = solution.parameters.len();
+        for row in rows("history.csv", history, 5)? {
+            let [_, best, mean, worst, failures] = row[..5] else { continue };
+            let failures = failures as usize;
+            solution.history.push(Generation { best, mean, worst, failures });
+            solution.trace.push(row[5..].to_vec());
+        }
+        for mut row in rows("individuals.csv", individuals, n + 1)? {
+            let fitness = row.pop().unwrap_or(f64::NAN);
+            solution.individuals.push((row, fitness));
+        }
+        Ok(solution)
+    }
+}
+
+/// The rows behind the heading, of at least so many numbers each.
+fn rows(name: &str, text: &str, columns: usize) -> Result<Vec<Vec<f64>>, Fault> {
+    let mut reader = csv::ReaderBuilder::new().flexible(true).from_reader(text.as_bytes());
+    let mut rows = Vec::new();
+    for (k, record) in reader.records().enumerate() {
+        let row: Option<Vec<f64>> =
+            record.ok().and_then(|record| record.iter().map(|cell| cell.parse().ok()).collect());
+        let row = row.filter(|row| row.len() >= columns);
+        rows.push(row.ok_or_else(|| fault!(BAD_OPTION, "line {} of `{name}` is damaged", k + 2))?);
+    }
+    Ok(rows)
+}
+
+/// What is not a number is written as null.
+pub(super) fn number<'de, D: Deserializer<'de>>(reader: D) -> Result<f64, D::Error> {
+    Ok(Option::<f64>::deserialize(reader)?.unwrap_or(f64::NAN))
+}
+
+pub(super) fn points<'de, D: Deserializer<'de>>(reader: D) -> Result<Vec<[f64; 3]>, D::Error> {
+    let points = Vec::<[Option<f64>; 3]>::deserialize(reader)?;
+    Ok(points.into_iter().map(|point| point.map(|value| value.unwrap_or(f64::NAN))).collect())
+}

@@ -1,0 +1,186 @@
+//! Runs that somebody watches: views, pauses in which settings change, and scripts that are
+//! interrupted and go on.
+
+use gapilib::script::view::View;
+use gapilib::script::world::{MemoryWorld, Views};
+use gapilib::script::{Journaling, Options, Session};
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex};
+
+/// Each generation comes nearer to 0.8 by the fraction F.
+const SCRIPT: &str = "
+model Line
+  parameter Real a(unit = \"m/s\") = 1;
+  output Real y = a*time;
+  annotation(experiment(StopTime = 1));
+end Line;
+F = 0.2;
+pop = {{0.1}, {0.5}, {0.9}, {1.3}};
+for k in 1:8 loop
+  sim := Eval(\"\", \"Line\", {0.0, 0.5, 1.0}, pop, {\"a\"}, \"time\", \"y\");
+  fit := Fit(sim, {0.0, 0.4, 0.8});
+  pop := (1 - F)*pop + F*0.8*ones(4, 1);
+end for;
+";
+
+fn run(world: MemoryWorld, journaling: Journaling) -> (u8, String, Session) {
+    let streams = world.streams();
+    let options = Options { journaling, ..Options::default() };
+    let mut session = Session::new(Box::new(world)).with_options(options);
+    let status = session.run_text("line.mos", SCRIPT);
+    (status.code, streams.output() + &streams.errors(), session)
+}
+
+fn journal(session: &Session) -> PathBuf {
+    session.world.output_dir().join("script.journal")
+}
+
+fn result(session: &Session) -> String {
+    let path = session.world.output_dir().join("result.json");
+    String::from_utf8(session.world.read(&path).expect("results")).expect("text")
+}
+
+#[test]
+fn scripts_that_are_interrupted_resume_to_the_same_end() {
+    let (code, text, whole) = run(MemoryWorld::new(), Journaling::Fresh(2.0));
+    assert_eq!(code, 0, "{text}");
+    assert!(!whole.world.exists(&journal(&whole)), "it ended");
+    let mut answered = Vec::new();
+    for patience in 3..200 {
+        let world = MemoryWorld::new().interrupted_after(patience);
+        let (code, text, cut) = run(world, Journaling::Fresh(2.0));
+        if code == 0 {
+            break;
+        }
+        assert_eq!(code, 130, "{text}");
+        let Ok(bytes) = cut.world.read(&journal(&cut)) else { continue };
+        answered.push(bytes.len());
+        for damage in [0, 3] {
+            let kept = bytes[..bytes.len() - damage].to_vec();
+            let world = MemoryWorld::new().with_file(journal(&cut), kept);
+            let (code, text, resumed) = run(world, Journaling::Resume(2.0));
+            assert_eq!(code, 0, "{text}");
+            assert!(text.contains("calls of Eval are answered"), "{text}");
+            assert_eq!(resumed.variable("pop"), whole.variable("pop"));
+            assert_eq!(result(&resumed), result(&whole));
+            assert!(!resumed.world.exists(&journal(&resumed)));
+        }
+    }
+    answered.dedup();
+    assert!(answered.len() > 2, "interrupted at several places: {answered:?}");
+}
+
+#[test]
+fn what_was_typed_in_a_pause_is_done_again_when_the_run_resumes() {
+    let typing = || MemoryWorld::new().paused_after(3, &["F := 0.5", "nonsense(1)", "x = F + 1"]);
+    let (_, text, whole) = run(typing(), Journaling::Fresh(2.0));
+    assert!(text.contains("Paused") && text.contains("nonsense"), "{text}");
+    assert_eq!(whole.variable("x"), Some(&1.5.into()));
+    let changed = result(&whole);
+    assert!(changed.contains("F := 0.5") && !changed.contains("nonsense"), "{changed}");
+    let (_, text, cut) = run(typing().interrupted_after(60), Journaling::Fresh(2.0));
+    let bytes = cut.world.read(&journal(&cut)).unwrap_or_else(|_| panic!("{text}"));
+    let world = MemoryWorld::new().with_file(journal(&cut), bytes);
+    let (_, text, resumed) = run(world, Journaling::Resume(2.0));
+    assert!(!text.contains("Paused"), "{text}");
+    assert_eq!(resumed.variable("pop"), whole.variable("pop"));
+    assert_eq!(result(&resumed), changed);
+    let (_, _, plain) = run(MemoryWorld::new(), Journaling::Fresh(2.0));
+    assert_ne!(plain.variable("pop"), whole.variable("pop"), "the change has changed something");
+}
+
+#[test]
+fn another_script_does_not_go_on_with_the_journal() {
+    let cuts =
+        (3..200).map(|k| run(MemoryWorld::new().interrupted_after(k), Journaling::Fresh(2.0)).2);
+    let journals = |cut: Session| Some((cut.world.read(&journal(&cut)).ok()?, cut));
+    let (bytes, cut) = cuts.filter_map(journals).nth(1).expect("interrupted behind an `Eval`");
+    let resumed = |file: Vec<u8>, script: &str, journaling| {
+        let world = MemoryWorld::new().with_file(journal(&cut), file);
+        let streams = world.streams();
+        let options = Options { journaling, ..Options::default() };
+        let mut session = Session::new(Box::new(world)).with_options(options);
+        let code = session.run_text("line.mos", script).code;
+        (code, streams.errors(), session)
+    };
+    let other = SCRIPT.replace("{0.1}", "{0.2}");
+    let (code, text, _) = resumed(bytes.clone(), &other, Journaling::Resume(2.0));
+    assert!(code == 1 && text.contains("asks something else"), "{text}");
+    let (code, text, _) = resumed(b"something".to_vec(), SCRIPT, Journaling::Resume(2.0));
+    assert!(code == 1 && text.contains("no checkpoint"), "{text}");
+    // Beginning anew, the old one is kept.
+    let (code, text, session) = resumed(bytes.clone(), SCRIPT, Journaling::Fresh(2.0));
+    let old = journal(&session).with_file_name("script.journal.old");
+    assert!(code == 0 && text.contains("is kept in"), "{text}");
+    assert_eq!(session.world.read(&old).expect("kept"), bytes);
+}
+
+#[test]
+fn a_view_shows_generations_genes_and_fit() {
+    let views: Views = Arc::new(Mutex::new(Vec::new()));
+    let (code, text, _) = run(MemoryWorld::new().watched(&views), Journaling::Off);
+    assert_eq!(code, 0, "{text}");
+    let views = views.lock().expect("no panic");
+    assert_eq!(views.len(), 8, "one for each generation");
+    let View { progress, best, spreads, fitted, .. } = &views[7];
+    assert_eq!((progress.total, best.len()), (8, 7), "`Fit` comes after `Eval`");
+    assert!(best.is_sorted_by(|a, b| a >= b), "{best:?}");
+    assert_eq!((spreads[0].name.as_str(), spreads[0].unit.as_str()), ("a", "m/s"));
+    let [low, middle, high] = spreads[0].generation;
+    assert!((low, high) == (0.0, 1.0) && (middle - 2.0 / 3.0).abs() < 1e-9, "{middle}");
+    assert!((spreads[0].value - 0.8).abs() < 0.1, "{}", spreads[0].value);
+    assert_eq!(fitted[0].measured, [0.0, 0.4, 0.8]);
+    assert!((fitted[0].simulated[2] - spreads[0].value).abs() < 1e-6);
+}
+
+/// Long enough to be killed: a few hundred generations.
+const LONG: &str = "
+model Decay
+  parameter Real k = 1;
+  Real x(start = 1, fixed = true);
+  output Real y = x;
+equation
+  der(x) = -k*x;
+  annotation(experiment(StopTime = 4, Tolerance = 1e-8));
+end Decay;
+pop = {{0.1*k} for k in 1:20};
+t = {0.1*k for k in 0:40};
+y = {exp(-0.7*k/10) for k in 0:40};
+for k in 1:80 loop
+  sim := Eval(\"\", \"Decay\", t, pop, {\"k\"}, \"time\", \"y\");
+  fit := Fit(sim, y);
+  pop := 0.97*pop + 0.021*ones(20, 1);
+end for;
+print(\"end \" + String(pop[1, 1], format = \".17g\"));
+";
+
+#[test]
+fn scripts_that_are_killed_resume_to_the_same_end() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("long.mos"), LONG).expect("written");
+    let gapi = |arguments: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_gapi"));
+        let all = ["run", "long.mos", "--checkpoint", "0.02"];
+        command.args(all).args(arguments).current_dir(folder.path()).env_remove("MODELICAPATH");
+        command.stdout(std::process::Stdio::null()).stderr(std::process::Stdio::null());
+        command
+    };
+    let started = std::time::Instant::now();
+    assert!(gapi(&["--out", "whole"]).status().expect("it runs").success());
+    let length = started.elapsed();
+    let mut resumed = 0;
+    for part in [0.2, 0.35, 0.5, 0.65, 0.8] {
+        let mut child = gapi(&["--out", "cut", "--resume"]).spawn().expect("it runs");
+        std::thread::sleep(length.mul_f64(part));
+        // It may have ended by itself just now.
+        let _ = child.kill();
+        child.wait().expect("it ends");
+        resumed += u64::from(folder.path().join("cut/script.journal").exists());
+    }
+    assert!(gapi(&["--out", "cut", "--resume"]).status().expect("it runs").success());
+    assert!(resumed > 0, "none was killed in the midst");
+    for file in ["fit.csv", "history.csv"] {
+        let read = |out: &str| std::fs::read(folder.path().join(out).join(file)).expect("written");
+        assert!(read("cut") == read("whole"), "{file}");
+    }
+}
