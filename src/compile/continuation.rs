@@ -136,7 +136,7 @@ impl Continuation {
             if length <= LAST_CORRECTION * step {
                 return Ok((sign, mu));
             }
-            if !(length <= step) {
+            if length > step || length.is_nan() {
                 return Err(NoSolution);
             }
             for ((x, delta), scale) in self.trial.iter_mut().zip(&self.delta).zip(&self.scale) {
