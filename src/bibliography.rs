@@ -109,6 +109,11 @@
 //!   differential-algebraic equations using dummy derivatives. SIAM Journal on Scientific Computing
 //!   14(3), 1993, 677–692.
 //!
+//! <a id="branin-1972"></a>
+//! - **branin-1972** — F. H. Branin: Widely convergent method for finding multiple solutions of
+//!   simultaneous nonlinear equations. IBM Journal of Research and Development 16(5), 1972,
+//!   504–522.
+//!
 //! <a id="deuflhard-2011"></a>
 //! - **deuflhard-2011** — P. Deuflhard: Newton methods for nonlinear problems. Affine invariance
 //!   and adaptive algorithms. Springer, 2011.

@@ -18,8 +18,10 @@ use super::system::{System, run};
 use crate::sim::{EventOutcome, Failure};
 use crate::symbolic::VarId;
 
-/// Most rounds of an event iteration, and most passes of a round.
+/// Most rounds of an event iteration.
 const MAX_ROUNDS: usize = 100;
+/// Most passes of a round.
+const MAX_PASSES: usize = 60;
 /// Passes in which all relations may change; from then on one after the other.
 const PASSES_AT_ONCE: usize = 10;
 /// Relative distance of times that are one.
@@ -42,6 +44,15 @@ pub(super) enum Stage {
     Event,
     /// Those between events.
     Continuous,
+}
+
+/// What a pass changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Moved {
+    /// Relations, or what is rounded.
+    Relation,
+    /// Variables of discrete loops alone.
+    Lagged,
 }
 
 /// The times of a `sample`.
@@ -212,16 +223,32 @@ impl System {
         either(outcome, EventOutcome::Continue { y_changed: changed })
     }
 
-    /// Rounds until `pre(v) = v` and no state is set.
+    /// Rounds until `pre(v) = v` and no state is set. Where relations do not come to rest with the
+    /// previous values at hand, these follow after every pass: an element that breaks away leaves
+    /// the relation behind that made it do so, and only what it was before holds it where it is.
     fn iterate(&mut self, t: f64) -> Result<EventOutcome, Failure> {
         let (mut changed, mut terminated) = (false, false);
+        let mut is_stepwise = false;
         for _ in 0..MAX_ROUNDS {
-            changed |= self.settle(t, Stage::Event)?;
+            let moves = match is_stepwise {
+                true => self.pass(t, Stage::Event, Change::All)?.is_some(),
+                false => match self.settle(t, Stage::Event) {
+                    Ok(any) => {
+                        changed |= any;
+                        false
+                    }
+                    Err(Failure::EventIteration { .. }) => {
+                        is_stepwise = true;
+                        continue;
+                    }
+                    Err(failure) => return Err(failure),
+                },
+            };
             terminated |= self.check_at_event(t)?;
             let set = self.reinitialize()?;
             let moved = self.update_previous();
-            changed |= set;
-            if !set && !moved {
+            changed |= set | moves;
+            if !set && !moved && !moves {
                 return Ok(match terminated {
                     true => EventOutcome::Terminate,
                     false => EventOutcome::Continue { y_changed: changed },
@@ -231,35 +258,56 @@ impl System {
         Err(Failure::EventIteration { variable: self.unstable })
     }
 
+    /// Solves once and updates relations; what changed, if anything.
+    fn pass(&mut self, t: f64, stage: Stage, change: Change) -> Result<Option<Moved>, Failure> {
+        self.note_lagged();
+        if let Err(failure) = self.solve(stage) {
+            // The branch may be the wrong one: relations of what was solved before it tell.
+            return match self.update_relations(t, change) {
+                true => Ok(Some(Moved::Relation)),
+                false => Err(self.refine(failure)),
+            };
+        }
+        let lag = self.moved_lagged();
+        self.unstable = lag.unwrap_or(self.unstable);
+        Ok(match (self.update_relations(t, change), lag) {
+            (true, _) => Some(Moved::Relation),
+            (false, Some(_)) => Some(Moved::Lagged),
+            (false, None) => None,
+        })
+    }
+
     /// Solves and updates relations until they stay as they are; whether one changed.
     pub(super) fn settle(&mut self, t: f64, stage: Stage) -> Result<bool, Failure> {
-        let program = self.program.clone();
         let mut any = false;
-        for pass in 0..MAX_ROUNDS {
-            let change = if pass < PASSES_AT_ONCE { Change::All } else { Change::First };
-            for (slot, variable) in self.lagged.iter_mut().zip(&program.events.lagged) {
-                *slot = self.registers[variable.0 as usize];
+        for number in 0..MAX_PASSES {
+            let change = if number < PASSES_AT_ONCE { Change::All } else { Change::First };
+            if number == PASSES_AT_ONCE {
+                self.restless.fill(false);
             }
-            if let Err(failure) = self.solve(stage) {
-                // The branch may be the wrong one: relations of what was solved before it tell.
-                if pass + 1 < MAX_ROUNDS && self.update_relations(t, change) {
-                    any = true;
-                    continue;
-                }
-                let failure = self.refine(failure);
-                return Err(failure);
-            }
-            let mut lagged = self.lagged.iter().zip(&program.events.lagged);
-            let lag = lagged.find(|(old, variable)| **old != self.registers[variable.0 as usize]);
-            let lag = lag.map(|(_, variable)| variable.0);
-            self.unstable = lag.unwrap_or(self.unstable);
-            let changed = self.update_relations(t, change);
-            any |= changed;
-            if lag.is_none() && !changed && (pass > 0 || !any) {
-                return Ok(any);
+            match self.pass(t, stage, change)? {
+                None => return Ok(any),
+                Some(moved) => any |= moved == Moved::Relation,
             }
         }
-        Err(Failure::EventIteration { variable: self.unstable })
+        match self.find_combination(t, stage) {
+            true => Ok(true),
+            false => Err(Failure::EventIteration { variable: self.unstable }),
+        }
+    }
+
+    /// Keeps the values of the variables of discrete loops.
+    pub(super) fn note_lagged(&mut self) {
+        for (slot, variable) in self.lagged.iter_mut().zip(&self.program.events.lagged) {
+            *slot = self.registers[variable.0 as usize];
+        }
+    }
+
+    /// One of them that has another value now.
+    pub(super) fn moved_lagged(&self) -> Option<u32> {
+        let mut lagged = self.lagged.iter().zip(&self.program.events.lagged);
+        let moved = lagged.find(|(old, variable)| **old != self.registers[variable.0 as usize]);
+        moved.map(|(_, variable)| variable.0)
     }
 
     /// Checks the assertions of when-clauses; whether one of them ends the simulation.

@@ -2,6 +2,8 @@
 //! its own [`System`] of it. Tapes that run often become machine code.
 
 mod chains;
+mod combinations;
+mod continuation;
 pub mod errors;
 mod event_iteration;
 mod events;

@@ -5,11 +5,13 @@
 //!     Newton's method
 //!     otherwise Levenberg and Marquardt's method, then Newton's again
 //!     otherwise Newton's method without damping, which leaps over kinks
+//!     otherwise the global Newton method, where a jump is no error
 //! ```
 //!
 //! A loop whose Jacobian is singular at the solution has none that is unique. At the start that
 //! nearest to the start values is taken; later it is an error.
 
+use super::continuation::Continuation;
 use super::least_squares::LeastSquares;
 use super::memory::Memory;
 use super::program::CompiledLoop;
@@ -21,6 +23,7 @@ use crate::sim::{Equations, Failure, Newton, NewtonFailure};
 pub(super) struct LoopSolver {
     newton: Newton,
     least_squares: LeastSquares,
+    continuation: Continuation,
     nominal: Vec<f64>,
     guess: Vec<f64>,
     /// Where an attempt begins, or what least squares found.
@@ -35,6 +38,7 @@ impl LoopSolver {
         LoopSolver {
             newton: Newton::new(n),
             least_squares: LeastSquares::new(n),
+            continuation: Continuation::new(n),
             nominal,
             guess: vec![0.0; n],
             start: vec![0.0; n],
@@ -48,6 +52,7 @@ impl LoopSolver {
         torn: &CompiledLoop,
         r: &mut Memory,
         initial: bool,
+        may_jump: bool,
     ) -> Result<(), Failure> {
         for (value, unknown) in self.guess.iter_mut().zip(&torn.unknowns) {
             *value = r[*unknown as usize];
@@ -60,6 +65,12 @@ impl LoopSolver {
                 *x = if *guess == 0.0 { *nominal } else { *guess };
             }
             outcome = self.attempt(&mut equations, initial).or(outcome);
+        }
+        if outcome.is_err() && may_jump {
+            self.x.copy_from_slice(&self.guess);
+            let (newton, nominal) = (&mut self.newton, &self.nominal);
+            let found = self.continuation.solve(newton, &mut equations, &mut self.x, nominal);
+            outcome = if found.is_ok() { Ok(()) } else { outcome };
         }
         let solution = if outcome.is_ok() { &self.x } else { &self.guess };
         // What follows from the unknowns is computed from the values they end with.

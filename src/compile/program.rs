@@ -1,6 +1,7 @@
 //! A compiled model: immutable, shared by any number of [`System`](super::System)s.
 
 use super::chains::cut_chains;
+use super::combinations::relations_of_blocks;
 use super::events::{CompiledRounding, Events, compile_events, linear_in_time};
 use super::hoist::Hoisting;
 use super::jacobian::differentiate_sequence;
@@ -178,6 +179,8 @@ pub struct Program {
     pub(super) crossings_vary_in_time: bool,
     /// The relations that have crossing functions.
     pub(super) crossing_relations: Vec<usize>,
+    /// For every block that is solved at once, the relations in it.
+    pub(super) relations_of_blocks: Vec<Vec<usize>>,
     pub(super) selections: Vec<CompiledSelection>,
     pub(super) observe: Outputs,
     pub(super) assertions: Vec<(usize, Outputs)>,
@@ -412,6 +415,7 @@ impl Program {
                 nominals.push((VarId(position), builder.finish(), register));
             }
         }
+        let relations_of_blocks = relations_of_blocks(&pool, &sorted);
         sorted.dae.pool = pool;
         let variables = variables(&sorted, &observed);
         let parameters = parameters(&sorted);
@@ -439,6 +443,7 @@ impl Program {
             crossing_relations,
             crossings_vary_in_time,
             crossings,
+            relations_of_blocks,
             selections,
             observe,
             assertions,

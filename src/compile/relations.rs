@@ -61,13 +61,14 @@ impl System {
                 changed = true;
                 self.unstable = register;
                 self.has_changed[at] = true;
+                self.restless[at] = true;
                 self.registers[register as usize] = f64::from(u8::from(!before));
             }
         }
         changed
     }
 
-    fn relation_value(&mut self, at: usize, before: bool, t: f64) -> bool {
+    pub(super) fn relation_value(&mut self, at: usize, before: bool, t: f64) -> bool {
         let relation = &self.program.relations[at];
         let operator = relation.operator;
         if let (Some((factor, _)), Some(switch)) = (relation.time, self.switches[at]) {

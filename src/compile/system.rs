@@ -36,6 +36,8 @@ pub struct System {
     pub(super) switches: Vec<Option<f64>>,
     /// Whether relations have changed in the event at hand.
     pub(super) has_changed: Vec<bool>,
+    /// Relations that keep changing in the round at hand.
+    pub(super) restless: Vec<bool>,
     /// Whether relations have been kept at a value that their sides did not quite have.
     pub(super) held: Vec<bool>,
     nominal: Vec<f64>,
@@ -74,6 +76,7 @@ impl System {
             observed: None,
             switches: vec![None; program.relations.len()],
             has_changed: vec![false; program.relations.len()],
+            restless: vec![false; program.relations.len()],
             held: vec![false; program.relations.len()],
             nominal: vec![1.0; n],
             initial_solvers: Vec::new(),
@@ -289,20 +292,21 @@ impl System {
             Stage::Event | Stage::Continuous => (&program.steps, &mut self.solvers),
         };
         let initial = stage == Stage::Initial;
+        let may_jump = stage != Stage::Continuous || program.sorted.states.is_empty();
         let mut solvers = solvers.iter_mut();
         for step in steps {
             match step {
                 Step::Run(tape) => run(tape, &mut self.registers)?,
                 Step::Solve(torn) => {
                     let solver = solvers.next().expect("every loop has its solver");
-                    solver.solve(torn, &mut self.registers, initial).map_err(|f| {
-                        match (f, initial) {
+                    solver.solve(torn, &mut self.registers, initial, may_jump).map_err(
+                        |f| match (f, initial) {
                             (Failure::Newton { block } | Failure::Singular { block }, true) => {
                                 Failure::Initialization { block }
                             }
                             _ => f,
-                        }
-                    })?
+                        },
+                    )?
                 }
             }
         }

@@ -5,6 +5,7 @@
 //! order_parameters   bindings in order of dependence
 //! fold_parameters    parameters that cannot be set become numbers
 //! eliminate_aliases  a = b and a = -b become names
+//! drop_vanishing     derivatives with coefficients of zero
 //! separate_discrete  equations of discrete variables become assignments at events
 //! reduce_index       constraints between states differentiated, states chosen
 //! sort_blocks        matching, strongly connected components, tearing
@@ -47,6 +48,7 @@ mod settled;
 mod sorted;
 mod symbolic_target;
 mod temporal;
+mod vanishing_derivatives;
 mod varying_texts;
 mod when;
 
@@ -69,6 +71,7 @@ pub const PASSES: &[(&str, &str)] = &[
     ("order_parameters", "bindings of parameters in order of dependence"),
     ("fold_parameters", "parameters that cannot be set become numbers"),
     ("eliminate_aliases", "`a = b` and `a = -b` become names"),
+    ("drop_vanishing", "derivatives with coefficients of zero are dropped"),
     ("separate_discrete", "equations of discrete variables become assignments at events"),
     ("reduce_index", "constraints between states differentiated, states chosen"),
     ("sort_blocks", "matching, strongly connected components, tearing"),
@@ -96,6 +99,8 @@ fn sort_and_show(flat: &FlatModel, show: &mut Show<'_>) -> Result<SortedDae, Dia
     dae.defaults = DefaultValues::of_parameters(&dae, &parameters);
     let mut aliases = alias_elimination::eliminate_aliases(&mut dae);
     show("eliminate_aliases", &dae, &aliases);
+    vanishing_derivatives::drop_vanishing_derivatives(&mut dae, &aliases);
+    show("drop_vanishing", &dae, &aliases);
     discrete::separate_discrete(&mut dae, &aliases)?;
     show("separate_discrete", &dae, &aliases);
     let chosen = index_reduction::reduce_index(&mut dae, &mut aliases)?;

@@ -105,4 +105,13 @@ impl Block {
             Block::Loop(torn) => &torn.assignments,
         }
     }
+
+    /// What must be zero besides.
+    pub fn residuals(&self) -> impl Iterator<Item = Expr> {
+        let residuals: &[(Expr, usize)] = match self {
+            Block::Assignment(_) | Block::Linear(_) => &[],
+            Block::Loop(torn) => &torn.residuals,
+        };
+        residuals.iter().map(|(residual, _)| *residual)
+    }
 }

@@ -11,6 +11,9 @@ pub const TUBE_TOLERANCE: f64 = 0.002;
 /// good as constant, and its own extent is rounding.
 const LEAST_EXTENT: f64 = 0.01;
 
+/// Times that differ by less than this part of themselves are one instant.
+const SAME_INSTANT: f64 = 1e-12;
+
 /// Half height of a tube around values that are all zero.
 const LEAST_HEIGHT: f64 = 1e-12;
 
@@ -69,11 +72,24 @@ impl<'a> Tube<'a> {
 
     /// The point of a result farthest outside, if one is. Looked at are the result's own points
     /// between the ends of the reference, and the points that it has at the times of the reference.
+    /// Of several points at one instant, the first and the last are the limits from both sides, and
+    /// those between are steps of an event; at the end of the reference the limit from the left
+    /// counts, for that is where it may end.
     pub fn worst_deviation(&self, time: &[f64], values: &[f64]) -> Option<Deviation> {
         let (start, stop) = (self.time[0], self.time[self.time.len() - 1]);
-        let own = time.iter().copied().zip(values.iter().copied());
-        let own = own.filter(|(time, _)| (start..=stop).contains(time));
-        let between = self.time.iter().filter_map(|t| Some((*t, interpolated(time, values, *t)?)));
+        let is_within = |at: usize, other: Option<usize>| {
+            other.and_then(|other| time.get(other)).is_some_and(|t| same_instant(*t, time[at]))
+        };
+        let counts = |at: &usize| {
+            let (follows, precedes) =
+                (is_within(*at, at.checked_sub(1)), is_within(*at, Some(at + 1)));
+            let is_end = same_instant(time[*at], stop);
+            (start..=stop).contains(&time[*at]) && !(follows && (precedes || is_end))
+        };
+        let own = (0..time.len()).filter(counts).map(|at| (time[at], values[at]));
+        let reaches_end = time.iter().any(|t| same_instant(*t, stop));
+        let inner = self.time.iter().filter(|t| !(reaches_end && same_instant(**t, stop)));
+        let between = inner.filter_map(|t| Some((*t, interpolated(time, values, *t)?)));
         own.chain(between)
             .filter_map(|(time, value)| self.deviation(time, value))
             .max_by(|a, b| self.distance(a).total_cmp(&self.distance(b)))
@@ -99,6 +115,10 @@ impl<'a> Tube<'a> {
     fn at(&self, time: f64) -> f64 {
         interpolated(self.time, self.values, time).unwrap_or(f64::NAN)
     }
+}
+
+fn same_instant(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME_INSTANT * a.abs().max(b.abs())
 }
 
 /// Least and greatest; numbers that are none are passed over.
@@ -154,6 +174,21 @@ mod tests {
         let tube = Tube::around(&time, &values, 0.01);
         let flat = tube.worst_deviation(&[0.0, 2.0], &[0.0, 0.0]).expect("outside");
         assert_eq!((flat.time, flat.value), (1.0, 0.0));
+    }
+
+    #[test]
+    fn steps_within_an_instant_do_not_count() {
+        let (time, values) = ([0.0, 1.0, 2.0], [0.0, 0.0, 0.0]);
+        let tube = Tube::around(&time, &values, 0.01);
+        let ending_at = |last: f64| {
+            let later = 1.0 + 4.0 * f64::EPSILON;
+            let time = [0.0, 1.0, 1.0, later, later, 2.0, 2.0];
+            tube.worst_deviation(&time, &[0.0, 0.0, 1.0, 1.0, last, 0.0, 3.0])
+        };
+        assert_eq!(ending_at(0.0), None);
+        assert_eq!(ending_at(1.0).expect("outside").value, 1.0);
+        assert!(tube.worst_deviation(&[0.0, 1.0, 1.1, 2.0], &[0.0, 1.0, 1.0, 0.0]).is_some());
+        assert!(tube.worst_deviation(&[0.0, 2.0], &[0.0, 3.0]).is_some());
     }
 
     #[test]

@@ -87,6 +87,15 @@ impl Settings {
 }
 
 impl OutputGrid {
+    /// The mean distance of the output points.
+    pub(super) fn spacing(&self, start: f64, stop: f64) -> f64 {
+        let intervals = match self {
+            OutputGrid::Intervals(intervals) => *intervals,
+            OutputGrid::At(times) => times.len(),
+        };
+        (stop - start) / intervals.max(1) as f64
+    }
+
     /// The output point of this number, if there is one within the simulated interval.
     pub(super) fn point(&self, start: f64, stop: f64, number: usize) -> Option<f64> {
         match self {

@@ -15,6 +15,13 @@ const MOST_EVENTS_AT_ONCE: u32 = 200;
 const AT_ONCE: f64 = 1e-10;
 /// Parts of a step that are searched for events of their own, at least.
 const PARTS_SEARCHED: f64 = 8.0;
+/// How far behind the end of a solution of the algebraic equations another one is looked for,
+/// relative to the simulated interval.
+const BEHIND: f64 = 1e-10;
+/// So many times farther must the next such place be.
+const FARTHER: f64 = 1e3;
+/// What has changed less, relative to its magnitude, has not jumped.
+const SMALLEST_JUMP: f64 = 1e-3;
 /// Points of every step that a system with a memory is shown.
 const POINTS_REMEMBERED: u32 = 4;
 
@@ -99,6 +106,7 @@ impl Simulator {
             next_output: settings.output.point(settings.start, settings.stop, 0),
             has_unknowns: n > 0,
             last_event: f64::NEG_INFINITY,
+            last_jump: f64::NEG_INFINITY,
             events_at_once: 0,
         };
         let ended = run.run();
@@ -166,6 +174,7 @@ struct Run<'a> {
     output_number: usize,
     has_unknowns: bool,
     last_event: f64,
+    last_jump: f64,
     events_at_once: u32,
 }
 
@@ -173,8 +182,10 @@ impl Run<'_> {
     fn run(&mut self) -> Result<(), SimErrorKind> {
         self.initialize()?;
         while self.t < self.problem.settings.stop {
-            let time_event = self.step()?;
-            let after = self.advance_to_end_of_step(time_event)?;
+            let after = match self.step() {
+                Ok(time_event) => self.advance_to_end_of_step(time_event)?,
+                Err(kind) => self.jump(kind)?,
+            };
             if after == After::Terminated {
                 break;
             }
@@ -224,6 +235,38 @@ impl Run<'_> {
         // A step to an output point may end next to an event: the same time to the system.
         let next = self.problem.system.next_time_event(self.integrator.time());
         Ok(next.is_none_or(|next| next > event))
+    }
+
+    /// Where no step can be made because the solution of the algebraic equations ends, they may have
+    /// another one just behind: an event leads to it. Fails with `kind` if nothing jumps there.
+    fn jump(&mut self, kind: SimErrorKind) -> Result<After, SimErrorKind> {
+        let settings = self.problem.settings;
+        let ahead = self.t + BEHIND * (settings.stop - settings.start);
+        let is_near = self.t - self.last_jump <= FARTHER * (ahead - self.t);
+        let is_algebraic = self.problem.system.n_algebraic() > 0;
+        if kind != SimErrorKind::StepSize || !is_algebraic || is_near || ahead > settings.stop {
+            return Err(kind);
+        }
+        let n = self.problem.system.n_differential();
+        let (begin, before) = (self.t, self.y[n..].to_vec());
+        let mut slopes = vec![0.0; self.y.len()];
+        self.problem.system.rhs(self.t, self.y, &mut slopes).map_err(SimErrorKind::Evaluation)?;
+        for (y, slope) in self.y[..n].iter_mut().zip(&slopes) {
+            *y += (ahead - self.t) * slope;
+        }
+        self.last_jump = ahead;
+        self.problem.statistics.state_events += 1;
+        let after = self.handle_event(ahead, false).map_err(|_| kind)?;
+        let pairs = self.y[n..].iter().zip(&before).zip(&self.problem.nominal[n..]);
+        let mut moved = pairs.map(|((y, old), nominal)| (y - old).abs() / old.abs().max(*nominal));
+        if !moved.any(|part| part > SMALLEST_JUMP) {
+            self.t = begin;
+            return Err(kind);
+        }
+        if after == After::Resume {
+            self.integrator.restart(&mut self.problem, self.t, self.y)?;
+        }
+        Ok(after)
     }
 
     /// Goes to the end of the step, or to the event that made the rest of it void.

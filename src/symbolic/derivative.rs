@@ -160,10 +160,30 @@ impl Slopes<'_> {
         for (which, argument) in list.iter().enumerate() {
             let Some(inner) = self.get(*argument) else { continue };
             let outer = (id.get().derivative)(self.pool, &list, which);
-            let term = self.pool.mul(outer, inner);
+            let term = self.chained(outer, inner);
             sum = self.total(sum, Some(term));
         }
         sum
+    }
+
+    /// The product of the slopes of a function and of what it is applied to: where one of them
+    /// is zero in a branch, the other is not evaluated there. √max(0, x) has a slope for x < 0.
+    fn chained(&mut self, outer: Expr, inner: Expr) -> Expr {
+        let zero = self.pool.constant(0.0);
+        if outer == zero || inner == zero {
+            return zero;
+        }
+        match (self.pool.node(outer), self.pool.node(inner)) {
+            (&Node::If(condition, a, b), _) if a == zero || b == zero => {
+                let (a, b) = (self.chained(a, inner), self.chained(b, inner));
+                self.pool.if_then_else(condition, a, b)
+            }
+            (_, &Node::If(condition, a, b)) if a == zero || b == zero => {
+                let (a, b) = (self.chained(outer, a), self.chained(outer, b));
+                self.pool.if_then_else(condition, a, b)
+            }
+            _ => self.pool.mul(outer, inner),
+        }
     }
 
     fn branches(&mut self, condition: Expr, a: Expr, b: Expr) -> Option<Expr> {

@@ -271,7 +271,7 @@ impl Pool {
     }
 
     /// The node with its operands replaced: `map` gives each operand's successor.
-    pub(super) fn rebuild(&mut self, node: &Node, map: impl Fn(Expr) -> Expr) -> Expr {
+    pub fn rebuild(&mut self, node: &Node, map: impl Fn(Expr) -> Expr) -> Expr {
         match node {
             Node::Constant(value) => self.constant(value.0),
             Node::Variable(variable) => self.variable(*variable),

@@ -185,6 +185,33 @@ fn a_block_sticks_and_slips() {
     near(run.at("v", 7.2), 0.0, 1e-12);
 }
 
+/// The comparator leaves its limits at x = ±(1/2 - 1/a), where its equations have no solution left
+/// but that at the other limit.
+#[test]
+fn a_comparator_with_positive_feedback_jumps() {
+    let events = file("Multivibrator");
+    let without = events.replace("hasEvents = true", "hasEvents = false");
+    let edge: f64 = 0.49;
+    let (first, half) = (-(1.0 - edge).ln(), ((1.0 + edge) / (1.0 - edge)).ln());
+    for text in [events, without] {
+        let run = simulated(&text, 5.0);
+        let (mut t, mut y, mut x) = (first, 1.0, edge);
+        while t + half < 5.0 {
+            (t, y, x) = (t + half, -y, -x);
+        }
+        let last = -y + (x + y) * (t - 5.0).exp();
+        near(run.last("x"), last, 1e-6);
+        near(run.last("y"), -y, 1e-9);
+    }
+}
+
+#[test]
+fn what_breaks_away_is_kept_by_what_it_was_before() {
+    let run = simulated(&file("Breakaway"), 3.0);
+    all_near(&run.jumps("sliding"), &[2.0], 1e-7);
+    near(run.last("force"), 2.0, 1e-9);
+}
+
 #[test]
 fn a_network_of_gates_and_flip_flops_runs_in_step() {
     let run = simulated(&file("Logic"), 7.0);

@@ -59,6 +59,29 @@ fn decay_is_an_exponential() {
 }
 
 #[test]
+fn a_first_step_does_not_leap_over_what_is_periodic() {
+    let text = "model P Real x(start = 0, fixed = true);
+        equation der(x) = 1 - cos(200*3.14159265358979*time); end P;";
+    near(simulated(text, 1.0, "x"), 1.0, 1e-4);
+}
+
+#[test]
+fn a_slope_that_is_multiplied_by_zero_need_not_exist() {
+    let text = "model R Real x(start = -0.1, fixed = true);
+        equation der(x) = -noEvent(sqrt(max(0, x))); end R;";
+    near(simulated(text, 1.0, "x"), -0.1, 0.0);
+}
+
+#[test]
+fn a_derivative_with_a_coefficient_of_zero_makes_no_state() {
+    let text = "model C Real v; Real i; Real c; Real d;
+        equation d = 0; c = 2*d; i = c*der(v); v + 3*i = sin(time); end C;";
+    let program = compiled(text);
+    assert_eq!(program.system().n_differential(), 0);
+    near(simulated(text, 1.0, "v"), 1.0f64.sin(), 1e-9);
+}
+
+#[test]
 fn a_parameter_is_set_without_compiling_again() {
     let program = compiled(DECAY);
     let k = program.find_parameter("k").unwrap();

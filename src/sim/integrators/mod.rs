@@ -114,7 +114,9 @@ impl Problem<'_> {
         16.0 * f64::EPSILON * t.abs().max(1e-10 * span)
     }
 
-    /// A first step over which x changes little, from the relative speed of x at (t, y).
+    /// A first step over which x changes little, from the relative speed of x at (t, y). It is not
+    /// longer than the distance of output points: slopes that are zero at first tell nothing about
+    /// what comes, and whoever asks for points expects something between them.
     fn first_step(&self, t: f64, y: &[f64], rhs: &[f64]) -> f64 {
         let settings = self.settings;
         let n = self.system.n_differential();
@@ -122,7 +124,8 @@ impl Problem<'_> {
         let fastest = (0..n).map(speed).fold(0.0, f64::max);
         let remaining = settings.stop - t;
         let by_speed = 0.5 * settings.tolerance.sqrt() / fastest;
-        let first = settings.initial_step.unwrap_or(by_speed.min(1e-2 * remaining));
+        let longest = settings.output.spacing(settings.start, settings.stop).min(1e-2 * remaining);
+        let first = settings.initial_step.unwrap_or(by_speed.min(longest));
         first.min(settings.max_step).max(self.smallest_step(t))
     }
 }

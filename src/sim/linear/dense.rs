@@ -62,6 +62,14 @@ impl DenseLu {
         }
     }
 
+    /// The sign of the determinant of what was factorised.
+    pub fn sign(&self) -> f64 {
+        let pivots = self.entries.iter().step_by(self.n + 1);
+        let exchanged = self.pivots.iter().enumerate().filter(|(k, pivot)| k != *pivot).count();
+        let negative = pivots.filter(|pivot| **pivot < 0.0).count();
+        if (exchanged + negative) % 2 == 0 { 1.0 } else { -1.0 }
+    }
+
     /// Replaces the right-hand side by the solution.
     pub fn solve(&self, b: &mut [f64]) {
         let n = self.n;
