@@ -28,6 +28,7 @@ mod lapack;
 mod lazy_reading;
 mod lessons;
 mod libraries;
+mod linear_algebra;
 mod linear_loops;
 mod mat;
 mod model_files;
