@@ -275,3 +275,21 @@ fn checkpoints_of_other_problems_and_damaged_ones_are_told() {
     assert!(code == 1 && text.contains("another problem"), "{text}");
     assert_eq!(fs::read(&journal).unwrap().len(), 16, "left as it was");
 }
+
+#[test]
+fn settings_are_watched_and_what_cannot_be_changed_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    filled_tank(folder.path());
+    let settings = "evaluations = 200\nmutation = 0.4\n\"min k\" = 0.1\ncolour = 3\n";
+    fs::write(folder.path().join("settings.toml"), settings).unwrap();
+    let (code, text) = run(folder.path(), &["tank.toml", "--watch", "settings.toml"]);
+    assert_eq!(code, 0, "{text}");
+    assert!(text.contains("mutation = 0.4 from generation 1 on"), "{text}");
+    assert!(text.contains("`colour`"), "{text}");
+    let result = result(folder.path(), "results");
+    let names: Vec<&str> =
+        result["changes"].as_array().unwrap().iter().map(|c| c[1].as_str().unwrap()).collect();
+    assert_eq!(names, ["evaluations", "mutation", "min k"]);
+    assert_eq!(result["parameters"][0]["range"][0], 0.1);
+    assert!(result["evaluations"].as_u64().unwrap() < 300, "{text}");
+}
