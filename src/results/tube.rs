@@ -87,8 +87,11 @@ impl<'a> Tube<'a> {
             (start..=stop).contains(&time[*at]) && !(follows && (precedes || is_end))
         };
         let own = (0..time.len()).filter(counts).map(|at| (time[at], values[at]));
-        let reaches_end = time.iter().any(|t| same_instant(*t, stop));
-        let inner = self.time.iter().filter(|t| !(reaches_end && same_instant(**t, stop)));
+        let is_own = |t: f64| {
+            let at = time.partition_point(|own| *own < t && !same_instant(*own, t));
+            time.get(at).is_some_and(|own| same_instant(*own, t))
+        };
+        let inner = self.time.iter().filter(|t| !is_own(**t));
         let between = inner.filter_map(|t| Some((*t, interpolated(time, values, *t)?)));
         own.chain(between)
             .filter_map(|(time, value)| self.deviation(time, value))
