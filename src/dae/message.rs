@@ -71,7 +71,7 @@ impl Builder<'_> {
         lowering.loops = loops.to_vec();
         lowering.live = true;
         if let Some(file) = nth(arguments, 1, "fileName")
-            && message_text(&mut lowering, Some(file)) != ""
+            && !message_text(&mut lowering, Some(file)).is_empty()
         {
             return Err(fault!(NOT_SUPPORTED, "printing to a file while a model is simulated";
                 help: "print to the screen, or write the file from a script")
