@@ -4,7 +4,7 @@ use super::algorithm::Execution;
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, PARAMETER_CYCLE, UNRESOLVED_REFERENCE};
 use super::lowering::{Array, Lowered, Lowering, Target, size_fault};
 use super::message::message_parts;
-use super::model::{Assertion, Dae, Equation, Instance, Kind, Level, StateSelect, Variable};
+use super::model::{self, Assertion, Dae, Equation, Instance, Kind, Level, StateSelect, Variable};
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::flatten::{self, BaseType, FlatModel, Part, Variability};
@@ -569,7 +569,13 @@ impl<'a> Builder<'a> {
             Some(level) if lowering.known(level)? == 1.0 => Level::Warning,
             _ => Level::Error,
         };
-        let parts = message_parts(&mut lowering, find(1, "message"));
+        // What ends a simulation is told with what was known when compiling.
+        let parts = match level {
+            Level::Error => {
+                vec![model::Part::Text(message_text(&mut lowering, find(1, "message")).into())]
+            }
+            _ => message_parts(&mut lowering, find(1, "message")),
+        };
         self.dae.assertions.push(Assertion::new(condition, parts, level, span));
         Ok(())
     }
