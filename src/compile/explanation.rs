@@ -48,8 +48,7 @@ impl Program {
         let dae = &self.sorted.dae;
         match culprit {
             Culprit::Unknown(at) => {
-                let mut unknowns = self.sorted.states.iter().chain(&self.iteration);
-                let variable = dae.variable(*unknowns.nth(at as usize)?);
+                let variable = dae.variable(*self.unknowns.get(at as usize)?);
                 Some((format!("`{}` changes fastest", variable.name), variable.span))
             }
             Culprit::Crossing(at) => {

@@ -111,7 +111,7 @@ impl Program {
             )
         };
         let found = |v: &VarId| needed.contains(v);
-        needed.iter().any(remembered) || self.sorted.states.iter().chain(&self.iteration).any(found)
+        needed.iter().any(remembered) || self.unknowns.iter().any(found)
     }
 
     /// Whether a variable is computed from one of these parameters, other parameters between them

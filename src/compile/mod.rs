@@ -1,13 +1,13 @@
 //! Compilation: a sorted system becomes a [`Program`] of instruction tapes, and every thread runs
 //! its own [`System`] of it. Tapes that run often become machine code.
 
-mod chains;
 mod combinations;
 mod continuation;
 pub mod errors;
 mod event_iteration;
 mod events;
 mod explanation;
+mod held;
 mod history;
 mod hoist;
 mod inquiry;

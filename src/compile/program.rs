@@ -1,8 +1,8 @@
 //! A compiled model: immutable, shared by any number of [`System`](super::System)s.
 
-use super::chains::cut_chains;
 use super::combinations::relations_of_blocks;
 use super::events::{CompiledRounding, Events, compile_events, linear_in_time};
+use super::held::Held;
 use super::hoist::Hoisting;
 use super::jacobian::differentiate_sequence;
 use super::lower::{Registers, TapeBuilder};
@@ -150,8 +150,16 @@ pub(super) struct Outputs {
 pub struct Program {
     pub(super) sorted: SortedDae,
     pub(super) registers: Registers,
+    /// Everything in solving order, iteration variables of loops given.
     pub(super) sequence: Vec<Assignment>,
+    /// The same where all algebraic unknowns of the integrator are given.
+    pub(super) integrated: Vec<Assignment>,
+    /// The unknowns of the integrator: states, then [`Program::iteration`].
+    pub(super) unknowns: Vec<VarId>,
+    /// The algebraic ones.
     pub(super) iteration: Vec<VarId>,
+    /// Of these, how many at the end are in the sequence as well.
+    pub(super) n_auxiliary: usize,
     pub(super) parameters: Vec<ParameterInfo>,
     pub(super) variables: Vec<VariableInfo>,
     pub(super) observed: Vec<VarId>,
@@ -193,18 +201,8 @@ impl Program {
     /// Compiles a sorted system.
     pub fn compile(mut sorted: SortedDae) -> Result<Arc<Program>, Diagnostic> {
         let n = sorted.dae.variables.len();
-        let mut sequence: Vec<Assignment> =
+        let sequence: Vec<Assignment> =
             sorted.blocks.iter().flat_map(|block| block.assignments()).copied().collect();
-        let loops = sorted.blocks.iter().filter_map(|block| match block {
-            Block::Loop(torn) => Some(torn),
-            Block::Assignment(_) | Block::Linear(_) => None,
-        });
-        let mut iteration = Vec::new();
-        let mut residuals = Vec::new();
-        for torn in loops {
-            iteration.extend(&torn.iteration);
-            residuals.extend(torn.residuals.iter().map(|(residual, _)| *residual));
-        }
         let mut registers = Registers::new(n, sorted.dae.functions.clone());
         for (variable, info) in (0u32..).zip(&sorted.dae.variables) {
             if matches!(info.kind, Kind::Parameter { .. } | Kind::Constant(_)) {
@@ -238,27 +236,22 @@ impl Program {
         for state in &sorted.states {
             outputs.push(resolved(&mut pool, &sorted, derivatives[state]));
         }
+        let Held { iteration, n_auxiliary, residuals, sequence: integrated } =
+            Held::choose(&mut pool, &sorted, &outputs);
         outputs.extend(&residuals);
-        let unknowns: Vec<VarId> = sorted.states.iter().chain(&iteration).copied().collect();
-        for assignment in cut_chains(&pool, &sorted, &unknowns, &outputs) {
-            let unknown = pool.variable(assignment.variable);
-            outputs.push(pool.sub(unknown, assignment.value));
-            iteration.push(assignment.variable);
-        }
-        let unknowns: FxHashSet<VarId> = iteration.iter().copied().collect();
-        sequence.retain(|assignment| !unknowns.contains(&assignment.variable));
-        let rhs = compile_continuous(&pool, &mut registers, &sequence, &outputs, Hoisting::Certain);
+        let rhs =
+            compile_continuous(&pool, &mut registers, &integrated, &outputs, Hoisting::Certain);
 
-        let columns: Vec<VarId> = sorted.states.iter().chain(&iteration).copied().collect();
-        let needed = slice(&pool, &sequence, &outputs);
-        let slopes = differentiate_sequence(&mut pool, &needed, &outputs, &columns, &mut next);
+        let unknowns: Vec<VarId> = sorted.states.iter().chain(&iteration).copied().collect();
+        let needed = slice(&pool, &integrated, &outputs);
+        let slopes = differentiate_sequence(&mut pool, &needed, &outputs, &unknowns, &mut next);
         let mut rows = slopes.rows;
         let zero = pool.constant(0.0);
         // An implicit method subtracts from the diagonal of the states: it belongs to the pattern.
         for (state, row) in rows.iter_mut().take(sorted.states.len()).enumerate() {
             row.entry(state).or_insert(zero);
         }
-        let (pattern, entries) = by_columns(&rows, columns.len());
+        let (pattern, entries) = by_columns(&rows, unknowns.len());
         let extended = slopes.sequence;
         let jacobian =
             compile_continuous(&pool, &mut registers, &extended, &entries, Hoisting::Total);
@@ -423,7 +416,10 @@ impl Program {
             sorted,
             registers,
             sequence,
+            integrated,
+            unknowns,
             iteration,
+            n_auxiliary,
             parameters,
             variables,
             observed,

@@ -28,11 +28,10 @@ impl System {
         let program = self.program.clone();
         let mut pool = program.sorted.dae.pool.clone();
         let outputs = super::system::expressions(&program, &mut pool, variables);
-        let columns: Vec<_> = program.sorted.states.iter().chain(&program.iteration).collect();
-        let columns: Vec<_> = columns.into_iter().copied().collect();
-        let needed = slice(&pool, &program.sequence, &outputs);
+        let columns = &program.unknowns;
+        let needed = slice(&pool, &program.integrated, &outputs);
         let mut next = program.sorted.dae.variables.len() as u32;
-        let slopes = differentiate_sequence(&mut pool, &needed, &outputs, &columns, &mut next);
+        let slopes = differentiate_sequence(&mut pool, &needed, &outputs, columns, &mut next);
         let places: Vec<(usize, usize)> = slopes
             .rows
             .iter()

@@ -69,7 +69,7 @@ pub struct System {
 impl System {
     pub(super) fn new(program: Arc<Program>) -> System {
         let registers = Memory::new(&program.registers);
-        let n = program.sorted.states.len() + program.iteration.len();
+        let n = program.unknowns.len();
         let mut system = System {
             registers,
             set: vec![None; program.parameters().len()],
@@ -154,9 +154,9 @@ impl System {
 
     pub(super) fn load(&mut self, t: f64, y: &[f64]) {
         self.registers[0] = t;
-        let states = self.program.sorted.states.iter();
-        for (variable, value) in states.chain(&self.program.iteration).zip(y) {
-            self.registers[variable.0 as usize] = *value;
+        let registers = &mut self.registers[..];
+        for (variable, value) in self.program.unknowns.iter().zip(y) {
+            registers[variable.0 as usize] = *value;
         }
         if !self.histories.is_empty() {
             self.load_delayed(t);
@@ -173,8 +173,7 @@ impl System {
     }
 
     fn unload(&self, y: &mut [f64]) {
-        let states = self.program.sorted.states.iter();
-        for (variable, value) in states.chain(&self.program.iteration).zip(y) {
+        for (variable, value) in self.program.unknowns.iter().zip(y) {
             *value = self.registers[variable.0 as usize];
         }
     }
@@ -241,8 +240,7 @@ impl System {
                 self.registers[variable.0 as usize] = 1.0;
             }
         }
-        let states = program.sorted.states.iter();
-        for (at, variable) in states.chain(&program.iteration).enumerate() {
+        for (at, variable) in program.unknowns.iter().enumerate() {
             self.nominal[at] = self.nominal_of(*variable);
         }
         self.initial_solvers = self.solvers_of(&program.initial_steps);
@@ -412,6 +410,10 @@ impl DaeSystem for System {
 
     fn n_algebraic(&self) -> usize {
         if self.solves_loops { 0 } else { self.program.iteration.len() }
+    }
+
+    fn n_auxiliary(&self) -> usize {
+        if self.solves_loops { 0 } else { self.program.n_auxiliary }
     }
 
     fn solve_loops(&mut self, inside: bool) {

@@ -44,7 +44,8 @@ pub(super) fn solve_linear(dae: &mut Dae, torn: &Loop) -> Option<LinearLoop> {
         })
         .collect();
     assignments.extend(&torn.assignments);
-    Some(LinearLoop { unknowns: torn.iteration.clone(), assignments })
+    let (unknowns, residuals) = (torn.iteration.clone(), torn.residuals.clone());
+    Some(LinearLoop { unknowns, assignments, residuals })
 }
 
 /// The residuals as expressions of the iteration variables.

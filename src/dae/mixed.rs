@@ -177,6 +177,7 @@ fn renumber(block: &mut Block, origins: &[usize]) {
         Block::Assignment(assignment) => assignment.equation = origins[assignment.equation],
         Block::Linear(solved) => {
             solved.assignments.iter_mut().for_each(|a| a.equation = origins[a.equation]);
+            solved.residuals.iter_mut().for_each(|(_, equation)| *equation = origins[*equation]);
         }
         Block::Loop(torn) => {
             torn.assignments.iter_mut().for_each(|a| a.equation = origins[a.equation]);

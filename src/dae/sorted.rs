@@ -83,6 +83,9 @@ pub struct LinearLoop {
     pub unknowns: Vec<VarId>,
     /// These, then what follows from them, in order.
     pub assignments: Vec<Assignment>,
+    /// What must be zero by the other assignments, with the number of the equation: it determines the
+    /// unknowns, too.
+    pub residuals: Vec<(Expr, usize)>,
 }
 
 /// A torn algebraic loop.

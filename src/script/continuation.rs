@@ -33,6 +33,10 @@ impl DaeSystem for Continued {
         self.system.n_algebraic()
     }
 
+    fn n_auxiliary(&self) -> usize {
+        self.system.n_auxiliary()
+    }
+
     fn solve_loops(&mut self, inside: bool) {
         self.system.solve_loops(inside);
     }

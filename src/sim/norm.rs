@@ -7,8 +7,9 @@ pub(super) fn set_weights(tolerance: f64, y: &[f64], nominal: &[f64], weights: &
     }
 }
 
-/// Root mean square of x / weight; 0 for no variables.
+/// Root mean square of x / weight for the first variables, those that have weights; 0 for none.
 pub(super) fn weighted_rms(x: &[f64], weights: &[f64]) -> f64 {
+    let x = &x[..weights.len()];
     if x.is_empty() {
         return 0.0;
     }

@@ -17,7 +17,7 @@ const AT_ONCE: f64 = 1e-10;
 const PARTS_SEARCHED: f64 = 8.0;
 /// How far behind the end of a solution of the algebraic equations another one is looked for,
 /// relative to the simulated interval.
-const BEHIND: f64 = 1e-10;
+const BEHIND: [f64; 3] = [1e-10, 1e-9, 1e-8];
 /// So many times farther must the next such place be.
 const FARTHER: f64 = 1e3;
 /// What has changed less, relative to its magnitude, has not jumped.
@@ -241,32 +241,43 @@ impl Run<'_> {
     /// another one just behind: an event leads to it. Fails with `kind` if nothing jumps there.
     fn jump(&mut self, kind: SimErrorKind) -> Result<After, SimErrorKind> {
         let settings = self.problem.settings;
-        let ahead = self.t + BEHIND * (settings.stop - settings.start);
-        let is_near = self.t - self.last_jump <= FARTHER * (ahead - self.t);
+        let span = settings.stop - settings.start;
+        let is_near = self.t - self.last_jump <= FARTHER * BEHIND[0] * span;
         let is_algebraic = self.problem.system.n_algebraic() > 0;
-        if kind != SimErrorKind::StepSize || !is_algebraic || is_near || ahead > settings.stop {
+        if kind != SimErrorKind::StepSize || !is_algebraic || is_near {
             return Err(kind);
         }
-        let n = self.problem.system.n_differential();
-        let (begin, before) = (self.t, self.y[n..].to_vec());
+        let (begin, before) = (self.t, self.y.to_vec());
         let mut slopes = vec![0.0; self.y.len()];
         self.problem.system.rhs(self.t, self.y, &mut slopes).map_err(SimErrorKind::Evaluation)?;
-        for (y, slope) in self.y[..n].iter_mut().zip(&slopes) {
-            *y += (ahead - self.t) * slope;
+        slopes[self.problem.system.n_differential()..].fill(0.0);
+        for ahead in BEHIND.map(|behind| begin + behind * span) {
+            if ahead > settings.stop {
+                break;
+            }
+            for ((y, before), slope) in self.y.iter_mut().zip(&before).zip(&slopes) {
+                *y = before + (ahead - begin) * slope;
+            }
+            self.last_jump = ahead;
+            self.problem.statistics.state_events += 1;
+            let after = self.handle_event(ahead, false).map_err(|_| kind)?;
+            if self.has_jumped(&before) {
+                if after == After::Resume {
+                    self.integrator.restart(&mut self.problem, self.t, self.y)?;
+                }
+                return Ok(after);
+            }
         }
-        self.last_jump = ahead;
-        self.problem.statistics.state_events += 1;
-        let after = self.handle_event(ahead, false).map_err(|_| kind)?;
-        let pairs = self.y[n..].iter().zip(&before).zip(&self.problem.nominal[n..]);
+        self.t = begin;
+        Err(kind)
+    }
+
+    /// Whether algebraic unknowns are elsewhere than before.
+    fn has_jumped(&self, before: &[f64]) -> bool {
+        let n = self.problem.system.n_differential();
+        let pairs = self.y[n..].iter().zip(&before[n..]).zip(&self.problem.nominal[n..]);
         let mut moved = pairs.map(|((y, old), nominal)| (y - old).abs() / old.abs().max(*nominal));
-        if !moved.any(|part| part > SMALLEST_JUMP) {
-            self.t = begin;
-            return Err(kind);
-        }
-        if after == After::Resume {
-            self.integrator.restart(&mut self.problem, self.t, self.y)?;
-        }
-        Ok(after)
+        moved.any(|part| part > SMALLEST_JUMP)
     }
 
     /// Goes to the end of the step, or to the event that made the rest of it void.

@@ -19,6 +19,12 @@ pub trait DaeSystem {
     fn n_differential(&self) -> usize;
     /// Number of algebraic variables v.
     fn n_algebraic(&self) -> usize;
+    /// Of the algebraic variables the last so many, each of which follows from states and those before
+    /// it, and is computed from them wherever somebody looks at it: what the integrator holds of them
+    /// keeps its matrix sparse and needs no accuracy of its own.
+    fn n_auxiliary(&self) -> usize {
+        0
+    }
     /// Asks the system to solve for v itself whenever it is evaluated, so that
     /// [`n_algebraic`](DaeSystem::n_algebraic) is 0, or to stop doing so. A system that cannot leaves
     /// everything as it is; it cannot be simulated with explicit methods.

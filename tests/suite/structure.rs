@@ -2,11 +2,13 @@
 
 use super::flat_class::flat;
 use super::shipped::{project, world};
+use gapilib::compile::Program;
 use gapilib::dae::{PASSES, dump, report, sizes, sort};
 use gapilib::diag::Diagnostic;
 use gapilib::flatten::FlatModel;
 use gapilib::script::Session;
 use gapilib::script::simulation::flat_model;
+use gapilib::sim::{DaeSystem, Settings, Simulator, Trajectory};
 use std::path::Path;
 
 #[test]
@@ -48,6 +50,28 @@ fn sizes_of_the_shipped_models_after_every_pass() {
         let folder = project("tests/structure");
         snapshot(&folder, &format!("{name}.sizes"), sizes(&flat).expect("it can be sorted"));
     }
+}
+
+/// A loop through all control volumes would fill the Jacobian; unknowns of it that the integrator
+/// holds besides keep it a band with a border, and nobody sees them.
+#[test]
+fn nonzeros_of_the_jacobian_grow_with_the_control_volumes() {
+    let mut session = Session::new(Box::new(world()));
+    let mut cost = |n: u32| {
+        let class = format!("CaseStudies.LoadSteps(n = {n})");
+        let flat = flat_model(&mut session, &class).expect("a model");
+        let program = Program::compile(sort(&flat).expect("it can be sorted")).expect("code");
+        let mut system = program.system();
+        let settings = Settings { stop: 25.0, tolerance: 1e-6, ..Settings::default() };
+        let mut trajectory = Trajectory::default();
+        let ran = Simulator::new().run(&mut system, &settings, &mut trajectory);
+        let steps = ran.expect("it can be simulated").steps as usize;
+        (system.n_auxiliary(), system.pattern().rows.len(), steps)
+    };
+    let [(few, nonzeros, steps), (many, twice, as_many)] = [100, 200].map(&mut cost);
+    assert!(few > 0 && many > few, "{few} and {many} unknowns besides");
+    assert!(10 * twice < 22 * nonzeros, "{nonzeros} and {twice} nonzeros");
+    assert!(4 * as_many < 5 * steps, "{steps} and {as_many} steps");
 }
 
 /// What a view shows of every model in `tests/structure`, as snapshots.

@@ -61,7 +61,6 @@ fn error_constant(order: usize) -> f64 {
 /// The method with its workspace.
 #[derive(Default)]
 struct Bdf {
-    n: usize,
     n_differential: usize,
     t: f64,
     /// Step length and order of the differences, also of the last step until the next begins.
@@ -82,6 +81,7 @@ struct Bdf {
     correction: Vec<f64>,
     rhs: Vec<f64>,
     delta: Vec<f64>,
+    /// Of the tested unknowns.
     weights: Vec<f64>,
     iteration: IterationMatrix,
     /// How fast the corrector converged lately, and after how many iterations.
@@ -109,16 +109,17 @@ struct IterationMatrix {
 }
 
 impl IterationMatrix {
-    fn prepare(&mut self, pattern: &Pattern, nominal: &[f64], n_differential: usize) {
+    fn prepare(&mut self, problem: &Problem) {
+        let (pattern, n_differential) = (problem.system.pattern(), problem.system.n_differential());
         if self.factors.is_none() || self.pattern != *pattern {
             self.pattern = pattern.clone();
-            self.factors = Some(Factorization::new(pattern));
+            self.factors = Some(Factorization::new(pattern, &problem.coupled()));
             self.jacobian.resize(pattern.rows.len(), 0.0);
             self.values.resize(pattern.rows.len(), 0.0);
         }
         self.identity.clear();
         self.is_differential.clear();
-        for (column, nominal) in nominal.iter().enumerate() {
+        for (column, nominal) in problem.nominal.iter().enumerate() {
             for row in &pattern.rows[pattern.column(column)] {
                 let on_diagonal = *row == column && column < n_differential;
                 self.identity.push(if on_diagonal { *nominal } else { 0.0 });
@@ -175,7 +176,6 @@ enum Corrected {
 
 impl Bdf {
     fn resize(&mut self, n: usize) {
-        self.n = n;
         self.differences.resize_with(MAX_ORDER + 3, Vec::new);
         let workspaces = [
             &mut self.predicted,
@@ -184,7 +184,6 @@ impl Bdf {
             &mut self.correction,
             &mut self.rhs,
             &mut self.delta,
-            &mut self.weights,
         ];
         for vector in workspaces.into_iter().chain(&mut self.differences) {
             vector.resize(n, 0.0);
@@ -194,16 +193,16 @@ impl Bdf {
     /// Changes the step length: the differences are those of the same polynomial at the new
     /// distance.
     fn rescale(&mut self, h_new: f64) {
-        let transformation = rescaling(self.order, h_new / self.h);
-        let mut old = [0.0; MAX_ORDER + 1];
-        for i in 0..self.n {
-            for (old, difference) in old.iter_mut().zip(&self.differences[..=self.order]) {
-                *old = difference[i];
-            }
-            for j in 1..=self.order {
-                let column = transformation.iter().map(|row| row[j]);
-                self.differences[j][i] =
-                    column.zip(&old).take(self.order + 1).skip(1).map(|(r, d)| r * d).sum();
+        let order = self.order;
+        let transformation = rescaling(order, h_new / self.h);
+        // The matrix is upper triangular: a difference needs those from its own order on.
+        for j in 1..=order {
+            let (_, from) = self.differences.split_at_mut(j);
+            let (target, others) = from.split_at_mut(1);
+            target[0].iter_mut().for_each(|d| *d *= transformation[j][j]);
+            for (k, other) in others.iter().enumerate().take(order - j) {
+                let factor = transformation[j + 1 + k][j];
+                target[0].iter_mut().zip(other).for_each(|(d, other)| *d += factor * other);
             }
         }
         self.h = h_new;
@@ -281,12 +280,10 @@ impl Bdf {
                 self.iteration.factorize(problem, c)?;
             }
             problem.rhs(t_new, &self.y, &mut self.rhs)?;
-            for i in 0..self.n {
-                self.delta[i] = if i < self.n_differential {
-                    c * self.rhs[i] - self.psi[i] - self.correction[i]
-                } else {
-                    self.rhs[i]
-                };
+            self.delta.copy_from_slice(&self.rhs);
+            let known = self.psi.iter().zip(&self.correction).take(self.n_differential);
+            for (delta, (psi, correction)) in self.delta.iter_mut().zip(known) {
+                *delta = c * *delta - psi - correction;
             }
             self.iteration.solve(problem.nominal, &mut self.delta);
             let norm = weighted_rms(&self.delta, &self.weights);
@@ -296,10 +293,8 @@ impl Bdf {
             if iteration > 1 {
                 self.rate = (norm / last).max(0.3 * self.rate);
             }
-            for i in 0..self.n {
-                self.y[i] += self.delta[i];
-                self.correction[i] += self.delta[i];
-            }
+            self.y.iter_mut().zip(&self.delta).for_each(|(y, delta)| *y += delta);
+            self.correction.iter_mut().zip(&self.delta).for_each(|(d, delta)| *d += delta);
             // With an old Jacobian a small first step tells nothing about stiff and algebraic
             // equations.
             let is_trusted = iteration > 1 || self.iteration.is_current;
@@ -350,20 +345,22 @@ impl Bdf {
 
     /// The error of the attempt relative to the tolerance.
     fn error_of_attempt(&self) -> f64 {
-        let tested = if self.fresh { self.n_differential } else { self.n };
-        let norm = weighted_rms(&self.correction[..tested], &self.weights[..tested]);
+        let tested = if self.fresh { self.n_differential } else { self.weights.len() };
+        let norm = weighted_rms(&self.correction, &self.weights[..tested]);
         error_constant(self.order) * norm
     }
 
     fn accept(&mut self, t_new: f64) {
         let order = self.order;
-        for i in 0..self.n {
-            let d = self.correction[i];
-            self.differences[order + 2][i] = d - self.differences[order + 1][i];
-            self.differences[order + 1][i] = d;
-            for j in (0..=order).rev() {
-                self.differences[j][i] += self.differences[j + 1][i];
-            }
+        let (lower, upper) = self.differences.split_at_mut(order + 2);
+        let last = upper[0].iter_mut().zip(&mut lower[order + 1]);
+        for ((above, difference), d) in last.zip(&self.correction) {
+            *above = d - *difference;
+            *difference = *d;
+        }
+        for j in (0..=order).rev() {
+            let (lower, upper) = lower.split_at_mut(j + 1);
+            lower[j].iter_mut().zip(&upper[0]).for_each(|(lower, upper)| *lower += upper);
         }
         if self.fresh {
             for difference in &mut self.differences[2..4] {
@@ -424,8 +421,8 @@ impl Integrator for Bdf {
     fn restart(&mut self, problem: &mut Problem, t: f64, y: &[f64]) -> Result<(), SimErrorKind> {
         self.resize(y.len());
         self.n_differential = problem.system.n_differential();
-        let pattern = problem.system.pattern();
-        self.iteration.prepare(pattern, problem.nominal, self.n_differential);
+        self.weights.resize(problem.n_tested(), 0.0);
+        self.iteration.prepare(problem);
         self.t = t;
         problem.rhs(t, y, &mut self.rhs)?;
         self.h = problem.first_step(t, y, &self.rhs);

@@ -14,11 +14,12 @@ pub(super) struct ShiftedMatrix {
 }
 
 impl ShiftedMatrix {
-    /// For Jacobians of a pattern, which holds the diagonal of the differential variables.
-    pub(super) fn prepare(&mut self, pattern: &Pattern) {
+    /// For the Jacobians of a problem, whose pattern holds the diagonal of the differential variables.
+    pub(super) fn prepare(&mut self, problem: &Problem) {
+        let pattern = problem.system.pattern();
         if self.factors.is_none() || self.pattern != *pattern {
             self.pattern = pattern.clone();
-            self.factors = Some(Factorization::new(pattern));
+            self.factors = Some(Factorization::new(pattern, &problem.coupled()));
             self.jacobian.resize(pattern.rows.len(), 0.0);
             self.values.resize(pattern.rows.len(), 0.0);
         }

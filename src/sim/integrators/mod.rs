@@ -108,6 +108,17 @@ impl Problem<'_> {
         if cancelled { Err(SimErrorKind::Cancelled) } else { Ok(()) }
     }
 
+    /// Number of the unknowns whose errors count: all but the auxiliary ones.
+    fn n_tested(&self) -> usize {
+        let system = &self.system;
+        system.n_differential() + system.n_algebraic() - system.n_auxiliary()
+    }
+
+    /// The unknowns of algebraic loops.
+    fn coupled(&self) -> Vec<usize> {
+        (self.system.n_differential()..self.n_tested()).collect()
+    }
+
     /// The smallest step that changes t noticeably.
     fn smallest_step(&self, t: f64) -> f64 {
         let span = (self.settings.stop - self.settings.start).abs();

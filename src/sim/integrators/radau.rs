@@ -86,7 +86,8 @@ struct StageMatrix {
 }
 
 impl StageMatrix {
-    fn prepare(&mut self, pattern: &Pattern, n_differential: usize) {
+    fn prepare(&mut self, problem: &Problem) {
+        let (pattern, n_differential) = (problem.system.pattern(), problem.system.n_differential());
         self.factorized_for = None;
         let n = pattern.n;
         let mut whole = Pattern { n: STAGES * n, column_starts: vec![0], rows: Vec::new() };
@@ -104,7 +105,10 @@ impl StageMatrix {
             }
         }
         if self.factors.is_none() || self.pattern != whole {
-            self.factors = Some(Factorization::new(&whole));
+            let coupled = problem.coupled();
+            let of_stage = |stage: usize| coupled.iter().map(move |at| stage * n + at);
+            let coupled: Vec<usize> = (0..STAGES).flat_map(of_stage).collect();
+            self.factors = Some(Factorization::new(&whole, &coupled));
             self.values.resize(whole.rows.len(), 0.0);
             self.pattern = whole;
             self.n = n;
@@ -170,7 +174,6 @@ impl Radau {
             &mut self.rhs,
             &mut self.first,
             &mut self.error,
-            &mut self.weights,
         ];
         single.into_iter().for_each(|vector| vector.resize(n, 0.0));
     }
@@ -307,9 +310,10 @@ impl Integrator for Radau {
 
     fn restart(&mut self, problem: &mut Problem, t: f64, y: &[f64]) -> Result<(), SimErrorKind> {
         self.resize(y.len());
+        self.weights.resize(problem.n_tested(), 0.0);
         self.n_differential = problem.system.n_differential();
-        self.matrix.prepare(problem.system.pattern());
-        self.stages.prepare(problem.system.pattern(), self.n_differential);
+        self.matrix.prepare(problem);
+        self.stages.prepare(problem);
         let is_first = self.h == 0.0 || t <= problem.settings.start;
         (self.t, self.t_old) = (t, t);
         self.y.copy_from_slice(y);

@@ -105,7 +105,6 @@ impl Rodas {
             &mut self.rhs,
             &mut self.first,
             &mut self.time_slope,
-            &mut self.weights,
         ];
         for vector in single.into_iter().chain(&mut self.stages).chain(&mut self.dense) {
             vector.resize(n, 0.0);
@@ -187,8 +186,9 @@ impl Integrator for Rodas {
 
     fn restart(&mut self, problem: &mut Problem, t: f64, y: &[f64]) -> Result<(), SimErrorKind> {
         self.resize(y.len());
+        self.weights.resize(problem.n_tested(), 0.0);
         self.n_differential = problem.system.n_differential();
-        self.matrix.prepare(problem.system.pattern());
+        self.matrix.prepare(problem);
         let is_first = self.h == 0.0 || t <= problem.settings.start;
         (self.t, self.t_old) = (t, t);
         self.y.copy_from_slice(y);

@@ -26,13 +26,14 @@ pub enum Factorization {
 const SMALL: usize = 12;
 
 impl Factorization {
-    /// Prepares for matrices of a pattern.
-    pub fn new(pattern: &Pattern) -> Factorization {
+    /// Prepares for matrices of a pattern. `coupled`: rows and columns of unknowns of algebraic loops,
+    /// of which nobody knows whether their diagonal holds anything.
+    pub fn new(pattern: &Pattern, coupled: &[usize]) -> Factorization {
         let n = pattern.n;
         if n <= SMALL || 3 * pattern.rows.len() > n * n {
             Factorization::Dense(DenseMatrix::new(pattern))
         } else {
-            Factorization::Sparse(Box::new(SparseLu::new(pattern)))
+            Factorization::Sparse(Box::new(SparseLu::new(pattern, coupled)))
         }
     }
 

@@ -13,10 +13,12 @@
 //!
 //! The first pivots are those of a matrix with the pattern and a large diagonal, as an integrator
 //! with a short step has it. They do not depend on any values, so that a simulation gives the same
-//! bits whichever came before it. Where a pivot is too small for its row, others are chosen for the
-//! values at hand, until [`SparseLu::forget`].
+//! bits whichever came before it. Of unknowns of algebraic loops the diagonal says nothing: a few of
+//! them are eliminated last, by a dense LU that exchanges their rows as the values ask for. Where a
+//! pivot is too small for its row, others are chosen for the values at hand, until
+//! [`SparseLu::forget`].
 
-use super::SingularMatrix;
+use super::{DenseLu, SingularMatrix};
 use crate::sim::Pattern;
 use std::collections::BTreeSet;
 
@@ -29,6 +31,8 @@ const FIRST_THRESHOLD: f64 = 1e-2;
 
 /// Rows among which a pivot is sought.
 const CANDIDATES: usize = 4;
+/// Unknowns of loops that a dense LU eliminates last.
+const MOST_COUPLED: usize = 32;
 /// Size of what is not on the diagonal when pivots are chosen without values.
 const OFF_DIAGONAL: f64 = 1e-3;
 
@@ -36,6 +40,8 @@ const OFF_DIAGONAL: f64 = 1e-3;
 #[derive(Debug, Clone)]
 pub struct SparseLu {
     pattern: Pattern,
+    /// What is eliminated last.
+    coupled: Vec<usize>,
     /// With the pivots of the pattern; `None` before the first use and if it has none.
     first: Option<Factors>,
     is_analysed: bool,
@@ -63,14 +69,17 @@ struct Factors {
     upper_starts: Vec<u32>,
     upper_columns: Vec<u32>,
     upper: Vec<f64>,
-    /// 1 / u_ii
+    /// 1 / u_ii, as many as there are rows with sparse pivots.
     inverse_diagonal: Vec<f64>,
+    /// The rows after these, and the columns after these.
+    last: DenseLu,
 }
 
 impl SparseLu {
-    pub(super) fn new(pattern: &Pattern) -> SparseLu {
-        let work = vec![0.0; pattern.n];
-        SparseLu { pattern: pattern.clone(), first: None, is_analysed: false, others: None, work }
+    pub(super) fn new(pattern: &Pattern, coupled: &[usize]) -> SparseLu {
+        let coupled = if coupled.len() <= MOST_COUPLED { coupled.to_vec() } else { Vec::new() };
+        let (pattern, work) = (pattern.clone(), vec![0.0; pattern.n]);
+        SparseLu { pattern, coupled, first: None, is_analysed: false, others: None, work }
     }
 
     /// Goes back to the pivots that do not depend on values.
@@ -81,7 +90,7 @@ impl SparseLu {
     pub(super) fn factorize(&mut self, values: &[f64]) -> Result<(), SingularMatrix> {
         if !self.is_analysed {
             let values = large_diagonal(&self.pattern);
-            let pivots = Elimination::new(&self.pattern, &values).run();
+            let pivots = Elimination::new(&self.pattern, &values).keep(&self.coupled).run();
             self.first = pivots.ok().map(|pivots| pivots.factors(&self.pattern));
             self.is_analysed = true;
         }
@@ -133,26 +142,12 @@ impl Factors {
         work: &mut [f64],
         threshold: f64,
     ) -> Result<(), SingularMatrix> {
-        for i in 0..self.rows.len() {
-            let lower = row(&self.lower_starts, i);
+        let n = self.inverse_diagonal.len();
+        for i in 0..n {
             let upper = row(&self.upper_starts, i);
             work[i] = 0.0;
-            self.lower_columns[lower.clone()].iter().for_each(|j| work[*j as usize] = 0.0);
             self.upper_columns[upper.clone()].iter().for_each(|j| work[*j as usize] = 0.0);
-            for (column, position) in &self.entries[row(&self.entry_starts, i)] {
-                work[*column as usize] = values[*position as usize];
-            }
-            for (k, l) in self.lower_columns[lower.clone()].iter().zip(&mut self.lower[lower]) {
-                let k = *k as usize;
-                let factor = work[k] * self.inverse_diagonal[k];
-                *l = factor;
-                if factor != 0.0 {
-                    let row = row(&self.upper_starts, k);
-                    for (j, u) in self.upper_columns[row.clone()].iter().zip(&self.upper[row]) {
-                        work[*j as usize] -= factor * u;
-                    }
-                }
-            }
+            self.eliminate(i, values, work);
             let pivot = work[i];
             let mut largest = pivot.abs();
             for (j, u) in self.upper_columns[upper.clone()].iter().zip(&mut self.upper[upper]) {
@@ -164,18 +159,50 @@ impl Factors {
             }
             self.inverse_diagonal[i] = 1.0 / pivot;
         }
-        Ok(())
+        let n_last = self.rows.len() - n;
+        for i in 0..n_last {
+            work[n..].fill(0.0);
+            self.eliminate(n + i, values, work);
+            for (j, value) in work[n..].iter().enumerate() {
+                self.last.matrix()[i + j * n_last] = *value;
+            }
+        }
+        self.last.factorize()
+    }
+
+    /// Computes row i of L, and in `work`, where zeros stand for its other entries, of U.
+    fn eliminate(&mut self, i: usize, values: &[f64], work: &mut [f64]) {
+        let lower = row(&self.lower_starts, i);
+        self.lower_columns[lower.clone()].iter().for_each(|j| work[*j as usize] = 0.0);
+        for (column, position) in &self.entries[row(&self.entry_starts, i)] {
+            work[*column as usize] = values[*position as usize];
+        }
+        for (k, l) in self.lower_columns[lower.clone()].iter().zip(&mut self.lower[lower]) {
+            let k = *k as usize;
+            let factor = work[k] * self.inverse_diagonal[k];
+            *l = factor;
+            if factor != 0.0 {
+                let row = row(&self.upper_starts, k);
+                for (j, u) in self.upper_columns[row.clone()].iter().zip(&self.upper[row]) {
+                    work[*j as usize] -= factor * u;
+                }
+            }
+        }
     }
 
     fn solve(&self, b: &mut [f64], work: &mut [f64]) {
-        let n = self.rows.len();
-        for i in 0..n {
+        let n = self.inverse_diagonal.len();
+        for i in 0..self.rows.len() {
             let mut sum = b[self.rows[i] as usize];
             let row = row(&self.lower_starts, i);
             for (k, l) in self.lower_columns[row.clone()].iter().zip(&self.lower[row]) {
                 sum -= l * work[*k as usize];
             }
             work[i] = sum;
+        }
+        self.last.solve(&mut work[n..]);
+        for (value, column) in work[n..].iter().zip(&self.columns[n..]) {
+            b[*column as usize] = *value;
         }
         for i in (0..n).rev() {
             let mut sum = work[i];
@@ -206,6 +233,8 @@ struct Elimination {
     lower: Vec<Vec<u32>>,
     /// Pivot row and column of every step.
     pivots: Vec<(usize, usize)>,
+    /// Rows and columns that are not pivots.
+    kept: Vec<bool>,
 }
 
 impl Elimination {
@@ -219,7 +248,17 @@ impl Elimination {
             }
         }
         let shortest = rows.iter().enumerate().map(|(i, row)| (row.len(), i)).collect();
-        Elimination { rows, columns, shortest, lower: vec![Vec::new(); n], pivots: Vec::new() }
+        let (lower, pivots, kept) = (vec![Vec::new(); n], Vec::new(), vec![false; n]);
+        Elimination { rows, columns, shortest, lower, pivots, kept }
+    }
+
+    /// Leaves these rows and columns.
+    fn keep(mut self, rows: &[usize]) -> Elimination {
+        for row in rows {
+            self.kept[*row] = true;
+            self.shortest.remove(&(self.rows[*row].len(), *row));
+        }
+        self
     }
 
     fn run(mut self) -> Result<Elimination, SingularMatrix> {
@@ -258,8 +297,9 @@ impl Elimination {
     fn pivot_of(&self, row: usize) -> Option<(usize, f64)> {
         let entries = &self.rows[row];
         let largest = entries.iter().map(|(_, value)| value.abs()).fold(0.0, f64::max);
-        let acceptable =
-            entries.iter().filter(|(_, v)| *v != 0.0 && v.abs() >= THRESHOLD * largest);
+        let acceptable = entries
+            .iter()
+            .filter(|(j, v)| !self.kept[*j] && *v != 0.0 && v.abs() >= THRESHOLD * largest);
         acceptable.min_by_key(|(j, _)| (self.columns[*j].len(), *j)).copied()
     }
 
@@ -298,14 +338,19 @@ impl Elimination {
                 new.push((j, value));
             }
         }
-        self.shortest.insert((new.len(), i));
+        if !self.kept[i] {
+            self.shortest.insert((new.len(), i));
+        }
         self.rows[i] = new;
     }
 
     fn factors(self, pattern: &Pattern) -> Factors {
         let n = pattern.n;
-        let rows: Vec<u32> = self.pivots.iter().map(|(row, _)| *row as u32).collect();
-        let columns: Vec<u32> = self.pivots.iter().map(|(_, column)| *column as u32).collect();
+        let kept: Vec<u32> = (0..n as u32).filter(|i| self.kept[*i as usize]).collect();
+        let pivots = self.pivots.iter().map(|(row, column)| (*row as u32, *column as u32));
+        let (mut rows, mut columns): (Vec<u32>, Vec<u32>) = pivots.unzip();
+        rows.extend(&kept);
+        columns.extend(&kept);
         let new_column = inverse(&columns);
         let new_row = inverse(&rows);
         let mut entries = vec![Vec::new(); n];
@@ -316,7 +361,7 @@ impl Elimination {
             }
         }
         let lower = rows.iter().map(|row| self.lower[*row as usize].clone()).collect();
-        let upper = (0u32..).zip(&rows).map(|(i, row)| {
+        let upper = (0u32..).zip(&rows[..n - kept.len()]).map(|(i, row)| {
             let columns = self.rows[*row as usize].iter().map(|(j, _)| new_column[*j]);
             let mut columns: Vec<u32> = columns.filter(|j| *j != i).collect();
             columns.sort_unstable();
@@ -336,7 +381,8 @@ impl Elimination {
             upper: vec![0.0; upper_columns.len()],
             upper_starts,
             upper_columns,
-            inverse_diagonal: vec![0.0; n],
+            inverse_diagonal: vec![0.0; n - kept.len()],
+            last: DenseLu::new(kept.len()),
         }
     }
 }

@@ -57,7 +57,7 @@ proptest! {
 
     #[test]
     fn sparse_factors_solve((pattern, values) in sparse_matrix(30), factor in 0.5f64..2.0) {
-        let mut sparse = Factorization::Sparse(Box::new(SparseLu::new(&pattern)));
+        let mut sparse = Factorization::Sparse(Box::new(SparseLu::new(&pattern, &[])));
         let mut dense = Factorization::Dense(DenseMatrix::new(&pattern));
         let by_dense = residual(&mut dense, &pattern, &values);
         if let Some(residual) = residual(&mut sparse, &pattern, &values) {
@@ -75,7 +75,7 @@ proptest! {
 
     #[test]
     fn dense_factors_solve((pattern, values) in sparse_matrix(8)) {
-        let mut dense = Factorization::new(&pattern);
+        let mut dense = Factorization::new(&pattern, &[]);
         prop_assert!(matches!(dense, Factorization::Dense(_)));
         if let Some(residual) = residual(&mut dense, &pattern, &values) {
             prop_assert!(residual < 1e-10, "{residual}");
@@ -95,7 +95,7 @@ fn a_tridiagonal_matrix_has_no_fill() {
         }
         pattern.column_starts.push(values.len());
     }
-    let mut factors = Factorization::new(&pattern);
+    let mut factors = Factorization::new(&pattern, &[]);
     let Factorization::Sparse(lu) = &mut factors else { panic!("a large sparse matrix is sparse") };
     lu.factorize(&values).unwrap();
     assert_eq!(lu.nonzeros(), n + 2 * (n - 1));
@@ -109,11 +109,11 @@ fn singular_matrices_are_refused() {
         let mut pattern =
             Pattern { n, column_starts: (0..n).collect(), rows: (0..n - 1).collect() };
         pattern.column_starts.push(n - 1);
-        let mut factors = Factorization::new(&pattern);
+        let mut factors = Factorization::new(&pattern, &[]);
         assert_eq!(factors.factorize(&vec![1.0; n - 1]), Err(SingularMatrix));
     }
     let pattern = Pattern { n: 1, column_starts: vec![0, 1], rows: vec![0] };
-    let mut factors = Factorization::new(&pattern);
+    let mut factors = Factorization::new(&pattern, &[]);
     assert_eq!(factors.factorize(&[f64::NAN]), Err(SingularMatrix));
     assert_eq!(factors.factorize(&[2.0]), Ok(()));
 }
