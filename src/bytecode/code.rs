@@ -90,6 +90,8 @@ pub struct Code {
     /// Whether equal arguments may give different results: it has a hidden state. Calls have one
     /// more argument, the number of the place where they are written.
     pub impure: bool,
+    /// Whether calls write files or print, so that they are made for that and not for their values.
+    pub writes: bool,
     /// A function for its derivative, `annotation(derivative = …)` (MLS §12.7.1).
     pub derivative: Option<Derivative>,
 }

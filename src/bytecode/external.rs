@@ -4,7 +4,7 @@ use super::code::{Code, ExternalCall, Functions};
 use super::failure::Reason;
 use super::number::{Dual, Number};
 use crate::diag::Fault;
-use crate::external::{Call, Contents, Kind, Object, Outside, Random};
+use crate::external::{Call, Contents, Journal, Kind, Object, Outside, Random};
 
 /// Runs an external function on numbers with derivatives, or without.
 pub trait RunExternal: Number {
@@ -25,6 +25,8 @@ pub struct Externals {
     pub(super) objects: Vec<Object>,
     /// The hidden state.
     random: Random,
+    /// What is to be written.
+    pub(super) journal: Journal,
     /// What the last one that failed said.
     pub(super) message: String,
     scratch: Vec<f64>,
@@ -40,11 +42,28 @@ impl std::fmt::Debug for Externals {
 struct Granted<'a> {
     files: &'a Contents,
     random: &'a mut Random,
+    journal: &'a mut Journal,
 }
 
 impl Outside for Granted<'_> {
     fn read(&mut self, path: &str) -> Result<Vec<u8>, Fault> {
-        self.files.read(path)
+        self.journal.read(path, || self.files.read(path))
+    }
+
+    fn write(&mut self, path: &str, bytes: &[u8]) -> Result<(), Fault> {
+        self.journal.write(path, bytes)
+    }
+
+    fn append(&mut self, path: &str, bytes: &[u8]) -> Result<(), Fault> {
+        self.journal.append(path, bytes)
+    }
+
+    fn remove(&mut self, path: &str) -> Result<(), Fault> {
+        self.journal.remove(path)
+    }
+
+    fn print(&mut self, text: &str) -> Result<(), Fault> {
+        self.journal.print(text)
     }
 
     fn random(&mut self) -> Result<&mut Random, Fault> {
@@ -57,6 +76,7 @@ impl Externals {
     pub(super) fn restart(&mut self) {
         self.objects.clear();
         self.random = Random::default();
+        self.journal.clear();
     }
 }
 
@@ -77,7 +97,11 @@ impl RunExternal for f64 {
             texts: &code.texts,
             written: &mut written,
             objects: &mut externals.objects,
-            outside: &mut Granted { files: &functions.files, random: &mut externals.random },
+            outside: &mut Granted {
+                files: &functions.files,
+                random: &mut externals.random,
+                journal: &mut externals.journal,
+            },
         };
         let done = match call.entry.makes_object() {
             true => functions.objects.remember(&mut arguments, call.entry.run),

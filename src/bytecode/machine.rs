@@ -4,6 +4,7 @@ use super::code::{Code, Derivative, Functions, Instruction};
 use super::external::{Externals, RunExternal};
 use super::failure::{Failure, Reason};
 use super::number::{Dual, Number};
+use crate::external::Journal;
 
 /// Most instructions of one call from outside.
 const MAX_INSTRUCTIONS: u64 = 20_000_000;
@@ -51,6 +52,11 @@ impl Machine {
     /// What the external function said that failed last.
     pub fn message(&self) -> &str {
         &self.externals.message
+    }
+
+    /// What calls would have written since the last [`Machine::restart`].
+    pub fn journal(&self) -> &Journal {
+        &self.externals.journal
     }
 
     /// Calls a function; returns its scalar outputs.

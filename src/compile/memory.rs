@@ -4,6 +4,7 @@ use super::linear_system::LinearSystem;
 use super::lower::Registers;
 use super::tape::Call;
 use crate::bytecode::{Failure, Functions, Machine};
+use crate::external::Journal;
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
@@ -71,6 +72,11 @@ impl Calls {
     /// What the external function said that failed last.
     pub(super) fn message(&self) -> &str {
         self.machine.message()
+    }
+
+    /// What calls have written since the last [`Calls::restart`].
+    pub(super) fn journal(&self) -> &Journal {
+        self.machine.journal()
     }
 
     /// Impure calls have new values from here on.

@@ -5,6 +5,8 @@ use super::Program;
 use super::program::Outputs;
 use super::system::System;
 use crate::dae::{Assertion, Level, Part};
+use crate::diag::Fault;
+use crate::external::Outside;
 use crate::sim::Failure;
 use crate::source::Span;
 use crate::value::Value;
@@ -63,6 +65,11 @@ impl System {
     /// From now on what the model tells is kept.
     pub fn listen(&mut self) {
         self.notices = Some(Notices::default());
+    }
+
+    /// Does what the model has written in the last simulation, if somebody listened to it.
+    pub fn carry_out(&self, outside: &mut dyn Outside) -> Result<(), Fault> {
+        self.registers.calls.journal().carry_out(outside)
     }
 
     /// What the model has told in the last simulation, and how much more there was.
@@ -125,6 +132,9 @@ fn told(program: &Program, recorded: &Recorded) -> Option<Told> {
     let dae = &program.sorted().dae;
     let mut all = dae.assertions.iter().chain(&dae.events.assertions);
     let Assertion { parts, level, span, .. } = all.nth(recorded.assertion as usize)?;
+    if *level == Level::Effect {
+        return None;
+    }
     let mut values = recorded.values.iter().copied();
     let mut words = String::new();
     for part in parts {

@@ -392,6 +392,7 @@ impl Builder<'_> {
             }
             _ if self.in_when && self.printing(call, loops)?.is_some() => Ok(()),
             (text, _) => match Target::function(self, &function.name()) {
+                Some(user) if self.in_when => self.effect(&user, arguments, call.span, loops),
                 Some(user) => {
                     let mut lowering = self.statement_lowering(loops);
                     lowering.user_call(&user, arguments, call.span).map(|_| ())

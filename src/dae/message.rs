@@ -1,16 +1,16 @@
 //! Texts for people: of assertions, and of functions that print (MLS §8.3.7, §12.9).
 
 use super::build::{Builder, UNKNOWN_TEXT, message_text};
-use super::errors::NOT_SUPPORTED;
 use super::function::prints;
 use super::lowering::{Lowering, Target};
 use super::model::{Assertion, Level, Part};
 use crate::diag::Diagnostic;
-use crate::fault;
+use crate::eval::Function;
 use crate::flatten::BaseType;
 use crate::source::Span;
 use crate::symbolic::Expr;
 use crate::syntax::ast::{Arguments, BinaryOperator, Expression, ExpressionKind};
+use std::sync::Arc;
 
 /// The parts of a text: what is known when compiling, and numbers that are not.
 pub(super) fn message_parts(
@@ -73,14 +73,39 @@ impl Builder<'_> {
         if let Some(file) = nth(arguments, 1, "fileName")
             && !message_text(&mut lowering, Some(file)).is_empty()
         {
-            return Err(fault!(NOT_SUPPORTED, "printing to a file while a model is simulated";
-                help: "print to the screen, or write the file from a script")
-            .at(call.span));
+            return Ok(None);
         }
         let parts = message_parts(&mut lowering, nth(arguments, 0, "string"));
         let condition = self.dae.pool.constant(0.0);
         self.dae.assertions.push(Assertion::new(condition, parts, Level::Message, call.span));
         Ok(Some(()))
+    }
+}
+
+impl Builder<'_> {
+    /// The call of a function in a when-clause for what it does: what it writes is written wherever
+    /// the statement is carried out.
+    pub(super) fn effect(
+        &mut self,
+        user: &Arc<Function>,
+        arguments: &Arguments,
+        span: Span,
+        loops: &[(crate::name::Ident, Expr)],
+    ) -> Result<(), Diagnostic> {
+        self.written = None;
+        self.functions.may_write = true;
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.to_vec();
+        lowering.live = true;
+        let called = lowering.user_call(user, arguments, span);
+        self.functions.may_write = false;
+        called?;
+        if let Some(call) = self.written.take() {
+            let condition = self.dae.pool.constant(0.0);
+            let parts = vec![Part::Number(call)];
+            self.dae.assertions.push(Assertion::new(condition, parts, Level::Effect, span));
+        }
+        Ok(())
     }
 }
 

@@ -187,6 +187,8 @@ pub enum Level {
     Warning,
     /// A function prints the text.
     Message,
+    /// A function writes; the only part is its call.
+    Effect,
 }
 
 /// A part of a text for people.

@@ -7,8 +7,8 @@
 use super::build::{Builder, message_text};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNBALANCED_MODEL};
 use super::events::{Reinit, Termination};
-use super::lowering::{Array, Lowering};
-use super::model::{Dae, Equation, Kind};
+use super::lowering::{Array, Lowering, Target};
+use super::model::{Dae, Equation, Kind, Level, Part};
 use super::sorted::{Alias, Selection};
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -254,7 +254,12 @@ impl Builder<'_> {
             }
             (name, _) => match self.printing(call, loops)? {
                 Some(()) => Ok(()),
-                None => Err(fault!(NOT_SUPPORTED, "`{name}(…)` in a when-clause").at(call.span)),
+                None => match Target::function(self, &function.name()) {
+                    Some(user) => self.effect(&user, arguments, call.span, loops),
+                    None => {
+                        Err(fault!(NOT_SUPPORTED, "`{name}(…)` in a when-clause").at(call.span))
+                    }
+                },
             },
         }
     }
@@ -264,6 +269,12 @@ impl Builder<'_> {
         let not = self.dae.pool.not(guard);
         for mut assertion in self.dae.assertions.split_off(from) {
             assertion.condition = self.dae.pool.or(not, assertion.condition);
+            if let (Level::Effect, [Part::Number(call)]) = (assertion.level, &mut *assertion.parts)
+            {
+                // It is carried out only where its statement is.
+                let zero = self.dae.pool.constant(0.0);
+                *call = self.dae.pool.if_then_else(assertion.condition, zero, *call);
+            }
             self.dae.events.assertions.push(assertion);
         }
     }

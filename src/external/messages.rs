@@ -11,18 +11,18 @@ use crate::mat::Matrix;
 
 pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaError", "t", error),
-    Entry::impure("ModelicaMessage", "t", message),
-    Entry::impure("ModelicaWarning", "t", message),
-    Entry::impure("ModelicaInternal_print", "tt", print),
+    Entry::writing("ModelicaMessage", "t", message),
+    Entry::writing("ModelicaWarning", "t", message),
+    Entry::writing("ModelicaInternal_print", "tt", print),
     Entry::pure("ModelicaInternal_readLine", "fnN->t", read_line),
     Entry::pure("ModelicaInternal_countLines", "f->n", count_lines),
     Entry::impure("ModelicaInternal_stat", "t->n", stat),
-    Entry::impure("ModelicaInternal_removeFile", "t", remove),
+    Entry::writing("ModelicaInternal_removeFile", "t", remove),
     Entry::impure("ModelicaInternal_getTime", "NNNNNNN", time),
     Entry::pure("ModelicaStreams_closeFile", "t", nothing),
     Entry::pure("ModelicaIO_readMatrixSizes", "ftA", matrix_sizes),
     Entry::pure("ModelicaIO_readRealMatrix", "ftAnnn", real_matrix),
-    Entry::impure("ModelicaIO_writeRealMatrix", "ttannnt->n", write_matrix),
+    Entry::writing("ModelicaIO_writeRealMatrix", "ttannnt->n", write_matrix),
 ];
 
 fn error(call: &mut Call<'_>) -> Result<(), Fault> {

@@ -19,6 +19,7 @@ pub mod errors;
 mod fourier;
 mod generalized;
 mod householder;
+mod journal;
 mod least_squares;
 mod linear_systems;
 mod matrices;
@@ -32,6 +33,7 @@ mod sylvester;
 mod tables;
 
 pub use call::{Call, Kind, Object, Outside, Slot};
+pub use journal::Journal;
 pub(crate) use messages::date_and_time;
 pub use objects::Objects;
 pub use random::Random;
@@ -65,7 +67,9 @@ pub enum Effect {
     None,
     /// They read or change the [hidden state](Random) of the simulation.
     State,
-    /// They change the outside world, or learn from it what changes by itself.
+    /// They change the outside world: in a simulation, what they do is [written down](Journal).
+    Writes,
+    /// They learn from the outside world what changes by itself.
     Outside,
 }
 
@@ -80,7 +84,12 @@ impl Entry {
         Entry { name, signature, effect: Effect::State, run }
     }
 
-    /// A function with effects outside.
+    /// A function that writes.
+    const fn writing(name: &'static str, signature: &'static str, run: Native) -> Entry {
+        Entry { name, signature, effect: Effect::Writes, run }
+    }
+
+    /// A function that learns from outside.
     const fn impure(name: &'static str, signature: &'static str, run: Native) -> Entry {
         Entry { name, signature, effect: Effect::Outside, run }
     }

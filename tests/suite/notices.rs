@@ -56,9 +56,70 @@ fn what_models_print_and_warn_of_is_told_in_its_order() {
     assert!(!errors.contains("late: 1"), "{errors}");
 }
 
+const WRITER: &str = "model W
+  impure function write
+    input String file;
+    input String name;
+    input Real matrix[:, :];
+    output Boolean done;
+    external \"C\" done = ModelicaIO_writeRealMatrix(
+      file, name, matrix, size(matrix, 1), size(matrix, 2), false, \"4\");
+  end write;
+  impure function tell
+    input String text;
+    input String file;
+    external \"C\" ModelicaInternal_print(text, file);
+  end tell;
+  parameter Integer method = 1;
+  Real x(start = 0, fixed = true);
+  Integer n(start = 0, fixed = true);
+equation
+  der(x) = 1;
+  when {x > 0.25, x > 0.5} then
+    n = pre(n) + 1;
+    tell(\"event\", \"log.txt\");
+  end when;
+algorithm
+  when terminal() then
+    if method == 1 then
+      write(\"end.mat\", \"A\", [x, n; 3, 4]);
+    end if;
+  end when;
+end W;";
+
+fn after_writer(model: &str, then: &str) -> (u8, String, String) {
+    let world = MemoryWorld::new().with_file("P.mo", model);
+    let streams = world.streams();
+    let script = format!("openModel(\"P.mo\");\nsimulateModel(\"W\", stopTime = 1);\n{then}");
+    let status = Session::new(Box::new(world)).run_text("s.mos", &script);
+    (status.code, streams.output(), streams.errors())
+}
+
 #[test]
-fn printing_to_a_file_is_refused() {
-    let model = MODEL.replace("tell(\"tick\")", "tell(\"tick\", \"out.txt\")");
-    let (_, output, errors) = run(&model, "openModel(\"P.mo\");\nsimulateModel(\"P\");");
-    assert!(errors.contains("printing to a file"), "{output}{errors}");
+fn files_that_a_model_writes_are_there_behind_the_simulation_and_written_once() {
+    let then =
+        "Modelica.Utilities.Streams.readFile(\"log.txt\")\nreadMatrix(\"end.mat\", \"A\", 2, 2)";
+    let (code, output, errors) = after_writer(WRITER, then);
+    assert_eq!(code, 0, "{output}{errors}");
+    assert!(output.contains("{\"event\", \"event\"}"), "{output}");
+    assert!(output.contains("[1.0, 2.0;\n3.0, 4.0]"), "{output}");
+    let other = WRITER.replace("method = 1", "method = 2");
+    let (_, _, errors) = after_writer(&other, "readMatrix(\"end.mat\", \"A\", 2, 2)");
+    assert!(errors.contains("end.mat"), "a branch that is not taken writes nothing: {errors}");
+}
+
+#[test]
+fn where_nothing_may_be_written_the_simulation_says_so() {
+    let model = WRITER.replace("end.mat", "/elsewhere/end.mat");
+    let (code, output, errors) = after_writer(&model, "");
+    assert_ne!(code, 0, "{output}{errors}");
+    assert!(errors.contains("/elsewhere/end.mat"), "{errors}");
+}
+
+#[test]
+fn what_is_written_has_no_value() {
+    let pure = WRITER.replace("impure function write", "function write");
+    let model = pure.replace("der(x) = 1", "der(x) = if write(\"a\", \"b\", [x]) then 1 else 2");
+    let (_, output, errors) = after_writer(&model, "");
+    assert!(errors.contains("the function `W.write` writes"), "{output}{errors}");
 }

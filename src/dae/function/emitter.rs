@@ -60,6 +60,7 @@ impl Emitter {
             texts: self.texts,
             externals: self.externals,
             impure: false,
+            writes: false,
             derivative: None,
         }
     }

@@ -27,7 +27,7 @@ pub(super) fn refusal(function: &Function) -> Option<String> {
             Some(format!("is the external function `{name}`, which this program does not have"))
         }
         Some(entry) if entry.effect == Effect::Outside => {
-            Some(format!("is the external function `{name}`, which has effects"))
+            Some(format!("is the external function `{name}`, whose values change by themselves"))
         }
         Some(_) => None,
     }

@@ -1,7 +1,7 @@
 //! Functions compiled for certain arguments, each combination once.
 
 use super::statements::Body;
-use crate::bytecode::{Code, Functions, Instruction, Machine};
+use crate::bytecode::{Code, ExternalCall, Functions, Instruction, Machine};
 use crate::dae::build::UNKNOWN_TEXT;
 use crate::dae::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use crate::dae::lowering::Lowered;
@@ -53,6 +53,8 @@ pub(crate) struct Instance {
     pub(super) folds: bool,
     /// Whether equal calls may give different results.
     pub(super) impure: bool,
+    /// Whether calls write files or print.
+    pub(super) writes: bool,
     /// Which arguments are passed; the others are known.
     pub(super) passed: Vec<bool>,
 }
@@ -67,6 +69,8 @@ pub(crate) struct Instances {
     failed: IndexMap<Signature, Diagnostic>,
     depth: usize,
     instructions: usize,
+    /// Whether a statement is at hand that may write.
+    pub(crate) may_write: bool,
 }
 
 impl Instances {
@@ -84,7 +88,7 @@ impl Instances {
         span: Span,
     ) -> Result<Instance, Diagnostic> {
         let general = signature(function, arguments, false, span)?;
-        match self.compiled(flat, function, general, span) {
+        let found = match self.compiled(flat, function, general, span) {
             Err(e) if e.code == NO_CONSTANT_VALUE => {
                 let special = signature(function, arguments, true, span)?;
                 if special.arguments.iter().any(|a| matches!(a, Argument::Known(_))) {
@@ -94,7 +98,14 @@ impl Instances {
                 }
             }
             result => result,
+        }?;
+        if found.writes && !self.may_write && self.depth == 0 {
+            return Err(fault!(NOT_SUPPORTED, "the function `{}` writes, and its value is used",
+                function.name;
+                help: "call it in a when-clause without using its value")
+            .at(span));
         }
+        Ok(found)
     }
 
     fn compiled(
@@ -155,16 +166,24 @@ impl Instances {
             outputs,
             folds: !function.impure && !super::external::handles_objects(function),
             impure: function.impure,
+            writes: false,
             passed: signature.arguments.iter().map(passed).collect(),
         };
         body.instances.functions.codes.push(Code::default());
         body.instances.finished.push(false);
         body.instances.known.insert(signature.clone(), instance.clone());
         let mut code = body.compile(statements)?;
+        code.writes = self.writes(&code);
         code.impure = function.impure || self.has_effects(&code);
+        if code.writes && code.n_outputs == 0 {
+            // Something stands for the call where its statement is carried out.
+            code.n_outputs = 1;
+            code.frame = code.frame.max(code.outputs + 1);
+        }
         if code.impure {
             instance.folds = false;
             instance.impure = true;
+            instance.writes = code.writes;
             self.known.insert(signature.clone(), instance.clone());
         }
         code.derivative = self.derivative(flat, function, &signature.arguments, span);
@@ -192,14 +211,24 @@ impl Instances {
         results.ok().map(<[f64]>::to_vec)
     }
 
-    /// Whether a function reads or changes the hidden state, itself or by what it calls.
+    /// Whether a function writes, itself or by what it calls.
+    fn writes(&self, code: &Code) -> bool {
+        let of_call = |instruction: &Instruction| match instruction {
+            Instruction::Call { function, .. } => self.functions.codes[*function as usize].writes,
+            _ => false,
+        };
+        code.externals.iter().any(|call| call.entry.effect == Effect::Writes)
+            || code.instructions.iter().any(of_call)
+    }
+
+    /// Whether a function writes, or reads or changes the hidden state, itself or by what it calls.
     fn has_effects(&self, code: &Code) -> bool {
         let of_call = |instruction: &Instruction| match instruction {
             Instruction::Call { function, .. } => self.functions.codes[*function as usize].impure,
             _ => false,
         };
-        code.externals.iter().any(|call| call.entry.effect == Effect::State)
-            || code.instructions.iter().any(of_call)
+        let has_effect = |call: &ExternalCall| call.entry.effect != Effect::None;
+        code.externals.iter().any(has_effect) || code.instructions.iter().any(of_call)
     }
 
     /// Whether a function and all that it calls are compiled to their ends.

@@ -127,6 +127,9 @@ fn compiled_call(
         Some(values) => results.extend(values.into_iter().map(|value| pool.constant(value))),
         None => {
             let n: usize = instance.outputs.iter().map(|shape| shape.len()).sum();
+            if instance.writes {
+                builder.written = Some(pool.call(instance.code, 0, &scalars));
+            }
             results.extend((0..n as u32).map(|at| pool.call(instance.code, at, &scalars)));
         }
     }
