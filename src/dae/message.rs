@@ -109,7 +109,11 @@ impl Builder<'_> {
     }
 }
 
-fn nth<'a>(arguments: &'a Arguments, position: usize, name: &str) -> Option<&'a Expression> {
+pub(super) fn nth<'a>(
+    arguments: &'a Arguments,
+    position: usize,
+    name: &str,
+) -> Option<&'a Expression> {
     let named = arguments.named.iter().find(|a| a.name.node == name).map(|a| &a.value);
     arguments.positional.get(position).or(named)
 }

@@ -34,6 +34,7 @@ mod tables;
 
 pub use call::{Call, Kind, Object, Outside, Slot};
 pub use journal::Journal;
+pub(crate) use messages::TELL;
 pub(crate) use messages::date_and_time;
 pub use objects::Objects;
 pub use random::Random;

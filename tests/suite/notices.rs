@@ -70,6 +70,11 @@ const WRITER: &str = "model W
     input String file;
     external \"C\" ModelicaInternal_print(text, file);
   end tell;
+  impure function twice
+    input Real number;
+  algorithm
+    tell(\"number \" + String(2*number), \"log.txt\");
+  end twice;
   parameter Integer method = 1;
   Real x(start = 0, fixed = true);
   Integer n(start = 0, fixed = true);
@@ -78,6 +83,7 @@ equation
   when {x > 0.25, x > 0.5} then
     n = pre(n) + 1;
     tell(\"event\", \"log.txt\");
+    twice(n);
   end when;
 algorithm
   when terminal() then
@@ -101,7 +107,7 @@ fn files_that_a_model_writes_are_there_behind_the_simulation_and_written_once() 
         "Modelica.Utilities.Streams.readFile(\"log.txt\")\nreadMatrix(\"end.mat\", \"A\", 2, 2)";
     let (code, output, errors) = after_writer(WRITER, then);
     assert_eq!(code, 0, "{output}{errors}");
-    assert!(output.contains("{\"event\", \"event\"}"), "{output}");
+    assert!(output.contains("{\"event\", \"number 2\", \"event\", \"number 4\"}"), "{output}");
     assert!(output.contains("[1.0, 2.0;\n3.0, 4.0]"), "{output}");
     let other = WRITER.replace("method = 1", "method = 2");
     let (_, _, errors) = after_writer(&other, "readMatrix(\"end.mat\", \"A\", 2, 2)");

@@ -1,6 +1,7 @@
 //! Declarations and statements of a function being compiled (MLS ch. 11, §12.4).
 
 use super::emitter::{Emitter, Operand};
+use super::external::prints;
 use super::instances::{Argument, Instances, MAX_INSTRUCTIONS};
 use super::single_assignment::assigned_once;
 use crate::bytecode::{Code, Instruction, Register};
@@ -387,6 +388,7 @@ impl<'a, 'f> Body<'a, 'f> {
         }
         let name = function.name();
         match self.function(&name) {
+            Some(user) if prints(&user) => self.printing(arguments, call.span, loops),
             Some(user) => {
                 self.lowering(loops).user_call(&user, arguments, call.span)?;
                 Ok(())
