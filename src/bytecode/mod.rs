@@ -20,6 +20,7 @@ mod failure;
 mod machine;
 mod number;
 
+pub use crate::external::Journal;
 pub use code::{Code, Derivative, ExternalCall, Functions, Instruction, Register};
 pub use elementary::Elementary;
 pub use external::{Externals, RunExternal};

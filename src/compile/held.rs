@@ -18,6 +18,8 @@ use rustc_hash::{FxHashMap, FxHashSet};
 const WIDEST: usize = 24;
 /// Unknowns are added where the Jacobian gets smaller by this factor.
 const GAIN: usize = 2;
+/// With fewer unknowns a full Jacobian costs little.
+const FEWEST: usize = 32;
 /// Unknowns beyond which nobody counts.
 const MANY: usize = 256;
 
@@ -36,6 +38,9 @@ impl Held {
     /// The form with the sparser Jacobian; `derivatives` are those of the states.
     pub(super) fn choose(pool: &mut Pool, sorted: &SortedDae, derivatives: &[Expr]) -> Held {
         let plain = Held::plain(sorted);
+        if sorted.states.len() + plain.iteration.len() < FEWEST {
+            return plain;
+        }
         let in_loops: FxHashSet<VarId> = long_loops(sorted)
             .flat_map(|block| block.assignments())
             .map(|assignment| assignment.variable)

@@ -3,8 +3,7 @@
 use super::linear_system::LinearSystem;
 use super::lower::Registers;
 use super::tape::Call;
-use crate::bytecode::{Failure, Functions, Machine};
-use crate::external::Journal;
+use crate::bytecode::{Failure, Functions, Journal, Machine};
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 

@@ -4,9 +4,8 @@
 use super::Program;
 use super::program::Outputs;
 use super::system::System;
+use crate::bytecode::Journal;
 use crate::dae::{Assertion, Level, Part};
-use crate::diag::Fault;
-use crate::external::Outside;
 use crate::sim::Failure;
 use crate::source::Span;
 use crate::value::Value;
@@ -67,9 +66,9 @@ impl System {
         self.notices = Some(Notices::default());
     }
 
-    /// Does what the model has written in the last simulation, if somebody listened to it.
-    pub fn carry_out(&self, outside: &mut dyn Outside) -> Result<(), Fault> {
-        self.registers.calls.journal().carry_out(outside)
+    /// What the model would have written in the last simulation, if somebody listened to it.
+    pub fn journal(&self) -> &Journal {
+        self.registers.calls.journal()
     }
 
     /// What the model has told in the last simulation, and how much more there was.

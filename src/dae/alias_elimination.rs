@@ -6,7 +6,7 @@
 use super::model::{Dae, Equation, Kind, Variable};
 use super::sorted::Alias;
 use crate::source::Span;
-use crate::symbolic::{Expr, Node, Pool, VarId, substitute};
+use crate::symbolic::{Expr, Node, Pool, Substitution, VarId};
 use rustc_hash::FxHashMap;
 
 /// Removes alias equations; returns every variable's representative.
@@ -182,9 +182,9 @@ fn rewrite(dae: &mut Dae, aliases: &[Option<Alias>]) {
         .collect();
     rename_previous(dae, aliases, &mut replacements);
     let pool = &mut dae.pool;
-    let mut replace = |e: &mut Expr| {
-        *e = substitute(pool, *e, &|v| replacements[v.0 as usize]);
-    };
+    let replacement = |v: VarId| replacements[v.0 as usize];
+    let mut substitution = Substitution::new(&replacement);
+    let mut replace = |e: &mut Expr| *e = substitution.apply(pool, *e);
     for equation in dae.equations.iter_mut().chain(&mut dae.initial_equations) {
         replace(&mut equation.left);
         replace(&mut equation.right);

@@ -6,7 +6,7 @@
 use super::model::{Dae, Kind};
 use crate::bytecode::{Functions, Machine};
 use crate::flatten::BaseType;
-use crate::symbolic::{Environment, Expr, VarId, evaluate, substitute};
+use crate::symbolic::{Environment, Expr, Substitution, VarId, evaluate};
 use std::cell::RefCell;
 
 /// A value for every variable, NaN where there is none.
@@ -122,9 +122,9 @@ fn replace_everywhere(dae: &mut Dae, replacements: &[Option<Expr>]) {
     let Dae {
         pool, variables, equations, initial_equations, assertions, relations, events, ..
     } = dae;
-    let mut replace = |e: &mut Expr| {
-        *e = substitute(pool, *e, &|v| replacements[v.0 as usize]);
-    };
+    let replacement = |v: VarId| replacements[v.0 as usize];
+    let mut substitution = Substitution::new(&replacement);
+    let mut replace = |e: &mut Expr| *e = substitution.apply(pool, *e);
     for v in variables {
         let attributes = [&mut v.binding, &mut v.start, &mut v.min, &mut v.max, &mut v.nominal];
         attributes.into_iter().flatten().for_each(&mut replace);

@@ -8,6 +8,7 @@ use super::errors::{NOT_SUPPORTED, UNBALANCED_MODEL};
 use super::lowering::Lowering;
 use super::model::{Dae, Equation, Kind};
 use super::sorted::Alias;
+use super::used::used_variables;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::BaseType;
@@ -166,21 +167,7 @@ pub(super) fn separate_discrete(
 }
 
 fn drop_unused_previous(dae: &mut Dae) {
-    let mut used = vec![false; dae.variables.len()];
-    let pool = &dae.pool;
-    let mut mark = |e: Expr| pool.variables(e).iter().for_each(|v| used[v.0 as usize] = true);
-    for equation in dae.equations.iter().chain(&dae.initial_equations) {
-        mark(equation.left);
-        mark(equation.right);
-    }
-    for relation in &dae.relations {
-        mark(relation.left);
-        mark(relation.right);
-    }
-    for assertion in &mut dae.assertions {
-        assertion.for_each_expression(|e| mark(*e));
-    }
-    dae.events.for_each_expression(|e| mark(*e));
+    let used = used_variables(dae);
     for (variable, used) in dae.variables.iter_mut().zip(used) {
         if matches!(variable.kind, Kind::Previous(_)) && !used {
             variable.kind = Kind::Signal;

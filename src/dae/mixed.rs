@@ -11,7 +11,7 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::BaseType;
 use crate::graph::{Bipartite, Matching, blocks, match_equations};
-use crate::symbolic::{Expr, VarId, substitute};
+use crate::symbolic::{Expr, Substitution, VarId};
 
 /// Blocks, and the variables that are read before they are written.
 #[derive(Debug, Default)]
@@ -49,9 +49,10 @@ pub(super) fn with_initial(dae: &mut Dae, equations: &mut [Equation], value: f64
     let pool = &mut dae.pool;
     let value = pool.constant(value);
     let replacement = |v: VarId| (v == initial).then_some(value);
+    let mut substitution = Substitution::new(&replacement);
     for equation in equations {
-        equation.left = substitute(pool, equation.left, &replacement);
-        equation.right = substitute(pool, equation.right, &replacement);
+        equation.left = substitution.apply(pool, equation.left);
+        equation.right = substitution.apply(pool, equation.right);
     }
 }
 

@@ -48,6 +48,7 @@ mod settled;
 mod sorted;
 mod symbolic_target;
 mod temporal;
+mod used;
 mod vanishing_derivatives;
 mod varying_texts;
 mod when;

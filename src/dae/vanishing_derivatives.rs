@@ -9,6 +9,7 @@
 
 use super::model::{Dae, Equation, Kind};
 use super::sorted::Alias;
+use super::used::used_variables;
 use crate::symbolic::{Expr, Node, VarId, substitute};
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -138,21 +139,9 @@ impl Numbers {
 
 /// Derivatives that no equation contains any more are no unknowns.
 fn forget_unused(dae: &mut Dae, dropped: &FxHashSet<VarId>, aliases: &[Option<Alias>]) {
-    let mut used: FxHashSet<VarId> = FxHashSet::default();
-    let pool = &dae.pool;
-    let mut mark = |e: Expr| used.extend(pool.variables(e));
-    for equation in dae.equations.iter().chain(&dae.initial_equations) {
-        mark(equation.left);
-        mark(equation.right);
-    }
-    for relation in &dae.relations {
-        mark(relation.left);
-        mark(relation.right);
-    }
-    dae.assertions.iter().for_each(|assertion| mark(assertion.condition));
-    dae.events.for_each_expression(|e| mark(*e));
-    used.extend(aliases.iter().flatten().map(|alias| alias.of));
-    for v in dropped.iter().filter(|v| !used.contains(v)) {
+    let mut used = used_variables(dae);
+    aliases.iter().flatten().for_each(|alias| used[alias.of.0 as usize] = true);
+    for v in dropped.iter().filter(|v| !used[v.0 as usize]) {
         dae.variables[v.0 as usize].kind = Kind::Signal;
     }
 }

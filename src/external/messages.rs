@@ -7,13 +7,7 @@
 use super::Entry;
 use super::call::Call;
 use crate::diag::Fault;
-use crate::external::Kind;
 use crate::mat::Matrix;
-use crate::value::Value;
-use crate::value::format::text;
-
-/// As `String` writes Reals (MLS §3.7.1).
-const SIGNIFICANT_DIGITS: i64 = 6;
 
 pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaError", "t", error),
@@ -50,26 +44,6 @@ fn print(call: &mut Call<'_>) -> Result<(), Fault> {
     }
     let (line, path) = (format!("{}\n", call.text(0)), call.text(1).to_owned());
     call.outside.append(&path, line.as_bytes())
-}
-
-/// `ModelicaInternal_print` with a text in parts, of which some are numbers: the file, then the parts.
-pub(crate) static TELL: Entry = Entry::writing("ModelicaInternal_print", "", tell);
-
-fn tell(call: &mut Call<'_>) -> Result<(), Fault> {
-    let mut words = String::new();
-    for slot in &call.arguments[1..] {
-        match slot.kind {
-            Kind::Text => words += &call.texts[slot.first as usize],
-            Kind::Number | Kind::Object => {
-                let value = Value::Real(call.numbers[slot.first as usize]);
-                words += &text(&value, SIGNIFICANT_DIGITS, 0, true)?;
-            }
-        }
-    }
-    match call.text(0).to_owned().as_str() {
-        "" => call.outside.print(words.trim_end_matches('\n')),
-        path => call.outside.append(path, format!("{words}\n").as_bytes()),
-    }
 }
 
 fn remove(call: &mut Call<'_>) -> Result<(), Fault> {

@@ -34,7 +34,6 @@ mod tables;
 
 pub use call::{Call, Kind, Object, Outside, Slot};
 pub use journal::Journal;
-pub(crate) use messages::TELL;
 pub(crate) use messages::date_and_time;
 pub use objects::Objects;
 pub use random::Random;
@@ -86,7 +85,7 @@ impl Entry {
     }
 
     /// A function that writes.
-    const fn writing(name: &'static str, signature: &'static str, run: Native) -> Entry {
+    pub(crate) const fn writing(name: &'static str, signature: &'static str, run: Native) -> Entry {
         Entry { name, signature, effect: Effect::Writes, run }
     }
 

@@ -290,7 +290,7 @@ pub fn simulate(
     system.system.listen();
     let run = Simulator::new().run(&mut system, &settings, &mut trajectory);
     tell(session, &system.system);
-    system.system.carry_out(session).at(call)?;
+    system.system.journal().carry_out(session).at(call)?;
     match run {
         Ok(statistics) => {
             let table = result_table(model, &system.system, &trajectory);

@@ -36,4 +36,4 @@ pub use node::{Arguments, Expr, Node, Number, RelationOperator, VarId};
 pub use pool::{Pool, VariableCollection};
 pub use print::print;
 pub use solve::{Linear, Solution, linear_in, solve};
-pub use substitute::substitute;
+pub use substitute::{Substitution, substitute};

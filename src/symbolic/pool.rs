@@ -109,6 +109,24 @@ impl Pool {
         found
     }
 
+    /// Those of [`Pool::reachable`] that are not known, nor reached through what is known alone.
+    pub(super) fn reachable_unless(
+        &self,
+        roots: &[Expr],
+        is_known: impl Fn(Expr) -> bool,
+    ) -> Vec<Expr> {
+        let mut found = Vec::new();
+        self.visit_while(roots, |expr| {
+            if is_known(expr) {
+                return Next::Operands { from: usize::MAX };
+            }
+            found.push(expr);
+            Next::Operands { from: 0 }
+        });
+        found.sort_unstable();
+        found
+    }
+
     /// Those of [`Pool::reachable`] that may contain a variable: all but nodes older than it, as
     /// operands stand before their nodes.
     pub(super) fn reachable_with(&self, roots: &[Expr], variable: VarId) -> Vec<Expr> {

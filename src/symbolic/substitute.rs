@@ -11,18 +11,36 @@ pub fn substitute(
     expr: Expr,
     replacement: &dyn Fn(VarId) -> Option<Expr>,
 ) -> Expr {
-    let mut successors: FxHashMap<Expr, Expr> = FxHashMap::default();
-    for old in pool.reachable(&[expr]) {
-        let node = pool.node(old).clone();
-        let new = match node {
-            Node::Variable(variable) => replacement(variable).unwrap_or(old),
-            _ => {
-                let mut changed = false;
-                node.for_each_operand(|operand| changed |= successors[&operand] != operand);
-                if changed { pool.rebuild(&node, |operand| successors[&operand]) } else { old }
-            }
-        };
-        successors.insert(old, new);
+    Substitution::new(replacement).apply(pool, expr)
+}
+
+/// The same for one expression after another; what they share is replaced once.
+pub struct Substitution<'a> {
+    replacement: &'a dyn Fn(VarId) -> Option<Expr>,
+    successors: FxHashMap<Expr, Expr>,
+}
+
+impl<'a> Substitution<'a> {
+    /// `replacement` gives `None` for variables that stay.
+    pub fn new(replacement: &'a dyn Fn(VarId) -> Option<Expr>) -> Substitution<'a> {
+        Substitution { replacement, successors: FxHashMap::default() }
     }
-    successors[&expr]
+
+    /// The expression with its variables replaced.
+    pub fn apply(&mut self, pool: &mut Pool, expr: Expr) -> Expr {
+        let successors = &mut self.successors;
+        for old in pool.reachable_unless(&[expr], |known| successors.contains_key(&known)) {
+            let node = pool.node(old).clone();
+            let new = match node {
+                Node::Variable(variable) => (self.replacement)(variable).unwrap_or(old),
+                _ => {
+                    let mut changed = false;
+                    node.for_each_operand(|operand| changed |= successors[&operand] != operand);
+                    if changed { pool.rebuild(&node, |operand| successors[&operand]) } else { old }
+                }
+            };
+            successors.insert(old, new);
+        }
+        successors[&expr]
+    }
 }

@@ -4,10 +4,8 @@ use super::emitter::Operand;
 use super::instances::Instances;
 use super::statements::Body;
 use crate::bytecode::{ExternalCall, Instruction};
-use crate::dae::build::{UNKNOWN_TEXT, message_text};
 use crate::dae::errors::NOT_SUPPORTED;
 use crate::dae::lowering::{Lowered, Lowering};
-use crate::dae::message::nth;
 use crate::diag::{At, Diagnostic};
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::external::{self, Effect, Kind, Slot};
@@ -43,17 +41,6 @@ pub(super) fn is_message(function: &Function) -> bool {
     }
 }
 
-/// Whether a function does nothing but to print its first argument.
-pub(in crate::dae) fn prints(function: &Function) -> bool {
-    match &function.body {
-        FunctionBody::External(clause) => matches!(
-            external_name(function, clause).as_str(),
-            "ModelicaMessage" | "ModelicaWarning" | "ModelicaInternal_print"
-        ),
-        _ => false,
-    }
-}
-
 /// Whether external objects go in or out: such a call is not the number that it returns.
 pub(super) fn handles_objects(function: &Function) -> bool {
     function.inputs.iter().chain(&function.outputs).any(is_object)
@@ -61,13 +48,6 @@ pub(super) fn handles_objects(function: &Function) -> bool {
 
 fn is_object(component: &FunctionComponent) -> bool {
     matches!(component.value_type, ValueType::ExternalObject(_))
-}
-
-/// x of `String(x)`.
-fn argument_of_string(e: &ast::Expression) -> Option<&ast::Expression> {
-    let ast::ExpressionKind::Call { function, arguments } = &e.kind else { return None };
-    let is_plain = function.as_ident()? == "String" && arguments.named.is_empty();
-    arguments.positional.as_slice().first().filter(|_| is_plain && arguments.positional.len() == 1)
 }
 
 impl Body<'_, '_> {
@@ -119,56 +99,8 @@ impl Body<'_, '_> {
         Ok(())
     }
 
-    /// A call of a function that prints: the numbers in its text are those of when it is carried out.
-    pub(super) fn printing(
-        &mut self,
-        arguments: &ast::Arguments,
-        span: crate::source::Span,
-        loops: &super::statements::Loops,
-    ) -> Result<(), Diagnostic> {
-        self.emitter.place(span);
-        self.emitter.open();
-        let file = message_text(&mut self.lowering(loops), nth(arguments, 1, "fileName"));
-        let mut parts = vec![self.slot(Lowered::Text(file.into()), None, span)?];
-        if let Some(text) = nth(arguments, 0, "string") {
-            self.parts_of_text(text, loops, &mut parts)?;
-        }
-        let call = ExternalCall { entry: &external::TELL, arguments: parts, result: None };
-        let external = self.emitter.external(call);
-        self.emitter.emit(Instruction::External { external });
-        self.emitter.close();
-        Ok(())
-    }
-
-    fn parts_of_text(
-        &mut self,
-        e: &ast::Expression,
-        loops: &super::statements::Loops,
-        parts: &mut Vec<Slot>,
-    ) -> Result<(), Diagnostic> {
-        if let ast::ExpressionKind::Binary { operator: ast::BinaryOperator::Add, left, right } =
-            &e.kind
-        {
-            self.parts_of_text(left, loops, parts)?;
-            return self.parts_of_text(right, loops, parts);
-        }
-        let text = message_text(&mut self.lowering(loops), Some(e));
-        let number = match (text.contains(UNKNOWN_TEXT), argument_of_string(e)) {
-            (true, Some(argument)) => self.lowering(loops).scalar(argument).ok(),
-            _ => None,
-        };
-        parts.push(match number {
-            Some(number) => {
-                let first = self.emitter.row(&[number]);
-                Slot { kind: Kind::Number, first, dims: Box::new([]) }
-            }
-            None => self.slot(Lowered::Text(text.into()), None, e.span)?,
-        });
-        Ok(())
-    }
-
     /// Where an argument stands: the registers of a component itself, which the call may write to.
-    fn slot(
+    pub(super) fn slot(
         &mut self,
         value: Lowered<Operand>,
         component: Option<&FunctionComponent>,

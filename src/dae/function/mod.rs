@@ -11,12 +11,13 @@ mod emitter;
 mod external;
 mod instances;
 mod place;
+mod printing;
 mod single_assignment;
 mod statements;
 mod target;
 
-pub(super) use external::prints;
 pub(super) use instances::Instances;
+pub(super) use printing::prints;
 
 use super::build::Builder;
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED_REFERENCE};

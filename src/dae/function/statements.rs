@@ -1,8 +1,8 @@
 //! Declarations and statements of a function being compiled (MLS ch. 11, §12.4).
 
 use super::emitter::{Emitter, Operand};
-use super::external::prints;
 use super::instances::{Argument, Instances, MAX_INSTRUCTIONS};
+use super::printing::prints;
 use super::single_assignment::assigned_once;
 use crate::bytecode::{Code, Instruction, Register};
 use crate::dae::build::message_text;
