@@ -48,8 +48,8 @@ pub(super) struct Builder<'a> {
     pub(super) functions: super::function::Instances,
     /// How many calls of impure functions were read.
     pub(super) impure_calls: u32,
-    /// The last call of a function that writes.
-    pub(super) written: Option<Expr>,
+    /// The calls of functions that write, in the statement at hand.
+    pub(super) written: Vec<Expr>,
     /// Whose equations are being read.
     pub(super) instance: Option<Instance>,
     /// Whether initial equations are being read.
@@ -93,7 +93,7 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         inlined: 0,
         functions: super::function::Instances::default(),
         impure_calls: 0,
-        written: None,
+        written: Vec::new(),
         instance: None,
         initial: false,
         in_when: false,

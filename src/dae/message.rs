@@ -55,8 +55,8 @@ fn number(lowering: &mut Lowering<'_, Builder<'_>>, e: &Expression) -> Option<Pa
 }
 
 impl Builder<'_> {
-    /// A call of a function that prints; `None` for other functions. It is a message that is told
-    /// wherever it is carried out.
+    /// A call of a function that prints to the screen; `None` for other calls. It is a message that
+    /// is told wherever it is carried out.
     pub(super) fn printing(
         &mut self,
         call: &Expression,
@@ -80,9 +80,7 @@ impl Builder<'_> {
         self.dae.assertions.push(Assertion::new(condition, parts, Level::Message, call.span));
         Ok(Some(()))
     }
-}
 
-impl Builder<'_> {
     /// The call of a function in a when-clause for what it does: what it writes is written wherever
     /// the statement is carried out.
     pub(super) fn effect(
@@ -92,7 +90,7 @@ impl Builder<'_> {
         span: Span,
         loops: &[(crate::name::Ident, Expr)],
     ) -> Result<(), Diagnostic> {
-        self.written = None;
+        self.written.clear();
         self.functions.may_write = true;
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.to_vec();
@@ -100,9 +98,9 @@ impl Builder<'_> {
         let called = lowering.user_call(user, arguments, span);
         self.functions.may_write = false;
         called?;
-        if let Some(call) = self.written.take() {
+        let parts: Vec<Part> = self.written.drain(..).map(Part::Number).collect();
+        if !parts.is_empty() {
             let condition = self.dae.pool.constant(0.0);
-            let parts = vec![Part::Number(call)];
             self.dae.assertions.push(Assertion::new(condition, parts, Level::Effect, span));
         }
         Ok(())

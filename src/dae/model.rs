@@ -187,7 +187,7 @@ pub enum Level {
     Warning,
     /// A function prints the text.
     Message,
-    /// A function writes; the only part is its call.
+    /// Functions write; the parts are their calls.
     Effect,
 }
 

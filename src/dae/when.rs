@@ -269,11 +269,14 @@ impl Builder<'_> {
         let not = self.dae.pool.not(guard);
         for mut assertion in self.dae.assertions.split_off(from) {
             assertion.condition = self.dae.pool.or(not, assertion.condition);
-            if let (Level::Effect, [Part::Number(call)]) = (assertion.level, &mut *assertion.parts)
-            {
-                // It is carried out only where its statement is.
+            if assertion.level == Level::Effect {
+                // Calls are carried out only where their statement is.
                 let zero = self.dae.pool.constant(0.0);
-                *call = self.dae.pool.if_then_else(assertion.condition, zero, *call);
+                for part in &mut assertion.parts {
+                    if let Part::Number(call) = part {
+                        *call = self.dae.pool.if_then_else(assertion.condition, zero, *call);
+                    }
+                }
             }
             self.dae.events.assertions.push(assertion);
         }

@@ -290,9 +290,10 @@ pub fn simulate(
     system.system.listen();
     let run = Simulator::new().run(&mut system, &settings, &mut trajectory);
     tell(session, &system.system);
-    system.system.journal().carry_out(session).at(call)?;
+    let written = system.system.journal().carry_out(session).at(call);
     match run {
         Ok(statistics) => {
+            written?;
             let table = result_table(model, &system.system, &trajectory);
             session.models.end = Some(end(model, &settings, &table));
             Ok(Simulated { table, statistics })

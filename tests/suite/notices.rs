@@ -114,6 +114,34 @@ fn files_that_a_model_writes_are_there_behind_the_simulation_and_written_once() 
     assert!(errors.contains("end.mat"), "a branch that is not taken writes nothing: {errors}");
 }
 
+/// Its functions could be carried out on expressions; then what they write would be written in
+/// branches that are not taken, too.
+#[test]
+fn every_call_that_writes_is_carried_out_where_it_stands() {
+    let pure = WRITER.replace("impure function", "function");
+    let several = pure.replace(
+        "  parameter Integer method",
+        "  function all
+    input Real x;
+    output Boolean done;
+  algorithm
+    done := write(\"a.mat\", \"A\", [x]);
+    if x < 0 then
+      done := write(\"b.mat\", \"A\", [x]);
+    end if;
+    done := write(\"c.mat\", \"A\", [2*x]);
+  end all;
+  parameter Integer method",
+    );
+    let model = several.replace("write(\"end.mat\", \"A\", [x, n; 3, 4])", "all(x)");
+    let read = |file: &str| format!("readMatrix(\"{file}.mat\", \"A\", 1, 1)\n");
+    let (_, output, errors) = after_writer(&model, &(read("a") + &read("c")));
+    assert_eq!(errors, "", "{output}");
+    assert!(output.contains("[1.0]") && output.contains("[2.0]"), "{output}");
+    let (_, _, errors) = after_writer(&model, &read("b"));
+    assert!(errors.contains("b.mat"), "{errors}");
+}
+
 #[test]
 fn where_nothing_may_be_written_the_simulation_says_so() {
     let model = WRITER.replace("end.mat", "/elsewhere/end.mat");

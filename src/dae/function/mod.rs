@@ -40,6 +40,10 @@ pub(super) fn call(
     mut arguments: Vec<Lowered<Expr>>,
     span: Span,
 ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+    if builder.functions.may_write {
+        // Carried out on expressions, a function would write whatever its branches are.
+        return compiled_call(builder, function, arguments, span);
+    }
     let outermost = builder.calls == 0;
     if outermost {
         builder.inlined = MAX_INLINED;
@@ -129,7 +133,7 @@ fn compiled_call(
         None => {
             let n: usize = instance.outputs.iter().map(|shape| shape.len()).sum();
             if instance.writes {
-                builder.written = Some(pool.call(instance.code, 0, &scalars));
+                builder.written.push(pool.call(instance.code, 0, &scalars));
             }
             results.extend((0..n as u32).map(|at| pool.call(instance.code, at, &scalars)));
         }
