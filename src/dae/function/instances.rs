@@ -175,9 +175,10 @@ impl Instances {
         let mut code = body.compile(statements)?;
         code.writes = self.writes(&code);
         code.impure = function.impure || self.has_effects(&code);
-        if code.writes && code.n_outputs == 0 {
+        if code.n_outputs == 0 {
             // Something stands for the call where its statement is carried out.
             code.n_outputs = 1;
+            code.constants.push((code.outputs, 0.0));
             code.frame = code.frame.max(code.outputs + 1);
         }
         if code.impure {

@@ -74,7 +74,11 @@ pub(super) fn stacked<S: Copy>(
     Ok(Lowered::Record(fields))
 }
 
-fn arrays<S: Copy>(values: Vec<Lowered<S>>, span: Span) -> Result<Vec<Array<S>>, Diagnostic> {
+/// Values that are arrays of numbers.
+pub(super) fn arrays<S: Copy>(
+    values: Vec<Lowered<S>>,
+    span: Span,
+) -> Result<Vec<Array<S>>, Diagnostic> {
     let array = |value| match value {
         Lowered::Array(array) => Ok(array),
         Lowered::Record(_) => {
