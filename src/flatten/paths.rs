@@ -246,20 +246,38 @@ impl Instantiation<'_> {
         local: &Local,
     ) -> Result<Expression, Diagnostic> {
         // A component of a named record is that component; anything else is computed first.
-        if let ExpressionKind::Reference(reference) = &base.kind {
-            let mut longer = reference.clone();
-            longer.parts.push(ReferencePart { name, subscripts: Vec::new() });
-            return self.reference(&longer, context, local);
-        }
-        if let ExpressionKind::Subscripted { base: inner, subscripts } = &base.kind
-            && let ExpressionKind::Reference(reference) = &inner.kind
-            && let Some(mut longer) = self.element_of(reference, subscripts, context, local)?
-        {
+        if let Some(mut longer) = self.component_named(base, context, local)? {
             longer.parts.push(ReferencePart { name, subscripts: Vec::new() });
             return self.reference(&longer, context, local);
         }
         let base = self.resolve(base, context, local)?;
         Ok(Expression::new(ExpressionKind::Field { base: Box::new(base), name }, span))
+    }
+
+    /// Elements and components of a component as a reference.
+    fn component_named(
+        &mut self,
+        value: &Expression,
+        context: ScopeId,
+        local: &Local,
+    ) -> Result<Option<ComponentReference>, Diagnostic> {
+        match &value.kind {
+            ExpressionKind::Reference(reference) => Ok(Some(reference.clone())),
+            ExpressionKind::Subscripted { base, subscripts } => {
+                match self.component_named(base, context, local)? {
+                    Some(reference) => self.element_of(&reference, subscripts, context, local),
+                    None => Ok(None),
+                }
+            }
+            ExpressionKind::Field { base, name } => {
+                let mut reference = self.component_named(base, context, local)?;
+                if let Some(reference) = &mut reference {
+                    reference.parts.push(ReferencePart { name: *name, subscripts: Vec::new() });
+                }
+                Ok(reference)
+            }
+            _ => Ok(None),
+        }
     }
 
     /// `(a.b)[i]` as a reference, with the subscripts at the parts that are arrays: `a[i].b` if `a`

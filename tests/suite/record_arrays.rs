@@ -14,6 +14,29 @@ const MODEL: &str = "model M
   Point grid[2, 1] = {{filled[1]}, {Point(6, {7, 8})}};
   Point turned[1, 2] = transpose(grid);
   parameter Point given[n] = fill(Point(9, {10, 11}), n);
+  function scaled
+    input Point p;
+    input Real by;
+    output Point q;
+  algorithm
+    q := Point(by * p.x, by * p.y);
+  end scaled;
+  function total
+    input Point p;
+    output Real t;
+  algorithm
+    t := p.x + sum(p.y);
+  end total;
+  function totals
+    input Point p[:];
+    output Real t;
+  algorithm
+    t := sum(total({scaled(p[k], k) for k in 1:size(p, 1)}));
+  end totals;
+  Real t = totals(filled);
+  Point twice[n] = scaled(filled, 2);
+  parameter Integer m = 3;
+  Real ramp = sum({k * time for k in 1:m});
 end M;";
 
 #[test]
@@ -23,7 +46,8 @@ fn records_are_filled_joined_and_transposed() {
     let script = "openModel(\"M.mo\");
 simulateModel(\"M\", stopTime = 0.5, resultFile = \"r\");
 names := {\"filled[2].x\", \"joined[3].x\", \"joined[2].y[2]\", \"joined[3].y[1]\",
-          \"turned[1, 2].x\", \"turned[1, 1].y[2]\", \"turned[1, 2].y[2]\", \"given[2].y[1]\"};
+          \"turned[1, 2].x\", \"turned[1, 1].y[2]\", \"turned[1, 2].y[2]\", \"given[2].y[1]\", \"twice[2].y[2]\",
+          \"t\", \"ramp\"};
 for i in 1:size(names, 1) loop
   value := readTrajectory(\"r.mat\", {names[i]}, readTrajectorySize(\"r.mat\"));
   print(names[i] + \" \" + String(value[1, end]));
@@ -33,8 +57,10 @@ end for;";
     let output = streams.output();
     let values: Vec<&str> = output
         .lines()
-        .filter_map(|line| line.split_once("] ").or(line.split_once(".x ")))
-        .map(|(_, value)| value)
+        .filter_map(|line| line.rsplit_once(' ').map(|(_, value)| value))
+        .filter(|value| value.parse::<f64>().is_ok())
         .collect();
-    assert_eq!(values, ["0.5", "3", "2", "4", "6", "2", "8", "10"], "{output}");
+    // total(filled) + 2 total(filled), and 6 time.
+    let expected = ["0.5", "3", "2", "4", "6", "2", "8", "10", "4", "10.5", "3"];
+    assert_eq!(values, expected, "{output}");
 }

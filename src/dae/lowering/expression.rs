@@ -59,7 +59,7 @@ impl<T: Target> Lowering<'_, T> {
             }
             ExpressionKind::Array(elements) => return self.constructor(elements, e.span),
             ExpressionKind::Comprehension { element, indices } => {
-                self.comprehension(element, indices, e.span)?
+                return self.comprehension(element, indices, e.span);
             }
             ExpressionKind::Matrix(rows) => self.matrix(rows, e.span)?,
             ExpressionKind::End => match self.ends.last() {
@@ -204,9 +204,9 @@ impl<T: Target> Lowering<'_, T> {
         stop: &Expression,
         span: Span,
     ) -> Result<Vec<f64>, Diagnostic> {
-        let start = self.known(start)?;
-        let step = step.map_or(Ok(1.0), |step| self.known(step))?;
-        let stop = self.known(stop)?;
+        let start = self.shaping(start)?;
+        let step = step.map_or(Ok(1.0), |step| self.shaping(step))?;
+        let stop = self.shaping(stop)?;
         let count = ((stop - start) / step * (1.0 + f64::EPSILON)).floor() + 1.0;
         if step == 0.0 || !count.is_finite() || count > MAX_SCALARS as f64 {
             return Err(fault!(
@@ -223,18 +223,18 @@ impl<T: Target> Lowering<'_, T> {
         element: &Expression,
         indices: &[ForIndex],
         span: Span,
-    ) -> Result<Array<T::Scalar>, Diagnostic> {
-        let mut inner: Vec<Array<T::Scalar>> = Vec::new();
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
         let Some((last, outer)) = indices.split_last() else {
-            return self.array(element);
+            return self.lower(element);
         };
+        let mut inner = Vec::new();
         for value in self.loop_values(last)? {
             self.loops.push((last.name.node, value));
             let element = self.comprehension(element, outer, span);
             self.loops.pop();
             inner.push(element?);
         }
-        stack(inner, span)
+        stacked(inner, span)
     }
 
     /// The values of a loop variable.
@@ -258,8 +258,10 @@ impl<T: Target> Lowering<'_, T> {
         element: &Expression,
         indices: &[ForIndex],
     ) -> Result<Vec<T::Scalar>, Diagnostic> {
-        let array = self.comprehension(element, indices, element.span)?;
-        Ok(array.elements)
+        match self.comprehension(element, indices, element.span)? {
+            Lowered::Array(array) => Ok(array.elements),
+            _ => Err(fault!(ARRAY_MISMATCH, "a reduction of what is no number").at(element.span)),
+        }
     }
 
     fn constructor(

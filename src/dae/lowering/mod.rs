@@ -82,10 +82,10 @@ pub(crate) trait Target {
         position: Self::Scalar,
         span: Span,
     ) -> Result<Self::Scalar, Diagnostic>;
-    /// The value of a condition that texts depend on, which cannot change from here on; `None` if
-    /// it is not known.
-    fn settle(&mut self, condition: Self::Scalar) -> Option<f64> {
-        let _ = condition;
+    /// The value of what sizes or texts depend on, which cannot change from here on; `None` if it
+    /// is not known.
+    fn settle(&mut self, value: Self::Scalar) -> Option<f64> {
+        let _ = value;
         None
     }
     /// The number that stands for a text where texts change at events; `None` where none do.
@@ -345,21 +345,30 @@ impl<'a, T: Target> Lowering<'a, T> {
     /// A number known when compiling.
     pub(crate) fn known(&mut self, e: &Expression) -> Result<f64, Diagnostic> {
         let scalar = self.scalar(e)?;
-        self.target.as_constant(scalar).ok_or_else(|| {
-            fault!(NO_CONSTANT_VALUE, "this must be known when the model is compiled";
-                help: "use a constant, or a parameter that is `final` or has `annotation(Evaluate = true)`")
-            .at(e.span)
-        })
+        self.target.as_constant(scalar).ok_or_else(|| not_known(e.span))
+    }
+
+    /// A number that sizes depend on: parameters in it are settled.
+    pub(crate) fn shaping(&mut self, e: &Expression) -> Result<f64, Diagnostic> {
+        let scalar = self.scalar(e)?;
+        let known = self.target.as_constant(scalar).or_else(|| self.target.settle(scalar));
+        known.ok_or_else(|| not_known(e.span))
     }
 
     /// A size known when compiling.
     pub(crate) fn known_size(&mut self, e: &Expression) -> Result<usize, Diagnostic> {
-        let value = self.known(e)?;
+        let value = self.shaping(e)?;
         if value < 0.0 || value > MAX_SCALARS as f64 || value.fract() != 0.0 {
             return Err(fault!(ARRAY_MISMATCH, "{value} is no size of an array").at(e.span));
         }
         Ok(value as usize)
     }
+}
+
+fn not_known(span: Span) -> Diagnostic {
+    fault!(NO_CONSTANT_VALUE, "this must be known when the model is compiled";
+        help: "use a constant, or a parameter that is `final` or has `annotation(Evaluate = true)`")
+    .at(span)
 }
 
 /// Sizes for messages: `[2, 3]`, `scalar`.

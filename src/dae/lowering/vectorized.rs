@@ -1,10 +1,10 @@
 //! Functions applied to arrays element by element (MLS §12.4.6).
 
+use super::expression::field;
+use super::records::arrays;
 use super::{Array, Lowered, Lowering, Target, size_fault};
-use crate::dae::errors::NOT_SUPPORTED;
 use crate::diag::Diagnostic;
-use crate::eval::{Function, FunctionComponent};
-use crate::fault;
+use crate::eval::{Function, FunctionComponent, ValueType};
 use crate::source::Span;
 use std::sync::Arc;
 
@@ -35,42 +35,75 @@ impl<T: Target> Lowering<'_, T> {
         });
         let calls: Vec<_> = calls.collect::<Result<_, _>>()?;
         let outputs = (0..function.outputs.len()).map(|output| {
-            let mut whole = Array { dims: sizes.to_vec(), elements: Vec::new() };
-            for (at, call) in calls.iter().enumerate() {
-                let Some(Lowered::Array(one)) = call.get(output) else {
-                    return Err(fault!(
-                        NOT_SUPPORTED,
-                        "`{}` applied to every element of an array has a record as output",
-                        function.name
-                    )
-                    .at(span));
-                };
-                if at == 0 {
-                    whole.dims.extend(&one.dims);
-                }
-                whole.elements.extend(&one.elements);
-            }
-            Ok(Lowered::Array(whole))
+            let of_call = |call: &Vec<Lowered<T::Scalar>>| call.get(output).cloned();
+            let ones: Option<Vec<_>> = calls.iter().map(of_call).collect();
+            gathered(sizes, &ones.unwrap_or_default(), span)
         });
         outputs.collect::<Result<_, _>>().map(Some)
     }
 }
 
+/// The results of all calls as one array of these sizes.
+fn gathered<S: Copy>(
+    sizes: &[usize],
+    ones: &[Lowered<S>],
+    span: Span,
+) -> Result<Lowered<S>, Diagnostic> {
+    if let Some(Lowered::Record(fields)) = ones.first() {
+        let whole = fields.iter().map(|(name, _)| {
+            let of_one = |one: &Lowered<S>| field(one.clone(), *name, span);
+            let ones = ones.iter().map(of_one).collect::<Result<Vec<_>, _>>()?;
+            Ok((*name, gathered(sizes, &ones, span)?))
+        });
+        return whole.collect::<Result<_, _>>().map(Lowered::Record);
+    }
+    let ones = arrays(ones.to_vec(), span)?;
+    let inner = ones.first().map_or(&[][..], |one| &one.dims);
+    let dims = [sizes, inner].concat();
+    Ok(Lowered::Array(Array {
+        dims,
+        elements: ones.iter().flat_map(|one| &one.elements).copied().collect(),
+    }))
+}
+
 /// The sizes of the first dimensions, which the input does not have.
 fn surplus<'a, S>(input: &FunctionComponent, argument: &'a Lowered<S>) -> Option<&'a [usize]> {
-    let Lowered::Array(array) = argument else { return None };
-    let n = array.dims.len().checked_sub(input.dims.len())?;
-    (n > 0).then(|| &array.dims[..n])
+    match (argument, &input.value_type) {
+        (Lowered::Array(array), _) => {
+            let n = array.dims.len().checked_sub(input.dims.len())?;
+            (n > 0).then(|| &array.dims[..n])
+        }
+        // Arrays of records are records of arrays.
+        (Lowered::Record(values), ValueType::Record(_, fields)) => {
+            let (name, value) = values.first()?;
+            let outer = surplus(fields.get(name)?, value)?;
+            let n = outer.len().checked_sub(input.dims.len())?;
+            (n > 0).then(|| &outer[..n])
+        }
+        _ => None,
+    }
 }
 
 /// The argument of the call of this number.
 fn part<S: Copy>(input: &FunctionComponent, argument: &Lowered<S>, at: usize) -> Lowered<S> {
-    match (argument, surplus(input, argument)) {
-        (Lowered::Array(array), Some(outer)) => {
-            let dims = array.dims[outer.len()..].to_vec();
+    match surplus(input, argument) {
+        Some(outer) => element(argument, outer.len(), at),
+        None => argument.clone(),
+    }
+}
+
+/// The element of this number of an array with so many dimensions.
+fn element<S: Copy>(array: &Lowered<S>, rank: usize, at: usize) -> Lowered<S> {
+    match array {
+        Lowered::Array(array) => {
+            let dims = array.dims[rank..].to_vec();
             let n: usize = dims.iter().product();
             Lowered::Array(Array { dims, elements: array.elements[at * n..(at + 1) * n].to_vec() })
         }
-        _ => argument.clone(),
+        Lowered::Record(fields) => {
+            let fields = fields.iter().map(|(name, field)| (*name, element(field, rank, at)));
+            Lowered::Record(fields.collect())
+        }
+        other => other.clone(),
     }
 }
