@@ -92,8 +92,17 @@ pub struct Code {
     pub impure: bool,
     /// Whether calls write files or print, so that they are made for that and not for their values.
     pub writes: bool,
+    /// Whether outputs may be NaN: components of records that have no value.
+    pub may_lack: bool,
     /// A function for its derivative, `annotation(derivative = …)` (MLS §12.7.1).
     pub derivative: Option<Derivative>,
+}
+
+impl Code {
+    /// The place behind the last instruction.
+    pub fn end(&self) -> u32 {
+        self.instructions.len() as u32
+    }
 }
 
 /// A call of an external function; slots are registers of the frame.

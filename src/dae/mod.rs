@@ -25,6 +25,7 @@ mod alias_elimination;
 mod assigned;
 mod blt;
 mod build;
+mod component_shape;
 mod default_values;
 mod discrete;
 mod dummy_derivatives;

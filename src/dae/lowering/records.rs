@@ -4,10 +4,12 @@
 use super::expression::{field, stack};
 use super::{Array, Lowered, Lowering, Target};
 use crate::dae::errors::ARRAY_MISMATCH;
+use crate::dae::model::Shape;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::source::Span;
 use crate::syntax::ast::{ComponentReference, Subscript};
+use std::sync::Arc;
 
 impl<T: Target> Lowering<'_, T> {
     /// What subscripts choose of an array, or of an array of records.
@@ -25,7 +27,14 @@ impl<T: Target> Lowering<'_, T> {
             Lowered::Record(fields) => {
                 let mut chosen = Vec::with_capacity(fields.len());
                 for (name, value) in fields {
-                    chosen.push((name, self.elements_of(value, subscripts, span)?));
+                    chosen.push((
+                        name,
+                        match value {
+                            // All elements have the same text, or it is not known.
+                            Lowered::Text(text) => Lowered::Text(text),
+                            value => self.elements_of(value, subscripts, span)?,
+                        },
+                    ));
                 }
                 Ok(Lowered::Record(chosen))
             }
@@ -69,9 +78,27 @@ pub(super) fn stacked<S: Copy>(
     for name in names {
         let of_one = |value: &Lowered<S>| field(value.clone(), name, span);
         let column = values.iter().map(of_one).collect::<Result<Vec<_>, _>>()?;
-        fields.push((name, stacked(column, span)?));
+        fields.push((
+            name,
+            match common_text(&column) {
+                Some(text) => Lowered::Text(text),
+                None => stacked(column, span)?,
+            },
+        ));
     }
     Ok(Lowered::Record(fields))
+}
+
+/// The text of a component of records, not known where theirs differ; `None` for numbers.
+fn common_text<S: Copy>(column: &[Lowered<S>]) -> Option<Arc<str>> {
+    let mut common = column.first()?.shape()?;
+    for value in column {
+        common = common.joined(&value.shape()?)?;
+    }
+    match common {
+        Shape::Text(text) => Some(text),
+        _ => None,
+    }
 }
 
 fn arrays<S: Copy>(values: Vec<Lowered<S>>, span: Span) -> Result<Vec<Array<S>>, Diagnostic> {
