@@ -92,8 +92,17 @@ pub struct Code {
     pub impure: bool,
     /// Whether calls write files or print, so that they are made for that and not for their values.
     pub writes: bool,
+    /// Whether outputs may be NaN: components of records that have no value.
+    pub may_lack: bool,
     /// A function for its derivative, `annotation(derivative = …)` (MLS §12.7.1).
     pub derivative: Option<Derivative>,
+}
+
+impl Code {
+    /// The place behind the last instruction.
+    pub fn end(&self) -> u32 {
+        self.instructions.len() as u32
+    }
 }
 
 /// A call of an external function; slots are registers of the frame.
@@ -147,6 +156,22 @@ impl Functions {
         self.codes[function as usize].n_outputs as usize
     }
 
+    /// The text of an assertion that failed, or that a function failed with on purpose.
+    pub fn message(&self, failure: &Failure) -> Option<&str> {
+        let code = self.codes.get(failure.function as usize)?;
+        match (failure.reason, code.instructions.get(failure.at as usize)?) {
+            (Reason::Assertion, Instruction::Assert { message, .. }) => {
+                Some(&code.messages[*message as usize])
+            }
+            (Reason::External, Instruction::External { external }) => {
+                let call = &code.externals[*external as usize];
+                let text = call.arguments.first().filter(|_| call.entry.name == "ModelicaError")?;
+                code.texts.get(text.first as usize).map(|text| text.trim_end())
+            }
+            _ => None,
+        }
+    }
+
     /// A failure in words, with its place.
     pub fn explain(&self, failure: &Failure) -> (String, Span) {
         let Some(code) = self.codes.get(failure.function as usize) else {
@@ -154,10 +179,10 @@ impl Functions {
         };
         let position = code.places.partition_point(|(first, _)| *first <= failure.at);
         let span = position.checked_sub(1).map_or(Span::NONE, |at| code.places[at].1);
+        if let Some(message) = self.message(failure) {
+            return (message.to_owned(), span);
+        }
         let words = match (failure.reason, code.instructions.get(failure.at as usize)) {
-            (Reason::Assertion, Some(Instruction::Assert { message, .. })) => {
-                return (code.messages[*message as usize].to_string(), span);
-            }
             (
                 Reason::NotFinite,
                 Some(Instruction::Unary { function, .. } | Instruction::Binary { function, .. }),

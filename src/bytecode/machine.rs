@@ -59,7 +59,7 @@ impl Machine {
         &self.externals.journal
     }
 
-    /// Calls a function; returns its scalar outputs.
+    /// Calls a function; returns its scalar outputs, NaN for components of records without value.
     pub fn call(
         &mut self,
         functions: &Functions,
@@ -398,19 +398,19 @@ fn execute<T: Number>(
                 r[d as usize] = finite(r[a as usize].div(r[b as usize]))?;
             }
             Instruction::Pow { d, a, b } => {
+                given(r, a, b)?;
                 r[d as usize] = finite(r[a as usize].pow(r[b as usize]))?;
             }
             Instruction::Relation { operator, d, a, b } => {
+                given(r, a, b)?;
                 let (a, b) = (r[a as usize].value(), r[b as usize].value());
-                if a.is_nan() || b.is_nan() {
-                    return Err(Reason::Unassigned);
-                }
                 r[d as usize] = truth(operator.holds(a, b));
             }
             Instruction::Unary { function, d, a } => {
                 r[d as usize] = finite(r[a as usize].unary(function))?;
             }
             Instruction::Binary { function, d, a, b } => {
+                given(r, a, b)?;
                 r[d as usize] = finite(r[a as usize].binary(r[b as usize], function))?;
             }
             Instruction::Offset { d, subscript, size, stride } => {
@@ -475,6 +475,14 @@ fn decided<T: Number>(condition: T) -> Result<bool, Reason> {
     match condition.value() {
         value if value.is_nan() => Err(Reason::Unassigned),
         value => Ok(value != 0.0),
+    }
+}
+
+/// Whether two operands have values: some functions have one for a NaN.
+fn given<T: Number>(r: &[T], a: u32, b: u32) -> Result<(), Reason> {
+    match r[a as usize].value().is_nan() || r[b as usize].value().is_nan() {
+        true => Err(Reason::Unassigned),
+        false => Ok(()),
     }
 }
 

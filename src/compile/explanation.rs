@@ -91,15 +91,15 @@ impl Program {
                 let reason = Reason::ALL.get(usize::from(reason)).copied();
                 let reason = reason.unwrap_or(Reason::NotFinite);
                 let failure = bytecode::Failure { function, at, reason };
-                let (mut words, span) = self.sorted.dae.functions.explain(&failure);
+                let functions = &self.sorted.dae.functions;
+                let (mut words, span) = functions.explain(&failure);
+                if functions.message(&failure).is_some() {
+                    return fault!(ASSERTION_FAILED, "{words} ({when})").at(span);
+                }
                 if let Some(message) = self.external_message(failure) {
                     words = format!("{words}: {message}");
                 }
-                let code = match reason {
-                    Reason::Assertion => ASSERTION_FAILED,
-                    _ => DOMAIN_ERROR,
-                };
-                fault!(code, "{words} ({when})").at(span)
+                fault!(DOMAIN_ERROR, "{words} ({when})").at(span)
             }
             Failure::Assertion { assertion } => {
                 let dae = &self.sorted.dae;

@@ -129,6 +129,7 @@ fn operation(instruction: Instruction) -> Option<Operation> {
         Instruction::Binary { id, d, a, b, .. } => (Which::Function(id), d, a, b, false),
         Instruction::Move { .. }
         | Instruction::Call { .. }
+        | Instruction::Given { .. }
         | Instruction::Solve { .. }
         | Instruction::JumpUnless { .. }
         | Instruction::Jump { .. } => return None,

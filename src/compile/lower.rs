@@ -192,7 +192,11 @@ impl<'a> TapeBuilder<'a> {
                 return self.branches(condition, *a, *b);
             }
             Node::Call { function, output, arguments } => {
-                return output + self.call(*function, Box::new([]), arguments.clone());
+                let d = output + self.call(*function, Box::new([]), arguments.clone());
+                if self.registers.functions.codes[*function as usize].may_lack {
+                    self.tape.code.push(Instruction::Given { a: d, function: *function });
+                }
+                return d;
             }
             Node::CallDerivative { function, output, inputs, arguments } => {
                 return output + self.call(*function, inputs.clone(), arguments.clone());

@@ -83,6 +83,12 @@ impl Calls {
         self.impure.clear();
     }
 
+    /// The place behind the last instruction of a function.
+    pub(super) fn end_of(&self, function: u32) -> u32 {
+        self.functions.codes[function as usize].end()
+    }
+
+    /// Writes the results of a call.
     pub(super) fn run(&mut self, call: &Call, r: &mut [f64]) -> Result<(), Failure> {
         if !self.functions.codes[call.function as usize].impure {
             return self.run_anew(call, r);

@@ -585,6 +585,13 @@ pub(super) fn run(tape: &Tape, registers: &mut Memory) -> Result<(), Failure> {
                 }
                 0
             }
+            Instruction::Given { function, .. } => {
+                return Failure::Function {
+                    function,
+                    at: registers.calls.end_of(function),
+                    reason: crate::bytecode::Reason::Unassigned as u8,
+                };
+            }
             Instruction::Pow { .. } => 1,
             _ => 0,
         };

@@ -82,6 +82,11 @@ pub(super) enum Instruction {
     Call {
         call: u32,
     },
+    /// Fails if a component of a record that a function gave has no value.
+    Given {
+        a: Register,
+        function: u32,
+    },
     /// The linear system of this number in the tape.
     Solve {
         solve: u32,
@@ -103,6 +108,7 @@ impl Instruction {
             | Instruction::Neg { a, .. }
             | Instruction::Not { a, .. }
             | Instruction::Unary { a, .. }
+            | Instruction::Given { a, .. }
             | Instruction::JumpUnless { a, .. } => visit(a),
             Instruction::Add { a, b, .. }
             | Instruction::Sub { a, b, .. }
@@ -186,6 +192,11 @@ impl Tape {
                 Instruction::Call { call } => {
                     let call = &self.calls[call as usize];
                     calls.run(call, r).map_err(|_| at as u32 - 1)?;
+                }
+                Instruction::Given { a, .. } => {
+                    if r[a as usize].is_nan() {
+                        return Err(at as u32 - 1);
+                    }
                 }
                 Instruction::Solve { solve } => {
                     let solve = &self.solves[solve as usize];

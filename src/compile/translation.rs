@@ -269,7 +269,7 @@ impl Translation<'_> {
             }
             Instruction::Unary { id, d, a, function } => self.call_unary(id, d, a, function),
             Instruction::Binary { d, a, b, function, .. } => self.call_binary(d, a, b, function),
-            Instruction::Call { .. } => return None,
+            Instruction::Call { .. } | Instruction::Given { .. } => return None,
             Instruction::Solve { solve } => {
                 let code = self.code;
                 self.solve(&code.tape.solves[solve as usize])?;

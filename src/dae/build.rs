@@ -431,7 +431,11 @@ impl<'a> Builder<'a> {
                     .at(target.span));
             };
             let value = lowering.lower(target)?;
-            equations.extend(pairs(&value, output, span)?);
+            let pairs = pairs(&value, output, span)?;
+            if matches!(value, Lowered::Record(_)) && !live && !lowering.target.initial {
+                pairs.iter().for_each(|pair| lowering.target.allow_continuous(*pair));
+            }
+            equations.extend(pairs);
         }
         Ok(equations)
     }
@@ -615,6 +619,9 @@ fn pairs(a: &Lowered<Expr>, b: &Lowered<Expr>, span: Span) -> Result<Vec<Equatio
     let (Some(x), Some(y)) = (a.shape(), b.shape()) else {
         return Err(fault!(NOT_SUPPORTED, "equations of texts are not supported").at(span));
     };
+    if x.holds_text() || y.holds_text() {
+        return Err(fault!(NOT_SUPPORTED, "equations of texts are not supported").at(span));
+    }
     if x.len() != y.len() || std::mem::discriminant(&x) != std::mem::discriminant(&y) {
         return Err(fault!(
             ARRAY_MISMATCH,

@@ -5,11 +5,12 @@
 //! that depend on variables, and for recursion that does not end when compiling: such calls are left
 //! to the bytecode of `function`, which refuses impure functions.
 
-use super::build::{Builder, message_text};
+use super::build::{Builder, UNKNOWN_TEXT, message_text};
+use super::component_shape::{Declared, declared};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use super::function::{component_type, local_value};
 use super::lowering::{Array, Binary, Branch, Choice, Lowered, Lowering, Operator, Target, Unary};
-use super::model::{Assertion, Level, Part, Shape};
+use super::model::{Assertion, Level, Part};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
@@ -92,21 +93,12 @@ impl Call<'_, '_> {
             self.locals.push((input.name, argument));
         }
         for component in function.outputs.iter().chain(&function.locals) {
-            let shape = component_shape(&mut Lowering::new(self), component)?;
+            let mut undeclared = |_: &mut Self, _: &[Ident]| Ok(None);
+            let Declared { shape, scalars } =
+                declared(&mut Lowering::new(self), component, &mut undeclared)?;
             let nothing = self.constant(f64::NAN);
-            let mut value = Lowered::from_scalars(&shape, &mut std::iter::repeat(nothing));
-            if let Some(binding) = &component.binding {
-                let bound = Lowering::new(self).lower(binding)?;
-                if bound.shape().as_ref() != Some(&shape) {
-                    return Err(fault!(
-                        ARRAY_MISMATCH,
-                        "the value of `{}` has another size",
-                        component.name
-                    )
-                    .at(binding.span));
-                }
-                value = bound;
-            }
+            let mut scalars = scalars.into_iter().map(|scalar| scalar.unwrap_or(nothing));
+            let value = Lowered::from_scalars(&shape, &mut scalars);
             self.locals.push((component.name, value));
         }
         self.statements(statements, &mut Vec::new())?;
@@ -335,7 +327,7 @@ impl Call<'_, '_> {
         let positions = self.positions(&dims, &last.subscripts, target.span, loops)?;
         let place = self.local(&names).ok_or_else(unknown)?;
         let Some(positions) = positions else {
-            if place.shape() != value.shape() {
+            if !place.fits(&value) {
                 return Err(fault!(
                     ARRAY_MISMATCH,
                     "the value of `{}` has another size",
@@ -422,6 +414,7 @@ fn merge(
                 merge(builder, condition, x, y);
             }
         }
+        (Lowered::Text(a), Lowered::Text(b)) if a != b => *b = UNKNOWN_TEXT.into(),
         _ => {}
     }
 }
@@ -447,45 +440,6 @@ fn check_rank(
                 .at(span))
         }
         _ => Ok(()),
-    }
-}
-
-/// The shape of an output or local, its sizes given by the components before it.
-pub(super) fn component_shape<T: Target>(
-    lowering: &mut Lowering<'_, T>,
-    component: &FunctionComponent,
-) -> Result<Shape, Diagnostic> {
-    let mut dims = Vec::new();
-    for (position, subscript) in component.dims.iter().enumerate() {
-        let declared = match (subscript, &component.binding) {
-            (Subscript::Index(size), _) => Some(lowering.known_size(size)?),
-            // The size is that of the value in the declaration (MLS §12.4.5).
-            (Subscript::All(_), Some(value)) => lowering.array(value)?.dims.get(position).copied(),
-            (Subscript::All(_), None) => None,
-        };
-        dims.push(declared.ok_or_else(|| {
-            fault!(NOT_SUPPORTED, "the size of `{}` is not declared", component.name)
-                .at(component.span)
-        })?);
-    }
-    match &component.value_type {
-        ValueType::Record(_, fields) => {
-            let shape = |(name, field): (&Ident, &FunctionComponent)| {
-                Ok((*name, component_shape(lowering, field)?.repeated(&dims)))
-            };
-            Ok(Shape::Record(fields.iter().map(shape).collect::<Result<_, Diagnostic>>()?))
-        }
-        ValueType::Real
-        | ValueType::Integer
-        | ValueType::Boolean
-        | ValueType::Enumeration(_)
-        | ValueType::ExternalObject(_) => Ok(Shape::Array(dims)),
-        _ => Err(fault!(
-            NOT_SUPPORTED,
-            "`{}` is of a type that functions in equations cannot have",
-            component.name
-        )
-        .at(component.span)),
     }
 }
 

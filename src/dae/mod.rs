@@ -25,6 +25,7 @@ mod alias_elimination;
 mod assigned;
 mod blt;
 mod build;
+mod component_shape;
 mod default_values;
 mod discrete;
 mod dummy_derivatives;
@@ -49,6 +50,7 @@ mod sorted;
 mod symbolic_target;
 mod temporal;
 mod used;
+mod vanishing_coefficients;
 mod vanishing_derivatives;
 mod varying_texts;
 mod when;
@@ -65,6 +67,7 @@ use crate::fault;
 use crate::flatten::FlatModel;
 use crate::symbolic::VarId;
 use errors::{SINGULAR_SYSTEM, UNBALANCED_MODEL};
+use vanishing_coefficients::Settled;
 
 /// The passes, in order: the name for `--dump` and what it does.
 pub const PASSES: &[(&str, &str)] = &[
@@ -82,7 +85,25 @@ pub const PASSES: &[(&str, &str)] = &[
 
 /// Sorts a flat model.
 pub fn sort(flat: &FlatModel) -> Result<SortedDae, Diagnostic> {
-    sort_and_show(flat, &mut |_, _, _| {})
+    sort_settled(flat).map(|(sorted, _)| sorted)
+}
+
+/// The sorted system, and the parameters that its structure takes as numbers.
+fn sort_settled(flat: &FlatModel) -> Result<(SortedDae, Settled), Diagnostic> {
+    let mut settled = Settled::default();
+    let mut sorted = sort_with(flat, &settled, &mut |_, _, _| {})?;
+    loop {
+        let found = vanishing_coefficients::vanishing(&mut sorted);
+        let all: Settled = settled.union(&found).copied().collect();
+        if all.len() == settled.len() {
+            return Ok((sorted, settled));
+        }
+        // A loop without a unique solution may still have one that is used.
+        match sort_with(flat, &all, &mut |_, _, _| {}) {
+            Ok(again) => (sorted, settled) = (again, all),
+            Err(_) => return Ok((sorted, settled)),
+        }
+    }
 }
 
 /// Is shown the name of a pass, the system after it, and the aliases known so far.
@@ -90,8 +111,18 @@ type Show<'a> = dyn FnMut(&str, &Dae, &[Option<Alias>]) + 'a;
 
 /// The same; the passes that change the system show it, with the aliases known so far.
 fn sort_and_show(flat: &FlatModel, show: &mut Show<'_>) -> Result<SortedDae, Diagnostic> {
+    let settled = sort_settled(flat).map(|(_, settled)| settled).unwrap_or_default();
+    sort_with(flat, &settled, show)
+}
+
+fn sort_with(
+    flat: &FlatModel,
+    settled: &Settled,
+    show: &mut Show<'_>,
+) -> Result<SortedDae, Diagnostic> {
     let mut dae = build::build(flat)?;
     zero_inputs(&mut dae, flat);
+    vanishing_coefficients::settle(&mut dae, settled);
     show("build", &dae, &[]);
     let parameters = parameters::order_parameters(&mut dae)?;
     show("order_parameters", &dae, &[]);

@@ -1,5 +1,6 @@
 //! The system of equations: scalar, first order (MLS appendix B). Data only.
 
+use super::build::UNKNOWN_TEXT;
 use super::default_values::DefaultValues;
 use super::events::Events;
 use crate::bytecode::Functions;
@@ -239,6 +240,8 @@ pub enum Shape {
     Array(Vec<usize>),
     /// A record: name and shape of its components.
     Record(Vec<(crate::name::Ident, Shape)>),
+    /// A text, no scalar; `…` stands for what is not known when compiling.
+    Text(Arc<str>),
 }
 
 impl Shape {
@@ -247,6 +250,7 @@ impl Shape {
         match self {
             Shape::Array(dims) => dims.iter().product(),
             Shape::Record(fields) => fields.iter().map(|(_, shape)| shape.len()).sum(),
+            Shape::Text(_) => 0,
         }
     }
 
@@ -263,6 +267,44 @@ impl Shape {
                 let field = |(name, shape): (_, Shape)| (name, shape.repeated(dims));
                 Shape::Record(fields.into_iter().map(field).collect())
             }
+            Shape::Text(text) => Shape::Text(text),
+        }
+    }
+
+    /// Whether it is a text, or a record with one.
+    pub fn holds_text(&self) -> bool {
+        match self {
+            Shape::Array(_) => false,
+            Shape::Record(fields) => fields.iter().any(|(_, shape)| shape.holds_text()),
+            Shape::Text(_) => true,
+        }
+    }
+
+    /// Makes all texts unknown.
+    pub fn forget_texts(&mut self) {
+        match self {
+            Shape::Array(_) => {}
+            Shape::Record(fields) => fields.iter_mut().for_each(|(_, s)| s.forget_texts()),
+            Shape::Text(text) => *text = UNKNOWN_TEXT.into(),
+        }
+    }
+
+    /// The shape of a value that may have either shape: texts that differ are not known. `None` if
+    /// sizes or components differ.
+    pub fn joined(&self, other: &Shape) -> Option<Shape> {
+        match (self, other) {
+            (Shape::Array(a), Shape::Array(b)) => (a == b).then(|| self.clone()),
+            (Shape::Text(a), Shape::Text(b)) if a == b => Some(self.clone()),
+            (Shape::Text(_), Shape::Text(_)) => Some(Shape::Text(UNKNOWN_TEXT.into())),
+            (Shape::Record(a), Shape::Record(b)) if a.len() == b.len() => {
+                let fields = a.iter().zip(b);
+                let joined = |((name, a), (other, b)): (&(_, Shape), &(_, Shape))| {
+                    let shape = a.joined(b)?;
+                    (name == other).then_some((*name, shape))
+                };
+                fields.map(joined).collect::<Option<_>>().map(Shape::Record)
+            }
+            _ => None,
         }
     }
 }

@@ -212,6 +212,9 @@ impl Instantiation<'_> {
         local: &Local,
         out: &mut Vec<Equation>,
     ) -> bool {
+        if matches!(left.kind, ExpressionKind::Tuple(_)) {
+            return false;
+        }
         let of_left = self.value_type_of(left, local);
         let found = match of_left {
             Some(ValueType::Record(..)) => of_left,

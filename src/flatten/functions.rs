@@ -395,7 +395,8 @@ impl Instantiation<'_> {
         Ok(components)
     }
 
-    /// The value of a record whose components are given by modifiers: `R r(a = 1, b = 2)`.
+    /// The value of a record whose components are given by modifiers: `R r(a = 1, b = 2)`. Those
+    /// that are not given have no value yet.
     fn value_of_fields(
         &mut self,
         value_type: &ValueType,
@@ -403,7 +404,7 @@ impl Instantiation<'_> {
         local: &Local,
         span: Span,
     ) -> Result<Option<Expression>, Diagnostic> {
-        let ValueType::Record(record, fields) = value_type else { return Ok(None) };
+        let ValueType::Record(record, _) = value_type else { return Ok(None) };
         let mut named = Vec::new();
         for (name, modifier) in &modifier.elements {
             let Some(bound) = &modifier.binding else { continue };
@@ -413,17 +414,6 @@ impl Instantiation<'_> {
         }
         if named.is_empty() {
             return Ok(None);
-        }
-        let is_given = |name: &Ident| named.iter().any(|argument| argument.name.node == *name);
-        if let Some((name, _)) =
-            fields.iter().find(|(name, field)| !is_given(name) && field.binding.is_none())
-        {
-            return Err(fault!(
-                NOT_SUPPORTED,
-                "modifiers give values to some components of `{record}` and none to `{name}`, \
-                 which is not translated yet in functions"
-            )
-            .at(span));
         }
         let function = ComponentReference::from_name(record, span);
         let arguments = Box::new(Arguments { named, ..Arguments::default() });
@@ -600,10 +590,27 @@ impl Instantiation<'_> {
             .at(span));
         }
         let e = Expression::new(ExpressionKind::Reference(target.clone()), span);
-        match self.resolve(&e, context, local)?.kind {
-            ExpressionKind::Reference(resolved) => Ok(resolved),
-            _ => Err(fault!(TYPE_MISMATCH, "`{}` cannot be assigned to", target.name()).at(span)),
+        match record_or_variable(self.resolve(&e, context, local)?) {
+            Some(resolved) => Ok(resolved),
+            None => {
+                Err(fault!(TYPE_MISMATCH, "`{}` cannot be assigned to", target.name()).at(span))
+            }
         }
+    }
+}
+
+/// The path of a variable, or of a record, whose components a constructor lists.
+fn record_or_variable(e: Expression) -> Option<ComponentReference> {
+    match e.kind {
+        ExpressionKind::Reference(reference) => Some(reference),
+        ExpressionKind::Call { arguments, .. } => {
+            let first = arguments.named.into_iter().next()?;
+            let mut path = record_or_variable(first.value)?;
+            let component = path.parts.pop()?;
+            let is_record = component.name == first.name.node && !path.parts.is_empty();
+            is_record.then_some(path)
+        }
+        _ => None,
     }
 }
 

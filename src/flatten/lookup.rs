@@ -225,7 +225,8 @@ impl Instantiation<'_> {
         let original = Nested {
             text: self.text_of(child),
             parent: scope,
-            modifier: Modifier { redeclaration: None, ..outer.clone() },
+            // A final redeclaration cannot be replaced; components of the class can be modified.
+            modifier: Modifier { redeclaration: None, is_final: false, ..outer.clone() },
             defaults: Modifier::default(),
             outer: prefixes.outer,
             inner: prefixes.inner,

@@ -203,6 +203,11 @@ impl Modifier {
             && elements()
     }
 
+    /// Where it is written, or the first of the modifiers in it.
+    fn place(&self) -> Option<Span> {
+        self.span.or_else(|| self.elements.values().find_map(Modifier::place))
+    }
+
     /// Whether it changes nothing.
     pub(super) fn is_empty(&self) -> bool {
         self.binding.is_none() && self.elements.is_empty() && self.redeclaration.is_none()
@@ -228,7 +233,7 @@ impl Modifier {
         let changes = !outer.is_empty();
         if self.is_final && changes {
             return Err(fault!(FINAL_OVERRIDE, "`{name}` is final and cannot be modified")
-                .at(outer.span.unwrap_or(Span::NONE)));
+                .at(outer.place().or(self.span).unwrap_or(Span::NONE)));
         }
         if outer.binding.is_some() {
             self.binding = outer.binding;

@@ -74,6 +74,13 @@ impl Instantiation<'_> {
             }
             MemberState::Array(dims, nodes) => {
                 let subscripts = self.subscripts(&part.subscripts, context, local)?;
+                let is_constant = nodes.first().is_some_and(|node| self.in_package(*node));
+                if is_constant && subscripts.iter().any(|s| local.is_open(s)) {
+                    // The index is known where the function is carried out: it chooses among all.
+                    let all = self.choose(&dims, &[], part.name, whole.span)?;
+                    let all = self.walk_array(&all, &dims, &nodes, rest, whole, context, local)?;
+                    return Ok(subscripted(all, subscripts, whole.span));
+                }
                 let chosen = self.choose(&dims, &subscripts, part.name, whole.span)?;
                 self.walk_array(&chosen, &dims, &nodes, rest, whole, context, local)
             }

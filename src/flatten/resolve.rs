@@ -15,6 +15,7 @@ use crate::syntax::ast::{
     Arguments, ComponentReference, Expression, ExpressionKind, NamedArgument, ReferencePart,
     Subscript, UnaryOperator,
 };
+use crate::syntax::visit::{Visit, walk_reference};
 use crate::value::Value;
 use std::rc::Rc;
 
@@ -46,11 +47,34 @@ impl Local {
         self.names.iter().rev().find(|(known, _)| *known == name).map(|(_, value)| value)
     }
 
+    /// Whether a subscript needs a local name that has no value yet.
+    pub(super) fn is_open(&self, subscript: &Subscript) -> bool {
+        let mut names = OpenNames { local: self, found: false };
+        if let Subscript::Index(e) = subscript {
+            names.expression(e);
+        }
+        names.found
+    }
+
     /// This with more names that stay as they are.
     pub(super) fn with(&self, names: impl IntoIterator<Item = Ident>) -> Local {
         let mut local = self.clone();
         local.names.extend(names.into_iter().map(|name| (name, None)));
         local
+    }
+}
+
+/// Looks for local names without a value.
+struct OpenNames<'a> {
+    local: &'a Local,
+    found: bool,
+}
+
+impl Visit for OpenNames<'_> {
+    fn reference(&mut self, reference: &ComponentReference) {
+        walk_reference(self, reference);
+        let first = reference.parts.first().and_then(|part| self.local.get(part.name));
+        self.found |= first.is_some_and(Option::is_none);
     }
 }
 

@@ -2,31 +2,30 @@
 //! assert (MLS §8.3.7, §12.4).
 
 use gapilib::script::Session;
-use gapilib::script::world::MemoryWorld;
 
-const PACKAGE: &str = "package Q
-function loops \"cannot become an expression\"
+const PACKAGE: &str = r#"package Q
+function loops "cannot become an expression"
   input Real x;
 protected
   Real y;
 algorithm
   y := x;
   while y > 1 loop y := y - 1; end while;
-  assert(y < 0.9, \"y too large\");
+  assert(y < 0.9, "y too large");
 end loops;
-function counted \"has a value\"
+function counted "has a value"
   input Real x;
   output Real y;
 algorithm
   y := x;
   while y > 1 loop y := y - 1; end while;
-  assert(y < 0.9, \"y too large\");
+  assert(y < 0.9, "y too large");
 end counted;
 function root
   input Real x;
   output Real y;
 algorithm
-  assert(x > 0, \"root of what is not positive\");
+  assert(x > 0, "root of what is not positive");
   y := sqrt(x);
 end root;
 function guarded
@@ -35,6 +34,40 @@ function guarded
 algorithm
   if x > 0 then y := root(x); else y := 0; end if;
 end guarded;
+function check "of texts, with a message that is made"
+  input String name;
+  input String names[:];
+  input Real X[:];
+protected
+  Integer n = size(X, 1);
+  String s;
+algorithm
+  for i in 1:n loop
+    assert(X[i] >= 0.0, "in " + name + ": X[" + String(i) + "] is negative");
+  end for;
+  if n > 0 and abs(sum(X) - 1.0) > 1e-10 then
+    s := "";
+    for i in 1:n loop
+      s := s + " " + String(X[i]) + " " + names[i];
+    end for;
+    Modelica.Utilities.Streams.error("the sum is not 1" + s);
+  end if;
+end check;
+model Texts
+  Real X[2] = {time, 1 - time};
+equation
+  check("m", {"a", "b"}, X);
+end Texts;
+model BadSum
+  Real X[2] = {time, if time < 0.5 then 1 - time else 0.9};
+equation
+  check("m", {"a", "b"}, X);
+end BadSum;
+model Negative
+  Real X[2] = {0.4 - time, 0.6 + time};
+equation
+  check("m", {"a", "b"}, X);
+end Negative;
 model Equation
   Real x = time;
 equation
@@ -61,7 +94,7 @@ end Nested;
 model Start
   Real x(start = 1, fixed = true);
 initial equation
-  assert(x > 0.5, \"too small at the start\");
+  assert(x > 0.5, "too small at the start");
   loops(x / 2);
 equation
   der(x) = -3;
@@ -69,7 +102,7 @@ end Start;
 model BadStart
   Real x(start = 1, fixed = true);
 initial algorithm
-  assert(x > 1.5, \"too small at the start\");
+  assert(x > 1.5, "too small at the start");
 equation
   der(x) = -3;
 end BadStart;
@@ -85,13 +118,13 @@ model When
 equation
   der(x) = -3;
   when initial() then
-    assert(x > 1.5, \"too small at the start\");
+    assert(x > 1.5, "too small at the start");
   end when;
 end When;
-end Q;";
+end Q;"#;
 
 fn simulate(model: &str) -> (u8, String) {
-    let world = MemoryWorld::new().with_file("Q.mo", PACKAGE);
+    let world = crate::shipped::world().with_file("Q.mo", PACKAGE);
     let streams = world.streams();
     let script = format!("openModel(\"Q.mo\");\nsimulateModel(\"Q.{model}\", stopTime = 1);");
     let status = Session::new(Box::new(world)).run_text("s.mos", &script);
@@ -117,6 +150,14 @@ fn what_stands_in_a_branch_is_looked_at_only_there() {
         let (code, errors) = simulate(model);
         assert_eq!(code, 0, "{model}: {errors}");
     }
+}
+
+#[test]
+fn messages_may_be_known_in_part() {
+    let (code, errors) = simulate("Texts");
+    assert_eq!(code, 0, "{errors}");
+    fails("BadSum", "the sum is not 1");
+    fails("Negative", "in m: X[");
 }
 
 #[test]

@@ -106,6 +106,37 @@ const CORPUS: &[(&str, &str)] = &[
          for x in 0.5:0.25:1 + u^2 loop y := y + x; end for; end f;",
     ),
     (
+        "records with texts",
+        "record D String name; Real a; Real b[2]; end D; constant D d[2] = {D(\"one\", 2, {3, 4}), \
+         D(\"two\", 5, {6, 7})}; function scaled input D d; input Real u; output D e; algorithm \
+         e := d; e.a := if d.name == \"one\" then d.a*u else -u; end scaled; \
+         function f {h} protected Integer k = 0; D e = scaled(d[1], u); D g; algorithm \
+         while k < 2 loop k := k + 1; g := if u > 0 then e else d[2]; y := g.a + d[k].b[k]; \
+         end while; e := scaled(d[2], u); y := y + e.a*e.b[1]; end f;",
+    ),
+    (
+        "sizes that assignments give",
+        "record R Real p; Real X[:]; end R; function two input Real u; output Real y[:]; algorithm \
+         if u > 0 then y := {u, 2*u}; else y := {0, u}; end if; end two; \
+         function made input Real u; output R r; algorithm r.p := u; r.X := cat(1, two(u), {3}); \
+         end made; function f {h} protected Real X[:]; Real Z[:]; R r; Integer k = 0; algorithm \
+         while k < n loop k := k + 1; Z := 2*X; X := two(k*u); end while; X := two(u); r := made(u); \
+         y := sum(X) + r.X[3]*r.p + sum(r.X); end f;",
+    ),
+    (
+        "records that are assigned in part",
+        "record R Real a; Real b; Real c = 4; end R; function part input Real u; output R r; \
+         protected Integer k = 0; algorithm r.a := u^2; while k < 2 loop k := k + 1; \
+         if u < -9 then r.b := 1; end if; end while; end part; \
+         function f {h} protected R r; algorithm r := part(u); y := r.a*r.c + n; end f;",
+    ),
+    (
+        "a subscript outside an array that is never reached",
+        "function third input Real v[:]; output Real y; protected Integer k = 0; algorithm y := 0; \
+         while k < 1 loop k := k + 1; if v[1] > 99 then y := v[3]; end if; end while; end third; \
+         function f {h} algorithm y := u + third({u, n}); end f;",
+    ),
+    (
         "values that swap places",
         "function f {h} protected Real v[3] = {1, u, n}; Integer k = 0; algorithm \
          while k < n loop v := {v[3], v[1] + u, v[2]}; (v[1], v[2]) := swap(v[1], v[2]); \
@@ -249,6 +280,18 @@ fn failures_inside_functions_say_why() {
         (
             "function f {h} algorithm if u > 5 then y := 1; return; end if; \
              while u > 5 loop y := 2; end while; end f;",
+            "domain-error: a variable has no value in the function `P.f` (at t = 0)",
+        ),
+        (
+            "function f {h} protected Real v[2] = {u, n}; Integer k = 0; algorithm \
+             while k < 2 loop k := k + 1; y := v[3]; end while; end f;",
+            "domain-error: a subscript lies outside its array in the function `P.f` (at t = 0)",
+        ),
+        (
+            "record R Real a; Real b; end R; function part input Real u; output R r; \
+             protected Integer k = 0; algorithm while k < 2 loop k := k + 1; r.a := u; end while; \
+             end part; function f {h} protected R r; algorithm r := part(u); y := max(r.a, r.b); \
+             end f;",
             "domain-error: a variable has no value in the function `P.f` (at t = 0)",
         ),
         (
@@ -415,4 +458,43 @@ fn a_table_is_an_object_that_parameters_make_anew() {
             assert!((value[0] - expected).abs() < 1e-14 && (slope[0] - exact).abs() < 1e-13);
         }
     }
+}
+
+#[test]
+fn sizes_in_records_are_whole_numbers_of_the_record() {
+    // Σ i u, i = 1 … 3, and twice 2 u.
+    let functions = "record S parameter Integer m = 2; Real x[m]; end S; \
+        function made input Real u; input Integer m; output S s(m = m); algorithm \
+        for i in 1:m loop s.x[i] := i*u; end for; end made; \
+        function f {h} protected S s(m = 3) = made(u, 3); S r; Integer k = 0; algorithm \
+        while k < 1 loop k := k + 1; r.x := {u, u}; end while; \
+        y := sum(s.x) + sum(r.x)*r.m; end f;";
+    let program = compiled(&library(functions)).expect("it compiles");
+    let (value, slope) = of_model(&mut program.system(), 0.5, 0).expect("a value");
+    assert_eq!((value, slope), (5.0, 10.0));
+}
+
+#[test]
+fn components_without_value_are_faults_of_who_reads_them() {
+    // At the top level, of a call whose function is too long to be carried out on expressions.
+    let text = |read: &str| {
+        format!(
+            "package P record R Real a; Real b; end R; function part input Real u; output R r; \
+             protected Integer k = 0; algorithm while k < u loop k := k + 1; r.a := k; end while; \
+             end part; function chosen input R r; output Real y = r.{read}; algorithm end chosen; \
+             model Main Real y = chosen(part(time + 2)); end Main; end P;"
+        )
+    };
+    let run = |text: &str| {
+        let file = parse_stored_definition(SourceId::NONE, text).expect("Modelica");
+        let mut library = Library::new();
+        library.load(&file).expect("a loadable file");
+        let program = compiled(&library).expect("it compiles");
+        let settings = Settings { stop: 0.5, ..Settings::default() };
+        let result = simulate(&mut program.system(), &settings);
+        result.map(|_| ()).map_err(|error| program.explain(&error).message.clone())
+    };
+    assert_eq!(run(&text("a")), Ok(()));
+    let expected = "a variable has no value in the function `P.part` (at t = 0)";
+    assert_eq!(run(&text("b")).unwrap_err(), expected);
 }

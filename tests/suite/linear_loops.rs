@@ -113,3 +113,29 @@ fn what_cannot_be_set_becomes_a_number() {
     assert_eq!(kind("e[2]"), gapilib::dae::Kind::Constant(1.0));
     assert_eq!(kind("r[3]"), gapilib::dae::Kind::Parameter { tunable: true });
 }
+
+#[test]
+fn a_resistance_of_zero_is_a_connection() {
+    // The voltage of the capacitor is that of the source.
+    let text = "model Wire parameter Real R = 0; final parameter Real r = 2*R; Real i; Real v;
+        equation r*i = sin(time) - v; 3*der(v) = i; end Wire;";
+    let run = Run::of(text, 1.0);
+    run.follows("v", 1e-9, f64::sin);
+    run.follows("i", 1e-9, |t| 3.0 * t.cos());
+    // Two of them, and a source that knows the current.
+    let text = "model Wires parameter Real R = 0; Real i[2]; Real v; Real u;
+        equation R*i[1] = u - v; R*i[2] = v - sin(time); i[1] + 1 = i[2]; der(u) = i[1]; end Wires;";
+    let run = Run::of(text, 1.0);
+    run.follows("u", 1e-9, f64::sin);
+    run.follows("i[2]", 1e-9, |t| t.cos() + 1.0);
+}
+
+#[test]
+fn a_capacitance_of_zero_holds_no_voltage() {
+    let text = "model Open parameter Real C = 0; Real c; Real i; Real v; Real u;
+        equation c = if v > 0 then C*exp(v) else C*(1 + v)^2; i = c*der(v); u - v = 2*i;
+          u = 1 + time; end Open;";
+    let run = Run::of(text, 1.0);
+    run.follows("v", 1e-9, |t| 1.0 + t);
+    run.follows("i", 1e-9, |_| 0.0);
+}

@@ -61,6 +61,7 @@ impl Emitter {
             externals: self.externals,
             impure: false,
             writes: false,
+            may_lack: false,
             derivative: None,
         }
     }

@@ -33,10 +33,11 @@ pub(super) fn refusal(function: &Function) -> Option<String> {
     }
 }
 
-/// Whether a function does nothing but to fail with a message, which may be unknown in parts.
-pub(super) fn is_message(function: &Function) -> bool {
+/// Whether a function is external and needs its texts: all but one that fails with a message, which
+/// may be unknown in parts.
+pub(super) fn reads_texts(function: &Function) -> bool {
     match &function.body {
-        FunctionBody::External(clause) => external_name(function, clause) == "ModelicaError",
+        FunctionBody::External(clause) => external_name(function, clause) != "ModelicaError",
         _ => false,
     }
 }

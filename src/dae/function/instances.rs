@@ -177,9 +177,9 @@ impl Instances {
         code.impure = function.impure || self.has_effects(&code);
         if code.n_outputs == 0 {
             // Something stands for the call where its statement is carried out.
-            code.n_outputs = 1;
+            (code.outputs, code.n_outputs) = (code.frame, 1);
             code.constants.push((code.outputs, 0.0));
-            code.frame = code.frame.max(code.outputs + 1);
+            code.frame += 1;
         }
         if code.impure {
             instance.folds = false;
@@ -209,7 +209,7 @@ impl Instances {
         }
         let mut machine = Machine::default();
         let results = machine.call(&self.functions, instance.code, arguments.iter().copied());
-        results.ok().map(<[f64]>::to_vec)
+        results.ok().filter(|results| !results.iter().any(|x| x.is_nan())).map(<[f64]>::to_vec)
     }
 
     /// Whether a function writes, itself or by what it calls.
@@ -267,8 +267,9 @@ fn signature(
             ValueType::Integer | ValueType::Boolean | ValueType::Enumeration(_)
         );
         list.push(match argument {
+            // Algorithms refuse to decide by it themselves.
             Lowered::Text(text)
-                if text.contains(UNKNOWN_TEXT) && !super::external::is_message(function) =>
+                if text.contains(UNKNOWN_TEXT) && super::external::reads_texts(function) =>
             {
                 return Err(fault!(
                     NOT_SUPPORTED,
@@ -295,7 +296,7 @@ fn signature(
                 None => {
                     return Err(fault!(
                         NOT_SUPPORTED,
-                        "the record `{}` of `{}` holds texts",
+                        "the record `{}` of `{}` holds texts that change",
                         input.name,
                         function.name
                     )

@@ -6,6 +6,7 @@
 //! depends on the value of an Integer input, it is compiled for that value, which must be known.
 //! Loops stay loops; only a loop whose body needs sizes that change from turn to turn is unrolled.
 
+mod assigned_shape;
 mod derivative;
 mod emitter;
 mod external;
@@ -20,7 +21,7 @@ pub(super) use instances::Instances;
 pub(super) use printing::prints;
 
 use super::build::Builder;
-use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
+use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use super::inline::{MAX_INLINED, MAX_STATEMENTS, inline};
 use super::lowering::{Lowered, field};
 use crate::diag::Diagnostic;
@@ -50,7 +51,7 @@ pub(super) fn call(
     }
     let asserted = builder.dae.assertions.len();
     let error = match inline(builder, function, arguments.clone(), span) {
-        Err(e) if e.code == NOT_SUPPORTED || e.code == NO_CONSTANT_VALUE => e,
+        Err(e) if [NOT_SUPPORTED, NO_CONSTANT_VALUE, ARRAY_MISMATCH].contains(&e.code) => e,
         result => return result,
     };
     let too_big = builder.inlined == 0;
@@ -65,6 +66,8 @@ pub(super) fn call(
         result = compiled_call(builder, function, arguments.clone(), span);
     }
     match result {
+        // What does not fit may stand in a branch that is never taken.
+        Err(_) if error.code == ARRAY_MISMATCH => Err(error),
         Err(_) if too_big => {
             builder.inlined = MAX_STATEMENTS;
             inline(builder, function, arguments, span)

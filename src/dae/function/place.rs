@@ -4,8 +4,8 @@ use super::emitter::Operand;
 use super::instances::Argument;
 use super::statements::{Body, Loops, elements};
 use crate::bytecode::{Instruction, Register};
+use crate::dae::component_shape::{Declared, declared};
 use crate::dae::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
-use crate::dae::inline::component_shape;
 use crate::dae::lowering::{Array, Choice, Lowered, Lowering, size_fault};
 use crate::dae::model::Shape;
 use crate::diag::Diagnostic;
@@ -44,7 +44,7 @@ impl Body<'_, '_> {
             let mut later = Vec::new();
             for (output, component) in waiting {
                 let checkpoint = self.emitter.checkpoint();
-                match self.component(component, &assigned) {
+                match self.component(component, statements, &assigned) {
                     Ok((shape, value)) => {
                         if let Some(at) = output {
                             shapes[at] = Some(shape);
@@ -69,47 +69,35 @@ impl Body<'_, '_> {
         Ok(shapes.into_iter().flatten().collect())
     }
 
-    /// An output or local variable: its shape, and its registers or number.
+    /// An output or local variable: its shape, and its registers or numbers.
     fn component(
         &mut self,
         component: &FunctionComponent,
+        statements: &[Statement],
         assigned: &FxHashSet<Ident>,
     ) -> Result<(Shape, Lowered<Operand>), Diagnostic> {
         self.emitter.place(component.span);
         self.emitter.open();
-        let bound = match &component.binding {
-            Some(binding) => Some((self.lowering(&Vec::new()).lower(binding)?, binding.span)),
-            None => None,
-        };
-        let is_open = component.dims.iter().any(|dim| matches!(dim, Subscript::All(_)));
-        let shape = match bound.as_ref().and_then(|(bound, _)| bound.shape()) {
-            Some(shape) if is_open => shape,
-            _ => component_shape(&mut self.lowering(&Vec::new()), component)?,
-        };
-        if let Some((bound, span)) = &bound
-            && bound.shape().as_ref() != Some(&shape)
-        {
-            return Err(fault!(
-                ARRAY_MISMATCH,
-                "the value of `{}` has another size",
-                component.name
-            )
-            .at(*span));
+        let mut assigned_shape = |body: &mut Self, path: &[Ident]| body.assigned(path, statements);
+        let lowering = &mut self.lowering(&Vec::new());
+        let Declared { mut shape, scalars } = declared(lowering, component, &mut assigned_shape)?;
+        let is_known = |scalar: &Option<Operand>| matches!(scalar, Some(Operand::Constant(_)));
+        let is_assigned = assigned.contains(&component.name);
+        if component.binding.is_some() && !is_assigned && scalars.iter().all(is_known) {
+            self.emitter.close();
+            let value = Lowered::from_scalars(&shape, &mut scalars.into_iter().flatten());
+            return Ok((shape, value));
         }
-        let mut scalars = Vec::new();
-        if let Some((bound, _)) = bound {
-            bound.append_scalars(&mut scalars);
-            let is_known = scalars.iter().all(|s| matches!(s, Operand::Constant(_)));
-            if is_known && !assigned.contains(&component.name) {
-                self.emitter.close();
-                return Ok((shape, bound));
-            }
+        if is_assigned {
+            shape.forget_texts();
         }
         let n = shape.len() as u32;
         let first = self.emitter.permanent(n);
-        match scalars.is_empty() {
-            true => self.emitter.emit(Instruction::Unassign { d: first, n }),
-            false => self.emitter.copy(first, &scalars),
+        if scalars.contains(&None) {
+            self.emitter.emit(Instruction::Unassign { d: first, n });
+        }
+        for (run, at) in runs(&scalars) {
+            self.emitter.copy(first + at, &run);
         }
         self.emitter.close();
         let value = Lowered::from_scalars(&shape, &mut (first..).map(Operand::Register));
@@ -161,7 +149,7 @@ impl Body<'_, '_> {
         }
         let mut scalars = Vec::new();
         value.append_scalars(&mut scalars);
-        if place.shape().is_none() || place.shape() != value.shape() {
+        if !place.fits(&value) {
             return Err(fault!(
                 ARRAY_MISMATCH,
                 "the value of `{}` has another size",
@@ -327,6 +315,21 @@ pub(super) struct Chosen {
     pub(super) offset: Option<Register>,
     /// Sizes of what is chosen.
     pub(super) dims: Vec<usize>,
+}
+
+/// Scalars that have a value, in unbroken runs with their positions.
+fn runs(scalars: &[Option<Operand>]) -> Vec<(Vec<Operand>, Register)> {
+    let mut runs: Vec<(Vec<Operand>, Register)> = Vec::new();
+    let mut follows = false;
+    for (at, scalar) in (0..).zip(scalars) {
+        match (scalar, runs.last_mut()) {
+            (Some(scalar), Some((run, _))) if follows => run.push(*scalar),
+            (Some(scalar), _) => runs.push((vec![*scalar], at)),
+            (None, _) => {}
+        }
+        follows = scalar.is_some();
+    }
+    runs
 }
 
 /// The variables that statements assign to.

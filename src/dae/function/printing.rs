@@ -5,11 +5,13 @@ use super::external::external_name;
 use super::statements::{Body, Loops};
 use crate::bytecode::{ExternalCall, Instruction};
 use crate::dae::build::{UNKNOWN_TEXT, message_text};
+use crate::dae::errors::NOT_SUPPORTED;
 use crate::dae::lowering::Lowered;
 use crate::dae::message::nth;
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::{Function, FunctionBody};
 use crate::external::{Call, Entry, Kind, Slot};
+use crate::fault;
 use crate::source::Span;
 use crate::syntax::ast;
 use crate::value::Value;
@@ -67,6 +69,13 @@ impl Body<'_, '_> {
         self.emitter.place(span);
         self.emitter.open();
         let file = message_text(&mut self.lowering(loops), nth(arguments, 1, "fileName"));
+        if file.contains(UNKNOWN_TEXT) {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "the name of the file must be known when the model is compiled"
+            )
+            .at(span));
+        }
         let mut parts = vec![self.slot(Lowered::Text(file.into()), None, span)?];
         if let Some(text) = nth(arguments, 0, "string") {
             self.parts_of_text(text, loops, &mut parts)?;

@@ -70,18 +70,29 @@ impl<'a, 'f> Body<'a, 'f> {
         for jump in std::mem::take(&mut self.returns) {
             self.emitter.land(jump);
         }
-        // Outputs without value are a fault of the whole.
         self.emitter.place(self.function.span);
         let mut outputs = Vec::new();
+        let mut plain = Vec::new();
         for output in &self.function.outputs {
             if let Some(value) = self.local(&[output.name]) {
+                let before = outputs.len() as Register;
                 value.append_scalars(&mut outputs);
+                if !matches!(value, Lowered::Record(_)) {
+                    plain.push((before, outputs.len() as Register - before));
+                }
             }
         }
         let first = self.emitter.row(&outputs);
-        self.emitter.emit(Instruction::Check { a: first, n: outputs.len() as u32 });
+        // Outputs without value are a fault of the whole; a component of a record may have none as
+        // long as nobody reads it.
+        for &(at, n) in &plain {
+            self.emitter.emit(Instruction::Check { a: first + at, n });
+        }
         let name = self.function.name.to_string().into();
-        Ok(self.emitter.finish(name, self.n_inputs, first, outputs.len() as u32))
+        let n: Register = plain.iter().map(|(_, n)| n).sum();
+        let mut code = self.emitter.finish(name, self.n_inputs, first, outputs.len() as u32);
+        code.may_lack = n < code.n_outputs;
+        Ok(code)
     }
 
     /// An input: a number, or registers that the caller fills.

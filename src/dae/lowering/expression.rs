@@ -183,12 +183,11 @@ impl<T: Target> Lowering<'_, T> {
             let numbers = [self.number_of_text(first, span)?, self.number_of_text(second, span)?];
             return Ok(self.choice_of_texts(condition, numbers));
         }
-        let shape = match (first.shape(), second.shape()) {
-            (Some(a), Some(b)) if a == b => a,
-            (Some(_), Some(_)) => {
-                return Err(fault!(ARRAY_MISMATCH, "the branches differ in size").at(span));
-            }
-            _ => return Err(fault!(NOT_SUPPORTED, "texts that depend on conditions").at(span)),
+        let (Some(a), Some(b)) = (first.shape(), second.shape()) else {
+            return Err(fault!(NOT_SUPPORTED, "texts that depend on conditions").at(span));
+        };
+        let Some(shape) = a.joined(&b) else {
+            return Err(fault!(ARRAY_MISMATCH, "the branches differ in size").at(span));
         };
         scalars.clear();
         second.append_scalars(&mut scalars);

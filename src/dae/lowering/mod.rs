@@ -253,8 +253,14 @@ impl<S: Copy> Lowered<S> {
                 let shape = |(name, field): &(Ident, Lowered<S>)| Some((*name, field.shape()?));
                 Some(Shape::Record(fields.iter().map(shape).collect::<Option<_>>()?))
             }
-            Lowered::Text(_) | Lowered::Numbered(_) => None,
+            Lowered::Text(text) => Some(Shape::Text(text.clone())),
+            Lowered::Numbered(_) => None,
         }
+    }
+
+    /// Whether sizes and components are those of another value.
+    pub(crate) fn fits(&self, other: &Lowered<S>) -> bool {
+        matches!((self.shape(), other.shape()), (Some(a), Some(b)) if a.joined(&b).is_some())
     }
 
     /// The same with every scalar replaced.
@@ -292,6 +298,7 @@ impl<S: Copy> Lowered<S> {
             Shape::Record(fields) => Lowered::Record(
                 fields.iter().map(|(n, s)| (*n, Lowered::from_scalars(s, scalars))).collect(),
             ),
+            Shape::Text(text) => Lowered::Text(text.clone()),
         }
     }
 }

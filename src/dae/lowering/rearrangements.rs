@@ -3,6 +3,7 @@
 
 use super::arrays::concatenate;
 use super::expression::field;
+use super::records::{arrays, common_text};
 use super::{Array, Lowered, Lowering, Target};
 use crate::dae::errors::ARRAY_MISMATCH;
 use crate::diag::Diagnostic;
@@ -59,7 +60,10 @@ impl<T: Target> Lowering<'_, T> {
             }
             return Ok(Lowered::Record(fields));
         }
-        let arrays = super::records::arrays(values.to_vec(), span)?;
+        if let Some(text) = common_text(values) {
+            return Ok(Lowered::Text(text));
+        }
+        let arrays = arrays(values.to_vec(), span)?;
         rearrange(self, arrays).map(Lowered::Array)
     }
 

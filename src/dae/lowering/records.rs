@@ -4,10 +4,12 @@
 use super::expression::{field, stack};
 use super::{Array, Lowered, Lowering, Target};
 use crate::dae::errors::ARRAY_MISMATCH;
+use crate::dae::model::Shape;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::source::Span;
 use crate::syntax::ast::{ComponentReference, Subscript};
+use std::sync::Arc;
 
 impl<T: Target> Lowering<'_, T> {
     /// What subscripts choose of an array, or of an array of records.
@@ -22,6 +24,8 @@ impl<T: Target> Lowering<'_, T> {
         }
         match value {
             Lowered::Array(array) => self.subscripted(array, subscripts, span).map(Lowered::Array),
+            // All elements have the same text, or it is not known.
+            Lowered::Text(text) => Ok(Lowered::Text(text)),
             Lowered::Record(fields) => {
                 let mut chosen = Vec::with_capacity(fields.len());
                 for (name, value) in fields {
@@ -29,9 +33,7 @@ impl<T: Target> Lowering<'_, T> {
                 }
                 Ok(Lowered::Record(chosen))
             }
-            Lowered::Text(_) | Lowered::Numbered(_) => {
-                Err(fault!(ARRAY_MISMATCH, "subscripts of a text").at(span))
-            }
+            Lowered::Numbered(_) => Err(fault!(ARRAY_MISMATCH, "subscripts of a text").at(span)),
         }
     }
 
@@ -61,6 +63,9 @@ pub(super) fn stacked<S: Copy>(
     values: Vec<Lowered<S>>,
     span: Span,
 ) -> Result<Lowered<S>, Diagnostic> {
+    if let Some(text) = common_text(&values) {
+        return Ok(Lowered::Text(text));
+    }
     let Some(Lowered::Record(first)) = values.first() else {
         return stack(arrays(values, span)?, span).map(Lowered::Array);
     };
@@ -72,6 +77,18 @@ pub(super) fn stacked<S: Copy>(
         fields.push((name, stacked(column, span)?));
     }
     Ok(Lowered::Record(fields))
+}
+
+/// The text of all elements, not known where theirs differ; `None` for numbers.
+pub(super) fn common_text<S: Copy>(column: &[Lowered<S>]) -> Option<Arc<str>> {
+    let mut common = column.first()?.shape()?;
+    for value in column {
+        common = common.joined(&value.shape()?)?;
+    }
+    match common {
+        Shape::Text(text) => Some(text),
+        _ => None,
+    }
 }
 
 /// Values that are arrays of numbers.

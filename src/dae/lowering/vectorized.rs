@@ -1,7 +1,7 @@
 //! Functions applied to arrays element by element (MLS §12.4.6).
 
 use super::expression::field;
-use super::records::arrays;
+use super::records::{arrays, common_text};
 use super::{Array, Lowered, Lowering, Target, size_fault};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionComponent, ValueType};
@@ -56,6 +56,9 @@ fn gathered<S: Copy>(
             Ok((*name, gathered(sizes, &ones, span)?))
         });
         return whole.collect::<Result<_, _>>().map(Lowered::Record);
+    }
+    if let Some(text) = common_text(ones) {
+        return Ok(Lowered::Text(text));
     }
     let ones = arrays(ones.to_vec(), span)?;
     let inner = ones.first().map_or(&[][..], |one| &one.dims);
