@@ -390,12 +390,13 @@ Examples:
 
 What the command line does not say comes from the model's experiment annotation.")]
 pub(super) struct SimulateArgs {
-    /// Modelica files, or folders with packages; what is found by name need not be given
-    #[arg(value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    /// Modelica files, or folders with packages, and the class: what is found by name need not be
+    /// given
+    #[arg(required_unless_present = "model", value_name = "FILE|CLASS", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
     /// The class to simulate; it may carry a modification: 'M(p = 2)'
     #[arg(long, value_name = "CLASS")]
-    pub model: String,
+    pub model: Option<String>,
     /// Start of the simulation in seconds
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub start_time: Option<f64>,
@@ -456,10 +457,10 @@ fn pass_names() -> clap::builder::PossibleValuesParser {
 Examples:
   gapi check models/CaseStudies
   gapi check models --model CaseStudies.PolarizationCurve
-  gapi check --library ~/libraries --model Modelica.Blocks.Examples.PID_Controller")]
+  gapi check --library ~/libraries Modelica.Blocks.Examples.PID_Controller")]
 pub(super) struct CheckArgs {
-    /// Modelica files, or folders with packages
-    #[arg(required_unless_present = "model", value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    /// Modelica files, or folders with packages; or the class
+    #[arg(required_unless_present = "model", value_name = "FILE|CLASS", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
     /// The class to check as a model
     #[arg(long, value_name = "CLASS")]
@@ -472,12 +473,13 @@ pub(super) struct CheckArgs {
 Example:
   gapi flatten models --model CaseStudies.PolarizationCurve")]
 pub(super) struct FlattenArgs {
-    /// Modelica files, or folders with packages; what is found by name need not be given
-    #[arg(value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    /// Modelica files, or folders with packages, and the class: what is found by name need not be
+    /// given
+    #[arg(required_unless_present = "model", value_name = "FILE|CLASS", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
     /// The class to flatten
     #[arg(long, value_name = "CLASS")]
-    pub model: String,
+    pub model: Option<String>,
 }
 
 /// Arguments of `gapi report`.

@@ -9,11 +9,12 @@ use std::process::ExitCode;
 
 /// Checks all models of the files, or one down to its sorted equations.
 pub(super) fn check(arguments: &CheckArgs, global: &Global) -> ExitCode {
-    let (mut session, loaded) = match session::with_files(global, &arguments.files) {
+    let (class, files) = session::class_and_files(arguments.model.as_ref(), &arguments.files);
+    let (mut session, loaded) = match session::with_files(global, &files) {
         Ok(session) => session,
         Err(code) => return code,
     };
-    match &arguments.model {
+    match &class {
         Some(model) => check_one(&mut session, model),
         None => check_all(&mut session, &loaded),
     }
@@ -69,11 +70,12 @@ fn check_all(session: &mut Session, loaded: &[Name]) -> ExitCode {
 
 /// Prints a model as flat Modelica.
 pub(super) fn flatten(arguments: &FlattenArgs, global: &Global) -> ExitCode {
-    let mut session = match session::with_files(global, &arguments.files) {
-        Ok((session, _)) => session,
+    let opened = session::with_class(global, arguments.model.as_ref(), &arguments.files);
+    let (mut session, class) = match opened {
+        Ok(opened) => opened,
         Err(code) => return code,
     };
-    match checking::flat_model(&mut session, &arguments.model) {
+    match checking::flat_model(&mut session, &class) {
         Ok(flat) => {
             session.print(&flat.to_string());
             ExitCode::SUCCESS

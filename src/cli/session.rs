@@ -49,6 +49,47 @@ pub(super) fn with_files(
     if errors.is_empty() { Ok((session, names)) } else { Err(failed(&mut session, errors)) }
 }
 
+/// The class that is meant and the files: the class is what `--model` names, or else the argument
+/// that is no file and reads as the name of a class.
+pub(super) fn class_and_files(
+    model: Option<&String>,
+    files: &[PathBuf],
+) -> (Option<String>, Vec<PathBuf>) {
+    let mut files = files.to_vec();
+    let named = match model {
+        Some(_) => None,
+        None => files.iter().position(|file| !file.exists() && is_class(&file.to_string_lossy())),
+    };
+    let named = named.map(|at| files.remove(at).to_string_lossy().into_owned());
+    (model.cloned().or(named), files)
+}
+
+/// A session in which these files are loaded, and the class that is meant.
+pub(super) fn with_class(
+    global: &Global,
+    model: Option<&String>,
+    files: &[PathBuf],
+) -> Result<(Session, String), ExitCode> {
+    let (class, files) = class_and_files(model, files);
+    let session = with_files(global, &files)?.0;
+    let class = class.ok_or_else(|| {
+        terminal::eprint("error: which class?\n = help: write its name, or `--model CLASS`\n");
+        ExitCode::from(2)
+    })?;
+    Ok((session, class))
+}
+
+/// Whether a text reads as `Package.Class` or `Class(modification)`, not as the name of a file.
+fn is_class(text: &str) -> bool {
+    let name = text.split('(').next().unwrap_or_default();
+    let is_identifier = |part: &str| {
+        part.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+            && part.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+    };
+    let ending = name.rsplit('.').next().unwrap_or_default();
+    name.split('.').all(is_identifier) && !["mo", "mos"].contains(&ending)
+}
+
 /// Shows what is wrong.
 pub(super) fn failed(session: &mut Session, errors: Vec<Diagnostic>) -> ExitCode {
     errors.into_iter().for_each(|error| session.report(error));

@@ -32,11 +32,12 @@ const REDRAWN: Duration = Duration::from_millis(100);
 
 /// Simulates and writes the trajectories, or shows the last values.
 pub(super) fn simulate(arguments: &SimulateArgs, global: &Global) -> ExitCode {
-    let mut session = match session::with_files(global, &arguments.files) {
-        Ok((session, _)) => session,
+    let opened = session::with_class(global, arguments.model.as_ref(), &arguments.files);
+    let (mut session, class) = match opened {
+        Ok(opened) => opened,
         Err(code) => return code,
     };
-    match run(&mut session, arguments, global) {
+    match run(&mut session, &class, arguments, global) {
         Ok(()) => ExitCode::SUCCESS,
         Err(errors) => session::failed(&mut session, errors),
     }
@@ -44,6 +45,7 @@ pub(super) fn simulate(arguments: &SimulateArgs, global: &Global) -> ExitCode {
 
 fn run(
     session: &mut Session,
+    class: &str,
     arguments: &SimulateArgs,
     global: &Global,
 ) -> Result<(), Vec<Diagnostic>> {
@@ -53,12 +55,12 @@ fn run(
         None => None,
     };
     if let Some(pass) = &arguments.dump {
-        let text = simulation::dump(session, &arguments.model, pass)?;
+        let text = simulation::dump(session, class, pass)?;
         session.print(&text);
         return Ok(());
     }
     let filter = arguments.variable_filter.as_deref().map(filter).transpose().map_err(one)?;
-    let model = simulation::translate(session, &arguments.model)?;
+    let model = simulation::translate(session, class)?;
     let mut wishes = wishes(arguments);
     if let Some(path) = &arguments.from {
         let begin = begin_with(session, &model, path, wishes.start).map_err(one)?;
@@ -75,12 +77,12 @@ fn run(
     if let Some(filter) = filter {
         simulated.table = simulated.table.only(|name| filter.is_match(name));
     }
-    session.print(&summary(&arguments.model, &simulated));
+    session.print(&summary(class, &simulated));
     if arguments.stats {
         session.print(&statistics(&simulated.statistics));
     }
     if !arguments.plot.is_empty() {
-        draw(session, arguments, &simulated.table).map_err(one)?;
+        draw(session, class, arguments, &simulated.table).map_err(one)?;
     }
     match (&arguments.output, format) {
         (Some(path), Some(format)) => {
@@ -194,10 +196,14 @@ fn statistics(s: &Statistics) -> String {
 }
 
 /// Draws variables over time, one panel each.
-fn draw(session: &mut Session, arguments: &SimulateArgs, table: &ResultTable) -> Result<(), Fault> {
+fn draw(
+    session: &mut Session,
+    class: &str,
+    arguments: &SimulateArgs,
+    table: &ResultTable,
+) -> Result<(), Fault> {
     let panels = arguments.plot.iter().map(|name| panel(table, name));
-    let figure =
-        Figure { title: arguments.model.clone(), panels: panels.collect::<Result<_, _>>()? };
+    let figure = Figure { title: class.to_owned(), panels: panels.collect::<Result<_, _>>()? };
     match &arguments.figure {
         Some(path) => {
             session.write_file(path, figure.svg().as_bytes())?;

@@ -189,6 +189,23 @@ fn check_flatten_explain_completions() {
     assert_eq!(gapi(&here, &["check", "missing.mo"]).0, 1);
 }
 
+/// An argument that is no file and reads as a class is the class.
+#[test]
+fn classes_are_named_without_an_option() {
+    let here = folder(&[("Decay.mo", DECAY)]);
+    let (code, out, err) = gapi(&here, &["check", "Decay.mo", "Decay"]);
+    assert!(code == 0 && out.contains("states 1"), "{out}{err}");
+    let (code, out, err) = gapi(&here, &["simulate", "Decay.mo", "Decay"]);
+    assert!(code == 0 && out.starts_with("Decay: "), "{out}{err}");
+    assert_eq!(gapi(&here, &["flatten", "Decay.mo", "Decay(x(start = 2))"]).0, 0);
+    let (code, _, err) = gapi(&here, &["simulate", "Decay.mo"]);
+    assert!(code == 2 && err.contains("which class?"), "{err}");
+    let (code, _, err) = gapi(&here, &["simulate", "missing.mo"]);
+    assert!(code == 1 && err.contains("there is no file `missing.mo`"), "{err}");
+    let (code, _, err) = gapi(&here, &["check", "Decai"]);
+    assert!(code == 1 && err.contains("no class named `Decai`"), "{err}");
+}
+
 /// A component with open connectors is no system by itself; its local balance is told (MLS §4.8).
 #[test]
 fn a_lone_component_is_balanced() {
