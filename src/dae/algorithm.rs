@@ -10,6 +10,7 @@ use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNBALANCED_MODEL, UNRESOLVED_
 use super::events::Termination;
 use super::lowering::{Lowered, Lowering, Target};
 use super::model::{Equation, Kind};
+use super::statement_function::may_be_a_function;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::BaseType;
@@ -30,7 +31,7 @@ pub(super) struct Execution {
     /// Conditions of the branches around the statement.
     guards: Vec<Expr>,
     /// What when-statements assign.
-    in_when: FxHashSet<VarId>,
+    pub(super) in_when: FxHashSet<VarId>,
 }
 
 /// How a sequence of statements ended: whether a loop was left, as a condition.
@@ -156,8 +157,13 @@ impl Builder<'_> {
         let asserted = self.dae.assertions.len();
         match &s.kind {
             StatementKind::Assign { target, value } => {
-                let value = self.statement_lowering(loops).lower(value)?;
-                self.assign(target, value, loops)?;
+                match self.assignment(target, value, loops) {
+                    Err(error) if may_be_a_function(&error) => {
+                        self.dae.assertions.truncate(asserted);
+                        self.call_of_statement(s, loops).map_err(|_| error)?;
+                    }
+                    done => done?,
+                }
                 self.guard_new_assertions(asserted);
             }
             StatementKind::MultiAssign { targets, value } => {
@@ -168,19 +174,8 @@ impl Builder<'_> {
                 let branches: Vec<Branch> = branches.iter().map(|(c, b)| (c, &b[..])).collect();
                 return self.if_statement(&branches, otherwise, loops);
             }
-            StatementKind::For { indices, body } => {
-                return self.for_statement(indices, body, loops);
-            }
-            StatementKind::While { condition, body } => {
-                let mut broken = self.not_broken();
-                while self.statement_lowering(loops).known(condition)? != 0.0 {
-                    self.count_statement(s.span)?;
-                    broken = self
-                        .unless(broken, loops, |builder, loops| builder.statements(body, loops))?;
-                    if self.dae.pool.as_constant(broken) == Some(1.0) {
-                        break;
-                    }
-                }
+            StatementKind::For { .. } | StatementKind::While { .. } => {
+                return self.loop_statement(s, loops);
             }
             StatementKind::When { branches } => {
                 let branches: Vec<Branch> = branches.iter().map(|(c, b)| (c, &b[..])).collect();
@@ -197,6 +192,62 @@ impl Builder<'_> {
             }
         }
         Ok(self.not_broken())
+    }
+
+    /// A loop is unrolled, or else a function.
+    fn loop_statement(&mut self, s: &Statement, loops: &mut Loops) -> Result<Broken, Diagnostic> {
+        // What stands in an unrolled loop leaves it to the whole to be a function.
+        let before = loops.is_empty().then(|| self.execution.values.clone());
+        let (asserted, guards) = (self.dae.assertions.len(), self.execution.guards.len());
+        let outer = loops.len();
+        let done = match &s.kind {
+            StatementKind::For { indices, body } => self.for_statement(indices, body, loops),
+            StatementKind::While { condition, body } => {
+                self.while_statement(condition, body, s.span, loops)
+            }
+            _ => return Ok(self.not_broken()),
+        };
+        match (done, before) {
+            (Err(error), Some(before)) if may_be_a_function(&error) => {
+                loops.truncate(outer);
+                self.dae.assertions.truncate(asserted);
+                self.execution.values = before;
+                self.execution.guards.truncate(guards);
+                self.call_of_statement(s, loops).map_err(|_| error)?;
+                self.guard_new_assertions(asserted);
+                Ok(self.not_broken())
+            }
+            (done, _) => done,
+        }
+    }
+
+    fn while_statement(
+        &mut self,
+        condition: &Expression,
+        body: &[Statement],
+        span: Span,
+        loops: &mut Loops,
+    ) -> Result<Broken, Diagnostic> {
+        let mut broken = self.not_broken();
+        while self.statement_lowering(loops).known(condition)? != 0.0 {
+            self.count_statement(span)?;
+            broken =
+                self.unless(broken, loops, |builder, loops| builder.statements(body, loops))?;
+            if self.dae.pool.as_constant(broken) == Some(1.0) {
+                break;
+            }
+        }
+        Ok(self.not_broken())
+    }
+
+    fn assignment(
+        &mut self,
+        target: &ComponentReference,
+        value: &Expression,
+        loops: &Loops,
+    ) -> Result<(), Diagnostic> {
+        let value = self.statement_lowering(loops).lower(value)?;
+        self.assign(target, value, loops)
     }
 
     fn assign(

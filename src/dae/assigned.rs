@@ -14,6 +14,7 @@ use crate::symbolic::{Expr, RelationOperator, VarId};
 use crate::syntax::ast::{
     ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
 };
+use crate::syntax::visit::Rewrite;
 
 /// Where one scalar of a value goes.
 #[derive(Debug, Clone, Copy)]
@@ -74,7 +75,12 @@ impl Builder<'_> {
         };
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.clone();
-        for value in lowering.loop_values(index).unwrap_or_default() {
+        let Ok(values) = lowering.loop_values(index) else {
+            // Whatever the loop variable is: all elements.
+            self.targets(&without_subscripts(body), loops, found);
+            return;
+        };
+        for value in values {
             loops.push((index.name.node, value));
             self.targets_of_loop(inner, body, loops, found);
             loops.pop();
@@ -179,4 +185,21 @@ fn each(places: &[Place], size: usize, positions: &[usize]) -> Vec<Place> {
         positions.iter().enumerate().map(place).collect::<Vec<_>>()
     };
     places.iter().flat_map(of).collect()
+}
+
+/// Statements that assign to whole arrays what these assign to elements.
+fn without_subscripts(statements: &[Statement]) -> Vec<Statement> {
+    let mut whole = statements.to_vec();
+    whole.iter_mut().for_each(|statement| Whole.statement(statement));
+    whole
+}
+
+struct Whole;
+
+impl Rewrite for Whole {
+    fn reference(&mut self, reference: &mut ComponentReference) {
+        if let Some(last) = reference.parts.last_mut() {
+            last.subscripts.clear();
+        }
+    }
 }

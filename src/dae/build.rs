@@ -44,6 +44,8 @@ pub(super) struct Builder<'a> {
     pub(super) inlined: usize,
     /// How many statements of algorithms may still be carried out.
     pub(super) statements: usize,
+    /// Statements that became functions so far.
+    pub(super) statement_functions: usize,
     /// Functions that cannot be expressions.
     pub(super) functions: super::function::Instances,
     /// How many calls of impure functions were read.
@@ -90,6 +92,7 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         relations: FxHashMap::default(),
         calls: 0,
         statements: super::inline::MAX_STATEMENTS,
+        statement_functions: 0,
         inlined: 0,
         functions: super::function::Instances::default(),
         impure_calls: 0,

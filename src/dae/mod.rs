@@ -47,6 +47,7 @@ mod parameters;
 mod report;
 mod settled;
 mod sorted;
+mod statement_function;
 mod symbolic_target;
 mod temporal;
 mod used;

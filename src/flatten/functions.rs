@@ -497,7 +497,49 @@ impl Instantiation<'_> {
         context: ScopeId,
         local: &Local,
     ) -> Result<Vec<Statement>, Diagnostic> {
-        statements.iter().map(|statement| self.statement(statement, context, local)).collect()
+        let mut resolved = Vec::with_capacity(statements.len());
+        for statement in statements {
+            match self.statement(statement, context, local) {
+                Ok(one) => resolved.push(one),
+                Err(error) => match self.turns_of_statement(statement, context, local) {
+                    Some(turns) => resolved.extend(turns?),
+                    None => return Err(error),
+                },
+            }
+        }
+        Ok(resolved)
+    }
+
+    /// The turns of a loop in an algorithm of a model one after another: its variable may choose
+    /// among components, which only a number can. `None` where turns are not known, or one may be
+    /// the last.
+    fn turns_of_statement(
+        &mut self,
+        statement: &Statement,
+        context: ScopeId,
+        local: &Local,
+    ) -> Option<Result<Vec<Statement>, Diagnostic>> {
+        let StatementKind::For { indices, body } = &statement.kind else { return None };
+        if !self.is_in_model(context) || body.iter().any(breaks) {
+            return None;
+        }
+        let visit = |uses: &mut dyn Visit| body.iter().for_each(|inner| uses.statement(inner));
+        let indices = self.with_ranges(indices, context, local, &visit).ok()?;
+        let mut turns = Vec::new();
+        self.turns(&indices, context, local, &mut turns).ok()?;
+        let mut all = Vec::new();
+        for turn in turns {
+            match self.statements(body, context, &turn) {
+                Ok(statements) => all.extend(statements),
+                Err(error) => return Some(Err(error)),
+            }
+        }
+        Some(Ok(all))
+    }
+
+    /// Whether a scope is of a model, not of a function.
+    fn is_in_model(&self, context: ScopeId) -> bool {
+        context != ScopeId::TOP && !self.in_package(self.node_of(context))
     }
 
     fn statement(
@@ -528,7 +570,7 @@ impl Instantiation<'_> {
                     |uses: &mut dyn Visit| body.iter().for_each(|inner| uses.statement(inner));
                 let indices = self.with_ranges(indices, context, local, &visit)?;
                 let (mut indices, inner) = self.iterators(&indices, context, local)?;
-                if context != ScopeId::TOP && !self.in_package(self.node_of(context)) {
+                if self.is_in_model(context) {
                     indices.iter_mut().for_each(|index| self.settle_range(index));
                 }
                 StatementKind::For { indices, body: self.statements(body, context, &inner)? }
@@ -596,6 +638,17 @@ impl Instantiation<'_> {
                 Err(fault!(TYPE_MISMATCH, "`{}` cannot be assigned to", target.name()).at(span))
             }
         }
+    }
+}
+
+/// Whether a statement may leave the loop around it.
+fn breaks(statement: &Statement) -> bool {
+    match &statement.kind {
+        StatementKind::Break | StatementKind::Return => true,
+        StatementKind::If { branches, otherwise } => {
+            branches.iter().any(|(_, body)| body.iter().any(breaks)) || otherwise.iter().any(breaks)
+        }
+        _ => false,
     }
 }
 

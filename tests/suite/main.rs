@@ -1,5 +1,6 @@
 //! The integration tests; one module per suite.
 
+mod algorithms;
 mod architecture;
 mod assertions;
 mod bad_input;

@@ -102,7 +102,7 @@ fn settle_whole_numbers(
 }
 
 /// Expressions that call the code of a function.
-fn compiled_call(
+pub(super) fn compiled_call(
     builder: &mut Builder<'_>,
     function: &Arc<Function>,
     arguments: Vec<Lowered<Expr>>,
