@@ -313,15 +313,22 @@ impl System {
     /// Checks the assertions of when-clauses; whether one of them ends the simulation.
     fn check_at_event(&mut self, t: f64) -> Result<bool, Failure> {
         let program = self.program.clone();
-        let (assertions, ends) = (&program.events.assertions, &program.events.terminations);
-        run(&assertions.tape, &mut self.registers)?;
-        let value = |register: &u32| self.registers[*register as usize];
-        if let Some(failed) = assertions.outputs.iter().position(|a| value(a) == 0.0) {
-            return Err(Failure::Assertion { assertion: program.events.asserted[failed] });
-        }
+        let ends = &program.events.terminations;
+        self.assert_at_event()?;
         self.notice_at_event(t)?;
         run(&ends.tape, &mut self.registers)?;
         Ok(ends.outputs.iter().any(|end| self.registers[*end as usize] != 0.0))
+    }
+
+    /// Checks the assertions of when-clauses, and at the start those of initial sections.
+    pub(super) fn assert_at_event(&mut self) -> Result<(), Failure> {
+        let events = &self.program.events;
+        run(&events.assertions.tape, &mut self.registers)?;
+        let value = |register: &u32| self.registers[*register as usize];
+        match events.assertions.outputs.iter().position(|a| value(a) == 0.0) {
+            Some(failed) => Err(Failure::Assertion { assertion: events.asserted[failed] }),
+            None => Ok(()),
+        }
     }
 
     /// Sets the states of the `reinit`s that are active; whether there are any.

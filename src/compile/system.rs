@@ -186,15 +186,21 @@ impl System {
         }
     }
 
-    /// The first assertion that does not hold.
+    /// The first assertion that does not hold, of those that can be evaluated.
     fn violated(&mut self) -> Option<Failure> {
-        for (number, condition) in &self.program.assertions {
-            let done = condition.tape.run(&mut self.registers);
-            if done.is_ok() && self.registers[condition.outputs[0] as usize] == 0.0 {
-                return Some(Failure::Assertion { assertion: *number as u32 });
-            }
+        let mut failures =
+            (0..self.program.assertions.len()).filter_map(|at| self.assert(at).err());
+        failures.find(|failure| matches!(failure, Failure::Assertion { .. }))
+    }
+
+    /// Evaluates an assertion.
+    fn assert(&mut self, at: usize) -> Result<(), Failure> {
+        let (number, condition) = &self.program.assertions[at];
+        run(&condition.tape, &mut self.registers)?;
+        match self.registers[condition.outputs[0] as usize] == 0.0 {
+            true => Err(Failure::Assertion { assertion: *number as u32 }),
+            false => Ok(()),
         }
-        None
     }
 
     fn evaluate_parameters(&mut self) -> Result<(), Failure> {
@@ -442,6 +448,7 @@ impl DaeSystem for System {
         self.forget_notices();
         self.solve_initial_system(t)?;
         self.check_initial_values()?;
+        self.assert_at_event()?;
         self.notice_at_event(t)?;
         self.improve_choices()?;
         self.start_clocks(t)?;
@@ -449,7 +456,7 @@ impl DaeSystem for System {
         self.iterate_at_start(t)?;
         self.improve_choices()?;
         self.unload(y);
-        self.violated().map_or(Ok(()), Err)?;
+        (0..self.program.assertions.len()).try_for_each(|at| self.assert(at))?;
         self.notice(t)
     }
 
@@ -525,7 +532,7 @@ impl DaeSystem for System {
             return Ok(());
         }
         self.load_solved(t, y)?;
-        self.violated().map_or(Ok(()), Err)?;
+        (0..self.program.assertions.len()).try_for_each(|at| self.assert(at))?;
         self.notice(t)
     }
 

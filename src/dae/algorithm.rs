@@ -390,15 +390,7 @@ impl Builder<'_> {
                 self.dae.events.terminations.push(termination);
                 Ok(())
             }
-            _ if self.in_when && self.printing(call, loops)?.is_some() => Ok(()),
-            (text, _) => match Target::function(self, &function.name()) {
-                Some(user) if self.in_when => self.effect(&user, arguments, call.span, loops),
-                Some(user) => {
-                    let mut lowering = self.statement_lowering(loops);
-                    lowering.user_call(&user, arguments, call.span).map(|_| ())
-                }
-                None => Err(fault!(NOT_SUPPORTED, "`{text}(…)` as a statement here").at(call.span)),
-            },
+            _ => self.call_statement(call, loops, self.in_when || self.initial),
         }
     }
 

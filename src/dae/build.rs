@@ -124,6 +124,7 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         builder.algorithm(statements)?;
     }
     builder.initial = true;
+    let asserted = builder.dae.assertions.len();
     let owners = owners_of(|part| &part.initial_equations);
     for (position, equation) in flat.initial_equations.iter().enumerate() {
         builder.instance = owners.get(&position).copied();
@@ -133,6 +134,7 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
     for statements in &flat.initial_algorithms {
         builder.algorithm(statements)?;
     }
+    builder.move_to_start(asserted);
     builder.dae.functions = Arc::new(builder.functions.finish());
     Ok(builder.dae)
 }
@@ -510,11 +512,11 @@ impl<'a> Builder<'a> {
         Ok(merged.collect())
     }
 
-    /// Assertions in a branch hold only where it is taken.
+    /// Assertions in a branch hold only where it is taken, and are looked at only there.
     pub(super) fn guard_assertions(&mut self, from: usize, condition: Expr) {
-        let not = self.dae.pool.not(condition);
+        let holds = self.dae.pool.constant(1.0);
         for assertion in self.dae.assertions.iter_mut().skip(from) {
-            assertion.condition = self.dae.pool.or(not, assertion.condition);
+            assertion.condition = self.dae.pool.if_then_else(condition, assertion.condition, holds);
         }
     }
 
@@ -550,8 +552,7 @@ impl<'a> Builder<'a> {
         match name.as_str() {
             "assert" => self.assertion(arguments, call.span, loops),
             _ if name.starts_with("Connections.") => Ok(()),
-            _ => Err(fault!(NOT_SUPPORTED, "`{name}(…)` as an equation is not supported yet")
-                .at(call.span)),
+            _ => self.call_statement(call, loops, self.initial),
         }
     }
 

@@ -19,7 +19,8 @@ use crate::source::Span;
 use crate::symbolic::function::FunctionId;
 use crate::symbolic::{Expr, RelationOperator};
 use crate::syntax::ast::{
-    ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind, Subscript,
+    Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
+    Subscript,
 };
 use std::sync::Arc;
 
@@ -60,13 +61,8 @@ pub(super) fn inline(
         return refuse("calls itself without an end that is known when compiling");
     }
     builder.calls += 1;
-    let mut call = Call {
-        builder,
-        function: function.clone(),
-        locals: Vec::new(),
-        guards: Vec::new(),
-        unassigned: false,
-    };
+    let mut call =
+        Call { builder, function: function.clone(), locals: Vec::new(), unassigned: false };
     let result = call.run(function, statements, arguments, span);
     builder.calls -= 1;
     result
@@ -78,8 +74,6 @@ struct Call<'a, 'b> {
     function: Arc<Function>,
     /// Variables with their values; NaN where nothing was assigned.
     locals: Vec<(Ident, Lowered<Expr>)>,
-    /// Conditions of the branches around, for assertions.
-    guards: Vec<Expr>,
     /// Whether a decision depended on a variable without value.
     unassigned: bool,
 }
@@ -196,7 +190,7 @@ impl Call<'_, '_> {
             }
             StatementKind::Break => return Ok(Flow::Break),
             StatementKind::Return => return Ok(Flow::Return),
-            StatementKind::Call(call) => self.assertion(call, loops)?,
+            StatementKind::Call(call) => self.call_statement(call, loops)?,
             StatementKind::When { .. } => {
                 return Err(fault!(NOT_SUPPORTED, "`when` in a function").at(s.span));
             }
@@ -222,14 +216,14 @@ impl Call<'_, '_> {
             };
         }
         let before = self.locals.clone();
-        self.guards.push(condition);
+        let asserted = self.builder.dae.assertions.len();
         let first = self.statements(body, loops);
-        self.guards.pop();
+        self.builder.guard_assertions(asserted, condition);
         let taken = std::mem::replace(&mut self.locals, before);
         let not = self.unary(Unary::Not, condition);
-        self.guards.push(not);
+        let asserted = self.builder.dae.assertions.len();
         let second = self.branches(rest, otherwise, span, loops);
-        self.guards.pop();
+        self.builder.guard_assertions(asserted, not);
         if (first?, second?) != (Flow::Next, Flow::Next) {
             return Err(fault!(
                 NOT_SUPPORTED,
@@ -265,11 +259,30 @@ impl Call<'_, '_> {
         Ok(Flow::Next)
     }
 
-    fn assertion(&mut self, call: &Expression, loops: &Loops) -> Result<(), Diagnostic> {
+    fn call_statement(&mut self, call: &Expression, loops: &Loops) -> Result<(), Diagnostic> {
         let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(()) };
-        if function.as_ident().is_none_or(|name| name != "assert") {
-            return Err(fault!(NOT_SUPPORTED, "a call without a value in a function").at(call.span));
+        if function.as_ident().is_some_and(|name| name == "assert") {
+            return self.assertion(call, arguments, loops);
         }
+        match self.function(&function.name()) {
+            Some(user) => {
+                let outputs = self.lowering(loops).user_call(&user, arguments, call.span)?;
+                self.builder.unused(&outputs, call.span);
+                Ok(())
+            }
+            None => {
+                let name = function.name();
+                Err(fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`").at(function.span))
+            }
+        }
+    }
+
+    fn assertion(
+        &mut self,
+        call: &Expression,
+        arguments: &Arguments,
+        loops: &Loops,
+    ) -> Result<(), Diagnostic> {
         let find = |position: usize, name: &str| {
             let named = arguments.named.iter().find(|a| a.name.node == name).map(|a| &a.value);
             arguments.positional.get(position).or(named)
@@ -281,11 +294,7 @@ impl Call<'_, '_> {
             Some(level) if self.lowering(loops).known(level)? == 1.0 => Level::Warning,
             _ => Level::Error,
         };
-        let mut condition = self.lowering(loops).scalar(condition)?;
-        for guard in self.guards.clone() {
-            let not = self.unary(Unary::Not, guard);
-            condition = self.binary(Binary::Or, not, condition);
-        }
+        let condition = self.lowering(loops).scalar(condition)?;
         let text = message_text(&mut self.lowering(loops), find(1, "message")).into();
         let assertion = Assertion::new(condition, vec![Part::Text(text)], level, call.span);
         self.builder.dae.assertions.push(assertion);

@@ -1,14 +1,16 @@
 //! Texts for people: of assertions, and of functions that print (MLS §8.3.7, §12.9).
 
 use super::build::{Builder, UNKNOWN_TEXT, message_text};
+use super::errors::NOT_SUPPORTED;
 use super::function::prints;
-use super::lowering::{Lowering, Target};
+use super::lowering::{Lowered, Lowering, Target};
 use super::model::{Assertion, Level, Part};
 use crate::diag::Diagnostic;
 use crate::eval::Function;
+use crate::fault;
 use crate::flatten::BaseType;
 use crate::source::Span;
-use crate::symbolic::Expr;
+use crate::symbolic::{Expr, Node, RelationOperator};
 use crate::syntax::ast::{Arguments, BinaryOperator, Expression, ExpressionKind};
 use std::sync::Arc;
 
@@ -81,9 +83,56 @@ impl Builder<'_> {
         Ok(Some(()))
     }
 
-    /// The call of a function in a when-clause for what it does: what it writes is written wherever
-    /// the statement is carried out.
-    pub(super) fn effect(
+    /// The call of a function without use of its value: what it asserts must hold, and where it
+    /// `acts`, in when-clauses and initial sections, what it writes is written.
+    pub(super) fn call_statement(
+        &mut self,
+        call: &Expression,
+        loops: &[(crate::name::Ident, Expr)],
+        acts: bool,
+    ) -> Result<(), Diagnostic> {
+        let ExpressionKind::Call { function, arguments } = &call.kind else {
+            return Err(fault!(NOT_SUPPORTED, "this is no call").at(call.span));
+        };
+        if acts && self.printing(call, loops)?.is_some() {
+            return Ok(());
+        }
+        let name = function.name();
+        let Some(user) = Target::function(self, &name) else {
+            return Err(fault!(NOT_SUPPORTED, "`{name}(…)` as a statement here").at(call.span));
+        };
+        if acts {
+            return self.effect(&user, arguments, call.span, loops);
+        }
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.to_vec();
+        let outputs = lowering.user_call(&user, arguments, call.span)?;
+        if !user.impure {
+            self.unused(&outputs, call.span);
+        }
+        Ok(())
+    }
+
+    /// Outputs that nobody uses: the calls behind them are made for what they assert.
+    pub(super) fn unused(&mut self, outputs: &[Lowered<Expr>], span: Span) {
+        let mut scalars = Vec::new();
+        outputs.iter().for_each(|output| output.append_scalars(&mut scalars));
+        let pool = &self.dae.pool;
+        let is_call = |e: &Expr| matches!(pool.node(*e), Node::Call { .. });
+        if let Some(call) = scalars.into_iter().find(is_call) {
+            self.assert_call(call, span);
+        }
+    }
+
+    /// The call of a function that has no other value.
+    pub(super) fn assert_call(&mut self, call: Expr, span: Span) {
+        let holds = self.dae.pool.relation(RelationOperator::Equal, call, call);
+        self.dae.assertions.push(Assertion::new(holds, Vec::new(), Level::Error, span));
+    }
+
+    /// The call of a function at an instant: what it writes is written whenever the statement is
+    /// carried out.
+    fn effect(
         &mut self,
         user: &Arc<Function>,
         arguments: &Arguments,
@@ -97,7 +146,10 @@ impl Builder<'_> {
         lowering.live = true;
         let called = lowering.user_call(user, arguments, span);
         self.functions.may_write = false;
-        called?;
+        let outputs = called?;
+        if !user.impure && self.written.is_empty() {
+            self.unused(&outputs, span);
+        }
         let parts: Vec<Part> = self.written.drain(..).map(Part::Number).collect();
         if !parts.is_empty() {
             let condition = self.dae.pool.constant(0.0);

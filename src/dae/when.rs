@@ -7,7 +7,7 @@
 use super::build::{Builder, message_text};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNBALANCED_MODEL};
 use super::events::{Reinit, Termination};
-use super::lowering::{Array, Lowering, Target};
+use super::lowering::{Array, Lowering};
 use super::model::{Dae, Equation, Kind, Level, Part};
 use super::sorted::{Alias, Selection};
 use crate::diag::Diagnostic;
@@ -252,23 +252,22 @@ impl Builder<'_> {
                 let (states, values) = (lowering.array(state)?, lowering.array(value)?);
                 self.reinit(&states, &values, guard, call.span)
             }
-            (name, _) => match self.printing(call, loops)? {
-                Some(()) => Ok(()),
-                None => match Target::function(self, &function.name()) {
-                    Some(user) => self.effect(&user, arguments, call.span, loops),
-                    None => {
-                        Err(fault!(NOT_SUPPORTED, "`{name}(…)` in a when-clause").at(call.span))
-                    }
-                },
-            },
+            _ => self.call_statement(call, loops, true),
+        }
+    }
+
+    /// Assertions read since `from`, those of initial sections, hold at the start.
+    pub(super) fn move_to_start(&mut self, from: usize) {
+        if self.dae.assertions.len() > from {
+            let guard = self.initial_signal();
+            self.move_assertions(from, guard);
         }
     }
 
     /// Assertions read since `from` hold at events, where the guard does.
     pub(super) fn move_assertions(&mut self, from: usize, guard: Expr) {
-        let not = self.dae.pool.not(guard);
+        self.guard_assertions(from, guard);
         for mut assertion in self.dae.assertions.split_off(from) {
-            assertion.condition = self.dae.pool.or(not, assertion.condition);
             if assertion.level == Level::Effect {
                 // Calls are carried out only where their statement is.
                 let zero = self.dae.pool.constant(0.0);

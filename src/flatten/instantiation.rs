@@ -25,7 +25,8 @@ use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
-    CausalityPrefix, Expression, ExpressionKind, Restriction, Subscript, VariabilityPrefix,
+    CausalityPrefix, Expression, ExpressionKind, ReferencePart, Restriction, Subscript,
+    VariabilityPrefix,
 };
 use crate::value::Value;
 use indexmap::{IndexMap, IndexSet};
@@ -292,12 +293,17 @@ impl<'a> Instantiation<'a> {
             .at(value.span));
         }
         let picked = picked(value.clone(), &binding.indices);
+        let is_computed = !is_component(&picked);
         for (name, member) in members {
-            let span = value.span;
-            let part = ExpressionKind::Field { base: Box::new(picked.clone()), name: *name };
+            let is_constant =
+                member.declaration.type_prefixes.variability == Some(VariabilityPrefix::Constant);
+            if is_constant && is_computed && member.declaration.modifier.binding.is_some() {
+                // A constant with a value is no input of the record's constructor (MLS §12.6.1).
+                continue;
+            }
             let mut declaration = (*member.declaration).clone();
             declaration.modifier.binding = Some(Bound {
-                value: Some(Expression::new(part, span)),
+                value: Some(component_of(&picked, *name)),
                 context: binding.context,
                 each: binding.each,
                 indices: Vec::new(),
@@ -692,6 +698,30 @@ pub(super) fn picked(value: Expression, indices: &[usize]) -> Expression {
         |at: &usize| Subscript::Index(Expression::new(ExpressionKind::Integer(*at as i64), span));
     let subscripts = indices.iter().map(subscript).collect();
     Expression::new(ExpressionKind::Subscripted { base: Box::new(value), subscripts }, span)
+}
+
+/// Whether a value is a component, or an element or component of one.
+fn is_component(value: &Expression) -> bool {
+    match &value.kind {
+        ExpressionKind::Reference(_) => true,
+        ExpressionKind::Subscripted { base, .. } | ExpressionKind::Field { base, .. } => {
+            is_component(base)
+        }
+        _ => false,
+    }
+}
+
+/// A component of a value.
+fn component_of(value: &Expression, name: Ident) -> Expression {
+    let kind = match &value.kind {
+        ExpressionKind::Reference(reference) => {
+            let mut longer = reference.clone();
+            longer.parts.push(ReferencePart { name, subscripts: Vec::new() });
+            ExpressionKind::Reference(longer)
+        }
+        _ => ExpressionKind::Field { base: Box::new(value.clone()), name },
+    };
+    Expression::new(kind, value.span)
 }
 
 fn variability(prefix: VariabilityPrefix) -> Variability {

@@ -25,15 +25,24 @@ impl Session {
     /// Files for a model: relative paths start from the working directory, the folder of the
     /// script, the folder of the file that the model is in.
     pub(super) fn resources_for(&self, model: &Name) -> Resources {
-        let mut folders = vec![self.world.current_dir()];
-        folders.extend(self.frames.iter().rev().map(|frame| frame.folder.clone()));
         let packages = self.classes.packages();
         let own = model.first().and_then(|top| packages.get(&top));
-        if let Some(own) = own {
-            let folder =
-                if own.extension().is_some_and(|e| e == "mo") { own.parent() } else { None };
-            folders.push(folder.unwrap_or(own).to_path_buf());
-        }
+        let is_file = |own: &PathBuf| own.extension().is_some_and(|e| e == "mo");
+        let folder = own.and_then(|own| if is_file(own) { own.parent() } else { Some(own) });
+        self.resources_below(folder)
+    }
+
+    /// Files for any model: relative paths start from the working directory and the folder of the
+    /// script.
+    pub(super) fn resources(&self) -> Resources {
+        self.resources_below(None)
+    }
+
+    fn resources_below(&self, folder: Option<&Path>) -> Resources {
+        let mut folders = vec![self.world.current_dir()];
+        folders.extend(self.frames.iter().rev().map(|frame| frame.folder.clone()));
+        folders.extend(folder.map(Path::to_path_buf));
+        let packages = self.classes.packages();
         let files = self.world.files();
         Resources::new(Arc::new(ModelFiles { files, folders, packages }))
     }

@@ -76,9 +76,12 @@ impl fmt::Display for Stage {
     }
 }
 
-/// All classes that a session has loaded; the session is left without them.
+/// All classes that a session has loaded, with the files that models may read; the session is left
+/// without them.
 pub fn library(session: &mut Session) -> Arc<Library> {
-    Arc::new(std::mem::take(session.library()))
+    let mut library = std::mem::take(session.library());
+    library.set_resources(session.resources());
+    Arc::new(library)
 }
 
 /// Translates and simulates a class as its experiment annotation says, and compares it with the

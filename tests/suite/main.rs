@@ -1,6 +1,7 @@
 //! The integration tests; one module per suite.
 
 mod architecture;
+mod assertions;
 mod bad_input;
 mod checks;
 mod cli;
@@ -39,6 +40,7 @@ mod msl;
 mod notices;
 mod page;
 mod plot;
+mod record_arrays;
 mod reference_problems;
 mod repl;
 mod results;

@@ -175,7 +175,7 @@ impl Instances {
         let mut code = body.compile(statements)?;
         code.writes = self.writes(&code);
         code.impure = function.impure || self.has_effects(&code);
-        if code.writes && code.n_outputs == 0 {
+        if code.n_outputs == 0 {
             // Something stands for the call where its statement is carried out.
             (code.outputs, code.n_outputs) = (code.frame, 1);
             code.constants.push((code.outputs, 0.0));
@@ -268,7 +268,9 @@ fn signature(
         );
         list.push(match argument {
             Lowered::Text(text)
-                if text.contains(UNKNOWN_TEXT) && !super::external::is_message(function) =>
+                if text.contains(UNKNOWN_TEXT)
+                    && input.dims.is_empty()
+                    && !super::external::is_message(function) =>
             {
                 return Err(fault!(
                     NOT_SUPPORTED,

@@ -135,10 +135,20 @@ fn compiled_call(
         Some(values) => results.extend(values.into_iter().map(|value| pool.constant(value))),
         None => {
             let n: usize = instance.outputs.iter().map(|shape| shape.len()).sum();
+            results.extend((0..n as u32).map(|at| pool.call(instance.code, at, &scalars)));
             if instance.writes {
                 builder.written.push(pool.call(instance.code, 0, &scalars));
+            } else if n == 0 && instance.impure {
+                return Err(fault!(
+                    NOT_SUPPORTED,
+                    "the impure function `{}` is called where nothing uses a value of it",
+                    function.name
+                )
+                .at(span));
+            } else if n == 0 {
+                let call = pool.call(instance.code, 0, &scalars);
+                builder.assert_call(call, span);
             }
-            results.extend((0..n as u32).map(|at| pool.call(instance.code, at, &scalars)));
         }
     }
     let mut results = results.into_iter();

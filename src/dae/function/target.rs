@@ -225,7 +225,8 @@ impl Target for Body<'_, '_> {
             None => {
                 let n: usize = instance.outputs.iter().map(|shape| shape.len()).sum();
                 let a = self.emitter.row(&scalars);
-                let d = self.emitter.block(n as u32);
+                // A call without outputs returns one number, too.
+                let d = self.emitter.block(n.max(1) as u32);
                 self.emitter.place(span);
                 self.emitter.emit(Instruction::Call { function: instance.code, d, a });
                 (d..).take(n).map(Operand::Register).collect()

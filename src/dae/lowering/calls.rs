@@ -1,7 +1,6 @@
 //! Calls: operators with a meaning in time, functions of arrays (MLS §10.3), functions of the
 //! table (MLS §3.7), user functions.
 
-use super::arrays::concatenate;
 use super::{Array, Binary, Lowered, Lowering, Operator, Target, placed};
 use crate::dae::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use crate::diag::{Diagnostic, suggest};
@@ -40,6 +39,9 @@ impl<T: Target> Lowering<'_, T> {
         let plain = &placed::of_operator(short, arguments);
         if let Some(operator) = self.target.operator(short, plain, span) {
             return self.time_operator(short, operator?, plain, span);
+        }
+        if let Some(rearranged) = self.rearrangement(short, &arguments.positional, span)? {
+            return Ok(rearranged);
         }
         if let Some(array) = self.array_function(short, arguments, span)? {
             return Ok(Lowered::Array(array));
@@ -194,13 +196,6 @@ impl<T: Target> Lowering<'_, T> {
             }
             "zeros" => self.filled(0.0, plain, span)?,
             "ones" => self.filled(1.0, plain, span)?,
-            "fill" => match plain.split_first() {
-                Some((value, sizes)) => {
-                    let value = self.array(value)?;
-                    self.repeated(value, sizes, span)?
-                }
-                None => return Err(fault!(ARRAY_MISMATCH, "`fill` needs a value").at(span)),
-            },
             "identity" => match plain {
                 [n] => {
                     let n = self.known_size(n)?;
@@ -240,16 +235,6 @@ impl<T: Target> Lowering<'_, T> {
                 a.dims.resize(2, 1);
                 a
             }
-            "transpose" => transposed(one(self)?, span)?,
-            "cat" => match plain.split_first() {
-                Some((dimension, parts)) => {
-                    let dimension = self.known_size(dimension)?;
-                    let parts =
-                        parts.iter().map(|p| self.array(p)).collect::<Result<Vec<_>, _>>()?;
-                    concatenate(dimension.wrapping_sub(1), parts, span)?
-                }
-                None => return Err(fault!(ARRAY_MISMATCH, "`cat` needs arguments").at(span)),
-            },
             "cross" => match plain {
                 [a, b] => {
                     let (a, b) = (self.array(a)?, self.array(b)?);
@@ -350,24 +335,7 @@ impl<T: Target> Lowering<'_, T> {
         span: Span,
     ) -> Result<Array<T::Scalar>, Diagnostic> {
         let value = Array::scalar(self.target.constant(value));
-        self.repeated(value, sizes, span)
-    }
-
-    fn repeated(
-        &mut self,
-        value: Array<T::Scalar>,
-        sizes: &[Expression],
-        span: Span,
-    ) -> Result<Array<T::Scalar>, Diagnostic> {
-        let mut dims = sizes.iter().map(|n| self.known_size(n)).collect::<Result<Vec<_>, _>>()?;
-        let count = dims.iter().try_fold(1usize, |product, n| product.checked_mul(*n));
-        match count.and_then(|count| count.checked_mul(value.elements.len().max(1))) {
-            Some(total) if total <= super::MAX_SCALARS => {}
-            _ => return Err(fault!(ARRAY_MISMATCH, "an array of too many elements").at(span)),
-        }
-        let elements = value.elements.repeat(count.unwrap_or(0));
-        dims.extend(&value.dims);
-        Ok(Array { dims, elements })
+        self.repeated(&value, sizes, span)
     }
 
     fn diagonal(&mut self, diagonal: &[T::Scalar]) -> Array<T::Scalar> {
@@ -511,15 +479,4 @@ fn symmetric<S: Copy>(a: Array<S>, span: Span) -> Result<Array<S>, Diagnostic> {
     };
     let elements = (0..a.elements.len()).map(mirrored).collect();
     Ok(Array { dims: vec![rows, columns], elements })
-}
-
-fn transposed<S: Copy>(a: Array<S>, span: Span) -> Result<Array<S>, Diagnostic> {
-    let &[rows, columns, ref rest @ ..] = a.dims.as_slice() else {
-        return Err(fault!(ARRAY_MISMATCH, "`transpose` takes a matrix").at(span));
-    };
-    let each: usize = rest.iter().product();
-    let blocks = (0..columns).flat_map(|column| (0..rows).map(move |row| row * columns + column));
-    let elements = blocks.flat_map(|block| block * each..(block + 1) * each);
-    let elements = elements.map(|at| a.elements[at]).collect();
-    Ok(Array { dims: [&[columns, rows], rest].concat(), elements })
 }

@@ -9,6 +9,7 @@ mod expression;
 mod homotopy;
 mod operators;
 mod placed;
+mod rearrangements;
 mod records;
 mod texts;
 mod varying_texts;

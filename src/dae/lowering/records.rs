@@ -27,20 +27,13 @@ impl<T: Target> Lowering<'_, T> {
             Lowered::Record(fields) => {
                 let mut chosen = Vec::with_capacity(fields.len());
                 for (name, value) in fields {
-                    chosen.push((
-                        name,
-                        match value {
-                            // All elements have the same text, or it is not known.
-                            Lowered::Text(text) => Lowered::Text(text),
-                            value => self.elements_of(value, subscripts, span)?,
-                        },
-                    ));
+                    chosen.push((name, self.elements_of(value, subscripts, span)?));
                 }
                 Ok(Lowered::Record(chosen))
             }
-            Lowered::Text(_) | Lowered::Numbered(_) => {
-                Err(fault!(ARRAY_MISMATCH, "subscripts of a text").at(span))
-            }
+            // All elements have the same text, or it is not known.
+            Lowered::Text(text) => Ok(Lowered::Text(text)),
+            Lowered::Numbered(_) => Err(fault!(ARRAY_MISMATCH, "subscripts of a text").at(span)),
         }
     }
 
@@ -70,6 +63,9 @@ pub(super) fn stacked<S: Copy>(
     values: Vec<Lowered<S>>,
     span: Span,
 ) -> Result<Lowered<S>, Diagnostic> {
+    if let Some(text) = common_text(&values) {
+        return Ok(Lowered::Text(text));
+    }
     let Some(Lowered::Record(first)) = values.first() else {
         return stack(arrays(values, span)?, span).map(Lowered::Array);
     };
@@ -78,19 +74,14 @@ pub(super) fn stacked<S: Copy>(
     for name in names {
         let of_one = |value: &Lowered<S>| field(value.clone(), name, span);
         let column = values.iter().map(of_one).collect::<Result<Vec<_>, _>>()?;
-        fields.push((
-            name,
-            match common_text(&column) {
-                Some(text) => Lowered::Text(text),
-                None => stacked(column, span)?,
-            },
-        ));
+        fields.push((name, stacked(column, span)?));
     }
     Ok(Lowered::Record(fields))
 }
 
-/// The text of a component of records, not known where theirs differ; `None` for numbers.
-fn common_text<S: Copy>(column: &[Lowered<S>]) -> Option<Arc<str>> {
+/// The text that stands for an array of texts: that of all elements, not known where theirs differ.
+/// `None` for numbers.
+pub(super) fn common_text<S: Copy>(column: &[Lowered<S>]) -> Option<Arc<str>> {
     let mut common = column.first()?.shape()?;
     for value in column {
         common = common.joined(&value.shape()?)?;
@@ -101,7 +92,11 @@ fn common_text<S: Copy>(column: &[Lowered<S>]) -> Option<Arc<str>> {
     }
 }
 
-fn arrays<S: Copy>(values: Vec<Lowered<S>>, span: Span) -> Result<Vec<Array<S>>, Diagnostic> {
+/// Values that are arrays of numbers.
+pub(super) fn arrays<S: Copy>(
+    values: Vec<Lowered<S>>,
+    span: Span,
+) -> Result<Vec<Array<S>>, Diagnostic> {
     let array = |value| match value {
         Lowered::Array(array) => Ok(array),
         Lowered::Record(_) => {

@@ -1,6 +1,8 @@
 //! A folder of Modelica files, loaded as one library.
 
-use gapilib::diag::Diagnostic;
+use gapilib::diag::{Diagnostic, Fault};
+use gapilib::external::errors::EXTERNAL_OUTSIDE;
+use gapilib::external::{Provide, Resources};
 use gapilib::flatten::Library;
 use gapilib::source::SourceMap;
 use gapilib::syntax::ast::StoredDefinition;
@@ -48,7 +50,33 @@ impl Corpus {
                 File { name: dotted(root, path), text, parsed, refused }
             })
             .collect();
+        library.set_resources(Resources::new(Arc::new(Below(root.to_path_buf()))));
         Corpus { library: Arc::new(library), sources: Arc::new(sources), files }
+    }
+}
+
+/// The files that models name: `modelica://` URIs below a folder, paths as they are.
+#[derive(Debug)]
+struct Below(PathBuf);
+
+impl Below {
+    fn found(&self, name: &str) -> PathBuf {
+        name.strip_prefix("modelica://").map_or_else(|| name.into(), |uri| self.0.join(uri))
+    }
+}
+
+impl Provide for Below {
+    fn path(&self, name: &str) -> Result<String, Fault> {
+        Ok(self.found(name).display().to_string())
+    }
+
+    fn read(&self, name: &str) -> Result<Vec<u8>, Fault> {
+        let error = |error: std::io::Error| Fault::new(EXTERNAL_OUTSIDE, error.to_string());
+        fs::read(self.found(name)).map_err(error)
+    }
+
+    fn is_folder(&self, name: &str) -> Option<bool> {
+        fs::metadata(self.found(name)).ok().map(|found| found.is_dir())
     }
 }
 
