@@ -213,7 +213,9 @@ struct Assigned(FxHashSet<Ident>);
 impl Visit for Assigned {
     fn statement(&mut self, statement: &Statement) {
         match &statement.kind {
-            StatementKind::Assign { target, .. } => self.0.extend(target.parts.first().map(|p| p.name)),
+            StatementKind::Assign { target, .. } => {
+                self.0.extend(target.parts.first().map(|p| p.name))
+            }
             StatementKind::MultiAssign { targets, .. } => {
                 let first = |target: &ComponentReference| target.parts.first().map(|p| p.name);
                 self.0.extend(targets.iter().flatten().filter_map(first));
@@ -231,9 +233,8 @@ fn component(
     binding: Option<Expression>,
     span: Span,
 ) -> FunctionComponent {
-    let size = |n: &usize| {
-        Subscript::Index(Expression::new(ExpressionKind::Integer(*n as i64), span))
-    };
+    let size =
+        |n: &usize| Subscript::Index(Expression::new(ExpressionKind::Integer(*n as i64), span));
     let dims = dims.iter().map(size).collect();
     FunctionComponent { name, value_type, dims, binding, description: None, span }
 }

@@ -36,25 +36,18 @@ pub(super) fn settle(dae: &mut Dae, settled: &Settled) {
 
 /// The parameters of zero that leave nothing in a row or a column of the matrix of a linear loop.
 pub(super) fn vanishing(sorted: &mut SortedDae) -> Settled {
-    let all = || sorted.blocks.iter().chain(&sorted.event_blocks).chain(&sorted.initial_blocks);
-    let mut values = FxHashMap::default();
-    for block in all() {
-        if let Block::Assignment(assignment) = block {
-            values.entry(assignment.variable).or_insert(assignment.value);
-        }
-    }
-    let matrices: Vec<Vec<Expr>> = all().filter_map(|block| matrix(&sorted.dae, block)).collect();
-    let mut zeros = Zeros { dae: &mut sorted.dae, values, known: FxHashMap::default() };
+    let SortedDae { dae, blocks, event_blocks, initial_blocks, .. } = sorted;
     let mut found = Settled::default();
-    for matrix in matrices {
-        let causes: Vec<Option<Settled>> = matrix.iter().map(|e| zeros.cause(*e, 0)).collect();
-        let n = matrix.len().isqrt();
-        for line in 0..n {
-            let row: Option<Vec<&Settled>> =
-                (0..n).map(|i| causes[line * n + i].as_ref()).collect();
-            let column = (0..n).map(|i| causes[i * n + line].as_ref()).collect();
-            for causes in [row, column].into_iter().flatten() {
-                found.extend(causes.into_iter().flatten());
+    for blocks in [blocks, event_blocks, initial_blocks] {
+        let values = blocks.iter().filter_map(|block| match block {
+            Block::Assignment(assignment) => Some((assignment.variable, assignment.value)),
+            _ => None,
+        });
+        let values = values.collect();
+        let mut zeros = Zeros { dae: &mut *dae, values, known: FxHashMap::default() };
+        for block in blocks.iter() {
+            if let Some(matrix) = matrix(zeros.dae, block) {
+                found.extend(zeros.of_lines(&matrix));
             }
         }
     }
@@ -81,6 +74,22 @@ struct Zeros<'a> {
 }
 
 impl Zeros<'_> {
+    /// The parameters that make all of a row or of a column zero.
+    fn of_lines(&mut self, matrix: &[Expr]) -> Settled {
+        let causes: Vec<Option<Settled>> = matrix.iter().map(|e| self.cause(*e, 0)).collect();
+        let n = matrix.len().isqrt();
+        let mut found = Settled::default();
+        for line in 0..n {
+            let row: Option<Vec<&Settled>> =
+                (0..n).map(|i| causes[line * n + i].as_ref()).collect();
+            let column = (0..n).map(|i| causes[i * n + line].as_ref()).collect();
+            for causes in [row, column].into_iter().flatten() {
+                found.extend(causes.into_iter().flatten());
+            }
+        }
+        found
+    }
+
     /// The parameters that make an expression zero; `None` if it is not zero.
     fn cause(&mut self, e: Expr, depth: usize) -> Option<Settled> {
         let mut causes = Settled::default();
@@ -113,7 +122,7 @@ impl Zeros<'_> {
             };
             replaced.insert(node, value);
         }
-        (replaced[&e] == zero).then_some(causes)
+        (self.dae.pool.as_constant(replaced[&e]) == Some(0.0)).then_some(causes)
     }
 
     fn is_parameter(&self, variable: VarId) -> bool {

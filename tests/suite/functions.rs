@@ -110,8 +110,8 @@ const CORPUS: &[(&str, &str)] = &[
         "record D String name; Real a; Real b[2]; end D; constant D d[2] = {D(\"one\", 2, {3, 4}), \
          D(\"two\", 5, {6, 7})}; function scaled input D d; input Real u; output D e; algorithm \
          e := d; e.a := if d.name == \"one\" then d.a*u else -u; end scaled; \
-         function f {h} protected Integer k = 0; D e = scaled(d[1], u); D g; algorithm \
-         while k < 2 loop k := k + 1; g := if u > 0 then e else d[2]; y := g.a + d[k].b[k]; \
+         function f {h} protected Integer k = 0; D e = scaled(d[1], u); D g; algorithm y := 0; \
+         while k < min(n, 2) loop k := k + 1; g := if u > 0 then e else d[2]; y := g.a + d[k].b[k]; \
          end while; e := scaled(d[2], u); y := y + e.a*e.b[1]; end f;",
     ),
     (
@@ -290,8 +290,8 @@ fn failures_inside_functions_say_why() {
         (
             "record R Real a; Real b; end R; function part input Real u; output R r; \
              protected Integer k = 0; algorithm while k < 2 loop k := k + 1; r.a := u; end while; \
-             end part; function f {h} protected R r; algorithm r := part(u); y := max(r.a, r.b); \
-             end f;",
+             end part; function f {h} protected R r; Integer k = 0; algorithm r := part(u); y := 0; \
+             while k < n loop k := k + 1; y := max(r.a, r.b); end while; end f;",
             "domain-error: a variable has no value in the function `P.f` (at t = 0)",
         ),
         (
@@ -497,4 +497,12 @@ fn components_without_value_are_faults_of_who_reads_them() {
     assert_eq!(run(&text("a")), Ok(()));
     let expected = "a variable has no value in the function `P.part` (at t = 0)";
     assert_eq!(run(&text("b")).unwrap_err(), expected);
+}
+
+#[test]
+fn functions_take_arrays_of_texts() {
+    let functions = "function f {h} algorithm y := u; check({\"one\", \"two\"}, u); end f; \
+        function check input String names[:]; input Real u; protected Integer k = 0; algorithm \
+        while k < 2 loop k := k + 1; assert(u < 0, \"bad \" + names[k]); end while; end check;";
+    assert_eq!(failure(functions), "assertion-failed: bad … (at t = 0)");
 }

@@ -22,6 +22,9 @@ pub(super) fn external_name(function: &Function, clause: &ast::External) -> Stri
 pub(super) fn refusal(function: &Function) -> Option<String> {
     let FunctionBody::External(clause) = &function.body else { return None };
     let name = external_name(function, clause);
+    if function.inputs.iter().any(|i| i.value_type == ValueType::String && !i.dims.is_empty()) {
+        return Some(format!("is the external function `{name}`, which takes arrays of texts"));
+    }
     match external::find(&name) {
         None => {
             Some(format!("is the external function `{name}`, which this program does not have"))

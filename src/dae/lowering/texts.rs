@@ -36,7 +36,7 @@ impl<T: Target> Lowering<'_, T> {
         }
         let mut values = Vec::with_capacity(arguments.len());
         for (input, argument) in function.inputs.iter().zip(arguments) {
-            match self.known_value(argument, &input.value_type, gives_text) {
+            match self.known_argument(argument, input, gives_text) {
                 Some(value) => values.push(value),
                 None if gives_text => {
                     return Err(fault!(
@@ -77,7 +77,7 @@ impl<T: Target> Lowering<'_, T> {
             .inputs
             .iter()
             .zip(arguments)
-            .map(|(input, argument)| self.known_value(argument, &input.value_type, true));
+            .map(|(input, argument)| self.known_argument(argument, input, true));
         let values = known.collect::<Option<Vec<Value>>>()?;
         self.interpreted(function, values, span).ok().flatten()
     }
@@ -122,6 +122,19 @@ impl<T: Target> Lowering<'_, T> {
         let e = Expression::new(ExpressionKind::Reference(reference.clone()), reference.span);
         let value = self.lower(&e).ok()?;
         self.known_value(&value, &wanted, false)
+    }
+
+    /// The value of an argument; of arrays of texts too little is known.
+    fn known_argument(
+        &mut self,
+        argument: &Lowered<T::Scalar>,
+        input: &eval::FunctionComponent,
+        settle: bool,
+    ) -> Option<Value> {
+        match argument {
+            Lowered::Text(_) if !input.dims.is_empty() => None,
+            _ => self.known_value(argument, &input.value_type, settle),
+        }
     }
 
     fn known_value(

@@ -10,8 +10,8 @@ use super::super::connections::{Connections, Edge, Face};
 use super::super::errors::INVALID_CONNECTION;
 use super::super::instance::{Leaf, MemberState, NodeId, NodeKind};
 use super::super::instantiation::Instantiation;
-use super::super::{BaseType, FlatModel, Variability, Variable};
-use super::{plural, size, targets};
+use super::super::{BaseType, FlatModel, Variability};
+use super::{plural, scalars_of, size, targets};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::name::Name;
@@ -254,8 +254,7 @@ impl Instantiation<'_> {
         for statements in &model.algorithms[written.algorithms.clone()] {
             let mut assigned = BTreeSet::new();
             targets(statements, &mut assigned);
-            let variables = assigned.iter().filter_map(|name| model.variables.get(name.as_str()));
-            count += variables.map(Variable::len).sum::<usize>();
+            count += scalars_of(&assigned, model);
         }
         Some(count)
     }

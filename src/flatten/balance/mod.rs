@@ -49,11 +49,7 @@ pub(super) fn check(model: &FlatModel, classes: &[LocalBalance]) -> Result<(), D
     for statements in &model.algorithms {
         targets(statements, &mut assigned);
     }
-    equations += assigned
-        .iter()
-        .filter_map(|name| model.variables.get(name.as_str()))
-        .map(super::Variable::len)
-        .sum::<usize>();
+    equations += scalars_of(&assigned, model);
     if equations == unknowns {
         return Ok(());
     }
@@ -110,7 +106,7 @@ fn size(
         EquationKind::Equal { left, right } => match &left.kind {
             ExpressionKind::Tuple(outputs) => {
                 let outputs = outputs.iter().flatten();
-                outputs.map(|output| Some(dims(output)?.iter().product::<usize>())).sum()
+                outputs.map(|output| scalars(output, dims)).sum()
             }
             _ => Some(dims(left).or_else(|| dims(right))?.iter().product()),
         },
@@ -120,6 +116,19 @@ fn size(
         }
         EquationKind::Call(_) => Some(0),
         EquationKind::For { .. } | EquationKind::Connect { .. } => None,
+    }
+}
+
+/// Number of scalars of an output: a variable, or a record, whose constructor lists its components.
+fn scalars(
+    output: &Expression,
+    dims: &mut dyn FnMut(&Expression) -> Option<Vec<usize>>,
+) -> Option<usize> {
+    match &output.kind {
+        ExpressionKind::Call { arguments, .. } if !arguments.named.is_empty() => {
+            arguments.named.iter().map(|component| scalars(&component.value, dims)).sum()
+        }
+        _ => Some(dims(output)?.iter().product()),
     }
 }
 
@@ -189,6 +198,23 @@ pub(super) fn path(reference: &ComponentReference) -> String {
         }
     }
     path
+}
+
+/// Number of scalars of variables, and of records, whose components begin with their names.
+fn scalars_of(names: &BTreeSet<String>, model: &FlatModel) -> usize {
+    let mut variables: BTreeSet<&str> = BTreeSet::new();
+    for name in names {
+        match model.variables.get_key_value(name.as_str()) {
+            Some((name, _)) => variables.extend([&**name]),
+            None => {
+                let is_inside = |path: &&str| {
+                    path.strip_prefix(name.as_str()).is_some_and(|rest| rest.starts_with('.'))
+                };
+                variables.extend(model.variables.keys().map(|key| &**key).filter(is_inside));
+            }
+        }
+    }
+    variables.into_iter().map(|name| model.variables[name].len()).sum()
 }
 
 fn targets(statements: &[Statement], out: &mut BTreeSet<String>) {
