@@ -119,6 +119,29 @@ impl Instruction {
             Instruction::Call { .. } | Instruction::Solve { .. } | Instruction::Jump { .. } => {}
         }
     }
+
+    /// The register written, but for those of calls and linear systems.
+    pub(super) fn result(&self) -> Option<Register> {
+        match *self {
+            Instruction::Move { d, .. }
+            | Instruction::Neg { d, .. }
+            | Instruction::Not { d, .. }
+            | Instruction::Unary { d, .. }
+            | Instruction::Add { d, .. }
+            | Instruction::Sub { d, .. }
+            | Instruction::Mul { d, .. }
+            | Instruction::Div { d, .. }
+            | Instruction::Pow { d, .. }
+            | Instruction::And { d, .. }
+            | Instruction::Or { d, .. }
+            | Instruction::Relation { d, .. }
+            | Instruction::Binary { d, .. } => Some(d),
+            Instruction::Call { .. }
+            | Instruction::Solve { .. }
+            | Instruction::Jump { .. }
+            | Instruction::JumpUnless { .. } => None,
+        }
+    }
 }
 
 /// A call of a function: its scalar outputs, or their derivatives for some inputs, are written to

@@ -7,6 +7,7 @@
 
 use super::linear_system::{LinearSolve, MOST_SMALL, SMALLEST_DETERMINANT, eliminate};
 use super::program::Outputs;
+use super::regions::shared_by_branches;
 use super::tape::{Instruction, Register};
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::FunctionId;
@@ -111,7 +112,7 @@ struct Translation<'a> {
     out: Value,
     /// Registers that are written once, before they are read.
     values: FxHashMap<Register, Value>,
-    /// Registers that a branch gives a value.
+    /// Registers that a branch gives a value and that are read outside of it.
     chosen: FxHashMap<Register, Variable>,
     /// Targets of jumps.
     blocks: FxHashMap<usize, Block>,
@@ -136,13 +137,13 @@ impl Translation<'_> {
                 Instruction::Jump { target } | Instruction::JumpUnless { target, .. } => {
                     targets.insert(target as usize);
                 }
-                Instruction::Move { d, .. } if !self.chosen.contains_key(&d) => {
-                    let variable = self.builder.declare_var(types::F64);
-                    self.chosen.insert(d, variable);
-                }
+                Instruction::Move { d, .. } => self.choose(d),
                 _ => {}
             }
         }
+        let mut shared: Vec<Register> = shared_by_branches(&code.tape).into_iter().collect();
+        shared.sort_unstable();
+        shared.into_iter().for_each(|register| self.choose(register));
         for target in targets {
             let block = self.builder.create_block();
             self.blocks.insert(target, block);
@@ -150,6 +151,11 @@ impl Translation<'_> {
         for (place, register) in code.outputs.iter().enumerate() {
             self.places.entry(*register).or_default().push(place);
         }
+    }
+
+    fn choose(&mut self, register: Register) {
+        let declare = || self.builder.declare_var(types::F64);
+        self.chosen.entry(register).or_insert_with(declare);
     }
 
     /// Begins a block where a jump leads to.
@@ -185,7 +191,10 @@ impl Translation<'_> {
         for at in self.places.get(&d).into_iter().flatten() {
             self.builder.ins().store(MemFlags::trusted(), value, self.out, 8 * *at as i32);
         }
-        self.values.insert(d, value);
+        match self.chosen.get(&d) {
+            Some(variable) => self.builder.def_var(*variable, value),
+            None => _ = self.values.insert(d, value),
+        }
     }
 
     /// Sets a value that must be finite.

@@ -49,11 +49,14 @@ impl Pool {
         }
     }
 
-    /// The entries of a list; the expression itself if it is none.
-    pub fn entries(&self, expr: Expr) -> Vec<Expr> {
-        match self.node(expr) {
-            Node::List(entries) => entries.to_vec(),
-            _ => vec![expr],
+    /// The entries of a list.
+    ///
+    /// # Panics
+    /// If the expression is none.
+    pub fn entries(&self, list: Expr) -> &[Expr] {
+        match self.node(list) {
+            Node::List(entries) => entries,
+            _ => panic!("only lists have entries"),
         }
     }
 
