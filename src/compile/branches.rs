@@ -13,10 +13,11 @@ use std::hash::Hash;
 pub(super) struct Branches {
     known: FxHashMap<Key, Branch>,
     is_open: Vec<bool>,
-    current: Branch,
+    /// Those around what is written now, innermost last; the first is what stands in none.
+    open: Vec<Branch>,
 }
 
-/// A branch by its number; the first is what stands in none.
+/// A branch by its number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct Branch(u32);
 
@@ -25,31 +26,65 @@ type Key = (Branch, Register, bool);
 
 impl Branches {
     pub(super) fn new() -> Branches {
-        Branches { known: FxHashMap::default(), is_open: vec![true], current: Branch(0) }
+        Branches { known: FxHashMap::default(), is_open: vec![true], open: vec![Branch(0)] }
     }
 
     /// Whether what is written now stands in a branch.
     pub(super) fn is_inside(&self) -> bool {
-        self.current != Branch(0)
+        self.open.len() > 1
     }
 
-    /// What follows stands in a branch within the present one, which is returned for
-    /// [`Branches::leave`].
-    pub(super) fn enter(&mut self, condition: Register, holds: bool) -> Branch {
-        let outer = self.current;
-        let fresh = Branch(self.is_open.len() as u32);
-        self.current = *self.known.entry((outer, condition, holds)).or_insert(fresh);
-        if self.current == fresh {
-            self.is_open.push(false);
-        }
-        self.is_open[self.current.0 as usize] = true;
-        outer
+    fn current(&self) -> Branch {
+        *self.open.last().expect("what stands in no branch is open")
+    }
+
+    fn fresh(&mut self) -> Branch {
+        self.is_open.push(false);
+        Branch(self.is_open.len() as u32 - 1)
+    }
+
+    fn open(&mut self, branch: Branch) {
+        self.is_open[branch.0 as usize] = true;
+        self.open.push(branch);
+    }
+
+    fn close(&mut self, branch: Branch) {
+        self.is_open[branch.0 as usize] = false;
+    }
+
+    /// What follows stands in a branch within the present one.
+    pub(super) fn enter(&mut self, condition: Register, holds: bool) {
+        let key = (self.current(), condition, holds);
+        let branch = match self.known.get(&key) {
+            Some(known) => *known,
+            None => {
+                let fresh = self.fresh();
+                self.known.insert(key, fresh);
+                fresh
+            }
+        };
+        self.open(branch);
     }
 
     /// What follows stands in the branch around the present one.
-    pub(super) fn leave(&mut self, outer: Branch) {
-        self.is_open[self.current.0 as usize] = false;
-        self.current = outer;
+    pub(super) fn leave(&mut self) {
+        let branch = self.open.pop().expect("a branch was entered");
+        self.close(branch);
+    }
+
+    /// What follows may be performed from any branch: it knows what stands in none, and itself.
+    /// Returns the branches to go on with.
+    pub(super) fn begin_routine(&mut self) -> Vec<Branch> {
+        let suspended = self.open.split_off(1);
+        suspended.iter().for_each(|branch| self.close(*branch));
+        let fresh = self.fresh();
+        self.open(fresh);
+        suspended
+    }
+
+    pub(super) fn end_routine(&mut self, suspended: Vec<Branch>) {
+        self.leave();
+        suspended.into_iter().for_each(|branch| self.open(branch));
     }
 
     /// Branches that come are none of those that were, whatever their conditions.
@@ -58,22 +93,45 @@ impl Branches {
     }
 }
 
-/// The registers of what was computed last, and in which branches.
+/// The registers of what was computed.
 #[derive(Debug)]
-pub(super) struct Computed<K>(FxHashMap<K, (Register, Branch)>);
+pub(super) struct Computed<K> {
+    /// In no branch.
+    outside: FxHashMap<K, Register>,
+    /// In branches, with that in which it was computed last.
+    inside: Inside<K>,
+}
+
+/// What was computed in branches.
+pub(super) type Inside<K> = FxHashMap<K, (Register, Branch)>;
 
 impl<K: Eq + Hash> Computed<K> {
     pub(super) fn new() -> Computed<K> {
-        Computed(FxHashMap::default())
+        Computed { outside: FxHashMap::default(), inside: FxHashMap::default() }
     }
 
     /// The register, if it was computed where the present branch knows it.
     pub(super) fn get(&self, key: &K, branches: &Branches) -> Option<Register> {
-        let (register, branch) = self.0.get(key)?;
+        if let Some(register) = self.outside.get(key) {
+            return Some(*register);
+        }
+        let (register, branch) = self.inside.get(key)?;
         branches.is_open[branch.0 as usize].then_some(*register)
     }
 
     pub(super) fn insert(&mut self, key: K, register: Register, branches: &Branches) {
-        self.0.insert(key, (register, branches.current));
+        match branches.is_inside() {
+            true => _ = self.inside.insert(key, (register, branches.current())),
+            false => _ = self.outside.insert(key, register),
+        }
+    }
+
+    /// What the branches know, which are suspended for a routine.
+    pub(super) fn suspend(&mut self) -> Inside<K> {
+        std::mem::take(&mut self.inside)
+    }
+
+    pub(super) fn resume(&mut self, inside: Inside<K>) {
+        self.inside = inside;
     }
 }

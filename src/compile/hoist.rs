@@ -131,7 +131,9 @@ fn operation(instruction: Instruction) -> Option<Operation> {
         | Instruction::Call { .. }
         | Instruction::Solve { .. }
         | Instruction::JumpUnless { .. }
-        | Instruction::Jump { .. } => return None,
+        | Instruction::Jump { .. }
+        | Instruction::Perform { .. }
+        | Instruction::Return { .. } => return None,
     };
     Some(Operation { key: (discriminant(&instruction), which, a, b), d, is_total })
 }

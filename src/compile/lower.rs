@@ -3,6 +3,7 @@
 use super::branches::{Branches, Computed};
 use super::hoist::{Hoisted, Hoisting};
 use super::linear_system::LinearSolve;
+use super::routines::{Routine, Routines};
 use super::tape::{Call, Instruction, Register, Tape};
 use crate::bytecode::Functions;
 use crate::symbolic::function::Value;
@@ -108,6 +109,7 @@ pub(super) struct TapeBuilder<'a> {
     read: FxHashSet<VarId>,
     hoisting: Hoisting,
     branches: Branches,
+    routines: Routines,
     origin: u32,
 }
 
@@ -123,6 +125,7 @@ impl<'a> TapeBuilder<'a> {
             read: FxHashSet::default(),
             hoisting: Hoisting::Never,
             branches: Branches::new(),
+            routines: Routines::default(),
             origin: u32::MAX,
         }
     }
@@ -133,7 +136,8 @@ impl<'a> TapeBuilder<'a> {
         self
     }
 
-    pub(super) fn finish(self) -> Tape {
+    pub(super) fn finish(mut self) -> Tape {
+        self.routines.append(&mut self.tape);
         self.tape
     }
 
@@ -156,6 +160,7 @@ impl<'a> TapeBuilder<'a> {
         // What branches computed from the value before, or on condition of it, is not known again.
         if self.read.contains(&variable) {
             self.branches.forget();
+            self.routines.forget();
         }
     }
 
@@ -167,6 +172,11 @@ impl<'a> TapeBuilder<'a> {
                 continue;
             }
             if !ready {
+                if let Some(routine) = self.routine(expr) {
+                    self.tape.code.push(routine.perform());
+                    self.known.insert(expr, routine.result, &self.branches);
+                    continue;
+                }
                 stack.push((expr, true));
                 match self.pool.node(expr) {
                     // Its branches are computed only where they are needed.
@@ -197,7 +207,10 @@ impl<'a> TapeBuilder<'a> {
             }
             Node::If(condition, a, b) => {
                 let condition = of(condition);
-                return self.branches(condition, *a, *b);
+                let before = self.tape.code.len();
+                let register = self.branches(condition, *a, *b);
+                self.routines.note(expr, self.tape.code.len() - before);
+                return register;
             }
             Node::Call { function, output, arguments } => {
                 return output + self.call(*function, Box::new([]), *arguments);
@@ -318,10 +331,34 @@ impl<'a> TapeBuilder<'a> {
         d
     }
 
+    /// The routine of what other branches compute as well, if it is long.
+    fn routine(&mut self, e: Expr) -> Option<Routine> {
+        if !self.branches.is_inside() {
+            return None;
+        }
+        if let Some(known) = self.routines.get(e) {
+            return Some(known);
+        }
+        if !self.routines.take_large(e) {
+            return None;
+        }
+        let link = self.registers.fresh();
+        let code = std::mem::take(&mut self.tape.code);
+        let known = (self.known.suspend(), self.several.suspend());
+        let suspended = self.branches.begin_routine();
+        let result = self.emit(e);
+        self.branches.end_routine(suspended);
+        self.known.resume(known.0);
+        self.several.resume(known.1);
+        self.tape.code.push(Instruction::Return { link });
+        let code = std::mem::replace(&mut self.tape.code, code);
+        Some(self.routines.add(e, (self.origin, code), [link, result]))
+    }
+
     fn branch(&mut self, condition: Register, holds: bool, d: Register, value: Expr) {
-        let outer = self.branches.enter(condition, holds);
+        self.branches.enter(condition, holds);
         let a = self.emit(value);
-        self.branches.leave(outer);
+        self.branches.leave();
         self.tape.code.push(Instruction::Move { d, a });
     }
 }

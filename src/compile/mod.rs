@@ -23,6 +23,7 @@ mod notices;
 mod program;
 mod regions;
 mod relations;
+mod routines;
 mod selection;
 mod slopes;
 mod system;

@@ -8,10 +8,11 @@ use super::linear_system::LinearSolve;
 use super::tape::{Instruction, Register, Tape};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// The registers of a tape without calls that are written in a branch and read outside of it.
-pub(super) fn shared_by_branches(tape: &Tape) -> FxHashSet<Register> {
+/// The registers that are written in a branch and read outside of it, or written in several. The
+/// code is that of a tape without calls, its routines where they are performed.
+pub(super) fn shared_by_branches(code: &[Instruction], tape: &Tape) -> FxHashSet<Register> {
     let mut regions = Regions::default();
-    for (at, instruction) in tape.code.iter().enumerate() {
+    for (at, instruction) in code.iter().enumerate() {
         regions.reach(at);
         instruction.for_each_operand(|register| regions.read(register));
         match *instruction {
@@ -21,7 +22,7 @@ pub(super) fn shared_by_branches(tape: &Tape) -> FxHashSet<Register> {
                 regions.begin(target as usize);
             }
             Instruction::Solve { solve } => regions.solve(&tape.solves[solve as usize]),
-            _ => regions.written.extend(instruction.result().map(|d| (d, regions.current()))),
+            _ => instruction.result().into_iter().for_each(|d| regions.write(d)),
         }
     }
     regions.shared
@@ -57,6 +58,12 @@ impl Regions {
         self.open.last().map(|(region, _)| *region)
     }
 
+    fn write(&mut self, register: Register) {
+        if self.written.insert(register, self.current()).is_some() {
+            self.shared.insert(register);
+        }
+    }
+
     fn read(&mut self, register: Register) {
         if let Some(Some(region)) = self.written.get(&register)
             && self.is_closed[*region]
@@ -72,7 +79,6 @@ impl Regions {
         }
         let entries = self.matrices.get(&solve.system).cloned().unwrap_or_default();
         entries.iter().chain(&solve.right).for_each(|register| self.read(*register));
-        let region = self.current();
-        self.written.extend((solve.d..).take(solve.right.len()).map(|d| (d, region)));
+        (solve.d..).take(solve.right.len()).for_each(|d| self.write(d));
     }
 }

@@ -93,6 +93,15 @@ pub(super) enum Instruction {
     Jump {
         target: u32,
     },
+    /// Runs the routine at the target; the link keeps the way back.
+    Perform {
+        target: u32,
+        link: Register,
+    },
+    /// Ends a routine.
+    Return {
+        link: Register,
+    },
 }
 
 impl Instruction {
@@ -116,7 +125,11 @@ impl Instruction {
                 visit(a);
                 visit(b);
             }
-            Instruction::Call { .. } | Instruction::Solve { .. } | Instruction::Jump { .. } => {}
+            Instruction::Call { .. }
+            | Instruction::Solve { .. }
+            | Instruction::Jump { .. }
+            | Instruction::Perform { .. }
+            | Instruction::Return { .. } => {}
         }
     }
 
@@ -139,7 +152,16 @@ impl Instruction {
             Instruction::Call { .. }
             | Instruction::Solve { .. }
             | Instruction::Jump { .. }
-            | Instruction::JumpUnless { .. } => None,
+            | Instruction::JumpUnless { .. }
+            | Instruction::Perform { .. }
+            | Instruction::Return { .. } => None,
+        }
+    }
+
+    /// The instruction in code that begins further behind.
+    pub(super) fn shift(&mut self, by: u32) {
+        if let Instruction::Jump { target } | Instruction::JumpUnless { target, .. } = self {
+            *target += by;
         }
     }
 }
@@ -160,6 +182,8 @@ pub(super) struct Tape {
     pub(super) code: Vec<Instruction>,
     pub(super) calls: Vec<Call>,
     pub(super) solves: Vec<LinearSolve>,
+    /// First instructions of the routines, ascending.
+    pub(super) routines: Vec<u32>,
     /// First instruction of every origin, ascending.
     pub(super) origins: Vec<(u32, u32)>,
 }
@@ -221,6 +245,11 @@ impl Tape {
                     }
                 }
                 Instruction::Jump { target } => at = target as usize,
+                Instruction::Perform { target, link } => {
+                    r[link as usize] = at as f64;
+                    at = target as usize;
+                }
+                Instruction::Return { link } => at = r[link as usize] as usize,
             }
         }
         Ok(())

@@ -25,9 +25,10 @@ use std::collections::BTreeSet;
 /// Sums of `0 · value` that are added to in turn.
 const CHECKS: usize = 4;
 
-/// Writes the code of a tape into a context; `None` if it has what cannot be translated.
+/// Writes the code of a tape, given without routines, into a context; `None` if it has what cannot be translated.
 pub(super) fn translate(
     code: &Outputs,
+    instructions: &[Instruction],
     pointer: Type,
     call_conv: CallConv,
     context: &mut Context,
@@ -57,6 +58,7 @@ pub(super) fn translate(
     let mut translation = Translation {
         builder,
         code,
+        instructions,
         pointer,
         memory,
         out,
@@ -71,11 +73,11 @@ pub(super) fn translate(
         next_check: 0,
     };
     translation.prepare();
-    for (at, instruction) in code.tape.code.iter().enumerate() {
+    for (at, instruction) in instructions.iter().enumerate() {
         translation.enter(at);
         translation.instruction(*instruction)?;
     }
-    translation.enter(code.tape.code.len());
+    translation.enter(instructions.len());
     translation.finish();
     Some(())
 }
@@ -107,6 +109,8 @@ extern "C" fn small_system(system: &mut [f64; SMALL_SYSTEM], n: usize) {
 struct Translation<'a> {
     builder: FunctionBuilder<'a>,
     code: &'a Outputs,
+    /// Those of the tape, routines where they are performed.
+    instructions: &'a [Instruction],
     pointer: Type,
     memory: Value,
     out: Value,
@@ -132,7 +136,7 @@ impl Translation<'_> {
     fn prepare(&mut self) {
         let code = self.code;
         let mut targets = BTreeSet::new();
-        for instruction in &code.tape.code {
+        for instruction in self.instructions {
             match *instruction {
                 Instruction::Jump { target } | Instruction::JumpUnless { target, .. } => {
                     targets.insert(target as usize);
@@ -141,7 +145,8 @@ impl Translation<'_> {
                 _ => {}
             }
         }
-        let mut shared: Vec<Register> = shared_by_branches(&code.tape).into_iter().collect();
+        let mut shared: Vec<Register> =
+            shared_by_branches(self.instructions, &code.tape).into_iter().collect();
         shared.sort_unstable();
         shared.into_iter().for_each(|register| self.choose(register));
         for target in targets {
@@ -278,7 +283,9 @@ impl Translation<'_> {
             }
             Instruction::Unary { id, d, a, function } => self.call_unary(id, d, a, function),
             Instruction::Binary { d, a, b, function, .. } => self.call_binary(d, a, b, function),
-            Instruction::Call { .. } => return None,
+            Instruction::Call { .. } | Instruction::Perform { .. } | Instruction::Return { .. } => {
+                return None;
+            }
             Instruction::Solve { solve } => {
                 let code = self.code;
                 self.solve(&code.tape.solves[solve as usize])?;
