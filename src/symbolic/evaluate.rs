@@ -75,10 +75,9 @@ fn node_value<E: Environment + ?Sized>(
         Node::And(a, b) => number(get(*a) != 0.0 && get(*b) != 0.0),
         Node::Or(a, b) => number(get(*a) != 0.0 || get(*b) != 0.0),
         Node::Not(a) => number(get(*a) == 0.0),
-        Node::Call { .. }
-        | Node::CallDerivative { .. }
-        | Node::List(_)
-        | Node::Solution { .. } => unreachable!("what has lists is evaluated with the pool"),
+        Node::Call { .. } | Node::CallDerivative { .. } | Node::List(_) | Node::Solution { .. } => {
+            unreachable!("what has lists is evaluated with the pool")
+        }
     }
 }
 
