@@ -268,8 +268,8 @@ mod tests {
         let mut pool = Pool::new();
         let x = pool.variable(VarId(0));
         let mut value = pool.function("exp", &[x]);
-        for step in 1..9 {
-            let limit = pool.constant(f64::from(step) / 9.0);
+        for step in 1..6 {
+            let limit = pool.constant(f64::from(step) / 6.0);
             let condition = pool.relation(RelationOperator::Less, x, limit);
             let (scaled, root) = (pool.div(value, limit), pool.function("sqrt", &[value]));
             let (first, second) = (pool.add(scaled, root), pool.sub(scaled, root));

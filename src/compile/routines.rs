@@ -2,7 +2,7 @@
 //!
 //! An if-expression that stands in several branches is evaluated only in those that are taken. It
 //! is written at most twice: where it is met first, and as a routine that all other branches
-//! perform. Otherwise a chain of functions with such branches, as media have, would be written as
+//! perform, and that runs at most once in a run of the tape. Otherwise a chain of functions with such branches, as media have, would be written as
 //! often as there are ways through it.
 
 use super::tape::{Instruction, Register, Tape};
@@ -19,7 +19,15 @@ pub(super) struct Routines {
     /// If-expressions with many instructions that have been written.
     large: FxHashSet<Expr>,
     /// Codes, with the equations they come from. Their jumps count from their own beginning.
-    codes: Vec<(u32, Vec<Instruction>)>,
+    codes: Vec<Code>,
+}
+
+/// The code of a routine.
+#[derive(Debug)]
+struct Code {
+    origin: u32,
+    link: Register,
+    instructions: Vec<Instruction>,
 }
 
 /// A routine: its number, the register of the way back, and that of its result.
@@ -57,11 +65,11 @@ impl Routines {
     pub(super) fn add(
         &mut self,
         e: Expr,
-        (origin, code): (u32, Vec<Instruction>),
+        (origin, instructions): (u32, Vec<Instruction>),
         [link, result]: [Register; 2],
     ) -> Routine {
         let routine = Routine { number: self.codes.len() as u32, link, result };
-        self.codes.push((origin, code));
+        self.codes.push(Code { origin, link, instructions });
         self.known.insert(e, routine);
         routine
     }
@@ -78,17 +86,17 @@ impl Routines {
         }
         let end = tape.code.len();
         tape.code.push(Instruction::Jump { target: 0 });
-        for (origin, mut code) in self.codes {
+        for Code { origin, link, mut instructions } in self.codes {
             let start = tape.code.len() as u32;
-            code.iter_mut().for_each(|instruction| instruction.shift(start));
+            instructions.iter_mut().for_each(|instruction| instruction.shift(start));
             tape.origins.push((start, origin));
-            tape.routines.push(start);
-            tape.code.append(&mut code);
+            tape.routines.push((start, link));
+            tape.code.append(&mut instructions);
         }
         tape.code[end] = Instruction::Jump { target: tape.code.len() as u32 };
         for instruction in &mut tape.code {
             if let Instruction::Perform { target, .. } = instruction {
-                *target = tape.routines[*target as usize];
+                *target = tape.routines[*target as usize].0;
             }
         }
     }
@@ -96,7 +104,7 @@ impl Routines {
 
 /// The code of a tape with every routine where it is performed; `None` if it is longer than that.
 pub(super) fn without_routines(tape: &Tape, longest: usize) -> Option<Vec<Instruction>> {
-    let Some(first) = tape.routines.first() else {
+    let Some((first, _)) = tape.routines.first() else {
         return (tape.code.len() <= longest).then(|| tape.code.clone());
     };
     let mut written = Vec::new();

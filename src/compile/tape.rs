@@ -93,7 +93,7 @@ pub(super) enum Instruction {
     Jump {
         target: u32,
     },
-    /// Runs the routine at the target; the link keeps the way back.
+    /// Runs the routine at the target unless it has run; the link keeps the way back.
     Perform {
         target: u32,
         link: Register,
@@ -182,8 +182,8 @@ pub(super) struct Tape {
     pub(super) code: Vec<Instruction>,
     pub(super) calls: Vec<Call>,
     pub(super) solves: Vec<LinearSolve>,
-    /// First instructions of the routines, ascending.
-    pub(super) routines: Vec<u32>,
+    /// First instructions of the routines, ascending, and their links.
+    pub(super) routines: Vec<(u32, Register)>,
     /// First instruction of every origin, ascending.
     pub(super) origins: Vec<(u32, u32)>,
 }
@@ -192,6 +192,7 @@ impl Tape {
     /// Runs it; on failure the number of the instruction without a finite value.
     pub(super) fn run(&self, memory: &mut Memory) -> Result<(), u32> {
         let Memory { registers: r, calls, systems } = memory;
+        self.routines.iter().for_each(|(_, link)| r[*link as usize] = 0.0);
         let mut at = 0usize;
         while let Some(instruction) = self.code.get(at) {
             at += 1;
@@ -246,8 +247,10 @@ impl Tape {
                 }
                 Instruction::Jump { target } => at = target as usize,
                 Instruction::Perform { target, link } => {
-                    r[link as usize] = at as f64;
-                    at = target as usize;
+                    if r[link as usize] == 0.0 {
+                        r[link as usize] = at as f64;
+                        at = target as usize;
+                    }
                 }
                 Instruction::Return { link } => at = r[link as usize] as usize,
             }
