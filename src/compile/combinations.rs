@@ -9,7 +9,7 @@
 use super::event_iteration::Stage;
 use super::system::System;
 use crate::dae::SortedDae;
-use crate::symbolic::Pool;
+use crate::symbolic::{Containing, Expr, Pool};
 use rustc_hash::FxHashMap;
 
 /// The most relations that are tried in all combinations.
@@ -21,13 +21,16 @@ const PASSES: usize = 10;
 pub(super) fn relations_of_blocks(pool: &Pool, sorted: &SortedDae) -> Vec<Vec<usize>> {
     let numbers: FxHashMap<_, _> =
         sorted.dae.relations.iter().enumerate().map(|(at, r)| (r.variable, at)).collect();
+    let mut containing = Containing::new(|pool, e| {
+        pool.as_variable(e).is_some_and(|variable| numbers.contains_key(&variable))
+    });
     let mut groups = Vec::new();
     for block in sorted.blocks.iter().chain(&sorted.event_blocks).chain(&sorted.initial_blocks) {
         let values = block.assignments().iter().map(|a| a.value).chain(block.residuals());
-        let variables = values.flat_map(|e| pool.variables(e));
-        let mut group: Vec<usize> = variables.filter_map(|v| numbers.get(&v).copied()).collect();
+        let values: Vec<Expr> = values.filter(|e| containing.contains(pool, *e)).collect();
+        let mut group: Vec<usize> = Vec::new();
+        pool.visit_variables(&values, |v| group.extend(numbers.get(&v).copied()));
         group.sort_unstable();
-        group.dedup();
         if group.len() > 1 {
             groups.push(group);
         }

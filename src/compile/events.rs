@@ -6,7 +6,7 @@ use super::program::{Outputs, Step, compile_outputs};
 use super::tape::Register;
 use crate::dae::{Assignment, Equation, Kind, Level, SortedDae};
 use crate::flatten::BaseType;
-use crate::symbolic::{Expr, Pool, VarId, linear_in};
+use crate::symbolic::{Expr, Pool, VarId, VariableCollection, linear_in};
 
 /// The part of a program that acts at events alone.
 #[derive(Debug, Clone, Default)]
@@ -169,9 +169,12 @@ fn shows_samples(pool: &Pool, sorted: &SortedDae) -> bool {
         None => true,
     };
     let shown = dae.equations.iter().chain(&dae.events.equations).filter(is_shown);
-    let mut used =
-        shown.flat_map(|e| pool.variables(e.right).into_iter().chain(pool.variables(e.left)));
-    used.any(|v| dae.events.samples.iter().any(|s| s.variable == v))
+    let mut variables = VariableCollection::new(pool);
+    let mut any = false;
+    for side in shown.flat_map(|e| [e.left, e.right]) {
+        variables.add(side, |v| any |= dae.events.samples.iter().any(|s| s.variable == v));
+    }
+    any
 }
 
 fn pairs(list: impl Iterator<Item = (Expr, Expr)>) -> Vec<Expr> {
@@ -180,10 +183,9 @@ fn pairs(list: impl Iterator<Item = (Expr, Expr)>) -> Vec<Expr> {
 
 /// `slope * time + rest` with a known slope that is not zero and a rest of parameters.
 pub(super) fn linear_in_time(pool: &mut Pool, sorted: &SortedDae, e: Expr) -> Option<(f64, Expr)> {
-    let parametric = |v: &VarId| {
-        *v == VarId(0) || matches!(sorted.dae.variable(*v).kind, Kind::Parameter { .. })
-    };
-    if !pool.variables(e).iter().all(parametric) {
+    let varies =
+        |v: VarId| v != VarId(0) && !matches!(sorted.dae.variable(v).kind, Kind::Parameter { .. });
+    if pool.any_variable(e, varies) {
         return None;
     }
     let linear = linear_in(pool, e, VarId(0))?;

@@ -132,7 +132,9 @@ fn operation(instruction: Instruction) -> Option<Operation> {
         | Instruction::Given { .. }
         | Instruction::Solve { .. }
         | Instruction::JumpUnless { .. }
-        | Instruction::Jump { .. } => return None,
+        | Instruction::Jump { .. }
+        | Instruction::Perform { .. }
+        | Instruction::Return { .. } => return None,
     };
     Some(Operation { key: (discriminant(&instruction), which, a, b), d, is_total })
 }

@@ -1,12 +1,14 @@
 //! Symbolic expressions become instructions, common subexpressions computed once.
 
+use super::branches::{Branches, Computed};
 use super::hoist::{Hoisted, Hoisting};
 use super::linear_system::LinearSolve;
+use super::routines::{Routine, Routines};
 use super::tape::{Call, Instruction, Register, Tape};
 use crate::bytecode::Functions;
 use crate::symbolic::function::Value;
 use crate::symbolic::{Expr, Node, Pool, VarId};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
 /// The registers of a program: one for every variable, then constants and temporaries.
@@ -85,8 +87,8 @@ impl Registers {
 /// What has several results.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 enum Several {
-    /// A call: function, inputs that it is differentiated for, arguments.
-    Call(u32, Box<[u32]>, Box<[Expr]>),
+    /// A call: function, inputs that it is differentiated for, the list of its arguments.
+    Call(u32, Box<[u32]>, Expr),
     /// The factors of a matrix, which are in its workspace.
     Factors(Expr),
     /// The solution of a linear system: matrix, right side, whether it is a derivative.
@@ -98,18 +100,16 @@ pub(super) struct TapeBuilder<'a> {
     pool: &'a Pool,
     registers: &'a mut Registers,
     tape: Tape,
-    known: FxHashMap<Expr, Register>,
-    /// Keys of `known` in the order they came, to forget what a branch computed.
-    log: Vec<Expr>,
+    known: Computed<Expr>,
     /// First registers of what has several results.
-    several: FxHashMap<Several, Register>,
-    /// Keys of `several` in the order they came.
-    several_log: Vec<Several>,
+    several: Computed<Several>,
     /// Registers of variables that are not in their own.
     moved: FxHashMap<VarId, Register>,
+    /// Variables that have been read.
+    read: FxHashSet<VarId>,
     hoisting: Hoisting,
-    /// How many branches are around what is written.
-    depth: u32,
+    branches: Branches,
+    routines: Routines,
     origin: u32,
 }
 
@@ -119,13 +119,13 @@ impl<'a> TapeBuilder<'a> {
             pool,
             registers,
             tape: Tape::default(),
-            known: FxHashMap::default(),
-            log: Vec::new(),
-            several: FxHashMap::default(),
-            several_log: Vec::new(),
+            known: Computed::new(),
+            several: Computed::new(),
             moved: FxHashMap::default(),
+            read: FxHashSet::default(),
             hoisting: Hoisting::Never,
-            depth: 0,
+            branches: Branches::new(),
+            routines: Routines::default(),
             origin: u32::MAX,
         }
     }
@@ -136,7 +136,8 @@ impl<'a> TapeBuilder<'a> {
         self
     }
 
-    pub(super) fn finish(self) -> Tape {
+    pub(super) fn finish(mut self) -> Tape {
+        self.routines.append(&mut self.tape);
         self.tape
     }
 
@@ -156,16 +157,26 @@ impl<'a> TapeBuilder<'a> {
     pub(super) fn store(&mut self, variable: VarId, value: Expr) {
         let a = self.emit(value);
         self.tape.code.push(Instruction::Move { d: variable.0, a });
+        // What branches computed from the value before, or on condition of it, is not known again.
+        if self.read.contains(&variable) {
+            self.branches.forget();
+            self.routines.forget();
+        }
     }
 
     /// Computes an expression; returns where its value is.
     pub(super) fn emit(&mut self, root: Expr) -> Register {
         let mut stack = vec![(root, false)];
         while let Some((expr, ready)) = stack.pop() {
-            if self.known.contains_key(&expr) {
+            if self.known.get(&expr, &self.branches).is_some() {
                 continue;
             }
             if !ready {
+                if let Some(routine) = self.routine(expr) {
+                    self.tape.code.push(routine.perform());
+                    self.known.insert(expr, routine.result, &self.branches);
+                    continue;
+                }
                 stack.push((expr, true));
                 match self.pool.node(expr) {
                     // Its branches are computed only where they are needed.
@@ -175,31 +186,41 @@ impl<'a> TapeBuilder<'a> {
                 continue;
             }
             let register = self.instruction(expr);
-            self.known.insert(expr, register);
-            self.log.push(expr);
+            self.known.insert(expr, register, &self.branches);
         }
-        self.known[&root]
+        self.register(root)
+    }
+
+    /// Where an expression is that has been computed.
+    fn register(&self, expr: Expr) -> Register {
+        self.known.get(&expr, &self.branches).expect("operands are computed first")
     }
 
     fn instruction(&mut self, expr: Expr) -> Register {
-        let of = |a: &Expr| self.known[a];
+        let of = |a: &Expr| self.register(*a);
         let node = self.pool.node(expr);
         match node {
             Node::Constant(number) => return self.registers.constant(number.0),
-            Node::Variable(v) => return self.moved.get(v).copied().unwrap_or(v.0),
+            Node::Variable(v) => {
+                self.read.insert(*v);
+                return self.moved.get(v).copied().unwrap_or(v.0);
+            }
             Node::If(condition, a, b) => {
                 let condition = of(condition);
-                return self.branches(condition, *a, *b);
+                let before = self.tape.code.len();
+                let register = self.branches(condition, *a, *b);
+                self.routines.note(expr, self.tape.code.len() - before);
+                return register;
             }
             Node::Call { function, output, arguments } => {
-                let d = output + self.call(*function, Box::new([]), arguments.clone());
+                let d = output + self.call(*function, Box::new([]), *arguments);
                 if self.registers.functions.codes[*function as usize].may_lack {
                     self.tape.code.push(Instruction::Given { a: d, function: *function });
                 }
                 return d;
             }
             Node::CallDerivative { function, output, inputs, arguments } => {
-                return output + self.call(*function, inputs.clone(), arguments.clone());
+                return output + self.call(*function, inputs.clone(), *arguments);
             }
             // Its entries are read where it is used.
             Node::List(_) => return 0,
@@ -245,7 +266,7 @@ impl<'a> TapeBuilder<'a> {
             | Node::List(_)
             | Node::Solution { .. } => unreachable!("returned above"),
         };
-        let in_branch = self.depth > 0;
+        let in_branch = self.branches.is_inside();
         match self.registers.hoist(instruction, self.hoisting, in_branch, self.origin) {
             Some(hoisted) => hoisted,
             None => {
@@ -256,80 +277,92 @@ impl<'a> TapeBuilder<'a> {
     }
 
     /// A call, once for all its outputs; returns the first register of its results.
-    fn call(&mut self, function: u32, inputs: Box<[u32]>, arguments: Box<[Expr]>) -> Register {
-        let key = Several::Call(function, inputs.clone(), arguments.clone());
-        if let Some(known) = self.several.get(&key) {
-            return *known;
+    fn call(&mut self, function: u32, inputs: Box<[u32]>, arguments: Expr) -> Register {
+        let key = Several::Call(function, inputs.clone(), arguments);
+        if let Some(known) = self.several.get(&key, &self.branches) {
+            return known;
         }
         let d = self.registers.row(self.registers.functions.n_outputs(function));
         self.tape.code.push(Instruction::Call { call: self.tape.calls.len() as u32 });
-        let arguments = arguments.iter().map(|a| self.known[a]).collect();
+        let arguments = self.pool.entries(arguments).iter().map(|a| self.register(*a)).collect();
         self.tape.calls.push(Call { function, inputs, arguments, d });
-        self.remember(key, d);
+        self.several.insert(key, d, &self.branches);
         d
     }
 
     /// The solution of a linear system, once for all unknowns; returns the register of the first.
     fn solution(&mut self, matrix: Expr, right: Expr, is_slope: bool) -> Register {
         let key = Several::Solution(matrix, right, is_slope);
-        if let Some(known) = self.several.get(&key) {
-            return *known;
+        if let Some(known) = self.several.get(&key, &self.branches) {
+            return known;
         }
         let right: Box<[Register]> =
-            self.pool.entries(right).iter().map(|entry| self.known[entry]).collect();
+            self.pool.entries(right).iter().map(|entry| self.register(*entry)).collect();
         let d = self.registers.row(right.len());
         let system = self.registers.workspace(matrix, right.len());
-        let entries = match self.several.contains_key(&Several::Factors(matrix)) {
-            true => None,
-            false => {
-                self.remember(Several::Factors(matrix), 0);
+        let factors = Several::Factors(matrix);
+        let entries = match self.several.get(&factors, &self.branches) {
+            Some(_) => None,
+            None => {
+                self.several.insert(factors, 0, &self.branches);
                 Some(self.entries(matrix))
             }
         };
         self.tape.code.push(Instruction::Solve { solve: self.tape.solves.len() as u32 });
         self.tape.solves.push(LinearSolve { system, entries, right, d, is_slope });
-        self.remember(key, d);
+        self.several.insert(key, d, &self.branches);
         d
     }
 
     /// The entries of a matrix that are not always zero.
     fn entries(&self, matrix: Expr) -> Box<[(u32, Register)]> {
-        let entries = self.pool.entries(matrix).into_iter().enumerate();
-        let nonzero = entries.filter(|(_, e)| self.pool.as_constant(*e) != Some(0.0));
-        nonzero.map(|(place, entry)| (place as u32, self.known[&entry])).collect()
-    }
-
-    fn remember(&mut self, key: Several, d: Register) {
-        self.several_log.push(key.clone());
-        self.several.insert(key, d);
+        let entries = self.pool.entries(matrix).iter().enumerate();
+        let nonzero = entries.filter(|(_, e)| self.pool.as_constant(**e) != Some(0.0));
+        nonzero.map(|(place, entry)| (place as u32, self.register(*entry))).collect()
     }
 
     fn branches(&mut self, condition: Register, a: Expr, b: Expr) -> Register {
         let d = self.registers.fresh();
         let skip = self.tape.code.len();
         self.tape.code.push(Instruction::JumpUnless { a: condition, target: 0 });
-        self.branch(d, a);
+        self.branch(condition, true, d, a);
         let end = self.tape.code.len();
         self.tape.code.push(Instruction::Jump { target: 0 });
         self.tape.code[skip] =
             Instruction::JumpUnless { a: condition, target: self.tape.code.len() as u32 };
-        self.branch(d, b);
+        self.branch(condition, false, d, b);
         self.tape.code[end] = Instruction::Jump { target: self.tape.code.len() as u32 };
         d
     }
 
-    /// What a branch computes is not known behind it.
-    fn branch(&mut self, d: Register, value: Expr) {
-        let (before, several) = (self.log.len(), self.several_log.len());
-        self.depth += 1;
+    /// The routine of what other branches compute as well, if it is long.
+    fn routine(&mut self, e: Expr) -> Option<Routine> {
+        if !self.branches.is_inside() {
+            return None;
+        }
+        if let Some(known) = self.routines.get(e) {
+            return Some(known);
+        }
+        if !self.routines.take_large(e) {
+            return None;
+        }
+        let link = self.registers.fresh();
+        let code = std::mem::take(&mut self.tape.code);
+        let known = (self.known.suspend(), self.several.suspend());
+        let suspended = self.branches.begin_routine();
+        let result = self.emit(e);
+        self.branches.end_routine(suspended);
+        self.known.resume(known.0);
+        self.several.resume(known.1);
+        self.tape.code.push(Instruction::Return { link });
+        let code = std::mem::replace(&mut self.tape.code, code);
+        Some(self.routines.add(e, (self.origin, code), [link, result]))
+    }
+
+    fn branch(&mut self, condition: Register, holds: bool, d: Register, value: Expr) {
+        self.branches.enter(condition, holds);
         let a = self.emit(value);
-        self.depth -= 1;
+        self.branches.leave();
         self.tape.code.push(Instruction::Move { d, a });
-        for expr in self.log.drain(before..) {
-            self.known.remove(&expr);
-        }
-        for key in self.several_log.drain(several..) {
-            self.several.remove(&key);
-        }
     }
 }

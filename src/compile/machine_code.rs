@@ -11,6 +11,7 @@
 #![allow(unsafe_code, reason = "machine code made at run time can only be called so")]
 
 use super::program::Outputs;
+use super::routines::without_routines;
 use super::tape::Register;
 use super::translation::translate;
 use cranelift_jit::{JITBuilder, JITModule};
@@ -74,14 +75,12 @@ pub(super) struct Function {
 impl Function {
     /// Translates a tape, if it consists of what can be translated and the machine is supported.
     fn new(code: &Outputs) -> Option<Function> {
-        let length = code.tape.code.len();
+        let length = without_routines(&code.tape, LONGEST)?.len();
         if length <= LONG {
             Function::translated(code, "speed", "backtracking")
-        } else if length <= LONGEST {
+        } else {
             // Better code would take too long.
             Function::translated(code, "none", "single_pass")
-        } else {
-            None
         }
     }
 
@@ -98,7 +97,14 @@ impl Function {
         let mut module = JITModule::new(builder);
         let mut context = module.make_context();
         let pointer = module.target_config().pointer_type();
-        translate(code, pointer, module.target_config().default_call_conv, &mut context)?;
+        let instructions = without_routines(&code.tape, LONGEST)?;
+        translate(
+            code,
+            &instructions,
+            pointer,
+            module.target_config().default_call_conv,
+            &mut context,
+        )?;
         let signature = &context.func.signature;
         let id = module.declare_function("tape", Linkage::Export, signature).ok()?;
         module.define_function(id, &mut context).ok()?;
@@ -254,6 +260,33 @@ mod tests {
                     prop_assert!(out.to_bits() == expected.to_bits() || expected.is_nan());
                 }
             }
+        }
+    }
+
+    #[test]
+    fn machine_code_keeps_what_branches_share() {
+        let mut pool = Pool::new();
+        let x = pool.variable(VarId(0));
+        let mut value = pool.function("exp", &[x]);
+        for step in 1..6 {
+            let limit = pool.constant(f64::from(step) / 6.0);
+            let condition = pool.relation(RelationOperator::Less, x, limit);
+            let (scaled, root) = (pool.div(value, limit), pool.function("sqrt", &[value]));
+            let (first, second) = (pool.add(scaled, root), pool.sub(scaled, root));
+            let chosen = pool.if_then_else(condition, first, second);
+            let again = pool.if_then_else(condition, root, scaled);
+            value = pool.add(chosen, again);
+        }
+        let outputs = [value];
+        let (code, mut memory) = compiled(&pool, &outputs);
+        let function = Function::translated(&code, "speed", "backtracking");
+        let function = function.expect("all of it can be translated");
+        for x in [0.05, 0.3, 0.52, 0.8, 1.5] {
+            memory[0] = x;
+            let mut out = [f64::NAN];
+            assert!(function.call(&memory, &mut out));
+            code.tape.run(&mut memory).expect("all values are finite");
+            assert_eq!(out[0].to_bits(), memory[code.outputs[0] as usize].to_bits());
         }
     }
 

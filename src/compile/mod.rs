@@ -1,6 +1,7 @@
 //! Compilation: a sorted system becomes a [`Program`] of instruction tapes, and every thread runs
 //! its own [`System`] of it. Tapes that run often become machine code.
 
+mod branches;
 mod combinations;
 mod continuation;
 pub mod errors;
@@ -20,7 +21,9 @@ mod memory;
 mod newton;
 mod notices;
 mod program;
+mod regions;
 mod relations;
+mod routines;
 mod selection;
 mod slopes;
 mod system;

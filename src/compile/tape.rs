@@ -98,6 +98,15 @@ pub(super) enum Instruction {
     Jump {
         target: u32,
     },
+    /// Runs the routine at the target unless it has run; the link keeps the way back.
+    Perform {
+        target: u32,
+        link: Register,
+    },
+    /// Ends a routine.
+    Return {
+        link: Register,
+    },
 }
 
 impl Instruction {
@@ -122,7 +131,44 @@ impl Instruction {
                 visit(a);
                 visit(b);
             }
-            Instruction::Call { .. } | Instruction::Solve { .. } | Instruction::Jump { .. } => {}
+            Instruction::Call { .. }
+            | Instruction::Solve { .. }
+            | Instruction::Jump { .. }
+            | Instruction::Perform { .. }
+            | Instruction::Return { .. } => {}
+        }
+    }
+
+    /// The register written, but for those of calls and linear systems.
+    pub(super) fn result(&self) -> Option<Register> {
+        match *self {
+            Instruction::Move { d, .. }
+            | Instruction::Neg { d, .. }
+            | Instruction::Not { d, .. }
+            | Instruction::Unary { d, .. }
+            | Instruction::Add { d, .. }
+            | Instruction::Sub { d, .. }
+            | Instruction::Mul { d, .. }
+            | Instruction::Div { d, .. }
+            | Instruction::Pow { d, .. }
+            | Instruction::And { d, .. }
+            | Instruction::Or { d, .. }
+            | Instruction::Relation { d, .. }
+            | Instruction::Binary { d, .. } => Some(d),
+            Instruction::Call { .. }
+            | Instruction::Given { .. }
+            | Instruction::Solve { .. }
+            | Instruction::Jump { .. }
+            | Instruction::JumpUnless { .. }
+            | Instruction::Perform { .. }
+            | Instruction::Return { .. } => None,
+        }
+    }
+
+    /// The instruction in code that begins further behind.
+    pub(super) fn shift(&mut self, by: u32) {
+        if let Instruction::Jump { target } | Instruction::JumpUnless { target, .. } = self {
+            *target += by;
         }
     }
 }
@@ -143,6 +189,8 @@ pub(super) struct Tape {
     pub(super) code: Vec<Instruction>,
     pub(super) calls: Vec<Call>,
     pub(super) solves: Vec<LinearSolve>,
+    /// First instructions of the routines, ascending, and their links.
+    pub(super) routines: Vec<(u32, Register)>,
     /// First instruction of every origin, ascending.
     pub(super) origins: Vec<(u32, u32)>,
 }
@@ -151,6 +199,7 @@ impl Tape {
     /// Runs it; on failure the number of the instruction without a finite value.
     pub(super) fn run(&self, memory: &mut Memory) -> Result<(), u32> {
         let Memory { registers: r, calls, systems } = memory;
+        self.routines.iter().for_each(|(_, link)| r[*link as usize] = 0.0);
         let mut at = 0usize;
         while let Some(instruction) = self.code.get(at) {
             at += 1;
@@ -209,6 +258,13 @@ impl Tape {
                     }
                 }
                 Instruction::Jump { target } => at = target as usize,
+                Instruction::Perform { target, link } => {
+                    if r[link as usize] == 0.0 {
+                        r[link as usize] = at as f64;
+                        at = target as usize;
+                    }
+                }
+                Instruction::Return { link } => at = r[link as usize] as usize,
             }
         }
         Ok(())

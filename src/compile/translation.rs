@@ -7,6 +7,7 @@
 
 use super::linear_system::{LinearSolve, MOST_SMALL, SMALLEST_DETERMINANT, eliminate};
 use super::program::Outputs;
+use super::regions::shared_by_branches;
 use super::tape::{Instruction, Register};
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::FunctionId;
@@ -24,9 +25,10 @@ use std::collections::BTreeSet;
 /// Sums of `0 · value` that are added to in turn.
 const CHECKS: usize = 4;
 
-/// Writes the code of a tape into a context; `None` if it has what cannot be translated.
+/// Writes the code of a tape, given without routines, into a context; `None` if it has what cannot be translated.
 pub(super) fn translate(
     code: &Outputs,
+    instructions: &[Instruction],
     pointer: Type,
     call_conv: CallConv,
     context: &mut Context,
@@ -56,6 +58,7 @@ pub(super) fn translate(
     let mut translation = Translation {
         builder,
         code,
+        instructions,
         pointer,
         memory,
         out,
@@ -70,11 +73,11 @@ pub(super) fn translate(
         next_check: 0,
     };
     translation.prepare();
-    for (at, instruction) in code.tape.code.iter().enumerate() {
+    for (at, instruction) in instructions.iter().enumerate() {
         translation.enter(at);
         translation.instruction(*instruction)?;
     }
-    translation.enter(code.tape.code.len());
+    translation.enter(instructions.len());
     translation.finish();
     Some(())
 }
@@ -106,12 +109,14 @@ extern "C" fn small_system(system: &mut [f64; SMALL_SYSTEM], n: usize) {
 struct Translation<'a> {
     builder: FunctionBuilder<'a>,
     code: &'a Outputs,
+    /// Those of the tape, routines where they are performed.
+    instructions: &'a [Instruction],
     pointer: Type,
     memory: Value,
     out: Value,
     /// Registers that are written once, before they are read.
     values: FxHashMap<Register, Value>,
-    /// Registers that a branch gives a value.
+    /// Registers that a branch gives a value and that are read outside of it.
     chosen: FxHashMap<Register, Variable>,
     /// Targets of jumps.
     blocks: FxHashMap<usize, Block>,
@@ -131,18 +136,19 @@ impl Translation<'_> {
     fn prepare(&mut self) {
         let code = self.code;
         let mut targets = BTreeSet::new();
-        for instruction in &code.tape.code {
+        for instruction in self.instructions {
             match *instruction {
                 Instruction::Jump { target } | Instruction::JumpUnless { target, .. } => {
                     targets.insert(target as usize);
                 }
-                Instruction::Move { d, .. } if !self.chosen.contains_key(&d) => {
-                    let variable = self.builder.declare_var(types::F64);
-                    self.chosen.insert(d, variable);
-                }
+                Instruction::Move { d, .. } => self.choose(d),
                 _ => {}
             }
         }
+        let mut shared: Vec<Register> =
+            shared_by_branches(self.instructions, &code.tape).into_iter().collect();
+        shared.sort_unstable();
+        shared.into_iter().for_each(|register| self.choose(register));
         for target in targets {
             let block = self.builder.create_block();
             self.blocks.insert(target, block);
@@ -150,6 +156,11 @@ impl Translation<'_> {
         for (place, register) in code.outputs.iter().enumerate() {
             self.places.entry(*register).or_default().push(place);
         }
+    }
+
+    fn choose(&mut self, register: Register) {
+        let declare = || self.builder.declare_var(types::F64);
+        self.chosen.entry(register).or_insert_with(declare);
     }
 
     /// Begins a block where a jump leads to.
@@ -185,7 +196,10 @@ impl Translation<'_> {
         for at in self.places.get(&d).into_iter().flatten() {
             self.builder.ins().store(MemFlags::trusted(), value, self.out, 8 * *at as i32);
         }
-        self.values.insert(d, value);
+        match self.chosen.get(&d) {
+            Some(variable) => self.builder.def_var(*variable, value),
+            None => _ = self.values.insert(d, value),
+        }
     }
 
     /// Sets a value that must be finite.
@@ -269,7 +283,12 @@ impl Translation<'_> {
             }
             Instruction::Unary { id, d, a, function } => self.call_unary(id, d, a, function),
             Instruction::Binary { d, a, b, function, .. } => self.call_binary(d, a, b, function),
-            Instruction::Call { .. } | Instruction::Given { .. } => return None,
+            Instruction::Call { .. }
+            | Instruction::Given { .. }
+            | Instruction::Perform { .. }
+            | Instruction::Return { .. } => {
+                return None;
+            }
             Instruction::Solve { solve } => {
                 let code = self.code;
                 self.solve(&code.tape.solves[solve as usize])?;

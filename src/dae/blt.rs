@@ -44,13 +44,10 @@ pub(super) fn incidence(dae: &Dae, equations: &[Equation], unknowns: &[VarId]) -
     let column: FxHashMap<VarId, usize> =
         unknowns.iter().enumerate().map(|(at, v)| (*v, at)).collect();
     let rows = equations.iter().map(|equation| {
-        let mut row: Vec<usize> = [equation.left, equation.right]
-            .iter()
-            .flat_map(|side| dae.pool.variables(*side))
-            .filter_map(|v| column.get(&v).copied())
-            .collect();
+        let mut row = Vec::new();
+        let sides = [equation.left, equation.right];
+        dae.pool.visit_variables(&sides, |v| row.extend(column.get(&v).copied()));
         row.sort_unstable();
-        row.dedup();
         row
     });
     Bipartite::new(unknowns.len(), rows.collect::<Vec<_>>())
@@ -146,9 +143,8 @@ pub(super) fn is_safe(dae: &Dae, divisor: Expr) -> bool {
     if let Some(value) = dae.pool.as_constant(divisor) {
         return value != 0.0;
     }
-    let variables = dae.pool.variables(divisor);
-    let mut kinds = variables.iter().map(|v| dae.variable(*v).kind);
-    kinds.all(|kind| matches!(kind, Kind::Parameter { .. })) && {
+    let varies = |v: VarId| !matches!(dae.variable(v).kind, Kind::Parameter { .. });
+    !dae.pool.any_variable(divisor, varies) && {
         let value = dae.defaults.of(dae, divisor);
         value.is_finite() && value != 0.0
     }

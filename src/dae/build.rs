@@ -9,7 +9,7 @@ use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::flatten::{self, BaseType, FlatModel, Part, Variability};
 use crate::source::Span;
-use crate::symbolic::{Expr, Pool, VarId};
+use crate::symbolic::{Containing, Expr, Pool, VarId};
 use crate::syntax::ast::{self, EquationKind, Expression, ExpressionKind};
 use indexmap::IndexSet;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -48,6 +48,10 @@ pub(super) struct Builder<'a> {
     pub(super) statement_functions: usize,
     /// Functions that cannot be expressions.
     pub(super) functions: super::function::Instances,
+    /// What calls came to.
+    pub(super) repeated: super::function::Repeated,
+    /// Whether expressions contain variables of functions without value.
+    pub(super) undefined: Containing<fn(&Pool, Expr) -> bool>,
     /// How many calls of impure functions were read.
     pub(super) impure_calls: u32,
     /// The calls of functions that write, in the statement at hand.
@@ -95,6 +99,8 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
         statement_functions: 0,
         inlined: 0,
         functions: super::function::Instances::default(),
+        repeated: FxHashMap::default(),
+        undefined: Containing::new(|pool, e| pool.as_constant(e).is_some_and(f64::is_nan)),
         impure_calls: 0,
         written: Vec::new(),
         instance: None,

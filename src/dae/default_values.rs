@@ -36,7 +36,7 @@ impl DefaultValues {
     /// The value of an expression, NaN where it has none, or contains a variable without one.
     pub(super) fn of(&self, dae: &Dae, e: Expr) -> f64 {
         // A condition on what is not known would choose a branch.
-        if dae.pool.variables(e).iter().any(|v| self.get(*v).is_nan()) {
+        if dae.pool.any_variable(e, |v| self.get(v).is_nan()) {
             return f64::NAN;
         }
         let machine = RefCell::new(Machine::default());

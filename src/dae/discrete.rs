@@ -181,10 +181,9 @@ fn check_constant_between_events(
     value: Expr,
     equation: Equation,
 ) -> Result<(), Diagnostic> {
-    let varies = |v: &VarId| {
-        dae.is_unknown(*v) || matches!(dae.variable(*v).kind, Kind::Time | Kind::Delayed)
-    };
-    match dae.pool.variables(value).iter().any(varies) {
+    let varies =
+        |v: VarId| dae.is_unknown(v) || matches!(dae.variable(v).kind, Kind::Time | Kind::Delayed);
+    match dae.pool.any_variable(value, varies) {
         false => Ok(()),
         true => Err(fault!(NOT_SUPPORTED,
             "`{}` is discrete, but its equation may change between events",

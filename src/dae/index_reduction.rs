@@ -218,8 +218,8 @@ impl Continuous {
         for origin in &origins[self.equations.len()..] {
             let equation = dae.equations[self.equations[*origin]];
             let Equation { left, right, span, .. } = equation;
-            let delayed = |v: &VarId| dae.variable(*v).kind == Kind::Delayed;
-            if [left, right].iter().any(|side| dae.pool.variables(*side).iter().any(delayed)) {
+            let delayed = |v: VarId| dae.variable(v).kind == Kind::Delayed;
+            if [left, right].iter().any(|side| dae.pool.any_variable(*side, delayed)) {
                 return Err(fault!(
                     super::errors::NOT_SUPPORTED,
                     "this equation constrains states, but what it delays cannot be differentiated"

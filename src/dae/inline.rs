@@ -110,9 +110,8 @@ impl Call<'_, '_> {
             .collect();
         let mut scalars = Vec::new();
         outputs.iter().for_each(|output| output.append_scalars(&mut scalars));
-        let pool = &self.builder.dae.pool;
-        let missing = |e: Expr| pool.as_constant(e).is_some_and(f64::is_nan);
-        if self.unassigned || pool.reachable(&scalars).into_iter().any(missing) {
+        let Builder { dae, undefined, .. } = &mut *self.builder;
+        if self.unassigned || scalars.iter().any(|e| undefined.contains(&dae.pool, *e)) {
             return Err(fault!(
                 NOT_SUPPORTED,
                 "the function `{}` uses or returns a variable that it does not always assign",

@@ -126,7 +126,7 @@ fn write_matrix(sorted: &SortedDae, solved: &LinearLoop, out: &mut String) -> st
     let Some(first) = solved.assignments.first() else { return Ok(()) };
     let Node::Solution { matrix, right, .. } = *pool.node(first.value) else { return Ok(()) };
     let (entries, rights) = (pool.entries(matrix), pool.entries(right));
-    for (row, right) in entries.chunks(rights.len()).zip(&rights) {
+    for (row, right) in entries.chunks(rights.len()).zip(rights) {
         let row: Vec<String> = row.iter().map(|e| text(sorted, *e)).collect();
         writeln!(out, "  {{{}}} | {}", row.join(", "), text(sorted, *right))?;
     }

@@ -58,8 +58,10 @@ impl Target for Builder<'_> {
         let relation = self.dae.pool.relation(operator, a, b);
         let equality = matches!(operator, RelationOperator::Equal | RelationOperator::NotEqual);
         // `a == b` of Integers and Booleans has no zero crossing of its own: it changes when they do.
-        let varies = self.varies(a) || self.varies(b);
-        if live || equality || !varies || self.as_constant(relation).is_some() {
+        if live || equality || self.as_constant(relation).is_some() {
+            return relation;
+        }
+        if !self.varies(a) && !self.varies(b) {
             return relation;
         }
         let key = (operator, a, b);
@@ -87,8 +89,8 @@ impl Target for Builder<'_> {
         live: bool,
         span: Span,
     ) -> Result<Expr, Diagnostic> {
-        let varies = arguments.iter().any(|a| self.varies(*a));
-        match function.get().event_generating && !live && varies {
+        let may_jump = function.get().event_generating && !live;
+        match may_jump && arguments.iter().any(|a| self.varies(*a)) {
             true => self.rounding_function(function, arguments, span),
             false => Ok(self.dae.pool.apply(function, arguments)),
         }
@@ -318,20 +320,20 @@ impl Builder<'_> {
 
     /// Whether an expression is made of parameters and numbers alone.
     pub(super) fn is_parametric(&self, a: Expr) -> bool {
-        let fixed =
-            |v: &VarId| matches!(self.dae.variable(*v).kind, Kind::Parameter { .. } | Kind::Solved);
-        self.dae.pool.variables(a).iter().all(fixed)
+        let varies =
+            |v: VarId| !matches!(self.dae.variable(v).kind, Kind::Parameter { .. } | Kind::Solved);
+        !self.dae.pool.any_variable(a, varies)
     }
 
     /// Whether an expression may vary between events.
     pub(super) fn varies(&self, a: Expr) -> bool {
-        let varies = |v: &VarId| {
+        let varies = |v: VarId| {
             matches!(
-                self.dae.variable(*v).kind,
+                self.dae.variable(v).kind,
                 Kind::Time | Kind::Unknown | Kind::Derivative(_) | Kind::Delayed | Kind::Text
             )
         };
-        self.dae.pool.variables(a).iter().any(varies)
+        self.dae.pool.any_variable(a, varies)
     }
 
     /// `der` of an expression: the sum of partial derivatives times derivatives.

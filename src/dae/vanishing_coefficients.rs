@@ -60,7 +60,7 @@ fn matrix(dae: &Dae, block: &Block) -> Option<Vec<Expr>> {
     let unknown = solved.unknowns.first()?;
     let assignment = solved.assignments.iter().find(|a| a.variable == *unknown)?;
     match *dae.pool.node(assignment.value) {
-        Node::Solution { matrix, .. } => Some(dae.pool.entries(matrix)),
+        Node::Solution { matrix, .. } => Some(dae.pool.entries(matrix).to_vec()),
         _ => None,
     }
 }

@@ -54,10 +54,12 @@ fn differentiate_nodes(
 struct Slopes<'a> {
     pool: &'a mut Pool,
     of: FxHashMap<Expr, Expr>,
-    /// Right sides of the derivatives of linear systems, by matrix and right side of these, and
-    /// whether these are derivatives themselves.
-    rights: FxHashMap<(Expr, Expr, bool), Expr>,
+    /// The right sides of the derivatives of linear systems, `None` where these are zero.
+    rights: FxHashMap<System, Option<Expr>>,
 }
+
+/// A linear system: matrix, right side, whether it is a derivative itself.
+type System = (Expr, Expr, bool);
 
 impl Slopes<'_> {
     fn slope(&mut self, expr: Expr, seed: &dyn Fn(VarId) -> Option<Expr>) -> Option<Expr> {
@@ -67,6 +69,8 @@ impl Slopes<'_> {
             | Node::And(..)
             | Node::Or(..)
             | Node::Not(_) => None,
+            // Its entries are looked at where it is used.
+            Node::List(_) => None,
             Node::Variable(variable) => seed(variable),
             Node::Neg(a) => self.get(a).map(|da| self.pool.neg(da)),
             Node::Add(a, b) => self.sum(a, b),
@@ -77,12 +81,11 @@ impl Slopes<'_> {
             Node::Apply(id, arguments) => self.application(id, arguments),
             Node::If(condition, a, b) => self.branches(condition, a, b),
             Node::Call { function, output, arguments } => {
-                self.call(function, output, &[], &arguments)
+                self.call(function, output, &[], arguments)
             }
             Node::CallDerivative { function, output, inputs, arguments } => {
-                self.call(function, output, &inputs, &arguments)
+                self.call(function, output, &inputs, arguments)
             }
-            Node::List(entries) => return self.list(&entries),
             Node::Solution { matrix, right, output, is_slope } => {
                 self.solution((matrix, right, is_slope), output)
             }
@@ -200,62 +203,54 @@ impl Slopes<'_> {
         function: u32,
         output: u32,
         inputs: &[u32],
-        arguments: &[Expr],
+        arguments: Expr,
     ) -> Option<Expr> {
         let mut sum = None;
-        for (input, argument) in (0u32..).zip(arguments) {
-            let Some(inner) = self.get(*argument) else { continue };
-            let inputs: Vec<u32> = inputs.iter().copied().chain([input]).collect();
-            let outer = self.pool.call_derivative(function, output, &inputs, arguments);
+        for (input, inner) in self.slopes(arguments) {
+            let inputs: Vec<u32> = inputs.iter().copied().chain([input as u32]).collect();
+            let outer = self.pool.derivative_of_call(function, output, &inputs, arguments);
             let term = self.pool.mul(outer, inner);
             sum = self.total(sum, Some(term));
         }
         sum
     }
 
-    fn list(&mut self, entries: &[Expr]) -> Option<Expr> {
-        if entries.iter().all(|entry| self.get(*entry).is_none()) {
-            return None;
-        }
-        let zero = self.pool.constant(0.0);
-        let slopes: Vec<Expr> = entries.iter().map(|e| self.get(*e).unwrap_or(zero)).collect();
-        Some(self.pool.list(&slopes))
+    /// The entries of a list that have slopes, by place.
+    fn slopes(&self, list: Expr) -> Vec<(usize, Expr)> {
+        let entries = self.pool.entries(list).iter().enumerate();
+        entries.filter_map(|(at, entry)| Some((at, self.get(*entry)?))).collect()
     }
 
     /// A x = b gives A x′ = b′ − A′ x.
-    fn solution(&mut self, system: (Expr, Expr, bool), output: u32) -> Option<Expr> {
-        let (matrix, right, _) = system;
-        if self.get(matrix).is_none() && self.get(right).is_none() {
-            return None;
-        }
+    fn solution(&mut self, system: System, output: u32) -> Option<Expr> {
         let of_slopes = match self.rights.get(&system) {
             Some(known) => *known,
             None => {
-                let rights = self.right_of_slopes(system);
-                let list = self.pool.list(&rights);
-                self.rights.insert(system, list);
-                list
+                let right = self.right_of_slopes(system);
+                self.rights.insert(system, right);
+                right
             }
         };
-        Some(self.pool.any_solution(matrix, of_slopes, output, true))
+        Some(self.pool.any_solution(system.0, of_slopes?, output, true))
     }
 
-    fn right_of_slopes(&mut self, (matrix, right, is_slope): (Expr, Expr, bool)) -> Vec<Expr> {
-        let n = self.pool.entries(right).len();
-        let zero = self.pool.constant(0.0);
-        let mut rights = match self.get(right) {
-            Some(slopes) => self.pool.entries(slopes),
-            None => vec![zero; n],
-        };
-        let Some(slopes) = self.get(matrix) else { return rights };
-        for (at, slope) in self.pool.entries(slopes).into_iter().enumerate() {
-            if self.pool.as_constant(slope) != Some(0.0) {
-                let unknown = (at % n) as u32;
-                let x = self.pool.any_solution(matrix, right, unknown, is_slope);
-                let term = self.pool.mul(slope, x);
-                rights[at / n] = self.pool.sub(rights[at / n], term);
-            }
+    /// `None` if neither matrix nor right side has slopes.
+    fn right_of_slopes(&mut self, (matrix, right, is_slope): System) -> Option<Expr> {
+        let (of_matrix, of_right) = (self.slopes(matrix), self.slopes(right));
+        if of_matrix.is_empty() && of_right.is_empty() {
+            return None;
         }
-        rights
+        let n = self.pool.entries(right).len();
+        let mut rights = vec![self.pool.constant(0.0); n];
+        for (at, slope) in of_right {
+            rights[at] = slope;
+        }
+        for (at, slope) in of_matrix {
+            let unknown = (at % n) as u32;
+            let x = self.pool.any_solution(matrix, right, unknown, is_slope);
+            let term = self.pool.mul(slope, x);
+            rights[at / n] = self.pool.sub(rights[at / n], term);
+        }
+        Some(self.pool.list(&rights))
     }
 }

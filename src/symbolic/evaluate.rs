@@ -31,11 +31,18 @@ pub fn evaluate<E: Environment + ?Sized>(pool: &Pool, expr: Expr, environment: &
     let mut values: FxHashMap<Expr, f64> = FxHashMap::default();
     for node in pool.reachable(&[expr]) {
         let get = |operand: Expr| values[&operand];
+        let values_of =
+            |list: Expr| -> Vec<f64> { pool.entries(list).iter().map(|e| get(*e)).collect() };
         let value = match pool.node(node) {
             Node::List(_) => f64::NAN,
             Node::Solution { matrix, right, output, .. } => {
-                let entries = |list: Expr| pool.entries(list).into_iter().map(get).collect();
-                solve_linear(entries(*matrix), entries(*right))[*output as usize]
+                solve_linear(values_of(*matrix), values_of(*right))[*output as usize]
+            }
+            Node::Call { function, output, arguments } => {
+                environment.call(*function, *output, &[], &values_of(*arguments))
+            }
+            Node::CallDerivative { function, output, inputs, arguments } => {
+                environment.call(*function, *output, inputs, &values_of(*arguments))
             }
             other => node_value(other, environment, get),
         };
@@ -68,15 +75,9 @@ fn node_value<E: Environment + ?Sized>(
         Node::And(a, b) => number(get(*a) != 0.0 && get(*b) != 0.0),
         Node::Or(a, b) => number(get(*a) != 0.0 || get(*b) != 0.0),
         Node::Not(a) => number(get(*a) == 0.0),
-        Node::Call { function, output, arguments } => {
-            let arguments: Vec<f64> = arguments.iter().map(|a| get(*a)).collect();
-            environment.call(*function, *output, &[], &arguments)
+        Node::Call { .. } | Node::CallDerivative { .. } | Node::List(_) | Node::Solution { .. } => {
+            unreachable!("what has lists is evaluated with the pool")
         }
-        Node::CallDerivative { function, output, inputs, arguments } => {
-            let arguments: Vec<f64> = arguments.iter().map(|a| get(*a)).collect();
-            environment.call(*function, *output, inputs, &arguments)
-        }
-        Node::List(_) | Node::Solution { .. } => f64::NAN,
     }
 }
 

@@ -149,8 +149,8 @@ pub enum Node {
         function: u32,
         /// Which scalar of its outputs.
         output: u32,
-        /// The scalars of its inputs.
-        arguments: Box<[Expr]>,
+        /// The list of the scalars of its inputs, which all outputs share.
+        arguments: Expr,
     },
     /// A partial derivative of a scalar output of a user function.
     CallDerivative {
@@ -161,10 +161,10 @@ pub enum Node {
         /// Which scalar inputs it is differentiated for, ascending; two of them mean a second
         /// derivative.
         inputs: Box<[u32]>,
-        /// The scalars of its inputs.
-        arguments: Box<[Expr]>,
+        /// The list of the scalars of its inputs.
+        arguments: Expr,
     },
-    /// Several values, as an operand of [`Node::Solution`] alone.
+    /// Several values, as an operand of calls and of [`Node::Solution`] alone.
     List(Box<[Expr]>),
     /// An unknown of a system of linear equations A x = b.
     Solution {
@@ -185,7 +185,10 @@ impl Node {
     pub fn for_each_operand(&self, mut visit: impl FnMut(Expr)) {
         match self {
             Node::Constant(_) | Node::Variable(_) => {}
-            Node::Neg(a) | Node::Not(a) => visit(*a),
+            Node::Neg(a)
+            | Node::Not(a)
+            | Node::Call { arguments: a, .. }
+            | Node::CallDerivative { arguments: a, .. } => visit(*a),
             Node::Add(a, b)
             | Node::Sub(a, b)
             | Node::Mul(a, b)
@@ -202,9 +205,6 @@ impl Node {
                 visit(*condition);
                 visit(*a);
                 visit(*b);
-            }
-            Node::Call { arguments, .. } | Node::CallDerivative { arguments, .. } => {
-                arguments.iter().copied().for_each(visit);
             }
             Node::List(entries) => entries.iter().copied().for_each(visit),
             Node::Solution { matrix, right, .. } => {

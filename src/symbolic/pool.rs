@@ -49,11 +49,14 @@ impl Pool {
         }
     }
 
-    /// The entries of a list; the expression itself if it is none.
-    pub fn entries(&self, expr: Expr) -> Vec<Expr> {
-        match self.node(expr) {
-            Node::List(entries) => entries.to_vec(),
-            _ => vec![expr],
+    /// The entries of a list.
+    ///
+    /// # Panics
+    /// If the expression is none.
+    pub fn entries(&self, list: Expr) -> &[Expr] {
+        match self.node(list) {
+            Node::List(entries) => entries,
+            _ => panic!("only lists have entries"),
         }
     }
 
@@ -150,6 +153,25 @@ impl Pool {
         variables
     }
 
+    /// Visits the variables that some expressions are made of, each once, in no certain order.
+    pub fn visit_variables(&self, exprs: &[Expr], mut found: impl FnMut(VarId)) {
+        self.visit(exprs, |expr| {
+            if let Some(variable) = self.as_variable(expr) {
+                found(variable);
+            }
+        });
+    }
+
+    /// Whether an expression contains one of the variables that `is_sought` tells.
+    pub fn any_variable(&self, expr: Expr, is_sought: impl Fn(VarId) -> bool) -> bool {
+        let mut found = false;
+        self.visit_while(&[expr], |expr| {
+            found = self.as_variable(expr).is_some_and(&is_sought);
+            if found { Next::Stop } else { Next::Operands { from: 0 } }
+        });
+        found
+    }
+
     /// Whether an expression contains a variable.
     pub fn depends_on(&self, expr: Expr, variable: VarId) -> bool {
         let Some(sought) = self.nodes.get_index_of(&Node::Variable(variable)) else { return false };
@@ -231,6 +253,30 @@ impl<'a> VariableCollection<'a> {
                 }
             });
         }
+    }
+}
+
+/// Whether expressions contain leaves of some sort, each node looked at once.
+pub struct Containing<F> {
+    is_sought: F,
+    marks: Vec<bool>,
+}
+
+impl<F: Fn(&Pool, Expr) -> bool> Containing<F> {
+    /// `is_sought` says the same of a node at any time.
+    pub fn new(is_sought: F) -> Containing<F> {
+        Containing { is_sought, marks: Vec::new() }
+    }
+
+    /// Whether an expression is such a leaf, or made of one.
+    pub fn contains(&mut self, pool: &Pool, expr: Expr) -> bool {
+        for index in self.marks.len()..=expr.index() {
+            let node = Expr(index as u32);
+            let mut found = (self.is_sought)(pool, node);
+            pool.node(node).for_each_operand(|operand| found |= self.marks[operand.index()]);
+            self.marks.push(found);
+        }
+        self.marks[expr.index()]
     }
 }
 

@@ -22,7 +22,7 @@ pub fn print(pool: &Pool, expr: Expr, name: &dyn Fn(VarId) -> String) -> String 
             Piece::Operand(expr, binding) => {
                 let node = pool.node(expr);
                 let parenthesised = precedence(node) < binding;
-                let pieces = pieces(node, name);
+                let pieces = pieces(pool, node, name);
                 if parenthesised {
                     pending.push(Piece::Text(")".into()));
                 }
@@ -58,7 +58,7 @@ fn precedence(node: &Node) -> u8 {
     }
 }
 
-fn pieces(node: &Node, name: &dyn Fn(VarId) -> String) -> Vec<Piece> {
+fn pieces(pool: &Pool, node: &Node, name: &dyn Fn(VarId) -> String) -> Vec<Piece> {
     let binary = |a: &Expr, symbol: &str, b: &Expr, left: u8, right: u8| {
         vec![
             Piece::Operand(*a, left),
@@ -92,12 +92,12 @@ fn pieces(node: &Node, name: &dyn Fn(VarId) -> String) -> Vec<Piece> {
         ],
         Node::Apply(id, arguments) => call(id.get().name.to_owned(), arguments.iter()),
         Node::Call { function, output, arguments } => {
-            call(format!("f{function}.{output}"), arguments.iter().copied())
+            call(format!("f{function}.{output}"), pool.entries(*arguments).iter().copied())
         }
         Node::CallDerivative { function, output, inputs, arguments } => {
             let inputs: Vec<String> = inputs.iter().map(u32::to_string).collect();
             let head = format!("f{function}.{output}'{}", inputs.join("'"));
-            call(head, arguments.iter().copied())
+            call(head, pool.entries(*arguments).iter().copied())
         }
         Node::List(entries) => call(String::new(), entries.iter().copied()),
         Node::Solution { matrix, right, output, .. } => {

@@ -214,7 +214,8 @@ impl Pool {
 
     /// A scalar output of a user function.
     pub fn call(&mut self, function: u32, output: u32, arguments: &[Expr]) -> Expr {
-        self.intern(Node::Call { function, output, arguments: arguments.into() })
+        let arguments = self.list(arguments);
+        self.intern(Node::Call { function, output, arguments })
     }
 
     /// A partial derivative of a scalar output of a user function; `inputs` in any order.
@@ -225,12 +226,24 @@ impl Pool {
         inputs: &[u32],
         arguments: &[Expr],
     ) -> Expr {
-        let mut inputs: Box<[u32]> = inputs.into();
-        inputs.sort_unstable();
-        self.intern(Node::CallDerivative { function, output, inputs, arguments: arguments.into() })
+        let arguments = self.list(arguments);
+        self.derivative_of_call(function, output, inputs, arguments)
     }
 
-    /// Several values, for [`Pool::solution`].
+    /// [`Pool::call_derivative`] with the list of the arguments.
+    pub(super) fn derivative_of_call(
+        &mut self,
+        function: u32,
+        output: u32,
+        inputs: &[u32],
+        arguments: Expr,
+    ) -> Expr {
+        let mut inputs: Box<[u32]> = inputs.into();
+        inputs.sort_unstable();
+        self.intern(Node::CallDerivative { function, output, inputs, arguments })
+    }
+
+    /// Several values, for calls and [`Pool::solution`].
     pub fn list(&mut self, entries: &[Expr]) -> Expr {
         self.intern(Node::List(entries.into()))
     }
@@ -294,12 +307,11 @@ impl Pool {
             Node::Or(a, b) => self.or(map(*a), map(*b)),
             Node::Not(a) => self.not(map(*a)),
             Node::Call { function, output, arguments } => {
-                let arguments: Vec<Expr> = arguments.iter().map(|a| map(*a)).collect();
-                self.call(*function, *output, &arguments)
+                let arguments = map(*arguments);
+                self.intern(Node::Call { function: *function, output: *output, arguments })
             }
             Node::CallDerivative { function, output, inputs, arguments } => {
-                let arguments: Vec<Expr> = arguments.iter().map(|a| map(*a)).collect();
-                self.call_derivative(*function, *output, inputs, &arguments)
+                self.derivative_of_call(*function, *output, inputs, map(*arguments))
             }
             Node::List(entries) => {
                 let entries: Vec<Expr> = entries.iter().map(|e| map(*e)).collect();

@@ -437,3 +437,27 @@ fn solutions_of_linear_systems_have_values_and_slopes() {
     let nothing = pool.list(&[zero, zero]);
     assert_eq!(pool.solution(matrix, nothing, 1), zero);
 }
+
+#[test]
+fn outputs_of_a_call_share_its_arguments() {
+    let mut pool = Pool::new();
+    let arguments: Vec<Expr> = (0..50).map(|v| pool.variable(VarId(v))).collect();
+    let outputs: Vec<Expr> = (0..50).map(|output| pool.call(0, output, &arguments)).collect();
+    assert_eq!(pool.len(), 50 + 1 + 50);
+    assert_eq!(pool.variables(outputs[7]).len(), 50);
+    assert_eq!(pool.reachable(&outputs).len(), pool.len());
+}
+
+#[test]
+fn containing_tells_what_is_made_of_a_leaf() {
+    let mut pool = Pool::new();
+    let (x, y) = (pool.variable(VarId(0)), pool.variable(VarId(1)));
+    let mut containing = Containing::new(|pool, e| pool.as_variable(e) == Some(VarId(1)));
+    let square = pool.mul(x, x);
+    assert!(!containing.contains(&pool, square));
+    let sum = pool.add(square, y);
+    assert!(containing.contains(&pool, sum) && containing.contains(&pool, y));
+    assert!(
+        pool.any_variable(sum, |v| v == VarId(1)) && !pool.any_variable(square, |v| v == VarId(1))
+    );
+}

@@ -13,12 +13,14 @@ mod external;
 mod instances;
 mod place;
 mod printing;
+mod repeated;
 mod single_assignment;
 mod statements;
 mod target;
 
 pub(super) use instances::Instances;
 pub(super) use printing::prints;
+pub(super) use repeated::Repeated;
 
 use super::build::Builder;
 use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
@@ -38,24 +40,38 @@ use std::sync::Arc;
 pub(super) fn call(
     builder: &mut Builder<'_>,
     function: &Arc<Function>,
-    mut arguments: Vec<Lowered<Expr>>,
+    arguments: Vec<Lowered<Expr>>,
     span: Span,
 ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
     if builder.functions.may_write {
         // Carried out on expressions, a function would write whatever its branches are.
         return compiled_call(builder, function, arguments, span);
     }
-    let outermost = builder.calls == 0;
-    if outermost {
+    if builder.calls == 0 {
         builder.inlined = MAX_INLINED;
     }
+    if let Some(results) = repeated::repeat(builder, function, &arguments) {
+        return Ok(results);
+    }
+    let before = repeated::Before::new(builder);
+    let results = inlined_or_compiled(builder, function, arguments.clone(), span)?;
+    repeated::remember(builder, function, arguments, &before, &results);
+    Ok(results)
+}
+
+fn inlined_or_compiled(
+    builder: &mut Builder<'_>,
+    function: &Arc<Function>,
+    mut arguments: Vec<Lowered<Expr>>,
+    span: Span,
+) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
     let asserted = builder.dae.assertions.len();
     let error = match inline(builder, function, arguments.clone(), span) {
         Err(e) if [NOT_SUPPORTED, NO_CONSTANT_VALUE, ARRAY_MISMATCH].contains(&e.code) => e,
         result => return result,
     };
     let too_big = builder.inlined == 0;
-    if too_big && !outermost {
+    if too_big && builder.calls > 0 {
         return Err(error);
     }
     builder.dae.assertions.truncate(asserted);

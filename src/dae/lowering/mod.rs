@@ -209,7 +209,7 @@ pub(crate) enum Binary {
 }
 
 /// What an expression becomes.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(crate) enum Lowered<S> {
     /// A scalar or an array of scalars.
     Array(Array<S>),
@@ -222,7 +222,7 @@ pub(crate) enum Lowered<S> {
 }
 
 /// An array of scalars; no sizes for a scalar.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Array<S> {
     /// Its sizes.
     pub(crate) dims: Vec<usize>,
