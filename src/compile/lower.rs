@@ -282,6 +282,7 @@ impl<'a> TapeBuilder<'a> {
         if let Some(known) = self.several.get(&key, &self.branches) {
             return known;
         }
+        self.compute_entries(arguments);
         let d = self.registers.row(self.registers.functions.n_outputs(function));
         self.tape.code.push(Instruction::Call { call: self.tape.calls.len() as u32 });
         let arguments = self.pool.entries(arguments).iter().map(|a| self.register(*a)).collect();
@@ -290,12 +291,25 @@ impl<'a> TapeBuilder<'a> {
         d
     }
 
+    /// Computes the entries of a list that are not known: a branch that is entered again knows the
+    /// list from before, but of its entries only those that no other branch has computed since.
+    fn compute_entries(&mut self, list: Expr) {
+        let pool = self.pool;
+        for entry in pool.entries(list) {
+            if self.known.get(entry, &self.branches).is_none() {
+                self.emit(*entry);
+            }
+        }
+    }
+
     /// The solution of a linear system, once for all unknowns; returns the register of the first.
     fn solution(&mut self, matrix: Expr, right: Expr, is_slope: bool) -> Register {
         let key = Several::Solution(matrix, right, is_slope);
         if let Some(known) = self.several.get(&key, &self.branches) {
             return known;
         }
+        self.compute_entries(right);
+        self.compute_entries(matrix);
         let right: Box<[Register]> =
             self.pool.entries(right).iter().map(|entry| self.register(*entry)).collect();
         let d = self.registers.row(right.len());

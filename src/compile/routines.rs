@@ -243,4 +243,51 @@ mod tests {
         let is_root = |i: &&Instruction| matches!(i, Instruction::Unary { .. });
         assert_eq!(code.tape.code.iter().filter(is_root).count(), 1);
     }
+
+    /// Expressions that share what they are made of, under conditions that come again.
+    fn shared(pool: &mut Pool, seed: u64) -> Vec<Expr> {
+        let mut state = seed;
+        let mut draw = |n: usize| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 33) as usize % n
+        };
+        let x = pool.variable(VarId(0));
+        let mut conditions = Vec::new();
+        for share in [0.2, 0.5, 0.8] {
+            let limit = pool.constant(share);
+            conditions.push(pool.relation(RelationOperator::Less, x, limit));
+        }
+        let mut all = vec![x];
+        for step in 0..60 {
+            let (a, b) = (all[draw(all.len())], all[draw(all.len())]);
+            let next = match draw(5) {
+                0 | 1 => pool.if_then_else(conditions[draw(3)], a, b),
+                2 => pool.add(a, b),
+                3 => pool.function("sin", &[a]),
+                _ => {
+                    let half = pool.constant(0.5 + f64::from(step) / 64.0);
+                    pool.mul(half, b)
+                }
+            };
+            all.push(next);
+        }
+        all.split_off(all.len() - 6)
+    }
+
+    #[test]
+    fn branches_that_come_again_know_what_they_computed() {
+        for seed in 0..200 {
+            let mut pool = Pool::new();
+            let roots = shared(&mut pool, seed);
+            let (code, mut memory) = compiled(&pool, &roots);
+            for x in [0.1, 0.3, 0.6, 0.9] {
+                memory[0] = x;
+                code.tape.run(&mut memory).expect("all values are finite");
+                for (root, output) in roots.iter().zip(&code.outputs) {
+                    let expected = evaluate(&pool, *root, &[x][..]);
+                    assert_eq!(memory[*output as usize].to_bits(), expected.to_bits(), "{seed}");
+                }
+            }
+        }
+    }
 }

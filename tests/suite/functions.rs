@@ -8,6 +8,8 @@ use gapilib::diag::Diagnostic;
 use gapilib::eval::{Arguments, Callee, Function, Host, call_function};
 use gapilib::flatten::{Library, flatten};
 use gapilib::name::Name;
+use gapilib::script::Session;
+use gapilib::script::world::MemoryWorld;
 use gapilib::sim::{DaeSystem, Failure, Settings, simulate};
 use gapilib::source::{SourceId, Span};
 use gapilib::syntax::{ast::ComponentReference, parse_stored_definition};
@@ -505,4 +507,56 @@ fn functions_take_arrays_of_texts() {
         function check input String names[:]; input Real u; protected Integer k = 0; algorithm \
         while k < 2 loop k := k + 1; assert(u < 0, \"bad \" + names[k]); end while; end check;";
     assert_eq!(failure(functions), "assertion-failed: bad … (at t = 0)");
+}
+
+/// Two functions have the same arguments under one condition, which another condition computes in
+/// between.
+#[test]
+fn arguments_are_computed_again_where_another_branch_has_computed_them() {
+    let model = "model Branches
+      function f
+        input Real a;
+        input Real b;
+        output Real y;
+      algorithm
+        y := a + b;
+        while y > 1 loop
+          y := y - 1;
+        end while;
+      end f;
+      function g
+        input Real a;
+        input Real b;
+        output Real y;
+      algorithm
+        y := a - b;
+        while y < 0 loop
+          y := y + 1;
+        end while;
+      end g;
+      Real x(start = 0, fixed = true);
+      Real u;
+      Real v;
+      Real w;
+    equation
+      der(x) = 1 + 0*(u + v + w);
+      u = if x > 0.5 then f(2*sin(x), x) else 0;
+      v = if x > 0.2 then 2*sin(x)*u else 1;
+      w = if x > 0.5 then g(2*sin(x), x) + v else 0;
+    end Branches;";
+    let world = MemoryWorld::new().with_file("M.mo", model);
+    let streams = world.streams();
+    let script = "openModel(\"M.mo\");
+        simulateModel(\"Branches\", stopTime = 1, resultFile = \"r\");
+        all := readTrajectory(\"r.mat\", {\"u\", \"v\", \"w\"}, readTrajectorySize(\"r.mat\"));
+        last := all[:, end];";
+    let mut session = Session::new(Box::new(world));
+    session.run_text("s.mos", script);
+    assert_eq!(streams.errors(), "");
+    let last = session.variable("last").and_then(|last| last.as_reals().map(|v| v.into_owned()));
+    let a = 2.0 * 1f64.sin();
+    let (u, g) = (a + 1.0 - 2.0, a - 1.0);
+    for (found, expected) in last.expect("values").iter().zip([u, a * u, g + a * u]) {
+        assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+    }
 }
