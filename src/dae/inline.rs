@@ -501,8 +501,8 @@ impl Target for Call<'_, '_> {
         local_value(&self.locals, path, reference)
     }
 
-    fn own_variable(&self, name: Ident) -> Option<Lowered<Expr>> {
-        self.locals.iter().find(|(own, _)| *own == name).map(|(_, value)| value.clone())
+    fn own_variable(&self, name: Ident) -> Option<&Lowered<Expr>> {
+        self.locals.iter().find(|(own, _)| *own == name).map(|(_, value)| value)
     }
 
     fn function(&self, name: &Name) -> Option<Arc<Function>> {

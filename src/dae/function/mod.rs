@@ -25,7 +25,7 @@ pub(super) use repeated::Repeated;
 use super::build::Builder;
 use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use super::inline::{MAX_INLINED, MAX_STATEMENTS, inline};
-use super::lowering::{Lowered, field};
+use super::lowering::{Lowered, field_of};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionComponent, ValueType};
 use crate::fault;
@@ -180,11 +180,11 @@ pub(super) fn local_value<T: Copy>(
     let mut parts = Name::parse(path).parts.into_iter();
     let first = parts.next();
     let found = locals.iter().find(|(name, _)| Some(*name) == first);
-    let value = found.map(|(_, value)| value.clone()).ok_or_else(|| {
+    let value = found.map(|(_, value)| value).ok_or_else(|| {
         fault!(UNRESOLVED_REFERENCE, "there is no variable `{path}` in this function")
             .at(reference.span)
     })?;
-    parts.try_fold(value, |value, part| field(value, part, reference.span))
+    parts.try_fold(value, |value, part| field_of(value, part, reference.span)).cloned()
 }
 
 /// The type of a variable of a function, or of a field of it.

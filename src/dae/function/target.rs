@@ -187,8 +187,8 @@ impl Target for Body<'_, '_> {
         super::local_value(&self.locals, path, reference)
     }
 
-    fn own_variable(&self, name: Ident) -> Option<Lowered<Operand>> {
-        self.locals.iter().find(|(own, _)| *own == name).map(|(_, value)| value.clone())
+    fn own_variable(&self, name: Ident) -> Option<&Lowered<Operand>> {
+        self.locals.iter().find(|(own, _)| *own == name).map(|(_, value)| value)
     }
 
     fn function(&self, name: &Name) -> Option<Arc<Function>> {

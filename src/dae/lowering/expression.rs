@@ -279,8 +279,17 @@ pub(crate) fn field<S: Copy>(
     name: crate::name::Ident,
     span: Span,
 ) -> Result<Lowered<S>, Diagnostic> {
+    field_of(&base, name, span).cloned()
+}
+
+/// As [`field`], without copying.
+pub(crate) fn field_of<S: Copy>(
+    base: &Lowered<S>,
+    name: crate::name::Ident,
+    span: Span,
+) -> Result<&Lowered<S>, Diagnostic> {
     if let Lowered::Record(fields) = base
-        && let Some((_, value)) = fields.into_iter().find(|(field, _)| *field == name)
+        && let Some((_, value)) = fields.iter().find(|(field, _)| *field == name)
     {
         return Ok(value);
     }

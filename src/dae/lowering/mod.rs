@@ -16,7 +16,7 @@ mod varying_texts;
 mod vectorized;
 
 pub(crate) use arrays::Choice;
-pub(crate) use expression::field;
+pub(crate) use expression::field_of;
 
 use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::model::Shape;
@@ -118,7 +118,7 @@ pub(crate) trait Target {
         reference: &ComponentReference,
     ) -> Result<Lowered<Self::Scalar>, Diagnostic>;
     /// A variable of the function being compiled; `None` where no function is.
-    fn own_variable(&self, name: Ident) -> Option<Lowered<Self::Scalar>> {
+    fn own_variable(&self, name: Ident) -> Option<&Lowered<Self::Scalar>> {
         let _ = name;
         None
     }

@@ -1,7 +1,7 @@
 //! Arrays of records, as records of arrays: the sizes of the array stand before those of each
 //! component, so that `v.x` of an array of records `v` is the component `x` itself (MLS §10.6.1).
 
-use super::expression::{field, stack};
+use super::expression::{field, field_of, stack};
 use super::{Array, Lowered, Lowering, Target};
 use crate::dae::errors::ARRAY_MISMATCH;
 use crate::dae::model::Shape;
@@ -37,21 +37,25 @@ impl<T: Target> Lowering<'_, T> {
         }
     }
 
-    /// A reference of which a part before the last has subscripts, such as `v[i].x`, to a variable
-    /// of a function; `None` elsewhere.
+    /// A variable of a function being compiled, or a part of it; `None` elsewhere.
     pub(super) fn part_of_own(
         &mut self,
         reference: &ComponentReference,
     ) -> Result<Option<Lowered<T::Scalar>>, Diagnostic> {
-        let Some((_, before)) = reference.parts.split_last() else { return Ok(None) };
-        if before.iter().all(|part| part.subscripts.is_empty()) {
-            return Ok(None);
+        let Some((first, rest)) = reference.parts.split_first() else { return Ok(None) };
+        let Some(mut own) = self.target.own_variable(first.name) else { return Ok(None) };
+        // Records are large: what is chosen by name alone is chosen before anything is copied.
+        let (mut subscripts, mut rest) = (&first.subscripts, rest.iter());
+        while subscripts.is_empty()
+            && let Some(part) = rest.next()
+        {
+            own = field_of(own, part.name, reference.span)?;
+            subscripts = &part.subscripts;
         }
-        let Some(mut value) = self.target.own_variable(before[0].name) else { return Ok(None) };
-        for (position, part) in reference.parts.iter().enumerate() {
-            if position > 0 {
-                value = field(value, part.name, reference.span)?;
-            }
+        let own = own.clone();
+        let mut value = self.elements_of(own, subscripts, reference.span)?;
+        for part in rest {
+            value = field(value, part.name, reference.span)?;
             value = self.elements_of(value, &part.subscripts, reference.span)?;
         }
         Ok(Some(value))
