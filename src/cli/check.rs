@@ -58,6 +58,10 @@ fn check_all(session: &mut Session, loaded: &[Name]) -> ExitCode {
                     session.print(&format!("{balance}\n"));
                     continue;
                 }
+                if let Some(missing) = values_left_open(&errors) {
+                    session.print(&format!("{model}: {missing} where it is used\n"));
+                    continue;
+                }
                 wrong += 1;
                 session::failed(session, errors);
             }
@@ -66,6 +70,13 @@ fn check_all(session: &mut Session, loaded: &[Name]) -> ExitCode {
     let count = models.len();
     session.print(&format!("{classes} classes, {count} models, {wrong} with errors\n"));
     if wrong > 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS }
+}
+
+/// What is missing if only values of parameters are, which whoever uses the class gives.
+fn values_left_open(errors: &[Diagnostic]) -> Option<String> {
+    let is_open = |error: &Diagnostic| error.code.slug == "parameter-without-value";
+    let first = errors.first().filter(|_| errors.iter().all(is_open))?;
+    Some(first.message.replace("has no value", "must be given a value"))
 }
 
 /// Prints a model as flat Modelica.

@@ -6,7 +6,9 @@
 
 use super::assigned::Place;
 use super::build::{Builder, message_text};
-use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNBALANCED_MODEL, UNRESOLVED_REFERENCE};
+use super::errors::{
+    ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNBALANCED_MODEL, UNRESOLVED_REFERENCE,
+};
 use super::events::Termination;
 use super::lowering::{Lowered, Lowering, Target};
 use super::model::{Equation, Kind};
@@ -213,7 +215,9 @@ impl Builder<'_> {
                 self.dae.assertions.truncate(asserted);
                 self.execution.values = before;
                 self.execution.guards.truncate(guards);
-                self.call_of_statement(s, loops).map_err(|_| error)?;
+                let called = self.call_of_statement(s, loops);
+                // A loop whose end is not known must be a function; else its body is not possible.
+                called.map_err(|why| if error.code == NO_CONSTANT_VALUE { why } else { error })?;
                 self.guard_new_assertions(asserted);
                 Ok(self.not_broken())
             }

@@ -224,6 +224,17 @@ fn a_lone_component_is_balanced() {
     assert_eq!(gapi(&here, &["check", "Resistor.mo"]).0, 0);
 }
 
+/// A component whose parameters are given values where it is used is no error by itself.
+#[test]
+fn parameters_may_be_left_to_the_user_of_a_class() {
+    let text = "model Store parameter Real c; Real x(start = 1, fixed = true);
+        equation c*der(x) = -x; end Store;";
+    let here = folder(&[("Store.mo", text)]);
+    let (code, out, _) = gapi(&here, &["check", "Store.mo"]);
+    assert!(code == 0 && out.contains("`c` must be given a value where it is used"), "{out}");
+    assert_eq!(gapi(&here, &["check", "Store.mo", "Store"]).0, 1);
+}
+
 #[test]
 fn colours_are_as_asked() {
     let here = folder(&[("bad.mos", "a = b\n")]);

@@ -63,7 +63,7 @@ impl Body<'_, '_> {
             if let Some(e) = first_error
                 && waiting.len() == before
             {
-                return Err(e);
+                return Err(open_size(&waiting).unwrap_or(e));
             }
         }
         Ok(shapes.into_iter().flatten().collect())
@@ -354,4 +354,12 @@ fn collect_assigned(statements: &[Statement], found: &mut FxHashSet<Ident>) {
             StatementKind::Call(_) | StatementKind::Break | StatementKind::Return => {}
         }
     }
+}
+
+/// A variable whose size changes with what is assigned to it, among those that wait for others.
+fn open_size(waiting: &[(Option<usize>, &FunctionComponent)]) -> Option<Diagnostic> {
+    let is_open = |dim: &Subscript| matches!(dim, Subscript::All(_));
+    let (_, found) = waiting.iter().find(|(_, component)| component.dims.iter().any(is_open))?;
+    let error = fault!(NOT_SUPPORTED, "the size of `{}` is not declared", found.name);
+    Some(error.at(found.span))
 }
