@@ -147,6 +147,13 @@ impl Instantiation<'_> {
         if !is_function {
             return self.object_constructor(class);
         }
+        if let ClassSpecifier::Derivative(derivative) = &self.text(class).definition.specifier {
+            let (name, span) = (self.text(id).name.clone(), derivative.target.span);
+            return Err(fault!(NOT_SUPPORTED,
+                "`{name}` is a partial derivative of a function, which is not translated yet";
+                help: "write the derivative as a function of its own")
+            .at(span));
+        }
         // Known by name before its body is read, which may call the function itself.
         let name = self.free_name(&self.text(id).name.clone());
         self.functions.insert(name.clone(), None);

@@ -586,3 +586,23 @@ fn arrays_that_grow_are_run_for_known_arguments() {
     let status = Session::new(Box::new(world)).run_text("s.mos", script);
     assert_eq!((status.code, streams.errors().as_str()), (0, ""));
 }
+
+/// A partial derivative of a function is refused by its name (MLS §12.7.2).
+#[test]
+fn partial_derivatives_are_refused() {
+    let model = "model M
+      function g
+        input Real p;
+        input Real t;
+        output Real y;
+      algorithm
+        y := p - t;
+      end g;
+      function g_t = der(g, t);
+      Real h = g_t(time, 1);
+    end M;";
+    let world = MemoryWorld::new().with_file("M.mo", model);
+    let streams = world.streams();
+    Session::new(Box::new(world)).run_text("s.mos", "openModel(\"M.mo\"); checkModel(\"M\");");
+    assert!(streams.errors().contains("`M.g_t` is a partial derivative"), "{}", streams.errors());
+}
