@@ -245,6 +245,19 @@ impl Writing<'_, '_> {
         one.bound.iter().map(argument).collect()
     }
 
+    /// The inputs of a passed function that a partial application leaves; none if there is no
+    /// partial application.
+    fn free_inputs(&self, one: &Passed) -> Vec<Ident> {
+        let Some(Some(function)) = self.tree.functions.get(&one.function) else {
+            return Vec::new();
+        };
+        if one.bound.is_empty() {
+            return Vec::new();
+        }
+        let is_free = |name: &Ident| one.bound.iter().all(|bound| bound.name.node != *name);
+        function.inputs.iter().map(|input| input.name).filter(is_free).collect()
+    }
+
     fn input(&self, reference: &ComponentReference) -> Option<&Passed> {
         let name = reference.as_ident()?;
         self.passed.iter().find(|one| one.input == name)
@@ -271,7 +284,16 @@ impl Rewrite for Writing<'_, '_> {
             ExpressionKind::Call { function, arguments } => {
                 if let Some(one) = self.input(function) {
                     let bound = self.bound(one, span);
+                    let free = self.free_inputs(one);
                     *function = ComponentReference::from_name(&one.function, span);
+                    // Arguments in order are those of the inputs that are left.
+                    let given =
+                        arguments.positional.drain(..free.len().min(arguments.positional.len()));
+                    let given = free.into_iter().zip(given).map(|(node, value)| NamedArgument {
+                        name: Spanned { node, span: value.span },
+                        value,
+                    });
+                    arguments.named.extend(given.collect::<Vec<_>>());
                     arguments.named.extend(bound);
                 }
                 let called = self.tree.specialized(

@@ -606,3 +606,49 @@ fn partial_derivatives_are_refused() {
     Session::new(Box::new(world)).run_text("s.mos", "openModel(\"M.mo\"); checkModel(\"M\");");
     assert!(streams.errors().contains("`M.g_t` is a partial derivative"), "{}", streams.errors());
 }
+
+/// What a partial application binds need not be the last inputs (MLS §12.4.2.1).
+#[test]
+fn partial_applications_bind_any_inputs() {
+    let model = "model Partial
+      partial function Shape
+        input Real x;
+        output Real y;
+      end Shape;
+      function trapezoid
+        input Real a;
+        input Real b;
+        input Shape f;
+        output Real area;
+      algorithm
+        area := (b - a)*(f(a) + f(b))/2;
+      end trapezoid;
+      function halves
+        input Real a;
+        input Real b;
+        input Shape f;
+        output Real area;
+      algorithm
+        area := trapezoid(a, (a + b)/2, f) + trapezoid((a + b)/2, b, f);
+      end halves;
+      function line
+        input Real slope;
+        input Real x;
+        input Real offset;
+        output Real y;
+      algorithm
+        y := offset + slope*x;
+      end line;
+      Real area = halves(0, 2, function line(slope = time, offset = 3));
+    end Partial;";
+    let world = MemoryWorld::new().with_file("M.mo", model);
+    let streams = world.streams();
+    let script = "openModel(\"M.mo\");
+        simulateModel(\"Partial\", stopTime = 1, resultFile = \"r\");
+        all := readTrajectory(\"r.mat\", {\"area\"}, readTrajectorySize(\"r.mat\"));
+        last := all[1, end];";
+    let mut session = Session::new(Box::new(world));
+    session.run_text("s.mos", script);
+    assert_eq!(streams.errors(), "");
+    assert_eq!(session.variable("last").and_then(|value| value.as_real()), Some(8.0));
+}
