@@ -262,6 +262,11 @@ impl Writing<'_, '_> {
         let name = reference.as_ident()?;
         self.passed.iter().find(|one| one.input == name)
     }
+
+    fn input_of_name(&self, name: &Name) -> Option<&Passed> {
+        let [name] = name.parts.as_slice() else { return None };
+        self.passed.iter().find(|one| one.input == *name)
+    }
 }
 
 impl Rewrite for Writing<'_, '_> {
@@ -281,6 +286,14 @@ impl Rewrite for Writing<'_, '_> {
                     }
                 }
             }),
+            ExpressionKind::PartialApplication { function, named } => {
+                if let Some(one) = self.input_of_name(function) {
+                    let bound = self.bound(one, span);
+                    *function = one.function.clone();
+                    named.extend(bound);
+                }
+                None
+            }
             ExpressionKind::Call { function, arguments } => {
                 if let Some(one) = self.input(function) {
                     let bound = self.bound(one, span);

@@ -639,16 +639,31 @@ fn partial_applications_bind_any_inputs() {
       algorithm
         y := offset + slope*x;
       end line;
+      function raised
+        input Real a;
+        input Real b;
+        input Lift f;
+        output Real area;
+      algorithm
+        area := halves(a, b, function f(offset = 3));
+      end raised;
+      partial function Lift
+        input Real x;
+        input Real offset;
+        output Real y;
+      end Lift;
       Real area = halves(0, 2, function line(slope = time, offset = 3));
+      Real twice = raised(0, 2, function line(slope = 2*time));
     end Partial;";
     let world = MemoryWorld::new().with_file("M.mo", model);
     let streams = world.streams();
     let script = "openModel(\"M.mo\");
         simulateModel(\"Partial\", stopTime = 1, resultFile = \"r\");
-        all := readTrajectory(\"r.mat\", {\"area\"}, readTrajectorySize(\"r.mat\"));
-        last := all[1, end];";
+        all := readTrajectory(\"r.mat\", {\"area\", \"twice\"}, readTrajectorySize(\"r.mat\"));
+        last := all[:, end];";
     let mut session = Session::new(Box::new(world));
     session.run_text("s.mos", script);
     assert_eq!(streams.errors(), "");
-    assert_eq!(session.variable("last").and_then(|value| value.as_real()), Some(8.0));
+    let last = session.variable("last").and_then(|last| last.as_reals().map(|v| v.into_owned()));
+    assert_eq!(last, Some(vec![8.0, 10.0]));
 }
