@@ -2,8 +2,8 @@
 //!
 //! An if-expression that stands in several branches is evaluated only in those that are taken. It
 //! is written at most twice: where it is met first, and as a routine that all other branches
-//! perform, and that runs at most once in a run of the tape. Otherwise a chain of functions with such branches, as media have, would be written as
-//! often as there are ways through it.
+//! perform, and that runs at most once in a run of the tape. Otherwise a chain of functions with
+//! such branches, as media have, would be written as often as there are ways through it.
 
 use super::tape::{Instruction, Register, Tape};
 use crate::symbolic::Expr;

@@ -193,6 +193,11 @@ impl System {
         failures.find(|failure| matches!(failure, Failure::Assertion { .. }))
     }
 
+    /// Evaluates all assertions.
+    fn assert_all(&mut self) -> Result<(), Failure> {
+        (0..self.program.assertions.len()).try_for_each(|at| self.assert(at))
+    }
+
     /// Evaluates an assertion.
     fn assert(&mut self, at: usize) -> Result<(), Failure> {
         let (number, condition) = &self.program.assertions[at];
@@ -456,7 +461,7 @@ impl DaeSystem for System {
         self.iterate_at_start(t)?;
         self.improve_choices()?;
         self.unload(y);
-        (0..self.program.assertions.len()).try_for_each(|at| self.assert(at))?;
+        self.assert_all()?;
         self.notice(t)
     }
 
@@ -532,7 +537,7 @@ impl DaeSystem for System {
             return Ok(());
         }
         self.load_solved(t, y)?;
-        (0..self.program.assertions.len()).try_for_each(|at| self.assert(at))?;
+        self.assert_all()?;
         self.notice(t)
     }
 

@@ -25,7 +25,8 @@ use std::collections::BTreeSet;
 /// Sums of `0 · value` that are added to in turn.
 const CHECKS: usize = 4;
 
-/// Writes the code of a tape, given without routines, into a context; `None` if it has what cannot be translated.
+/// Writes the code of a tape, given without routines, into a context; `None` if it has what cannot
+/// be translated.
 pub(super) fn translate(
     code: &Outputs,
     instructions: &[Instruction],

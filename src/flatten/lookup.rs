@@ -379,6 +379,10 @@ impl Instantiation<'_> {
     fn suggestion(&mut self, scope: ScopeId, name: &Name) -> Option<String> {
         let wanted = name.last().map_or("", Ident::as_str);
         let (package, candidates) = self.siblings(scope, name);
+        if candidates.is_empty() && name.parts.len() > 1 {
+            // The package is not there either.
+            return self.suggestion(scope, &name.parent());
+        }
         suggest::nearest(wanted, candidates.iter().map(|c| c.as_str()))
             .map(|near| format!("did you mean `{}`?", package.child(Ident::new(near))))
     }

@@ -4,7 +4,7 @@
 use super::simulation::{self, Translated};
 use super::{Session, errors::TRANSLATED_AGAIN};
 use crate::diag::Diagnostic;
-use crate::flatten::{Variability, Variable};
+use crate::flatten::{BaseType, Variability, Variable};
 use crate::name::{Ident, Name};
 use crate::source::{SourceId, Span, Spanned};
 use crate::syntax::ast::{
@@ -52,8 +52,10 @@ pub(super) fn change(
         return None;
     }
     if variable.variability == Variability::Parameter && !is_start {
-        let known = variable.structural || variable.evaluate;
-        return known.then(|| {
+        // Sorting may have taken others for numbers, too: a resistance of zero.
+        let is_other = matches!(variable.base, BaseType::String | BaseType::ExternalObject(_));
+        let is_number = !is_other && !variable.attributes.contains_key("fixed");
+        return is_number.then(|| {
             changes.set(name.to_owned(), value);
             Changed::Structure
         });

@@ -204,6 +204,22 @@ fn classes_are_named_without_an_option() {
     assert!(code == 1 && err.contains("there is no file `missing.mo`"), "{err}");
     let (code, _, err) = gapi(&here, &["check", "Decai"]);
     assert!(code == 1 && err.contains("no class named `Decai`"), "{err}");
+    let (_, _, err) = gapi(&here, &["check", "Modelica.Blocks.Sourcs.Sine"]);
+    assert!(err.contains("did you mean `Modelica.Blocks.Sources`?"), "{err}");
+}
+
+/// A resistance of zero is part of the structure; another value makes another structure.
+#[test]
+fn parameters_that_sorting_took_for_numbers_can_be_set() {
+    let text = "model Wire parameter Real R = 0; Real i; Real v;
+        equation R*i = sin(time) - v; 3*der(v) = i; end Wire;";
+    let here = folder(&[("Wire.mo", text)]);
+    let (code, set, err) = gapi(&here, &["simulate", "Wire.mo", "Wire", "--set", "R=5"]);
+    assert!(code == 0 && set.contains("R = 5"), "{set}{err}");
+    assert!(err.contains("`R` shapes the equations of `Wire`"), "{err}");
+    let (_, modified, _) = gapi(&here, &["simulate", "Wire.mo", "Wire(R = 5)"]);
+    let values = |text: &str| text.split_once('\n').map(|(_, values)| values.to_owned());
+    assert_eq!(values(&set), values(&modified));
 }
 
 /// A component with open connectors is no system by itself; its local balance is told (MLS §4.8).
