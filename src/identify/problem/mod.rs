@@ -62,6 +62,24 @@ pub trait Simulate: Send {
     ///
     /// Why the simulation failed.
     fn simulate(&mut self, parameters: &[f64], out: &mut [f64]) -> Result<(), Failed>;
+    /// Like [`simulate`](Simulate::simulate), and writes into `derivatives` the derivative of every
+    /// point by every parameter, point by point (points × parameters). `Ok(false)` where there are
+    /// no exact ones; then neither is written, and the caller takes differences.
+    ///
+    /// # Errors
+    ///
+    /// Why the simulation failed.
+    fn sensitivities(
+        &mut self,
+        _parameters: &[f64],
+        _out: &mut [f64],
+        _derivatives: &mut [f64],
+    ) -> Result<bool, Failed> {
+        Ok(false)
+    }
+    /// From now on the tolerance of the solver is the one of the settings times `factor`; 1 puts it
+    /// back. Without effect where nothing is integrated.
+    fn scale_tolerance(&mut self, _factor: f64) {}
     /// From now on simulations end when the flag is set; what they answer then is not used.
     fn cancel_by(&mut self, _flag: Option<Arc<AtomicBool>>) {}
 }
