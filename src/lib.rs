@@ -53,6 +53,7 @@
 //! - [`flatten`], [`dae`], [`compile`]: from a class to a program that evaluates itself;
 //! - [`sim`]: integrators, events, trajectories; knows nothing of Modelica;
 //! - [`ga`], [`identify`]: the genetic algorithm; populations of simulations, and what they tell;
+//! - [`units`]: units of measurement and their conversion;
 //! - [`mat`], [`results`], [`plot`]: files and figures;
 //! - [`models`]: the Modelica packages that are part of the program;
 //! - [`script`]: sessions and their commands; [`cli`]: the command line, the only door outside.
@@ -81,6 +82,7 @@ pub mod sim;
 pub mod symbolic;
 pub mod syntax;
 pub mod teach;
+pub mod units;
 pub mod value;
 
 pub mod cli;

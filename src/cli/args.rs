@@ -68,6 +68,8 @@ pub(super) enum Command {
     Lesson(LessonArgs),
     /// Identify parameters as a problem file says
     Identify(IdentifyArgs),
+    /// Write a first problem file from a data file and a model
+    New(NewArgs),
     /// Run scripts and compare what they answer with what is recorded
     Test(TestArgs),
     /// Type statements and see their answers
@@ -188,6 +190,32 @@ impl Freedom {
         let permissions = Permissions { write: self.allow_write, system: self.allow_system };
         Options { dialect, permissions, ..Options::default() }
     }
+}
+
+/// Arguments of `gapi new`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Columns are matched with variables of the model by their names; ranges of parameters are those of the
+model, or a decade around its values. Every guess is a commented line of the file.
+
+Examples:
+  gapi new curve.csv --model Curve.mo
+  gapi new curve.csv --model models --class CaseStudies.PolarizationCurve --output fit.toml
+
+Exit code: 0 if the file was written, 1 if an error happened, 2 for a wrong command line.")]
+pub(super) struct NewArgs {
+    /// The measured data (CSV, text of an instrument, MAT, XLSX)
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub data: PathBuf,
+    /// The Modelica file or folder, or a class of a library
+    #[arg(long, value_name = "FILE|CLASS", value_hint = ValueHint::AnyPath)]
+    pub model: PathBuf,
+    /// The class, if the file holds several
+    #[arg(long, value_name = "CLASS")]
+    pub class: Option<String>,
+    /// The problem file to write [default: the name of the data with .toml]
+    #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
 }
 
 /// Arguments of `gapi test`.

@@ -11,6 +11,7 @@ mod identify;
 mod lesson;
 mod limits;
 mod live;
+mod new;
 mod parsing;
 mod repl;
 mod report;
@@ -57,6 +58,7 @@ fn dispatch(cli: &Cli) -> ExitCode {
         Command::Teach(arguments) => teach::teach(arguments, &cli.global),
         Command::Lesson(arguments) => lesson::lesson(arguments, &cli.global),
         Command::Identify(arguments) => identify::identify(arguments, &cli.global),
+        Command::New(arguments) => new::new(arguments, &cli.global),
         Command::Test(arguments) => test::test(arguments, &cli.global),
         Command::Repl(arguments) => repl::repl(arguments, &cli.global),
         Command::Help(arguments) => help::help(arguments),

@@ -71,8 +71,10 @@ pub(super) fn with_class(
     files: &[PathBuf],
 ) -> Result<(Session, String), ExitCode> {
     let (class, files) = class_and_files(model, files);
-    let session = with_files(global, &files)?.0;
-    let class = class.ok_or_else(|| {
+    let (session, names) = with_files(global, &files)?;
+    // The only class of the files need not be named.
+    let only = if let [only] = &names[..] { Some(only.to_string()) } else { None };
+    let class = class.or(only).ok_or_else(|| {
         terminal::eprint("error: which class?\n = help: write its name, or `--model CLASS`\n");
         ExitCode::from(2)
     })?;

@@ -5,6 +5,7 @@ use super::errors::{
 };
 use super::model::{Instance, Model, Parameter};
 use super::points::{Path, time_of};
+use super::pointwise::Pointwise;
 use super::{Quantity, Study};
 use crate::diag::{Fault, suggest};
 use crate::ga::Genomes;
@@ -89,6 +90,8 @@ pub(super) enum Plan {
     AtTimes(Vec<f64>),
     /// X is simulated along with Y: by interpolation in X.
     InX,
+    /// X is an input of a model without states: one by one.
+    OneByOne,
 }
 
 /// What one thread needs.
@@ -96,6 +99,7 @@ struct Worker {
     instance: Box<dyn Instance>,
     simulator: Simulator,
     trajectory: Trajectory,
+    pointwise: Pointwise,
 }
 
 /// The answer for one individual.
@@ -121,13 +125,13 @@ impl Evaluator {
         let mut settings = model.settings();
         let plan = plan(model, &varied, &x.name, &question.x, &mut settings)?;
         let observed = match &plan {
-            Plan::AtTimes(_) => vec![y.name.clone()],
+            Plan::AtTimes(_) | Plan::OneByOne => vec![y.name.clone()],
             Plan::InX => vec![y.name.clone(), x.name.clone()],
         };
         let worker = || {
-            let instance = model.instance(&varied, &observed)?;
+            let instance = model.instance(&with_driver(model, &varied), &observed)?;
             let (simulator, trajectory) = (Simulator::new(), Trajectory::default());
-            Ok(Worker { instance, simulator, trajectory })
+            Ok(Worker { instance, simulator, trajectory, pointwise: Pointwise::default() })
         };
         let quantity = |p: &Parameter| Quantity { name: p.name.clone(), unit: p.unit.clone() };
         let study = Study {
@@ -250,6 +254,14 @@ impl Worker {
         x_name: &str,
     ) -> Result<Vec<f64>, FailedSimulation> {
         let useless = |cause: String| FailedSimulation { cause, time: None };
+        if let Plan::OneByOne = plan {
+            let mut row = vec![f64::NAN; x.len()];
+            let at = (genome, settings.start);
+            self.pointwise
+                .evaluate(self.instance.as_mut(), at, (0, x), &mut row)
+                .map_err(useless)?;
+            return finite(row);
+        }
         self.instance.set(genome).map_err(|fault| useless(fault.message))?;
         let run = self.simulator.run(self.instance.system(), settings, &mut self.trajectory);
         run.map_err(|error| FailedSimulation {
@@ -270,12 +282,26 @@ impl Worker {
                 let path = Path { times: self.trajectory.time(), x: self.trajectory.column(1) };
                 path.interpolate(x_name, y, x, &mut row).map_err(|fault| useless(fault.message))?;
             }
+            Plan::OneByOne => {}
         }
-        match row.iter().all(|value| value.is_finite()) {
-            true => Ok(row),
-            false => Err(useless("a simulated value is not finite".to_owned())),
+        finite(row)
+    }
+}
+
+fn finite(row: Vec<f64>) -> Result<Vec<f64>, FailedSimulation> {
+    match row.iter().all(|value| value.is_finite()) {
+        true => Ok(row),
+        false => {
+            let cause = "a simulated value is not finite".to_owned();
+            Err(FailedSimulation { cause, time: None })
         }
     }
+}
+
+/// The varied parameters, and behind them that which stands for X where it is an input.
+pub(super) fn with_driver(model: &dyn Model, varied: &[String]) -> Vec<String> {
+    let driver = model.driven().map(|(_, parameter)| parameter.to_owned());
+    varied.iter().cloned().chain(driver).collect()
 }
 
 fn collect(answers: Vec<Vec<Answer>>, individuals: usize, points: usize) -> Simulated {
@@ -378,6 +404,9 @@ pub(super) fn plan(
     points: &[f64],
     settings: &mut Settings,
 ) -> Result<Plan, Fault> {
+    if model.driven().is_some_and(|(driven, _)| driven == x_name) {
+        return Ok(Plan::OneByOne);
+    }
     let times = if x_name == TIME {
         let path = [settings.start, settings.stop];
         reachable(&Path { times: &path, x: &path }, x_name, points)?;

@@ -11,6 +11,7 @@ mod evaluation_tests;
 mod model;
 mod outcome;
 mod points;
+mod pointwise;
 #[cfg(test)]
 mod problems;
 mod program;

@@ -18,6 +18,11 @@ pub trait Model: Send + Sync {
     /// Whether the variable's value depends on time but on no state and on none of these
     /// parameters; `false` where that is not certain.
     fn depends_on_time_alone(&self, variable: &str, varied: &[String]) -> bool;
+    /// The variable that is an input of the model and the parameter that gives it its value, where
+    /// points are evaluated one by one.
+    fn driven(&self) -> Option<(&str, &str)> {
+        None
+    }
     /// How its `experiment` annotation wants it simulated.
     fn settings(&self) -> Settings;
     /// A system of its own, which observes these variables in this order and whose parameters

@@ -15,12 +15,18 @@ const MOST_INTERVALS: f64 = 1e6;
 pub struct CompiledModel {
     name: String,
     program: Arc<Program>,
+    driven: Option<(String, String)>,
 }
 
 impl CompiledModel {
     /// Names a program; the name carries the modification.
     pub fn new(name: impl Into<String>, program: Arc<Program>) -> CompiledModel {
-        CompiledModel { name: name.into(), program }
+        CompiledModel { name: name.into(), program, driven: None }
+    }
+
+    /// The input `x_name` has the value of `parameter`: a static curve, see [`Model::driven`].
+    pub fn driven_by(self, x_name: &str, parameter: &str) -> CompiledModel {
+        CompiledModel { driven: Some((x_name.to_owned(), parameter.to_owned())), ..self }
     }
 
     fn variable(&self, name: &str) -> Option<&VariableInfo> {
@@ -55,7 +61,8 @@ impl Model for CompiledModel {
                 tunable: false,
                 top_level: variable.top_level,
             });
-        settable.chain(fixed).collect()
+        let driver = self.driven.as_ref().map(|(_, parameter)| parameter.as_str());
+        settable.chain(fixed).filter(|parameter| Some(parameter.name.as_str()) != driver).collect()
     }
 
     fn outputs(&self) -> Vec<String> {
@@ -77,6 +84,10 @@ impl Model for CompiledModel {
             varied.iter().map(|name| self.program.find_parameter(name)).collect();
         !self.program.needs_states(&[variable])
             && varied.is_ok_and(|varied| !self.program.depends_on_parameters(variable, &varied))
+    }
+
+    fn driven(&self) -> Option<(&str, &str)> {
+        self.driven.as_ref().map(|(x_name, parameter)| (x_name.as_str(), parameter.as_str()))
     }
 
     fn settings(&self) -> Settings {

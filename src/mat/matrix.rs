@@ -4,6 +4,7 @@ use super::errors::{BAD_MAT_FILE, UNKNOWN_MATRIX, UNREADABLE_MATRIX};
 use crate::diag::{Fault, suggest};
 use crate::{bail, fault};
 use indexmap::IndexMap;
+use std::sync::Arc;
 
 /// The format a file was read from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,6 +19,8 @@ pub enum Version {
     Csv,
     /// The first sheet of an XLSX file.
     Spreadsheet,
+    /// MAT version 7.3, which is HDF5.
+    V73,
 }
 
 /// What the values of a matrix stand for.
@@ -145,6 +148,26 @@ fn decode_text(codes: impl Iterator<Item = f64>) -> String {
     text.trim_end_matches([' ', '\0']).to_owned()
 }
 
+/// What is known of a column beside its values.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct About {
+    /// Its unit as the file writes it; `None` where it does not.
+    pub unit: Option<String>,
+    /// The line (in a spreadsheet the row) of each value, counted from 1; empty where there are none.
+    pub lines: Arc<[usize]>,
+    /// What was changed in reading, one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Measured values, see [`MatFile::column`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// The values; NaN where there is none.
+    pub values: Vec<f64>,
+    /// What is known of them.
+    pub about: About,
+}
+
 /// The matrices of a file, by name, in the order of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MatFile {
@@ -154,31 +177,119 @@ pub struct MatFile {
     pub arrays: IndexMap<String, Matrix>,
     /// One sentence for each variable that was skipped or changed in reading.
     pub warnings: Vec<String>,
-    skipped: IndexMap<String, String>,
+    /// The name of the file for messages; empty where it is not known.
+    pub file_name: String,
+    /// Variables that cannot be read, and why.
+    failed: IndexMap<String, Fault>,
+    about: IndexMap<String, About>,
+    /// Names of columns without their units, with the columns that they may mean.
+    aliases: IndexMap<String, Vec<String>>,
 }
 
 impl MatFile {
     pub(super) fn new(version: Version) -> MatFile {
-        MatFile { version, arrays: IndexMap::new(), warnings: Vec::new(), skipped: IndexMap::new() }
+        MatFile {
+            version,
+            arrays: IndexMap::new(),
+            warnings: Vec::new(),
+            file_name: String::new(),
+            failed: IndexMap::new(),
+            about: IndexMap::new(),
+            aliases: IndexMap::new(),
+        }
     }
 
-    /// The matrix of this name; the fault lists what there is, or says why it was skipped.
+    /// The matrix of this name, which may lack the unit that its head has; the fault lists what
+    /// there is, or says why it cannot be read.
     pub fn matrix(&self, name: &str) -> Result<&Matrix, Fault> {
-        if let Some(matrix) = self.arrays.get(name) {
+        let own = self.own_name(name)?;
+        if let Some(matrix) = self.arrays.get(own) {
             return Ok(matrix);
         }
-        if let Some(reason) = self.skipped.get(name) {
-            return Err(fault!(UNREADABLE_MATRIX, "`{name}` cannot be read: {reason}"));
+        if let Some(fault) = self.failed.get(own) {
+            return Err(self.located(fault.clone()));
         }
-        let what = if matches!(self.version, Version::Csv | Version::Spreadsheet) {
-            "column"
-        } else {
-            "matrix"
-        };
-        let names = self.arrays.keys().map(String::as_str);
-        Err(fault!(UNKNOWN_MATRIX, "the file has no {what} `{name}`")
+        let what = if self.is_table() { "column" } else { "matrix" };
+        let names = self.arrays.keys().chain(self.aliases.keys()).map(String::as_str);
+        Err(fault!(UNKNOWN_MATRIX, "{} has no {what} `{name}`", self.file())
             .help_if(suggest::did_you_mean(name, names))
             .help(self.inventory()))
+    }
+
+    /// Measured values: the elements of a matrix row after row, or one of its columns, as in
+    /// `data[:,2]`. Values that are missing are noted.
+    pub fn column(&self, name: &str) -> Result<Column, Fault> {
+        let (values, about) = match part(name).filter(|_| self.own_name(name) == Ok(name)) {
+            Some((matrix, j)) if !self.arrays.contains_key(name) => {
+                let (found, columns) = (self.matrix(matrix)?, self.matrix(matrix)?.columns);
+                if !(1..=columns).contains(&j) {
+                    bail!(UNKNOWN_MATRIX, "`{matrix}` has no column {j}, but {columns}");
+                }
+                (found.column(j - 1).to_vec(), About::default())
+            }
+            _ => {
+                let values = self.matrix(name)?.row_major();
+                let own = self.own_name(name)?;
+                (values, self.about.get(own).cloned().unwrap_or_default())
+            }
+        };
+        let mut column = Column { values, about };
+        column.about.notes.extend(missing(name, &column));
+        Ok(column)
+    }
+
+    /// The name of a column without its unit, if that means no other one.
+    pub fn short_name<'n>(&'n self, name: &'n str) -> &'n str {
+        let only = |(_, names): &(&String, &Vec<String>)| names.len() == 1 && names[0] == name;
+        let bare = self.aliases.iter().find(only).map(|(bare, _)| bare.as_str());
+        bare.filter(|bare| self.own_name(bare) == Ok(name)).unwrap_or(name)
+    }
+
+    /// What is known of the columns by name, for those that were read from a table.
+    pub fn about(&self, name: &str) -> Option<&About> {
+        self.about.get(name)
+    }
+
+    /// Columns that cannot be read as numbers, with the reason.
+    pub fn unreadable(&self) -> impl Iterator<Item = (&str, &Fault)> {
+        self.failed.iter().map(|(name, fault)| (name.as_str(), fault))
+    }
+
+    /// Whether it was read from text in columns or a spreadsheet.
+    pub fn is_table(&self) -> bool {
+        matches!(self.version, Version::Csv | Version::Spreadsheet)
+    }
+
+    fn file(&self) -> String {
+        if self.file_name.is_empty() {
+            "the file".to_owned()
+        } else {
+            format!("`{}`", self.file_name)
+        }
+    }
+
+    /// The fault with the name of the file.
+    fn located(&self, mut fault: Fault) -> Fault {
+        if !self.file_name.is_empty() {
+            fault.message = format!("`{}`: {}", self.file_name, fault.message);
+        }
+        fault
+    }
+
+    /// The name as the file has it.
+    fn own_name<'n>(&'n self, name: &'n str) -> Result<&'n str, Fault> {
+        if self.arrays.contains_key(name) || self.failed.contains_key(name) {
+            return Ok(name);
+        }
+        match self.aliases.get(name).map(Vec::as_slice) {
+            None | Some([]) => Ok(name),
+            Some([own]) => Ok(own),
+            Some(several) => bail!(
+                UNKNOWN_MATRIX,
+                "{} has several columns `{name}`: {}", self.file(), listed(several);
+                help: "write the name with its unit, as the head has it"
+            ),
+        }
     }
 
     fn inventory(&self) -> String {
@@ -186,27 +297,118 @@ impl MatFile {
         if self.arrays.is_empty() {
             return "the file holds no matrix".to_owned();
         }
-        let names: Vec<String> =
-            self.arrays.keys().take(SHOWN).map(|name| format!("`{name}`")).collect();
+        let names: Vec<String> = self.arrays.keys().take(SHOWN).cloned().collect();
         let more = match self.arrays.len().saturating_sub(SHOWN) {
             0 => String::new(),
             more => format!(" and {more} more"),
         };
-        format!("the file holds {}{more}", names.join(", "))
+        format!("the file holds {}{more}", listed(&names))
     }
 
     pub(super) fn insert(&mut self, name: String, matrix: Matrix) {
-        self.skipped.shift_remove(&name);
+        self.failed.shift_remove(&name);
         if self.arrays.contains_key(&name) {
             self.warnings.push(format!("`{name}` occurs twice; the last one counts"));
         }
         self.arrays.insert(name, matrix);
     }
 
+    pub(super) fn insert_column(&mut self, name: String, matrix: Matrix, about: About) {
+        self.about.insert(name.clone(), about);
+        self.arrays.insert(name, matrix);
+    }
+
+    /// Notes that `bare` means the column `name` unless another one has this very name.
+    pub(super) fn alias(&mut self, bare: &str, name: &str) {
+        let names = self.aliases.entry(bare.to_owned()).or_default();
+        if !names.iter().any(|known| known == name) {
+            names.push(name.to_owned());
+        }
+    }
+
+    /// Notes that `name` cannot be read.
+    pub(super) fn fail(&mut self, name: String, fault: Fault) {
+        self.arrays.shift_remove(&name);
+        self.failed.insert(name, fault);
+    }
+
     /// Notes that `name` is not read; `reason` completes "`name` is skipped: …".
     pub(super) fn skip(&mut self, name: String, reason: &str) {
-        self.arrays.shift_remove(&name);
         self.warnings.push(format!("`{name}` is skipped: {reason}"));
-        self.skipped.insert(name, reason.to_owned());
+        let fault = fault!(UNREADABLE_MATRIX, "`{name}` cannot be read: {reason}");
+        self.fail(name, fault);
     }
+}
+
+impl Column {
+    /// Where value number `row`, counted from 0, stands: `line 5`, or `row 4` without lines.
+    pub fn place(&self, row: usize) -> String {
+        match self.about.lines.get(row) {
+            Some(line) => format!("line {line}"),
+            None => format!("row {}", row + 1),
+        }
+    }
+
+    /// Sentences about values that fall or occur twice, where they are the X of an experiment.
+    pub fn order(&self, name: &str) -> Vec<String> {
+        let known: Vec<(usize, f64)> = self
+            .values
+            .iter()
+            .copied()
+            .enumerate()
+            .filter(|(_, value)| value.is_finite())
+            .collect();
+        let mut notes = Vec::new();
+        let falling = known.windows(2).find(|pair| pair[1].1 < pair[0].1);
+        let rises = known.windows(2).any(|pair| pair[1].1 > pair[0].1);
+        if let Some([before, after]) = falling.filter(|_| rises) {
+            notes.push(format!(
+                "`{name}` falls from {} to {} at {}: all rows are taken as points of one experiment; \
+                 runs that were made one after the other belong into files of their own",
+                before.1, after.1, self.place(after.0)
+            ));
+        }
+        let mut sorted: Vec<f64> = known.iter().map(|(_, value)| *value).collect();
+        sorted.sort_by(f64::total_cmp);
+        let twice = sorted.windows(2).filter(|pair| pair[0] == pair[1]).count();
+        if twice > 0 {
+            let first =
+                sorted.windows(2).find(|pair| pair[0] == pair[1]).map_or(0.0, |pair| pair[0]);
+            notes.push(format!(
+                "{twice} values of `{name}` repeat an earlier one, such as {first}: each row counts as a point"
+            ));
+        }
+        notes
+    }
+}
+
+fn listed(names: &[String]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// `data` and 2 of `data[:,2]` or `data(:,2)`.
+fn part(name: &str) -> Option<(&str, usize)> {
+    let inner = name.strip_suffix([']', ')'])?;
+    let (matrix, index) = inner.split_once(['[', '('])?;
+    let column = index.trim_start().strip_prefix(':')?.trim_start().strip_prefix(',')?;
+    Some((matrix, column.trim().parse().ok()?))
+}
+
+/// The sentence about values that are missing.
+fn missing(name: &str, column: &Column) -> Option<String> {
+    const SHOWN: usize = 10;
+    let rows: Vec<usize> =
+        (0..column.values.len()).filter(|&k| !column.values[k].is_finite()).collect();
+    if rows.is_empty() {
+        return None;
+    }
+    let shown: Vec<String> = rows.iter().take(SHOWN).map(|row| (row + 1).to_string()).collect();
+    let more = if rows.len() > SHOWN { ", …" } else { "" };
+    let (what, verb) = if rows.len() == 1 { ("row", "is") } else { ("rows", "are") };
+    Some(format!(
+        "{} of {} values of `{name}` {verb} missing: {what} {}{more}",
+        rows.len(),
+        column.values.len(),
+        shown.join(", ")
+    ))
 }

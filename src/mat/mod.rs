@@ -1,12 +1,13 @@
-//! Matrices in files: MAT versions 4, 5 and 7, text in the `#1` format, CSV and XLSX.
+//! Matrices in files: MAT versions 4, 5, 7 and 7.3, text in the `#1` format, tables (CSV and what
+//! instruments write), XLSX.
 //!
-//! [`read`] recognises the format by content and [`read_csv`] reads tables; both return a
-//! [`MatFile`] of real matrices by name. [`write_v4`] and [`write_v5`] make files.
+//! [`read`] recognises the format by content, [`read_named`] also tables, of which [`read_csv`]
+//! reads those that hold numbers alone; all return a [`MatFile`] of real matrices by name. [`write_v4`] and [`write_v5`] make files.
 //!
 //! What cannot be a real matrix is skipped, with a warning that names it, and asking for it is a
 //! fault that says why: complex numbers (never silently their real part), sparse matrices, cells,
 //! objects, functions, and arrays of more than two dimensions. Structures are read field by
-//! field, under dotted names (`run.current`). Version 7.3, which is HDF5, is refused.
+//! field, under dotted names (`run.current`).
 //!
 //! Files may be damaged or hostile: every size is compared with the bytes that remain before
 //! memory is taken, compressed elements are inflated up to [`MAX_INFLATED`] bytes a file, and
@@ -15,27 +16,28 @@
 //! References: *MAT-File Format*, The MathWorks, R2024a (version 5: chapter 1; version 4:
 //! appendix).
 
-mod csv;
 pub mod errors;
 mod matrix;
 mod number;
 mod reader;
 mod spreadsheet;
+mod table;
 mod text;
 mod v4;
 mod v5;
+mod v73;
 mod write;
 
-pub use csv::read_csv;
-pub use matrix::{Kind, MatFile, Matrix, Version};
+pub use matrix::{About, Column, Kind, MatFile, Matrix, Version};
 pub use number::Storage;
+pub use table::read_csv;
 pub use v5::MAX_INFLATED;
 pub use write::{append_v4, write_v4, write_v5};
 
 use crate::diag::Fault;
 use crate::fault;
 
-/// Reads all matrices of a MAT file of version 4, 5 or 7, or of a text file in the `#1` format.
+/// Reads all matrices of a MAT file of version 4, 5, 7 or 7.3, or of a text file in the `#1` format.
 ///
 /// ```
 /// use gapilib::mat::{self, Matrix};
@@ -45,7 +47,9 @@ use crate::fault;
 /// # Ok::<(), gapilib::diag::Fault>(())
 /// ```
 pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
-    refuse_hdf5(bytes)?;
+    if v73::looks_like(bytes) {
+        return v73::read(bytes);
+    }
     if text::looks_like(bytes) {
         return text::read(bytes);
     }
@@ -59,30 +63,44 @@ pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
     }
 }
 
-/// Reads a data file by the end of its name: `.csv` (also `.tsv`, `.txt` with columns) as a table;
-/// by its content: the first sheet of an XLSX file as a table, anything else with [`read`].
+/// Reads a data file by its content: a table of text or a spreadsheet, anything else with [`read`].
+/// Names that end with `.csv` or `.tsv` are those of tables. Faults name the file.
 pub fn read_named(file_name: &str, bytes: &[u8]) -> Result<MatFile, Fault> {
-    let lower = file_name.to_lowercase();
-    let table = [".csv", ".tsv"].iter().any(|end| lower.ends_with(end))
-        || lower.ends_with(".txt") && !text::looks_like(bytes);
-    if table {
-        return read_csv(bytes);
+    let read = if is_table(file_name, bytes) {
+        table::read_text(bytes, false)
+    } else if spreadsheet::looks_like(bytes) {
+        spreadsheet::read(bytes)
+    } else {
+        read(bytes)
+    };
+    let short = file_name.rsplit(['/', '\\']).next().unwrap_or(file_name);
+    match read {
+        Ok(mut file) => {
+            short.clone_into(&mut file.file_name);
+            Ok(file)
+        }
+        Err(mut fault) => {
+            fault.message = format!("`{short}`: {}", fault.message);
+            Err(fault)
+        }
     }
-    if spreadsheet::looks_like(bytes) {
-        return spreadsheet::read(bytes);
-    }
-    read(bytes)
 }
 
-fn refuse_hdf5(bytes: &[u8]) -> Result<(), Fault> {
-    const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
-    let signed = |at: usize| bytes.get(at..).is_some_and(|rest| rest.starts_with(SIGNATURE));
-    if signed(0) || signed(512) || bytes.starts_with(b"MATLAB 7.3 MAT-file") {
-        return Err(fault!(
-            errors::UNSUPPORTED_MAT_FILE,
-            "the file is of version 7.3 (HDF5), which is not read"
-        )
-        .help("save it with `save -v7 file.mat`"));
+/// Whether a file is text in columns. Endings of instruments (`.dta`, `.mpt`, `.asc`, `.dat`) say
+/// little, so that their content decides.
+fn is_table(file_name: &str, bytes: &[u8]) -> bool {
+    let lower = file_name.to_lowercase();
+    if [".csv", ".tsv"].iter().any(|end| lower.ends_with(end)) {
+        return !spreadsheet::looks_like(bytes);
     }
-    Ok(())
+    if lower.ends_with(".mat")
+        || text::looks_like(bytes)
+        || bytes.starts_with(b"# Created by Octave")
+    {
+        return false;
+    }
+    let utf16 = bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff");
+    lower.ends_with(".txt")
+        || utf16
+        || !bytes.is_empty() && !bytes.iter().take(512).any(|&byte| byte < 9)
 }

@@ -1,131 +1,126 @@
-//! Spreadsheets (XLSX): the first sheet as a table. Its first row that is not empty names the
-//! columns, each of which becomes a matrix with one column.
+//! Spreadsheets (XLSX): the first sheet as a table, read as tables of text are.
 
 use super::errors::BAD_TABLE;
-use super::matrix::{MatFile, Matrix, Version};
+use super::matrix::MatFile;
+use super::table;
 use crate::bail;
 use crate::diag::Fault;
 use crate::fault;
-use calamine::{DataRef, Reader, Xlsx};
+use calamine::{DataRef, ExcelDateTime, Reader, Xlsx};
 use std::collections::{BTreeMap, HashSet};
 use std::io::Cursor;
 
 /// Cells that a sheet may have.
 const MOST_CELLS: usize = 10_000_000;
-
-/// Names of columns by their place.
-type Names = BTreeMap<u32, String>;
+/// Days from the zero of the dates of spreadsheets to 1970-01-01.
+const DAYS_TO_1970: f64 = 25_569.0;
 
 /// Whether the bytes are those of a zip archive, as XLSX files are.
 pub(super) fn looks_like(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04")
 }
 
-/// Reads the first sheet. Empty cells are missing values, NaN; rows without any number are left
-/// out. Faults name the cell: text that is no number, errors of formulas, columns without a name
-/// or with the same one.
+/// Reads the first sheet. Empty cells are missing values, NaN; formulas without a stored value are
+/// faults of their column.
 ///
 /// # Errors
 ///
-/// `bad-table`.
+/// `bad-table`; faults name the cell.
 pub(super) fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
     let unreadable = |error: &dyn std::fmt::Display| {
         fault!(BAD_TABLE, "the spreadsheet cannot be read: {error}")
             .help("save it as .xlsx or .csv")
     };
     let mut workbook = Xlsx::new(Cursor::new(bytes)).map_err(|error| unreadable(&error))?;
-    let Some(sheet) = workbook.sheet_names().first().cloned() else {
+    let sheets = workbook.sheet_names();
+    let Some(sheet) = sheets.first() else {
         bail!(BAD_TABLE, "the spreadsheet has no sheet");
     };
-    let mut cells = workbook.worksheet_cells_reader(&sheet).map_err(|error| unreadable(&error))?;
-    let mut names = Names::new();
-    let mut heading = None;
-    let mut rows: BTreeMap<u32, BTreeMap<u32, f64>> = BTreeMap::new();
+    let mut rows: BTreeMap<u32, BTreeMap<u32, String>> = BTreeMap::new();
     let mut count = 0;
+    let mut cells = workbook.worksheet_cells_reader(sheet).map_err(|error| unreadable(&error))?;
     while let Some(cell) = cells.next_cell().map_err(|error| unreadable(&error))? {
         count += 1;
         if count > MOST_CELLS {
             bail!(BAD_TABLE, "the sheet `{sheet}` has more than {MOST_CELLS} cells");
         }
         let (row, column) = cell.get_position();
-        if matches!(cell.get_value(), DataRef::Empty) {
-            continue;
-        }
-        if *heading.get_or_insert(row) == row {
-            names.insert(column, name(cell.get_value(), row, column)?);
-        } else if let Some(value) = number(cell.get_value(), row, column)? {
-            if !names.contains_key(&column) {
-                bail!(BAD_TABLE, "cell {}: the column has no name", place(row, column));
-            }
-            rows.entry(row).or_default().insert(column, value);
+        let text = text(cell.get_value());
+        if !text.is_empty() {
+            rows.entry(row).or_default().insert(column, text);
         }
     }
-    table(&sheet, &names, &rows)
-}
-
-fn table(
-    sheet: &str,
-    names: &Names,
-    rows: &BTreeMap<u32, BTreeMap<u32, f64>>,
-) -> Result<MatFile, Fault> {
-    if names.is_empty() {
+    for (row, column) in formulas(bytes, sheet) {
+        rows.entry(row).or_default().entry(column).or_insert_with(|| "=".to_owned());
+    }
+    if rows.is_empty() {
         bail!(BAD_TABLE, "the sheet `{sheet}` is empty"; help: "put the table on the first sheet");
     }
-    let mut seen = HashSet::new();
-    let mut file = MatFile::new(Version::Spreadsheet);
-    for (column, name) in names {
-        if !seen.insert(name) {
-            bail!(BAD_TABLE, "column {}: a second column is named `{name}`", letters(*column));
-        }
-        let value = |row: &BTreeMap<u32, f64>| row.get(column).copied().unwrap_or(f64::NAN);
-        file.insert(name.clone(), Matrix::column_vector(rows.values().map(value).collect()));
+    let mut file = table::read_rows(filled(rows, sheet)?)?;
+    if let [_, others @ ..] = &sheets[..]
+        && !others.is_empty()
+    {
+        file.warnings.push(format!("the first sheet `{sheet}` is read, not {}", others.join(", ")));
     }
     Ok(file)
 }
 
-fn name(value: &DataRef<'_>, row: u32, column: u32) -> Result<String, Fault> {
-    let text = match value {
-        DataRef::String(text) => text.trim(),
-        DataRef::SharedString(text) => text.trim(),
-        _ => bail!(
-            BAD_TABLE,
-            "cell {}: the first row must hold the names of the columns", place(row, column);
-            help: "name the columns in the first row, such as `x` and `y`"
-        ),
-    };
-    if text.is_empty() {
-        bail!(BAD_TABLE, "cell {}: the column has no name", place(row, column));
+/// The places of all formulas; none where they cannot be read.
+fn formulas(bytes: &[u8], sheet: &str) -> HashSet<(u32, u32)> {
+    let mut places = HashSet::new();
+    let Ok(mut workbook) = Xlsx::new(Cursor::new(bytes)) else { return places };
+    let Ok(mut cells) = workbook.worksheet_cells_reader(sheet) else { return places };
+    while let Ok(Some(formula)) = cells.next_formula() {
+        if !formula.get_value().is_empty() && places.len() < MOST_CELLS {
+            places.insert(formula.get_position());
+        }
     }
-    Ok(text.to_owned())
+    places
 }
 
-/// The number of a cell; none for blanks.
-fn number(value: &DataRef<'_>, row: u32, column: u32) -> Result<Option<f64>, Fault> {
-    let text = match value {
-        DataRef::Float(value) => return Ok(Some(*value)),
-        DataRef::Int(value) => return Ok(Some(*value as f64)),
-        DataRef::Bool(value) => return Ok(Some(f64::from(u8::from(*value)))),
-        DataRef::DateTime(value) => return Ok(Some(value.as_f64())),
-        DataRef::String(text) => text.trim(),
-        DataRef::SharedString(text) => text.trim(),
-        other => bail!(BAD_TABLE, "cell {}: {other:?} is no number", place(row, column)),
+/// Rows with all their cells, empty ones between them.
+fn filled(
+    rows: BTreeMap<u32, BTreeMap<u32, String>>,
+    sheet: &str,
+) -> Result<Vec<(usize, Vec<String>)>, Fault> {
+    let width =
+        rows.values().filter_map(|row| row.keys().next_back()).max().map_or(0, |last| last + 1);
+    if rows.len().saturating_mul(width as usize) > MOST_CELLS {
+        bail!(BAD_TABLE, "the sheet `{sheet}` has more than {MOST_CELLS} cells");
+    }
+    let fill = |(row, mut cells): (u32, BTreeMap<u32, String>)| {
+        let all = (0..width).map(|column| cells.remove(&column).unwrap_or_default());
+        (row as usize + 1, all.collect())
     };
-    match text.parse() {
-        Ok(value) => Ok(Some(value)),
-        Err(_) if text.is_empty() => Ok(None),
-        Err(_) => bail!(BAD_TABLE, "cell {}: `{text}` is no number", place(row, column)),
+    Ok(rows.into_iter().map(fill).collect())
+}
+
+/// The content of a cell as a table of text would have it. The exponent of numbers leaves no doubt
+/// about their decimal mark.
+fn text(value: &DataRef<'_>) -> String {
+    match value {
+        DataRef::Empty => String::new(),
+        DataRef::Float(value) => format!("{value:e}"),
+        DataRef::Int(value) => value.to_string(),
+        DataRef::Bool(value) => u8::from(*value).to_string(),
+        DataRef::String(text) => text.trim().to_owned(),
+        DataRef::SharedString(text) => text.trim().to_owned(),
+        DataRef::DateTime(moment) => moment_text(moment),
+        DataRef::DateTimeIso(text) | DataRef::DurationIso(text) => text.clone(),
+        DataRef::Error(error) => error.to_string(),
     }
 }
 
-/// `B7` for row 6 and column 1, both counted from 0.
-fn place(row: u32, column: u32) -> String {
-    format!("{}{}", letters(column), u64::from(row) + 1)
-}
-
-fn letters(column: u32) -> String {
-    let (rest, last) = (column / 26, (column % 26) as u8);
-    let front = if rest > 0 { letters(rest - 1) } else { String::new() };
-    front + &char::from(b'A' + last).to_string()
+/// Durations and times of day are below one day or said to be so.
+fn moment_text(moment: &ExcelDateTime) -> String {
+    let days = moment.as_f64();
+    if !days.is_finite() || days.abs() > 1e7 {
+        return format!("{days:e}");
+    }
+    if days >= 0.0 && (moment.is_duration() || days < 1.0) {
+        return table::duration(days);
+    }
+    table::iso(days - DAYS_TO_1970)
 }
 
 #[cfg(test)]
@@ -153,14 +148,10 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_named_with_its_cell() {
-        assert_eq!(read(TEXT).unwrap_err().message, "cell C5: `high` is no number");
+        let fault = read(TEXT).unwrap().matrix("V").unwrap_err();
+        assert_eq!(fault.message, "cell C5: `high` in `V` is not a number");
         for end in [0, 4, 100, FILE.len() / 2, FILE.len() - 30] {
             assert!(read(&FILE[..end]).is_err(), "cut at {end}");
         }
-        assert_eq!(place(6, 1), "B7");
-        assert_eq!(
-            ["A", "Z", "AA", "ZZ", "AAA"].map(str::to_owned),
-            [0, 25, 26, 701, 702].map(letters)
-        );
     }
 }

@@ -18,7 +18,7 @@ pub(super) fn looks_like(bytes: &[u8]) -> bool {
 }
 
 pub(super) fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
-    let text = super::csv::decode(bytes);
+    let text = super::table::decode(bytes);
     let mut lines = text.lines().enumerate().map(|(i, line)| (i + 1, line));
     let mut file = MatFile::new(Version::Text);
     while let Some((number, line)) = lines.next() {

@@ -2,7 +2,7 @@
 //! report at the end of a run.
 
 use super::builtins::Failure;
-use super::{Session, simulation, tracing};
+use super::{Session, simulation, static_curve, tracing};
 use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::ga::Genomes;
@@ -11,7 +11,7 @@ use crate::identify::{
     CompiledModel, Evaluator, FitPoint, Measurement, Outcome, Question, Recorder, Simulated, Study,
     Uncertainty, deviations,
 };
-use crate::mat::{self, MatFile};
+use crate::mat;
 use crate::plot::{self, Comparison, Figure};
 use crate::source::Span;
 use std::path::Path;
@@ -60,7 +60,10 @@ impl Session {
         names: &[String; 2],
     ) -> Result<Measurement, Fault> {
         let content = mat::read_named(file, &self.read_bytes(Path::new(file))?)?;
-        let [x, y] = [series(&content, &names[0])?, series(&content, &names[1])?];
+        let [x, y] = [content.column(&names[0])?, content.column(&names[1])?];
+        let notes = [&x, &y].into_iter().flat_map(|column| column.about.notes.clone());
+        let notes: Vec<String> = notes.collect();
+        let [x, y] = [x.values, y.values];
         if x.len() != y.len() {
             bail!(
                 DATA_SIZES_DIFFER,
@@ -72,9 +75,12 @@ impl Session {
                 help: "name the two matrices of one experiment"
             );
         }
+        let pairs = x.into_iter().zip(y).filter(|(x, y)| x.is_finite() && y.is_finite());
+        let (x, y): (Vec<f64>, Vec<f64>) = pairs.unzip();
         if x.is_empty() {
             bail!(BAD_DATA, "`{}` of `{file}` has no elements", names[0]);
         }
+        self.note_data(&content, notes);
         Ok(Measurement { file: file.to_owned(), x, y })
     }
 
@@ -160,23 +166,24 @@ impl Session {
 
     fn prepare(&mut self, request: &Request) -> Result<Evaluator, Failure> {
         self.load_model_of(request)?;
-        let translated = simulation::translated(self, &request.model)?;
-        let model = CompiledModel::new(&request.model, translated.program.clone());
+        let model = self.model_of(request)?;
         let threads = self.world.threads();
         Ok(Evaluator::new(&model, request.question.clone(), threads)?)
     }
 }
 
-/// The elements of a matrix, row by row; usually it is one row or one column.
-fn series(content: &MatFile, name: &str) -> Result<Vec<f64>, Fault> {
-    let values = content.matrix(name)?.row_major();
-    match values.iter().position(|value| !value.is_finite()) {
-        Some(k) => bail!(
-            BAD_DATA,
-            "element {} of `{name}` is {}", k + 1, values[k];
-            help: "remove or correct this point in the file"
-        ),
-        None => Ok(values),
+impl Session {
+    /// The model of a request; where X is an input of it, one that is driven by the points.
+    fn model_of(&mut self, request: &Request) -> Result<CompiledModel, Failure> {
+        let Question { x_name, x, .. } = &request.question;
+        if static_curve::is_driven(self, &request.model, x_name)? {
+            let typical = static_curve::typical(x);
+            let class = static_curve::around(self, &request.model, (x_name, typical))?;
+            let translated = simulation::translated(self, &class)?;
+            return Ok(static_curve::model(&request.model, &translated, x_name)?);
+        }
+        let translated = simulation::translated(self, &request.model)?;
+        Ok(CompiledModel::new(&request.model, translated.program.clone()))
     }
 }
 

@@ -38,6 +38,7 @@ mod scripts;
 mod session;
 pub mod simulation;
 mod statements;
+mod static_curve;
 mod tracing;
 mod transcript;
 mod variables;

@@ -16,7 +16,8 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("registry", &["diag"]),
     ("symbolic", &["diag"]),
     ("bytecode", &["external", "symbolic", "source", "diag"]),
-    ("mat", &["diag"]),
+    ("units", &[]),
+    ("mat", &["units", "diag"]),
     ("external", &["mat", "diag"]),
     ("plot", &["diag"]),
     ("sim", &["registry", "diag"]),
@@ -25,7 +26,10 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("syntax", &["source", "name", "diag"]),
     ("eval", &["external", "syntax", "value", "symbolic", "name", "source", "diag"]),
     ("results", &["sim", "mat", "registry", "diag"]),
-    ("flatten", &["external", "syntax", "eval", "value", "symbolic", "name", "source", "diag"]),
+    (
+        "flatten",
+        &["external", "syntax", "eval", "value", "symbolic", "units", "name", "source", "diag"],
+    ),
     (
         "dae",
         &[
@@ -46,8 +50,8 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         "script",
         &[
             "identify", "compile", "dae", "external", "flatten", "eval", "value", "syntax",
-            "symbolic", "teach", "results", "plot", "mat", "sim", "ga", "registry", "models",
-            "name", "source", "diag",
+            "symbolic", "teach", "results", "plot", "mat", "units", "sim", "ga", "registry",
+            "models", "name", "source", "diag",
         ],
     ),
     (

@@ -26,6 +26,7 @@ mod identified_models;
 mod identify;
 mod index_reduction;
 mod initialization;
+mod laboratory;
 mod lapack;
 mod lazy_reading;
 mod lessons;

@@ -135,7 +135,10 @@ fn reads_version_5_in_the_other_byte_order() {
 fn refuses_what_it_does_not_read_and_says_what_to_do() {
     let mut version_7_3 = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".to_vec();
     version_7_3.resize(600, 0);
-    for bytes in [version_7_3, data("octave_hdf5.mat"), data("octave_text.mat")] {
+    let fault = mat::read(&version_7_3).unwrap_err();
+    assert_eq!(fault.code, mat::errors::BAD_MAT_FILE);
+    assert_eq!(fault.helps, ["save it with `save -v7 file.mat`"]);
+    for bytes in [data("octave_hdf5.mat"), data("octave_text.mat")] {
         let fault = mat::read(&bytes).unwrap_err();
         assert_eq!(fault.code, mat::errors::UNSUPPORTED_MAT_FILE);
         assert_eq!(fault.helps, ["save it with `save -v7 file.mat`"]);
@@ -146,6 +149,47 @@ fn refuses_what_it_does_not_read_and_says_what_to_do() {
     );
     assert_eq!(message(mat::read(b"")), "the file is empty");
     assert_eq!(message(mat::read(b"model M end M;")), "the file is no MAT file");
+}
+
+#[test]
+fn reads_version_7_3() {
+    let file = open("h5py_v73.mat");
+    assert_eq!(file.version, Version::V73);
+    is_a(&file, "A", |a| a);
+    is_a(&file, "f4", |a| a);
+    is_a(&file, "i2", f64::trunc);
+    is_a(&file, "u8", |a| a.abs().trunc());
+    is_a(&file, "flag", |a| f64::from(a > 0.0));
+    assert_eq!(file.matrix("flag").unwrap().kind, Kind::Logical);
+    assert_eq!(file.matrix("text").unwrap().text_rows(), ["hello"]);
+    assert!(file.matrix("empty").unwrap().values.is_empty());
+    assert_eq!(file.matrix("run.t").unwrap().values, [0.0, 1.0, 2.0]);
+    for name in ["shuffled", "checked"] {
+        let matrix = file.matrix(name).unwrap();
+        assert_eq!((matrix.rows, matrix.columns), (300, 2));
+        let t: Vec<f64> = (0..300).map(|k| f64::from(k) / 10.0).collect();
+        assert_eq!(matrix.column(0), t, "{name}");
+        assert_eq!(file.column(&format!("{name}[:,2]")).unwrap().values[299], 29.9 * 29.9);
+    }
+    for (name, reason) in
+        [("z", "complex"), ("cube", "dimensions"), ("cell", "cell"), ("sparse", "sparse")]
+    {
+        let fault = file.matrix(name).unwrap_err();
+        assert_eq!(fault.code, mat::errors::UNREADABLE_MATRIX, "{name}");
+        assert!(fault.message.contains(reason), "{}", fault.message);
+    }
+    assert_eq!(file.matrix("data[:,2]").unwrap_err().code, mat::errors::UNKNOWN_MATRIX);
+}
+
+#[test]
+fn a_matrix_of_version_7_3_that_claims_more_than_the_limit_takes_no_memory() {
+    let mut bytes = data("h5py_v73.mat");
+    // The dimensions of A in its dataspace message: 3 and 2, as 64-bit numbers.
+    let sizes: Vec<u8> = [3u64, 2].iter().flat_map(|n| n.to_le_bytes()).collect();
+    let at = bytes.windows(16).position(|window| window == sizes).unwrap();
+    bytes[at..at + 8].copy_from_slice(&(1u64 << 40).to_le_bytes());
+    let read = mat::read(&bytes);
+    assert!(read.is_err() || read.unwrap().matrix("A").is_err());
 }
 
 #[test]
@@ -250,7 +294,7 @@ fn reads_tables() {
     assert!(table.matrix("V").unwrap().values[1].is_nan());
     let european = mat::read_csv(b"i;V\n0,1;0,95\n").unwrap();
     assert_eq!(european.matrix("V").unwrap().values, [0.95]);
-    assert_eq!(table.matrix("v").unwrap_err().message, "the file has no column `v`");
+    assert_eq!(table.matrix("v").unwrap_err().message, "`a.CSV` has no column `v`");
 }
 
 #[test]
@@ -260,13 +304,16 @@ fn malformed_tables_are_answered_with_line_and_column() {
     assert_eq!(refused("x,y\n1,\n"), "line 2, column 2: `y` has an empty cell");
     assert_eq!(refused("x,y\n1\n"), "line 2, column 2: 1 cells where the header has 2");
     assert_eq!(refused("x,y\n1,2,3\n"), "line 2, column 3: 3 cells where the header has 2");
-    assert_eq!(refused("x,x\n1,2\n"), "line 1, column 2: a second column is named `x`");
-    assert_eq!(refused("x,\n1,2\n"), "line 1, column 2: the column has no name");
+    assert_eq!(refused("x,x\n1,2\n"), "two columns are named `x`: columns 1 and 2");
+    assert_eq!(refused("x,\n1,2\n"), "line 2, column 2: 2 cells where the header has 1");
     assert_eq!(
         refused("1,2\n3,4\n"),
         "line 1, column 1: the first line holds numbers, not the names of the columns"
     );
-    assert_eq!(refused("i;V\n0,1;0.95\n"), "line 2, column 1: `0,1` in `i` is not a number");
+    assert_eq!(
+        refused("i;V\n0,1;1\n0.2;2\n"),
+        "line 3, column 1: `0.2` in `i` has another decimal mark than `0,1` in line 2"
+    );
     assert_eq!(refused(""), "the file is empty");
 }
 
@@ -391,5 +438,32 @@ proptest! {
     fn any_text_is_read_or_refused(text in "(#1\n)?(double |char )?[a-z0-9(),;\"\n#.]{0,60}") {
         let _ = mat::read(text.as_bytes());
         let _ = mat::read_csv(text.as_bytes());
+        let _ = mat::read_named("a.txt", text.as_bytes());
+    }
+
+    #[test]
+    fn damaged_version_7_3_never_panics(
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+        end in any::<prop::sample::Index>(),
+        cut in any::<bool>(),
+    ) {
+        let mut bytes = data("h5py_v73.mat");
+        let length = bytes.len();
+        changes.iter().for_each(|(at, value)| bytes[at.index(length)] = *value);
+        if cut {
+            bytes.truncate(end.index(length));
+        }
+        let _ = mat::read(&bytes);
+    }
+
+    #[test]
+    fn tables_in_any_manner_are_read_or_refused(
+        text in "([tTU iI\\[\\]/sVm;,\t.\"#%0-9eE:\\-+'a\n]{0,20}\n){0,8}"
+    ) {
+        if let Ok(file) = mat::read_named("a.dat", text.as_bytes()) {
+            for name in file.arrays.keys() {
+                prop_assert!(file.column(name).is_ok());
+            }
+        }
     }
 }

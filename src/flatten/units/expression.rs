@@ -1,11 +1,11 @@
 //! The dimensions of expressions.
 
 use super::Units;
-use super::dimension::Dimension;
 use crate::flatten::balance::path;
 use crate::syntax::ast::{
     Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, UnaryOperator,
 };
+use crate::units::Dimension;
 
 const SECOND: Dimension = Dimension::new([0, 0, 1, 0, 0, 0, 0]);
 

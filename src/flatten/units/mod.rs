@@ -3,9 +3,7 @@
 //! and variables without `unit`, fit everything. What does not fit is a warning, as models
 //! simulate all the same.
 
-mod dimension;
 mod expression;
-mod parse;
 
 use super::balance::path;
 use super::errors::INCONSISTENT_UNITS;
@@ -19,7 +17,7 @@ use crate::syntax::ast::{
     Equation, EquationKind, Expression, ExpressionKind, Statement, StatementKind,
 };
 use crate::syntax::visit::{Visit, walk_equation, walk_expression, walk_statement};
-use dimension::Dimension;
+use crate::units::{self, Dimension};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 
@@ -78,7 +76,7 @@ impl Units {
         let mut parsed: FxHashMap<Arc<str>, Option<Dimension>> = FxHashMap::default();
         let mut unit = |variable: &Variable| match &variable.attributes.get("unit")?.value.kind {
             ExpressionKind::String(text) => {
-                *parsed.entry(text.clone()).or_insert_with(|| parse::dimension(text))
+                *parsed.entry(text.clone()).or_insert_with(|| units::dimension(text))
             }
             _ => None,
         };

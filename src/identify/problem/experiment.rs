@@ -3,7 +3,8 @@
 
 use super::{Failed, FailureKind, Simulate};
 use crate::diag::Fault;
-use crate::identify::evaluation::{Plan, plan};
+use crate::identify::evaluation::{Plan, plan, with_driver};
+use crate::identify::pointwise::Pointwise;
 use crate::identify::{Instance, Model, Path};
 use crate::sim::{
     Failure, Settings, SimError, SimErrorKind, Simulator, Trajectory, find_integrator,
@@ -61,6 +62,8 @@ struct Stage {
     /// For each observation the times, or in X the points.
     points: Vec<Vec<f64>>,
     in_x: bool,
+    /// For static curves.
+    pointwise: Option<Pointwise>,
 }
 
 impl ModelSimulator {
@@ -120,6 +123,7 @@ impl Stage {
         let mut settings = experiment.settings.clone();
         let plan = plan(model.as_ref(), &varied, x_name, &all, &mut settings)?;
         let mut observed: Vec<String> = observations.iter().map(|o| o.y_name.clone()).collect();
+        let pointwise = matches!(plan, Plan::OneByOne).then(Pointwise::default);
         let (points, in_x) = match plan {
             Plan::AtTimes(times) => {
                 let time =
@@ -127,6 +131,7 @@ impl Stage {
                 let times = |o: &Observation| o.x.iter().filter_map(|x| time(x).ok()).collect();
                 (observations.iter().map(times).collect(), false)
             }
+            Plan::OneByOne => (observations.iter().map(|o| o.x.clone()).collect(), false),
             Plan::InX => {
                 observed.push(x_name.clone());
                 (observations.iter().map(|o| o.x.clone()).collect(), true)
@@ -134,7 +139,7 @@ impl Stage {
         };
         Ok(Stage {
             name: name.clone(),
-            instance: model.instance(&varied, &observed)?,
+            instance: model.instance(&with_driver(model.as_ref(), &varied), &observed)?,
             places: experiment.parameters.iter().map(|(place, _)| *place).collect(),
             values: Vec::with_capacity(varied.len()),
             retry: retry(&settings),
@@ -142,6 +147,7 @@ impl Stage {
             x_name: x_name.clone(),
             points,
             in_x,
+            pointwise,
         })
     }
 
@@ -154,6 +160,9 @@ impl Stage {
     ) -> Result<(), Failed> {
         self.values.clear();
         self.values.extend(self.places.iter().map(|&place| parameters[place]));
+        if self.pointwise.is_some() {
+            return self.one_by_one(out);
+        }
         let failed = match self.attempt(false, simulator, trajectory) {
             Ok(()) => return self.read(trajectory, out),
             Err(failed) => failed,
@@ -163,6 +172,31 @@ impl Stage {
             return self.read(trajectory, out);
         }
         Err(failed)
+    }
+
+    /// The points of a static curve.
+    fn one_by_one(&mut self, out: &mut [f64]) -> Result<(), Failed> {
+        let Stage { pointwise: Some(pointwise), instance, values, settings, points, .. } = self
+        else {
+            return Ok(());
+        };
+        let failed = |kind: FailureKind, cause: String| Failed { kind, cause, progress: 0.0 };
+        let mut first = 0;
+        for (column, x) in points.iter().enumerate() {
+            let out = &mut out[first..first + x.len()];
+            first += x.len();
+            let at = (values.as_slice(), settings.start);
+            pointwise
+                .evaluate(instance.as_mut(), at, (column, x), out)
+                .map_err(|cause| failed(FailureKind::Model, cause))?;
+        }
+        match out.iter().all(|value| value.is_finite()) {
+            true => Ok(()),
+            false => {
+                let cause = "a simulated value is not finite".to_owned();
+                Err(failed(FailureKind::Points, cause))
+            }
+        }
     }
 
     fn attempt(

@@ -22,10 +22,30 @@ pub(super) const FAMILY: Family = Family {
     ],
 };
 
-/// Reads a data file; what was skipped in it is said as warnings.
+/// Reads a data file.
 pub(super) fn read_file(session: &mut Session, name: &str) -> Result<MatFile, Fault> {
     let bytes = session.read_bytes(Path::new(name))?;
     mat::read_named(name, &bytes)
+}
+
+impl Session {
+    /// Says what should be known of data that were read: notes about the columns, and in a table the
+    /// lines that were left out.
+    pub(in crate::script) fn note_data(
+        &mut self,
+        file: &MatFile,
+        notes: impl IntoIterator<Item = String>,
+    ) {
+        let general = file.warnings.iter().filter(|_| file.is_table()).cloned();
+        let all: Vec<String> = general.chain(notes).collect();
+        for sentence in all {
+            let sentence = match file.file_name.as_str() {
+                "" => sentence,
+                name => format!("{name}: {sentence}"),
+            };
+            self.note(mat::errors::DATA_NOTE, sentence);
+        }
+    }
 }
 
 const READ_MATRIX_SIZE: &str = r#"
@@ -91,7 +111,10 @@ fn checked_matrix(
         );
     }
     let elements = matrix.row_major();
-    Ok(RealMatrix { rows: matrix.rows, columns: matrix.columns, elements }.into())
+    let (rows, columns) = (matrix.rows, matrix.columns);
+    let notes = contents.about(&name).map(|_| contents.column(&name)).transpose()?;
+    session.note_data(&contents, notes.into_iter().flat_map(|column| column.about.notes));
+    Ok(RealMatrix { rows, columns, elements }.into())
 }
 
 const WRITE_MATRIX: &str = r#"

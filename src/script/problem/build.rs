@@ -3,11 +3,13 @@
 //! What an experiment sets beyond values of parameters (ties, initial values, inputs that follow
 //! data) becomes a class around the model, so that it means what it means in Modelica.
 
+use super::data::{self, Notes};
 use super::file::{ColumnEntry, ExperimentEntry, OneOrMany, ProblemFile, Role};
-use super::own_fitness;
+use super::{inputs, own_fitness};
 use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
+use crate::flatten::FlatModel;
 use crate::ga::optimizer::METHODS;
 use crate::identify::fitness::{FITNESSES, Fitness};
 use crate::identify::problem::{
@@ -19,8 +21,11 @@ use crate::mat::{self, MatFile};
 use crate::registry::{self, BAD_OPTION, Options};
 use crate::script::Session;
 use crate::script::simulation::{self, Wishes};
+use crate::script::static_curve;
 use crate::sim::{Settings, TimeBudget};
 use crate::source::Span;
+use crate::syntax::ast::ExpressionKind;
+use crate::units::in_words;
 use std::fmt::Write;
 use std::path::Path;
 use std::sync::Arc;
@@ -31,13 +36,15 @@ pub(super) struct Built {
     pub validation: Vec<(Experiment, Vec<Series>)>,
     /// Changes when the problem or its data change.
     pub fingerprint: u64,
+    /// What should be known of the data.
+    pub notes: Vec<String>,
 }
 
 /// Something that a class around the model must hold.
 #[derive(Default)]
-struct Around {
-    modifications: Vec<String>,
-    declarations: String,
+pub(super) struct Around {
+    pub modifications: Vec<String>,
+    pub declarations: String,
 }
 
 /// Builds the problem.
@@ -47,15 +54,21 @@ struct Around {
 /// Everything that is wrong with the models, the data or the settings.
 pub(super) fn build(
     session: &mut Session,
-    file: &ProblemFile,
+    file: &mut ProblemFile,
     path: &Path,
     text: &str,
 ) -> Result<Built, Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    let mut loaded = Vec::new();
     for models in &file.files {
-        session.load_path(&folder.join(models))?;
+        loaded.extend(session.load_path(&folder.join(models))?);
     }
+    if file.model.is_empty() {
+        file.model = only_class(&loaded).map_err(one)?;
+    }
+    let file = &*file;
+    let mut notes = Notes::default();
     let free = free_parameters(file).map_err(one)?;
     let mut fingerprint = Fingerprint::default();
     fingerprint.add(text.as_bytes());
@@ -66,7 +79,7 @@ pub(super) fn build(
         let bytes = session.read_bytes(&data).map_err(one)?;
         fingerprint.add(&bytes);
         let table = mat::read_named(&data.to_string_lossy(), &bytes).map_err(one)?;
-        let built = experiment(session, file, entry, number, &table, &free)?;
+        let built = experiment(session, file, (entry, number), &table, &free, &mut notes)?;
         let (experiment, own, has_states) = built;
         if has_states {
             noise = noise.max(experiment.settings.tolerance);
@@ -90,7 +103,8 @@ pub(super) fn build(
     let parts = (parameters, series, objectives);
     let mut problem = assemble(file, parts, noise, Box::new(simulator)).map_err(one)?;
     problem.text = text.to_owned();
-    Ok(Built { problem, validation, fingerprint: fingerprint.number() })
+    let notes = notes.into_sentences();
+    Ok(Built { problem, validation, fingerprint: fingerprint.number(), notes })
 }
 
 /// The fitness functions by name: those of the program, else functions written in Modelica.
@@ -206,10 +220,10 @@ type OneExperiment = (Experiment, Vec<Series>, bool);
 fn experiment(
     session: &mut Session,
     file: &ProblemFile,
-    entry: &ExperimentEntry,
-    number: usize,
+    (entry, number): (&ExperimentEntry, usize),
     table: &MatFile,
     free: &[Free],
+    notes: &mut Notes,
 ) -> Result<OneExperiment, Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
     let name = label(entry, number);
@@ -220,15 +234,28 @@ fn experiment(
         // A bare name is both the column and, where nothing else is said, the variable.
         None => x_entry.column.clone().unwrap_or_else(|| "time".to_owned()),
     };
-    let x = column(table, &x_entry, &x_name).map_err(one)?;
+    notes.about(table, if table.is_table() { table.warnings.clone() } else { Vec::new() });
+    let x_column = data::column(table, &x_entry, &x_name, notes).map_err(one)?;
+    notes.about(table, x_column.order(x_entry.column.as_deref().unwrap_or(&x_name)));
+    let time = data::as_time(&x_name, &x_column, &x_entry, (table, notes)).map_err(one)?;
     let mut around = Around::default();
     let parameters = settle(file, entry, &name, free, &mut around).map_err(one)?;
-    inputs(entry, table, &x, &mut around).map_err(one)?;
-    let class = class_of(session, file, number, &around)?;
+    let is_driven = drive(session, file, entry, (&x_name, &x_column.values), &mut around)?;
+    let parts = (entry, table, (x_name.as_str(), time.as_slice()));
+    let class = with_inputs(session, (file, number), parts, around, notes)?;
     let translated = simulation::translated(session, &class)?;
     let program = translated.program.clone();
     let has_states = !program.sorted().states.is_empty();
-    let model: Arc<dyn Model> = Arc::new(CompiledModel::new(&file.model, program.clone()));
+    let compiled = match is_driven {
+        true => static_curve::model(&file.model, &translated, &x_name).map_err(one)?,
+        false => CompiledModel::new(&file.model, program.clone()),
+    };
+    let model: Arc<dyn Model> = Arc::new(compiled);
+    let unit = |name: &str| {
+        if name == "time" { "s".to_owned() } else { model.unit(name).unwrap_or_default() }
+    };
+    let x = data::in_unit(&x_column, &x_name, &unit(&x_name), &x_entry, (table, notes));
+    let x = x.map_err(one)?.values;
     let wishes = Wishes {
         stop: stop_time(entry, &x_name, &x, program.experiment().stop_time),
         tolerance: entry.tolerance,
@@ -240,17 +267,19 @@ fn experiment(
     let (mut observations, mut series) = (Vec::new(), Vec::new());
     for (y_name, wanted) in &entry.outputs {
         let wanted = wanted.entry();
-        let y = column(table, &wanted, y_name).map_err(one)?;
+        let y = data::column(table, &wanted, y_name, notes).map_err(one)?;
+        let measured = data::in_unit(&y, y_name, &unit(y_name), &wanted, (table, notes));
+        let measured = measured.map_err(one)?;
+        if let Some(sigma) = wanted.sigma.filter(|_| measured.factor != 1.0) {
+            notes.add(format!("the sigma {sigma} of `{y_name}` is in {}", in_words(&unit(y_name))));
+        }
+        let y = measured.values;
+        data::same_length([&x_name, y_name], [x.len(), y.len()]).map_err(one)?;
         let (x, y): (Vec<f64>, Vec<f64>) =
             x.iter().copied().zip(y).filter(|(x, y)| x.is_finite() && y.is_finite()).unzip();
         if x.is_empty() {
             return Err(one(fault!(BAD_OPTION, "`{y_name}` of {name} has no points")));
         }
-        let unit = |name: &str| {
-            if name == "time" { "s".to_owned() } else { model.unit(name).unwrap_or_default() }
-        };
-        check_unit(y_name, &unit(y_name), &wanted).map_err(one)?;
-        check_unit(&x_name, &unit(&x_name), &x_entry).map_err(one)?;
         let weight = wanted.weight.unwrap_or(1.0) * entry.weight.unwrap_or(1.0)
             / wanted.sigma.unwrap_or(1.0);
         if !(weight.is_finite() && weight > 0.0) {
@@ -354,36 +383,69 @@ fn settle(
     Ok(places)
 }
 
-/// Inputs follow their columns by linear interpolation.
-fn inputs(
+/// Ties X to a parameter of the class where it is an input of the model that nothing else drives.
+fn drive(
+    session: &mut Session,
+    file: &ProblemFile,
     entry: &ExperimentEntry,
-    table: &MatFile,
-    x: &[f64],
+    (x_name, x): (&str, &[f64]),
     around: &mut Around,
-) -> Result<(), Fault> {
-    if entry.inputs.is_empty() {
-        return Ok(());
+) -> Result<bool, Vec<Diagnostic>> {
+    let is_bound = entry.inputs.contains_key(x_name) || entry.set.contains_key(x_name);
+    if is_bound || !static_curve::is_driven(session, &file.model, x_name)? {
+        return Ok(false);
     }
-    let time = match &entry.input_time {
-        Some(name) => column(table, &ColumnEntry::named(Some(name.clone())), name)?,
-        None => x.to_vec(),
+    let typical = static_curve::typical(x);
+    let driver = static_curve::DRIVER;
+    around.modifications.push(format!("{x_name} = {driver}"));
+    _ = writeln!(around.declarations, "  parameter Real {driver} = {typical:e};");
+    Ok(true)
+}
+
+/// The class with its inputs. Where a column of an input has a unit, that of the model is looked up
+/// in the flat model.
+fn with_inputs(
+    session: &mut Session,
+    (file, number): (&ProblemFile, usize),
+    (entry, table, x): (&ExperimentEntry, &MatFile, (&str, &[f64])),
+    mut around: Around,
+    notes: &mut Notes,
+) -> Result<String, Vec<Diagnostic>> {
+    let one = |fault: Fault| vec![fault.at(Span::NONE)];
+    let flat = match inputs::have_units(entry, table) {
+        true => Some(simulation::flattened(session, &file.model)?.model),
+        false => None,
     };
-    for (number, (name, wanted)) in entry.inputs.iter().enumerate() {
-        let values = column(table, &wanted.entry(), name)?;
-        let pairs = time.iter().zip(&values).filter(|(t, v)| t.is_finite() && v.is_finite());
-        let rows: Vec<String> = pairs.map(|(t, v)| format!("{t:e},{v:e}")).collect();
-        if rows.is_empty() {
-            bail!(BAD_OPTION, "the input `{name}` has no points");
-        }
-        let table = format!("gapi_input_{number}");
-        _ = writeln!(
-            around.declarations,
-            "  Modelica.Blocks.Sources.CombiTimeTable {table}(table = [{}], extrapolation = Modelica.Blocks.Types.Extrapolation.HoldLastPoint);",
-            rows.join(";")
-        );
-        around.modifications.push(format!("{name} = {table}.y[1]"));
+    let unit = |name: &str| flat.as_ref().map_or_else(String::new, |flat| unit_in(flat, name));
+    inputs::inputs(entry, table, x, &unit, &mut around, notes).map_err(one)?;
+    class_of(session, file, number, &around)
+}
+
+/// The unit of a variable; empty where it has none.
+pub(super) fn unit_in(flat: &FlatModel, name: &str) -> String {
+    let unit = flat.variables.get(name).and_then(|variable| variable.attributes.get("unit"));
+    match unit.map(|unit| &unit.value.kind) {
+        Some(ExpressionKind::String(unit)) => unit.to_string(),
+        _ => String::new(),
     }
-    Ok(())
+}
+
+/// The class of the files where a problem names none.
+pub(super) fn only_class(loaded: &[crate::name::Name]) -> Result<String, Fault> {
+    match loaded {
+        [only] => Ok(only.to_string()),
+        [] => {
+            bail!(BAD_OPTION, "the problem names no model"; help: "write `model = \"Class\"`, and its file in `files`")
+        }
+        several => {
+            let names: Vec<String> = several.iter().map(ToString::to_string).collect();
+            bail!(
+                BAD_OPTION,
+                "the files hold several classes: {}", names.join(", ");
+                help: "name the one to identify: `model = \"{}\"`", names[0]
+            )
+        }
+    }
 }
 
 /// The class to translate: the model itself, or one around it.
@@ -410,21 +472,4 @@ fn class_of(
     );
     session.load_text(&format!("experiment {} of the problem", number + 1), &text)?;
     Ok(name)
-}
-
-fn column(table: &MatFile, entry: &ColumnEntry, default: &str) -> Result<Vec<f64>, Fault> {
-    let name = entry.column.as_deref().unwrap_or(default);
-    let factor = entry.factor.unwrap_or(1.0);
-    Ok(table.matrix(name)?.row_major().iter().map(|value| value * factor).collect())
-}
-
-fn check_unit(name: &str, unit: &str, entry: &ColumnEntry) -> Result<(), Fault> {
-    match &entry.unit {
-        Some(given) if entry.factor.is_none() && given != unit => bail!(
-            BAD_OPTION,
-            "`{name}` is in {}, but its column in {given}", if unit.is_empty() { "no unit" } else { unit };
-            help: "give the `factor` that turns the column's values into the model's unit"
-        ),
-        _ => Ok(()),
-    }
 }

@@ -13,7 +13,8 @@ use std::path::PathBuf;
 #[serde(deny_unknown_fields)]
 pub(super) struct ProblemFile {
     pub title: Option<String>,
-    /// `Class` or `Class(modification)`.
+    /// `Class` or `Class(modification)`; empty for the only class of the files.
+    #[serde(default)]
     pub model: String,
     /// Modelica files and folders, relative to the problem's file.
     #[serde(default)]
@@ -103,6 +104,8 @@ pub(super) struct ColumnEntry {
     pub unit: Option<String>,
     /// The column's values times this are in the variable's unit.
     pub factor: Option<f64>,
+    /// For an input: `hold` or `linear` between its samples.
+    pub interpolation: Option<String>,
     pub weight: Option<f64>,
     /// Standard deviation of the measurement: the weight becomes its reciprocal.
     pub sigma: Option<f64>,
@@ -158,7 +161,15 @@ pub(super) fn read(source: SourceId, text: &str) -> Result<ProblemFile, Diagnost
 
 impl ColumnEntry {
     pub(super) fn named(column: Option<String>) -> ColumnEntry {
-        ColumnEntry { variable: None, column, unit: None, factor: None, weight: None, sigma: None }
+        ColumnEntry {
+            variable: None,
+            column,
+            unit: None,
+            factor: None,
+            interpolation: None,
+            weight: None,
+            sigma: None,
+        }
     }
 }
 

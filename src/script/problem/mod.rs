@@ -7,7 +7,10 @@
 
 mod build;
 mod control;
+mod data;
+mod draft;
 mod file;
+mod inputs;
 mod live;
 mod own_fitness;
 mod record;
@@ -23,6 +26,8 @@ use crate::identify::problem::{
 use crate::registry::BAD_OPTION;
 use crate::source::Span;
 use crate::value::RecordValue;
+pub use draft::{Draft, DraftOptions, draft};
+
 use build::Built;
 use control::Watched;
 use live::Live;
@@ -94,8 +99,11 @@ fn solve_text(
 ) -> Result<Solution, Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
     let source = session.sources.add(path.display().to_string(), text.as_str());
-    let file = file::read(source, &text).map_err(|error| vec![error])?;
-    let mut built = build::build(session, &file, path, &text)?;
+    let mut file = file::read(source, &text).map_err(|error| vec![error])?;
+    let mut built = build::build(session, &mut file, path, &text)?;
+    for note in &built.notes {
+        session.note(crate::mat::errors::DATA_NOTE, note.clone());
+    }
     if let Some(limit) = options.evaluations {
         built.problem.stop.evaluations = Some(limit);
     }
@@ -110,7 +118,7 @@ fn solve_built(
     options: &RunOptions,
     every: (Option<u64>, f64),
 ) -> Result<Solution, Fault> {
-    let Built { problem, validation, fingerprint } = built;
+    let Built { problem, validation, fingerprint, notes } = built;
     let folder = session.world.output_dir().join(&options.folder);
     let mut run = Run::new(problem, session.world.threads())?;
     let importance = analysed(session, &run, &folder, options)?;
@@ -150,6 +158,7 @@ fn solve_built(
     let validation = validated(&run, &validation)?;
     let mut solution = Solution::of(&run, &stop, validation)?;
     solution.importance = importance;
+    solution.notes.extend(notes);
     if options.profile && !interrupted {
         solution.add_profiles(&run)?;
     }

@@ -153,8 +153,8 @@ fn an_unfinished_run_is_never_overwritten_and_resumes_to_the_same_end() {
     let mut session = Session::new(Box::new(world(&files)));
     let text = files[0].1.clone();
     let source = session.sources.add("p.toml", text.as_str());
-    let file = file::read(source, &text).unwrap();
-    let built = build::build(&mut session, &file, Path::new("p.toml"), &text)
+    let mut file = file::read(source, &text).unwrap();
+    let built = build::build(&mut session, &mut file, Path::new("p.toml"), &text)
         .unwrap_or_else(|e| panic!("{}", e[0].message));
     let mut journal = solving::header(built.fingerprint);
     let mut run_of = Run::new(built.problem, 1).unwrap();

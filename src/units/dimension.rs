@@ -10,14 +10,14 @@ const SYMBOLS: [&str; 7] = ["kg", "m", "s", "A", "K", "mol", "cd"];
 /// What a unit measures: exponents of kg, m, s, A, K, mol and cd. Radians and steradians are
 /// numbers; factors such as that of `kPa` do not matter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(super) struct Dimension([i32; 7]);
+pub struct Dimension([i32; 7]);
 
 impl Dimension {
     /// That of a pure number.
-    pub(super) const ONE: Dimension = Dimension([0; 7]);
+    pub const ONE: Dimension = Dimension([0; 7]);
 
     /// The dimension with whole exponents.
-    pub(super) const fn new(exponents: [i32; 7]) -> Dimension {
+    pub const fn new(exponents: [i32; 7]) -> Dimension {
         let mut parts = [0; 7];
         let mut at = 0;
         while at < 7 {
@@ -27,16 +27,18 @@ impl Dimension {
         Dimension(parts)
     }
 
-    pub(super) fn times(self, other: Dimension) -> Option<Dimension> {
+    /// The sum of the exponents.
+    pub fn times(self, other: Dimension) -> Option<Dimension> {
         self.zip(other, i32::checked_add)
     }
 
-    pub(super) fn over(self, other: Dimension) -> Option<Dimension> {
+    /// The difference of the exponents.
+    pub fn over(self, other: Dimension) -> Option<Dimension> {
         self.zip(other, i32::checked_sub)
     }
 
     /// The power; `None` if an exponent is no multiple of 1/60.
-    pub(super) fn power(self, exponent: f64) -> Option<Dimension> {
+    pub fn power(self, exponent: f64) -> Option<Dimension> {
         let mut out = [0; 7];
         for (out, part) in out.iter_mut().zip(self.0) {
             let value = f64::from(part) * exponent;

@@ -1,0 +1,76 @@
+//! `gapi new`: a first problem file from a data file and a model.
+
+use super::args::{Global, NewArgs};
+use super::session;
+use crate::diag::Fault;
+use crate::registry::BAD_OPTION;
+use crate::script::Session;
+use crate::script::problem::{Draft, DraftOptions, draft};
+use crate::source::Span;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Writes the problem file.
+pub(super) fn new(arguments: &NewArgs, global: &Global) -> ExitCode {
+    let mut session = match session::with_files(global, &[]) {
+        Ok((session, _)) => session,
+        Err(code) => return code,
+    };
+    let output = output(arguments);
+    if session.world.exists(&output) {
+        let fault = Fault::new(BAD_OPTION, format!("`{}` exists already", output.display()))
+            .help("choose another name with `--output`, or remove it");
+        return session::failed(&mut session, vec![fault.at(Span::NONE)]);
+    }
+    let options = options(arguments, &output);
+    match draft(&mut session, &options).and_then(|draft| write(&mut session, &output, draft)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(errors) => session::failed(&mut session, errors),
+    }
+}
+
+/// The file that was asked for, else the data's name with another ending, in the working directory.
+fn output(arguments: &NewArgs) -> PathBuf {
+    let name = || arguments.data.with_extension("toml").file_name().map(PathBuf::from);
+    arguments.output.clone().or_else(name).unwrap_or_else(|| PathBuf::from("problem.toml"))
+}
+
+/// Paths in a problem file are relative to it: as given where it lies in the working directory.
+fn options(arguments: &NewArgs, output: &Path) -> DraftOptions {
+    let is_here = output.parent().is_none_or(|folder| folder.as_os_str().is_empty());
+    let path = |path: &Path| {
+        let kept = || Some(path.to_path_buf());
+        let full = if is_here { kept() } else { std::path::absolute(path).ok() };
+        full.unwrap_or_else(|| path.to_path_buf()).to_string_lossy().into_owned()
+    };
+    let is_file = arguments.model.exists();
+    DraftOptions {
+        data: path(&arguments.data),
+        models: if is_file { path(&arguments.model) } else { String::new() },
+        class: match (&arguments.class, is_file) {
+            (Some(class), _) => class.clone(),
+            (None, true) => String::new(),
+            (None, false) => arguments.model.to_string_lossy().into_owned(),
+        },
+    }
+}
+
+fn write(
+    session: &mut Session,
+    output: &Path,
+    draft: Draft,
+) -> Result<(), Vec<crate::diag::Diagnostic>> {
+    session.world.write(output, draft.text.as_bytes()).map_err(|error| {
+        let message = format!("`{}` cannot be written: {error}", output.display());
+        vec![Fault::new(BAD_OPTION, message).at(Span::NONE)]
+    })?;
+    let name = output.display();
+    session.print(&format!("written to {name}\n"));
+    match draft.incomplete {
+        None => {
+            session.print(&format!("read it, correct the ranges, then: gapi identify {name}\n"))
+        }
+        Some(why) => session.print(&format!("it cannot be run yet: {why}\n")),
+    }
+    Ok(())
+}

@@ -1,0 +1,241 @@
+//! From the cells of a column to numbers.
+
+use super::Places;
+use super::moment::{Kind, Moment, moment, seconds};
+use super::number::{Form, Missing, form, missing, value};
+use super::records::Record;
+use crate::diag::Fault;
+use crate::fault;
+use crate::mat::errors::BAD_TABLE;
+
+/// What a column holds.
+pub(super) enum Content {
+    /// Numbers; NaN where there is none.
+    Numbers(Vec<f64>),
+    /// Dates and times of day.
+    Moments(Vec<Option<Moment>>),
+}
+
+/// A column as it was read, and what is to be said of it.
+pub(super) struct Parsed {
+    pub content: Content,
+    pub notes: Vec<String>,
+}
+
+/// Where the cells of a column are.
+#[derive(Clone, Copy)]
+pub(super) struct Cells<'r, 'a> {
+    pub rows: &'r [Record<'a>],
+    pub column: usize,
+    pub name: &'r str,
+    pub places: Places,
+    /// Empty cells are faults.
+    pub strict: bool,
+}
+
+impl<'r> Cells<'r, '_> {
+    /// Lines and cells.
+    fn all(self) -> impl Iterator<Item = (usize, &'r str)> {
+        self.rows
+            .iter()
+            .map(move |row| (row.line, row.cells.get(self.column).map_or("", |cell| cell.as_ref())))
+    }
+
+    fn place(self, line: usize) -> String {
+        self.places.of(line, self.column)
+    }
+
+    fn not_a_number(self, line: usize, cell: &str) -> Fault {
+        let (place, name) = (self.place(line), self.name);
+        if cell.starts_with('=') {
+            return fault!(BAD_TABLE, "{place}: the formula in `{name}` has no stored value")
+                .help("open the file in a spreadsheet program, calculate and save it");
+        }
+        let cell: String = cell.chars().take(40).collect();
+        fault!(BAD_TABLE, "{place}: `{cell}` in `{name}` is not a number")
+            .help("correct the cell, or leave it empty where the value is missing")
+    }
+
+    /// Whether all cells are empty.
+    pub(super) fn is_empty(self) -> bool {
+        self.all().all(|(_, cell)| cell.is_empty())
+    }
+
+    /// The column as numbers or moments; `usual` is the decimal mark of the file.
+    pub(super) fn parse(self, usual: Option<char>) -> Result<Parsed, Fault> {
+        let first = self.all().find(|(_, cell)| missing(cell).is_none());
+        match first {
+            Some((_, cell)) if form(cell).is_none() && moment(cell).is_some() => self.moments(),
+            _ => self.numbers(usual),
+        }
+    }
+
+    fn moments(self) -> Result<Parsed, Fault> {
+        let mut moments = Vec::with_capacity(self.rows.len());
+        let mut kind: Option<Kind> = None;
+        for (line, cell) in self.all() {
+            if missing(cell).is_some() {
+                moments.push(None);
+                continue;
+            }
+            let found = moment(cell).filter(|m| *kind.get_or_insert(m.kind()) == m.kind());
+            let Some(found) = found else {
+                let (place, name) = (self.place(line), self.name);
+                return Err(fault!(
+                    BAD_TABLE,
+                    "{place}: `{}` in `{name}` is not a time as in the cells above",
+                    short(cell)
+                ));
+            };
+            moments.push(Some(found));
+        }
+        Ok(Parsed { content: Content::Moments(moments), notes: Vec::new() })
+    }
+
+    fn numbers(self, usual: Option<char>) -> Result<Parsed, Fault> {
+        let decimal = self.decimal(usual)?;
+        let mut values = Vec::with_capacity(self.rows.len());
+        let (mut notes, mut words, mut grouped) = (Vec::new(), Vec::new(), None);
+        for (line, cell) in self.all() {
+            match missing(cell) {
+                Some(_) if self.strict && cell.is_empty() => {
+                    let (place, name) = (self.place(line), self.name);
+                    return Err(fault!(BAD_TABLE, "{place}: `{name}` has an empty cell"));
+                }
+                Some(reason) => {
+                    if reason == Missing::Reason {
+                        words.push((line, cell));
+                    }
+                    values.push(f64::NAN);
+                    continue;
+                }
+                None => {
+                    let found = form(cell);
+                    if let Some(Form::Grouped { group, .. }) = found {
+                        grouped.get_or_insert((group, line));
+                    }
+                    let read = match found {
+                        Some(_) => value(cell, decimal),
+                        // `inf`; no other word is a number.
+                        None => cell.parse().ok().filter(|value: &f64| value.is_infinite()),
+                    };
+                    values.push(read.ok_or_else(|| self.not_a_number(line, cell))?);
+                }
+            }
+        }
+        if let Some((line, word)) = words.first() {
+            let more = if words.len() > 1 {
+                format!(", and {} more like it", words.len() - 1)
+            } else {
+                String::new()
+            };
+            notes.push(format!(
+                "`{word}` in `{}`, {}{more}, is read as missing",
+                self.name,
+                self.place(*line)
+            ));
+        }
+        if let Some((group, line)) = grouped.filter(|(group, _)| matches!(group, '.' | ',')) {
+            notes.push(format!(
+                "in `{}` the mark `{group}` stands between thousands, as in {}",
+                self.name,
+                self.place(line)
+            ));
+        }
+        Ok(Parsed { content: Content::Numbers(values), notes })
+    }
+
+    /// The decimal mark of the column, from cells that leave no doubt; what contradicts it or
+    /// cannot be decided is a fault.
+    fn decimal(self, usual: Option<char>) -> Result<char, Fault> {
+        let mut certain: Option<(char, usize, &str)> = None;
+        let mut doubtful: [Option<(usize, &str)>; 2] = [None; 2];
+        for (line, cell) in self.all() {
+            let Some(form) = form(cell) else { continue };
+            if let Form::Ambiguous(mark) = form {
+                doubtful[usize::from(mark == ',')].get_or_insert((line, cell));
+            }
+            let Some(mark) = form.decimal() else { continue };
+            match certain {
+                Some((known, at, evidence)) if known != mark => {
+                    return Err(fault!(
+                        BAD_TABLE,
+                        "{}: `{cell}` in `{}` has another decimal mark than `{evidence}` in {}",
+                        self.place(line),
+                        self.name,
+                        self.places.row(at)
+                    )
+                    .help("write all numbers with the same decimal mark"));
+                }
+                _ => _ = certain.get_or_insert((mark, line, cell)),
+            }
+        }
+        let known = certain.map(|(mark, ..)| mark).or(usual);
+        let alone = || match doubtful {
+            [Some(_), None] => Some('.'),
+            [None, Some(_)] if self.places.comma_is_free() => Some(','),
+            [None, None] => Some('.'),
+            _ => None,
+        };
+        let decimal = known.or_else(alone);
+        let doubt = match decimal {
+            Some('.') => doubtful[1],
+            Some(_) => doubtful[0],
+            None => doubtful[1].or(doubtful[0]),
+        };
+        match (decimal, doubt) {
+            (Some(decimal), None) => Ok(decimal),
+            (_, Some((line, cell))) => Err(self.ambiguous(line, cell, certain)),
+            (None, None) => Ok('.'),
+        }
+    }
+
+    fn ambiguous(self, line: usize, cell: &str, certain: Option<(char, usize, &str)>) -> Fault {
+        let joined: String = cell.chars().filter(|c| !matches!(c, '.' | ',')).collect();
+        let point = cell.replace(',', ".");
+        let why = match certain {
+            Some((_, at, evidence)) => format!(", beside `{evidence}` in {}", self.places.row(at)),
+            None => String::new(),
+        };
+        fault!(
+            BAD_TABLE,
+            "{}: `{cell}` in `{}` may be {point} or {joined}{why}",
+            self.place(line),
+            self.name
+        )
+        .help("write numbers without marks between thousands")
+    }
+}
+
+/// The decimal mark of which the columns leave no doubt, if they agree.
+pub(super) fn usual_mark(rows: &[Record<'_>], columns: usize) -> Option<char> {
+    let mut usual = None;
+    for row in rows {
+        for cell in row.cells.iter().take(columns) {
+            let Some(mark) = form(cell).and_then(Form::decimal) else { continue };
+            if usual.is_some_and(|usual| usual != mark) {
+                return None;
+            }
+            usual = Some(mark);
+        }
+    }
+    usual
+}
+
+/// Moments of one column as seconds, with the dates of another.
+pub(super) fn in_seconds(
+    name: &str,
+    moments: &[Option<Moment>],
+    dates: Option<(&str, &[Option<Moment>])>,
+) -> Result<(Vec<f64>, String), Fault> {
+    let found = seconds(moments, dates.map(|(_, dates)| dates), name).map_err(|mut fault| {
+        fault.message = format!("column `{name}`: {}", fault.message);
+        fault
+    })?;
+    let with = dates.map_or(String::new(), |(name, _)| format!(" with the dates of `{name}`"));
+    Ok((found.values, format!("`{name}` holds {}{with}", found.meaning)))
+}
+
+fn short(cell: &str) -> String {
+    cell.chars().take(40).collect()
+}

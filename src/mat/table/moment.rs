@@ -1,0 +1,387 @@
+//! Dates and times of day, which become seconds.
+//!
+//! Read are ISO 8601 (`2024-03-05T23:59:59.5Z`), days first with points (`05.03.2024`), months by
+//! name (`05-Mar-2024`), slashes where the column shows whether the day or the month is first, and
+//! `hh:mm:ss` with any number of hours. Counted in whole nanoseconds, so that differences are exact.
+
+use crate::diag::Fault;
+use crate::fault;
+use crate::mat::errors::BAD_TABLE;
+
+const SECOND: i64 = 1_000_000_000;
+const DAY: i64 = 86_400 * SECOND;
+
+/// A date, a time of day, or both.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Moment {
+    date: Option<Date>,
+    /// Nanoseconds, and whether the seconds are written.
+    clock: Option<(i64, bool)>,
+}
+
+/// Year, month and day; or two numbers of which one is the day and the other the month.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Date {
+    Known([i64; 3]),
+    Either { year: i64, first: i64, second: i64 },
+}
+
+/// What the first cell of a column of moments holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Date,
+    Clock,
+    Both,
+}
+
+impl Moment {
+    pub(super) fn kind(self) -> Kind {
+        match (self.date, self.clock) {
+            (Some(_), Some(_)) => Kind::Both,
+            (Some(_), None) => Kind::Date,
+            _ => Kind::Clock,
+        }
+    }
+}
+
+/// The moment that a cell holds.
+pub(super) fn moment(cell: &str) -> Option<Moment> {
+    // Most cells are numbers; the longest moment has 35 characters.
+    if cell.len() < 4 || cell.len() > 40 || !cell.is_ascii() {
+        return None;
+    }
+    if !cell.starts_with(|c: char| c.is_ascii_digit()) {
+        return None;
+    }
+    if let Some(clock) = clock(cell) {
+        return Some(Moment { date: None, clock: Some(clock) });
+    }
+    if let Some(date) = date(cell) {
+        return Some(Moment { date: Some(date), clock: None });
+    }
+    let (day, time) = cell.split_once(['T', ' '])?;
+    let clock = clock(time.trim_start())?;
+    Some(Moment { date: Some(date(day)?), clock: Some(clock) })
+}
+
+fn number(text: &str, most_digits: usize) -> Option<i64> {
+    let digits =
+        (1..=most_digits).contains(&text.len()) && text.bytes().all(|b| b.is_ascii_digit());
+    if digits { text.parse().ok() } else { None }
+}
+
+fn date(text: &str) -> Option<Date> {
+    let mark = text.chars().find(|c| matches!(c, '-' | '.' | '/'))?;
+    let mut parts = text.split(mark);
+    let (a, b, c) = (parts.next()?, parts.next()?, parts.next()?);
+    if parts.next().is_some() {
+        return None;
+    }
+    if a.len() == 4 {
+        return known([number(a, 4)?, number(b, 2)?, number(c, 2)?]);
+    }
+    let year = match c.len() {
+        4 => number(c, 4)?,
+        2 => 2000 + number(c, 2)?,
+        _ => return None,
+    };
+    let first = number(a, 2)?;
+    if let Some(month) = month(b) {
+        return known([year, month, first]);
+    }
+    let second = number(b, 2)?;
+    if mark == '.' {
+        return known([year, second, first]);
+    }
+    let possible = |n: i64| (1..=31).contains(&n);
+    let either = possible(first) && possible(second) && first.min(second) <= 12;
+    either.then_some(Date::Either { year, first, second })
+}
+
+fn known([year, month, day]: [i64; 3]) -> Option<Date> {
+    let valid = (1..=12).contains(&month) && (1..=31).contains(&day);
+    valid.then_some(Date::Known([year, month, day]))
+}
+
+fn month(text: &str) -> Option<i64> {
+    const MONTHS: [&str; 12] =
+        ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
+    let lower = text.to_ascii_lowercase();
+    MONTHS.iter().position(|month| *month == lower).map(|place| place as i64 + 1)
+}
+
+/// Nanoseconds, and whether seconds are written.
+fn clock(text: &str) -> Option<(i64, bool)> {
+    let (text, zone) = without_zone(text)?;
+    let (text, half) = half_of_day(text);
+    let mut parts = text.split(':');
+    let (first, second, third) = (parts.next()?, parts.next()?, parts.next());
+    if parts.next().is_some() {
+        return None;
+    }
+    let mut hours = number(first, 6)?;
+    if let Some(afternoon) = half {
+        if !(1..=12).contains(&hours) {
+            return None;
+        }
+        hours = hours % 12 + if afternoon { 12 } else { 0 };
+    }
+    let Some(seconds) = third else {
+        // `10:05.3` can only be minutes and seconds.
+        if second.contains(['.', ',']) {
+            return Some((hours * 60 * SECOND + fraction(second)?, true));
+        }
+        let minutes = number(second, 2).filter(|n| *n < 60)?;
+        return Some(((hours * 60 + minutes) * 60 * SECOND - zone, half.is_some()));
+    };
+    let minutes = number(second, 2).filter(|n| *n < 60)?;
+    Some(((hours * 60 + minutes) * 60 * SECOND + fraction(seconds)? - zone, true))
+}
+
+/// Seconds with a decimal point or comma, below 61.
+fn fraction(text: &str) -> Option<i64> {
+    let (whole, decimals) = text.split_once(['.', ',']).unwrap_or((text, ""));
+    let whole = number(whole, 2).filter(|n| *n <= 60)?;
+    if decimals.is_empty() {
+        return (!text.ends_with(['.', ','])).then_some(whole * SECOND);
+    }
+    let nine: String = decimals.chars().chain("000000000".chars()).take(9).collect();
+    number(decimals, 20)?;
+    Some(whole * SECOND + number(&nine, 9)?)
+}
+
+/// The text before `Z` or `+01:00`, and the zone's nanoseconds.
+fn without_zone(text: &str) -> Option<(&str, i64)> {
+    if let Some(rest) = text.strip_suffix(['Z', 'z']) {
+        return Some((rest, 0));
+    }
+    let Some(at) = text.rfind(['+', '-']) else { return Some((text, 0)) };
+    let sign = if text[at..].starts_with('+') { 1 } else { -1 };
+    let digits = text[at + 1..].replace(':', "");
+    let hours = number(digits.get(..2)?, 2)?;
+    let minutes =
+        digits.get(2..).filter(|rest| !rest.is_empty()).map_or(Some(0), |m| number(m, 2))?;
+    Some((&text[..at], sign * (hours * 60 + minutes) * 60 * SECOND))
+}
+
+/// The text before `AM` or `PM`, and which it is.
+fn half_of_day(text: &str) -> (&str, Option<bool>) {
+    let lower = text.to_ascii_lowercase();
+    let half =
+        if lower.ends_with("pm") { Some(true) } else { lower.ends_with("am").then_some(false) };
+    match half {
+        Some(_) => (text[..text.len() - 2].trim_end(), half),
+        None => (text, None),
+    }
+}
+
+/// Days since 1970-01-01 (the algorithm of H. Hinnant, "chrono-compatible low-level date
+/// algorithms", 2021).
+fn days([year, month, day]: [i64; 3]) -> i64 {
+    let year = if month <= 2 { year - 1 } else { year };
+    let era = year.div_euclid(400);
+    let of_era = year.rem_euclid(400);
+    let of_year = (153 * ((month + 9) % 12) + 2) / 5 + day - 1;
+    era * 146_097 + of_era * 365 + of_era / 4 - of_era / 100 + of_year - 719_468
+}
+
+/// A date and time of day from days since 1970-01-01, to hundredths of a millisecond.
+pub(in crate::mat) fn iso(days: f64) -> String {
+    let parts = (days * 86_400.0 * 1e5).round() as i64;
+    let (day, rest) = (parts.div_euclid(8_640_000_000), parts.rem_euclid(8_640_000_000));
+    let [year, month, date] = civil(day);
+    format!("{year:04}-{month:02}-{date:02}T{}", clock_of(rest))
+}
+
+/// Hours, minutes and seconds from days, to hundredths of a millisecond.
+pub(in crate::mat) fn duration(days: f64) -> String {
+    clock_of((days * 86_400.0 * 1e5).round() as i64)
+}
+
+fn clock_of(parts: i64) -> String {
+    let (seconds, rest) = (parts / 100_000, parts % 100_000);
+    format!("{}:{:02}:{:02}.{rest:05}", seconds / 3600, seconds / 60 % 60, seconds % 60)
+}
+
+/// The inverse of [`days`], by the same source.
+fn civil(days: i64) -> [i64; 3] {
+    let days = days + 719_468;
+    let (era, of_era) = (days.div_euclid(146_097), days.rem_euclid(146_097));
+    let year = (of_era - of_era / 1460 + of_era / 36_524 - of_era / 146_096) / 365;
+    let of_year = of_era - (365 * year + year / 4 - year / 100);
+    let month = (5 * of_year + 2) / 153;
+    let date = of_year - (153 * month + 2) / 5 + 1;
+    let month = if month < 10 { month + 3 } else { month - 9 };
+    [year + era * 400 + i64::from(month <= 2), month, date]
+}
+
+/// What moments of a column mean as seconds.
+pub(super) struct Seconds {
+    /// NaN where there is none.
+    pub values: Vec<f64>,
+    /// From what they were made, as the end of a sentence about the column.
+    pub meaning: String,
+}
+
+/// Moments of a column as seconds. Dates count from the first point; clocks without a date as they
+/// are, unless they show the time of a day. `dates` are of another column, `hint` is the name of
+/// the column with its unit.
+pub(super) fn seconds(
+    moments: &[Option<Moment>],
+    dates: Option<&[Option<Moment>]>,
+    hint: &str,
+) -> Result<Seconds, Fault> {
+    let day_first = order(dates.unwrap_or(moments))?;
+    let mut found: Vec<Option<i64>> = Vec::with_capacity(moments.len());
+    let mut passes_midnight = false;
+    let mut is_dated = false;
+    let (mut added, mut before) = (0, None);
+    for (row, moment) in moments.iter().enumerate() {
+        let Some(moment) = moment else {
+            found.push(None);
+            continue;
+        };
+        let clock = match moment.clock {
+            Some((nanoseconds, true)) => nanoseconds,
+            Some((nanoseconds, false)) => {
+                minutes(nanoseconds, moment.date.is_some() || dates.is_some(), hint)?
+            }
+            None => 0,
+        };
+        let date = match dates {
+            Some(dates) => dates.get(row).copied().flatten().and_then(|moment| moment.date),
+            None => moment.date,
+        };
+        if let Some(date) = date {
+            is_dated = true;
+            found.push(Some(days(resolved(date, day_first)) * DAY + clock));
+            continue;
+        }
+        // From late in the evening to early in the morning: the next day.
+        if before.is_some_and(|before: i64| before - clock > DAY / 2) && clock < DAY {
+            added += DAY;
+            passes_midnight = true;
+        }
+        before = Some(clock);
+        found.push(Some(clock + added));
+    }
+    let first = found.iter().flatten().next().copied().unwrap_or(0);
+    let last = found.iter().flatten().next_back().copied().unwrap_or(0);
+    // A log that begins later than it lasts shows the time of day.
+    let since_first =
+        is_dated || passes_midnight || (first >= 3600 * SECOND && last - first < first);
+    let origin = if since_first { first } else { 0 };
+    let values = found.iter().map(|n| n.map_or(f64::NAN, |n| (n - origin) as f64 / 1e9)).collect();
+    let what = match (is_dated, since_first) {
+        (true, _) => "dates and times, read as seconds since the first point",
+        (false, true) => "times of day, read as seconds since the first point",
+        (false, false) => "hours, minutes and seconds, read as seconds",
+    };
+    let midnight = if passes_midnight { ", across midnight" } else { "" };
+    Ok(Seconds { values, meaning: format!("{what}{midnight}") })
+}
+
+/// A clock of two parts: hours and minutes where it belongs to a date or the head says so.
+fn minutes(nanoseconds: i64, is_dated: bool, hint: &str) -> Result<i64, Fault> {
+    let hint = hint.to_lowercase();
+    if is_dated || hint.contains("h:mm") || hint.contains("hh:mm") {
+        return Ok(nanoseconds);
+    }
+    if hint.contains("m:ss") {
+        return Ok(nanoseconds / 60);
+    }
+    Err(fault!(
+        BAD_TABLE,
+        "it is not clear whether the times are hours and minutes or minutes and seconds"
+    )
+    .help("write hh:mm:ss, or name the unit in the head: `time [hh:mm]` or `time [mm:ss]`"))
+}
+
+/// Whether the day is first where two numbers could be it; what the dates do not show is refused
+/// unless it does not matter.
+fn order(moments: &[Option<Moment>]) -> Result<bool, Fault> {
+    let either = |moment: &Option<Moment>| match moment.as_ref()?.date? {
+        Date::Either { year, first, second } => Some((year, first, second)),
+        Date::Known(_) => None,
+    };
+    let mut dates = moments.iter().filter_map(either);
+    let Some(one) = dates.next() else { return Ok(true) };
+    let (mut day_first, mut month_first, mut differ) = (one.1 > 12, one.2 > 12, false);
+    for date in dates {
+        day_first |= date.1 > 12;
+        month_first |= date.2 > 12;
+        differ |= date != one;
+    }
+    match (day_first, month_first) {
+        (true, false) => Ok(true),
+        (false, true) => Ok(false),
+        (false, false) if !differ => Ok(true),
+        _ => Err(fault!(
+            BAD_TABLE,
+            "it is not clear whether `{}/{}` is a day and a month or a month and a day",
+            one.1,
+            one.2
+        )
+        .help("write dates as 2024-03-05")),
+    }
+}
+
+fn resolved(date: Date, day_first: bool) -> [i64; 3] {
+    match date {
+        Date::Known(date) => date,
+        Date::Either { year, first, second } if day_first => [year, second, first],
+        Date::Either { year, first, second } => [year, first, second],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(cells: &[&str]) -> Result<(Vec<f64>, String), String> {
+        let moments: Vec<_> = cells.iter().map(|cell| moment(cell)).collect();
+        assert!(moments.iter().all(Option::is_some), "{cells:?}");
+        seconds(&moments, None, "t").map(|s| (s.values, s.meaning)).map_err(|fault| fault.message)
+    }
+
+    #[test]
+    fn dates_count_from_the_first_point() {
+        for cells in [
+            ["2024-02-28T23:59:59.250", "2024-02-29 00:00:00.5", "2024-03-01T00:00:00Z"],
+            ["28.02.2024 23:59:59,25", "29.02.2024 00:00:00,5", "01.03.2024 00:00:00"],
+            ["28-Feb-2024 23:59:59.25", "29-Feb-2024 00:00:00.5", "01-Mar-2024 00:00:00"],
+            ["2/28/2024 11:59:59.25 PM", "2/29/2024 12:00:00.5 AM", "3/1/2024 12:00:00 am"],
+            ["2024-02-29T00:59:59.25+01:00", "2024-02-29T00:00:00.5Z", "2024-02-29T19:00:00-05:00"],
+        ] {
+            let (values, meaning) = of(&cells).unwrap();
+            assert_eq!(values, [0.0, 1.25, 86_400.75], "{cells:?}");
+            assert!(meaning.contains("since the first point"));
+        }
+    }
+
+    #[test]
+    fn clocks() {
+        assert_eq!(of(&["0:00:00", "0:30:00", "25:00:00"]).unwrap().0, [0.0, 1800.0, 90_000.0]);
+        assert_eq!(of(&["0:00:10", "0:00:20"]).unwrap().0, [10.0, 20.0]);
+        assert_eq!(of(&["23:59:59.5", "00:00:00.25"]).unwrap().0, [0.0, 0.75]);
+        assert_eq!(of(&["10:12:01", "10:12:02.1"]).unwrap().0, [0.0, 1.1]);
+        assert!(of(&["10:05", "10:06"]).unwrap_err().contains("hours and minutes"));
+        assert_eq!(of(&["1:05.5", "2:00.0"]).unwrap().0, [65.5, 120.0]);
+    }
+
+    #[test]
+    fn what_the_column_does_not_show_is_refused() {
+        assert!(of(&["3/4/2024 1:00:00", "3/5/2024 1:00:00"]).unwrap_err().contains("a month"));
+        assert!(of(&["13/1/2024", "1/13/2024"]).unwrap_err().contains("a month"));
+        assert_eq!(of(&["3/4/2024 1:00:00", "3/4/2024 1:00:01"]).unwrap().0, [0.0, 1.0]);
+        assert_eq!(of(&["31/1/2024", "1/2/2024"]).unwrap().0, [0.0, 86_400.0]);
+    }
+
+    #[test]
+    fn other_cells_are_not_moments() {
+        for cell in ["1.5", "12", "1-2", "rest", "1:2:3:4", "2024-13-01", "10:61:00", "1e-5", "a:b"]
+        {
+            assert_eq!(moment(cell), None, "{cell}");
+        }
+    }
+}

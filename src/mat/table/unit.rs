@@ -1,0 +1,94 @@
+//! Units in heads: `U [V]`, `U (V)`, `U/V`, `U, V`, or a row of their own.
+
+use crate::units;
+
+/// What stands for a unit and is none that converts.
+const OTHER: [&str; 9] = ["#", "-", "1", "bits", "a.u.", "arb.u.", "counts", "pH", "ppm"];
+
+/// The name and the unit of a column's head. The unit is one that is known; what else stands in
+/// brackets belongs to the head, but the name alone means the column, too.
+pub(super) fn split(head: &str) -> (Option<&str>, Option<String>) {
+    for (open, close) in [('[', ']'), ('(', ')')] {
+        let Some(inner) = head.strip_suffix(close) else { continue };
+        let Some((name, unit)) = inner.rsplit_once(open) else { continue };
+        // `x[2]` and `der(s)` are names of variables.
+        let is_apart = name.ends_with([' ', '\u{a0}']);
+        let is_subscript =
+            unit.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b',' | b' ' | b':'));
+        let known = known(unit);
+        if is_subscript || !is_apart && (known.is_none() || name == "der") || name.trim().is_empty()
+        {
+            continue;
+        }
+        return (Some(name.trim()), known);
+    }
+    for mark in ['/', ','] {
+        let Some((name, unit)) = head.split_once(mark) else { continue };
+        let unit = known(unit);
+        if unit.is_some() && !name.trim().is_empty() {
+            return (Some(name.trim()), unit);
+        }
+    }
+    (None, None)
+}
+
+/// The unit of a cell in a row of units; none where it does not convert.
+pub(super) fn of_cell(cell: &str) -> Option<String> {
+    known(without_brackets(cell))
+}
+
+/// Whether a cell of the row below the names may be a unit.
+pub(super) fn is_unit(cell: &str) -> bool {
+    let inner = without_brackets(cell);
+    OTHER.contains(&inner) || inner.len() < cell.len() || known(inner).is_some()
+}
+
+/// A unit that is known, by itself or with words behind it: `V vs. Ref.`.
+fn known(text: &str) -> Option<String> {
+    let text = text.trim();
+    let is_known = |text: &str| !text.is_empty() && text != "1" && units::written(text).is_some();
+    if is_known(text) {
+        return Some(text.to_owned());
+    }
+    let (first, rest) = text.split_once(' ')?;
+    let is_remark = rest.starts_with("vs") || rest.starts_with('(');
+    (is_remark && is_known(first)).then(|| first.to_owned())
+}
+
+/// `[V]`, `(V)` and `<I>` without the brackets.
+pub(super) fn without_brackets(text: &str) -> &str {
+    for (open, close) in [('[', ']'), ('(', ')')] {
+        if let Some(inner) = text.strip_prefix(open).and_then(|rest| rest.strip_suffix(close)) {
+            return inner.trim();
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn heads_are_split() {
+        let owned = |name, unit: &str| (Some(name), Some(unit.to_owned()));
+        for (head, expected) in [
+            ("t [s]", owned("t", "s")),
+            ("U (V)", owned("U", "V")),
+            ("I(mA)", owned("I", "mA")),
+            ("Ewe/V", owned("Ewe", "V")),
+            ("i/mA cm^-2", owned("i", "mA cm^-2")),
+            ("T/°C", owned("T", "°C")),
+            ("U, V", owned("U", "V")),
+            ("Vf [V vs. Ref.]", owned("Vf", "V")),
+            ("U (old)", (Some("U"), None)),
+            ("x[2]", (None, None)),
+            ("der(s)", (None, None)),
+            ("V(t)", (None, None)),
+            ("U/I", (None, None)),
+            ("U", (None, None)),
+        ] {
+            assert_eq!(split(head), expected, "{head}");
+        }
+    }
+}

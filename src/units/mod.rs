@@ -1,0 +1,135 @@
+//! Units of measurement (MLS §3.7, ch. 19; SI brochure): what they measure, how they convert, and
+//! how laboratories write them.
+
+mod dimension;
+mod parse;
+mod written;
+
+pub use dimension::Dimension;
+pub use parse::{dimension, unit};
+pub use written::{in_words, normalized, written};
+
+/// A unit: `value * factor + offset` is the value in coherent SI units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unit {
+    /// What it measures.
+    pub dimension: Dimension,
+    /// How many of the coherent SI unit it is.
+    pub factor: f64,
+    /// Zero of its scale in coherent SI units; 0 but for temperatures.
+    pub offset: f64,
+}
+
+/// A change from one unit to another: `value * factor + offset`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Conversion {
+    /// The factor.
+    pub factor: f64,
+    /// What is added afterwards.
+    pub offset: f64,
+}
+
+impl Unit {
+    /// That of a pure number.
+    pub const ONE: Unit = Unit { dimension: Dimension::ONE, factor: 1.0, offset: 0.0 };
+
+    /// The second.
+    pub const SECOND: Unit =
+        Unit { dimension: Dimension::new([0, 0, 1, 0, 0, 0, 0]), factor: 1.0, offset: 0.0 };
+
+    /// The unit of a product.
+    fn times(self, other: Unit) -> Option<Unit> {
+        let dimension = self.dimension.times(other.dimension)?;
+        Some(Unit { dimension, factor: self.factor * other.factor, offset: 0.0 })
+    }
+
+    /// The unit of a quotient.
+    fn over(self, other: Unit) -> Option<Unit> {
+        let dimension = self.dimension.over(other.dimension)?;
+        Some(Unit { dimension, factor: self.factor / other.factor, offset: 0.0 })
+    }
+
+    /// The unit of a power.
+    fn power(self, exponent: f64) -> Option<Unit> {
+        let dimension = self.dimension.power(exponent)?;
+        // Powers of whole numbers by `powi` keep 1e-2^2 at 1e-4.
+        let factor = self.factor.powi(exponent as i32);
+        Some(Unit { dimension, factor, offset: 0.0 })
+    }
+
+    /// How values in this unit become values in `other`; `None` where they measure something else.
+    pub fn to(self, other: Unit) -> Option<Conversion> {
+        if self.dimension != other.dimension {
+            return None;
+        }
+        // Computed from the larger to the smaller, so that decimal factors stay exact: 1/1000 is the
+        // nearest number to 1e-3, 1e-3/1 too, but 1e-6/1e-3 is not.
+        let factor = rounded(self.factor / other.factor);
+        Some(Conversion { factor, offset: (self.offset - other.offset) / other.factor })
+    }
+}
+
+impl Conversion {
+    /// Whether nothing changes.
+    pub fn is_identity(self) -> bool {
+        self.factor == 1.0 && self.offset == 0.0
+    }
+
+    /// The value in the other unit.
+    pub fn apply(self, value: f64) -> f64 {
+        // A product with 1e-3 is one unit in the last place off what is written, a division is not.
+        let inverse = 1.0 / self.factor;
+        let scaled = if self.factor < 1.0 && inverse.fract() == 0.0 && inverse <= 1e15 {
+            value / inverse
+        } else {
+            value * self.factor
+        };
+        scaled + self.offset
+    }
+}
+
+/// The nearest number with 15 decimal digits: quotients of decimal factors such as `1e-4/1e-1` are
+/// off in the last bit only.
+fn rounded(factor: f64) -> f64 {
+    let decimal = format!("{factor:.14e}").parse().unwrap_or(factor);
+    if (decimal - factor).abs() <= 4.0 * f64::EPSILON * factor.abs() { decimal } else { factor }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn convert(value: f64, from: &str, to: &str) -> Option<f64> {
+        let (from, to) = (written(from)?, written(to)?);
+        from.to(to).map(|conversion| conversion.apply(value))
+    }
+
+    #[test]
+    fn values_are_converted() {
+        for (value, from, to, expected) in [
+            (75.25, "mA", "A", 0.07525),
+            (12.5, "mA/cm²", "A/cm2", 0.0125),
+            (12.5, "mA cm^-2", "A/m2", 125.0),
+            (25.0, "°C", "K", 298.15),
+            (298.15, "K", "degC", 25.0),
+            (212.0, "°F", "K", 373.15),
+            (1.5, "min", "s", 90.0),
+            (2.0, "h", "min", 120.0),
+            (1013.25, "mbar", "Pa", 101_325.0),
+            (50.0, "%", "1", 0.5),
+            (3.0, "l/min", "m3/s", 5e-5),
+            (4.0, "W/m²/K", "W/(m2.K)", 4.0),
+            (7.0, "kΩ", "Ohm", 7000.0),
+            (8.0, "µs", "s", 8e-6),
+            (1.0, "kWh", "J", 3.6e6),
+            (60.0, "rpm", "rad/s", 2.0 * std::f64::consts::PI),
+        ] {
+            let found = convert(value, from, to).unwrap_or(f64::NAN);
+            let tolerance = 1e-15 * expected.abs();
+            assert!((found - expected).abs() <= tolerance, "{value} {from} = {found} {to}");
+        }
+        assert_eq!(convert(1.0, "V", "A"), None);
+        assert_eq!(convert(1.0, "bits", "1"), None);
+        assert_eq!(convert(0.1 + 0.2, "V", "V"), Some(0.1 + 0.2));
+    }
+}
