@@ -34,6 +34,10 @@ fn problem(method: &str, formula: fn(&[f64], f64) -> f64, truth: &[f64], noise: 
         x: x.clone(),
         y,
         weight: 1.0,
+        sigma: Sigma::Unknown,
+        column: String::new(),
+        rows: Vec::new(),
+        missing: Vec::new(),
     };
     let sse = registry::find("fitness", FITNESSES, "sse").unwrap();
     let entry = registry::find("method", METHODS, method).unwrap();
