@@ -175,9 +175,8 @@ fn of_series(
         return findings;
     }
     let test = residual_test(&residuals);
-    let serial = test.filter(|test| {
-        test.runs_probability < alpha || test.autocorrelation_probability < alpha
-    });
+    let serial = test
+        .filter(|test| test.runs_probability < alpha || test.autocorrelation_probability < alpha);
     let alike = serial.is_some_and(|test| test.autocorrelation > 0.0);
     findings.extend(bias(own, &residuals, serial.filter(|_| alike), alpha));
     findings.extend(serial.map(|test| correlated(own, &test, alpha)));

@@ -67,7 +67,9 @@ impl Sigma {
         match self {
             Sigma::Unknown | Sigma::Estimated | Sigma::Automatic => vec![weight; values.len()],
             Sigma::Given(sigma) => sigma.iter().map(|sigma| weight / sigma).collect(),
-            Sigma::Formula(formula) => values.iter().map(|y| weight / (formula.value)(*y)).collect(),
+            Sigma::Formula(formula) => {
+                values.iter().map(|y| weight / (formula.value)(*y)).collect()
+            }
         }
     }
 }

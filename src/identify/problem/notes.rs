@@ -139,9 +139,8 @@ fn about_parameters(solution: &Solution, statistics: &Statistics) -> Vec<Finding
         };
         let pairs: Vec<String> = pairs.iter().map(text).collect();
         let sentence = format!("Strongly correlated: {}.", pairs.join(", "));
-        findings.push(
-            Finding::new(FindingKind::Correlated, sentence).severity(Severity::Information),
-        );
+        findings
+            .push(Finding::new(FindingKind::Correlated, sentence).severity(Severity::Information));
     }
     if let Some(condition) = solution.condition.filter(|condition| *condition > ILL_CONDITIONED) {
         let sentence = format!(

@@ -155,9 +155,7 @@ impl Verdict {
     pub fn words(self) -> &'static str {
         match self {
             Verdict::Identifiable => "identifiable",
-            Verdict::PracticallyNonIdentifiable => {
-                "practically non-identifiable from these data"
-            }
+            Verdict::PracticallyNonIdentifiable => "practically non-identifiable from these data",
             Verdict::StructurallyNonIdentifiable => "structurally non-identifiable combination",
             Verdict::WithoutEffect => "without effect",
         }
@@ -508,8 +506,8 @@ fn verdict(
     statistics.uncertainty.as_ref()?;
     let Some(deviation) = parameter.deviation else { return Some(yes(false)) };
     let small = deviation <= RELATIVE * parameter.value.abs() && deviation <= max - min;
-    let narrow = !parameter.logarithmic
-        && 2.0 * statistics.factor * deviation <= OF_RANGE * (max - min);
+    let narrow =
+        !parameter.logarithmic && 2.0 * statistics.factor * deviation <= OF_RANGE * (max - min);
     Some(yes(small || narrow))
 }
 

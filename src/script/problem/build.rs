@@ -280,7 +280,12 @@ fn experiment(
         let (rows, missing): (Vec<usize>, Vec<usize>) = (0..y.len()).partition(whole);
         if let Sigma::Given(values) = &mut sigma {
             if values.len() != y.len() {
-                return Err(one(fault!(BAD_OPTION, "the sigma of `{y_name}` in {name} has {} rows, `{y_name}` has {}", values.len(), y.len())));
+                return Err(one(fault!(
+                    BAD_OPTION,
+                    "the sigma of `{y_name}` in {name} has {} rows, `{y_name}` has {}",
+                    values.len(),
+                    y.len()
+                )));
             }
             *values = rows.iter().map(|row| values[*row]).collect();
             values.iter().try_for_each(|value| sigma::positive(y_name, *value)).map_err(one)?;

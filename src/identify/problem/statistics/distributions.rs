@@ -107,7 +107,8 @@ mod tests {
             }
         }
         for runs in 2..=8 {
-            let tail = |from: usize, to: usize| counts[from..=to].iter().sum::<usize>() as f64 / 70.0;
+            let tail =
+                |from: usize, to: usize| counts[from..=to].iter().sum::<usize>() as f64 / 70.0;
             let expected = (2.0 * tail(2, runs).min(tail(runs, 8))).min(1.0);
             let found = runs_two_sided(runs, 4, 4);
             assert!((found - expected).abs() < 1e-12, "{runs}: {found} {expected}");

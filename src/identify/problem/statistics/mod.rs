@@ -26,8 +26,9 @@ use distributions::{normal_quantile, student_quantile};
 const RANK: [f64; 2] = [1e-7, 1e-4];
 /// Errors of a simulation beyond which a lack of rank must show at several points to be believed.
 const EXACT: f64 = 1e-9;
-/// A change of a point below this many times the error of the simulation is that error.
-const ERRORS: f64 = 10.0;
+/// Derivatives that over the whole range would change the points by less than this part of the
+/// largest are rounding.
+const NO_EFFECT: f64 = 1e-10;
 /// The upper end of a 95 % interval as a probability.
 const UPPER: f64 = 0.975;
 
@@ -75,7 +76,7 @@ impl Statistics {
         let shares = shares(&problem.series, &repeated);
         let weights: Vec<f64> = evaluation.error_weights(problem, simulated);
         let scales: Vec<f64> = weights.iter().zip(&shares).map(|(w, s)| w * s.sqrt()).collect();
-        let (jacobian, mut simulations) = sensitivities(problem, evaluation, values, simulated);
+        let (jacobian, mut simulations) = sensitivities(problem, evaluation, values);
         let columns = weighted(&jacobian, &scales);
         let measured = problem.series.iter().flat_map(|series| &series.y);
         let pairs = measured.zip(simulated).zip(&weights);
@@ -151,8 +152,10 @@ fn elsewhere(
     let mut found = Vec::new();
     for (values, simulated) in others.iter().zip(evaluation.simulate_all(others)) {
         *simulations += 1;
-        let Ok(simulated) = simulated else { continue };
-        let (jacobian, took) = sensitivities(problem, evaluation, values, &simulated);
+        if simulated.is_err() {
+            continue;
+        }
+        let (jacobian, took) = sensitivities(problem, evaluation, values);
         *simulations += took;
         let columns = weighted(&jacobian, scales);
         if columns.iter().flatten().all(|value| value.is_finite()) {
@@ -162,38 +165,26 @@ fn elsewhere(
     found
 }
 
-/// Central differences, one-sided at bounds and failures.
+/// Derivatives of the simulated points, column by column, and the simulations that they took.
+/// Columns that do not exceed the errors of the simulation are zero.
 fn sensitivities(
     problem: &Problem,
     evaluation: &Evaluation,
     values: &[f64],
-    simulated: &[f64],
 ) -> (Vec<Vec<f64>>, u64) {
-    let step = problem.noise.cbrt().clamp(1e-5, 1e-2);
-    let mut ends: Vec<Vec<f64>> = Vec::with_capacity(2 * values.len());
-    for (k, free) in problem.parameters.iter().enumerate() {
-        let size = if values[k] == 0.0 { free.max - free.min } else { values[k].abs() };
-        let size = size.min(free.max - free.min);
-        for side in [-1.0, 1.0] {
-            let mut point = values.to_vec();
-            point[k] = (values[k] + side * step * size).clamp(free.min, free.max);
-            ends.push(point);
-        }
-    }
-    let found = evaluation.simulate_all(&ends);
-    let column = |k: usize| -> Vec<f64> {
-        let side = |end: usize| match &found[end] {
-            Ok(row) => (row.as_slice(), ends[end][k]),
-            Err(_) => (simulated, values[k]),
-        };
-        let ((low, from), (high, to)) = (side(2 * k), side(2 * k + 1));
-        // What does not exceed the errors of the simulation is no effect.
-        let size = |row: &[f64]| row.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        let change = low.iter().zip(high).fold(0.0, |m: f64, (l, h)| m.max((h - l).abs()));
-        if to == from || change <= ERRORS * problem.noise.min(EXACT) * size(simulated) {
-            return vec![0.0; simulated.len()];
-        }
-        low.iter().zip(high).map(|(low, high)| (high - low) / (to - from)).collect()
+    let n = values.len();
+    let Some(Ok(found)) = evaluation.linearize(problem, &[values.to_vec()]).pop() else {
+        return (vec![vec![f64::NAN; problem.n_points()]; n], 1);
     };
-    ((0..values.len()).map(column).collect(), ends.len() as u64)
+    let size = found.simulated.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+    let column = |k: usize| -> Vec<f64> {
+        let free = &problem.parameters[k];
+        let column: Vec<f64> = found.derivatives.iter().skip(k).step_by(n).copied().collect();
+        let most = column.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
+        match most * (free.max - free.min) <= NO_EFFECT * size {
+            true => vec![0.0; column.len()],
+            false => column,
+        }
+    };
+    ((0..n).map(column).collect(), found.simulations)
 }

@@ -90,7 +90,8 @@ fn ranks(values: &[f64]) -> Vec<f64> {
     let mut ranks = vec![0.0; values.len()];
     let mut first = 0;
     while first < order.len() {
-        let same = order[first..].iter().take_while(|k| values[**k] == values[order[first]]).count();
+        let same =
+            order[first..].iter().take_while(|k| values[**k] == values[order[first]]).count();
         let rank = first as f64 + 0.5 * (same as f64 + 1.0);
         order[first..first + same].iter().for_each(|k| ranks[*k] = rank);
         first += same;
@@ -156,9 +157,8 @@ mod tests {
 
     #[test]
     fn heavy_tails_are_not_normal() {
-        let grid = |f: fn(f64) -> f64| -> Vec<f64> {
-            (1..80).map(|k| f(f64::from(k) / 80.0)).collect()
-        };
+        let grid =
+            |f: fn(f64) -> f64| -> Vec<f64> { (1..80).map(|k| f(f64::from(k) / 80.0)).collect() };
         let normal = grid(|p| super::super::distributions::normal_quantile(p));
         assert!(normality(&normal) > 0.9, "{}", normality(&normal));
         let cauchy = grid(|p| (std::f64::consts::PI * (p - 0.5)).tan());
