@@ -13,6 +13,7 @@ mod failure_region;
 mod fingerprint;
 mod html;
 mod importance;
+pub mod inference;
 mod inseparable;
 mod journal;
 mod notes;
@@ -31,6 +32,7 @@ pub use failure::{Failed, FailureKind};
 pub use failure_region::{FailureRegion, failure_region};
 pub use fingerprint::Fingerprint;
 pub use importance::{ANALYSES, Analysis, Importance, ParameterImportance, analysis};
+pub use inference::{Inference, Inferred, infer};
 pub use inseparable::{Form, Inseparable};
 pub use journal::{Journal, Record, decode, encode, first_frame, frame, header};
 pub use profile::{Profile, Profiles, profiles};
@@ -148,6 +150,8 @@ pub struct Problem {
     pub stop: Stop,
     /// Relative error of the simulated values, for finite differences: 1e-15 for a formula.
     pub noise: f64,
+    /// What is wanted beyond the estimates.
+    pub inference: Inference,
     /// Makes a simulator; one a thread.
     pub simulator: Box<dyn Fn() -> Result<Box<dyn Simulate>, Fault> + Send + Sync>,
 }

@@ -123,7 +123,7 @@ fn elsewhere(
 }
 
 /// Central differences, one-sided at bounds and failures.
-fn sensitivities(
+pub(super) fn sensitivities(
     problem: &Problem,
     evaluation: &Evaluation,
     values: &[f64],

@@ -1,7 +1,8 @@
 //! The solution: what was found, how well it fits, and what the data cannot tell.
 
 use super::{
-    FailureKind, FailureRegion, Importance, Profiles, Run, Statistics, profiles, residual_test,
+    FailureKind, FailureRegion, Importance, Inferred, Profiles, Run, Statistics, profiles,
+    residual_test,
 };
 use crate::diag::Fault;
 use crate::fault;
@@ -66,6 +67,9 @@ pub struct Solution {
     pub importance: Option<Importance>,
     /// Profiles of the parameters, where they were asked.
     pub profiles: Option<Profiles>,
+    /// What was inferred beyond the estimates.
+    #[serde(default)]
+    pub inferred: Inferred,
     /// Points of the front, where there are several objectives: parameters and objectives.
     pub front: Vec<(Vec<f64>, Vec<f64>)>,
     /// The place in the front that is farthest from the line between its ends.
@@ -233,6 +237,7 @@ impl Solution {
             changes: run.changed.clone(),
             importance: None,
             profiles: None,
+            inferred: Inferred::default(),
             knee: knee(&run.front),
             hypervolume: front_volume(&run.front),
             front: run.front.clone(),

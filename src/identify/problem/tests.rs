@@ -50,6 +50,7 @@ fn problem(method: &str, formula: fn(&[f64], f64) -> f64, truth: &[f64], noise: 
         seed: [12345.0; 6],
         stop: Stop { evaluations: Some(2000), ..Stop::default() },
         noise: 1e-15,
+        inference: Inference::default(),
         simulator: Box::new(move || Ok(Box::new(Formula(x.clone(), formula)))),
     }
 }
