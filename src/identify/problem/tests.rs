@@ -59,6 +59,7 @@ pub(super) fn problem(
         seed: [12345.0; 6],
         stop: Stop { evaluations: Some(2000), ..Stop::default() },
         noise: 1e-15,
+        inference: Inference::default(),
         simulator: Box::new(move || Ok(Box::new(Formula(x.clone(), formula)))),
     }
 }

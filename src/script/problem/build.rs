@@ -11,8 +11,8 @@ use crate::fault;
 use crate::ga::optimizer::METHODS;
 use crate::identify::fitness::{FITNESSES, Fitness};
 use crate::identify::problem::{
-    Experiment, Fingerprint, Free, ModelSimulator, NOISE_OF_FORMULAS, Observation, Problem, Series,
-    Sigma, Simulate, Stop, decide, likelihood,
+    Experiment, Fingerprint, Free, Inference, ModelSimulator, NOISE_OF_FORMULAS, Observation,
+    Problem, Series, Sigma, Simulate, Stop, decide, likelihood,
 };
 use crate::identify::{CompiledModel, Model};
 use crate::mat::{self, MatFile};
@@ -89,9 +89,11 @@ pub(super) fn build(
     let parameters = with_units(free, &experiments);
     // Made once here, so that what is wrong shows before the run.
     drop(ModelSimulator::new(&experiments).map_err(one)?);
+    let inference = super::inference::inference(file, &experiments).map_err(one)?;
     let simulator = move || Ok(Box::new(ModelSimulator::new(&experiments)?) as Box<dyn Simulate>);
     let parts = (parameters, series, objectives);
     let mut problem = assemble(file, parts, noise, Box::new(simulator)).map_err(one)?;
+    problem.inference = inference;
     problem.text = text.to_owned();
     Ok(Built { problem, validation, fingerprint: fingerprint.number() })
 }
@@ -192,6 +194,7 @@ fn assemble(
         seed: file.seed.unwrap_or([12345.0; 6]),
         stop,
         noise,
+        inference: Inference::default(),
         simulator,
     })
 }
