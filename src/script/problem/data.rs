@@ -1,7 +1,7 @@
 //! Columns of data files as values of the model's variables: units are converted, what is missing or
 //! strange is noted.
 
-use super::file::ColumnEntry;
+use super::file::{ColumnEntry, SigmaEntry};
 use crate::bail;
 use crate::diag::Fault;
 use crate::mat::{Column, MatFile};
@@ -129,6 +129,20 @@ fn incompatible(name: &str, unit: &str, given: &str) -> Fault {
     crate::fault!(BAD_OPTION, "`{name}` is in {}, but its column in {given}", in_words(unit)).help(
         "name the right column, or give the `factor` that turns its values into the model's unit",
     )
+}
+
+/// What a column of standard deviations is multiplied with: converted from its own unit where the file
+/// gives one, else as the values are.
+pub(super) fn sigma_factor(
+    table: &MatFile,
+    sigma: Option<&SigmaEntry>,
+    unit: &str,
+    values: f64,
+) -> f64 {
+    let Some(SigmaEntry::Words(name)) = sigma else { return values };
+    let own = table.column(name).ok().and_then(|column| written(&column.about.unit?));
+    let conversion = own.zip(written(unit)).and_then(|(own, unit)| own.to(unit));
+    conversion.map_or(values, |conversion| conversion.factor)
 }
 
 /// Refuses rows of X and Y that are not pairs.

@@ -10,10 +10,12 @@ mod control;
 mod data;
 mod draft;
 mod file;
+mod inference;
 mod inputs;
 mod live;
 mod own_fitness;
 mod record;
+mod sigma;
 
 use super::Session;
 use super::checkpoint::{self, Checkpoint};
@@ -21,7 +23,7 @@ use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::identify::problem::{
-    self as solving, Importance, ModelSimulator, Run, Simulate, Solution, SolvedSeries,
+    self as solving, Finding, FindingKind, Severity, Importance, ModelSimulator, Run, Simulate, Solution, SolvedSeries,
 };
 use crate::registry::BAD_OPTION;
 use crate::source::Span;
@@ -51,6 +53,8 @@ pub struct RunOptions {
     pub folder: PathBuf,
     /// Profiles of the parameters after the fit.
     pub profile: bool,
+    /// The next measurement after the fit.
+    pub design: bool,
     /// A sensitivity analysis before the fit, by name.
     pub sensitivity: Option<String>,
     /// Its base samples; 0 for the usual number.
@@ -104,6 +108,9 @@ fn solve_text(
     for note in &built.notes {
         session.note(crate::mat::errors::DATA_NOTE, note.clone());
     }
+    if options.design {
+        built.problem.inference.design.get_or_insert_with(inference::usual_design);
+    }
     if let Some(limit) = options.evaluations {
         built.problem.stop.evaluations = Some(limit);
     }
@@ -155,12 +162,19 @@ fn solve_built(
     session.world.end_view();
     run.evaluation.cancel_by(None);
     checkpoint.flush(session, run.seconds);
+    if !interrupted {
+        solving::conclude(&mut run);
+    }
     let validation = validated(&run, &validation)?;
     let mut solution = Solution::of(&run, &stop, validation)?;
     solution.importance = importance;
-    solution.notes.extend(notes);
+    let finding = |note| Finding::new(FindingKind::Data, note).severity(Severity::Information);
+    solution.findings.extend(notes.into_iter().map(finding));
     if options.profile && !interrupted {
-        solution.add_profiles(&run)?;
+        solution.add_profiles(&run);
+    }
+    if !interrupted {
+        solution.inferred = solving::infer(&run)?;
     }
     session.print(&solution.text());
     write(session, &folder, &solution)?;
@@ -273,10 +287,12 @@ fn write(session: &mut Session, folder: &Path, solution: &Solution) -> Result<()
         ("calibrated.mos", solution.script()),
         ("report.html", solution.html()),
     ];
+    let bands =
+        (!solution.inferred.bands.is_empty()).then(|| ("bands.csv", solution.inferred.bands_csv()));
     let profiles = solution.profiles.is_some().then(|| ("profiles.csv", solution.profiles_csv()));
     // What can be written is: one file that is too large must not take the others with it.
     let (mut missing, mut why) = (Vec::new(), None);
-    for (name, text) in files.into_iter().chain(profiles) {
+    for (name, text) in files.into_iter().chain(bands).chain(profiles) {
         if let Err(fault) = session.write_file(&folder.join(name), text.as_bytes()) {
             missing.push(name);
             why.get_or_insert(fault);
