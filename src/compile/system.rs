@@ -9,11 +9,12 @@ use super::notices::Notices;
 use super::program::{Access, Outputs, Program, Step, compile_continuous, resolved};
 use super::relations::Change;
 use super::selection::Choice;
+use super::sliding::{Modes, Treated};
 use super::tape::{Instruction, Tape};
 use crate::dae::Homotopy;
 use crate::diag::Fault;
 use crate::fault;
-use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern};
+use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Treatment};
 use crate::symbolic::{Expr, Pool, VarId, function};
 use std::sync::Arc;
 
@@ -64,6 +65,12 @@ pub struct System {
     pub(super) unstable: u32,
     /// What is told of a simulation, where somebody listens.
     pub(super) notices: Option<Notices>,
+    /// The modes on both sides of relations.
+    pub(super) modes: Modes,
+    /// What was done about relations that chattered.
+    pub(super) treated: Vec<Treated>,
+    /// Of the observed variables those of which a mean is a value.
+    has_means: Vec<bool>,
 }
 
 impl System {
@@ -92,6 +99,9 @@ impl System {
             sampled: false,
             unstable: 0,
             notices: None,
+            modes: Modes::default(),
+            treated: Vec::new(),
+            has_means: program.observed.iter().map(|v| program.has_means(*v)).collect(),
             program,
         };
         system.evaluate_nominals();
@@ -139,6 +149,8 @@ impl System {
             compile_continuous(&pool, &mut registers, &program.sequence, &outputs, Hoisting::Known);
         self.registers.extend(&registers);
         self.observed = Some(observed);
+        let variables = variables.iter().map(|at| program.variables()[*at].variable);
+        self.has_means = variables.map(|v| program.has_means(v)).collect();
     }
 
     /// The value of a parameter or constant (position in [`Program::variables`]) after
@@ -451,6 +463,7 @@ impl DaeSystem for System {
 
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         self.forget_notices();
+        self.treated.clear();
         self.solve_initial_system(t)?;
         self.check_initial_values()?;
         self.assert_at_event()?;
@@ -539,6 +552,32 @@ impl DaeSystem for System {
         self.load_solved(t, y)?;
         self.assert_all()?;
         self.notice(t)
+    }
+
+    fn prepare_modes(&mut self, t: f64, y: &[f64], crossings: &[usize]) -> Result<bool, Failure> {
+        self.load(t, y);
+        self.compute_modes(crossings)
+    }
+
+    fn enter_mode(&mut self, mode: usize) {
+        self.load_mode(mode);
+    }
+
+    fn can_follow(&self, crossing: usize) -> bool {
+        self.is_memoryless(crossing)
+    }
+
+    fn follow(&mut self, t: f64, y: &[f64], sides: &[(usize, bool)]) -> Result<(), Failure> {
+        self.load(t, y);
+        self.change_sides(sides)
+    }
+
+    fn has_means(&self, observed: usize) -> bool {
+        self.has_means.get(observed).is_none_or(|has| *has)
+    }
+
+    fn note_treatment(&mut self, t: f64, crossing: usize, treatment: Treatment) {
+        self.note_treated(t, crossing, treatment);
     }
 
     fn n_observed(&self) -> usize {

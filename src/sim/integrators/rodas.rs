@@ -16,7 +16,7 @@
 use super::mass_matrix::ShiftedMatrix;
 use super::{Integrator, Problem};
 use crate::registry::Entry;
-use crate::sim::SimErrorKind;
+use crate::sim::{DaeSystem, SimErrorKind};
 use crate::sim::norm::{set_weights, weighted_rms};
 
 pub(super) const ENTRY: Entry<dyn Integrator> = Entry {
