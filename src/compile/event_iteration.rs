@@ -308,10 +308,35 @@ impl System {
                 Some(moved) => any |= moved == Moved::Relation,
             }
         }
-        match self.find_combination(t, stage) {
+        if self.find_combination(t, stage) {
+            return Ok(true);
+        }
+        match self.settle_leniently(t, stage)? {
             true => Ok(true),
             false => Err(Failure::EventIteration { variable: self.unstable }),
         }
+    }
+
+    /// The same where relations are excused that hold but for what the tolerance makes of their
+    /// sides; whether they then come to rest.
+    fn settle_leniently(&mut self, t: f64, stage: Stage) -> Result<bool, Failure> {
+        self.is_lenient = true;
+        let mut rests = Ok(false);
+        for _ in 0..MAX_PASSES {
+            match self.pass(t, stage, Change::First) {
+                Ok(None) => {
+                    rests = Ok(true);
+                    break;
+                }
+                Ok(Some(_)) => {}
+                Err(failure) => {
+                    rests = Err(failure);
+                    break;
+                }
+            }
+        }
+        self.is_lenient = false;
+        rests
     }
 
     /// Keeps the values of the variables of discrete loops.

@@ -10,7 +10,7 @@ use super::system::System;
 use super::tape::Register;
 use crate::dae::{Kind, SortedDae};
 use crate::flatten::BaseType;
-use crate::sim::{Failure, Treatment};
+use crate::sim::{Failure, Side, Treatment};
 use crate::source::Span;
 use crate::symbolic::{Expr, Pool, RelationOperator, VarId};
 use rustc_hash::FxHashSet;
@@ -57,9 +57,7 @@ pub(super) fn memoryless(pool: &Pool, sorted: &SortedDae) -> Vec<bool> {
     for e in conditions.chain(assertions).chain(ends) {
         remember(&mut remembered, e);
     }
-    let has_memory = |v: VarId| {
-        matches!(dae.variable(v).kind, Kind::Previous(_) | Kind::Signal)
-    };
+    let has_memory = |v: VarId| matches!(dae.variable(v).kind, Kind::Previous(_) | Kind::Signal);
     for equation in &events.equations {
         if [equation.left, equation.right].iter().any(|side| pool.any_variable(*side, has_memory)) {
             remember(&mut remembered, equation.right);
@@ -76,9 +74,8 @@ pub(super) fn memoryless(pool: &Pool, sorted: &SortedDae) -> Vec<bool> {
             break;
         }
     }
-    let is_plain = |operator| {
-        !matches!(operator, RelationOperator::Equal | RelationOperator::NotEqual)
-    };
+    let is_plain =
+        |operator| !matches!(operator, RelationOperator::Equal | RelationOperator::NotEqual);
     let relations = dae.relations.iter();
     relations.map(|r| is_plain(r.operator) && !remembered.contains(&r.variable)).collect()
 }
@@ -127,21 +124,23 @@ impl System {
         Ok(false)
     }
 
-    pub(super) fn compute_modes(&mut self, crossings: &[usize]) -> Result<bool, Failure> {
-        if !crossings.iter().all(|at| self.is_memoryless(*at)) {
+    pub(super) fn compute_modes(&mut self, sides: &[Side]) -> Result<bool, Failure> {
+        if !sides.iter().all(|side| self.is_memoryless(side.crossing)) {
             return Ok(false);
         }
         let program = self.program.clone();
         self.modes.registers.clear();
         self.modes.values.clear();
-        let relations = crossings.iter().map(|at| program.crossing_relations[*at]);
+        let relations = sides.iter().map(|side| program.crossing_relations[side.crossing]);
         self.modes.registers.extend(relations.map(|at| program.relations[at].register));
         self.modes.registers.extend(program.events.discrete.iter().map(|v| v.0));
         let before = self.registers.to_vec();
         let mut found = Ok(true);
-        for mode in 0..1usize << crossings.len() {
-            for (bit, crossing) in crossings.iter().enumerate() {
-                self.set_side(*crossing, mode >> bit & 1 == 1);
+        let surfaces = sides.iter().map(|side| side.surface + 1).max().unwrap_or(0);
+        for mode in 0..1usize << surfaces {
+            for side in sides {
+                let is_above = mode >> side.surface & 1 == 1;
+                self.set_side(side.crossing, is_above != side.is_reversed);
             }
             found = self.solve_for_values_of_events();
             if found != Ok(true) {
@@ -167,6 +166,12 @@ impl System {
     pub(super) fn change_sides(&mut self, sides: &[(usize, bool)]) -> Result<(), Failure> {
         sides.iter().for_each(|(crossing, is_positive)| self.set_side(*crossing, *is_positive));
         self.solve_for_values_of_events().map(|_| ())
+    }
+
+    pub(super) fn keep_uncertainty(&mut self, crossings: &[f64]) {
+        for (at, value) in self.program.crossing_relations.iter().zip(crossings) {
+            self.uncertainty[*at] = *value;
+        }
     }
 
     pub(super) fn note_treated(&mut self, time: f64, crossing: usize, treatment: Treatment) {

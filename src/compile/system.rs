@@ -14,7 +14,7 @@ use super::tape::{Instruction, Tape};
 use crate::dae::Homotopy;
 use crate::diag::Fault;
 use crate::fault;
-use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Treatment};
+use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
 use crate::symbolic::{Expr, Pool, VarId, function};
 use std::sync::Arc;
 
@@ -41,6 +41,11 @@ pub struct System {
     pub(super) restless: Vec<bool>,
     /// Whether relations have been kept at a value that their sides did not quite have.
     pub(super) held: Vec<bool>,
+    /// What the tolerance makes of the sides of relations, and whether it excuses relations that do
+    /// not hold, and by how much it has.
+    pub(super) uncertainty: Vec<f64>,
+    pub(super) is_lenient: bool,
+    pub(super) excused: Vec<f64>,
     nominal: Vec<f64>,
     /// One for every loop of the initial system, of the system, and of that at events, in order.
     initial_solvers: Vec<LoopSolver>,
@@ -85,6 +90,9 @@ impl System {
             has_changed: vec![false; program.relations.len()],
             restless: vec![false; program.relations.len()],
             held: vec![false; program.relations.len()],
+            uncertainty: vec![0.0; program.relations.len()],
+            is_lenient: false,
+            excused: vec![0.0; program.relations.len()],
             nominal: vec![1.0; n],
             initial_solvers: Vec::new(),
             solvers: Vec::new(),
@@ -351,6 +359,8 @@ impl System {
         self.take_start_values_of_events();
         self.has_changed.fill(false);
         self.held.fill(false);
+        self.uncertainty.fill(0.0);
+        self.excused.fill(0.0);
         self.update_relations(t, Change::All);
         self.has_changed.fill(false);
         for (choice, selection) in self.choices.iter_mut().zip(&program.selections) {
@@ -554,9 +564,13 @@ impl DaeSystem for System {
         self.notice(t)
     }
 
-    fn prepare_modes(&mut self, t: f64, y: &[f64], crossings: &[usize]) -> Result<bool, Failure> {
+    fn set_uncertainty(&mut self, crossings: &[f64]) {
+        self.keep_uncertainty(crossings);
+    }
+
+    fn prepare_modes(&mut self, t: f64, y: &[f64], sides: &[Side]) -> Result<bool, Failure> {
         self.load(t, y);
-        self.compute_modes(crossings)
+        self.compute_modes(sides)
     }
 
     fn enter_mode(&mut self, mode: usize) {

@@ -1,7 +1,7 @@
 //! Simulations that begin where another one ended.
 
 use crate::compile::System;
-use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Treatment};
+use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
 
 /// A system whose states have given values at the start, whatever its initial equations say; all
 /// other variables follow from them. Discrete variables keep the values that initialization gave
@@ -97,8 +97,12 @@ impl DaeSystem for Continued {
         self.system.check(t, y)
     }
 
-    fn prepare_modes(&mut self, t: f64, y: &[f64], crossings: &[usize]) -> Result<bool, Failure> {
-        self.system.prepare_modes(t, y, crossings)
+    fn set_uncertainty(&mut self, crossings: &[f64]) {
+        self.system.set_uncertainty(crossings);
+    }
+
+    fn prepare_modes(&mut self, t: f64, y: &[f64], sides: &[Side]) -> Result<bool, Failure> {
+        self.system.prepare_modes(t, y, sides)
     }
 
     fn enter_mode(&mut self, mode: usize) {

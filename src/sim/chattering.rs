@@ -17,7 +17,7 @@ use super::accumulation::Switches;
 use super::event::sign;
 use super::simulator::Run;
 use super::sliding::{Contact, MOST_SURFACES, Surface, weight, weight_by_share};
-use super::{DaeSystem, DenseLu, SimErrorKind, Treatment};
+use super::{DaeSystem, DenseLu, Side, SimErrorKind, Treatment};
 
 /// Length of a row that is chattering. A relation that is reached and left again at once, such as
 /// the limit of a two-point controller, switches twice.
@@ -81,8 +81,7 @@ impl Run<'_> {
             self.watch.y.resize(self.y.len(), 0.0);
             self.integrator.interpolate(0.5 * (begin + event), &mut self.watch.y);
             let middle = 0.5 * (begin + event);
-            let crossings =
-                self.problem.system.crossings(middle, &self.watch.y, &mut self.watch.z);
+            let crossings = self.problem.system.crossings(middle, &self.watch.y, &mut self.watch.z);
             crossings.map_err(SimErrorKind::Evaluation)?;
             for (at, z) in self.watch.z.iter().enumerate() {
                 if z.abs() > self.crossings.uncertainty[at] {
@@ -152,10 +151,11 @@ impl Run<'_> {
         if switched.clone().filter(is_due).count() == 0 {
             return Ok(false);
         }
-        if switched.clone().any(|at| rows[*at] > LONGEST_ROW) {
+        let system = &self.problem.system;
+        let is_endless = |at: &usize| rows[*at] > LONGEST_ROW && !system.can_follow(*at);
+        if switched.clone().any(is_endless) {
             return Err(SimErrorKind::Chattering);
         }
-        let system = &self.problem.system;
         let is_chattering = |at: &usize| rows[*at] + 1 >= ROW && system.can_follow(*at);
         let chattering: Vec<usize> = (0..rows.len()).filter(is_chattering).collect();
         if chattering.is_empty() {
@@ -164,9 +164,13 @@ impl Run<'_> {
         }
         let (sliding, contacts) = self.end_slide();
         let was_constrained = !sliding.is_empty() || !contacts.is_empty();
-        let opposing = match chattering.len() + sliding.len() {
-            1 => chattering.clone(),
-            _ => self.opposing(&chattering),
+        if was_constrained {
+            self.start_crossings()?;
+        }
+        let distinct = self.distinct(&chattering);
+        let opposing = match distinct.len() + sliding.len() {
+            1 => distinct,
+            _ => self.opposing(&distinct),
         };
         let mut surfaces = sliding.clone();
         surfaces.extend(opposing.iter().filter(|at| !sliding.contains(at)));
@@ -188,6 +192,42 @@ impl Run<'_> {
             self.go_on_constrained(&sliding, contacts)?;
         }
         Ok(was_constrained)
+    }
+
+    /// One crossing function for each surface.
+    fn distinct(&self, crossings: &[usize]) -> Vec<usize> {
+        let mut found: Vec<usize> = Vec::new();
+        for at in crossings {
+            if !found.iter().any(|known| self.is_same_surface(*known, *at)) {
+                found.push(*at);
+            }
+        }
+        found
+    }
+
+    /// Whether two crossing functions differ by their sign at most: so they do here and where y has
+    /// errors.
+    fn is_same_surface(&self, a: usize, b: usize) -> bool {
+        let search = &*self.crossings;
+        search.left[a].abs() == search.left[b].abs()
+            && search.uncertainty[a] == search.uncertainty[b]
+            && search.uncertainty[a] > 0.0
+    }
+
+    /// All relations that switch at these surfaces.
+    fn sides(&self, crossings: &[usize]) -> Vec<Side> {
+        let search = &*self.crossings;
+        let mut sides = Vec::new();
+        for (surface, first) in crossings.iter().enumerate() {
+            for crossing in 0..search.left.len() {
+                let is_same = crossing == *first || self.is_same_surface(*first, crossing);
+                if is_same && self.problem.system.can_follow(crossing) {
+                    let is_reversed = search.is_rising[crossing] != search.is_rising[*first];
+                    sides.push(Side { crossing, surface, is_reversed });
+                }
+            }
+        }
+        sides
     }
 
     /// Of these crossing functions those with fields on both sides that point at their surface.
@@ -225,6 +265,7 @@ impl Run<'_> {
         let Some(shares) = shares.filter(|s| s.len() + contacts.len() <= MOST_SURFACES) else {
             return Ok(false);
         };
+        let sides = self.sides(crossings);
         let system = &mut *self.problem.system;
         system.crossings(self.t, self.y, &mut self.watch.z).map_err(SimErrorKind::Evaluation)?;
         let widen = (NARROWEST / self.problem.settings.tolerance).max(1.0);
@@ -233,6 +274,11 @@ impl Run<'_> {
             share: *share,
             value: self.watch.z[*crossing],
             width: self.crossings.uncertainty[*crossing] * widen,
+            companions: sides
+                .iter()
+                .filter(|side| crossings[side.surface] == *crossing && side.crossing != *crossing)
+                .map(|side| side.crossing)
+                .collect(),
         });
         let surfaces: Vec<Surface> = surfaces.collect();
         let place = system.place_of_shares();
@@ -329,8 +375,9 @@ impl Run<'_> {
     /// The rates of change of crossing functions in every mode, one mode after the other; `None`
     /// where they cannot be told from rounding, or the system has no modes.
     fn rates_of_modes(&mut self, crossings: &[usize]) -> Option<Vec<f64>> {
+        let sides = self.sides(crossings);
         let system = &mut *self.problem.system;
-        if !system.prepare_modes(self.t, self.y, crossings).ok()? {
+        if !system.prepare_modes(self.t, self.y, &sides).ok()? {
             return None;
         }
         let nearest = self.mode_of(crossings);

@@ -37,6 +37,8 @@ pub(super) struct CrossingSearch {
     /// Those that are evaluated between steps: events only where they are larger than their
     /// uncertainty.
     pub(super) followed: Vec<bool>,
+    /// Whether such an error makes them larger; for functions that are the same but for their sign.
+    pub(super) is_rising: Vec<bool>,
     /// Functions within their margin where the search began.
     is_near: Vec<bool>,
     perturbed: Vec<f64>,
@@ -52,12 +54,11 @@ impl CrossingSearch {
     pub(super) fn resize(&mut self, n_crossings: usize) {
         self.signs.resize(n_crossings, 0);
         self.switched.clear();
-        for flags in [&mut self.followed, &mut self.is_near] {
+        for flags in [&mut self.followed, &mut self.is_rising, &mut self.is_near] {
             flags.clear();
             flags.resize(n_crossings, false);
         }
-        let vectors =
-            [&mut self.left, &mut self.right, &mut self.trial, &mut self.uncertainty];
+        let vectors = [&mut self.left, &mut self.right, &mut self.trial, &mut self.uncertainty];
         for vector in vectors {
             vector.resize(n_crossings, 0.0);
         }
@@ -97,9 +98,14 @@ impl CrossingSearch {
         for ((uncertainty, z), perturbed) in
             self.uncertainty.iter_mut().zip(&self.right).zip(&self.trial)
         {
-            let change = (perturbed - z).abs() / MARGIN;
+            let change = (perturbed - z) / MARGIN;
             *uncertainty = if known && change.is_finite() { change } else { 0.0 };
         }
+        for (is_rising, change) in self.is_rising.iter_mut().zip(&mut self.uncertainty) {
+            *is_rising = *change > 0.0;
+            *change = change.abs();
+        }
+        problem.system.set_uncertainty(&self.uncertainty);
     }
 
     /// The end of the bracket of the first event in (`a`, `b`], with y there; `None` if no sign

@@ -78,5 +78,5 @@ pub use newton::{Equations, Newton, NewtonFailure};
 pub use settings::{OutputGrid, Settings, TimeBudget};
 pub use simulator::{Simulator, simulate};
 pub use statistics::Statistics;
-pub use system::{DaeSystem, EventOutcome, Pattern, Treatment};
+pub use system::{DaeSystem, EventOutcome, Pattern, Side, Treatment};
 pub use trajectory::Trajectory;

@@ -26,7 +26,7 @@
 //! References: [Filippov 1988](crate::bibliography#filippov-1988);
 //! [Piiroinen & Kuznetsov 2008](crate::bibliography#piiroinen-kuznetsov-2008).
 
-use super::{DaeSystem, EventOutcome, Failure, Pattern, Treatment};
+use super::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
 
 /// The most surfaces at once: every one doubles the number of fields.
 pub(super) const MOST_SURFACES: usize = 5;
@@ -60,6 +60,8 @@ pub(super) struct Surface {
     pub(super) value: f64,
     /// The width of the layer.
     pub(super) width: f64,
+    /// Other crossing functions that are zero on it.
+    pub(super) companions: Vec<usize>,
 }
 
 /// Where a solution rests on a surface after impacts.
@@ -158,12 +160,7 @@ impl<'a> Sliding<'a> {
 
     /// The rate of change of the crossing function of a contact without its force, at (t, y) of the
     /// system within, positive away from the surface.
-    pub(super) fn speed(
-        &mut self,
-        contact: &Contact,
-        t: f64,
-        y: &[f64],
-    ) -> Result<f64, Failure> {
+    pub(super) fn speed(&mut self, contact: &Contact, t: f64, y: &[f64]) -> Result<f64, Failure> {
         let n = self.inner.n_differential();
         let mut f = vec![0.0; y.len()];
         let mut z = vec![0.0; self.inner.n_crossings()];
@@ -329,9 +326,10 @@ impl Sliding<'_> {
                 let pattern = self.inner.pattern();
                 let known = &self.values[pattern.column(inner)];
                 let rows = &slide.pattern.rows[slide.pattern.column(column)];
-                let of_system = entries.iter_mut().zip(rows).filter(|(_, row)| {
-                    inner_place(**row, at, k).is_some()
-                });
+                let of_system = entries
+                    .iter_mut()
+                    .zip(rows)
+                    .filter(|(_, row)| inner_place(**row, at, k).is_some());
                 for ((entry, _), value) in of_system.zip(known) {
                     *entry += weight * value;
                 }
@@ -506,6 +504,7 @@ impl DaeSystem for Sliding<'_> {
         let evaluated = self.inner.crossings(t, &self.y, out);
         for (surface, share) in slide.surfaces.iter().zip(slide.shares(y)) {
             out[surface.crossing] = share.min(1.0 - share) + OUTSIDE;
+            surface.companions.iter().for_each(|companion| out[*companion] = 1.0);
         }
         for (contact, force) in slide.contacts.iter().zip(slide.forces(y)) {
             out[contact.crossing] = force + OUTSIDE;
@@ -538,8 +537,12 @@ impl DaeSystem for Sliding<'_> {
         self.inner.longest_step()
     }
 
-    fn prepare_modes(&mut self, t: f64, y: &[f64], crossings: &[usize]) -> Result<bool, Failure> {
-        self.inner.prepare_modes(t, y, crossings)
+    fn set_uncertainty(&mut self, crossings: &[f64]) {
+        self.inner.set_uncertainty(crossings);
+    }
+
+    fn prepare_modes(&mut self, t: f64, y: &[f64], sides: &[Side]) -> Result<bool, Failure> {
+        self.inner.prepare_modes(t, y, sides)
     }
 
     fn enter_mode(&mut self, mode: usize) {

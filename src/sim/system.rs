@@ -83,18 +83,15 @@ pub trait DaeSystem {
     fn check(&mut self, _t: f64, _y: &[f64]) -> Result<(), Failure> {
         Ok(())
     }
-    /// Prepares to be evaluated on either side of these crossing functions, in all combinations;
+    /// Is told what errors of y as large as the tolerance make of the crossing functions.
+    fn set_uncertainty(&mut self, _crossings: &[f64]) {}
+    /// Prepares to be evaluated on either side of surfaces, in all combinations;
     /// whether it can: not where values of events remember on which side they were before.
-    fn prepare_modes(
-        &mut self,
-        _t: f64,
-        _y: &[f64],
-        _crossings: &[usize],
-    ) -> Result<bool, Failure> {
+    fn prepare_modes(&mut self, _t: f64, _y: &[f64], _sides: &[Side]) -> Result<bool, Failure> {
         Ok(false)
     }
-    /// From here on it is evaluated in one of the combinations prepared: bit i of `mode` is set if
-    /// crossing function i of the list is positive.
+    /// From here on it is evaluated in one of the combinations prepared: bit i of `mode` is set on
+    /// the positive side of surface i.
     fn enter_mode(&mut self, _mode: usize) {}
     /// Whether [`DaeSystem::follow`] works for a crossing function: nothing happens at its events
     /// but that equations have other branches.
@@ -130,6 +127,17 @@ pub enum EventOutcome {
     Again,
     /// `terminate(…)` was called.
     Terminate,
+}
+
+/// A crossing function that is zero on a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Side {
+    /// The function.
+    pub crossing: usize,
+    /// The number of the surface.
+    pub surface: usize,
+    /// Whether it is positive on the negative side of the surface.
+    pub is_reversed: bool,
 }
 
 /// How a simulation goes on where events would follow each other without end.

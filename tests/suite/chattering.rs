@@ -159,7 +159,8 @@ fn switching_times_that_accumulate_without_rest_are_reported() {
 
 #[test]
 fn a_relay_that_remembers_its_side_is_refused() {
-    let text = "model R Real h(start = 0.5, fixed = true); Boolean open(start = false, fixed = true);
+    let text =
+        "model R Real h(start = 0.5, fixed = true); Boolean open(start = false, fixed = true);
         equation der(h) = 0.2 - (if open then 1 else 0);
         when h > 1 then open = true; elsewhen h < 1 then open = false; end when; end R;";
     let run = run(text, "dassl", 1e-6, 10.0);
@@ -209,8 +210,16 @@ fn the_original_fuel_cell_library_runs_at_any_load() {
                 let library = library.to_str().expect("a readable name");
                 let text = gapi(
                     folder.path(),
-                    &["simulate", library, "--model", &class, "--stop-time", "0.5", "--tolerance",
-                      tolerance],
+                    &[
+                        "simulate",
+                        library,
+                        "--model",
+                        &class,
+                        "--stop-time",
+                        "0.5",
+                        "--tolerance",
+                        tolerance,
+                    ],
                 );
                 assert!(text.contains("0.5 s"), "{text}");
             }
