@@ -74,6 +74,7 @@ impl Simulator {
         system.solve_loops(is_explicit || system.n_differential() == 0);
         let n = system.n_differential() + system.n_algebraic();
         self.resize(system, n);
+        self.y.resize(n * (1 + system.n_directions()), 0.0);
         system.nominal(&mut self.nominal);
         for nominal in self.nominal.iter_mut().filter(|n| !n.is_finite() || **n <= 0.0) {
             *nominal = 1.0;
@@ -243,7 +244,9 @@ impl Run<'_> {
         let settings = self.problem.settings;
         let span = settings.stop - settings.start;
         let is_near = self.t - self.last_jump <= FARTHER * BEHIND[0] * span;
-        let is_algebraic = self.problem.system.n_algebraic() > 0;
+        // Derivatives do not follow a solution that jumps for no reason of its own.
+        let is_algebraic =
+            self.problem.system.n_algebraic() > 0 && self.problem.system.n_directions() == 0;
         if kind != SimErrorKind::StepSize || !is_algebraic || is_near {
             return Err(kind);
         }
@@ -400,6 +403,8 @@ impl Run<'_> {
         self.t = t;
         self.watch_for_chattering()?;
         self.record()?;
+        let crossing = if told_by_sign { self.crossings.last() } else { None };
+        self.problem.system.crossed(crossing);
         let mut outcome = self.event(t)?;
         while outcome == EventOutcome::Again {
             outcome = match self.event(t)? {
@@ -454,10 +459,11 @@ impl Run<'_> {
 
     /// The unknown that is not finite, or else changes fastest.
     fn fastest_unknown(&mut self) -> Option<usize> {
+        let n = self.problem.nominal.len();
         if let Some(at) = self.y.iter().position(|y| !y.is_finite()) {
-            return Some(at);
+            return Some(at).filter(|at| *at < n);
         }
-        let mut slopes = vec![0.0; self.y.len()];
+        let mut slopes = vec![0.0; n];
         self.problem.system.rhs(self.t, self.y, &mut slopes).ok()?;
         if let Some(at) = slopes.iter().position(|slope| !slope.is_finite()) {
             return Some(at);
