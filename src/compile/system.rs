@@ -567,8 +567,8 @@ impl DaeSystem for System {
         read(&sensitivity.code.rhs, &mut self.registers, out).map_err(|f| self.refine(f))
     }
 
-    fn crossed(&mut self, crossing: Option<usize>) {
-        self.note_cause(crossing);
+    fn crossed(&mut self, crossing: Option<usize>, span: f64) {
+        self.note_cause(crossing, span);
     }
 
     fn n_observed(&self) -> usize {

@@ -404,7 +404,8 @@ impl Run<'_> {
         self.watch_for_chattering()?;
         self.record()?;
         let crossing = if told_by_sign { self.crossings.last() } else { None };
-        self.problem.system.crossed(crossing);
+        let span = self.problem.settings.stop - self.problem.settings.start;
+        self.problem.system.crossed(crossing, span);
         let mut outcome = self.event(t)?;
         while outcome == EventOutcome::Again {
             outcome = match self.event(t)? {

@@ -53,8 +53,9 @@ pub trait DaeSystem {
         Ok(())
     }
     /// What leads to the event that [`DaeSystem::handle_event`] is going to handle: the crossing
-    /// function that has changed its sign, or `None` if its time has come.
-    fn crossed(&mut self, _crossing: Option<usize>) {}
+    /// function that has changed its sign, or `None` if its time has come. `span` is the length of
+    /// the simulation.
+    fn crossed(&mut self, _crossing: Option<usize>, _span: f64) {}
     /// Number of zero-crossing functions.
     fn n_crossings(&self) -> usize {
         0

@@ -1,14 +1,19 @@
 //! Derivatives of simulations by parameters, against exact solutions and against differences.
 
 use super::flat_class::flat;
+use super::shipped::world;
 use gapilib::compile::Program;
 use gapilib::dae::sort;
+use gapilib::flatten::FlatModel;
 use gapilib::identify::CompiledModel;
 use gapilib::identify::problem::{Experiment, ModelSimulator, Observation, Simulate};
-use gapilib::sim::Settings;
+use gapilib::script::Session;
+use gapilib::script::simulation::flat_model;
+use gapilib::sim::{Settings, find_integrator};
+use proptest::prelude::*;
 use std::sync::Arc;
 
-/// An experiment on a model: outputs over time.
+/// An experiment on a model written out: outputs over time.
 fn simulator(
     text: &str,
     parameters: &[&str],
@@ -16,15 +21,25 @@ fn simulator(
     times: &[f64],
     tolerance: f64,
 ) -> ModelSimulator {
-    let program =
-        Program::compile(sort(&flat(text)).expect("it can be sorted")).expect("it compiles");
-    let observation = |name: &&str| Observation { y_name: (*name).to_owned(), x: times.to_vec() };
-    let stop = times.last().copied().unwrap_or(1.0);
+    experiment(&flat(text), parameters, outputs, ("time", times), tolerance)
+}
+
+/// An experiment on a model: outputs over X.
+fn experiment(
+    model: &FlatModel,
+    parameters: &[&str],
+    outputs: &[&str],
+    (x_name, x): (&str, &[f64]),
+    tolerance: f64,
+) -> ModelSimulator {
+    let program = Program::compile(sort(model).expect("it can be sorted")).expect("it compiles");
+    let observation = |name: &&str| Observation { y_name: (*name).to_owned(), x: x.to_vec() };
+    let stop = if x_name == "time" { x.last().copied().unwrap_or(1.0) } else { 1.0 };
     let experiment = Experiment {
         name: "test".to_owned(),
         model: Arc::new(CompiledModel::new("test", program)),
         settings: Settings { stop, tolerance, ..Settings::default() },
-        x_name: "time".to_owned(),
+        x_name: x_name.to_owned(),
         observations: outputs.iter().map(observation).collect(),
         parameters: parameters.iter().map(|p| (*p).to_owned()).enumerate().collect(),
     };
@@ -52,15 +67,27 @@ fn check(
     tolerance: f64,
 ) {
     let mut simulator = simulator(text, parameters, outputs, times, 1e-10);
-    let points = outputs.len() * times.len();
-    let (values, derivatives) = sensitivities(&mut simulator, p, points);
+    compare(&mut simulator, parameters, p, outputs.len() * times.len(), tolerance);
+}
+
+/// The same for an experiment, the error relative to the largest value over the parameter.
+#[track_caller]
+fn compare(
+    simulator: &mut ModelSimulator,
+    parameters: &[&str],
+    p: &[f64],
+    points: usize,
+    tolerance: f64,
+) {
+    let (values, derivatives) = sensitivities(simulator, p, points);
     let mut plain = vec![0.0; points];
     simulator.simulate(p, &mut plain).expect("it simulates");
     for (value, plain) in values.iter().zip(&plain) {
         assert!((value - plain).abs() <= 1e-6 * plain.abs().max(1e-3), "{value} {plain}");
     }
     for (k, name) in parameters.iter().enumerate() {
-        let step = 1e-4 * p[k].abs().max(1e-3);
+        let size = if p[k] == 0.0 { 1.0 } else { p[k].abs() };
+        let step = 1e-4 * size;
         let mut at = |factor: f64| {
             let mut moved = p.to_vec();
             moved[k] += factor * step;
@@ -70,7 +97,7 @@ fn check(
         };
         // Of fourth order.
         let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(&mut at);
-        let scale = plain.iter().fold(0.0f64, |m, v| m.max(v.abs())) / p[k].abs().max(1e-3);
+        let scale = plain.iter().fold(0.0f64, |m, v| m.max(v.abs())) / size;
         for point in 0..points {
             let difference =
                 (a[point] - 8.0 * b[point] + 8.0 * c[point] - d[point]) / (12.0 * step);
@@ -236,9 +263,112 @@ fn what_cannot_be_differentiated_says_why() {
     let sampled = "model M parameter Real p = 0.3; discrete Real x(start = 0, fixed = true); \
                    equation when sample(0, p) then x = pre(x) + 1; end when; end M;";
     assert_eq!(refusal(sampled, &["p"]), "the times of a `sample` depend on the parameters");
-    // The parabola touches zero at t = 0.3 and has no crossing that moves with p.
-    let touching = "model M parameter Real p = 0.3; parameter Real q = 0.3; Real x(start = 0, fixed = true); Real z(start = p - 0.3, fixed = true); \
-                    Real u; equation der(z) = 0; u = z; der(x) = if u >= 0 and time > q then 1 else 0; \
-                    end M;";
-    let _ = touching;
+    // z = (time - 0.5)³ + p - 0.3 passes zero without any speed.
+    let touching = "model M parameter Real p = 0.3; Real x(start = 0, fixed = true); Real z; \
+                    equation z = (time - 0.5)^3 + p - 0.3; der(x) = if z > 0 then 1 else 0; end M;";
+    let reason = "the time of an event does not depend smoothly on the parameters";
+    assert_eq!(refusal(touching, &["p"]), reason);
+}
+
+#[test]
+fn other_methods_integrate_no_sensitivities_but_static_curves_need_none() {
+    let of = |text: &str| {
+        let program = Program::compile(sort(&flat(text)).unwrap()).unwrap();
+        let experiment = Experiment {
+            name: "test".to_owned(),
+            model: Arc::new(CompiledModel::new("test", program)),
+            settings: Settings { method: find_integrator("radau").unwrap(), ..Settings::default() },
+            x_name: "time".to_owned(),
+            observations: vec![Observation { y_name: "x".to_owned(), x: vec![1.0] }],
+            parameters: vec![(0, "p".to_owned())],
+        };
+        let mut simulator = ModelSimulator::new(&[experiment]).unwrap();
+        let mut derivatives = [0.0];
+        let exact = simulator.sensitivities(&[2.0], &mut [0.0], &mut derivatives).unwrap();
+        (exact, derivatives[0], simulator.sensitivity_refusal().map(str::to_owned))
+    };
+    let (exact, _, reason) = of("model M parameter Real p = 1; Real x(start = 1, fixed = true); \
+                                 equation der(x) = -p*x; end M;");
+    assert!(!exact);
+    assert_eq!(reason.as_deref(), Some("the method `radau` integrates no sensitivities"));
+    let found = of("model M parameter Real p = 1; Real x; equation x = p^2*time; end M;");
+    assert_eq!(found, (true, 4.0, None));
+}
+
+#[test]
+fn an_x_that_depends_on_the_parameters_moves_the_points() {
+    // x = 2 p t + t, y = p x²: at a given x only the factor changes.
+    let text = "model M parameter Real p = 1; Real x; Real y; equation x = 2*p*time + time; \
+                y = p*x^2; end M;";
+    let x = [0.5, 1.7];
+    let mut simulator = experiment(&flat(text), &["p"], &["y"], ("x", &x), 1e-8);
+    let (values, derivatives) = sensitivities(&mut simulator, &[1.2], 2);
+    for (at, x) in x.iter().enumerate() {
+        // The curve is a chain of lines between 500 rows.
+        near(values[at], 1.2 * x * x, 1e-4);
+        near(derivatives[at], x * x, 1e-3);
+    }
+}
+
+#[test]
+fn the_polarization_curve_has_the_derivatives_of_its_formula() {
+    let mut session = Session::new(Box::new(world()));
+    let model = flat_model(&mut session, "CaseStudies.PolarizationCurve(i_max = 1.46)").unwrap();
+    let names = ["A", "In", "Io", "B", "R", "Ilim"];
+    let p @ [a, i_n, io, b, r, ilim] = [0.02856, 0.01077, 2.338e-7, 0.1064, 0.2559, 2.028];
+    let x = [0.0, 0.0325, 0.7, 1.46];
+    let mut simulator = experiment(&model, &names, &["V"], ("i", &x), 1e-6);
+    let (_, derivatives) = sensitivities(&mut simulator, &p, 4);
+    for (row, i) in derivatives.chunks_exact(6).zip(x) {
+        let total: f64 = i + i_n;
+        let rest = ilim - total;
+        let expected = [
+            -(total / io).ln(),
+            -r - a / total - b / rest,
+            a / io,
+            (1.0 - total / ilim).ln(),
+            -total,
+            b * total / (ilim * rest),
+        ];
+        for (found, expected) in row.iter().zip(expected) {
+            near(*found, expected, 1e-12);
+        }
+    }
+}
+
+#[test]
+fn shipped_models_with_states_and_events() {
+    let mut session = Session::new(Box::new(world()));
+    let mut check = |class: &str, parameters: &[&str], p: &[f64], times: &[f64], tolerance: f64| {
+        let model = flat_model(&mut session, class).expect("a model");
+        let mut simulator = experiment(&model, parameters, &["V"], ("time", times), 1e-10);
+        compare(&mut simulator, parameters, p, times.len(), tolerance);
+    };
+    let times = [3.0, 5.3, 8.0, 13.0, 24.0];
+    let p = [0.034, 5.0, 10.0, 0.012];
+    check("CaseStudies.LoadSteps(n = 4)", &["R_inf", "R_sup", "Cdl", "ks"], &p, &times, 1e-5);
+    let p = [0.05, 5.1e-9, 1.7e-5, 1.4e-3];
+    let names = ["Xs", "D12", "da_mem", "Rmem"];
+    check("CaseStudies.WaterEffect(n = 3)", &names, &p, &[100.0, 2000.0, 9000.0], 1e-5);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
+
+    /// Two coupled states, an algebraic loop and an event whose time depends on everything.
+    #[test]
+    fn random_models_agree_with_differences(c in prop::array::uniform8(0.2f64..1.5)) {
+        let text = "model M parameter Real a = 1; parameter Real b = 1; parameter Real c = 1; \
+            parameter Real x0 = 1; parameter Real limit = 0.5; parameter Real q = 0.1; \
+            parameter Real u = 1; parameter Real w = 1; \
+            Real x(start = x0, fixed = true); Real y(start = 0, fixed = true); Real z; \
+            discrete Real d(start = 0, fixed = true); \
+            equation der(x) = -a*x + b*z/(1 + x^2) + d; der(y) = u - 0.3*c*y; z^3 + z = w*x + y; \
+            when y > 0.2*limit then d = pre(d) + q*z; reinit(x, x + 0.3*w*y); end when; end M;";
+        let names = ["a", "b", "c", "x0", "limit", "q", "u", "w"];
+        let mut p = c;
+        // The event comes before 2 s, and not at the first point.
+        (p[4], p[6]) = (0.5 + 0.2 * p[4], 0.5 + p[6]);
+        check(text, &names, &["x", "y", "z"], &[0.02, 2.0, 3.0], &p, 1e-4);
+    }
 }

@@ -1,12 +1,17 @@
 //! Sensitivities of a running system: at its start, between events, and across them.
 
-use super::super::event_iteration::same_time;
+use super::super::event_iteration::{Stage, same_time};
 use super::super::program::Outputs;
 use super::super::system::{System, read, run};
 use super::super::tape::Register;
 use super::SensitivityCode;
-use crate::sim::{EventOutcome, Failure};
+use crate::sim::{DaeSystem, EventOutcome, Failure};
 use std::sync::Arc;
+
+/// An event whose time moves by more than so many lengths of the simulation when a parameter changes
+/// by its own size does not cross zero but touches it: where φ grows with the cube of time and is
+/// located to 1e-10 of a step, it moves by some 1e15 of them; with a tenth of the speed, by 10.
+const FARTHEST: f64 = 1e6;
 
 /// What a system that carries sensitivities needs besides its registers.
 #[derive(Debug, Clone)]
@@ -15,6 +20,8 @@ pub(in crate::compile) struct Sensitivity {
     /// What led to the event at hand: a crossing function, or its time. `None` where the event was
     /// entered before.
     cause: Option<Option<usize>>,
+    /// The length of the simulation.
+    span: f64,
     /// Whether the time of the event has derivatives.
     is_smooth: bool,
     /// Derivatives of the states by time before the event, and behind it.
@@ -35,6 +42,7 @@ impl System {
             Box::new(Sensitivity {
                 code: code.clone(),
                 cause: None,
+                span: f64::INFINITY,
                 is_smooth: true,
                 before: vec![0.0; n],
                 behind: vec![0.0; n],
@@ -86,9 +94,9 @@ impl System {
     }
 
     /// What leads to the next event.
-    pub(in crate::compile) fn note_cause(&mut self, crossing: Option<usize>) {
+    pub(in crate::compile) fn note_cause(&mut self, crossing: Option<usize>, span: f64) {
         if let Some(sensitivity) = &mut self.sensitivity {
-            sensitivity.cause = Some(crossing);
+            (sensitivity.cause, sensitivity.span) = (Some(crossing), span);
         }
     }
 
@@ -104,8 +112,8 @@ impl System {
         let code = own.code.clone();
         match own.cause.take() {
             Some(Some(crossing)) => {
-                self.solve(super::super::event_iteration::Stage::Continuous)?;
-                own.is_smooth = self.time_of_crossing(crossing, &code)?;
+                self.solve(Stage::Continuous)?;
+                own.is_smooth = self.time_of_crossing(crossing, &code, own.span)?;
             }
             Some(None) => own.is_smooth = self.time_of_switch(t, &code),
             None => {}
@@ -113,7 +121,7 @@ impl System {
         if code.time.iter().all(|time| self.registers[*time as usize] == 0.0) {
             return Ok(());
         }
-        self.solve(super::super::event_iteration::Stage::Continuous)?;
+        self.solve(Stage::Continuous)?;
         read_into(&code.speeds, self, &mut own.before)?;
         self.shift_states(&code, &own.before, 1.0);
         Ok(())
@@ -128,11 +136,13 @@ impl System {
         }
     }
 
-    /// Derivatives of the time at which a crossing function is zero; whether there are any.
+    /// Derivatives of the time at which a crossing function is zero; whether there are any: a
+    /// function that does not pass zero at some speed has no time that moves with the parameters.
     fn time_of_crossing(
         &mut self,
         crossing: usize,
         code: &SensitivityCode,
+        span: f64,
     ) -> Result<bool, Failure> {
         let relations = code.n_crossing_relations;
         let function = match crossing.checked_sub(relations) {
@@ -145,11 +155,13 @@ impl System {
         let row = &code.crossings.outputs[function * (m + 1)..][..m + 1];
         let speed = self.registers[row[m] as usize];
         let mut is_smooth = true;
-        for (register, derivative) in code.time.iter().zip(row) {
+        for (column, (register, derivative)) in code.time.iter().zip(row).enumerate() {
             let value = self.registers[*derivative as usize];
             let time = if value == 0.0 { 0.0 } else { -value / speed };
-            is_smooth &= time.is_finite();
-            self.registers[*register as usize] = if time.is_finite() { time } else { 0.0 };
+            let magnitude = self.magnitude_of_parameter(code.parameters[column]);
+            let is_usable = (time * magnitude).abs() <= FARTHEST * span;
+            is_smooth &= is_usable;
+            self.registers[*register as usize] = if is_usable { time } else { 0.0 };
         }
         Ok(is_smooth)
     }
@@ -248,7 +260,6 @@ impl System {
 
     /// Number of unknowns that the integrator holds.
     fn n_held(&self) -> usize {
-        use crate::sim::DaeSystem;
         self.n_differential() + self.n_algebraic()
     }
 
@@ -256,10 +267,14 @@ impl System {
     pub(in crate::compile) fn magnitudes_of_parameters(&self, out: &mut [f64]) {
         let Some(sensitivity) = &self.sensitivity else { return };
         for (out, at) in out.iter_mut().zip(&sensitivity.code.parameters) {
-            let variable = self.program.parameters()[*at].variable;
-            let value = self.registers[variable.0 as usize].abs();
-            *out = if value.is_finite() && value > 0.0 { value } else { 1.0 };
+            *out = self.magnitude_of_parameter(*at);
         }
+    }
+
+    fn magnitude_of_parameter(&self, at: usize) -> f64 {
+        let variable = self.program.parameters()[at].variable;
+        let value = self.registers[variable.0 as usize].abs();
+        if value.is_finite() && value > 0.0 { value } else { 1.0 }
     }
 }
 

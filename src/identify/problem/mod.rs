@@ -14,6 +14,7 @@ mod fingerprint;
 mod html;
 mod importance;
 mod inseparable;
+mod jacobian;
 mod journal;
 mod notes;
 mod profile;
@@ -32,6 +33,7 @@ pub use failure_region::{FailureRegion, failure_region};
 pub use fingerprint::Fingerprint;
 pub use importance::{ANALYSES, Analysis, Importance, ParameterImportance, analysis};
 pub use inseparable::{Form, Inseparable};
+pub use jacobian::Linearization;
 pub use journal::{Journal, Record, decode, encode, first_frame, frame, header};
 pub use profile::{Profile, Profiles, profiles};
 pub use run::{Best, Run};
@@ -47,12 +49,6 @@ use std::sync::atomic::AtomicBool;
 
 /// Relative error of simulated values where nothing is integrated.
 pub const NOISE_OF_FORMULAS: f64 = 1e-12;
-
-/// Step of finite differences in the unit cube: the square root of the relative error of the
-/// simulated values, where the errors of the difference and of the simulation are alike.
-pub fn difference(noise: f64) -> f64 {
-    noise.sqrt().clamp(1e-8, 1e-2)
-}
 
 /// Something that turns values of the free parameters into simulated points.
 pub trait Simulate: Send {
@@ -161,11 +157,6 @@ impl Problem {
     /// Number of points of all series.
     pub fn n_points(&self) -> usize {
         self.series.iter().map(|series| series.x.len()).sum()
-    }
-
-    /// Step of finite differences in the unit cube.
-    pub fn difference(&self) -> f64 {
-        difference(self.noise)
     }
 
     /// Values of the free parameters of a genome.

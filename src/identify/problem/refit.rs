@@ -2,7 +2,7 @@
 
 use super::{Evaluation, Problem};
 use crate::diag::Fault;
-use crate::ga::optimizer::{Answers, METHODS, Setup};
+use crate::ga::optimizer::{Answers, METHODS, Setup, Wants};
 use crate::ga::{FAILED_FITNESS, Gene, Genomes, Mrg32k3a};
 use crate::registry::{self, Options};
 
@@ -60,6 +60,7 @@ impl<'a> Refit<'a> {
             let values: Vec<Vec<f64>> =
                 batch.rows().map(|genome| self.values(start, &varied, genome)).collect();
             let rows = self.residuals(&values);
+            let points = values.clone();
             let sums = rows.iter().map(|row| row.as_deref().map_or(FAILED_FITNESS, square));
             let fitness: Vec<f64> = sums.collect();
             for (values, fitness) in values.into_iter().zip(&fitness) {
@@ -70,7 +71,16 @@ impl<'a> Refit<'a> {
             let failed = vec![f64::NAN; self.measured.len()];
             let flat: Vec<f64> =
                 rows.into_iter().flat_map(|row| row.unwrap_or_else(|| failed.clone())).collect();
-            let answers = Answers { objectives: &fitness, n_objectives: 1, residuals: &flat };
+            let jacobians = match search.wants() {
+                Wants::Jacobians => self.jacobians(&points, &varied),
+                _ => Vec::new(),
+            };
+            let answers = Answers {
+                objectives: &fitness,
+                n_objectives: 1,
+                residuals: &flat,
+                jacobians: &jacobians,
+            };
             search.tell(&batch, &answers);
         }
         Ok(Some(best))
@@ -89,7 +99,7 @@ impl<'a> Refit<'a> {
             n_objectives: 1,
             budget: None,
             start: Some(varied.iter().map(|&k| free(k).fraction(start[k])).collect()),
-            difference: self.problem.difference(),
+            noise: self.problem.noise,
             rng: Mrg32k3a::new(&self.problem.seed)?,
         })
     }
@@ -100,6 +110,24 @@ impl<'a> Refit<'a> {
             values[k] = self.problem.parameters[k].value(u);
         }
         values
+    }
+
+    /// Derivatives of the residuals by the fractions of those that are varied.
+    fn jacobians(&mut self, places: &[Vec<f64>], varied: &[usize]) -> Vec<f64> {
+        let n = self.problem.parameters.len();
+        let mut jacobians = Vec::new();
+        for (place, found) in places.iter().zip(self.evaluation.linearize(self.problem, places)) {
+            let Ok(found) = found else {
+                jacobians.extend(vec![f64::NAN; self.measured.len() * varied.len()]);
+                continue;
+            };
+            self.simulations += found.simulations;
+            for (row, scale) in found.derivatives.chunks_exact(n).zip(self.scales) {
+                let slope = |k: usize| self.problem.parameters[k].slope(place[k]);
+                jacobians.extend(varied.iter().map(|&k| row[k] * scale * slope(k)));
+            }
+        }
+        jacobians
     }
 
     fn residuals(&mut self, values: &[Vec<f64>]) -> Vec<Option<Vec<f64>>> {

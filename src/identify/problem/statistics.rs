@@ -64,7 +64,7 @@ impl Statistics {
             problem.series.iter().flat_map(|series| series.y.clone()).collect();
         let ones = vec![1.0; measured.len()];
         let scales = evaluation.scales().unwrap_or(&ones);
-        let (jacobian, mut simulations) = sensitivities(problem, evaluation, values, simulated);
+        let (jacobian, mut simulations) = sensitivities(problem, evaluation, values);
         let weighted = weighted(&jacobian, scales);
         let residuals: Vec<f64> = measured
             .iter()
@@ -111,8 +111,10 @@ fn elsewhere(
     let mut found = Vec::new();
     for (values, simulated) in others.iter().zip(evaluation.simulate_all(others)) {
         *simulations += 1;
-        let Ok(simulated) = simulated else { continue };
-        let (jacobian, took) = sensitivities(problem, evaluation, values, &simulated);
+        if simulated.is_err() {
+            continue;
+        }
+        let (jacobian, took) = sensitivities(problem, evaluation, values);
         *simulations += took;
         let columns = weighted(&jacobian, scales);
         if columns.iter().flatten().all(|value| value.is_finite()) {
@@ -122,34 +124,20 @@ fn elsewhere(
     found
 }
 
-/// Central differences, one-sided at bounds and failures.
+/// Derivatives of the simulated points, column by column, and the simulations that they took.
 fn sensitivities(
     problem: &Problem,
     evaluation: &Evaluation,
     values: &[f64],
-    simulated: &[f64],
 ) -> (Vec<Vec<f64>>, u64) {
-    let step = problem.noise.cbrt().clamp(1e-5, 1e-2);
-    let mut ends: Vec<Vec<f64>> = Vec::with_capacity(2 * values.len());
-    for (k, free) in problem.parameters.iter().enumerate() {
-        let size = if values[k] == 0.0 { free.max - free.min } else { values[k].abs() };
-        let size = size.min(free.max - free.min);
-        for side in [-1.0, 1.0] {
-            let mut point = values.to_vec();
-            point[k] = (values[k] + side * step * size).clamp(free.min, free.max);
-            ends.push(point);
+    let n = values.len();
+    match evaluation.linearize(problem, &[values.to_vec()]).pop() {
+        Some(Ok(found)) => {
+            let column = |k: usize| found.derivatives.iter().skip(k).step_by(n).copied().collect();
+            ((0..n).map(column).collect(), found.simulations)
         }
+        _ => (vec![vec![f64::NAN; problem.n_points()]; n], 1),
     }
-    let found = evaluation.simulate_all(&ends);
-    let column = |k: usize| -> Vec<f64> {
-        let side = |end: usize| match &found[end] {
-            Ok(row) => (row.as_slice(), ends[end][k]),
-            Err(_) => (simulated, values[k]),
-        };
-        let ((low, from), (high, to)) = (side(2 * k), side(2 * k + 1));
-        low.iter().zip(high).map(|(low, high)| (high - low) / (to - from)).collect()
-    };
-    ((0..values.len()).map(column).collect(), ends.len() as u64)
 }
 
 /// The tests of residuals in their order; `None` for fewer than three.

@@ -20,7 +20,12 @@ impl Simulate for Formula {
     }
 }
 
-fn problem(method: &str, formula: fn(&[f64], f64) -> f64, truth: &[f64], noise: &[f64]) -> Problem {
+pub(super) fn problem(
+    method: &str,
+    formula: fn(&[f64], f64) -> f64,
+    truth: &[f64],
+    noise: &[f64],
+) -> Problem {
     let x: Vec<f64> = (0..noise.len()).map(|k| k as f64 / 4.0).collect();
     let y = x.iter().zip(noise).map(|(x, e)| formula(truth, *x) + e).collect();
     let free = |k: usize| Free::new(format!("p{k}"), "V", [0.1, 10.0], None, None).unwrap();
@@ -54,7 +59,7 @@ fn problem(method: &str, formula: fn(&[f64], f64) -> f64, truth: &[f64], noise: 
     }
 }
 
-fn decay(p: &[f64], x: f64) -> f64 {
+pub(super) fn decay(p: &[f64], x: f64) -> f64 {
     // Fails for small sums, as models do.
     if p[0] + p[1] < 1.0 { f64::NAN } else { p[0] * (-p[1] * x).exp() }
 }
