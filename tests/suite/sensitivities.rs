@@ -353,7 +353,7 @@ fn shipped_models_with_states_and_events() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 6, ..ProptestConfig::default() })]
 
     /// Two coupled states, an algebraic loop and an event whose time depends on everything.
     #[test]

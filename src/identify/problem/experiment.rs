@@ -287,8 +287,8 @@ impl Stage {
         Ok(())
     }
 
-    /// The derivative of y at a given X: of the line between the rows on both sides, whose ends move
-    /// in y and in X.
+    /// The derivative of y at a given X: dy − (dy/dX) dX at the rows on both sides, and linear
+    /// between them. Both are of second order in the distance of the rows.
     fn derivative_in_x(
         &self,
         trajectory: &Trajectory,
@@ -299,12 +299,19 @@ impl Stage {
         let x_column = self.points.len();
         let (x, y) = (trajectory.column(x_column), trajectory.column(column));
         let (dx, dy) = (trajectory.column(of(x_column)), trajectory.column(of(column)));
-        let path = Path { times: trajectory.time(), x };
-        let k = path.slice_of(&self.x_name, target).ok()?;
-        let width = x[k + 1] - x[k];
-        let share = (target - x[k]) / width;
-        let of_share = -(dx[k] + share * (dx[k + 1] - dx[k])) / width;
-        Some(dy[k] + share * (dy[k + 1] - dy[k]) + (y[k + 1] - y[k]) * of_share)
+        let times = trajectory.time();
+        let k = Path { times, x }.slice_of(&self.x_name, target).ok()?;
+        let share = (target - x[k]) / (x[k + 1] - x[k]);
+        // Not across an event, which has two rows.
+        let first = k.checked_sub(1).filter(|before| times[*before] < times[k]).unwrap_or(k);
+        let last = Some(k + 2).filter(|at| times.get(*at).is_some_and(|t| *t > times[k + 1]));
+        let last = last.unwrap_or(k + 1);
+        let at_given_x = |row: usize, ends: [usize; 2]| {
+            let [a, b] = ends;
+            dy[row] - (y[b] - y[a]) / (x[b] - x[a]) * dx[row]
+        };
+        let (before, behind) = (at_given_x(k, [first, k + 1]), at_given_x(k + 1, [k, last]));
+        Some(before + share * (behind - before))
     }
 
     fn attempt(
