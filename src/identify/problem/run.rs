@@ -62,6 +62,8 @@ pub struct Run {
     reference: f64,
     /// Changes made during the run, and before which question.
     pub changed: Vec<(u64, String, f64)>,
+    /// What [`conclude`](super::conclude) did after the last question.
+    pub conclusion: super::Conclusion,
 }
 
 impl Run {
@@ -107,6 +109,7 @@ impl Run {
             last_gain: 0,
             reference: f64::INFINITY,
             changed: Vec::new(),
+            conclusion: super::Conclusion::default(),
         })
     }
 
