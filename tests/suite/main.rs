@@ -49,6 +49,7 @@ mod results;
 mod script_fuzzing;
 mod script_tests;
 mod scripts;
+mod sensitivities;
 mod session;
 mod shipped;
 mod simulation;
