@@ -190,6 +190,25 @@ impl Evaluation {
         self.pool.install(|| values.par_iter().map(one).collect())
     }
 
+    /// Runs a job for every number below `count` on all threads, each with a simulator of its own.
+    pub(super) fn each<T: Send>(
+        &self,
+        count: usize,
+        job: impl Fn(usize, &mut dyn Simulate) -> T + Sync,
+    ) -> Vec<T> {
+        let one = |number: usize| {
+            let place = rayon::current_thread_index().unwrap_or(0) % self.workers.len();
+            let mut worker = self.workers[place].lock().unwrap_or_else(PoisonError::into_inner);
+            job(number, worker.as_mut())
+        };
+        self.pool.install(|| (0..count).into_par_iter().map(one).collect())
+    }
+
+    /// Whether simulations have been cancelled.
+    pub(super) fn is_cancelled(&self) -> bool {
+        self.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))
+    }
+
     /// The answers of an earlier run are remembered as if they were new.
     pub fn remember(&mut self, batch: &Genomes, answered: &Answered) {
         let m = self.n_objectives;

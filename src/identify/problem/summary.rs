@@ -198,8 +198,11 @@ impl Solution {
         let mut series = Vec::new();
         for measured in &problem.series {
             let (own, others) = rest.split_at(measured.x.len());
-            series.push(SolvedSeries::new(measured, own));
             rest = others;
+            // Priors count as points, but they are not data.
+            if measured.experiment != super::inference::PRIOR {
+                series.push(SolvedSeries::new(measured, own));
+            }
         }
         let parameters = parameters(run, &best.values, &statistics);
         let kinds = FailureKind::ALL.iter().zip(&run.failed).filter(|(_, count)| **count > 0);

@@ -17,6 +17,8 @@ const RANK: [f64; 2] = [1e-7, 1e-4];
 /// A direction of the parameters counts for a gradient beyond this share of its length: far above
 /// rounding (1e-16 times the condition), far below what a band could show.
 const SHARE: f64 = 1e-6;
+/// 97.5 % of the normal distribution.
+const NORMAL: f64 = 1.959_963_984_540_054;
 /// Residuals below this many times the error of the simulation come from the simulation.
 const FROM_THE_SOLVER: f64 = 100.0;
 
@@ -36,6 +38,8 @@ pub struct Local {
     pub variance: f64,
     /// Points less parameters.
     pub freedom: usize,
+    /// Whether the standard deviations of the measurements are known, so that the variance is 1.
+    pub known: bool,
     /// Half-width of a 95 % interval as a multiple of the standard error.
     pub quantile: f64,
     /// The Fisher information.
@@ -88,7 +92,8 @@ impl Local {
                 "the residuals are as small as the errors of the simulation, so that nothing is known of the noise",
             );
         }
-        let variance = square(&residuals) / freedom as f64;
+        let known = problem.inference.known_sigma;
+        let variance = if known { 1.0 } else { square(&residuals) / freedom as f64 };
         let gram = jacobian.tr_mul(&jacobian) / variance;
         let information = Information::new(&gram, Local::tolerance(problem.noise));
         Ok(Local {
@@ -99,7 +104,8 @@ impl Local {
             jacobian,
             variance,
             freedom,
-            quantile: student_quantile(freedom),
+            known,
+            quantile: quantile(known, freedom),
             information,
         })
     }
@@ -119,6 +125,11 @@ impl Local {
         let scale = nearest.map_or(1.0, |(k, _)| self.scales[first + k]);
         self.variance.sqrt() / scale
     }
+}
+
+/// The 97.5 % quantile of the normal distribution where sigma is known, else of Student's.
+pub(super) fn quantile(known: bool, freedom: usize) -> f64 {
+    if known { NORMAL } else { student_quantile(freedom) }
 }
 
 impl Information {
