@@ -120,8 +120,8 @@ pub(super) struct ColumnEntry {
     /// The column's values times this are in the variable's unit.
     pub factor: Option<f64>,
     pub weight: Option<f64>,
-    /// Standard deviation of the measurement: the weight becomes its reciprocal.
-    pub sigma: Option<f64>,
+    /// Standard deviation of the measurement.
+    pub sigma: Option<SigmaEntry>,
     /// How the errors are distributed: `normal` or `lognormal`.
     pub error: Option<String>,
     /// Seconds by which it is measured later: a number or a parameter.
@@ -134,6 +134,14 @@ pub(super) struct ColumnEntry {
 pub(super) enum DelayEntry {
     Seconds(f64),
     Parameter(String),
+}
+
+/// A standard deviation: a number, or words for a column, a formula or `estimate`.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged)]
+pub(super) enum SigmaEntry {
+    Number(f64),
+    Words(String),
 }
 
 #[derive(Debug, Deserialize)]

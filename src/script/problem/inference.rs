@@ -46,13 +46,6 @@ pub(super) fn inference(
     })
 }
 
-/// Whether every measurement has its standard deviation.
-pub(super) fn known_sigma(file: &ProblemFile) -> bool {
-    let used = file.experiment.iter().filter(|experiment| !experiment.validation);
-    let mut outputs = used.flat_map(|experiment| experiment.outputs.values());
-    outputs.all(|output| output.entry().sigma.is_some())
-}
-
 /// Priors, constraints and log-normal data.
 ///
 /// # Errors

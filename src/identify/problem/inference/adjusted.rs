@@ -9,7 +9,7 @@ use super::Constraint;
 use crate::bail;
 use crate::diag::Fault;
 use crate::fault;
-use crate::identify::problem::{Failed, FailureKind, Problem, Series, Simulate};
+use crate::identify::problem::{ErrorModel, Failed, FailureKind, Problem, Series, Sigma, Simulate};
 use crate::registry::BAD_OPTION;
 use std::ops::Range;
 use std::sync::Arc;
@@ -72,20 +72,18 @@ impl Prior {
     }
 }
 
-/// Adds priors, constraints and logarithms to a problem. `known_sigma`: whether the standard
-/// deviations of all measurements are given.
+/// Adds priors, constraints and logarithms to a problem.
 ///
 /// # Errors
 ///
 /// Priors without known standard deviations or of impossible numbers, measured values that have
 /// no logarithm.
-pub fn adjust(problem: &mut Problem, added: Adjustments, known_sigma: bool) -> Result<(), Fault> {
-    problem.inference.known_sigma = known_sigma;
+pub fn adjust(problem: &mut Problem, added: Adjustments) -> Result<(), Fault> {
     let points = problem.n_points();
     let logarithmic = logarithms(problem, &added.logarithmic)?;
     let weighed: Vec<Prior> =
         added.priors.iter().copied().filter(|prior| prior.point().is_some()).collect();
-    if !weighed.is_empty() && !known_sigma {
+    if !weighed.is_empty() && ErrorModel::of(problem) != ErrorModel::Known {
         bail!(
             BAD_OPTION,
             "a prior must be weighed against the data, but their standard deviations are not known";
@@ -132,6 +130,9 @@ fn logarithms(problem: &mut Problem, series: &[usize]) -> Result<Vec<Range<usize
                 help: "leave such points out, or use a normal error"
             );
         }
+        if matches!(own.sigma, Sigma::Formula(_)) {
+            bail!(BAD_OPTION, "`{}` is log-normal, and its sigma is a formula", own.y_name; help: "give the standard deviation of the logarithm as a number");
+        }
         own.y.iter_mut().for_each(|y| *y = y.ln());
         own.y_name = format!("ln({})", own.y_name);
         own.y_unit = String::new();
@@ -160,7 +161,11 @@ fn pseudo_series(problem: &Problem, prior: &Prior) -> Result<Series, Fault> {
         file: String::new(),
         x: vec![0.0],
         y: vec![mean],
-        weight: 1.0 / sd,
+        weight: 1.0,
+        sigma: Sigma::Given(vec![sd]),
+        column: String::new(),
+        rows: Vec::new(),
+        missing: Vec::new(),
     })
 }
 

@@ -156,7 +156,7 @@ fn drawn(
     rng: &mut Mrg32k3a,
 ) -> (Vec<f64>, Vec<f64>) {
     let (mut data, mut scales) = (measured.to_vec(), local.scales.clone());
-    let inflate = (local.scales.len() as f64 / local.freedom.max(1) as f64).sqrt();
+    let inflate = (local.scales.len() as f64 / local.freedom).sqrt();
     let mut first = 0;
     for series in &problem.series {
         let n = series.x.len();

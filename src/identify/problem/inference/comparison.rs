@@ -11,7 +11,7 @@ use super::PRIOR;
 use crate::bail;
 use crate::diag::Fault;
 use crate::fault;
-use crate::identify::problem::{Run, Solution};
+use crate::identify::problem::{ErrorModel, Run, Solution};
 use crate::identify::table::significant;
 use crate::registry::BAD_OPTION;
 use serde::{Deserialize, Serialize};
@@ -84,20 +84,30 @@ pub struct Nested {
 /// The likelihood at the best point; `None` where the fitness is not a sum of squares.
 pub(super) fn likelihood(run: &Run, values: &[f64]) -> Option<Likelihood> {
     let problem = &run.problem;
-    let scales = run.evaluation.scales()?;
+    run.evaluation.scales()?;
     let simulated = run.evaluation.simulate(values).ok()?;
-    let data = problem.series.iter().filter(|series| series.experiment != PRIOR);
-    let measured: Vec<f64> = data.flat_map(|series| series.y.iter().copied()).collect();
+    let weights = run.evaluation.error_weights(problem, &simulated);
+    let data = || problem.series.iter().filter(|series| series.experiment != PRIOR);
+    let measured: Vec<f64> = data().flat_map(|series| series.y.iter().copied()).collect();
     let n = measured.len() as f64;
-    let points = measured.iter().zip(&simulated).zip(scales);
+    let points = measured.iter().zip(&simulated).zip(&weights);
     let square: f64 = points.map(|((m, s), w)| (w * (m - s)).powi(2)).sum();
-    let weights: f64 = scales[..measured.len()].iter().map(|scale| scale.ln()).sum();
-    let known_sigma = problem.inference.known_sigma;
-    let log = match known_sigma {
-        true => -0.5 * square - 0.5 * n * TAU.ln() + weights,
-        false => -0.5 * n * ((TAU * square / n).ln() + 1.0) + weights,
+    let of_weights: f64 = weights[..measured.len()].iter().map(|weight| weight.ln()).sum();
+    let error_model = ErrorModel::of(problem);
+    let mut names: Vec<&str> = data()
+        .filter(|series| series.sigma.is_estimated())
+        .map(|series| series.y_name.as_str())
+        .collect();
+    names.sort_unstable();
+    names.dedup();
+    let (of_residuals, deviations) = match error_model {
+        ErrorModel::OneVariance => (0.5 * n * ((square / n).ln() + 1.0), 1),
+        ErrorModel::Known => (0.5 * square, 0),
+        ErrorModel::Estimated => (0.5 * square, names.len()),
     };
-    let estimated = values.len() + usize::from(!known_sigma);
+    let log = of_weights - of_residuals - 0.5 * n * TAU.ln();
+    let estimated = values.len() + deviations;
+    let known_sigma = error_model == ErrorModel::Known;
     let found = Likelihood { log, points: measured.len(), estimated, known_sigma };
     log.is_finite().then_some(found)
 }

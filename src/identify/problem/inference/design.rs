@@ -218,7 +218,7 @@ impl<'a> Search<'a> {
 
     /// Relative half-widths with so many points more.
     fn half_widths(&self, information: &Information, added: usize) -> Vec<Option<f64>> {
-        let quantile = quantile(self.local.known, self.local.freedom + added);
+        let quantile = quantile(self.local.known, self.local.freedom + added as f64);
         let half = |variance: Option<f64>| variance.map(|variance| quantile * variance.sqrt());
         information.variances().into_iter().map(half).collect()
     }

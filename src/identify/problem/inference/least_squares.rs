@@ -4,7 +4,7 @@
 //! Reference: [Nielsen 1999](crate::bibliography#nielsen-1999); the end is that of
 //! [Bates & Watts 1981](crate::bibliography#bates-watts-1981), the relative offset.
 
-use crate::identify::problem::{Free, Simulate, difference};
+use crate::identify::problem::{Free, Simulate};
 use nalgebra::{DMatrix, DVector};
 
 /// The fit ends when the Gauss-Newton step would move the simulation by less than this many
@@ -104,7 +104,8 @@ impl Data<'_> {
             let entry = |j: usize, k: usize| self.scales[j] * flat[j * n + k] * unit[k];
             return Some(DMatrix::from_fn(points, n, entry));
         }
-        let step = difference(self.noise);
+        // Errors of the simulation and of the difference are alike.
+        let step = self.noise.sqrt().clamp(1e-8, 1e-2);
         let mut jacobian = DMatrix::zeros(points, n);
         for k in 0..n {
             let side = if u[k] > 0.5 { -step } else { step };

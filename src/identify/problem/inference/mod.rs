@@ -53,8 +53,6 @@ pub struct Inference {
     pub constraints: Vec<Constraint>,
     /// Series whose logarithms are compared.
     pub logarithmic: Vec<usize>,
-    /// Whether the standard deviations of all measurements are given.
-    pub known_sigma: bool,
 }
 
 /// What inference has found.

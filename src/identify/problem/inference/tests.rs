@@ -4,7 +4,7 @@ use super::*;
 use crate::ga::optimizer::METHODS;
 use crate::identify::fitness::FITNESSES;
 use crate::identify::problem::{
-    Failed, Free, Problem, Series, Simulate, Statistics, Stop, student_quantile,
+    Failed, Free, Problem, Series, Sigma, Simulate, Statistics, Stop, distributions,
 };
 use crate::registry::{self, Options};
 
@@ -56,6 +56,11 @@ impl Predict for Formulas {
     }
 }
 
+/// The 97.5 % quantile of Student's distribution.
+pub(super) fn student_quantile(freedom: usize) -> f64 {
+    distributions::student_quantile(0.975, freedom as f64)
+}
+
 /// Noise of mean square near 1, always the same.
 pub(super) fn noise(n: usize) -> Vec<f64> {
     let mut rng = crate::ga::Mrg32k3a::new(&[12345.0; 6]).unwrap();
@@ -76,6 +81,10 @@ pub(super) fn problem(function: Function, x: &[f64], y: &[f64], ranges: &[[f64; 
         x: x.to_vec(),
         y: y.to_vec(),
         weight: 1.0,
+        sigma: Sigma::Unknown,
+        column: "y".into(),
+        rows: Vec::new(),
+        missing: Vec::new(),
     };
     let sse = registry::find("fitness", FITNESSES, "sse").unwrap();
     let entry = registry::find("method", METHODS, "levenberg_marquardt").unwrap();
@@ -302,12 +311,12 @@ fn normal_priors_of_a_straight_line_are_conjugate() {
     let x: Vec<f64> = (0..6).map(f64::from).collect();
     let y: Vec<f64> = x.iter().zip(noise(6)).map(|(x, e)| 1.0 + 0.5 * x + 0.2 * e).collect();
     let mut problem = problem(line, &x, &y, &[[-10.0, 10.0], [-10.0, 10.0]]);
-    problem.series[0].weight = 5.0;
+    problem.series[0].sigma = Sigma::Given(vec![0.2; 6]);
     problem.objectives[0].0 = "sum_of_squares".into();
     let prior =
         |parameter, mean, sd| Prior { parameter, distribution: Distribution::Normal { mean, sd } };
     let priors = vec![prior(0, 2.0, 0.1), prior(1, 0.3, 1e-3)];
-    adjust(&mut problem, Adjustments { priors, ..Adjustments::default() }, true).unwrap();
+    adjust(&mut problem, Adjustments { priors, ..Adjustments::default() }).unwrap();
     let run = finished(problem);
     let (n, sx, sxx): (f64, f64, f64) = (6.0, 15.0, 55.0);
     let (sy, sxy): (f64, f64) = (y.iter().sum(), x.iter().zip(&y).map(|(x, y)| x * y).sum());
@@ -338,9 +347,12 @@ fn priors_need_known_deviations_and_a_width() {
     let build = |distribution, known| {
         let mut problem = problem(line, &[0.0, 1.0], &[0.0, 1.0], &[[-1.0, 1.0], [0.1, 1.0]]);
         problem.objectives[0].0 = "sum_of_squares".into();
+        if known {
+            problem.series[0].sigma = Sigma::Given(vec![1.0; 2]);
+        }
         let priors = vec![Prior { parameter: 0, distribution }];
         let added = Adjustments { priors, ..Adjustments::default() };
-        adjust(&mut problem, added, known).map_err(|fault| fault.message)
+        adjust(&mut problem, added).map_err(|fault| fault.message)
     };
     let normal = |sd| Distribution::Normal { mean: 0.0, sd };
     assert!(build(normal(1.0), true).is_ok());
@@ -359,7 +371,7 @@ fn log_normal_data_are_fitted_by_their_logarithms() {
         x.iter().zip(noise(10)).map(|(x, e)| 2.0 * (0.5 * x + 0.2 * e).exp()).collect();
     let mut problem = problem(growth, &x, &y, &[[0.1, 10.0], [-2.0, 2.0]]);
     let added = Adjustments { logarithmic: vec![0], ..Adjustments::default() };
-    adjust(&mut problem, added, false).unwrap();
+    adjust(&mut problem, added).unwrap();
     let run = finished(problem);
     let (mean_x, mean_y) = (4.5, y.iter().map(|y| y.ln()).sum::<f64>() / 10.0);
     let sxy: f64 = x.iter().zip(&y).map(|(x, y)| (x - mean_x) * y.ln()).sum();
@@ -380,7 +392,7 @@ fn constraints_hold_and_are_named_where_they_are_active() {
         problem.polish = true;
         let names = ["p0".to_owned(), "p1".to_owned()];
         let constraints = vec![Constraint::new(text, &names).unwrap()];
-        adjust(&mut problem, Adjustments { constraints, ..Adjustments::default() }, false).unwrap();
+        adjust(&mut problem, Adjustments { constraints, ..Adjustments::default() }).unwrap();
         let run = finished(problem);
         (run.best.as_ref().unwrap().values.clone(), infer(&run).unwrap())
     };

@@ -2,7 +2,7 @@
 //!
 //! The likelihood is normal; where the standard deviations of the measurements are not given, their
 //! common one is integrated out with the prior 1/σ, so that the density is proportional to
-//! S^(−n/2), S being the sum of squares. Parameters without a prior are uniform over their range on
+//! S^(−n/2), S being the sum of squares; the same for each output whose own is estimated. Parameters without a prior are uniform over their range on
 //! the scale that is searched. Chains start about the best point, spread twice as wide as the
 //! covariance says, and go on until R-hat and the effective sample size are good or the limit is
 //! reached. Each chain has random numbers and a simulator of its own: threads do not matter, and a
@@ -16,7 +16,7 @@ mod sampler;
 use super::{Distribution, Inferred, Local};
 use crate::diag::Fault;
 use crate::ga::Mrg32k3a;
-use crate::identify::problem::{Problem, Run, Simulate};
+use crate::identify::problem::{ErrorModel, Evaluation, Problem, Run, Simulate};
 use crate::identify::table::significant;
 use nalgebra::DMatrix;
 use sampler::Chain;
@@ -95,7 +95,7 @@ pub(super) fn add(
     let centre: Vec<f64> =
         problem.parameters.iter().zip(&local.values).map(|(free, v)| free.fraction(*v)).collect();
     let covariance = start_covariance(problem, local);
-    let density = Density::new(problem, local);
+    let density = Density::new(run, local);
     let begin = |number: usize, simulator: &mut dyn Simulate| {
         let mut target = |u: &[f64]| density.at(simulator, u);
         let rng = source.substream(number as u64);
@@ -153,14 +153,24 @@ fn start_covariance(problem: &Problem, local: &Local) -> DMatrix<f64> {
 /// The logarithm of the posterior density in the unit cube.
 struct Density<'a> {
     problem: &'a Problem,
+    evaluation: &'a Evaluation,
     local: &'a Local,
+    error_model: ErrorModel,
     measured: Vec<f64>,
 }
 
 impl<'a> Density<'a> {
-    fn new(problem: &'a Problem, local: &'a Local) -> Density<'a> {
+    fn new(run: &'a Run, local: &'a Local) -> Density<'a> {
+        let (problem, evaluation) = (&run.problem, &run.evaluation);
+        let error_model = match local.known {
+            true => ErrorModel::Known,
+            // Deviations that are given but not believed share one unknown factor.
+            false => Some(ErrorModel::of(problem))
+                .filter(|model| *model != ErrorModel::Known)
+                .unwrap_or(ErrorModel::OneVariance),
+        };
         let measured = problem.series.iter().flat_map(|series| series.y.clone()).collect();
-        Density { problem, local, measured }
+        Density { problem, evaluation, local, error_model, measured }
     }
 
     fn at(&self, simulator: &mut dyn Simulate, u: &[f64]) -> f64 {
@@ -173,14 +183,19 @@ impl<'a> Density<'a> {
         if simulator.simulate(&values, &mut row).is_err() {
             return f64::NEG_INFINITY;
         }
-        let points = row.iter().zip(&self.measured).zip(&self.local.scales);
-        let square: f64 = points.map(|((s, m), w)| (w * (s - m)).powi(2)).sum();
-        let likelihood = match self.local.known {
-            true => -0.5 * square,
-            false => -0.5 * self.measured.len() as f64 * square.ln(),
+        let likelihood = match self.error_model {
+            // Concentrated: the objective is the negative logarithm itself.
+            ErrorModel::Estimated => -self.evaluation.objective(self.problem, &row),
+            ErrorModel::Known => -0.5 * self.square(&row),
+            ErrorModel::OneVariance => -0.5 * self.measured.len() as f64 * self.square(&row).ln(),
         };
         let density = likelihood + self.measure(&values);
         if density.is_nan() { f64::NEG_INFINITY } else { density }
+    }
+
+    fn square(&self, row: &[f64]) -> f64 {
+        let points = row.iter().zip(&self.measured).zip(&self.local.scales);
+        points.map(|((s, m), w)| (w * (s - m)).powi(2)).sum()
     }
 
     /// Between the density of the prior and that in the unit cube.

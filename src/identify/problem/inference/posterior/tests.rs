@@ -1,9 +1,9 @@
 //! Targets whose moments are known: normal, twisted normal, and the posteriors of a straight line.
 
-use super::super::tests::{finished, noise, problem};
-use super::super::{Adjustments, adjust, infer};
+use super::super::infer;
+use super::super::tests::{finished, noise, problem, student_quantile};
 use super::*;
-use crate::identify::problem::{Evaluation, student_quantile};
+use crate::identify::problem::{Evaluation, Sigma};
 
 fn chains(
     target: fn(&[f64]) -> f64,
@@ -89,8 +89,9 @@ fn fitted(known: bool, threads: usize, samples: usize) -> (Run, f64) {
     let x: Vec<f64> = (0..8).map(f64::from).collect();
     let y: Vec<f64> = x.iter().zip(noise(8)).map(|(x, e)| 1.0 + 0.5 * x + 0.1 * e).collect();
     let mut problem = problem(line, &x, &y, &[[-10.0, 10.0], [-10.0, 10.0]]);
-    problem.series[0].weight = if known { 10.0 } else { 1.0 };
-    adjust(&mut problem, Adjustments::default(), known).unwrap();
+    if known {
+        problem.series[0].sigma = Sigma::Given(vec![0.1; 8]);
+    }
     problem.inference.posterior = Some(PosteriorSettings { samples });
     let mut run = finished(problem);
     run.evaluation = Evaluation::new(&run.problem, threads).unwrap();
