@@ -426,6 +426,9 @@ fn chi_square(run: &Run, statistics: &Statistics) -> Option<ChiSquare> {
 
 fn negative_log_likelihood(run: &Run, statistics: &Statistics) -> Option<f64> {
     run.evaluation.scales()?;
+    if statistics.robust {
+        return None;
+    }
     let n = statistics.residuals.len() as f64;
     let square: f64 = statistics.residuals.iter().map(|r| r * r).sum();
     let of_weights: f64 = statistics.weights.iter().map(|w| w.ln()).sum();

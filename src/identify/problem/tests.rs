@@ -226,7 +226,7 @@ fn profiled(formula: fn(&[f64], f64) -> f64, truth: &[f64], noise: &[f64]) -> So
         run.step(0.0);
     }
     let mut solution = Solution::of(&run, "done", Vec::new()).unwrap();
-    solution.add_profiles(&run).unwrap();
+    solution.add_profiles(&run);
     solution
 }
 

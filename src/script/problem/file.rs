@@ -149,6 +149,16 @@ pub(super) enum SigmaEntry {
 pub(super) enum OneOrMany {
     One(String),
     Many(Vec<String>),
+    /// A name with settings: `{ name = "huber", delta = 2 }`.
+    Set(FitnessEntry),
+}
+
+/// A fitness function with its settings.
+#[derive(Debug, Deserialize)]
+pub(super) struct FitnessEntry {
+    pub name: String,
+    #[serde(flatten)]
+    pub settings: IndexMap<String, f64>,
 }
 
 /// The method: its name and its settings.
