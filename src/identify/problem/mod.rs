@@ -6,12 +6,12 @@
 //! a [`Record`]; a run that is given the records of an earlier one goes the same way again without
 //! simulating, and then on: that is how an interrupted run is resumed to the same end.
 
+mod curve;
 mod evaluation;
 mod experiment;
 mod failure;
 mod failure_region;
 mod fingerprint;
-mod html;
 mod importance;
 mod inseparable;
 mod journal;
@@ -25,6 +25,7 @@ mod statistics;
 mod summary;
 mod text;
 
+pub use curve::draw_curves;
 pub use evaluation::Evaluation;
 pub use experiment::{Experiment, ModelSimulator, Observation};
 pub use failure::{Failed, FailureKind};

@@ -110,7 +110,7 @@ fn solve_built(
     options: &RunOptions,
     every: (Option<u64>, f64),
 ) -> Result<Solution, Fault> {
-    let Built { problem, validation, fingerprint } = built;
+    let Built { problem, experiments, validation, fingerprint } = built;
     let folder = session.world.output_dir().join(&options.folder);
     let mut run = Run::new(problem, session.world.threads())?;
     let importance = analysed(session, &run, &folder, options)?;
@@ -147,8 +147,13 @@ fn solve_built(
     session.world.end_view();
     run.evaluation.cancel_by(None);
     checkpoint.flush(session, run.seconds);
-    let validation = validated(&run, &validation)?;
-    let mut solution = Solution::of(&run, &stop, validation)?;
+    let validated = validated(&run, &validation)?;
+    let mut solution = Solution::of(&run, &stop, validated)?;
+    if let Some(best) = &run.best {
+        let kept: Vec<solving::Experiment> = validation.into_iter().map(|(kept, _)| kept).collect();
+        solving::draw_curves(&experiments, &best.values, &mut solution.series);
+        solving::draw_curves(&kept, &best.values, &mut solution.validation);
+    }
     solution.importance = importance;
     if options.profile && !interrupted {
         solution.add_profiles(&run)?;
