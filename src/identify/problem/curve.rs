@@ -1,14 +1,29 @@
 //! The simulated curve between the measured points, for drawing.
 
-use super::{Experiment, ModelSimulator, Observation, Simulate, SolvedSeries};
+use super::{Experiment, ModelSimulator, Observation, Series, Simulate, Solution, SolvedSeries};
 
 /// Points of a curve beside the measured ones: one for every third pixel of a figure.
 const POINTS: usize = 160;
 
-/// Simulates each experiment at the parameters `values` on a dense grid of X, and gives each of its
-/// series its curve. `series`: those of all experiments, one after the other. A curve that cannot be
-/// simulated stays empty; the measured points were.
-pub fn draw_curves(experiments: &[Experiment], values: &[f64], series: &mut [SolvedSeries]) {
+/// Simulates each experiment at the solution on a dense grid of X, and gives each of its series its
+/// curve; `kept`: the experiments of the validation. A curve that cannot be simulated stays empty;
+/// the measured points were.
+pub fn draw_curves(
+    fitted: &[Experiment],
+    solution: &mut Solution,
+    kept: &[(Experiment, Vec<Series>)],
+) {
+    let values: Vec<f64> = solution.parameters.iter().map(|parameter| parameter.value).collect();
+    draw(fitted.iter(), &values, &mut solution.series);
+    draw(kept.iter().map(|(experiment, _)| experiment), &values, &mut solution.validation);
+}
+
+/// `series`: those of all experiments, one after the other.
+fn draw<'a>(
+    experiments: impl Iterator<Item = &'a Experiment>,
+    values: &[f64],
+    series: &mut [SolvedSeries],
+) {
     let mut rest = series;
     for experiment in experiments {
         let count = experiment.observations.len().min(rest.len());

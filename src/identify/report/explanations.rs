@@ -17,7 +17,7 @@ impl Explanation {
 
 pub(super) const STANDARD_ERROR: Explanation = Explanation {
     topic: "the standard error",
-    line: "The standard error is the scatter of an estimate if the experiment were repeated; a parameter counts as identifiable when it is below half of the value.",
+    line: "The standard error is the scatter of an estimate if the experiment were repeated; a parameter counts as identifiable when it is below half of the value, or its interval below a quarter of a linear search range.",
 };
 pub(super) const INTERVAL: Explanation = Explanation {
     topic: "the 95 % interval",
@@ -37,7 +37,7 @@ pub(super) const R_SQUARED: Explanation = Explanation {
 };
 pub(super) const RUNS: Explanation = Explanation {
     topic: "runs of the residuals",
-    line: "A run is a row of residuals of equal sign; far fewer than expected (probability below 0.01) show that the model misses something systematic.",
+    line: "A run is a row of residuals of equal sign; far fewer than expected show that the model misses something systematic. All tests of the residuals together raise a false alarm in at most 1 of 100 cases.",
 };
 pub(super) const AUTOCORRELATION: Explanation = Explanation {
     topic: "the autocorrelation",

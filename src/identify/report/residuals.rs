@@ -1,14 +1,11 @@
-//! Statistics of the residuals of each series, and how they are read.
+//! Statistics of the residuals of each series, and what their tests found.
 
 use super::Section;
 use super::explanations::{AUTOCORRELATION, R_SQUARED, RMSE, RUNS};
 use super::parts::{explained, number, quantity, scrolling};
 use super::view::View;
-use crate::identify::problem::SolvedSeries;
+use crate::identify::problem::{Finding, FindingKind, Solution, SolvedSeries};
 use maud::{Markup, html};
-
-/// Runs that are less probable than this do not come by chance; the same limit as for the notes.
-const IMPROBABLE: f64 = 0.01;
 
 pub(super) fn section(view: &View) -> Option<Section> {
     let solution = view.solution;
@@ -27,6 +24,7 @@ pub(super) fn section(view: &View) -> Option<Section> {
 
 fn table(view: &View) -> Markup {
     let solution = view.solution;
+    let sigmas = solution.series.iter().any(|series| series.sigma.is_some());
     html! {
         table {
             thead {
@@ -34,22 +32,23 @@ fn table(view: &View) -> Markup {
                     th scope="col" { "Series" }
                     th scope="col" { "Points" }
                     th scope="col" { "RMSE" }
+                    @if sigmas { th scope="col" { "σ of the data" } }
                     th scope="col" { "R²" }
                     th scope="col" { "Runs (expected)" }
                     th scope="col" { "Probability" }
                     th scope="col" { "Autocorrelation" }
-                    th scope="col" { "Reading" }
+                    th scope="col" { "Findings" }
                 }
             }
             tbody {
-                @for series in &solution.series { (row(series, "")) }
-                @for series in &solution.validation { (row(series, " (validation)")) }
+                @for series in &solution.series { (row(solution, series, ("", sigmas))) }
+                @for series in &solution.validation { (row(solution, series, (" (validation)", sigmas))) }
             }
         }
     }
 }
 
-fn row(series: &SolvedSeries, kind: &str) -> Markup {
+fn row(solution: &Solution, series: &SolvedSeries, (kind, sigmas): (&str, bool)) -> Markup {
     html! {
         tr {
             th scope="row" {
@@ -58,6 +57,12 @@ fn row(series: &SolvedSeries, kind: &str) -> Markup {
             }
             td { (series.points.len()) }
             td { (quantity(series.rmse, 4, &series.y[1])) }
+            @if sigmas {
+                td {
+                    @match series.sigma { Some(sigma) => (quantity(sigma, 4, &series.y[1])), None => "–" }
+                    @if series.sigma_estimated { " (estimated)" }
+                }
+            }
             td { @match series.r_squared { Some(r) => (number(r, 6)), None => "–" } }
             @match series.residual_test {
                 Some([runs, expected, probability, autocorrelation]) => {
@@ -67,25 +72,39 @@ fn row(series: &SolvedSeries, kind: &str) -> Markup {
                 }
                 None => { td { "–" } td { "–" } td { "–" } }
             }
-            td { (reading(series)) }
+            td { @if kind.is_empty() { (reading(solution, series)) } @else { "not fitted" } }
         }
     }
 }
 
-fn reading(series: &SolvedSeries) -> Markup {
-    let Some([runs, expected, probability, autocorrelation]) = series.residual_test else {
-        return html! { "too few points to test" };
+/// What the tests found in this series; they stand as sentences at the head of the page.
+fn reading(solution: &Solution, series: &SolvedSeries) -> Markup {
+    let label = match series.experiment.is_empty() {
+        true => series.y[0].clone(),
+        false => format!("{} / {}", series.experiment, series.y[0]),
     };
-    let limit = 2.0 / (series.points.len() as f64).sqrt();
+    let about = |finding: &&Finding| finding.series.iter().any(|named| *named == label);
+    let mut found: Vec<&str> =
+        solution.findings.iter().filter(about).filter_map(|finding| name(finding.kind)).collect();
+    found.dedup();
     html! {
-        @if probability < IMPROBABLE && runs < expected {
-            span.bad { "not noise: the model misses something systematic" }
-        } @else if probability < IMPROBABLE {
-            span.bad { "not noise: the residuals alternate" }
-        } @else if autocorrelation.abs() > limit {
-            span.bad { "neighbours are correlated (limit ±" (number(limit, 2)) ")" }
-        } @else {
-            span.good { "no sign of a systematic error" }
-        }
+        @if !found.is_empty() { span.bad { (found.join(", ")) } }
+        @else if series.residual_test.is_none() { "not tested" }
+        @else { span.good { "no finding" } }
     }
+}
+
+/// What a finding about residuals is called in the table.
+fn name(kind: FindingKind) -> Option<&'static str> {
+    Some(match kind {
+        FindingKind::Outlier => "outliers",
+        FindingKind::Bias => "mean is not zero",
+        FindingKind::Autocorrelation => "neighbours are correlated",
+        FindingKind::UnequalVariance => "spread changes",
+        FindingKind::HeavyTails => "not normal",
+        FindingKind::PoorFit => "poor fit",
+        FindingKind::Sigma => "contradicts σ",
+        FindingKind::ColumnsEqual => "same as another column",
+        _ => return None,
+    })
 }

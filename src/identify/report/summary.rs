@@ -2,6 +2,7 @@
 
 use super::parts::number;
 use super::view::View;
+use crate::identify::problem::Verdict;
 use maud::{Markup, html};
 
 pub(super) fn head(view: &View) -> Markup {
@@ -14,6 +15,10 @@ pub(super) fn head(view: &View) -> Markup {
             div { dt { "Model" } dd { (solution.model) } }
             div { dt { "Objective (" (solution.fitness_name) ")" } dd { (number(solution.fitness, 6)) } }
             div { dt { "Measured points" } dd { (points) } }
+            @if let Some(test) = &solution.chi_square {
+                div { dt { "Chi-square (expected)" }
+                    dd { (number(test.value, 4)) " (" (number(test.freedom, 4)) "), probability " (number(test.probability, 2)) } }
+            }
             div { dt { "Method" } dd { (solution.method) } }
             div { dt { "Stopped" } dd { (solution.stop) } }
         }
@@ -35,8 +40,8 @@ pub(super) fn head(view: &View) -> Markup {
 /// One or two sentences: how the search ended, and how many parameters are identifiable.
 fn verdict(view: &View) -> Markup {
     let parameters = &view.solution.parameters;
-    let judged: Vec<bool> = parameters.iter().filter_map(|p| p.determined).collect();
-    let identifiable = judged.iter().filter(|identifiable| **identifiable).count();
+    let judged: Vec<Verdict> = parameters.iter().filter_map(|p| p.verdict).collect();
+    let identifiable = judged.iter().filter(|v| **v == Verdict::Identifiable).count();
     html! {
         @if let Some(ending) = &view.ending {
             strong.good[ending.minimum].bad[!ending.minimum] { (ending.sentence) } " "

@@ -4,7 +4,7 @@ use super::Section;
 use super::explanations::{INTERVAL, STANDARD_ERROR};
 use super::parts::{explained, number, quantity, scrolling};
 use super::view::{View, fraction};
-use crate::identify::problem::SolvedParameter;
+use crate::identify::problem::{SolvedParameter, Verdict};
 use maud::{Markup, html};
 
 /// Headings. On a phone, where each row is a block, they stand before the values.
@@ -69,10 +69,13 @@ fn standard_error(parameter: &SolvedParameter) -> String {
 }
 
 fn verdict(parameter: &SolvedParameter) -> Markup {
+    let class = match parameter.verdict {
+        Some(Verdict::Identifiable) => "good",
+        _ => "bad",
+    };
     html! {
-        @match parameter.determined {
-            Some(true) => span.good { "identifiable" },
-            Some(false) => span.bad { "not identifiable from these data" },
+        @match parameter.verdict {
+            Some(verdict) => span class=(class) { (verdict.words()) },
             None => span { "–" },
         }
         @if parameter.at_bound { br; span.bad { "at the end of its range" } }

@@ -1,6 +1,6 @@
 //! What the page shows: the solution, and what is derived from it for drawing.
 
-use crate::identify::problem::{Solution, SolvedParameter, SolvedSeries};
+use crate::identify::problem::{Finding, Severity, Solution, SolvedParameter, SolvedSeries};
 
 /// Smallest correlation of a pair that is drawn with its ellipse: below it the ellipse is hardly
 /// distinguishable from one with upright axes.
@@ -91,12 +91,13 @@ impl View<'_> {
         points.saturating_sub(self.solution.parameters.len())
     }
 
-    /// Square of the radius of the joint 95 % ellipse of two parameters, in standard errors:
-    /// twice the quantile of F(2, ν), which for two degrees of freedom has the closed form
-    /// ν (0.05^(−2/ν) − 1).
+    /// Square of the radius of the joint 95 % ellipse of two parameters, in standard errors: the
+    /// quantile of the chi-square distribution where the standard deviations of the data are known;
+    /// else twice that of F(2, ν), which has the closed form ν (0.05^(−2/ν) − 1).
     pub(super) fn ellipse_radius_squared(&self) -> f64 {
         match self.freedom() {
             0 => CHI_SQUARE,
+            _ if self.solution.chi_square.is_some() => CHI_SQUARE,
             freedom => {
                 let freedom = freedom as f64;
                 freedom * (0.05f64.powf(-2.0 / freedom) - 1.0)
@@ -106,7 +107,13 @@ impl View<'_> {
 }
 
 fn notes(solution: &Solution) -> Vec<Note<'_>> {
-    solution.notes.iter().map(|sentence| Note { sentence, weight: "warning" }).collect()
+    let weight = |finding: &Finding| match finding.severity {
+        Severity::Information => "information",
+        Severity::Warning => "warning",
+        Severity::Serious => "serious",
+    };
+    let note = |finding| Note { weight: weight(finding), sentence: &finding.sentence };
+    solution.findings.iter().map(note).collect()
 }
 
 fn curve(series: &SolvedSeries) -> Vec<CurvePoint> {

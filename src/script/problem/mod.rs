@@ -11,6 +11,7 @@ mod file;
 mod live;
 mod own_fitness;
 mod record;
+mod sigma;
 
 use super::Session;
 use super::checkpoint::{self, Checkpoint};
@@ -147,17 +148,16 @@ fn solve_built(
     session.world.end_view();
     run.evaluation.cancel_by(None);
     checkpoint.flush(session, run.seconds);
+    if !interrupted {
+        solving::conclude(&mut run);
+    }
     let validated = validated(&run, &validation)?;
     let mut solution = Solution::of(&run, &stop, validated)?;
-    if let Some(best) = &run.best {
-        let kept: Vec<solving::Experiment> = validation.into_iter().map(|(kept, _)| kept).collect();
-        solving::draw_curves(&experiments, &best.values, &mut solution.series);
-        solving::draw_curves(&kept, &best.values, &mut solution.validation);
-    }
     solution.importance = importance;
     if options.profile && !interrupted {
-        solution.add_profiles(&run)?;
+        solution.add_profiles(&run);
     }
+    solving::draw_curves(&experiments, &mut solution, &validation);
     session.print(&solution.text());
     write(session, &folder, &solution)?;
     if let Some(why) = checkpoint.broken() {
