@@ -2,9 +2,9 @@
 
 use super::Section;
 use super::explanations::BAND;
-use super::parts::{explained, figure, series};
-use super::view::{CurvePoint, View};
-use crate::identify::problem::SolvedSeries;
+use super::parts::{explained, figure, one_panel, series};
+use super::view::{self, CurvePoint, View};
+use crate::identify::problem::{Band, SolvedSeries};
 use crate::plot::{Axis, Figure, Mark, Panel, Series};
 use maud::{Markup, html};
 
@@ -19,9 +19,11 @@ pub(super) fn section(view: &View) -> Option<Section> {
         return None;
     }
     let banded = all.iter().any(|(_, curve, _)| curve.iter().any(|at| at.confidence.is_some()));
-    let wide = all.len() > 1;
+    let wide = all.len() + view.unmeasured.len() > 1;
     let content = html! {
-        div.figures[wide] { @for (series, curve, kind) in &all { (one(series, curve, kind)) } }
+        div.figures[wide] { @for (series, curve, kind) in &all { (one(series, curve, kind)) }
+            @for band in &view.unmeasured { (unmeasured(band)) }
+        }
         @if banded { (explained(&BAND)) }
     };
     Some(Section { id: "fit", heading: "Fit and residuals", content, wide })
@@ -62,13 +64,7 @@ fn drawing(solved: &SolvedSeries, curve: &[CurvePoint]) -> Figure {
         false => curve.iter().map(|at| (at.x, at.y)).collect(),
     };
     let x = Axis::linear(&solved.x[0], &solved.x[1]);
-    let bands = [
-        ("95 % of new measurements", 3, band(curve, |at| at.prediction)),
-        ("95 % band of the curve", 1, band(curve, |at| at.confidence)),
-    ];
-    let bands = bands.into_iter().filter(|(_, _, edge)| !edge.is_empty());
-    let mut fit: Vec<Series> =
-        bands.map(|(name, colour, edge)| series(name, &edge, Mark::Area, colour)).collect();
+    let mut fit = bands(curve);
     fit.push(series("simulated", &line, Mark::Line, 1));
     fit.push(series("measured", &column(|point| point[1]), Mark::Points, 0));
     let residuals = vec![series("", &column(|point| point[1] - point[2]), Mark::Stems, 0)];
@@ -88,13 +84,37 @@ fn drawing(solved: &SolvedSeries, curve: &[CurvePoint]) -> Figure {
     }
 }
 
-/// The edge of a band, there and back; empty where a half-width is missing.
-fn band(curve: &[CurvePoint], half: fn(&CurvePoint) -> Option<f64>) -> Vec<(f64, f64)> {
-    let halves: Option<Vec<f64>> = curve.iter().map(half).collect();
-    let Some(halves) = halves else { return Vec::new() };
-    let edge = |side: f64| {
-        let at = move |(at, half): (&CurvePoint, &f64)| (at.x, side.mul_add(*half, at.y));
-        curve.iter().zip(&halves).map(at).collect::<Vec<_>>()
-    };
-    edge(1.0).into_iter().chain(edge(-1.0).into_iter().rev()).collect()
+/// The bands of a curve; where the data leave it open there is none.
+fn bands(curve: &[CurvePoint]) -> Vec<Series> {
+    let kinds: [(&str, usize, fn(&CurvePoint) -> Option<f64>); 2] = [
+        ("95 % of new measurements", 3, |at| at.prediction),
+        ("95 % band of the curve", 1, |at| at.confidence),
+    ];
+    let mut all = Vec::new();
+    for (name, colour, half) in kinds {
+        let parts = curve.split(|at| half(at).is_none()).filter(|part| part.len() > 1);
+        for (k, part) in parts.enumerate() {
+            let edge = |side: f64| {
+                move |at: &CurvePoint| (at.x, half(at).unwrap_or(0.0).mul_add(side, at.y))
+            };
+            let upper = part.iter().map(edge(1.0));
+            let edge: Vec<(f64, f64)> = upper.chain(part.iter().rev().map(edge(-1.0))).collect();
+            // The legend names a band once.
+            all.push(series(if k == 0 { name } else { "" }, &edge, Mark::Area, colour));
+        }
+    }
+    all
+}
+
+/// The curve of a variable that was not measured.
+fn unmeasured(band: &Band) -> Markup {
+    let points = view::points(band);
+    let name = format!("{} / {}", band.experiment, band.y[0]);
+    let mut all = bands(&points);
+    let line: Vec<(f64, f64)> = points.iter().map(|at| (at.x, at.y)).collect();
+    all.push(series("simulated", &line, Mark::Line, 1));
+    let [x, y] = [&band.x, &band.y].map(|[label, unit]| Axis::linear(label, unit));
+    let label = format!("{name}: the simulated curve with its band; it was not measured");
+    let caption = html! { strong { (name) } ": not measured." };
+    figure(&one_panel(x, y, 230.0, all), &label, &caption)
 }

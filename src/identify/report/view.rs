@@ -1,6 +1,8 @@
 //! What the page shows: the solution, and what is derived from it for drawing.
 
-use crate::identify::problem::{Finding, Severity, Solution, SolvedParameter, SolvedSeries};
+use crate::identify::problem::{
+    Band, BandPoint, Finding, Severity, Solution, SolvedParameter, SolvedSeries,
+};
 
 /// Smallest correlation of a pair that is drawn with its ellipse: below it the ellipse is hardly
 /// distinguishable from one with upright axes.
@@ -19,6 +21,8 @@ pub(super) struct View<'a> {
     pub(super) curves: Vec<Vec<CurvePoint>>,
     /// The same for the series that were not fitted.
     pub(super) validation_curves: Vec<Vec<CurvePoint>>,
+    /// Curves of variables that were not measured.
+    pub(super) unmeasured: Vec<&'a Band>,
     /// Pairs of parameters whose estimates are correlated, the strongest first.
     pub(super) pairs: Vec<Pair>,
     /// Results of all descents, in the order in which they ran.
@@ -76,12 +80,18 @@ impl View<'_> {
             solution,
             ending: None,
             notes: notes(solution),
-            curves: solution.series.iter().map(curve).collect(),
+            curves: solution
+                .series
+                .iter()
+                .enumerate()
+                .map(|(k, s)| banded(solution, k, s))
+                .collect(),
             validation_curves: solution.validation.iter().map(curve).collect(),
             pairs: pairs(solution),
             descents: Vec::new(),
             minima: Vec::new(),
-            next: Vec::new(),
+            unmeasured: solution.inferred.bands.iter().filter(|b| b.series.is_none()).collect(),
+            next: solution.inferred.next_measurement.iter().flat_map(|n| n.sentences()).collect(),
         }
     }
 
@@ -113,7 +123,26 @@ fn notes(solution: &Solution) -> Vec<Note<'_>> {
         Severity::Serious => "serious",
     };
     let note = |finding| Note { weight: weight(finding), sentence: &finding.sentence };
-    solution.findings.iter().map(note).collect()
+    let refused = solution.inferred.refusals.iter();
+    let refused = refused.map(|sentence| Note { sentence, weight: "information" });
+    solution.findings.iter().map(note).chain(refused).collect()
+}
+
+/// The curve of a fitted series: with bands where these were computed.
+fn banded(solution: &Solution, place: usize, series: &SolvedSeries) -> Vec<CurvePoint> {
+    let band = solution.inferred.bands.iter().find(|band| band.series == Some(place));
+    band.map_or_else(|| curve(series), |band| points(band))
+}
+
+/// The points of a band.
+pub(super) fn points(band: &Band) -> Vec<CurvePoint> {
+    let point = |at: &BandPoint| CurvePoint {
+        x: at.x,
+        y: at.y,
+        confidence: at.confidence,
+        prediction: at.prediction,
+    };
+    band.points.iter().map(point).collect()
 }
 
 fn curve(series: &SolvedSeries) -> Vec<CurvePoint> {
