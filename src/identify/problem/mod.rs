@@ -84,6 +84,11 @@ pub trait Simulate: Send {
     ) -> Result<bool, Failed> {
         Ok(false)
     }
+    /// Why the last call of [`sensitivities`](Simulate::sensitivities) gave none, in words that
+    /// follow on "because"; `None` if it gave some.
+    fn sensitivity_refusal(&self) -> Option<&str> {
+        None
+    }
     /// From now on the tolerance of the solver is the one of the settings times `factor`; 1 puts it
     /// back. Without effect where nothing is integrated.
     fn scale_tolerance(&mut self, _factor: f64) {}

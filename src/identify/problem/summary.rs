@@ -396,7 +396,9 @@ fn solved_series(
             .filter(|sigma| sigma.is_finite());
         solved
     };
-    problem.series.iter().map(one).collect()
+    // Priors, the last, count as points, but they are not data.
+    let solved = problem.series.iter().map(one);
+    solved.filter(|series| series.experiment != super::inference::PRIOR).collect()
 }
 
 /// What the parameters do whose derivative is zero.
