@@ -45,6 +45,7 @@ mod plot;
 mod record_arrays;
 mod reference_problems;
 mod repl;
+mod report_page;
 mod results;
 mod script_fuzzing;
 mod script_tests;

@@ -8,6 +8,7 @@
 
 mod checks;
 mod conclusion;
+mod curve;
 mod effects;
 mod error_model;
 mod evaluation;
@@ -16,7 +17,6 @@ mod failure;
 mod failure_region;
 mod finding;
 mod fingerprint;
-mod html;
 mod importance;
 pub mod inference;
 mod inseparable;
@@ -33,6 +33,7 @@ mod summary;
 mod text;
 
 pub use conclusion::{Conclusion, conclude};
+pub use curve::draw_curves;
 pub use error_model::{ErrorModel, Sigma, SigmaFormula, decide, likelihood};
 pub use evaluation::Evaluation;
 pub use experiment::{Experiment, ModelSimulator, Observation};
