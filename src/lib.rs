@@ -54,7 +54,7 @@
 //! - [`sim`]: integrators, events, trajectories; knows nothing of Modelica;
 //! - [`ga`], [`identify`]: the genetic algorithm; populations of simulations, and what they tell;
 //! - [`units`]: units of measurement and their conversion;
-//! - [`mat`], [`results`], [`plot`]: files and figures;
+//! - [`mat`], [`results`], [`plot`], [`page`]: files, figures, HTML pages;
 //! - [`models`]: the Modelica packages that are part of the program;
 //! - [`script`]: sessions and their commands; [`cli`]: the command line, the only door outside.
 
@@ -75,6 +75,7 @@ pub mod ga;
 pub mod graph;
 pub mod identify;
 pub mod mat;
+pub mod page;
 pub mod plot;
 pub mod results;
 pub mod script;

@@ -16,6 +16,7 @@ mod pointwise;
 mod problems;
 mod program;
 mod recorder;
+mod report;
 mod sensitivity;
 mod table;
 mod uncertainty;

@@ -5,13 +5,14 @@
 
 use super::data::{self, Notes};
 use super::file::{ColumnEntry, ExperimentEntry, OneOrMany, ProblemFile, Role};
-use super::{inputs, own_fitness, sigma};
+use super::{dynamics, inputs, own_fitness, sigma};
 use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::flatten::FlatModel;
 use crate::ga::optimizer::METHODS;
 use crate::identify::fitness::{FITNESSES, Fitness};
+use crate::identify::problem::inference::adjust;
 use crate::identify::problem::{
     Experiment, Fingerprint, Free, Inference, ModelSimulator, NOISE_OF_FORMULAS, Observation,
     Problem, Series, Sigma, Simulate, Stop, decide, likelihood,
@@ -37,6 +38,8 @@ const ROBUST: [&str; 3] = ["huber", "tukey", "mae"];
 /// A problem with the experiments that are kept for validation.
 pub(super) struct Built {
     pub problem: Problem,
+    /// The experiments that are fitted, for drawing their curves.
+    pub experiments: Vec<Experiment>,
     pub validation: Vec<(Experiment, Vec<Series>)>,
     /// Changes when the problem or its data change.
     pub fingerprint: u64,
@@ -47,8 +50,10 @@ pub(super) struct Built {
 /// Something that a class around the model must hold.
 #[derive(Default)]
 pub(super) struct Around {
-    pub modifications: Vec<String>,
-    pub declarations: String,
+    pub(super) modifications: Vec<String>,
+    pub(super) declarations: String,
+    /// A section of initial equations, or nothing.
+    pub(super) equations: String,
 }
 
 /// Builds the problem.
@@ -106,14 +111,18 @@ pub(super) fn build(
     let parameters = with_units(free, &experiments);
     // Made once here, so that what is wrong shows before the run.
     drop(ModelSimulator::new(&experiments).map_err(one)?);
+    let fitted = experiments.clone();
     let inference = super::inference::inference(file, &experiments).map_err(one)?;
     let simulator = move || Ok(Box::new(ModelSimulator::new(&experiments)?) as Box<dyn Simulate>);
     let parts = (parameters, series, objectives);
     let mut problem = assemble(file, parts, noise, Box::new(simulator)).map_err(one)?;
     problem.inference = inference;
+    let adjustments = super::inference::adjustments(file, &problem.parameters).map_err(one)?;
+    adjust(&mut problem, adjustments).map_err(one)?;
     problem.text = text.to_owned();
     let notes = notes.into_sentences();
-    Ok(Built { problem, validation, fingerprint: fingerprint.number(), notes })
+    let fingerprint = fingerprint.number();
+    Ok(Built { problem, experiments: fitted, validation, fingerprint, notes })
 }
 
 /// The fitness functions by name: those of the program, else functions written in Modelica.
@@ -293,7 +302,19 @@ fn experiment(
     let parameters = settle(file, entry, &name, free, &mut around).map_err(one)?;
     let is_driven = drive(session, file, entry, (&x_name, &x_column.values), &mut around)?;
     let parts = (entry, table, (x_name.as_str(), time.as_slice()));
-    let class = with_inputs(session, (file, number), parts, around, notes)?;
+    follow(session, file, parts, &mut around, notes)?;
+    let mut observed = Vec::new();
+    for (place, (y_name, wanted)) in entry.outputs.iter().enumerate() {
+        let wanted = wanted.entry();
+        let delayed = dynamics::delayed(file, y_name, place, &wanted, &x_name, &mut around);
+        observed.push(delayed.map_err(one)?);
+    }
+    if entry.steady_state {
+        let class = class_of(session, file, number, &around)?;
+        let plain = simulation::translated(session, &class)?.program.clone();
+        dynamics::steady(file, entry, plain.sorted(), &mut around).map_err(one)?;
+    }
+    let class = class_of(session, file, number, &around)?;
     let translated = simulation::translated(session, &class)?;
     let program = translated.program.clone();
     let has_states = !program.sorted().states.is_empty();
@@ -316,7 +337,7 @@ fn experiment(
     let mut settings = simulation::settings(&program.experiment(), &wishes).map_err(one)?;
     limit(session, entry, &mut settings).map_err(one)?;
     let (mut observations, mut series) = (Vec::new(), Vec::new());
-    for (y_name, wanted) in &entry.outputs {
+    for ((y_name, wanted), observed) in entry.outputs.iter().zip(observed) {
         let wanted = wanted.entry();
         let y = data::column(table, &wanted, y_name, notes).map_err(one)?;
         let measured = data::in_unit(&y, y_name, &unit(y_name), &wanted, (table, notes));
@@ -370,7 +391,7 @@ fn experiment(
             rows: rows.iter().map(|row| row + 1).collect(),
             missing: missing.iter().map(|row| row + 1).collect(),
         });
-        observations.push(Observation { y_name: y_name.clone(), x });
+        observations.push(Observation { y_name: observed, x });
     }
     if observations.is_empty() {
         return Err(one(fault!(BAD_OPTION, "{name} has no outputs to compare")));
@@ -418,6 +439,7 @@ fn settle(
     let mut places = Vec::new();
     for (number, (name, parameter)) in file.parameters.iter().enumerate() {
         let initial = parameter.initial;
+        let delay = dynamics::is_delay(file, name);
         let value = match parameter.role(name)? {
             Role::Free { .. } => {
                 let full = if parameter.per_experiment {
@@ -428,16 +450,23 @@ fn settle(
                 let Some(place) = free.iter().position(|free| free.name == full) else {
                     bail!(BAD_OPTION, "`{name}` is identified for each experiment, so that {experiment} has no value of it"; help: "fix it there with `set`")
                 };
-                if !initial {
+                if !initial && !delay {
                     places.push((place, name.clone()));
                     continue;
                 }
-                let own = format!("gapi_initial_{number}");
+                let own = match delay {
+                    true => dynamics::delay_name(number),
+                    false => format!("gapi_initial_{number}"),
+                };
                 let middle = free[place].value(0.5);
                 _ = writeln!(around.declarations, "  parameter Real {own} = {middle:e};");
                 places.push((place, own.clone()));
+                if delay {
+                    continue;
+                }
                 own
             }
+            Role::Fixed(_) | Role::Tied(_) if delay => continue,
             Role::Fixed(value) => format!("{value:e}"),
             Role::Tied(expression) => expression,
         };
@@ -476,23 +505,22 @@ fn drive(
     Ok(true)
 }
 
-/// The class with its inputs. Where a column of an input has a unit, that of the model is looked up
-/// in the flat model.
-fn with_inputs(
+/// Lets inputs follow their columns. Where one of these has a unit, that of the model is looked up in
+/// the flat model.
+fn follow(
     session: &mut Session,
-    (file, number): (&ProblemFile, usize),
+    file: &ProblemFile,
     (entry, table, x): (&ExperimentEntry, &MatFile, (&str, &[f64])),
-    mut around: Around,
+    around: &mut Around,
     notes: &mut Notes,
-) -> Result<String, Vec<Diagnostic>> {
-    let one = |fault: Fault| vec![fault.at(Span::NONE)];
+) -> Result<(), Vec<Diagnostic>> {
     let flat = match inputs::have_units(entry, table) {
         true => Some(simulation::flattened(session, &file.model)?.model),
         false => None,
     };
     let unit = |name: &str| flat.as_ref().map_or_else(String::new, |flat| unit_in(flat, name));
-    inputs::inputs(entry, table, x, &unit, &mut around, notes).map_err(one)?;
-    class_of(session, file, number, &around)
+    let followed = inputs::inputs(entry, table, x, &unit, around, notes);
+    followed.map_err(|fault| vec![fault.at(Span::NONE)])
 }
 
 /// The unit of a variable; empty where it has none.
@@ -529,7 +557,7 @@ fn class_of(
     number: usize,
     around: &Around,
 ) -> Result<String, Vec<Diagnostic>> {
-    if around.modifications.is_empty() {
+    if around.modifications.is_empty() && around.declarations.is_empty() {
         return Ok(file.model.clone());
     }
     let (class, inner) = match file.model.split_once('(') {
@@ -540,9 +568,10 @@ fn class_of(
     let all: Vec<&str> = own.chain(around.modifications.iter().map(String::as_str)).collect();
     let name = format!("GAPILibExperiment{}", number + 1);
     let text = format!(
-        "model {name}\n  extends {class}(\n    {});\n{}end {name};\n",
+        "model {name}\n  extends {class}(\n    {});\n{}{}end {name};\n",
         all.join(",\n    "),
-        around.declarations
+        around.declarations,
+        around.equations
     );
     session.load_text(&format!("experiment {} of the problem", number + 1), &text)?;
     Ok(name)

@@ -9,6 +9,7 @@ mod build;
 mod control;
 mod data;
 mod draft;
+mod dynamics;
 mod file;
 mod inference;
 mod inputs;
@@ -23,7 +24,8 @@ use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::identify::problem::{
-    self as solving, Finding, FindingKind, Severity, Importance, ModelSimulator, Run, Simulate, Solution, SolvedSeries,
+    self as solving, Finding, FindingKind, Importance, ModelSimulator, Run, Severity, Simulate,
+    Solution, SolvedSeries,
 };
 use crate::registry::BAD_OPTION;
 use crate::source::Span;
@@ -55,6 +57,10 @@ pub struct RunOptions {
     pub profile: bool,
     /// The next measurement after the fit.
     pub design: bool,
+    /// Fits to data drawn anew after the fit.
+    pub bootstrap: bool,
+    /// Markov chains after the fit.
+    pub posterior: bool,
     /// A sensitivity analysis before the fit, by name.
     pub sensitivity: Option<String>,
     /// Its base samples; 0 for the usual number.
@@ -111,6 +117,12 @@ fn solve_text(
     if options.design {
         built.problem.inference.design.get_or_insert_with(inference::usual_design);
     }
+    if options.bootstrap {
+        built.problem.inference.bootstrap.get_or_insert_with(inference::usual_bootstrap);
+    }
+    if options.posterior {
+        built.problem.inference.posterior.get_or_insert_with(inference::usual_posterior);
+    }
     if let Some(limit) = options.evaluations {
         built.problem.stop.evaluations = Some(limit);
     }
@@ -125,7 +137,7 @@ fn solve_built(
     options: &RunOptions,
     every: (Option<u64>, f64),
 ) -> Result<Solution, Fault> {
-    let Built { problem, validation, fingerprint, notes } = built;
+    let Built { problem, experiments, validation, fingerprint, notes } = built;
     let folder = session.world.output_dir().join(&options.folder);
     let mut run = Run::new(problem, session.world.threads())?;
     let importance = analysed(session, &run, &folder, options)?;
@@ -165,17 +177,22 @@ fn solve_built(
     if !interrupted {
         solving::conclude(&mut run);
     }
-    let validation = validated(&run, &validation)?;
-    let mut solution = Solution::of(&run, &stop, validation)?;
+    let validated = validated(&run, &validation)?;
+    let mut solution = Solution::of(&run, &stop, validated)?;
     solution.importance = importance;
     let finding = |note| Finding::new(FindingKind::Data, note).severity(Severity::Information);
     solution.findings.extend(notes.into_iter().map(finding));
     if options.profile && !interrupted {
         solution.add_profiles(&run);
     }
+    let mut interrupted = interrupted;
     if !interrupted {
+        run.evaluation.cancel_by(session.world.interrupt_flag());
         solution.inferred = solving::infer(&run)?;
+        run.evaluation.cancel_by(None);
+        interrupted = session.world.interrupted();
     }
+    solving::draw_curves(&experiments, &mut solution, &validation);
     session.print(&solution.text());
     write(session, &folder, &solution)?;
     if let Some(why) = checkpoint.broken() {
@@ -287,12 +304,11 @@ fn write(session: &mut Session, folder: &Path, solution: &Solution) -> Result<()
         ("calibrated.mos", solution.script()),
         ("report.html", solution.html()),
     ];
-    let bands =
-        (!solution.inferred.bands.is_empty()).then(|| ("bands.csv", solution.inferred.bands_csv()));
+    let inferred = solution.inferred.tables();
     let profiles = solution.profiles.is_some().then(|| ("profiles.csv", solution.profiles_csv()));
     // What can be written is: one file that is too large must not take the others with it.
     let (mut missing, mut why) = (Vec::new(), None);
-    for (name, text) in files.into_iter().chain(bands).chain(profiles) {
+    for (name, text) in files.into_iter().chain(inferred).chain(profiles) {
         if let Err(fault) = session.write_file(&folder.join(name), text.as_bytes()) {
             missing.push(name);
             why.get_or_insert(fault);
