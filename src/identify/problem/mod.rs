@@ -6,6 +6,7 @@
 //! a [`Record`]; a run that is given the records of an earlier one goes the same way again without
 //! simulating, and then on: that is how an interrupted run is resumed to the same end.
 
+mod ending;
 mod evaluation;
 mod experiment;
 mod failure;
@@ -26,6 +27,7 @@ mod statistics;
 mod summary;
 mod text;
 
+pub use ending::{Ending, EndingKind, OtherMinimum, SolvedDescent};
 pub use evaluation::Evaluation;
 pub use experiment::{Experiment, ModelSimulator, Observation};
 pub use failure::{Failed, FailureKind};

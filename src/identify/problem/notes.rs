@@ -178,7 +178,7 @@ pub(super) fn profile_notes(solution: &Solution, found: &Profiles) -> Vec<String
     notes
 }
 
-fn about_failures(region: &FailureRegion) -> String {
+pub(super) fn about_failures(region: &FailureRegion) -> String {
     let [inside, outside] = region.failed.map(|part| format!("{:.0} %", 100.0 * part));
     let [low, high] = region.range.map(|end| significant(end, 3));
     format!(

@@ -1,7 +1,9 @@
 //! The solution: what was found, how well it fits, and what the data cannot tell.
 
+use super::ending::{self, Ending, EndingKind, OtherMinimum, SolvedDescent};
 use super::{
-    FailureKind, FailureRegion, Importance, Profiles, Run, Statistics, profiles, residual_test,
+    FailureKind, FailureRegion, Importance, Problem, Profiles, Run, Statistics, profiles,
+    residual_test,
 };
 use crate::diag::Fault;
 use crate::fault;
@@ -46,6 +48,14 @@ pub struct Solution {
     pub notes: Vec<String>,
     /// Why the run ended.
     pub stop: String,
+    /// Whether it ended at a minimum, and how that is known.
+    pub ending: Ending,
+    /// The descents by least squares, in their order.
+    #[serde(default)]
+    pub descents: Vec<SolvedDescent>,
+    /// Minima beside the best whose sum of squares lies within the 95 % limit of the likelihood.
+    #[serde(default)]
+    pub other_minima: Vec<OtherMinimum>,
     /// Questions of the method.
     pub generations: u64,
     /// Individuals evaluated.
@@ -197,7 +207,10 @@ impl Solution {
             series.push(SolvedSeries::new(measured, own));
             rest = others;
         }
+        let ending = Ending::of(run, &best.values);
         let parameters = parameters(run, &best.values, &statistics);
+        let descents = ending::descents(run);
+        let other_minima = other_minima(&descents, &ending, problem);
         let kinds = FailureKind::ALL.iter().zip(&run.failed).filter(|(_, count)| **count > 0);
         let mut solution = Solution {
             title: problem.title.clone(),
@@ -223,10 +236,13 @@ impl Solution {
             validation,
             notes: Vec::new(),
             stop: stop.to_owned(),
+            descents,
+            other_minima,
             generations: run.generations(),
             evaluations: run.evaluations,
             simulations: run.simulations,
-            simulations_for_statistics: statistics.simulations,
+            simulations_for_statistics: statistics.simulations + ending.simulations,
+            ending,
             failures: kinds.map(|(kind, count)| (kind.name().to_owned(), *count)).collect(),
             causes: run.causes.clone(),
             failure_region: super::failure_region(&problem.parameters, &run.kept),
@@ -244,8 +260,21 @@ impl Solution {
             trace: run.trace.clone(),
             individuals: run.kept.clone(),
         };
-        solution.notes = super::notes::notes(&solution, &statistics, problem.noise);
+        solution.notes = match solution.ending.kind {
+            EndingKind::Minimum => super::notes::notes(&solution, &statistics, problem.noise),
+            _ => solution.without_verdicts(),
+        };
         Ok(solution)
+    }
+
+    /// Takes away everything that holds at a minimum only; the notes that are left.
+    fn without_verdicts(&mut self) -> Vec<String> {
+        for parameter in &mut self.parameters {
+            (parameter.deviation, parameter.interval, parameter.determined) = (None, None, None);
+        }
+        (self.correlations, self.condition) = (None, None);
+        let failures = self.failure_region.as_ref().map(super::notes::about_failures);
+        std::iter::once(self.ending.words.clone()).chain(failures).collect()
     }
 
     /// Adds the profiles of all parameters and what they tell.
@@ -322,6 +351,21 @@ fn parameters(run: &Run, values: &[f64], statistics: &Statistics) -> Vec<SolvedP
         }
     };
     run.problem.parameters.iter().enumerate().map(one).collect()
+}
+
+/// The limit is that of the profile likelihood, S_min (1 + t² / (points − parameters)).
+fn other_minima(
+    descents: &[SolvedDescent],
+    ending: &Ending,
+    problem: &Problem,
+) -> Vec<OtherMinimum> {
+    let smallest = descents.iter().filter_map(|d| d.objective).fold(f64::INFINITY, f64::min);
+    let freedom = problem.n_points().saturating_sub(problem.parameters.len());
+    if ending.kind != EndingKind::Minimum || freedom == 0 {
+        return Vec::new();
+    }
+    let t = super::student_quantile(freedom);
+    ending::other_minima(descents, smallest * (1.0 + t * t / freedom as f64))
 }
 
 fn correlations(statistics: &Statistics, n: usize) -> Option<Vec<Vec<Option<f64>>>> {

@@ -137,16 +137,13 @@ fn assemble(
     let method = (entry.make)(&mut options)?;
     options.finish()?;
     let stop = &file.stop;
-    let mut stop = Stop {
+    let stop = Stop {
         generations: stop.generations,
         evaluations: stop.evaluations,
         seconds: stop.seconds,
         target: stop.target,
         stagnation: stop.stagnation,
     };
-    if stop == Stop::default() {
-        stop = Stop { evaluations: Some(20_000), stagnation: Some(500), ..stop };
-    }
     Ok(Problem {
         title: file.title.clone().unwrap_or_else(|| format!("Identification of {}", file.model)),
         model: file.model.clone(),
