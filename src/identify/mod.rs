@@ -26,4 +26,4 @@ pub use points::{Path, time_of};
 pub use program::CompiledModel;
 pub use recorder::{Best, FitnessSource, Measurement, Quantity, Recorder, Study};
 pub use sensitivity::deviations;
-pub use uncertainty::{Uncertainty, uncertainty};
+pub use uncertainty::{Uncertainty, uncertainty, uncertainty_given};

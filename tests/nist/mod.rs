@@ -122,7 +122,13 @@ impl Dataset {
     }
 
     /// The problem; with `start` the descent begins at that start of NIST.
-    pub(crate) fn problem(&self, method: &str, start: Option<usize>, seed: u32, budget: u64) -> Problem {
+    pub(crate) fn problem(
+        &self,
+        method: &str,
+        start: Option<usize>,
+        seed: u32,
+        budget: u64,
+    ) -> Problem {
         let free = |k: usize| {
             let start = start.map(|start| self.rows[k][start]);
             Free::new(format!("b{}", k + 1), "", self.range(k), None, start).expect("a range")
@@ -162,7 +168,13 @@ impl Dataset {
     }
 
     /// Solves it.
-    pub(crate) fn solve(&self, method: &str, start: Option<usize>, seed: u32, budget: u64) -> Solution {
+    pub(crate) fn solve(
+        &self,
+        method: &str,
+        start: Option<usize>,
+        seed: u32,
+        budget: u64,
+    ) -> Solution {
         let problem = self.problem(method, start, seed, budget);
         let mut run = Run::new(problem, 1).expect("a run");
         let stop = loop {

@@ -4,7 +4,7 @@
 //! Reference: [Boender & Rinnooy Kan 1987](crate::bibliography#boender-rinnooy-kan-1987): where n
 //! descents have ended in w different minima, w (n − 1) / (n − w − 2) are expected in all.
 
-use super::levenberg_marquardt::{Accuracy, Descent};
+use super::levenberg_marquardt::{Accuracy, COARSE, Descent, FINE};
 use super::{Answers, Wants};
 use crate::ga::Genomes;
 use serde::{Deserialize, Serialize};
@@ -13,8 +13,10 @@ use serde::{Deserialize, Serialize};
 const AGREEING: usize = 3;
 /// Minima not found yet, expected, above which a search goes on.
 const MISSING: f64 = 1.0;
-/// Steps of a descent in one round.
-const STEPS: usize = 100;
+/// Steps of a descent in one round; most of the problems of NIST need fewer.
+const STEPS: usize = 40;
+/// Steps to make the best minimum finer.
+const FINE_STEPS: usize = 100;
 
 /// How a descent ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -54,6 +56,8 @@ pub struct DescentReport {
 /// All descents of a search; those of a round are asked together, trials first, then Jacobians.
 pub(super) struct Pool {
     descents: Vec<Descent>,
+    /// Whether each began at a point that owes nothing to other descents.
+    independent: Vec<bool>,
     active: Vec<usize>,
     /// Individuals that each of the active ones asked in the last question.
     shares: Vec<usize>,
@@ -65,6 +69,7 @@ impl Pool {
     pub(super) fn new(accuracy: Accuracy) -> Pool {
         Pool {
             descents: Vec::new(),
+            independent: Vec::new(),
             active: Vec::new(),
             shares: Vec::new(),
             wants: Wants::Jacobians,
@@ -72,19 +77,39 @@ impl Pool {
         }
     }
 
-    /// Begins a round: descends from these starts, and goes on with the best descent so far where its
-    /// steps were used up.
-    pub(super) fn begin(&mut self, starts: Vec<Vec<f64>>) {
+    /// Begins a round: descends from these starts, goes on with the best of the descents whose steps
+    /// were used up, and makes the best minimum finer. The first `independent` starts owe nothing
+    /// to earlier descents.
+    pub(super) fn begin(&mut self, starts: Vec<Vec<f64>>, independent: usize) {
         self.active.clear();
-        if let Some(best) = self.best().filter(|&best| !self.descents[best].has_ended()) {
-            self.descents[best].grant(STEPS);
-            self.active.push(best);
+        let open = |k: &usize| !self.descents[*k].has_ended();
+        if let Some(open) = self.smallest_of(open) {
+            self.descents[open].grant(STEPS, COARSE);
+            self.active.push(open);
         }
-        for start in starts {
+        self.refine();
+        for (number, start) in starts.into_iter().enumerate() {
             self.active.push(self.descents.len());
-            self.descents.push(Descent::new(start, self.accuracy, STEPS));
+            self.descents.push(Descent::new(start, self.accuracy, STEPS, COARSE));
+            self.independent.push(number < independent);
         }
         self.shares = vec![0; self.active.len()];
+    }
+
+    /// Goes on with the best descent where it can come nearer to its minimum.
+    fn refine(&mut self) {
+        if let Some(best) = self.best().filter(|best| self.descents[*best].can_be_refined()) {
+            self.descents[best].grant(FINE_STEPS, FINE);
+            self.active.push(best);
+        }
+    }
+
+    /// Goes on with the best minimum alone; whether there is anything to do.
+    pub(super) fn finish(&mut self) -> bool {
+        self.active.clear();
+        self.refine();
+        self.shares = vec![0; self.active.len()];
+        !self.active.is_empty()
     }
 
     /// Asks for the next individuals; without any the round is over.
@@ -126,10 +151,19 @@ impl Pool {
 
     /// The descent with the smallest sum of squares.
     fn best(&self) -> Option<usize> {
+        self.smallest_of(|_| true)
+    }
+
+    fn smallest_of(&self, is_meant: impl Fn(&usize) -> bool) -> Option<usize> {
         let sum = |k: &usize| self.descents[*k].sum();
         (0..self.descents.len())
-            .filter(|k| sum(k).is_finite())
+            .filter(|k| sum(k).is_finite() && is_meant(k))
             .min_by(|a, b| sum(a).total_cmp(&sum(b)))
+    }
+
+    /// Where the best descent stands.
+    pub(super) fn best_place(&self) -> Option<&[f64]> {
+        self.best().map(|best| self.descents[best].places()[1])
     }
 
     /// The smallest sum of squares.
@@ -160,7 +194,10 @@ impl Pool {
 
     /// Whether the best minimum was reached often enough, and few others can be expected.
     pub(super) fn is_enough(&self) -> bool {
-        let reports = self.reports();
+        // Descents from beside others are no evidence.
+        let all = self.reports().into_iter().zip(&self.independent);
+        let reports: Vec<DescentReport> =
+            all.filter(|(_, independent)| **independent).map(|(report, _)| report).collect();
         let ended = reports
             .iter()
             .filter(|report| !matches!(report.ending, DescentEnd::StepLimit | DescentEnd::Failed));

@@ -16,6 +16,8 @@ const ITERATIONS: usize = 20;
 /// A step goes at most this part of the way to a bound, unless the bound is nearer than `AT`:
 /// descents that jump onto a bound at once stay there (MGH17 from a random start).
 const TOWARDS_BOUND: f64 = 0.9;
+/// Directions are left out of a step below this part of the tolerance of the rank.
+const NULL: f64 = 1e-3;
 /// Genes nearer than this to a bound are on it; rounding leaves them beside it.
 const ON_BOUND: f64 = 1e-13;
 /// Genes nearer to a bound may step onto it.
@@ -170,7 +172,7 @@ impl LinearModel {
         // (JᵀJ + λD²) a = −Jᵀ r_vv, in the scaled genes.
         let own: Vec<f64> = step.free.iter().map(|&j| gradient[j] / scales[j]).collect();
         let along = &decomposition.v_t * DVector::from_vec(own);
-        let smallest = self.rank_tolerance * decomposition.s.max();
+        let smallest = NULL * self.rank_tolerance * decomposition.s.max();
         let z = DVector::from_fn(along.len(), |i, _| {
             let s = decomposition.s[i];
             if s <= smallest { 0.0 } else { -along[i] / (s * s + step.damping) }
@@ -239,7 +241,9 @@ impl Decomposition {
         rank_tolerance: f64,
     ) -> (DVector<f64>, f64) {
         let c = self.u.tr_mul(right);
-        let smallest = rank_tolerance * self.s.max();
+        // What derivatives cannot tell from zero is left out of steps of Gauss and Newton alone: a
+        // scale that was once much larger makes columns small that still matter (Eckerle4).
+        let smallest = NULL * rank_tolerance * self.s.max();
         let at = |damping: f64| {
             DVector::from_fn(c.len(), |i, _| {
                 let s = self.s[i];

@@ -7,16 +7,21 @@ use super::levenberg_marquardt::Accuracy;
 use super::{Answers, DescentReport, Optimizer, Setup, Wants, has_failed, key};
 use crate::diag::Fault;
 use crate::ga::sampling::latin_hypercube;
-use crate::ga::{Genomes, Mrg32k3a, order};
+use crate::ga::{Genomes, Mrg32k3a};
 
 /// Questions of the search between two rounds of descents; before the first there is one.
 const QUESTIONS: usize = 10;
 /// Points of a Latin hypercube: this many for each gene, within limits.
-const POINTS: usize = 5;
-const SAMPLE: [usize; 2] = [20, 100];
-/// Descents of a round that begin at points of the search, and of the hypercube.
+const POINTS: usize = 10;
+const SAMPLE: [usize; 2] = [30, 150];
+/// Descents of a round that begin at points of the search, of the hypercube, and beside the best
+/// minimum so far.
 const FROM_SEARCH: usize = 1;
 const FROM_SAMPLE: usize = 2;
+const FROM_BEST: usize = 1;
+/// Genes of the best minimum that are drawn anew at most. Minima often differ in few: a frequency,
+/// the place of a peak (ENSO has 9 genes, and two periods decide).
+const REDRAWN: usize = 3;
 /// Individuals of a question remembered as candidates.
 const CANDIDATES: usize = 24;
 /// Individuals nearer than this in every gene are the same start.
@@ -44,6 +49,8 @@ pub struct Polished {
     /// The best of the search and of the hypercube since the last round.
     found: Vec<(Vec<f64>, f64)>,
     sampled: Vec<(Vec<f64>, f64)>,
+    /// The best of those beside the best minimum.
+    beside: Vec<(Vec<f64>, f64)>,
 }
 
 impl Polished {
@@ -66,16 +73,23 @@ impl Polished {
             given: setup.start.clone(),
             found: Vec::new(),
             sampled: Vec::new(),
+            beside: Vec::new(),
         }
     }
 
-    /// The starts of the next round: what the user gave, then the best that are far from each other
-    /// and from where descents have been. What is better than all descents always counts.
-    fn starts(&mut self) -> Vec<Vec<f64>> {
+    /// The starts of the next round, and how many of them owe nothing to earlier descents: what the
+    /// user gave, then the best that are far from each other and from where descents have been. What
+    /// is better than all descents always counts.
+    fn starts(&mut self) -> (Vec<Vec<f64>>, usize) {
         let mut starts: Vec<Vec<f64>> = self.given.take().into_iter().collect();
+        let mut independent = 0;
         let smallest = self.pool.smallest();
-        let sources = [(&mut self.found, FROM_SEARCH), (&mut self.sampled, self.from_sample)];
-        for (candidates, count) in sources {
+        let sources = [
+            (&mut self.found, FROM_SEARCH),
+            (&mut self.sampled, self.from_sample),
+            (&mut self.beside, FROM_BEST),
+        ];
+        for (number, (candidates, count)) in sources.into_iter().enumerate() {
             let wanted = starts.len() + count;
             for (genome, fitness) in candidates.drain(..) {
                 let known = self.pool.visited().chain(starts.iter().map(Vec::as_slice));
@@ -84,8 +98,30 @@ impl Polished {
                     starts.push(genome);
                 }
             }
+            if number < 2 {
+                independent = starts.len();
+            }
         }
-        starts
+        (starts, independent)
+    }
+
+    /// The points of a sample: a Latin hypercube, and from the second round on as many with some
+    /// genes of the best minimum drawn anew.
+    fn sample(&mut self, batch: &mut Genomes) {
+        let n = batch.n_genes();
+        let sample = latin_hypercube(n, self.points, &mut self.rng);
+        sample.rows().for_each(|genome| batch.push(genome));
+        let Some(best) = self.pool.best_place().filter(|_| n > 1) else { return };
+        let mut genome = best.to_vec();
+        for other in latin_hypercube(n, self.points, &mut self.rng).rows() {
+            genome.copy_from_slice(best);
+            let redrawn = 1 + (self.rng.uniform() * REDRAWN.min(n - 1) as f64) as usize;
+            for _ in 0..redrawn {
+                let gene = ((self.rng.uniform() * n as f64) as usize).min(n - 1);
+                genome[gene] = other[gene];
+            }
+            batch.push(&genome);
+        }
     }
 
     fn next_stage(&mut self) {
@@ -93,8 +129,8 @@ impl Polished {
             (Stage::Search(left), _) if left > 1 => Stage::Search(left - 1),
             (Stage::Search(_), _) => Stage::Sample,
             (Stage::Sample, _) => {
-                let starts = self.starts();
-                self.pool.begin(starts);
+                let (starts, independent) = self.starts();
+                self.pool.begin(starts, independent);
                 Stage::Descents
             }
             (Stage::Descents, Some(_)) => Stage::Search(QUESTIONS),
@@ -104,10 +140,16 @@ impl Polished {
 }
 
 /// Keeps the best of both.
-fn remember(kept: &mut Vec<(Vec<f64>, f64)>, batch: &Genomes, answers: &Answers<'_>) {
-    let fitness: Vec<f64> = (0..batch.len()).map(|k| answers.fitness(k)).collect();
-    let good = order(&fitness).into_iter().take_while(|&k| !has_failed(fitness[k]));
-    kept.extend(good.take(CANDIDATES).map(|k| (batch.row(k).to_vec(), fitness[k])));
+fn remember(
+    kept: &mut Vec<(Vec<f64>, f64)>,
+    batch: &Genomes,
+    answers: &Answers<'_>,
+    which: std::ops::Range<usize>,
+) {
+    let all = which.map(|k| (k, answers.fitness(k)));
+    let mut good: Vec<(usize, f64)> = all.filter(|(_, fitness)| !has_failed(*fitness)).collect();
+    good.sort_by(|a, b| key(a.1).total_cmp(&key(b.1)));
+    kept.extend(good.iter().take(CANDIDATES).map(|&(k, f)| (batch.row(k).to_vec(), f)));
     kept.sort_by(|a, b| key(a.1).total_cmp(&key(b.1)));
     kept.truncate(CANDIDATES);
 }
@@ -130,15 +172,17 @@ impl Optimizer for Polished {
                     }
                 }
                 Stage::Sample => {
-                    let sample = latin_hypercube(batch.n_genes(), self.points, &mut self.rng);
-                    sample.rows().for_each(|genome| batch.push(genome));
+                    self.sample(batch);
                 }
                 Stage::Descents => {
                     self.pool.ask(batch);
-                    if batch.is_empty() {
-                        if self.pool.is_enough() {
-                            return;
+                    if batch.is_empty() && self.pool.is_enough() {
+                        if self.pool.finish() {
+                            self.pool.ask(batch);
                         }
+                        return;
+                    }
+                    if batch.is_empty() {
                         self.next_stage();
                     }
                 }
@@ -153,10 +197,14 @@ impl Optimizer for Polished {
         match (self.stage, &mut self.search) {
             (Stage::Descents, _) => return self.pool.tell(batch.len(), answers),
             (Stage::Search(_), Some(search)) => {
-                remember(&mut self.found, batch, answers);
+                remember(&mut self.found, batch, answers, 0..batch.len());
                 search.tell(batch, answers);
             }
-            _ => remember(&mut self.sampled, batch, answers),
+            _ => {
+                let count = batch.len().min(self.points);
+                remember(&mut self.sampled, batch, answers, 0..count);
+                remember(&mut self.beside, batch, answers, count..batch.len());
+            }
         }
         self.next_stage();
     }
@@ -199,6 +247,7 @@ impl Optimizer for Polished {
         self.pool.clear();
         self.found.clear();
         self.sampled.clear();
+        self.beside.clear();
         if self.stage == Stage::Descents {
             self.next_stage();
         }

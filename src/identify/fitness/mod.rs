@@ -1,5 +1,6 @@
 //! Fitness functions: how far the simulation is from the measurement; smaller is better.
 
+mod concentrated;
 mod huber;
 mod log_likelihood;
 mod mean_absolute;
@@ -8,6 +9,7 @@ mod relative;
 mod root_mean_square;
 mod sum_of_squares;
 
+pub use concentrated::Concentrated;
 pub use sum_of_squares::sum_of_squares;
 
 use crate::ga::FAILED_FITNESS;
@@ -22,6 +24,32 @@ pub trait Fitness: Send + Sync {
     /// What each difference is multiplied with where the minimum is that of a sum of squares;
     /// `None` where it is not, so that least squares cannot find it.
     fn least_squares(&self, measured: &[f64], weights: &[f64]) -> Option<Vec<f64>>;
+
+    /// Where the minimum is that of a sum of squares whose factors depend on the simulation:
+    /// writes residuals r with Σ r² growing with the fitness, and factors f such that
+    /// 2 Σ f r ∂ŷ/∂p is the gradient of Σ r². `false`: the constant factors of
+    /// [`least_squares`](Fitness::least_squares) hold.
+    fn scaled(
+        &self,
+        _simulated: &[f64],
+        _measured: &[f64],
+        _weights: &[f64],
+        _residuals: &mut [f64],
+        _factors: &mut [f64],
+    ) -> bool {
+        false
+    }
+
+    /// The weights that the errors have at this simulation, where they are estimated with it:
+    /// reciprocal standard deviations.
+    fn error_weights(
+        &self,
+        _simulated: &[f64],
+        _measured: &[f64],
+        _weights: &[f64],
+    ) -> Option<Vec<f64>> {
+        None
+    }
 }
 
 /// All fitness functions; the first is the default.

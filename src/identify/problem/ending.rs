@@ -8,7 +8,7 @@
 //!
 //! Reference: [Bates & Watts 1981](crate::bibliography#bates-watts-1981).
 
-use super::{Evaluation, Linearization, Problem, Run};
+use super::{Evaluation, Finding, FindingKind, Linearization, Problem, Run, Severity, Solution};
 use crate::ga::optimizer::{DescentEnd, DescentReport, MINIMUM, Offset, reached, test_minimum};
 use crate::identify::table::significant;
 use serde::{Deserialize, Serialize};
@@ -122,7 +122,7 @@ fn tested(
 ) -> (Offset, bool) {
     let parameters = &problem.parameters;
     let point: Vec<f64> = parameters.iter().zip(values).map(|(f, v)| f.fraction(*v)).collect();
-    let residuals = evaluation.residuals(&found.simulated);
+    let residuals = evaluation.residuals(problem, &found.simulated);
     let jacobian = evaluation.weighted(problem, values, found);
     test_minimum(&point, &residuals, &jacobian, [problem.noise, evaluation.size()])
 }
@@ -212,4 +212,35 @@ pub(super) fn other_minima(descents: &[SolvedDescent], limit: f64) -> Vec<OtherM
     }
     others.sort_by(|a, b| a.1.objective.total_cmp(&b.1.objective));
     others.into_iter().map(|(_, other)| other).collect()
+}
+
+/// Findings that need no minimum.
+pub(super) fn holds_anywhere(kind: FindingKind) -> bool {
+    matches!(
+        kind,
+        FindingKind::MissingPoints
+            | FindingKind::ColumnsEqual
+            | FindingKind::ScaleOfOutputs
+            | FindingKind::ErrorModel
+            | FindingKind::SolverTolerance
+            | FindingKind::Failures
+            | FindingKind::Missing
+    )
+}
+
+/// A finding for each other minimum.
+pub(super) fn about_other_minima(solution: &Solution) -> Vec<Finding> {
+    let one = |other: &OtherMinimum| {
+        let pairs = solution.parameters.iter().zip(&other.values);
+        let values: Vec<String> =
+            pairs.map(|(p, value)| format!("{} = {}", p.name, significant(*value, 5))).collect();
+        let sentence = format!(
+            "Another minimum fits these data as well within the 95 % limit ({} against {}): {}.",
+            significant(other.objective, 6),
+            significant(solution.fitness, 6),
+            values.join(", ")
+        );
+        Finding::new(FindingKind::OtherMinimum, sentence).severity(Severity::Serious)
+    };
+    solution.other_minima.iter().map(one).collect()
 }

@@ -43,6 +43,8 @@ pub struct Evaluation {
     rows: Vec<f64>,
     memory: Memory,
     cancel: Option<Arc<AtomicBool>>,
+    /// What the tolerance of the settings is multiplied with.
+    tolerance: f64,
 }
 
 /// Answers by genes; the oldest give way.
@@ -69,8 +71,7 @@ impl Evaluation {
         let workers = (0..threads).map(|_| Ok(Mutex::new((problem.simulator)()?)));
         let measured: Vec<f64> =
             problem.series.iter().flat_map(|series| series.y.clone()).collect();
-        let weight = |series: &super::Series| vec![series.weight; series.y.len()];
-        let weights: Vec<f64> = problem.series.iter().flat_map(weight).collect();
+        let weights: Vec<f64> = problem.series.iter().flat_map(super::Series::weights).collect();
         let first = problem.objectives.first();
         let scales = first.and_then(|(_, fitness)| fitness.least_squares(&measured, &weights));
         Ok(Evaluation {
@@ -83,6 +84,7 @@ impl Evaluation {
             rows: Vec::new(),
             memory: Memory::default(),
             cancel: None,
+            tolerance: 1.0,
         })
     }
 
@@ -105,11 +107,6 @@ impl Evaluation {
     /// What differences of the points count.
     pub(super) fn weights(&self) -> &[f64] {
         &self.weights
-    }
-
-    /// The first objective of simulated points.
-    pub(super) fn objective(&self, problem: &Problem, simulated: &[f64]) -> f64 {
-        problem.objectives[0].1.fitness(simulated, &self.measured, &self.weights)
     }
 
     /// How far two simulations are apart: root mean square of the weighted differences.
@@ -167,7 +164,7 @@ impl Evaluation {
             let (objectives, failed) = self.rate(problem, &row, failed);
             answered.objectives.extend(objectives);
             answered.failures.extend(failed.map(|failed| (k, failed)));
-            answered.residuals.extend(self.residuals(&row));
+            answered.residuals.extend(self.residuals(problem, &row));
         }
         answered
     }
@@ -181,8 +178,10 @@ impl Evaluation {
     ) -> Vec<f64> {
         let ranges = problem.parameters.iter().zip(values);
         let slopes: Vec<f64> = ranges.map(|(free, value)| free.slope(*value)).collect();
-        let scales = self.scales.as_deref().unwrap_or(&self.weights);
-        let rows = found.derivatives.chunks_exact(values.len()).zip(scales);
+        let points = self.measured.len();
+        let (mut residuals, mut scales) = (vec![0.0; points], vec![0.0; points]);
+        self.scaled(problem, &found.simulated, &mut residuals, &mut scales);
+        let rows = found.derivatives.chunks_exact(values.len()).zip(&scales);
         rows.flat_map(|(row, scale)| row.iter().zip(&slopes).map(move |(d, s)| d * s * scale))
             .collect()
     }
@@ -217,7 +216,7 @@ impl Evaluation {
             failed[k] = failure;
         }
         let answered = Answered {
-            residuals: if residuals { self.residuals(&rows) } else { Vec::new() },
+            residuals: if residuals { self.residuals(problem, &rows) } else { Vec::new() },
             objectives,
             failures: failed.into_iter().enumerate().filter_map(|(k, f)| Some((k, f?))).collect(),
             simulations: wanted.len() as u64,
@@ -255,9 +254,9 @@ impl Evaluation {
         let one = |values: &Vec<f64>| {
             let mut row = vec![f64::NAN; self.measured.len()];
             let mut worker = self.worker();
-            worker.scale_tolerance(factor);
+            worker.scale_tolerance(factor * self.tolerance);
             let found = worker.simulate(values, &mut row);
-            worker.scale_tolerance(1.0);
+            worker.scale_tolerance(self.tolerance);
             found.map(|()| row)
         };
         self.pool.install(|| values.par_iter().map(one).collect())
@@ -334,13 +333,67 @@ impl Evaluation {
         (values, unrated.map(|k| unrated_by(&problem.objectives[k].0)))
     }
 
-    pub(super) fn residuals(&self, rows: &[f64]) -> Vec<f64> {
-        let Some(scales) = &self.scales else { return Vec::new() };
-        let row = |row: &[f64]| {
-            let triple = row.iter().zip(&self.measured).zip(scales);
-            triple.map(|((s, m), scale)| scale * (s - m)).collect::<Vec<f64>>()
-        };
-        rows.chunks_exact(self.measured.len()).flat_map(row).collect()
+    pub(super) fn residuals(&self, problem: &Problem, rows: &[f64]) -> Vec<f64> {
+        if self.scales.is_none() {
+            return Vec::new();
+        }
+        let (mut all, mut factors) = (vec![0.0; rows.len()], vec![0.0; self.measured.len()]);
+        let n = self.measured.len();
+        for (row, own) in rows.chunks_exact(n).zip(all.chunks_exact_mut(n)) {
+            self.scaled(problem, row, own, &mut factors);
+        }
+        all
+    }
+
+    /// Residuals of one simulation whose squares add up to what least squares minimises, and the
+    /// factors that make derivatives of the points those of the residuals.
+    pub(super) fn scaled(
+        &self,
+        problem: &Problem,
+        simulated: &[f64],
+        residuals: &mut [f64],
+        factors: &mut [f64],
+    ) {
+        let fitness = &problem.objectives[0].1;
+        if fitness.scaled(simulated, &self.measured, &self.weights, residuals, factors) {
+            return;
+        }
+        let scales = self.scales.as_deref().unwrap_or(&self.weights);
+        factors.copy_from_slice(scales);
+        let points = simulated.iter().zip(&self.measured).zip(scales);
+        residuals.iter_mut().zip(points).for_each(|(r, ((s, m), w))| *r = w * (s - m));
+    }
+
+    /// The weights that the errors have at this simulation: reciprocal standard deviations where
+    /// these are known or estimated.
+    pub(super) fn error_weights(&self, problem: &Problem, simulated: &[f64]) -> Vec<f64> {
+        let fitness = problem.objectives.first().map(|(_, fitness)| fitness);
+        fitness
+            .and_then(|own| own.error_weights(simulated, &self.measured, &self.weights))
+            .or_else(|| self.scales.clone())
+            .unwrap_or_else(|| self.weights.clone())
+    }
+
+    /// The first objective of a simulation.
+    pub(super) fn objective(&self, problem: &Problem, simulated: &[f64]) -> f64 {
+        problem.objectives[0].1.fitness(simulated, &self.measured, &self.weights)
+    }
+
+    /// From now on the points count these weights; what was remembered holds no longer.
+    pub(super) fn reweigh(&mut self, problem: &Problem, weights: Vec<f64>) {
+        let fitness = problem.objectives.first();
+        self.scales = fitness.and_then(|(_, own)| own.least_squares(&self.measured, &weights));
+        self.weights = weights;
+        self.forget();
+    }
+
+    /// From now on simulators solve with their tolerance times this.
+    pub(super) fn scale_tolerance(&mut self, factor: f64) {
+        for worker in &self.workers {
+            worker.lock().unwrap_or_else(PoisonError::into_inner).scale_tolerance(factor);
+        }
+        self.tolerance = factor;
+        self.forget();
     }
 }
 

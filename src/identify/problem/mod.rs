@@ -6,11 +6,16 @@
 //! a [`Record`]; a run that is given the records of an earlier one goes the same way again without
 //! simulating, and then on: that is how an interrupted run is resumed to the same end.
 
+mod checks;
+mod conclusion;
+mod effects;
 mod ending;
+mod error_model;
 mod evaluation;
 mod experiment;
 mod failure;
 mod failure_region;
+mod finding;
 mod fingerprint;
 mod html;
 mod importance;
@@ -27,11 +32,14 @@ mod statistics;
 mod summary;
 mod text;
 
+pub use conclusion::{Conclusion, conclude};
 pub use ending::{Ending, EndingKind, OtherMinimum, SolvedDescent};
+pub use error_model::{ErrorModel, Sigma, SigmaFormula, decide, likelihood};
 pub use evaluation::Evaluation;
 pub use experiment::{Experiment, ModelSimulator, Observation};
 pub use failure::{Failed, FailureKind};
 pub use failure_region::{FailureRegion, failure_region};
+pub use finding::{Finding, FindingKind, Severity};
 pub use fingerprint::Fingerprint;
 pub use importance::{ANALYSES, Analysis, Importance, ParameterImportance, analysis};
 pub use inseparable::{Form, Inseparable};
@@ -40,8 +48,8 @@ pub use journal::{Journal, Record, decode, encode, first_frame, frame, header};
 pub use profile::{Profile, Profiles, profiles};
 pub use run::{Best, Run};
 pub use space::Free;
-pub use statistics::{ResidualTest, Statistics, residual_test, student_quantile};
-pub use summary::{Solution, SolvedParameter, SolvedSeries};
+pub use statistics::{ResidualTest, Statistics, distributions, residual_test};
+pub use summary::{ChiSquare, Solution, SolvedParameter, SolvedSeries, Verdict};
 
 use super::fitness::Fitness;
 use crate::diag::Fault;
@@ -101,8 +109,33 @@ pub struct Series {
     pub x: Vec<f64>,
     /// Y of the points.
     pub y: Vec<f64>,
-    /// Every difference counts times this.
+    /// Every difference counts times this, besides the reciprocal of its sigma.
     pub weight: f64,
+    /// The standard deviation of the errors.
+    pub sigma: Sigma,
+    /// The column of the data that Y was read from.
+    pub column: String,
+    /// Rows of the points in the data, the first below the heading is 1; empty where points have
+    /// no rows, and then they are counted.
+    pub rows: Vec<usize>,
+    /// Rows that were left out because a number is missing.
+    pub missing: Vec<usize>,
+}
+
+impl Series {
+    /// Its name in messages: `experiment / variable`.
+    pub fn label(&self) -> String {
+        match self.experiment.is_empty() {
+            true => self.y_name.clone(),
+            false => format!("{} / {}", self.experiment, self.y_name),
+        }
+    }
+
+    /// What the difference of each point counts, as far as it is known before the fit; a formula
+    /// for sigma is taken at the measured values.
+    pub fn weights(&self) -> Vec<f64> {
+        self.sigma.weights(&self.y, self.weight)
+    }
 }
 
 /// When a run ends; the first that holds ends it.

@@ -13,8 +13,7 @@ const BUDGET: u64 = 400;
 pub(super) struct Refit<'a> {
     problem: &'a Problem,
     evaluation: &'a Evaluation,
-    measured: Vec<f64>,
-    scales: &'a [f64],
+    n_points: usize,
     /// Simulations so far.
     pub simulations: u64,
 }
@@ -25,9 +24,8 @@ pub(super) type Fitted = (Vec<f64>, f64);
 impl<'a> Refit<'a> {
     /// `None` where the first objective is no sum of squares.
     pub(super) fn new(problem: &'a Problem, evaluation: &'a Evaluation) -> Option<Refit<'a>> {
-        let measured = problem.series.iter().flat_map(|series| series.y.clone()).collect();
-        let scales = evaluation.scales()?;
-        Some(Refit { problem, evaluation, measured, scales, simulations: 0 })
+        evaluation.scales()?;
+        Some(Refit { problem, evaluation, n_points: problem.n_points(), simulations: 0 })
     }
 
     /// The best values from `start`, parameter `held` standing still; `None` where `start` cannot
@@ -68,7 +66,7 @@ impl<'a> Refit<'a> {
                     best = (values, *fitness);
                 }
             }
-            let failed = vec![f64::NAN; self.measured.len()];
+            let failed = vec![f64::NAN; self.n_points];
             let flat: Vec<f64> =
                 rows.into_iter().flat_map(|row| row.unwrap_or_else(|| failed.clone())).collect();
             let jacobians = match search.wants() {
@@ -119,11 +117,13 @@ impl<'a> Refit<'a> {
         let mut jacobians = Vec::new();
         for (place, found) in places.iter().zip(self.evaluation.linearize(self.problem, places)) {
             let Ok(found) = found else {
-                jacobians.extend(vec![f64::NAN; self.measured.len() * varied.len()]);
+                jacobians.extend(vec![f64::NAN; self.n_points * varied.len()]);
                 continue;
             };
             self.simulations += found.simulations;
-            for (row, scale) in found.derivatives.chunks_exact(n).zip(self.scales) {
+            let (mut residuals, mut factors) = (vec![0.0; self.n_points], vec![0.0; self.n_points]);
+            self.evaluation.scaled(self.problem, &found.simulated, &mut residuals, &mut factors);
+            for (row, scale) in found.derivatives.chunks_exact(n).zip(&factors) {
                 let slope = |k: usize| self.problem.parameters[k].slope(place[k]);
                 jacobians.extend(varied.iter().map(|&k| row[k] * scale * slope(k)));
             }
@@ -133,9 +133,11 @@ impl<'a> Refit<'a> {
 
     fn residuals(&mut self, values: &[Vec<f64>]) -> Vec<Option<Vec<f64>>> {
         self.simulations += values.len() as u64;
+        let n = self.n_points;
         let weighted = |row: Vec<f64>| {
-            let points = row.iter().zip(&self.measured).zip(self.scales);
-            points.map(|((s, m), w)| w * (s - m)).collect()
+            let (mut residuals, mut factors) = (vec![0.0; n], vec![0.0; n]);
+            self.evaluation.scaled(self.problem, &row, &mut residuals, &mut factors);
+            residuals
         };
         let rows = self.evaluation.simulate_all(values).into_iter();
         rows.map(|row| row.ok().map(weighted)).collect()

@@ -68,6 +68,8 @@ pub struct Run {
     /// Changes made during the run, and before which question.
     pub changed: Vec<(u64, String, f64)>,
     cause: Cause,
+    /// What [`conclude`](super::conclude) did after the last question.
+    pub conclusion: super::Conclusion,
 }
 
 impl Run {
@@ -117,6 +119,7 @@ impl Run {
             reference: f64::INFINITY,
             changed: Vec::new(),
             cause: Cause::User,
+            conclusion: super::Conclusion::default(),
         })
     }
 

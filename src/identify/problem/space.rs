@@ -5,7 +5,8 @@ use crate::diag::Fault;
 use crate::ga::Gene;
 use crate::ga::errors::BAD_RANGE;
 
-/// A positive range wider than this ratio is searched on a logarithmic scale unless told otherwise.
+/// A range of one sign wider than this ratio is searched on a logarithmic scale unless the user sets
+/// the scale.
 const DECADE: f64 = 10.0;
 
 /// A parameter to identify.
@@ -44,12 +45,14 @@ impl Free {
         if min == max {
             bail!(BAD_RANGE, "the search range of `{name}` is the one value {min}"; help: "fix it instead: `fixed = {min}`");
         }
-        let logarithmic = logarithmic.unwrap_or(min > 0.0 && max > DECADE * min);
-        if logarithmic && min <= 0.0 {
+        let has_sign = min * max > 0.0;
+        let is_wide = (max / min).max(min / max) > DECADE;
+        let logarithmic = logarithmic.unwrap_or(has_sign && is_wide);
+        if logarithmic && !has_sign {
             bail!(
                 BAD_RANGE,
-                "`{name}` is searched on a logarithmic scale, but its range begins at {min}";
-                help: "give a positive minimum, or `scale = \"linear\"`"
+                "`{name}` is searched on a logarithmic scale, but its range {min} to {max} includes 0";
+                help: "give a range of one sign, or `scale = \"linear\"`"
             );
         }
         if let Some(start) = start.filter(|start| !(min..=max).contains(start)) {
@@ -61,7 +64,8 @@ impl Free {
     /// The value at the fraction `u` of the range, 0 ≤ u ≤ 1.
     pub fn value(&self, u: f64) -> f64 {
         let value = match self.logarithmic {
-            true => (self.min.ln() + (self.max.ln() - self.min.ln()) * u).exp(),
+            true if self.min > 0.0 => (self.min.ln() + (self.max.ln() - self.min.ln()) * u).exp(),
+            true => -((-self.min).ln() + ((-self.max).ln() - (-self.min).ln()) * u).exp(),
             false => self.min + (self.max - self.min) * u,
         };
         value.clamp(self.min, self.max)
@@ -77,19 +81,28 @@ impl Free {
         fraction.clamp(0.0, 1.0)
     }
 
-    /// What is searched in place of the value: the value itself or its natural logarithm.
+    /// What is searched in place of the value: the value itself or the logarithm of its size,
+    /// ascending with the value.
     pub(super) fn coordinate(&self, value: f64) -> f64 {
-        if self.logarithmic { value.ln() } else { value }
+        match self.logarithmic {
+            true if self.min > 0.0 => value.ln(),
+            true => -(-value).ln(),
+            false => value,
+        }
     }
 
     /// The value that belongs to a [`coordinate`](Self::coordinate).
     pub(super) fn from_coordinate(&self, coordinate: f64) -> f64 {
-        if self.logarithmic { coordinate.exp() } else { coordinate }
+        match self.logarithmic {
+            true if self.min > 0.0 => coordinate.exp(),
+            true => -(-coordinate).exp(),
+            false => coordinate,
+        }
     }
 
     /// The derivative of the coordinate by the value.
     pub(super) fn coordinate_slope(&self, value: f64) -> f64 {
-        if self.logarithmic { value.recip() } else { 1.0 }
+        if self.logarithmic { value.abs().recip() } else { 1.0 }
     }
 
     /// The derivative of the value by the fraction, at a value.
@@ -117,6 +130,16 @@ mod tests {
             assert!((free.slope(value) - slope).abs() < 1e-6 * slope);
         }
         assert!((free(true).value(0.5) - 0.1).abs() < 1e-12);
+        let negative = Free::new("a", "V", [-10.0, -1e-3], None, None).unwrap();
+        assert!(negative.logarithmic && (negative.value(0.5) + 0.1).abs() < 1e-12);
+        for u in [0.0, 0.3, 1.0] {
+            let value = negative.value(u);
+            assert!((negative.fraction(value) - u).abs() < 1e-12);
+            let c = negative.coordinate(value);
+            assert!((negative.from_coordinate(c) - value).abs() < 1e-12 * value.abs());
+        }
+        let slope = (negative.value(0.3 + 1e-6) - negative.value(0.3 - 1e-6)) / 2e-6;
+        assert!((negative.slope(negative.value(0.3)) - slope).abs() < 1e-6 * slope);
     }
 
     #[test]

@@ -24,11 +24,11 @@ impl Solution {
             // Writing into a String cannot fail.
             _ = writeln!(text, "  {label:<12} {value}");
         }
-        if !self.notes.is_empty() {
+        if !self.findings.is_empty() {
             text.push('\n');
         }
-        for note in &self.notes {
-            _ = writeln!(text, "  {note}");
+        for finding in &self.findings {
+            _ = writeln!(text, "  {}", finding.sentence);
         }
         text
     }

@@ -104,8 +104,16 @@ pub(super) struct ColumnEntry {
     /// The column's values times this are in the variable's unit.
     pub factor: Option<f64>,
     pub weight: Option<f64>,
-    /// Standard deviation of the measurement: the weight becomes its reciprocal.
-    pub sigma: Option<f64>,
+    /// Standard deviation of the measurement.
+    pub sigma: Option<SigmaEntry>,
+}
+
+/// A standard deviation: a number, or words for a column, a formula or `estimate`.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged)]
+pub(super) enum SigmaEntry {
+    Number(f64),
+    Words(String),
 }
 
 #[derive(Debug, Deserialize)]

@@ -11,6 +11,7 @@ mod file;
 mod live;
 mod own_fitness;
 mod record;
+mod sigma;
 
 use super::Session;
 use super::checkpoint::{self, Checkpoint};
@@ -147,11 +148,14 @@ fn solve_built(
     session.world.end_view();
     run.evaluation.cancel_by(None);
     checkpoint.flush(session, run.seconds);
+    if !interrupted {
+        solving::conclude(&mut run);
+    }
     let validation = validated(&run, &validation)?;
     let mut solution = Solution::of(&run, &stop, validation)?;
     solution.importance = importance;
     if options.profile && !interrupted {
-        solution.add_profiles(&run)?;
+        solution.add_profiles(&run);
     }
     session.print(&solution.text());
     write(session, &folder, &solution)?;
