@@ -228,3 +228,9 @@
 //! <a id="huber-1964"></a>
 //! - **huber-1964** — P. J. Huber: Robust estimation of a location parameter. Annals of Mathematical
 //!   Statistics 35(1), 1964, 73–101.
+//!
+//! <a id="seber-wild-1989"></a>
+//! - **seber-wild-1989** — G. A. F. Seber, C. J. Wild: Nonlinear regression. Wiley, 1989.
+//!
+//! <a id="fedorov-1972"></a>
+//! - **fedorov-1972** — V. V. Fedorov: Theory of optimal experiments. Academic Press, 1972.

@@ -191,6 +191,9 @@ fn statistics(s: &Statistics) -> String {
         ("factorizations", s.factorizations),
         ("state events", s.state_events),
         ("time events", s.time_events),
+        ("chattering relations followed", s.followed),
+        ("slides along discontinuities", s.slides),
+        ("accumulations of impacts", s.accumulations),
     ];
     rows.iter().map(|(name, count)| format!("  {name:34}{count:>10}\n")).collect()
 }

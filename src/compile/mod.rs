@@ -25,6 +25,7 @@ mod regions;
 mod relations;
 mod routines;
 mod selection;
+mod sliding;
 mod slopes;
 mod system;
 mod tape;
@@ -32,4 +33,5 @@ mod translation;
 
 pub use notices::Told;
 pub use program::{Access, ParameterInfo, Program, VariableInfo};
+pub use sliding::Treated;
 pub use system::System;

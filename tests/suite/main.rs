@@ -4,6 +4,7 @@ mod algorithms;
 mod architecture;
 mod assertions;
 mod bad_input;
+mod chattering;
 mod checks;
 mod cli;
 mod compat;

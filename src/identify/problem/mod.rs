@@ -19,6 +19,7 @@ mod finding;
 mod fingerprint;
 mod html;
 mod importance;
+pub mod inference;
 mod inseparable;
 mod jacobian;
 mod journal;
@@ -42,6 +43,7 @@ pub use failure_region::{FailureRegion, failure_region};
 pub use finding::{Finding, FindingKind, Severity};
 pub use fingerprint::Fingerprint;
 pub use importance::{ANALYSES, Analysis, Importance, ParameterImportance, analysis};
+pub use inference::{Inference, Inferred, infer};
 pub use inseparable::{Form, Inseparable};
 pub use jacobian::Linearization;
 pub use journal::{Journal, Record, decode, encode, first_frame, frame, header};
@@ -179,6 +181,8 @@ pub struct Problem {
     pub stop: Stop,
     /// Relative error of the simulated values, for finite differences: 1e-15 for a formula.
     pub noise: f64,
+    /// What is wanted beyond the estimates.
+    pub inference: Inference,
     /// Makes a simulator; one a thread.
     pub simulator: Box<dyn Fn() -> Result<Box<dyn Simulate>, Fault> + Send + Sync>,
 }

@@ -4,8 +4,8 @@ use super::effects::{Effect, effect};
 use super::ending::{self, Ending, EndingKind, OtherMinimum, SolvedDescent};
 use super::statistics::distributions::chi_square_tails;
 use super::{
-    ErrorModel, FailureKind, FailureRegion, Finding, FindingKind, Form, Importance, Profiles, Run,
-    Severity, Sigma, Statistics, profiles, residual_test,
+    ErrorModel, FailureKind, FailureRegion, Finding, FindingKind, Form, Importance, Inferred,
+    Profiles, Run, Severity, Sigma, Statistics, profiles, residual_test,
 };
 use crate::diag::Fault;
 use crate::fault;
@@ -93,6 +93,9 @@ pub struct Solution {
     pub importance: Option<Importance>,
     /// Profiles of the parameters, where they were asked.
     pub profiles: Option<Profiles>,
+    /// What was inferred beyond the estimates.
+    #[serde(default)]
+    pub inferred: Inferred,
     /// Points of the front, where there are several objectives: parameters and objectives.
     pub front: Vec<(Vec<f64>, Vec<f64>)>,
     /// The place in the front that is farthest from the line between its ends.
@@ -322,6 +325,7 @@ impl Solution {
             changes: run.changed.clone(),
             importance: None,
             profiles: None,
+            inferred: Inferred::default(),
             knee: knee(&run.front),
             hypervolume: front_volume(&run.front),
             front: run.front.clone(),
@@ -457,6 +461,9 @@ fn chi_square(run: &Run, statistics: &Statistics) -> Option<ChiSquare> {
 
 fn negative_log_likelihood(run: &Run, statistics: &Statistics) -> Option<f64> {
     run.evaluation.scales()?;
+    if statistics.robust {
+        return None;
+    }
     let n = statistics.residuals.len() as f64;
     let square: f64 = statistics.residuals.iter().map(|r| r * r).sum();
     let of_weights: f64 = statistics.weights.iter().map(|w| w.ln()).sum();

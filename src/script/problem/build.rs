@@ -11,8 +11,8 @@ use crate::fault;
 use crate::ga::optimizer::METHODS;
 use crate::identify::fitness::{FITNESSES, Fitness};
 use crate::identify::problem::{
-    Experiment, Fingerprint, Free, ModelSimulator, NOISE_OF_FORMULAS, Observation, Problem, Series,
-    Sigma, Simulate, Stop, decide, likelihood,
+    Experiment, Fingerprint, Free, Inference, ModelSimulator, NOISE_OF_FORMULAS, Observation,
+    Problem, Series, Sigma, Simulate, Stop, decide, likelihood,
 };
 use crate::identify::{CompiledModel, Model};
 use crate::mat::{self, MatFile};
@@ -21,9 +21,13 @@ use crate::script::Session;
 use crate::script::simulation::{self, Wishes};
 use crate::sim::{Settings, TimeBudget};
 use crate::source::Span;
+use indexmap::IndexMap;
 use std::fmt::Write;
 use std::path::Path;
 use std::sync::Arc;
+
+/// Fitness functions whose scale is estimated unless sigma is given.
+const ROBUST: [&str; 3] = ["huber", "tukey", "mae"];
 
 /// A problem with the experiments that are kept for validation.
 pub(super) struct Built {
@@ -89,9 +93,11 @@ pub(super) fn build(
     let parameters = with_units(free, &experiments);
     // Made once here, so that what is wrong shows before the run.
     drop(ModelSimulator::new(&experiments).map_err(one)?);
+    let inference = super::inference::inference(file, &experiments).map_err(one)?;
     let simulator = move || Ok(Box::new(ModelSimulator::new(&experiments)?) as Box<dyn Simulate>);
     let parts = (parameters, series, objectives);
     let mut problem = assemble(file, parts, noise, Box::new(simulator)).map_err(one)?;
+    problem.inference = inference;
     problem.text = text.to_owned();
     Ok(Built { problem, validation, fingerprint: fingerprint.number() })
 }
@@ -110,7 +116,13 @@ fn objectives(
         None => vec![FITNESSES[0].name.to_owned()],
         Some(OneOrMany::One(name)) => vec![name.clone()],
         Some(OneOrMany::Many(names)) => names.clone(),
+        Some(OneOrMany::Set(entry)) => vec![entry.name.clone()],
     };
+    let settings = match &file.fitness {
+        Some(OneOrMany::Set(entry)) => entry.settings.clone(),
+        _ => IndexMap::new(),
+    };
+    let sigmas_are_known = series.iter().all(|series| series.sigma.is_known());
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
     let mut objectives = Vec::new();
     for name in names {
@@ -121,7 +133,13 @@ fn objectives(
             continue;
         }
         let entry = entry.map_err(one)?;
-        let made = (entry.make)(&mut Options::default()).map_err(one)?;
+        let mut options = Options::default();
+        if sigmas_are_known && ROBUST.contains(&entry.name) {
+            options.set("scale", 1.0);
+        }
+        settings.iter().for_each(|(name, value)| options.set(name, *value));
+        let made = (entry.make)(&mut options).map_err(one)?;
+        options.finish().map_err(one)?;
         objectives.push((entry.name.to_owned(), made));
     }
     Ok(objectives)
@@ -140,7 +158,7 @@ fn likelihood_alone(
     let allowed = match &file.fitness {
         None => true,
         Some(OneOrMany::One(name)) => known(name),
-        Some(OneOrMany::Many(_)) => false,
+        Some(OneOrMany::Many(_) | OneOrMany::Set(_)) => false,
     };
     if !allowed {
         bail!(
@@ -194,6 +212,7 @@ fn assemble(
         seed: file.seed.unwrap_or([12345.0; 6]),
         stop,
         noise,
+        inference: Inference::default(),
         simulator,
     })
 }

@@ -8,6 +8,7 @@
 mod build;
 mod control;
 mod file;
+mod inference;
 mod live;
 mod own_fitness;
 mod record;
@@ -47,6 +48,8 @@ pub struct RunOptions {
     pub folder: PathBuf,
     /// Profiles of the parameters after the fit.
     pub profile: bool,
+    /// The next measurement after the fit.
+    pub design: bool,
     /// A sensitivity analysis before the fit, by name.
     pub sensitivity: Option<String>,
     /// Its base samples; 0 for the usual number.
@@ -97,6 +100,9 @@ fn solve_text(
     let source = session.sources.add(path.display().to_string(), text.as_str());
     let file = file::read(source, &text).map_err(|error| vec![error])?;
     let mut built = build::build(session, &file, path, &text)?;
+    if options.design {
+        built.problem.inference.design.get_or_insert_with(inference::usual_design);
+    }
     if let Some(limit) = options.evaluations {
         built.problem.stop.evaluations = Some(limit);
     }
@@ -156,6 +162,9 @@ fn solve_built(
     solution.importance = importance;
     if options.profile && !interrupted {
         solution.add_profiles(&run);
+    }
+    if !interrupted {
+        solution.inferred = solving::infer(&run)?;
     }
     session.print(&solution.text());
     write(session, &folder, &solution)?;
@@ -268,10 +277,12 @@ fn write(session: &mut Session, folder: &Path, solution: &Solution) -> Result<()
         ("calibrated.mos", solution.script()),
         ("report.html", solution.html()),
     ];
+    let bands =
+        (!solution.inferred.bands.is_empty()).then(|| ("bands.csv", solution.inferred.bands_csv()));
     let profiles = solution.profiles.is_some().then(|| ("profiles.csv", solution.profiles_csv()));
     // What can be written is: one file that is too large must not take the others with it.
     let (mut missing, mut why) = (Vec::new(), None);
-    for (name, text) in files.into_iter().chain(profiles) {
+    for (name, text) in files.into_iter().chain(bands).chain(profiles) {
         if let Err(fault) = session.write_file(&folder.join(name), text.as_bytes()) {
             missing.push(name);
             why.get_or_insert(fault);
