@@ -7,7 +7,7 @@
 use gapilib::ga::optimizer::METHODS;
 use gapilib::identify::fitness::FITNESSES;
 use gapilib::identify::problem::{
-    Failed, FailureKind, Free, Problem, Run, Series, Simulate, Solution, Stop,
+    Failed, FailureKind, Free, Inference, Problem, Run, Series, Sigma, Simulate, Solution, Stop,
 };
 use gapilib::registry::{self, Options};
 use std::f64::consts::{PI, TAU};
@@ -145,6 +145,10 @@ impl Dataset {
             x: self.points.iter().map(|point| point[0]).collect(),
             y: self.y.clone(),
             weight: 1.0,
+            sigma: Sigma::Unknown,
+            column: "y".into(),
+            rows: Vec::new(),
+            missing: Vec::new(),
         };
         let (points, formula) = (self.points.clone(), self.formula);
         Problem {
@@ -163,6 +167,7 @@ impl Dataset {
             seed: [f64::from(seed) + 12345.0; 6],
             stop: Stop { evaluations: Some(budget), ..Stop::default() },
             noise: 1e-15,
+            inference: Inference::default(),
             simulator: Box::new(move || Ok(Box::new(Static { points: points.clone(), formula }))),
         }
     }
