@@ -197,4 +197,6 @@ impl Problem {
 }
 
 #[cfg(test)]
+mod findings_tests;
+#[cfg(test)]
 mod tests;
