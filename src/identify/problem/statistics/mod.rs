@@ -19,7 +19,8 @@ pub use residuals::{ResidualTest, residual_test};
 use super::inseparable::{self, Form, Inseparable, Sensitivities};
 use super::{ErrorModel, Evaluation, Problem, Series};
 use crate::identify::{Uncertainty, uncertainty_given};
-use distributions::{normal_quantile, student_quantile};
+use distributions::normal_quantile;
+pub(super) use distributions::student_quantile;
 
 /// A singular value this far below the largest is none, however exact the simulation is, and
 /// however inexact.
@@ -182,7 +183,7 @@ fn elsewhere(
 
 /// Derivatives of the simulated points, column by column, and the simulations that they took.
 /// Columns that do not exceed the errors of the simulation are zero.
-fn sensitivities(
+pub(super) fn sensitivities(
     problem: &Problem,
     evaluation: &Evaluation,
     values: &[f64],
