@@ -209,4 +209,6 @@ impl Problem {
 }
 
 #[cfg(test)]
+mod findings_tests;
+#[cfg(test)]
 mod tests;

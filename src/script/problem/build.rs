@@ -199,6 +199,7 @@ fn assemble(
     file.method.settings.iter().for_each(|(name, value)| options.set(name, *value));
     let method = (entry.make)(&mut options)?;
     options.finish()?;
+    let parameters = on_its_scale(file, entry.name, method.in_natural_units(), parameters)?;
     let stop = &file.stop;
     let stop = Stop {
         generations: stop.generations,
@@ -223,6 +224,29 @@ fn assemble(
         inference: Inference::default(),
         simulator,
     })
+}
+
+/// A method that searches natural units has no logarithmic scale.
+fn on_its_scale(
+    file: &ProblemFile,
+    method: &str,
+    natural: bool,
+    mut parameters: Vec<Free>,
+) -> Result<Vec<Free>, Fault> {
+    if !natural {
+        return Ok(parameters);
+    }
+    for (name, entry) in &file.parameters {
+        if entry.scale.as_deref().is_some_and(|scale| scale.starts_with("log")) {
+            bail!(
+                BAD_OPTION,
+                "`{name}` has a logarithmic scale, but `{method}` searches natural units, as published";
+                help: "remove `scale`, or use `genetic`"
+            );
+        }
+    }
+    parameters.iter_mut().for_each(|free| free.logarithmic = false);
+    Ok(parameters)
 }
 
 /// The free parameters, those of single experiments once for each.
