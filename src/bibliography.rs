@@ -65,6 +65,16 @@
 //! - **shampine-reichelt-1997** — L. F. Shampine, M. W. Reichelt: The MATLAB ODE suite. SIAM
 //!   Journal on Scientific Computing 18(1), 1997, 1–22 (NDF formulas).
 //!
+//! <a id="feehery-tolsma-barton-1997"></a>
+//! - **feehery-tolsma-barton-1997** — W. F. Feehery, J. E. Tolsma, P. I. Barton: Efficient
+//!   sensitivity analysis of large-scale differential-algebraic systems. Applied Numerical
+//!   Mathematics 25(1), 1997, 41–54.
+//!
+//! <a id="galan-feehery-barton-1999"></a>
+//! - **galan-feehery-barton-1999** — S. Galán, W. F. Feehery, P. I. Barton: Parametric sensitivity
+//!   functions for hybrid discrete/continuous systems. Applied Numerical Mathematics 31(1), 1999,
+//!   17–47.
+//!
 //! <a id="hindmarsh-2005"></a>
 //! - **hindmarsh-2005** — A. C. Hindmarsh et al.: SUNDIALS, suite of nonlinear and
 //!   differential/algebraic equation solvers. ACM Transactions on Mathematical Software 31(3),

@@ -446,8 +446,8 @@ pub(super) struct SimulateArgs {
     /// Draw a variable over time, in the terminal or as --figure says (repeatable)
     #[arg(long, value_name = "VARIABLE")]
     pub plot: Vec<String>,
-    /// Where the drawing of --plot goes
-    #[arg(long, value_name = "FILE.svg", requires = "plot", value_hint = ValueHint::FilePath)]
+    /// Where the drawing of --plot goes: a file that ends in .svg, .png or .pdf
+    #[arg(long, value_name = "FILE", requires = "plot", value_hint = ValueHint::FilePath)]
     pub figure: Option<PathBuf>,
 }
 

@@ -205,6 +205,9 @@ pub struct SolvedSeries {
     /// Runs of equal sign, how many are expected, the probability of that by chance, and the
     /// correlation of neighbours.
     pub residual_test: Option<[f64; 4]>,
+    /// The simulated curve between the points, by ascending X, where it was simulated.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub curve: Vec<[f64; 2]>,
     /// X, measured, simulated.
     #[serde(deserialize_with = "super::saved::points")]
     pub points: Vec<[f64; 3]>,
@@ -234,6 +237,7 @@ impl SolvedSeries {
             sigma_estimated: series.sigma.is_estimated(),
             residual_test: test
                 .map(|t| [t.runs as f64, t.expected_runs, t.runs_probability, t.autocorrelation]),
+            curve: Vec::new(),
             points,
         }
     }

@@ -33,6 +33,8 @@ const ROBUST: [&str; 3] = ["huber", "tukey", "mae"];
 /// A problem with the experiments that are kept for validation.
 pub(super) struct Built {
     pub problem: Problem,
+    /// The experiments that are fitted, for drawing their curves.
+    pub experiments: Vec<Experiment>,
     pub validation: Vec<(Experiment, Vec<Series>)>,
     /// Changes when the problem or its data change.
     pub fingerprint: u64,
@@ -96,6 +98,7 @@ pub(super) fn build(
     let parameters = with_units(free, &experiments);
     // Made once here, so that what is wrong shows before the run.
     drop(ModelSimulator::new(&experiments).map_err(one)?);
+    let fitted = experiments.clone();
     let inference = super::inference::inference(file, &experiments).map_err(one)?;
     let simulator = move || Ok(Box::new(ModelSimulator::new(&experiments)?) as Box<dyn Simulate>);
     let parts = (parameters, series, objectives);
@@ -104,7 +107,7 @@ pub(super) fn build(
     let adjustments = super::inference::adjustments(file, &problem.parameters).map_err(one)?;
     adjust(&mut problem, adjustments).map_err(one)?;
     problem.text = text.to_owned();
-    Ok(Built { problem, validation, fingerprint: fingerprint.number() })
+    Ok(Built { problem, experiments: fitted, validation, fingerprint: fingerprint.number() })
 }
 
 /// The fitness functions by name: those of the program, else functions written in Modelica.

@@ -128,7 +128,7 @@ fn solve_built(
     options: &RunOptions,
     every: (Option<u64>, f64),
 ) -> Result<Solution, Fault> {
-    let Built { problem, validation, fingerprint } = built;
+    let Built { problem, experiments, validation, fingerprint } = built;
     let folder = session.world.output_dir().join(&options.folder);
     let mut run = Run::new(problem, session.world.threads())?;
     let importance = analysed(session, &run, &folder, options)?;
@@ -168,8 +168,8 @@ fn solve_built(
     if !interrupted {
         solving::conclude(&mut run);
     }
-    let validation = validated(&run, &validation)?;
-    let mut solution = Solution::of(&run, &stop, validation)?;
+    let validated = validated(&run, &validation)?;
+    let mut solution = Solution::of(&run, &stop, validated)?;
     solution.importance = importance;
     if options.profile && !interrupted {
         solution.add_profiles(&run);
@@ -181,6 +181,7 @@ fn solve_built(
         run.evaluation.cancel_by(None);
         interrupted = session.world.interrupted();
     }
+    solving::draw_curves(&experiments, &mut solution, &validation);
     session.print(&solution.text());
     write(session, &folder, &solution)?;
     if let Some(why) = checkpoint.broken() {
