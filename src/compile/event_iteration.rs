@@ -17,9 +17,12 @@ use super::relations::Change;
 use super::system::{System, run};
 use crate::sim::{EventOutcome, Failure};
 use crate::symbolic::VarId;
+use rustc_hash::FxHashSet;
 
-/// Most rounds of an event iteration.
+/// Rounds of an event iteration after which values that come back are looked for.
 const MAX_ROUNDS: usize = 100;
+/// Most rounds, however new the values are: a counter that counts itself never has the same again.
+const MOST_ROUNDS: usize = 10_000;
 /// Most passes of a round.
 const MAX_PASSES: usize = 60;
 /// Passes in which all relations may change; from then on one after the other.
@@ -230,7 +233,12 @@ impl System {
     fn iterate(&mut self, t: f64) -> Result<EventOutcome, Failure> {
         let (mut changed, mut terminated) = (false, false);
         let mut is_stepwise = false;
-        for _ in 0..MAX_ROUNDS {
+        let mut known = FxHashSet::default();
+        for round in 0..MOST_ROUNDS {
+            // Values that come back do so for ever; those that are new each time may be a chain.
+            if round >= MAX_ROUNDS && !known.insert(self.values_of_events()) {
+                break;
+            }
             let moves = match is_stepwise {
                 true => self.pass(t, Stage::Event, Change::All)?.is_some(),
                 false => match self.settle(t, Stage::Event) {
@@ -258,6 +266,16 @@ impl System {
             }
         }
         Err(Failure::EventIteration { variable: self.unstable })
+    }
+
+    /// What decides how an event iteration goes on, as bits.
+    fn values_of_events(&self) -> Vec<u64> {
+        let program = &self.program;
+        let discrete = program.events.discrete.iter().chain(&program.sorted.states);
+        let relations = program.relations.iter().map(|relation| relation.register);
+        let previous = program.events.previous.iter().map(|previous| previous.register);
+        let all = discrete.map(|v| v.0).chain(relations).chain(previous);
+        all.map(|register| self.registers[register as usize].to_bits()).collect()
     }
 
     /// Solves once and updates relations; what changed, if anything.
@@ -292,10 +310,35 @@ impl System {
                 Some(moved) => any |= moved == Moved::Relation,
             }
         }
-        match self.find_combination(t, stage) {
+        if self.find_combination(t, stage) {
+            return Ok(true);
+        }
+        match self.settle_leniently(t, stage)? {
             true => Ok(true),
             false => Err(Failure::EventIteration { variable: self.unstable }),
         }
+    }
+
+    /// The same where relations are excused that hold but for what the tolerance makes of their
+    /// sides; whether they then come to rest.
+    fn settle_leniently(&mut self, t: f64, stage: Stage) -> Result<bool, Failure> {
+        self.is_lenient = true;
+        let mut rests = Ok(false);
+        for _ in 0..MAX_PASSES {
+            match self.pass(t, stage, Change::First) {
+                Ok(None) => {
+                    rests = Ok(true);
+                    break;
+                }
+                Ok(Some(_)) => {}
+                Err(failure) => {
+                    rests = Err(failure);
+                    break;
+                }
+            }
+        }
+        self.is_lenient = false;
+        rests
     }
 
     /// Keeps the values of the variables of discrete loops.

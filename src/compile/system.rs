@@ -11,11 +11,12 @@ use super::program::{Access, Outputs, Program, Step, compile_continuous, resolve
 use super::relations::Change;
 use super::selection::Choice;
 use super::sensitivity::Sensitivity;
+use super::sliding::{Modes, Treated};
 use super::tape::{Instruction, Tape};
 use crate::dae::Homotopy;
 use crate::diag::Fault;
 use crate::fault;
-use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern};
+use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
 use crate::symbolic::{Expr, Pool, VarId, function};
 use std::sync::Arc;
 
@@ -42,6 +43,11 @@ pub struct System {
     pub(super) restless: Vec<bool>,
     /// Whether relations have been kept at a value that their sides did not quite have.
     pub(super) held: Vec<bool>,
+    /// What the tolerance makes of the sides of relations, and whether it excuses relations that do
+    /// not hold, and by how much it has.
+    pub(super) uncertainty: Vec<f64>,
+    pub(super) is_lenient: bool,
+    pub(super) excused: Vec<f64>,
     nominal: Vec<f64>,
     /// One for every loop of the initial system, of the system, and of that at events, in order.
     initial_solvers: Vec<LoopSolver>,
@@ -68,6 +74,12 @@ pub struct System {
     pub(super) sensitivity: Option<Box<Sensitivity>>,
     /// What is told of a simulation, where somebody listens.
     pub(super) notices: Option<Notices>,
+    /// The modes on both sides of relations.
+    pub(super) modes: Modes,
+    /// What was done about relations that chattered.
+    pub(super) treated: Vec<Treated>,
+    /// Of the observed variables those of which a mean is a value.
+    has_means: Vec<bool>,
 }
 
 impl System {
@@ -82,6 +94,9 @@ impl System {
             has_changed: vec![false; program.relations.len()],
             restless: vec![false; program.relations.len()],
             held: vec![false; program.relations.len()],
+            uncertainty: vec![0.0; program.relations.len()],
+            is_lenient: false,
+            excused: vec![0.0; program.relations.len()],
             nominal: vec![1.0; n],
             initial_solvers: Vec::new(),
             solvers: Vec::new(),
@@ -97,6 +112,9 @@ impl System {
             unstable: 0,
             sensitivity: None,
             notices: None,
+            modes: Modes::default(),
+            treated: Vec::new(),
+            has_means: program.observed.iter().map(|v| program.has_means(*v)).collect(),
             program,
         };
         system.evaluate_nominals();
@@ -142,6 +160,8 @@ impl System {
         let (registers, observed) = observing(&program, &pool, &outputs);
         self.registers.extend(&registers);
         self.observed = Some(observed);
+        let variables = variables.iter().map(|at| program.variables()[*at].variable);
+        self.has_means = variables.map(|v| program.has_means(v)).collect();
     }
 
     /// The value of a parameter or constant (position in [`Program::variables`]) after
@@ -348,6 +368,8 @@ impl System {
         self.take_start_values_of_events();
         self.has_changed.fill(false);
         self.held.fill(false);
+        self.uncertainty.fill(0.0);
+        self.excused.fill(0.0);
         self.update_relations(t, Change::All);
         self.has_changed.fill(false);
         for (choice, selection) in self.choices.iter_mut().zip(&program.selections) {
@@ -460,6 +482,7 @@ impl DaeSystem for System {
 
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         self.forget_notices();
+        self.treated.clear();
         self.solve_initial_system(t)?;
         self.check_initial_values()?;
         self.assert_at_event()?;
@@ -551,6 +574,36 @@ impl DaeSystem for System {
         self.load_solved(t, y)?;
         self.assert_all()?;
         self.notice(t)
+    }
+
+    fn set_uncertainty(&mut self, crossings: &[f64]) {
+        self.keep_uncertainty(crossings);
+    }
+
+    fn prepare_modes(&mut self, t: f64, y: &[f64], sides: &[Side]) -> Result<bool, Failure> {
+        self.load(t, y);
+        self.compute_modes(sides)
+    }
+
+    fn enter_mode(&mut self, mode: usize) {
+        self.load_mode(mode);
+    }
+
+    fn can_follow(&self, crossing: usize) -> bool {
+        self.is_memoryless(crossing)
+    }
+
+    fn follow(&mut self, t: f64, y: &[f64], sides: &[(usize, bool)]) -> Result<(), Failure> {
+        self.load(t, y);
+        self.change_sides(sides)
+    }
+
+    fn has_means(&self, observed: usize) -> bool {
+        self.has_means.get(observed).is_none_or(|has| *has)
+    }
+
+    fn note_treatment(&mut self, t: f64, crossing: usize, treatment: Treatment) {
+        self.note_treated(t, crossing, treatment);
     }
 
     fn n_directions(&self) -> usize {

@@ -15,6 +15,7 @@ mod points;
 mod problems;
 mod program;
 mod recorder;
+mod report;
 mod sensitivity;
 mod table;
 mod uncertainty;

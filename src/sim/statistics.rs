@@ -21,4 +21,10 @@ pub struct Statistics {
     pub state_events: u64,
     /// Time events.
     pub time_events: u64,
+    /// Relations that chattered and were evaluated between steps from then on.
+    pub followed: u64,
+    /// Intervals in which the solution slid along discontinuities.
+    pub slides: u64,
+    /// Accumulations of impacts behind which the solution rests.
+    pub accumulations: u64,
 }

@@ -48,10 +48,12 @@ impl Own<'_> {
 }
 
 /// What the residuals say about the data and the model. `simulated`: at the best values.
+/// `resolved`: whether the errors of the solver are known to be small against them.
 pub(super) fn residual_findings(
     problem: &Problem,
     statistics: &Statistics,
     simulated: &[f64],
+    resolved: bool,
 ) -> Vec<Finding> {
     let mut findings = Vec::new();
     if statistics.freedom < 1.0 {
@@ -69,7 +71,7 @@ pub(super) fn residual_findings(
             .zip(&own.residuals)
             .map(|(&j, r)| r / statistics.weights[j])
             .collect();
-        if rms(&raw) <= FROM_THE_SOLVER * problem.noise * size {
+        if !resolved && rms(&raw) <= FROM_THE_SOLVER * problem.noise * size {
             findings.push(no_noise(own));
             suspects.retain(|j| !own.points.contains(j));
             continue;
@@ -142,17 +144,22 @@ fn poor_fit(problem: &Problem, k: usize, own: &Own<'_>, raw: &[f64]) -> Option<F
     let mean = mean(y);
     let total: f64 = y.iter().map(|y| (y - mean).powi(2)).sum();
     let r_squared = 1.0 - raw.iter().map(|r| r * r).sum::<f64>() / total;
+    let n = y.len() as f64;
+    let by_chance = f_upper(1.0 - r_squared, [n, n - 1.0]) >= FAMILY;
     (total > 0.0 && y.len() > 2 && r_squared < 0.0).then(|| {
+        let (severity, words) = match by_chance {
+            true => (Severity::Information, "these data do not show that the model says more"),
+            false => (Severity::Serious, "the model does not describe these data"),
+        };
         Finding::new(
             FindingKind::PoorFit,
             format!(
-                "The fit of {} is worse than a constant (R² {}): the model does not describe these \
-                 data, and the parameters mean nothing.",
+                "The fit of {} is worse than a constant (R² {}): {words}.",
                 own.label,
                 significant(r_squared, 3)
             ),
         )
-        .severity(Severity::Serious)
+        .severity(severity)
         .series(&own.label)
         .statistic(r_squared, 0.0)
     })

@@ -6,6 +6,7 @@ use super::refit::Refit;
 use super::statistics::Statistics;
 use super::{Best, ErrorModel, Finding, FindingKind, Problem, Run, Series, Severity, Sigma};
 use crate::diag::Fault;
+use crate::identify::fitness::{Fitness, median_deviation};
 use crate::identify::table::significant;
 
 /// The tolerance is divided by this.
@@ -30,12 +31,17 @@ pub struct Conclusion {
     pub findings: Vec<Finding>,
     /// Simulations that it took.
     pub simulations: u64,
+    /// Whether a finer tolerance moves the best point by little against the errors of the data, so
+    /// that the residuals are not those of the solver.
+    pub resolved: bool,
 }
 
 /// Concludes a run: call it once, before [`Solution::of`](super::Solution::of). What cannot be done
 /// becomes a finding; the best point is never lost.
 pub fn conclude(run: &mut Run) {
-    let done = reweigh(run).and_then(|()| tolerance(run));
+    // Another driver may conclude a run that goes on.
+    run.conclusion = Conclusion::default();
+    let done = reweigh(run).and_then(|()| rescale(run)).and_then(|()| tolerance(run));
     if let Err(fault) = done {
         let sentence = format!("The fit could not be repeated: {}.", fault.message);
         run.conclusion.findings.push(Finding::new(FindingKind::Missing, sentence));
@@ -67,6 +73,37 @@ fn reweigh(run: &mut Run) -> Result<(), Fault> {
         }
     }
     Ok(())
+}
+
+/// The scale of a robust fitness, estimated at the best point as the median absolute residual,
+/// and the fit with it; repeated until it stays.
+fn rescale(run: &mut Run) -> Result<(), Fault> {
+    if run.problem.objectives.len() != 1 {
+        return Ok(());
+    }
+    let (mut last, mut estimated): (f64, Option<Box<dyn Fitness>>) = (0.0, None);
+    for _ in 0..REWEIGHTED {
+        let Some(best) = run.best.clone() else { return Ok(()) };
+        let Ok(simulated) = run.evaluation.simulate(&best.values) else { return Ok(()) };
+        let scale = median_deviation(&weighted(run, &simulated));
+        let known = estimated.as_ref().unwrap_or(&run.problem.objectives[0].1).with_scale(scale);
+        let Some(known) = known.filter(|_| scale > 0.0) else { return Ok(()) };
+        let before = std::mem::replace(&mut run.problem.objectives[0].1, known);
+        estimated.get_or_insert(before);
+        refit(run)?;
+        if (scale / last - 1.0).abs() < SETTLED {
+            break;
+        }
+        last = scale;
+    }
+    Ok(())
+}
+
+/// The residuals in units of their weights.
+fn weighted(run: &Run, simulated: &[f64]) -> Vec<f64> {
+    let weights = run.evaluation.error_weights(&run.problem, simulated);
+    let measured = run.problem.series.iter().flat_map(|series| &series.y);
+    measured.zip(simulated).zip(&weights).map(|((m, s), w)| w * (m - s)).collect()
 }
 
 fn weights_at(problem: &Problem, simulated: &[f64]) -> Vec<f64> {
@@ -122,6 +159,7 @@ fn tolerance(run: &mut Run) -> Result<(), Fault> {
         let shift = fine.as_ref().map_or(0.0, |fine| shift(&coarse, fine, &allowed, run));
         if shift <= PART {
             run.evaluation.scale_tolerance(factor);
+            run.conclusion.resolved = fine.is_ok() && coarse != fine.unwrap_or_default();
             break;
         }
         (moved, most, factor) = (true, most.max(shift), next);
@@ -139,6 +177,7 @@ fn tolerance(run: &mut Run) -> Result<(), Fault> {
         // Data that a coarse simulation has made.
         run.evaluation.scale_tolerance(1.0);
         run.problem.noise = noise;
+        run.conclusion.resolved = false;
         run.best = Some(first);
         return Ok(());
     }
@@ -150,9 +189,7 @@ fn tolerance(run: &mut Run) -> Result<(), Fault> {
 /// Standard deviation of each point: the given or estimated one, else that of the residuals.
 fn errors(run: &Run, simulated: &[f64]) -> Vec<f64> {
     let weights = run.evaluation.error_weights(&run.problem, simulated);
-    let measured = run.problem.series.iter().flat_map(|series| &series.y);
-    let pairs = measured.zip(simulated).zip(&weights);
-    let square: f64 = pairs.map(|((m, s), w)| (w * (m - s)).powi(2)).sum();
+    let square: f64 = weighted(run, simulated).iter().map(|r| r * r).sum();
     let size = match ErrorModel::of(&run.problem) {
         ErrorModel::OneVariance => (square / simulated.len() as f64).sqrt(),
         _ => 1.0,

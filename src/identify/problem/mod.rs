@@ -8,6 +8,7 @@
 
 mod checks;
 mod conclusion;
+mod curve;
 mod effects;
 mod error_model;
 mod evaluation;
@@ -16,8 +17,8 @@ mod failure;
 mod failure_region;
 mod finding;
 mod fingerprint;
-mod html;
 mod importance;
+pub mod inference;
 mod inseparable;
 mod jacobian;
 mod journal;
@@ -32,6 +33,7 @@ mod summary;
 mod text;
 
 pub use conclusion::{Conclusion, conclude};
+pub use curve::draw_curves;
 pub use error_model::{ErrorModel, Sigma, SigmaFormula, decide, likelihood};
 pub use evaluation::Evaluation;
 pub use experiment::{Experiment, ModelSimulator, Observation};
@@ -40,6 +42,7 @@ pub use failure_region::{FailureRegion, failure_region};
 pub use finding::{Finding, FindingKind, Severity};
 pub use fingerprint::Fingerprint;
 pub use importance::{ANALYSES, Analysis, Importance, ParameterImportance, analysis};
+pub use inference::{Inference, Inferred, infer};
 pub use inseparable::{Form, Inseparable};
 pub use jacobian::Linearization;
 pub use journal::{Journal, Record, decode, encode, first_frame, frame, header};
@@ -182,6 +185,8 @@ pub struct Problem {
     pub stop: Stop,
     /// Relative error of the simulated values, for finite differences: 1e-15 for a formula.
     pub noise: f64,
+    /// What is wanted beyond the estimates.
+    pub inference: Inference,
     /// Makes a simulator; one a thread.
     pub simulator: Box<dyn Fn() -> Result<Box<dyn Simulate>, Fault> + Send + Sync>,
 }

@@ -30,7 +30,7 @@ pub(super) fn findings(
     effects: &[(usize, Effect)],
     simulated: &[f64],
 ) -> Vec<Finding> {
-    let mut findings = about_count(solution, run, statistics);
+    let mut findings: Vec<Finding> = about_count(solution, run, statistics).into_iter().collect();
     findings.extend(about_effects(solution, effects));
     findings.extend(about_parameters(solution, statistics));
     if run.problem.objectives.len() > 1 {
@@ -41,7 +41,12 @@ pub(super) fn findings(
     findings.extend(estimated(solution));
     findings.extend(equal_columns(run, statistics));
     findings.extend(dominant(run, statistics));
-    findings.extend(residual_findings(&run.problem, statistics, simulated));
+    findings.extend(residual_findings(
+        &run.problem,
+        statistics,
+        simulated,
+        run.conclusion.resolved,
+    ));
     findings.extend(solution.validation.iter().map(|own| about_validation(own, solution)));
     findings.extend(about_missing(run));
     findings.extend(solution.failure_region.as_ref().map(about_failures));
@@ -160,14 +165,10 @@ fn at_bound(parameter: &SolvedParameter, k: usize, statistics: &Statistics) -> F
     let upper = (parameter.value - max).abs() < (parameter.value - min).abs();
     let end = significant(if upper { max } else { min }, 5);
     let side = if upper { "upper" } else { "lower" };
-    let variance = match statistics.believed {
-        true => 1.0,
-        false => statistics.residuals.iter().map(|r| r * r).sum::<f64>() / statistics.freedom,
-    };
     let column = statistics.jacobian[k].iter().zip(&statistics.weights).zip(&statistics.residuals);
     let gradient: f64 = column.map(|((d, w), r)| d * w * r).sum();
     let outward = if upper { 1.0 } else { -1.0 };
-    let pull = parameter.deviation.map(|se| outward * se * gradient / variance);
+    let pull = parameter.deviation.map(|se| outward * se * gradient / statistics.variance);
     let what = match pull {
         Some(pull) if pull > BEYOND => format!(
             "the fit would go on beyond it, by {} standard errors if it were linear. Widen the \
@@ -247,10 +248,6 @@ fn equal_columns(run: &Run, statistics: &Statistics) -> Vec<Finding> {
 /// Single points, such as a value known before, that determine a parameter against the data.
 fn dominant(run: &Run, statistics: &Statistics) -> Vec<Finding> {
     let Some(all) = &statistics.uncertainty else { return Vec::new() };
-    let variance = match statistics.believed {
-        true => 1.0,
-        false => statistics.residuals.iter().map(|r| r * r).sum::<f64>() / statistics.freedom,
-    };
     let (mut findings, mut first) = (Vec::new(), 0);
     for series in &run.problem.series {
         let place = first;
@@ -263,7 +260,7 @@ fn dominant(run: &Run, statistics: &Statistics) -> Vec<Finding> {
             pairs.filter(|(j, _)| *j != place).map(|(_, (d, w))| d * w).collect::<Vec<f64>>()
         };
         let rest: Vec<Vec<f64>> = statistics.jacobian.iter().map(column).collect();
-        let Some(without) = uncertainty_given(&rest, variance) else { continue };
+        let Some(without) = uncertainty_given(&rest, statistics.variance) else { continue };
         for (k, free) in run.problem.parameters.iter().enumerate() {
             let ratio = without.standard_deviations[k] / all.standard_deviations[k];
             if ratio.is_nan() || ratio <= DOMINANT {

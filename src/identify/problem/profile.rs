@@ -72,7 +72,8 @@ pub fn profiles(
     };
     let mut walk = Walk { refit, limit: 0.0, better: None };
     let Some((best, smallest)) = walk.refit.from(best, None)? else { return Ok(None) };
-    walk.limit = limit(problem, smallest, freedom as f64);
+    let residuals = walk.refit.plain_residuals(&best);
+    walk.limit = limit(problem, smallest, freedom as f64, residuals.as_deref());
     let mut profiles = Vec::new();
     for (k, free) in problem.parameters.iter().enumerate() {
         let mut points = vec![[best[k], smallest]];
@@ -94,7 +95,14 @@ pub fn profiles(
 /// The sum that the 95 % interval of one parameter stays below. Where sigma is known, S rises by
 /// χ²; else the ratio of S to the smallest is compared, with Student's quantile, which for estimated
 /// sigmas is the likelihood ratio as well, for S is n G with n ln G = -2 log L.
-fn limit(problem: &Problem, smallest: f64, freedom: f64) -> f64 {
+/// Robust sums rise by a factor of their own.
+fn limit(problem: &Problem, smallest: f64, freedom: f64, residuals: Option<&[f64]>) -> f64 {
+    let fitness = problem.objectives.first().map(|(_, fitness)| fitness);
+    let robust = fitness.zip(residuals).and_then(|(own, r)| own.robustness(r, freedom));
+    if let Some(robust) = robust {
+        return smallest
+            + robust.scale.powi(2) * robust.rise * student_quantile(0.975, freedom).powi(2);
+    }
     match ErrorModel::of(problem) {
         ErrorModel::Known => smallest + chi_square_quantile(0.95, 1.0),
         ErrorModel::OneVariance | ErrorModel::Estimated => {

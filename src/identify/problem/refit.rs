@@ -84,6 +84,15 @@ impl<'a> Refit<'a> {
         Ok(Some(best))
     }
 
+    /// Weighted residuals, measured less simulated, without the factors of a robust fitness.
+    pub(super) fn plain_residuals(&self, values: &[f64]) -> Option<Vec<f64>> {
+        let simulated = self.evaluation.simulate(values).ok()?;
+        let weights = self.evaluation.error_weights(self.problem, &simulated);
+        let measured = self.problem.series.iter().flat_map(|series| &series.y);
+        let pairs = measured.zip(&simulated).zip(&weights);
+        Some(pairs.map(|((m, s), w)| w * (m - s)).collect())
+    }
+
     fn search(
         &self,
         start: &[f64],

@@ -3,8 +3,8 @@
 use super::effects::{Effect, effect};
 use super::statistics::distributions::chi_square_tails;
 use super::{
-    ErrorModel, FailureKind, FailureRegion, Finding, FindingKind, Form, Importance, Profiles, Run,
-    Severity, Sigma, Statistics, profiles, residual_test,
+    ErrorModel, FailureKind, FailureRegion, Finding, FindingKind, Form, Importance, Inferred,
+    Profiles, Run, Severity, Sigma, Statistics, profiles, residual_test,
 };
 use crate::diag::Fault;
 use crate::fault;
@@ -84,6 +84,9 @@ pub struct Solution {
     pub importance: Option<Importance>,
     /// Profiles of the parameters, where they were asked.
     pub profiles: Option<Profiles>,
+    /// What was inferred beyond the estimates.
+    #[serde(default)]
+    pub inferred: Inferred,
     /// Points of the front, where there are several objectives: parameters and objectives.
     pub front: Vec<(Vec<f64>, Vec<f64>)>,
     /// The place in the front that is farthest from the line between its ends.
@@ -202,6 +205,9 @@ pub struct SolvedSeries {
     /// Runs of equal sign, how many are expected, the probability of that by chance, and the
     /// correlation of neighbours.
     pub residual_test: Option<[f64; 4]>,
+    /// The simulated curve between the points, by ascending X, where it was simulated.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub curve: Vec<[f64; 2]>,
     /// X, measured, simulated.
     #[serde(deserialize_with = "super::saved::points")]
     pub points: Vec<[f64; 3]>,
@@ -231,6 +237,7 @@ impl SolvedSeries {
             sigma_estimated: series.sigma.is_estimated(),
             residual_test: test
                 .map(|t| [t.runs as f64, t.expected_runs, t.runs_probability, t.autocorrelation]),
+            curve: Vec::new(),
             points,
         }
     }
@@ -301,6 +308,7 @@ impl Solution {
             changes: run.changed.clone(),
             importance: None,
             profiles: None,
+            inferred: Inferred::default(),
             knee: knee(&run.front),
             hypervolume: front_volume(&run.front),
             front: run.front.clone(),
@@ -388,7 +396,9 @@ fn solved_series(
             .filter(|sigma| sigma.is_finite());
         solved
     };
-    problem.series.iter().map(one).collect()
+    // Priors, the last, count as points, but they are not data.
+    let solved = problem.series.iter().map(one);
+    solved.filter(|series| series.experiment != super::inference::PRIOR).collect()
 }
 
 /// What the parameters do whose derivative is zero.
@@ -420,6 +430,9 @@ fn chi_square(run: &Run, statistics: &Statistics) -> Option<ChiSquare> {
 
 fn negative_log_likelihood(run: &Run, statistics: &Statistics) -> Option<f64> {
     run.evaluation.scales()?;
+    if statistics.robust {
+        return None;
+    }
     let n = statistics.residuals.len() as f64;
     let square: f64 = statistics.residuals.iter().map(|r| r * r).sum();
     let of_weights: f64 = statistics.weights.iter().map(|w| w.ln()).sum();

@@ -30,6 +30,7 @@ impl Solution {
         for finding in &self.findings {
             _ = writeln!(text, "  {}", finding.sentence);
         }
+        text += &self.inferred.text();
         text
     }
 
@@ -178,7 +179,7 @@ fn objectives(values: &[f64]) -> String {
     values.iter().map(|value| significant(*value, 4)).collect::<Vec<_>>().join(", ")
 }
 
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     match text.contains([',', '"', '\n']) {
         true => format!("\"{}\"", text.replace('"', "\"\"")),
         false => text.to_owned(),

@@ -27,15 +27,20 @@ use super::{Integrator, Problem};
 use crate::registry::Entry;
 use crate::sim::linear::Factorization;
 use crate::sim::norm::{set_weights, weighted_rms};
-use crate::sim::{Pattern, SimErrorKind};
+use crate::sim::{DaeSystem, Pattern, SimErrorKind};
 
 pub(in crate::sim) const ENTRY: Entry<dyn Integrator> = Entry {
     name: "dassl",
     aliases: &["bdf", "ida", "cvode", "lsodar"],
     summary: "variable-order, variable-step BDF, orders 1 to 5 (gapilib's own; not the code DASSL)",
     reference: "shampine-reichelt-1997",
-    make: |_| Ok(Box::new(Bdf::default())),
+    make: |_| Ok(new()),
 };
+
+/// The method without workspace yet.
+pub(in crate::sim) fn new() -> Box<dyn Integrator> {
+    Box::new(Bdf::default())
+}
 
 const MAX_ORDER: usize = 5;
 const KAPPA: [f64; 6] = [0.0, -0.1850, -1.0 / 9.0, -0.0823, -0.0415, 0.0];

@@ -10,6 +10,7 @@ mod rodas;
 mod rungekutta;
 mod without_unknowns;
 
+use super::sliding::Sliding;
 use super::{DaeSystem, Settings, SimErrorKind, Statistics, TimeBudget};
 use crate::diag::Fault;
 use crate::registry::{self, Entry};
@@ -58,7 +59,7 @@ pub trait Integrator: Send {
 /// What an integrator works on.
 pub struct Problem<'a> {
     /// The system.
-    pub system: &'a mut dyn DaeSystem,
+    pub(super) system: &'a mut Sliding<'a>,
     /// Typical magnitude of every y, positive and finite.
     pub nominal: &'a [f64],
     /// What is asked for.

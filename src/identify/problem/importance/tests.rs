@@ -52,6 +52,7 @@ fn analysed(
         seed: [12345.0; 6],
         stop: Stop::default(),
         noise: 1e-15,
+        inference: crate::identify::problem::Inference::default(),
         simulator: Box::new(move || Ok(Box::new(Formula(formula)))),
     };
     let evaluation = Evaluation::new(&problem, 2).unwrap();

@@ -19,7 +19,8 @@ pub use residuals::{ResidualTest, residual_test};
 use super::inseparable::{self, Form, Inseparable, Sensitivities};
 use super::{ErrorModel, Evaluation, Problem, Series};
 use crate::identify::{Uncertainty, uncertainty_given};
-use distributions::{normal_quantile, student_quantile};
+use distributions::normal_quantile;
+pub(super) use distributions::student_quantile;
 
 /// A singular value this far below the largest is none, however exact the simulation is, and
 /// however inexact.
@@ -44,6 +45,11 @@ pub struct Statistics {
     pub freedom: f64,
     /// Whether the deviations of the measurements are known and believed.
     pub believed: bool,
+    /// v of the covariance v (JᵀJ)⁻¹ of the weighted sensitivities: 1 where sigma is believed, the
+    /// residual variance, or for robust fitness functions that of M-estimators.
+    pub variance: f64,
+    /// Whether the fitness is a robust one.
+    pub robust: bool,
     /// Weights of the points: reciprocal standard deviations where these are known or estimated.
     pub weights: Vec<f64>,
     /// Weighted residuals, measured less simulated.
@@ -82,12 +88,20 @@ impl Statistics {
         let pairs = measured.zip(simulated).zip(&weights);
         let residuals: Vec<f64> = pairs.map(|((m, s), w)| w * (m - s)).collect();
         let freedom = shares.iter().sum::<f64>() - values.len() as f64;
-        let plain = evaluation.scales().is_some_and(|own| own == evaluation.weights());
+        let robust = problem.objectives.first().and_then(|(_, fitness)| {
+            fitness.robustness(&residuals, freedom).filter(|_| freedom > 0.0)
+        });
+        let plain =
+            robust.is_none() && evaluation.scales().is_some_and(|own| own == evaluation.weights());
         let believed = plain
             && ErrorModel::of(problem) == ErrorModel::Known
             && problem.objectives[0].0 != "log_likelihood";
         let square: f64 = residuals.iter().zip(&shares).map(|(r, share)| share * r * r).sum();
-        let variance = if believed { 1.0 } else { square / freedom };
+        let variance = match robust {
+            Some(robust) => robust.variance,
+            None if believed => 1.0,
+            None => square / freedom,
+        };
         let uncertainty = if freedom > 0.0 || believed && freedom == 0.0 {
             uncertainty_given(&columns, variance)
         } else {
@@ -109,6 +123,8 @@ impl Statistics {
             },
             freedom,
             believed,
+            variance,
+            robust: robust.is_some(),
             weights,
             residuals,
             repeated,
@@ -167,7 +183,7 @@ fn elsewhere(
 
 /// Derivatives of the simulated points, column by column, and the simulations that they took.
 /// Columns that do not exceed the errors of the simulation are zero.
-fn sensitivities(
+pub(super) fn sensitivities(
     problem: &Problem,
     evaluation: &Evaluation,
     values: &[f64],
