@@ -73,7 +73,7 @@ pub trait Simulate: Send {
     fn simulate(&mut self, parameters: &[f64], out: &mut [f64]) -> Result<(), Failed>;
     /// Like [`simulate`](Simulate::simulate), and writes into `derivatives` the derivative of every
     /// point by every parameter, point by point (points × parameters). `Ok(false)` where there are
-    /// no exact ones; then neither is written, and the caller takes differences.
+    /// no exact ones; then what was written is not used, and the caller takes differences.
     ///
     /// # Errors
     ///
