@@ -10,6 +10,7 @@ mod checks;
 mod conclusion;
 mod curve;
 mod effects;
+mod ending;
 mod error_model;
 mod evaluation;
 mod experiment;
@@ -34,6 +35,7 @@ mod text;
 
 pub use conclusion::{Conclusion, conclude};
 pub use curve::draw_curves;
+pub use ending::{Ending, EndingKind, OtherMinimum, SolvedDescent};
 pub use error_model::{ErrorModel, Sigma, SigmaFormula, decide, likelihood};
 pub use evaluation::Evaluation;
 pub use experiment::{Experiment, ModelSimulator, Observation};
@@ -42,7 +44,7 @@ pub use failure_region::{FailureRegion, failure_region};
 pub use finding::{Finding, FindingKind, Severity};
 pub use fingerprint::Fingerprint;
 pub use importance::{ANALYSES, Analysis, Importance, ParameterImportance, analysis};
-pub use inference::{Inference, Inferred, infer};
+pub use inference::{Band, BandPoint, Inference, Inferred, infer};
 pub use inseparable::{Form, Inseparable};
 pub use jacobian::Linearization;
 pub use journal::{Journal, Record, decode, encode, first_frame, frame, header};
@@ -206,5 +208,7 @@ impl Problem {
     }
 }
 
+#[cfg(test)]
+mod findings_tests;
 #[cfg(test)]
 mod tests;
