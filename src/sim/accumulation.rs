@@ -78,6 +78,7 @@ impl Run<'_> {
         let was_constrained = !surfaces.is_empty() || !contacts.is_empty();
         let found = self.contact(crossing, jump);
         if let Some(contact) = found {
+            self.refuse_with_directions()?;
             contacts.push(contact);
             self.problem.statistics.accumulations += 1;
             self.watch.rows[crossing] = 0;

@@ -162,6 +162,7 @@ impl Run<'_> {
             self.watch_for_accumulation()?;
             return Ok(false);
         }
+        self.refuse_with_directions()?;
         let (sliding, contacts) = self.end_slide();
         let was_constrained = !sliding.is_empty() || !contacts.is_empty();
         if was_constrained {
@@ -248,6 +249,15 @@ impl Run<'_> {
         self.restart()
     }
 
+    /// Derivatives follow no solution that slides, rests, or crosses surfaces without events: whoever
+    /// asks for them takes differences then.
+    pub(super) fn refuse_with_directions(&self) -> Result<(), SimErrorKind> {
+        match self.problem.system.n_directions() {
+            0 => Ok(()),
+            _ => Err(SimErrorKind::Chattering),
+        }
+    }
+
     /// Begins to slide along surfaces, if the fields around them point at them, and to rest at
     /// contacts.
     pub(super) fn slide(
@@ -258,10 +268,7 @@ impl Run<'_> {
         if (crossings.is_empty() && contacts.is_empty()) || !self.can_slide() {
             return Ok(false);
         }
-        if self.problem.system.n_directions() > 0 {
-            // Whoever asks for derivatives takes differences then.
-            return Err(SimErrorKind::Chattering);
-        }
+        self.refuse_with_directions()?;
         let shares = match crossings {
             [] => Some(Vec::new()),
             _ => self.shares(crossings),
