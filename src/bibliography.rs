@@ -65,6 +65,16 @@
 //! - **shampine-reichelt-1997** — L. F. Shampine, M. W. Reichelt: The MATLAB ODE suite. SIAM
 //!   Journal on Scientific Computing 18(1), 1997, 1–22 (NDF formulas).
 //!
+//! <a id="feehery-tolsma-barton-1997"></a>
+//! - **feehery-tolsma-barton-1997** — W. F. Feehery, J. E. Tolsma, P. I. Barton: Efficient
+//!   sensitivity analysis of large-scale differential-algebraic systems. Applied Numerical
+//!   Mathematics 25(1), 1997, 41–54.
+//!
+//! <a id="galan-feehery-barton-1999"></a>
+//! - **galan-feehery-barton-1999** — S. Galán, W. F. Feehery, P. I. Barton: Parametric sensitivity
+//!   functions for hybrid discrete/continuous systems. Applied Numerical Mathematics 31(1), 1999,
+//!   17–47.
+//!
 //! <a id="hindmarsh-2005"></a>
 //! - **hindmarsh-2005** — A. C. Hindmarsh et al.: SUNDIALS, suite of nonlinear and
 //!   differential/algebraic equation solvers. ACM Transactions on Mathematical Software 31(3),
@@ -181,13 +191,41 @@
 //! - **auger-hansen-2005** — A. Auger, N. Hansen: A restart CMA evolution strategy with increasing
 //!   population size. IEEE Congress on Evolutionary Computation, 2005, 1769–1776.
 //!
-//! <a id="nielsen-1999"></a>
-//! - **nielsen-1999** — H. B. Nielsen: Damping parameter in Marquardt's method. Report
-//!   IMM-REP-1999-05, Technical University of Denmark, 1999.
+//! <a id="more-1978"></a>
+//! - **more-1978** — J. J. Moré: The Levenberg-Marquardt algorithm: implementation and theory.
+//!   Numerical Analysis, Lecture Notes in Mathematics 630, Springer, 1978, 105–116.
+//!
+//! <a id="transtrum-sethna-2012"></a>
+//! - **transtrum-sethna-2012** — M. K. Transtrum, J. P. Sethna: Improvements to the
+//!   Levenberg-Marquardt algorithm for nonlinear least-squares minimization. arXiv:1201.5885, 2012.
+//!
+//! <a id="bates-watts-1981"></a>
+//! - **bates-watts-1981** — D. M. Bates, D. G. Watts: A relative offset orthogonality convergence
+//!   criterion for nonlinear least squares. Technometrics 23(2), 1981, 179–183.
+//!
+//! <a id="boender-rinnooy-kan-1987"></a>
+//! - **boender-rinnooy-kan-1987** — C. G. E. Boender, A. H. G. Rinnooy Kan: Bayesian stopping rules
+//!   for multistart global optimization methods. Mathematical Programming 37, 1987, 59–80.
 //!
 //! <a id="gao-han-2012"></a>
 //! - **gao-han-2012** — F. Gao, L. Han: Implementing the Nelder-Mead simplex algorithm with adaptive
 //!   parameters. Computational Optimization and Applications 51(1), 2012, 259–277.
+//!
+//! <a id="anderson-darling-1952"></a>
+//! - **anderson-darling-1952** — T. W. Anderson, D. A. Darling: Asymptotic theory of certain
+//!   goodness of fit criteria based on stochastic processes. Annals of Mathematical Statistics
+//!   23(2), 1952, 193–212.
+//!
+//! <a id="cook-weisberg-1982"></a>
+//! - **cook-weisberg-1982** — R. D. Cook, S. Weisberg: Residuals and influence in regression.
+//!   Chapman and Hall, 1982.
+//!
+//! <a id="seber-wild-1989"></a>
+//! - **seber-wild-1989** — G. A. F. Seber, C. J. Wild: Nonlinear regression. Wiley, 1989.
+//!
+//! <a id="huber-ronchetti-2009"></a>
+//! - **huber-ronchetti-2009** — P. J. Huber, E. M. Ronchetti: Robust statistics. 2nd edition,
+//!   Wiley, 2009.
 //!
 //! <a id="wald-wolfowitz-1940"></a>
 //! - **wald-wolfowitz-1940** — A. Wald, J. Wolfowitz: On a test whether two samples are from the same
@@ -209,3 +247,39 @@
 //! <a id="huber-1964"></a>
 //! - **huber-1964** — P. J. Huber: Robust estimation of a location parameter. Annals of Mathematical
 //!   Statistics 35(1), 1964, 73–101.
+//!
+//! <a id="fedorov-1972"></a>
+//! - **fedorov-1972** — V. V. Fedorov: Theory of optimal experiments. Academic Press, 1972.
+//!
+//! <a id="bates-watts-1981"></a>
+//! - **bates-watts-1981** — D. M. Bates, D. G. Watts: A relative offset orthogonality convergence
+//!   criterion for nonlinear least squares. Technometrics 23(2), 1981, 179–183.
+//!
+//! <a id="efron-tibshirani-1993"></a>
+//! - **efron-tibshirani-1993** — B. Efron, R. J. Tibshirani: An introduction to the bootstrap.
+//!   Chapman and Hall, 1993.
+//!
+//! <a id="davison-hinkley-1997"></a>
+//! - **davison-hinkley-1997** — A. C. Davison, D. V. Hinkley: Bootstrap methods and their
+//!   application. Cambridge University Press, 1997.
+//!
+//! <a id="haario-2006"></a>
+//! - **haario-2006** — H. Haario, M. Laine, A. Mira, E. Saksman: DRAM, efficient adaptive MCMC.
+//!   Statistics and Computing 16, 2006, 339–354.
+//!
+//! <a id="gelman-1996"></a>
+//! - **gelman-1996** — A. Gelman, G. O. Roberts, W. R. Gilks: Efficient Metropolis jumping rules.
+//!   Bayesian Statistics 5, 1996, 599–607.
+//!
+//! <a id="gelman-2013"></a>
+//! - **gelman-2013** — A. Gelman, J. B. Carlin, H. S. Stern, D. B. Dunson, A. Vehtari, D. B. Rubin:
+//!   Bayesian data analysis. 3rd edition, Chapman and Hall, 2013.
+//!
+//! <a id="vehtari-2021"></a>
+//! - **vehtari-2021** — A. Vehtari, A. Gelman, D. Simpson, B. Carpenter, P.-C. Bürkner:
+//!   Rank-normalization, folding, and localization: an improved R-hat for assessing convergence of
+//!   MCMC. Bayesian Analysis 16(2), 2021, 667–718.
+//!
+//! <a id="burnham-anderson-2002"></a>
+//! - **burnham-anderson-2002** — K. P. Burnham, D. R. Anderson: Model selection and multimodel
+//!   inference. 2nd edition, Springer, 2002.

@@ -144,6 +144,7 @@ impl System {
             }
             *slot = value;
         }
+        self.carry_to_previous();
         changed
     }
 
@@ -253,6 +254,7 @@ impl System {
                 },
             };
             terminated |= self.check_at_event(t)?;
+            self.carry_through_event()?;
             let set = self.reinitialize()?;
             let moved = self.update_previous();
             changed |= set | moves;
@@ -381,10 +383,11 @@ impl System {
         run(&reinits.tape, &mut self.registers)?;
         let mut any = false;
         let pairs = reinits.outputs.chunks_exact(2).zip(&program.events.reinitialized);
-        for (pair, (state, negated)) in pairs {
+        for (number, (pair, (state, negated))) in pairs.enumerate() {
             if self.registers[pair[0] as usize] != 0.0 {
                 let value = self.registers[pair[1] as usize];
                 self.registers[state.0 as usize] = if *negated { -value } else { value };
+                self.carry_through_reinit(number, *negated);
                 any = true;
             }
         }
@@ -417,14 +420,18 @@ impl System {
 
     /// Times at which a rounding of time jumps or a sample is due next.
     pub(super) fn scheduled(&self) -> impl Iterator<Item = f64> {
-        let jumps = self.program.events.roundings.iter().filter_map(|rounding| {
-            let (slope, rest) = rounding.time?;
-            let value = self.registers[rounding.register as usize];
-            let next = if slope > 0.0 { value + 1.0 } else { value };
-            Some((next - self.registers[rest as usize]) / slope)
-        });
         let samples = self.clocks.iter().map(Clock::time);
-        jumps.chain(samples).filter(|time| time.is_finite())
+        self.jumps_of_roundings().flatten().chain(samples).filter(|time| time.is_finite())
+    }
+
+    /// For every rounding the time at which it jumps next, if it is one of time.
+    pub(super) fn jumps_of_roundings(&self) -> impl Iterator<Item = Option<f64>> {
+        self.program.events.roundings.iter().map(|rounding| {
+            let (factor, rest) = rounding.time?;
+            let value = self.registers[rounding.register as usize];
+            let next = if factor > 0.0 { value + 1.0 } else { value };
+            Some((next - self.registers[rest as usize]) / factor)
+        })
     }
 
     /// Values of all discrete variables and their previous ones, for an event at the end;

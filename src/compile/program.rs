@@ -155,6 +155,8 @@ pub struct Program {
     pub(super) sequence: Vec<Assignment>,
     /// The same where all algebraic unknowns of the integrator are given.
     pub(super) integrated: Vec<Assignment>,
+    /// What must be zero there.
+    pub(super) residuals: Vec<Expr>,
     /// The unknowns of the integrator: states, then [`Program::iteration`].
     pub(super) unknowns: Vec<VarId>,
     /// The algebraic ones.
@@ -421,6 +423,7 @@ impl Program {
             registers,
             sequence,
             integrated,
+            residuals,
             unknowns,
             iteration,
             n_auxiliary,

@@ -3,12 +3,14 @@
 use super::event_iteration::{Clock, Stage, either, same_time};
 use super::history::History;
 use super::hoist::Hoisting;
+use super::lower::Registers;
 use super::memory::Memory;
 use super::newton::LoopSolver;
 use super::notices::Notices;
 use super::program::{Access, Outputs, Program, Step, compile_continuous, resolved};
 use super::relations::Change;
 use super::selection::Choice;
+use super::sensitivity::Sensitivity;
 use super::sliding::{Modes, Treated};
 use super::tape::{Instruction, Tape};
 use crate::dae::Homotopy;
@@ -68,6 +70,8 @@ pub struct System {
     pub(super) sampled: bool,
     /// The variable that changed last in an event iteration.
     pub(super) unstable: u32,
+    /// Derivatives that are carried along, if any are.
+    pub(super) sensitivity: Option<Box<Sensitivity>>,
     /// What is told of a simulation, where somebody listens.
     pub(super) notices: Option<Notices>,
     /// The modes on both sides of relations.
@@ -106,6 +110,7 @@ impl System {
             delay_times: vec![0.0; program.events.delays.len()],
             sampled: false,
             unstable: 0,
+            sensitivity: None,
             notices: None,
             modes: Modes::default(),
             treated: Vec::new(),
@@ -152,9 +157,7 @@ impl System {
         let program = self.program.clone();
         let mut pool = program.sorted.dae.pool.clone();
         let outputs = expressions(&program, &mut pool, variables);
-        let mut registers = program.registers.clone();
-        let observed =
-            compile_continuous(&pool, &mut registers, &program.sequence, &outputs, Hoisting::Known);
+        let (registers, observed) = observing(&program, &pool, &outputs);
         self.registers.extend(&registers);
         self.observed = Some(observed);
         let variables = variables.iter().map(|at| program.variables()[*at].variable);
@@ -181,6 +184,9 @@ impl System {
         if !self.histories.is_empty() {
             self.load_delayed(t);
         }
+        if self.sensitivity.is_some() {
+            self.load_derivatives(y);
+        }
     }
 
     /// Loads y, and solves for the iteration variables that it does not hold.
@@ -193,8 +199,11 @@ impl System {
     }
 
     fn unload(&self, y: &mut [f64]) {
-        for (variable, value) in self.program.unknowns.iter().zip(y) {
+        for (variable, value) in self.program.unknowns.iter().zip(y.iter_mut()) {
             *value = self.registers[variable.0 as usize];
+        }
+        if self.sensitivity.is_some() {
+            self.unload_derivatives(y);
         }
     }
 
@@ -481,6 +490,7 @@ impl DaeSystem for System {
         self.improve_choices()?;
         self.start_clocks(t)?;
         self.start_histories(t)?;
+        self.start_sensitivities()?;
         self.iterate_at_start(t)?;
         self.improve_choices()?;
         self.unload(y);
@@ -524,10 +534,12 @@ impl DaeSystem for System {
         self.load(t, y);
         self.registers.calls.next_instant();
         self.has_changed.fill(false);
+        self.enter_event(t)?;
         let mut outcome = self.event(t)?;
         if self.improve_choices()? {
             outcome = either(outcome, EventOutcome::Continue { y_changed: true });
         }
+        self.leave_event(outcome)?;
         self.unload(y);
         Ok(outcome)
     }
@@ -594,12 +606,40 @@ impl DaeSystem for System {
         self.note_treated(t, crossing, treatment);
     }
 
+    fn n_directions(&self) -> usize {
+        self.sensitivity.as_ref().map_or(0, |sensitivity| sensitivity.code.n_columns())
+    }
+
+    fn directions(&self, out: &mut [f64]) {
+        self.magnitudes_of_parameters(out);
+    }
+
+    fn sensitivity_rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.load(t, y);
+        let Some(sensitivity) = &self.sensitivity else { return Ok(()) };
+        read(&sensitivity.code.rhs, &mut self.registers, out).map_err(|f| self.refine(f))
+    }
+
+    fn crossed(&mut self, crossing: Option<usize>, span: f64) {
+        self.note_cause(crossing, span);
+    }
+
     fn n_observed(&self) -> usize {
+        if let Some(sensitivity) = &self.sensitivity {
+            return sensitivity.code.observe.outputs.len();
+        }
         self.observed.as_ref().unwrap_or(&self.program.observe).outputs.len()
     }
 
     fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         self.load_solved(t, y)?;
+        if self.solves_loops {
+            self.differentiate_algebraic()?;
+        }
+        if let Some(sensitivity) = &self.sensitivity {
+            let code = &sensitivity.code.observe;
+            return read(code, &mut self.registers, out).map_err(|f| self.refine(f));
+        }
         let observed = self.observed.as_ref().unwrap_or(&self.program.observe);
         read(observed, &mut self.registers, out).map_err(|f| self.refine(f))
     }
@@ -612,6 +652,14 @@ pub(super) fn expressions(program: &Program, pool: &mut Pool, variables: &[usize
         _ => resolved(pool, &program.sorted, program.variables()[*at].variable),
     };
     variables.iter().map(of).collect()
+}
+
+/// Code for what a system observes, with the registers that the system has then.
+pub(super) fn observing(program: &Program, pool: &Pool, outputs: &[Expr]) -> (Registers, Outputs) {
+    let mut registers = program.registers.clone();
+    let sequence = &program.sequence;
+    let code = compile_continuous(pool, &mut registers, sequence, outputs, Hoisting::Known);
+    (registers, code)
 }
 
 /// Computes the outputs of code that computes nothing else.

@@ -274,6 +274,10 @@ impl Run<'_> {
         if (crossings.is_empty() && contacts.is_empty()) || !self.can_slide() {
             return Ok(false);
         }
+        if self.problem.system.n_directions() > 0 {
+            // Whoever asks for derivatives takes differences then.
+            return Err(SimErrorKind::Chattering);
+        }
         let shares = match crossings {
             [] => Some(Vec::new()),
             _ => self.shares(crossings),

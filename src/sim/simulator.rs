@@ -104,6 +104,7 @@ impl Simulator {
         system.solve_loops(solves_loops);
         let n = system.n_differential() + system.n_algebraic();
         self.resize(system, n);
+        self.y.resize(n * (1 + system.n_directions()), 0.0);
         self.set_nominals(system, settings.tolerance);
         out.reset(system.n_observed());
         let integrator: &mut dyn Integrator = if n == 0 {
@@ -296,7 +297,9 @@ impl Run<'_> {
         let settings = self.problem.settings;
         let span = settings.stop - settings.start;
         let is_near = self.t - self.last_jump <= FARTHER * BEHIND[0] * span;
-        let is_algebraic = self.problem.system.n_algebraic() > 0;
+        // Derivatives do not follow a solution that jumps for no reason of its own.
+        let is_algebraic =
+            self.problem.system.n_algebraic() > 0 && self.problem.system.n_directions() == 0;
         let is_sliding = self.problem.system.is_constrained();
         if kind != SimErrorKind::StepSize || !is_algebraic || is_near || is_sliding {
             return Err(kind);
@@ -461,6 +464,9 @@ impl Run<'_> {
         self.record()?;
         let was_constrained = self.problem.system.is_constrained();
         let (surfaces, contacts) = self.end_slide();
+        let crossing = if told_by_sign { self.crossings.last() } else { None };
+        let span = self.problem.settings.stop - self.problem.settings.start;
+        self.problem.system.crossed(crossing, span);
         let mut outcome = self.event(t)?;
         while outcome == EventOutcome::Again {
             outcome = match self.event(t)? {
@@ -516,10 +522,11 @@ impl Run<'_> {
 
     /// The unknown that is not finite, or else changes fastest.
     fn fastest_unknown(&mut self) -> Option<usize> {
+        let n = self.problem.nominal.len();
         if let Some(at) = self.y.iter().position(|y| !y.is_finite()) {
-            return Some(at);
+            return Some(at).filter(|at| *at < n);
         }
-        let mut slopes = vec![0.0; self.y.len()];
+        let mut slopes = vec![0.0; n];
         self.problem.system.rhs(self.t, self.y, &mut slopes).ok()?;
         if let Some(at) = slopes.iter().position(|slope| !slope.is_finite()) {
             return Some(at);

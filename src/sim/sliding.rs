@@ -493,6 +493,24 @@ impl DaeSystem for Sliding<'_> {
         self.inner.initialize(t, y)
     }
 
+    /// Derivatives are carried as long as nothing slides: [`Run::slide`](super::simulator::Run)
+    /// refuses them.
+    fn n_directions(&self) -> usize {
+        self.inner.n_directions()
+    }
+
+    fn directions(&self, out: &mut [f64]) {
+        self.inner.directions(out);
+    }
+
+    fn sensitivity_rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.inner.sensitivity_rhs(t, y, out)
+    }
+
+    fn crossed(&mut self, crossing: Option<usize>, span: f64) {
+        self.inner.crossed(crossing, span);
+    }
+
     fn n_crossings(&self) -> usize {
         self.inner.n_crossings()
     }

@@ -11,6 +11,8 @@ pub struct Statistics {
     pub newton_failures: u64,
     /// Evaluations of the right-hand side.
     pub rhs_evaluations: u64,
+    /// Evaluations of the sensitivity equations.
+    pub sensitivity_evaluations: u64,
     /// Evaluations of the Jacobian.
     pub jacobian_evaluations: u64,
     /// Numeric factorizations.

@@ -39,6 +39,23 @@ pub trait DaeSystem {
     fn jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure>;
     /// Writes consistent initial values of y at `t` (MLS §8.6).
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure>;
+    /// Number of directions along which derivatives are carried. Where there are any, y holds
+    /// behind its own n values n derivatives for each direction, and observed variables are followed
+    /// by their derivatives, direction by direction.
+    fn n_directions(&self) -> usize {
+        0
+    }
+    /// Writes the magnitude of what each direction changes, positive: a derivative times that is as
+    /// large as y.
+    fn directions(&self, _out: &mut [f64]) {}
+    /// Writes the derivatives of (f, g) along each direction, those of y (behind y) given.
+    fn sensitivity_rhs(&mut self, _t: f64, _y: &[f64], _out: &mut [f64]) -> Result<(), Failure> {
+        Ok(())
+    }
+    /// What leads to the event that [`DaeSystem::handle_event`] is going to handle: the crossing
+    /// function that has changed its sign, or `None` if its time has come. `span` is the length of
+    /// the simulation.
+    fn crossed(&mut self, _crossing: Option<usize>, _span: f64) {}
     /// Number of zero-crossing functions.
     fn n_crossings(&self) -> usize {
         0

@@ -6,15 +6,20 @@
 //! business. The method of the paper alone works in the ranges of the genes.
 
 mod cma_es;
+mod descents;
 mod gapilib2006;
 mod genetic;
 mod levenberg_marquardt;
+mod linear_model;
 mod lshade;
 mod multistart;
 mod nelder_mead;
 mod nsga2;
 mod polish;
 
+pub use descents::{DescentEnd, DescentReport, reached};
+pub use levenberg_marquardt::MINIMUM;
+pub use linear_model::Offset;
 pub use nsga2::{Survivor, non_dominated, survivors};
 pub use polish::Polished;
 
@@ -30,9 +35,13 @@ pub trait Optimizer: Send {
     fn ask(&mut self, batch: &mut Genomes);
     /// The answers to the last question, one for each individual in its order.
     fn tell(&mut self, batch: &Genomes, answers: &Answers<'_>);
-    /// Whether the next question needs the residuals besides the fitness.
-    fn wants_residuals(&self) -> bool {
-        false
+    /// What the answers to the last question must hold besides the objectives.
+    fn wants(&self) -> Wants {
+        Wants::Objectives
+    }
+    /// The descents by least squares so far, in their order.
+    fn descents(&self) -> Vec<DescentReport> {
+        Vec::new()
     }
     /// What it is doing, in one word.
     fn phase(&self) -> &'static str;
@@ -48,6 +57,17 @@ pub trait Optimizer: Send {
     fn rescale(&mut self, _gene: usize, _offset: f64, _scale: f64) {}
 }
 
+/// What a question wants to know of each individual; each kind holds the ones before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Wants {
+    /// Its objectives.
+    Objectives,
+    /// Its weighted residuals.
+    Residuals,
+    /// Their derivatives by the genes.
+    Jacobians,
+}
+
 /// How good the individuals of one question are; smaller is better.
 #[derive(Debug, Clone, Copy)]
 pub struct Answers<'a> {
@@ -58,6 +78,9 @@ pub struct Answers<'a> {
     /// Residuals, individual by individual, whose sum of squares is minimised; empty unless asked
     /// for. NaN for a failed individual.
     pub residuals: &'a [f64],
+    /// Derivatives of the residuals by the genes, individual by individual, residuals × genes;
+    /// empty unless asked for. NaN where there are none.
+    pub jacobians: &'a [f64],
 }
 
 impl Answers<'_> {
@@ -70,6 +93,20 @@ impl Answers<'_> {
     pub fn residuals_of(&self, k: usize, count: usize) -> &[f64] {
         let n = self.residuals.len() / count.max(1);
         &self.residuals[k * n..(k + 1) * n]
+    }
+
+    /// The answers about the individuals `first..end` out of `count`.
+    fn part(&self, first: usize, end: usize, count: usize) -> Answers<'_> {
+        let cut = |all: &'_ [f64]| {
+            let n = all.len() / count.max(1);
+            first * n..end * n
+        };
+        Answers {
+            objectives: &self.objectives[cut(self.objectives)],
+            n_objectives: self.n_objectives,
+            residuals: &self.residuals[cut(self.residuals)],
+            jacobians: &self.jacobians[cut(self.jacobians)],
+        }
     }
 }
 
@@ -84,8 +121,10 @@ pub struct Setup {
     pub budget: Option<u64>,
     /// A point of the unit cube to include, if there is one.
     pub start: Option<Vec<f64>>,
-    /// Step of finite differences in the unit cube, matched to the noise of the simulator.
-    pub difference: f64,
+    /// Relative error of the simulated values.
+    pub noise: f64,
+    /// Root of the sum of squares of the measured values, weighted as the residuals are.
+    pub size: f64,
     /// The random numbers of the run.
     pub rng: Mrg32k3a,
 }
@@ -140,6 +179,22 @@ fn whole(
         return Err(fault!(BAD_OPTION, "`{name}` is {value}, which is not a whole number"));
     }
     Ok(value as usize)
+}
+
+/// The test of a minimum at a point of the unit cube from the weighted residuals there and their
+/// derivatives (residuals × genes); `noise` and `size` as in [`Setup`].
+pub fn test_minimum(
+    point: &[f64],
+    residuals: &[f64],
+    jacobian: &[f64],
+    [noise, size]: [f64; 2],
+) -> (Offset, bool) {
+    let accuracy = levenberg_marquardt::Accuracy { noise, size };
+    let tolerance = accuracy.rank_tolerance();
+    let model = linear_model::LinearModel::new(residuals, jacobian, point.len(), tolerance);
+    let offset = model.offset(point);
+    let length = residuals.iter().map(|r| r * r).sum::<f64>().sqrt();
+    (offset, levenberg_marquardt::is_minimum(&offset, length, accuracy, MINIMUM))
 }
 
 /// A key that orders fitness with NaN last.

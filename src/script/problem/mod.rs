@@ -7,10 +7,13 @@
 
 mod build;
 mod control;
+mod dynamics;
 mod file;
+mod inference;
 mod live;
 mod own_fitness;
 mod record;
+mod sigma;
 
 use super::Session;
 use super::checkpoint::{self, Checkpoint};
@@ -46,6 +49,12 @@ pub struct RunOptions {
     pub folder: PathBuf,
     /// Profiles of the parameters after the fit.
     pub profile: bool,
+    /// The next measurement after the fit.
+    pub design: bool,
+    /// Fits to data drawn anew after the fit.
+    pub bootstrap: bool,
+    /// Markov chains after the fit.
+    pub posterior: bool,
     /// A sensitivity analysis before the fit, by name.
     pub sensitivity: Option<String>,
     /// Its base samples; 0 for the usual number.
@@ -96,6 +105,15 @@ fn solve_text(
     let source = session.sources.add(path.display().to_string(), text.as_str());
     let file = file::read(source, &text).map_err(|error| vec![error])?;
     let mut built = build::build(session, &file, path, &text)?;
+    if options.design {
+        built.problem.inference.design.get_or_insert_with(inference::usual_design);
+    }
+    if options.bootstrap {
+        built.problem.inference.bootstrap.get_or_insert_with(inference::usual_bootstrap);
+    }
+    if options.posterior {
+        built.problem.inference.posterior.get_or_insert_with(inference::usual_posterior);
+    }
     if let Some(limit) = options.evaluations {
         built.problem.stop.evaluations = Some(limit);
     }
@@ -110,7 +128,7 @@ fn solve_built(
     options: &RunOptions,
     every: (Option<u64>, f64),
 ) -> Result<Solution, Fault> {
-    let Built { problem, validation, fingerprint } = built;
+    let Built { problem, experiments, validation, fingerprint } = built;
     let folder = session.world.output_dir().join(&options.folder);
     let mut run = Run::new(problem, session.world.threads())?;
     let importance = analysed(session, &run, &folder, options)?;
@@ -147,12 +165,23 @@ fn solve_built(
     session.world.end_view();
     run.evaluation.cancel_by(None);
     checkpoint.flush(session, run.seconds);
-    let validation = validated(&run, &validation)?;
-    let mut solution = Solution::of(&run, &stop, validation)?;
+    if !interrupted {
+        solving::conclude(&mut run);
+    }
+    let validated = validated(&run, &validation)?;
+    let mut solution = Solution::of(&run, &stop, validated)?;
     solution.importance = importance;
     if options.profile && !interrupted {
-        solution.add_profiles(&run)?;
+        solution.add_profiles(&run);
     }
+    let mut interrupted = interrupted;
+    if !interrupted {
+        run.evaluation.cancel_by(session.world.interrupt_flag());
+        solution.inferred = solving::infer(&run)?;
+        run.evaluation.cancel_by(None);
+        interrupted = session.world.interrupted();
+    }
+    solving::draw_curves(&experiments, &mut solution, &validation);
     session.print(&solution.text());
     write(session, &folder, &solution)?;
     if let Some(why) = checkpoint.broken() {
@@ -264,10 +293,11 @@ fn write(session: &mut Session, folder: &Path, solution: &Solution) -> Result<()
         ("calibrated.mos", solution.script()),
         ("report.html", solution.html()),
     ];
+    let inferred = solution.inferred.tables();
     let profiles = solution.profiles.is_some().then(|| ("profiles.csv", solution.profiles_csv()));
     // What can be written is: one file that is too large must not take the others with it.
     let (mut missing, mut why) = (Vec::new(), None);
-    for (name, text) in files.into_iter().chain(profiles) {
+    for (name, text) in files.into_iter().chain(inferred).chain(profiles) {
         if let Err(fault) = session.write_file(&folder.join(name), text.as_bytes()) {
             missing.push(name);
             why.get_or_insert(fault);

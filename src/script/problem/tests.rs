@@ -3,6 +3,8 @@
 use super::*;
 use crate::script::world::MemoryWorld;
 
+mod inference;
+
 const MODEL: &str = "model Tank
   parameter Real k(unit = \"1/s\") = 1;
   parameter Real area = 1;
@@ -306,7 +308,7 @@ fn simulations_that_cost_too_much_are_failures() {
 fn a_product_in_a_dynamic_model_is_named() {
     let problem = SIMPLE.replace("k = {", "gain = {").replace("q = \"q\"", "p = \"q\"");
     let solution = solved(&[("p.toml", problem), ("d.csv", table("time,q", DATA))]);
-    let note = &solution.notes[0];
-    assert!(note.starts_with("gain, h cannot be determined separately by any data"), "{note}");
+    let note = &solution.findings[0].sentence;
+    assert!(note.starts_with("gain, h are structurally non-identifiable by data"), "{note}");
     assert!(note.contains("depends on gain*h alone"), "{note}");
 }

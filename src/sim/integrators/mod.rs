@@ -82,6 +82,18 @@ impl Problem<'_> {
         }
     }
 
+    /// Evaluates the derivatives of the right-hand side along all directions, y with its own given;
+    /// an error also if one is not finite.
+    fn sensitivity_rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), SimErrorKind> {
+        self.statistics.sensitivity_evaluations += 1;
+        self.system.sensitivity_rhs(t, y, out).map_err(SimErrorKind::Evaluation)?;
+        if out.iter().all(|value| value.is_finite()) {
+            Ok(())
+        } else {
+            Err(SimErrorKind::NotFinite)
+        }
+    }
+
     /// Evaluates the nonzeros of the Jacobian; an error also if one is not finite.
     fn jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), SimErrorKind> {
         self.statistics.jacobian_evaluations += 1;
