@@ -235,6 +235,15 @@
 //! - **morris-1991** — M. D. Morris: Factorial sampling plans for preliminary computational
 //!   experiments. Technometrics 33(2), 1991, 161–174.
 //!
+//! <a id="filippov-1988"></a>
+//! - **filippov-1988** — A. F. Filippov: Differential equations with discontinuous righthand sides.
+//!   Kluwer, 1988.
+//!
+//! <a id="piiroinen-kuznetsov-2008"></a>
+//! - **piiroinen-kuznetsov-2008** — P. T. Piiroinen, Yu. A. Kuznetsov: An event-driven method to
+//!   simulate Filippov systems with accurate computing of sliding motions. ACM Transactions on
+//!   Mathematical Software 34(3), 2008, 13.
+//!
 //! <a id="huber-1964"></a>
 //! - **huber-1964** — P. J. Huber: Robust estimation of a location parameter. Annals of Mathematical
 //!   Statistics 35(1), 1964, 73–101.

@@ -471,6 +471,9 @@ pub(super) struct SimulateArgs {
     /// Print what the simulation cost
     #[arg(long)]
     pub stats: bool,
+    /// Stop where events would follow each other without end, instead of sliding or resting there
+    #[arg(long)]
+    pub no_sliding: bool,
     /// Draw a variable over time, in the terminal or as --figure says (repeatable)
     #[arg(long, value_name = "VARIABLE")]
     pub plot: Vec<String>,

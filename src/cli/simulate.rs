@@ -162,6 +162,7 @@ fn wishes(arguments: &SimulateArgs) -> Wishes {
         intervals: arguments.intervals.map(|n| n as usize),
         tolerance: arguments.tolerance,
         method: arguments.method.clone(),
+        stops_at_chattering: arguments.no_sliding,
         ..Wishes::default()
     }
 }

@@ -85,6 +85,8 @@ pub struct Wishes {
     pub method: Option<String>,
     /// Step of a fixed-step integrator, seconds.
     pub fixed_step: Option<f64>,
+    /// Whether a simulation stops where events would follow each other without end.
+    pub stops_at_chattering: bool,
     /// Where the time reached is told, as the bits of an `f64`.
     pub reached: Option<Arc<AtomicU64>>,
 }
@@ -267,6 +269,7 @@ pub fn settings(experiment: &Experiment, wishes: &Wishes) -> Result<Settings, Fa
         tolerance,
         method,
         step: wishes.fixed_step.filter(|step| *step > 0.0),
+        treats_chattering: !wishes.stops_at_chattering,
         ..Settings::default()
     })
 }

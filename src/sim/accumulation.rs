@@ -35,8 +35,8 @@ const SHRINKING: u32 = 6;
 pub(super) struct Switches {
     last: f64,
     before: f64,
-    /// From one but the last to the last.
-    interval: f64,
+    /// Between changes in the same direction: from one but the last to the last, and the one before.
+    intervals: [f64; 2],
     /// How many intervals in a row were shorter than the one before.
     shrinking: u32,
     /// Whether it was positive before the last change.
@@ -46,16 +46,18 @@ pub(super) struct Switches {
 impl Default for Switches {
     fn default() -> Switches {
         let never = f64::NEG_INFINITY;
-        let interval = f64::INFINITY;
-        Switches { last: never, before: never, interval, shrinking: 0, was_above: false }
+        let intervals = [f64::INFINITY; 2];
+        Switches { last: never, before: never, intervals, shrinking: 0, was_above: false }
     }
 }
 
 impl Switches {
     pub(super) fn note(&mut self, t: f64, was_above: bool) {
         let interval = t - self.before;
-        self.shrinking = if interval < self.interval { self.shrinking + 1 } else { 0 };
-        (self.before, self.last, self.interval) = (self.last, t, interval);
+        let [last, before] = self.intervals;
+        self.shrinking = if interval < before { self.shrinking + 1 } else { 0 };
+        self.intervals = [interval, last];
+        (self.before, self.last) = (self.last, t);
         self.was_above = was_above;
     }
 }
@@ -64,10 +66,7 @@ impl Run<'_> {
     /// Lets the solution rest if the event just handled was the last impact that can be told from
     /// rest; whether the integrator was restarted for it.
     pub(super) fn rest_after_impact(&mut self) -> Result<bool, SimErrorKind> {
-        let rows = &self.watch.rows;
-        // The function was small when the surface was left, and has been so since.
-        let crossing = self.crossings.switched.iter().copied().find(|at| rows[*at] >= 2);
-        let Some(crossing) = crossing else { return Ok(false) };
+        let Some(crossing) = self.crossings.switched.first().copied() else { return Ok(false) };
         let states = self.y.iter().zip(&self.watch.before).enumerate();
         let jump: Vec<(usize, f64)> =
             states.map(|(at, (y, before))| (at, y - before)).filter(|(_, d)| *d != 0.0).collect();

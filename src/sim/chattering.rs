@@ -142,13 +142,20 @@ impl Run<'_> {
     /// Does something about the rows that have become long at the event just handled; whether the
     /// integrator was restarted for it.
     pub(super) fn treat_chattering(&mut self) -> Result<bool, SimErrorKind> {
+        if !self.problem.settings.treats_chattering {
+            return match self.crossings.switched.iter().any(|at| self.watch.rows[*at] > LONGEST_ROW)
+            {
+                true => Err(SimErrorKind::Chattering),
+                false => Ok(false),
+            };
+        }
         if self.rest_after_impact()? {
             return Ok(true);
         }
         let rows = &self.watch.rows;
         let switched = self.crossings.switched.iter();
-        let is_due = |at: &&usize| rows[**at] >= ROW && rows[**at] % ROW == 0;
-        if switched.clone().filter(is_due).count() == 0 {
+        let is_due = |at: &&usize| rows[**at] >= ROW && rows[**at].is_multiple_of(ROW);
+        if !switched.clone().any(|at| is_due(&at)) {
             return Ok(false);
         }
         let system = &self.problem.system;
@@ -162,32 +169,41 @@ impl Run<'_> {
             self.watch_for_accumulation()?;
             return Ok(false);
         }
+        self.slide_or_follow(&chattering)
+    }
+
+    /// Slides along the surfaces of relations that chatter, or else follows them; whether the
+    /// integrator was restarted for it.
+    fn slide_or_follow(&mut self, chattering: &[usize]) -> Result<bool, SimErrorKind> {
         self.refuse_with_directions()?;
         let (sliding, contacts) = self.end_slide();
         let was_constrained = !sliding.is_empty() || !contacts.is_empty();
         if was_constrained {
             self.start_crossings()?;
         }
-        let distinct = self.distinct(&chattering);
+        let distinct = self.distinct(chattering);
         let opposing = match distinct.len() + sliding.len() {
             1 => distinct,
             _ => self.opposing(&distinct),
         };
         let mut surfaces = sliding.clone();
         surfaces.extend(opposing.iter().filter(|at| !sliding.contains(at)));
-        if !surfaces.is_empty() && surfaces != sliding && self.slide(&surfaces, contacts.clone())? {
+        let is_larger = surfaces.len() > sliding.len();
+        let slides = is_larger && self.slide(&surfaces, contacts.clone())?
+            || !sliding.is_empty()
+                && !opposing.is_empty()
+                && self.slide(&opposing, contacts.clone())?;
+        if slides {
+            self.problem.statistics.slides += 1;
             return Ok(true);
         }
-        if !sliding.is_empty() && !opposing.is_empty() && self.slide(&opposing, contacts.clone())? {
-            return Ok(true);
-        }
-        for at in chattering {
-            if !self.crossings.followed[at] {
-                self.crossings.followed[at] = true;
-                self.watch.quiet[at] = 0;
-                self.problem.statistics.followed += 1;
-                self.problem.system.note_treatment(self.t, at, Treatment::Followed);
+        for at in chattering.iter().copied() {
+            if std::mem::replace(&mut self.crossings.followed[at], true) {
+                continue;
             }
+            self.watch.quiet[at] = 0;
+            self.problem.statistics.followed += 1;
+            self.problem.system.note_treatment(self.t, at, Treatment::Followed);
         }
         if was_constrained {
             self.go_on_constrained(&sliding, contacts)?;
@@ -301,7 +317,6 @@ impl Run<'_> {
         if self.is_explicit {
             std::mem::swap(&mut self.integrator, &mut self.implicit);
         }
-        self.problem.statistics.slides += u64::from(!crossings.is_empty());
         for at in crossings {
             self.watch.rows[*at] = 0;
             self.problem.system.note_treatment(self.t, *at, Treatment::Slides);

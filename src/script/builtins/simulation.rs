@@ -148,7 +148,7 @@ fn experiment(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         method: args.optional("Algorithm")?.filter(|method: &String| !method.is_empty()),
         tolerance: args.optional("Tolerance")?,
         fixed_step: args.optional("FixedStepSize")?,
-        reached: None,
+        ..Wishes::default()
     };
     *session.extension::<Experiment>() = Experiment(wishes);
     Ok(true.into())
@@ -166,7 +166,7 @@ fn wishes(session: &mut Session, args: &mut Args) -> Result<Wishes, Fault> {
         method: method.filter(|method| !method.is_empty()).or(set.method),
         tolerance: args.optional("tolerance")?.or(set.tolerance),
         fixed_step: args.optional("fixedstepsize")?.or(set.fixed_step),
-        reached: None,
+        ..Wishes::default()
     })
 }
 
