@@ -17,9 +17,9 @@
 //! [Hindmarsh et al. 2005](crate::bibliography#hindmarsh-2005).
 
 use super::{Bdf, NEWTON_TOLERANCE, ROUNDING, alpha};
-use crate::sim::{DaeSystem, SimErrorKind};
 use crate::sim::integrators::Problem;
 use crate::sim::norm::weighted_rms;
+use crate::sim::{DaeSystem, SimErrorKind};
 
 /// Iterations with one matrix.
 const MAX_ITERATIONS: usize = 4;
