@@ -10,6 +10,7 @@ mod checks;
 mod conclusion;
 mod curve;
 mod effects;
+mod ending;
 mod error_model;
 mod evaluation;
 mod experiment;
@@ -34,6 +35,7 @@ mod text;
 
 pub use conclusion::{Conclusion, conclude};
 pub use curve::draw_curves;
+pub use ending::{Ending, EndingKind, OtherMinimum, SolvedDescent};
 pub use error_model::{ErrorModel, Sigma, SigmaFormula, decide, likelihood};
 pub use evaluation::Evaluation;
 pub use experiment::{Experiment, ModelSimulator, Observation};
@@ -71,7 +73,7 @@ pub trait Simulate: Send {
     fn simulate(&mut self, parameters: &[f64], out: &mut [f64]) -> Result<(), Failed>;
     /// Like [`simulate`](Simulate::simulate), and writes into `derivatives` the derivative of every
     /// point by every parameter, point by point (points × parameters). `Ok(false)` where there are
-    /// no exact ones; then neither is written, and the caller takes differences.
+    /// no exact ones; then what was written is not used, and the caller takes differences.
     ///
     /// # Errors
     ///
@@ -206,5 +208,7 @@ impl Problem {
     }
 }
 
+#[cfg(test)]
+mod findings_tests;
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,6 @@
 //! The solution as text: for people, as CSV, as Modelica and as script.
 
-use super::{Profile, Solution, SolvedParameter, SolvedSeries};
+use super::{Profile, Solution, SolvedParameter, SolvedSeries, Verdict};
 use crate::identify::table::significant;
 use std::fmt::Write;
 
@@ -41,6 +41,18 @@ impl Solution {
         ];
         facts.extend(self.series.iter().map(|series| ("series", series_line(series))));
         facts.extend(self.validation.iter().map(|series| ("validation", series_line(series))));
+        if let Some(chi) = &self.chi_square {
+            let text = format!(
+                "{} for {} degrees of freedom, probability of more {}",
+                significant(chi.value, 5),
+                chi.freedom,
+                significant(chi.probability, 3)
+            );
+            facts.push(("chi-square", text));
+        }
+        if let Some(value) = self.negative_log_likelihood {
+            facts.push(("-log L", significant(value, 7)));
+        }
         if let Some(condition) = self.condition {
             facts.push(("condition", significant(condition, 3)));
         }
@@ -60,7 +72,7 @@ impl Solution {
         let share = 100.0 * failed as f64 / self.evaluations.max(1) as f64;
         facts.push((
             "evaluations",
-            format!("{} in {} generations, {failed} failed ({share:.1} %); {} simulations, {} more for the deviations{}", self.evaluations, self.generations, self.simulations, self.simulations_for_statistics, self.profiles.as_ref().map_or(String::new(), |all| format!(", {} for the profiles", all.simulations))),
+            format!("{} in {} generations, {failed} failed ({share:.1} %); {} simulations, {} more for the standard errors{}", self.evaluations, self.generations, self.simulations, self.simulations_for_statistics, self.profiles.as_ref().map_or(String::new(), |all| format!(", {} for the profiles", all.simulations))),
         ));
         let mut causes: Vec<(&String, &u64)> = self.causes.iter().collect();
         causes.sort_by(|a, b| b.1.cmp(a.1));
@@ -199,6 +211,10 @@ fn series_line(series: &SolvedSeries) -> String {
         significant(series.rmse, 4),
         series.y[1]
     );
+    if let Some(sigma) = series.sigma {
+        let how = if series.sigma_estimated { "estimated" } else { "given" };
+        _ = write!(line, ", sigma {} ({how})", significant(sigma, 4));
+    }
     if let Some(r_squared) = series.r_squared {
         _ = write!(line, ", R2 {}", significant(r_squared, 6));
     }
@@ -214,7 +230,7 @@ fn series_line(series: &SolvedSeries) -> String {
 }
 
 fn parameter_table(parameters: &[SolvedParameter]) -> String {
-    let heading = ["parameter", "value", "unit", "deviation", "95 % interval", "range", ""];
+    let heading = ["parameter", "value", "unit", "std. error", "95 % interval", "range", ""];
     let mut rows = vec![heading.map(str::to_owned)];
     rows.extend(parameters.iter().map(cells));
     let widths: [usize; 7] = std::array::from_fn(|column| {
@@ -241,8 +257,8 @@ fn cells(parameter: &SolvedParameter) -> [String; 7] {
         None => "-".to_owned(),
     };
     let mut remarks = Vec::new();
-    if parameter.determined == Some(false) {
-        remarks.push("not determined");
+    if let Some(verdict) = parameter.verdict.filter(|verdict| *verdict != Verdict::Identifiable) {
+        remarks.push(verdict.words());
     }
     if parameter.at_bound {
         remarks.push("at the end of its range");

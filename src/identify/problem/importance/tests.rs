@@ -40,7 +40,7 @@ fn analysed(
             x: vec![0.0, 1.0],
             y: vec![0.0, 0.0],
             weight: 2.0,
-            sigma: Sigma::Unknown,
+            sigma: crate::identify::problem::Sigma::Unknown,
             column: String::new(),
             rows: Vec::new(),
             missing: Vec::new(),
