@@ -14,7 +14,7 @@ use crate::identify::table::significant;
 use serde::{Deserialize, Serialize};
 
 /// Where a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum EndingKind {
     /// At a minimum, by the test.
@@ -28,11 +28,12 @@ pub enum EndingKind {
     /// No step reduces the objective beyond the errors of the simulation.
     NoDescent,
     /// The objective is not a sum of squares, so that the test cannot be made.
+    #[default]
     Untested,
 }
 
 /// How a run ended.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ending {
     /// In one word.
     pub kind: EndingKind,

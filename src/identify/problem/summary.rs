@@ -66,6 +66,7 @@ pub struct Solution {
     /// Why the run ended.
     pub stop: String,
     /// Whether it ended at a minimum, and how that is known.
+    #[serde(default)]
     pub ending: Ending,
     /// The descents by least squares, in their order.
     #[serde(default)]

@@ -1,6 +1,6 @@
 //! The solution as text: for people, as CSV, as Modelica and as script.
 
-use super::{Profile, Solution, SolvedParameter, SolvedSeries, Verdict};
+use super::{EndingKind, Profile, Solution, SolvedParameter, SolvedSeries, Verdict};
 use crate::identify::table::significant;
 use std::fmt::Write;
 
@@ -68,6 +68,9 @@ impl Solution {
         }
         facts.push(("method", self.method.clone()));
         facts.push(("stopped", self.stop.clone()));
+        if self.ending.kind == EndingKind::Minimum {
+            facts.push(("ending", self.ending.words.clone()));
+        }
         let failed: u64 = self.failures.values().sum();
         let share = 100.0 * failed as f64 / self.evaluations.max(1) as f64;
         facts.push((
