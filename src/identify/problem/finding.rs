@@ -60,6 +60,10 @@ pub enum FindingKind {
     Validation,
     /// Where simulations fail.
     Failures,
+    /// A prior that dominates the data or contradicts them.
+    Prior,
+    /// Estimates at the limit of a constraint.
+    Constraint,
     /// A statistic that could not be computed.
     Missing,
 }

@@ -34,6 +34,12 @@ pub(super) fn head(view: &View) -> Markup {
                 ul.next { @for sentence in &view.next { li { (sentence) } } }
             }
         }
+        @for (heading, sentences) in &view.intervals {
+            section {
+                h2 { (heading) }
+                ul.next { @for sentence in sentences { li { (sentence) } } }
+            }
+        }
     }
 }
 

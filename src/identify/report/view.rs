@@ -31,6 +31,8 @@ pub(super) struct View<'a> {
     pub(super) minima: Vec<(Vec<f64>, f64)>,
     /// Measurements that would shrink intervals most, in words.
     pub(super) next: Vec<String>,
+    /// Intervals by bootstrap and posterior, in words, under their headings.
+    pub(super) intervals: Vec<(&'static str, Vec<String>)>,
 }
 
 /// How the search ended.
@@ -92,6 +94,7 @@ impl View<'_> {
             minima: Vec::new(),
             unmeasured: solution.inferred.bands.iter().filter(|b| b.series.is_none()).collect(),
             next: solution.inferred.next_measurement.iter().flat_map(|n| n.sentences()).collect(),
+            intervals: solution.inferred.intervals(),
         }
     }
 

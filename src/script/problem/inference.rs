@@ -66,7 +66,8 @@ pub(super) fn adjustments(file: &ProblemFile, free: &[Free]) -> Result<Adjustmen
         priors.extend(places.into_iter().map(|parameter| Prior { parameter, distribution }));
     }
     let names: Vec<String> = free.iter().map(|free| free.name.clone()).collect();
-    let constraints = file.constraints.iter().map(|text| Constraint::new(text, &names));
+    let constraints =
+        file.constraints.iter().map(|text| super::constraint::constraint(text, &names));
     let constraints = constraints.collect::<Result<Vec<Constraint>, Fault>>()?;
     let used = file.experiment.iter().filter(|experiment| !experiment.validation);
     let outputs = used.flat_map(|experiment| &experiment.outputs);

@@ -6,6 +6,7 @@
 //! never interrupted. It is removed when the results have been written.
 
 mod build;
+mod constraint;
 mod control;
 mod data;
 mod draft;
@@ -188,7 +189,7 @@ fn solve_built(
     let mut interrupted = interrupted;
     if !interrupted {
         run.evaluation.cancel_by(session.world.interrupt_flag());
-        solution.inferred = solving::infer(&run)?;
+        solution.add_inference(&run)?;
         run.evaluation.cancel_by(None);
         interrupted = session.world.interrupted();
     }

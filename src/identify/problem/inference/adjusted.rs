@@ -257,6 +257,10 @@ impl Simulate for Adjusted {
         Ok(true)
     }
 
+    fn sensitivity_refusal(&self) -> Option<&str> {
+        self.inner.sensitivity_refusal()
+    }
+
     fn scale_tolerance(&mut self, factor: f64) {
         self.inner.scale_tolerance(factor);
     }

@@ -27,7 +27,7 @@ pub use local::Local;
 pub use posterior::{Posterior, PosteriorSettings, Sampled, diagnostics};
 pub use predictions::{Curve, Curves, ModelPredictions, Predict, Reach, Wanted};
 
-use super::Run;
+use super::{Finding, Run, Solution};
 use crate::diag::Fault;
 use serde::{Deserialize, Serialize};
 
@@ -73,9 +73,9 @@ pub struct Inferred {
     /// The posterior.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub posterior: Option<Posterior>,
-    /// What must be known about priors and constraints.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub remarks: Vec<String>,
+    /// About priors and constraints; they go to the findings of the solution.
+    #[serde(skip)]
+    pub findings: Vec<Finding>,
     /// What could not be inferred, and why.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub refusals: Vec<String>,
@@ -91,7 +91,7 @@ pub fn infer(run: &Run) -> Result<Inferred, Fault> {
     let mut found = Inferred::default();
     let Some(best) = &run.best else { return Ok(found) };
     found.likelihood = comparison::likelihood(run, &best.values);
-    found.remarks.extend(prior_data::at_constraints(&run.problem, &best.values));
+    found.findings.extend(prior_data::at_constraints(&run.problem, &best.values));
     if wanted.is_empty() {
         return Ok(found);
     }
@@ -112,7 +112,7 @@ pub fn infer(run: &Run) -> Result<Inferred, Fault> {
     if let Some(settings) = &wanted.design {
         design::add(&run.problem, settings, &local, &mut found)?;
     }
-    found.remarks.extend(prior_data::compared(&run.problem, &local));
+    found.findings.extend(prior_data::compared(&run.problem, &local));
     if local.robust {
         found.likelihood = None;
         if wanted.bootstrap.is_some() || wanted.posterior.is_some() {
@@ -130,6 +130,20 @@ pub fn infer(run: &Run) -> Result<Inferred, Fault> {
         posterior::add(run, settings, &local, &mut found)?;
     }
     Ok(found)
+}
+
+impl Solution {
+    /// Adds what is inferred at the best point of its run.
+    ///
+    /// # Errors
+    ///
+    /// As [`infer`].
+    pub fn add_inference(&mut self, run: &Run) -> Result<(), Fault> {
+        let mut found = infer(run)?;
+        self.findings.append(&mut found.findings);
+        self.inferred = found;
+        Ok(())
+    }
 }
 
 impl Inference {
@@ -169,6 +183,13 @@ impl Inferred {
         tables
     }
 
+    /// Bootstrap and posterior in words, under their headings.
+    pub fn intervals(&self) -> Vec<(&'static str, Vec<String>)> {
+        let bootstrap = self.bootstrap.iter().map(|found| ("Bootstrap", found.sentences()));
+        let posterior = self.posterior.iter().map(|found| ("Posterior", found.sentences()));
+        bootstrap.chain(posterior).collect()
+    }
+
     /// The sentences of the report, with an empty line before each group.
     pub fn text(&self) -> String {
         let mut text = String::new();
@@ -184,13 +205,9 @@ impl Inferred {
         }
         let bands: Vec<String> = self.bands.iter().filter_map(Band::sentence).collect();
         group("", &bands);
-        if let Some(bootstrap) = &self.bootstrap {
-            group("  Bootstrap\n", &bootstrap.sentences());
+        for (heading, sentences) in self.intervals() {
+            group(&format!("  {heading}\n"), &sentences);
         }
-        if let Some(posterior) = &self.posterior {
-            group("  Posterior\n", &posterior.sentences());
-        }
-        group("", &self.remarks);
         group("", &self.refusals);
         text
     }

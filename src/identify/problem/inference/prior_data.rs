@@ -1,7 +1,7 @@
 //! What priors and constraints did to the estimates, in words.
 
 use super::Local;
-use crate::identify::problem::Problem;
+use crate::identify::problem::{Finding, FindingKind, Problem};
 use crate::identify::table::significant;
 
 /// A posterior standard deviation above this fraction of the prior one comes from the prior: the
@@ -11,8 +11,14 @@ const DOMINATES: f64 = 0.9;
 const CONTRADICTS: f64 = 3.0;
 
 /// Priors that dominate the data, and priors that contradict them.
-pub(super) fn compared(problem: &Problem, local: &Local) -> Vec<String> {
+pub(super) fn compared(problem: &Problem, local: &Local) -> Vec<Finding> {
     let mut remarks = Vec::new();
+    let finding = |sentence: String, name: &str, value: f64, threshold: f64| Finding {
+        parameters: vec![name.to_owned()],
+        value: Some(value),
+        threshold: Some(threshold),
+        ..Finding::new(FindingKind::Prior, sentence)
+    };
     let variances = local.information.variances();
     for prior in &problem.inference.priors {
         let Some((mean, sd, logarithm)) = prior.point() else { continue };
@@ -24,32 +30,35 @@ pub(super) fn compared(problem: &Problem, local: &Local) -> Vec<String> {
         if let Some(variance) = variances[prior.parameter] {
             let posterior = variance.sqrt() / unit;
             if posterior > DOMINATES * sd {
-                remarks.push(format!(
+                let sentence = format!(
                     "What is known of {name} comes from its prior: the data bring the standard deviation of {what} from {} to {} only.",
                     significant(sd, 3),
                     significant(posterior, 3)
-                ));
+                );
+                remarks.push(finding(sentence, name, posterior / sd, DOMINATES));
             }
         }
         let distance = (own - mean).abs() / sd;
         if distance > CONTRADICTS {
-            remarks.push(format!(
+            let sentence = format!(
                 "The data contradict the prior of {name}: the estimate lies {} of its standard deviations from its centre.",
                 significant(distance, 2)
-            ));
+            );
+            remarks.push(finding(sentence, name, distance, CONTRADICTS));
         }
     }
     remarks
 }
 
 /// Constraints at whose limit the estimates lie.
-pub(super) fn at_constraints(problem: &Problem, values: &[f64]) -> Vec<String> {
+pub(super) fn at_constraints(problem: &Problem, values: &[f64]) -> Vec<Finding> {
     let active =
         problem.inference.constraints.iter().filter(|constraint| constraint.is_active(values));
     let remark = |text: &str| {
-        format!(
+        let sentence = format!(
             "The best values lie at the limit of the constraint `{text}`: a better fit may lie beyond it, and intervals take no account of it."
-        )
+        );
+        Finding::new(FindingKind::Constraint, sentence)
     };
     active.map(|constraint| remark(&constraint.text)).collect()
 }

@@ -333,8 +333,8 @@ fn normal_priors_of_a_straight_line_are_conjugate() {
     assert!((variances[0].unwrap() / (d / determinant) - 1.0).abs() < 1e-6);
     assert!((variances[1].unwrap() / (a / determinant) - 1.0).abs() < 1e-6);
     let found = infer(&run).unwrap();
-    let remarks = &found.remarks;
-    let begins = |k: usize, text: &str| remarks[k].starts_with(text);
+    let remarks = &found.findings;
+    let begins = |k: usize, text: &str| remarks[k].sentence.starts_with(text);
     assert!(begins(0, "The data contradict the prior of p0: the estimate lies 3."), "{remarks:?}");
     assert!(begins(1, "What is known of p1 comes from its prior"), "{remarks:?}");
     assert_eq!(remarks.len(), 2);
@@ -390,14 +390,17 @@ fn constraints_hold_and_are_named_where_they_are_active() {
         let entry = registry::find("method", METHODS, "genetic").unwrap();
         problem.method = (entry.make)(&mut Options::default()).unwrap();
         problem.polish = true;
-        let names = ["p0".to_owned(), "p1".to_owned()];
-        let constraints = vec![Constraint::new(text, &names).unwrap()];
+        let sides: fn(&[f64]) -> [f64; 2] = match text {
+            "p1 < p0" => |p| [p[1], p[0]],
+            _ => |p| [p[0], p[1]],
+        };
+        let constraints = vec![Constraint::new(text, std::sync::Arc::new(sides))];
         adjust(&mut problem, Adjustments { constraints, ..Adjustments::default() }).unwrap();
         let run = finished(problem);
         (run.best.as_ref().unwrap().values.clone(), infer(&run).unwrap())
     };
     let (free, found) = solved("p1 < p0");
-    assert!((free[0] - 3.0).abs() < 0.2 && found.remarks.is_empty(), "{free:?}");
+    assert!((free[0] - 3.0).abs() < 0.2 && found.findings.is_empty(), "{free:?}");
     let (bound, found) = solved("p0 <= p1");
     assert!(bound[0] <= bound[1]);
     // On the limit the best is p (1 + x): p = Σ (1 + x) y / Σ (1 + x)².
@@ -407,7 +410,7 @@ fn constraints_hold_and_are_named_where_they_are_active() {
         (bound[0] - expected).abs() < 0.05 && (bound[1] - expected).abs() < 0.05,
         "{bound:?} {expected}"
     );
-    assert!(found.remarks[0].contains("`p0 <= p1`"), "{:?}", found.remarks);
+    assert!(found.findings[0].sentence.contains("`p0 <= p1`"), "{:?}", found.findings);
 }
 
 #[test]
