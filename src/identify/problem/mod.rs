@@ -42,7 +42,7 @@ pub use failure_region::{FailureRegion, failure_region};
 pub use finding::{Finding, FindingKind, Severity};
 pub use fingerprint::Fingerprint;
 pub use importance::{ANALYSES, Analysis, Importance, ParameterImportance, analysis};
-pub use inference::{Inference, Inferred, infer};
+pub use inference::{Band, BandPoint, Inference, Inferred, infer};
 pub use inseparable::{Form, Inseparable};
 pub use jacobian::Linearization;
 pub use journal::{Journal, Record, decode, encode, first_frame, frame, header};
