@@ -21,7 +21,7 @@ pub use adjusted::{Adjustments, Distribution, PRIOR, Prior, adjust};
 pub use bands::{Band, BandPoint};
 pub use bootstrap::{Bootstrap, BootstrapSettings, Bootstrapped, IntervalKind, Resampling};
 pub use comparison::{Compared, Comparison, Likelihood, Nested, compare};
-pub use constraint::Constraint;
+pub use constraint::{Constraint, Sides};
 pub use design::{DesignSettings, NextMeasurement, Plan, Proposal};
 pub use local::Local;
 pub use posterior::{Posterior, PosteriorSettings, Sampled, diagnostics};

@@ -6,7 +6,7 @@
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// The larger of rank-normalized split R-hat and that of the folded draws; 1 where the chains
-/// cannot be told from one another. NaN for chains that never moved or of fewer than 4 draws.
+/// cannot be distinguished. NaN for chains that never moved or of fewer than 4 draws.
 pub fn r_hat(chains: &[Vec<f64>]) -> f64 {
     let halves = split(chains);
     if halves.iter().any(|half| half.len() < 2) {
