@@ -63,8 +63,8 @@ pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
     }
 }
 
-/// Reads a data file by its content: a table of text or a spreadsheet, anything else with [`read`].
-/// Names that end with `.csv` or `.tsv` are those of tables. Faults name the file.
+/// Reads a data file: text in columns by the ending of its name, anything else by its content.
+/// Faults name the file.
 pub fn read_named(file_name: &str, bytes: &[u8]) -> Result<MatFile, Fault> {
     let read = if is_table(file_name, bytes) {
         table::read_text(bytes, false)
@@ -86,21 +86,15 @@ pub fn read_named(file_name: &str, bytes: &[u8]) -> Result<MatFile, Fault> {
     }
 }
 
-/// Whether a file is text in columns. Endings of instruments (`.dta`, `.mpt`, `.asc`, `.dat`) say
-/// little, so that their content decides.
+/// Endings of files that hold text in columns.
+const TABLES: [&str; 12] =
+    ["csv", "tsv", "txt", "dat", "dta", "mpt", "asc", "prn", "tab", "log", "xy", "out"];
+
+/// Whether a file is text in columns.
 fn is_table(file_name: &str, bytes: &[u8]) -> bool {
     let lower = file_name.to_lowercase();
-    if [".csv", ".tsv"].iter().any(|end| lower.ends_with(end)) {
-        return !spreadsheet::looks_like(bytes);
-    }
-    if lower.ends_with(".mat")
-        || text::looks_like(bytes)
-        || bytes.starts_with(b"# Created by Octave")
-    {
-        return false;
-    }
-    let utf16 = bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff");
-    lower.ends_with(".txt")
-        || utf16
-        || !bytes.is_empty() && !bytes.iter().take(512).any(|&byte| byte < 9)
+    let ending = lower.rsplit_once('.').map_or("", |(_, ending)| ending);
+    let binary = spreadsheet::looks_like(bytes) || v73::looks_like(bytes);
+    let is_delimited = ["csv", "tsv"].contains(&ending);
+    TABLES.contains(&ending) && !binary && (is_delimited || !text::looks_like(bytes))
 }
