@@ -49,9 +49,7 @@ fn verdict(view: &View) -> Markup {
     let judged: Vec<Verdict> = parameters.iter().filter_map(|p| p.verdict).collect();
     let identifiable = judged.iter().filter(|v| **v == Verdict::Identifiable).count();
     html! {
-        @if let Some(ending) = &view.ending {
-            strong.good[ending.minimum].bad[!ending.minimum] { (ending.sentence) } " "
-        }
+        strong class=(view.ending.class) { (view.ending.sentence) } " "
         @if judged.is_empty() {
             "Standard errors are not available: nothing is said about identifiability."
         } @else if identifiable == parameters.len() {

@@ -1,7 +1,9 @@
 //! What the page shows: the solution, and what is derived from it for drawing.
 
+use crate::ga::optimizer::DescentEnd;
 use crate::identify::problem::{
-    Band, BandPoint, Finding, Severity, Solution, SolvedParameter, SolvedSeries,
+    Band, BandPoint, EndingKind, Finding, Severity, Solution, SolvedDescent, SolvedParameter,
+    SolvedSeries,
 };
 
 /// Smallest correlation of a pair that is drawn with its ellipse: below it the ellipse is hardly
@@ -13,8 +15,8 @@ const CHI_SQUARE: f64 = 5.991_464_547_107_98;
 /// What the page shows.
 pub(super) struct View<'a> {
     pub(super) solution: &'a Solution,
-    /// How the search ended, where that was tested.
-    pub(super) ending: Option<Ending<'a>>,
+    /// How the search ended.
+    pub(super) ending: Ending<'a>,
     /// What must be known about the numbers, most important first.
     pub(super) notes: Vec<Note<'a>>,
     /// For each series its curve with bands, empty where there is none.
@@ -37,7 +39,8 @@ pub(super) struct View<'a> {
 
 /// How the search ended.
 pub(super) struct Ending<'a> {
-    pub(super) minimum: bool,
+    /// The class of the style.
+    pub(super) class: &'static str,
     pub(super) sentence: &'a str,
 }
 
@@ -66,6 +69,8 @@ pub(super) struct Descent {
     pub(super) objective: f64,
     /// Whether it ended at a minimum.
     pub(super) minimum: bool,
+    /// Whether it ended where the best did.
+    pub(super) is_best: bool,
 }
 
 /// Two parameters and the correlation of their estimates.
@@ -80,7 +85,7 @@ impl View<'_> {
     pub(super) fn of(solution: &Solution) -> View<'_> {
         View {
             solution,
-            ending: None,
+            ending: ending(solution),
             notes: notes(solution),
             curves: solution
                 .series
@@ -90,8 +95,8 @@ impl View<'_> {
                 .collect(),
             validation_curves: solution.validation.iter().map(curve).collect(),
             pairs: pairs(solution),
-            descents: Vec::new(),
-            minima: Vec::new(),
+            descents: solution.descents.iter().filter_map(descent).collect(),
+            minima: solution.other_minima.iter().map(|m| (m.values.clone(), m.objective)).collect(),
             unmeasured: solution.inferred.bands.iter().filter(|b| b.series.is_none()).collect(),
             next: solution.inferred.next_measurement.iter().flat_map(|n| n.sentences()).collect(),
             intervals: solution.inferred.intervals(),
@@ -119,6 +124,27 @@ impl View<'_> {
     }
 }
 
+fn ending(solution: &Solution) -> Ending<'_> {
+    let class = match solution.ending.kind {
+        EndingKind::Minimum => "good",
+        EndingKind::Untested => "neutral",
+        EndingKind::StepLimit
+        | EndingKind::Budget
+        | EndingKind::Stopped
+        | EndingKind::NoDescent => "bad",
+    };
+    Ending { class, sentence: &solution.ending.words }
+}
+
+/// `None` where the start could not be simulated.
+fn descent(solved: &SolvedDescent) -> Option<Descent> {
+    Some(Descent {
+        objective: solved.objective?,
+        minimum: solved.ending == DescentEnd::Minimum,
+        is_best: solved.group == 0,
+    })
+}
+
 fn notes(solution: &Solution) -> Vec<Note<'_>> {
     let weight = |finding: &Finding| match finding.severity {
         Severity::Information => "information",
@@ -128,7 +154,9 @@ fn notes(solution: &Solution) -> Vec<Note<'_>> {
     let note = |finding| Note { weight: weight(finding), sentence: &finding.sentence };
     let refused = solution.inferred.refusals.iter();
     let refused = refused.map(|sentence| Note { sentence, weight: "information" });
-    solution.findings.iter().map(note).chain(refused).collect()
+    // The head of the page says how the search ended.
+    let findings = solution.findings.iter().filter(|f| f.sentence != solution.ending.words);
+    findings.map(note).chain(refused).collect()
 }
 
 /// The curve of a fitted series: with bands where these were computed.

@@ -7,10 +7,6 @@ use super::view::{Descent, View};
 use crate::plot::{Axis, Figure, Mark};
 use maud::html;
 
-/// Descents within this relative distance of the best reached the same objective: what is drawn as
-/// one plateau.
-const SAME: f64 = 1e-3;
-
 pub(super) fn section(view: &View) -> Option<Section> {
     if view.descents.is_empty() {
         return None;
@@ -18,7 +14,7 @@ pub(super) fn section(view: &View) -> Option<Section> {
     let mut sorted = view.descents.clone();
     sorted.sort_by(|a, b| a.objective.total_cmp(&b.objective));
     let best = sorted[0].objective;
-    let reached = sorted.iter().filter(|d| d.objective - best <= SAME * best.abs()).count();
+    let reached = sorted.iter().filter(|descent| descent.is_best).count();
     let sentence = format!(
         "The best objective, {}, was reached by {reached} of {} {}.",
         number(best, 5),
