@@ -108,9 +108,12 @@ pub(super) struct RunArgs {
     /// The script (.mos)
     #[arg(value_hint = ValueHint::FilePath, required_unless_present = "parse_only")]
     pub script: Option<PathBuf>,
-    /// Folder for results and figures
-    #[arg(long, default_value = "results", value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub out: PathBuf,
+    /// Folder for results and figures [default: one for each script below `results`]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Replace the results of another problem in that folder
+    #[arg(long)]
+    pub overwrite: bool,
     /// Threads to use [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
@@ -129,6 +132,9 @@ pub(super) struct RunArgs {
     /// Record what the genetic algorithm did, for `gapi teach`
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub trace: Option<PathBuf>,
+    /// Leave out the least squares that end an identification, from its best individual
+    #[arg(long)]
+    pub no_probe: bool,
     /// Show errors only
     #[arg(long, short)]
     pub quiet: bool,
@@ -232,7 +238,7 @@ Examples:
 `:help` lists the commands of the prompt.")]
 pub(super) struct ReplArgs {
     /// Folder for results and figures
-    #[arg(long, default_value = "results", value_name = "DIR", value_hint = ValueHint::DirPath)]
+    #[arg(long, default_value = "results/repl", value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: PathBuf,
     /// A script to run first
     #[arg(value_hint = ValueHint::FilePath)]
@@ -285,9 +291,12 @@ pub(super) struct IdentifyArgs {
     /// The problem (.toml)
     #[arg(value_hint = ValueHint::FilePath)]
     pub problem: PathBuf,
-    /// Folder for results, figures and the checkpoint
-    #[arg(long, default_value = "results", value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub out: PathBuf,
+    /// Folder for results, figures and the checkpoint [default: one for each problem below `results`]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Replace the results of another problem in that folder
+    #[arg(long)]
+    pub overwrite: bool,
     /// Threads to use [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
@@ -355,9 +364,12 @@ pub(super) struct TeachArgs {
     /// Write one page with all steps, for any browser, in place of the text
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub html: Option<PathBuf>,
-    /// Folder for the results and the trace of the run
-    #[arg(long, default_value = "results", value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub out: PathBuf,
+    /// Folder for the results and the trace of the run [default: one for each script below `results`]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Replace the results of another problem in that folder
+    #[arg(long)]
+    pub overwrite: bool,
 }
 
 /// Arguments of `gapi lesson`.
@@ -489,11 +501,12 @@ Examples:
   gapi report results
   gapi report results --output fit.html
 
-It reads result.json, history.csv and individuals.csv, as `gapi identify` has written them.
+It reads result.json, history.csv and individuals.csv, as `gapi run` and `gapi identify` have
+written them; in a folder of several problems those that were written last.
 
 Exit code: 0 if the report was written, 1 if a file is missing or damaged.")]
 pub(super) struct ReportArgs {
-    /// The folder with the results of `gapi identify`
+    /// The folder with the results of `gapi run` or `gapi identify`
     #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub folder: PathBuf,
     /// The page [default: report.html in the folder]

@@ -1,6 +1,7 @@
 //! `gapi identify`: solves a problem that is written in a file.
 
 use super::args::{Global, IdentifyArgs};
+use super::output::Output;
 use super::session;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
@@ -13,8 +14,21 @@ pub(super) fn identify(arguments: &IdentifyArgs, global: &Global) -> ExitCode {
     if arguments.plain {
         terminal.forbid_view();
     }
+    let output = Output::of(
+        "gapi identify",
+        &arguments.problem,
+        arguments.out.as_deref(),
+        arguments.overwrite,
+    );
+    let output = match output {
+        Ok(output) => output,
+        Err(message) => {
+            terminal::eprint(&format!("error: {message}\n"));
+            return ExitCode::from(2);
+        }
+    };
     let threads = arguments.threads.map(usize::from);
-    let world = match SystemWorld::new(terminal, &arguments.out, threads) {
+    let world = match SystemWorld::for_results(terminal, output, threads) {
         Ok(world) => world,
         Err(error) => {
             terminal::eprint(&format!("error: the working directory cannot be read: {error}\n"));

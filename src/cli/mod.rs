@@ -11,6 +11,7 @@ mod identify;
 mod lesson;
 mod limits;
 mod live;
+mod output;
 mod parsing;
 mod repl;
 mod report;
