@@ -189,6 +189,22 @@
 //! - **gao-han-2012** — F. Gao, L. Han: Implementing the Nelder-Mead simplex algorithm with adaptive
 //!   parameters. Computational Optimization and Applications 51(1), 2012, 259–277.
 //!
+//! <a id="anderson-darling-1952"></a>
+//! - **anderson-darling-1952** — T. W. Anderson, D. A. Darling: Asymptotic theory of certain
+//!   goodness of fit criteria based on stochastic processes. Annals of Mathematical Statistics
+//!   23(2), 1952, 193–212.
+//!
+//! <a id="cook-weisberg-1982"></a>
+//! - **cook-weisberg-1982** — R. D. Cook, S. Weisberg: Residuals and influence in regression.
+//!   Chapman and Hall, 1982.
+//!
+//! <a id="seber-wild-1989"></a>
+//! - **seber-wild-1989** — G. A. F. Seber, C. J. Wild: Nonlinear regression. Wiley, 1989.
+//!
+//! <a id="huber-ronchetti-2009"></a>
+//! - **huber-ronchetti-2009** — P. J. Huber, E. M. Ronchetti: Robust statistics. 2nd edition,
+//!   Wiley, 2009.
+//!
 //! <a id="wald-wolfowitz-1940"></a>
 //! - **wald-wolfowitz-1940** — A. Wald, J. Wolfowitz: On a test whether two samples are from the same
 //!   population. Annals of Mathematical Statistics 11(2), 1940, 147–162.
@@ -200,3 +216,9 @@
 //! <a id="huber-1964"></a>
 //! - **huber-1964** — P. J. Huber: Robust estimation of a location parameter. Annals of Mathematical
 //!   Statistics 35(1), 1964, 73–101.
+//!
+//! <a id="seber-wild-1989"></a>
+//! - **seber-wild-1989** — G. A. F. Seber, C. J. Wild: Nonlinear regression. Wiley, 1989.
+//!
+//! <a id="fedorov-1972"></a>
+//! - **fedorov-1972** — V. V. Fedorov: Theory of optimal experiments. Academic Press, 1972.

@@ -312,6 +312,9 @@ pub(super) struct IdentifyArgs {
     /// Profile likelihoods of the parameters after the fit
     #[arg(long)]
     pub profile: bool,
+    /// After the fit, which further measurements would shrink the intervals most
+    #[arg(long)]
+    pub design: bool,
     /// First analyse how much each parameter matters: `morris` or `sobol`
     #[arg(long, value_name = "WAY")]
     pub sensitivity: Option<String>,

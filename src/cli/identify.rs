@@ -42,6 +42,7 @@ pub(super) fn identify(arguments: &IdentifyArgs, global: &Global) -> ExitCode {
         fresh: arguments.fresh,
         watch: arguments.watch.clone(),
         profile: arguments.profile,
+        design: arguments.design,
         sensitivity: arguments.sensitivity.clone(),
         samples: arguments.samples.unwrap_or(0) as usize,
         evaluations: arguments.evaluations,

@@ -28,4 +28,4 @@ pub use points::{Path, time_of};
 pub use probe::Ending;
 pub use program::CompiledModel;
 pub use recorder::{Best, Compared, Measurement, Quantity, Recorder, Study};
-pub use uncertainty::{Uncertainty, uncertainty};
+pub use uncertainty::{Uncertainty, uncertainty, uncertainty_given};

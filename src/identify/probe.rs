@@ -7,8 +7,9 @@
 
 use super::fitness::FITNESSES;
 use super::problem::{
-    Experiment, Free, ModelSimulator, Observation, Problem, Run, ScriptResult, Series, Simulate,
-    Solution, SolvedParameter, SolvedSeries, Stop, failure_region,
+    Experiment, Finding, FindingKind, Free, Inference, ModelSimulator, Observation, Problem, Run,
+    ScriptResult, Series, Severity, Sigma, Simulate, Solution, SolvedParameter, SolvedSeries, Stop,
+    conclude, failure_region,
 };
 use super::recorder::{Best, Compared, Recorder};
 use super::table::significant;
@@ -24,6 +25,8 @@ use std::sync::Arc;
 const BUDGET: u64 = 200;
 /// Relative reduction of the sum of squares that is worth a number.
 const BETTER: f64 = 1e-6;
+/// What a run says that has ended by itself.
+const CONVERGED: &str = "the method has converged";
 /// A seed for scripts that draw no random numbers: least squares need none, but a run has one.
 const NO_SEED: [f64; 6] = [12345.0; 6];
 
@@ -104,6 +107,7 @@ impl Ending<'_> {
             polish: false,
             seed: self.recorder.seed().unwrap_or(NO_SEED),
             noise: self.noise,
+            inference: Inference::default(),
             simulator: Box::new(move || {
                 Ok(Box::new(ModelSimulator::new(&experiments)?) as Box<dyn Simulate>)
             }),
@@ -147,8 +151,9 @@ impl Ending<'_> {
                 return Err("it was cancelled".to_owned());
             }
         };
+        let at_minimum = run.stop().is_some_and(|stop| stop == CONVERGED);
+        conclude(&mut run);
         let solution = Solution::of(&run, &stop, Vec::new()).map_err(|fault| fault.message)?;
-        let at_minimum = run.stop().is_some_and(|stop| stop == "the method has converged");
         let mut solution = if at_minimum { solution } else { without_verdicts(solution) };
         let generations = self.recorder.history.generations.len();
         let who = if generations > 1 { "The genetic algorithm" } else { "The script" };
@@ -206,27 +211,26 @@ impl Ending<'_> {
         script.fitness_name = best.objective.name().to_owned();
         script.interrupted = self.interrupted;
         script.changes.clone_from(&recorder.changes);
-        let mut notes = vec![script.probe.clone()];
+        let mut findings = vec![search(script.probe.clone())];
         if recorder.ranges.is_none() {
-            notes.push(
+            findings.push(search(
                 "The script names no search ranges: those in the table are what its individuals \
-                 span."
-                    .to_owned(),
-            );
+                 span.",
+            ));
         }
         let (method, stop) = match (self.interrupted, script.probed) {
             (true, _) => ("script", "interrupted: these are the best values found so far"),
             (false, true) => ("script, then least squares", "the script has ended"),
             (false, false) => ("script", "the script has ended"),
         };
-        notes.append(&mut solution.notes);
+        findings.append(&mut solution.findings);
         if !script.probed {
             solution.fitness_name = best.objective.name().to_owned();
         }
         let failed = [("simulation".to_owned(), recorder.failures)];
         let free = self.parameters(best);
         Solution {
-            notes,
+            findings,
             method: method.to_owned(),
             stop: stop.to_owned(),
             generations: recorder.history.generations.len() as u64,
@@ -243,6 +247,11 @@ impl Ending<'_> {
             ..solution
         }
     }
+}
+
+/// A finding about the search, which comes first.
+fn search(sentence: impl Into<String>) -> Finding {
+    Finding::new(FindingKind::Search, sentence).severity(Severity::Information)
 }
 
 /// The models of a best individual, each once.
@@ -273,6 +282,10 @@ fn series(compared: &Compared, weight: f64, experiment: String) -> Option<Series
         x: compared.x.clone(),
         y: compared.measured.clone()?,
         weight,
+        sigma: Sigma::Unknown,
+        column: study.y.name.clone(),
+        rows: Vec::new(),
+        missing: Vec::new(),
     })
 }
 
@@ -335,9 +348,10 @@ fn sentence(
 /// The solution without what holds at a minimum only.
 fn without_verdicts(mut solution: Solution) -> Solution {
     for parameter in &mut solution.parameters {
-        (parameter.deviation, parameter.interval, parameter.determined) = (None, None, None);
+        (parameter.deviation, parameter.interval) = (None, None);
+        (parameter.determined, parameter.verdict) = (None, None);
     }
     (solution.correlations, solution.condition) = (None, None);
-    solution.notes.clear();
+    solution.findings.clear();
     solution
 }

@@ -27,11 +27,21 @@ pub struct Uncertainty {
 /// `None` when there are not more points than parameters or a number is not finite.
 pub fn uncertainty(jacobian: &[Vec<f64>], residuals: &[f64]) -> Option<Uncertainty> {
     let (points, parameters) = (residuals.len(), jacobian.len());
-    let finite = jacobian.iter().flatten().chain(residuals).all(|value| value.is_finite());
-    if points <= parameters || parameters == 0 || !finite {
+    if points <= parameters {
         return None;
     }
     let variance = residuals.iter().map(|r| r * r).sum::<f64>() / (points - parameters) as f64;
+    uncertainty_given(jacobian, variance)
+}
+
+/// From the sensitivities and the variance of the residuals, known or estimated elsewhere; `None`
+/// when there are fewer points than parameters or a number is not finite.
+pub fn uncertainty_given(jacobian: &[Vec<f64>], variance: f64) -> Option<Uncertainty> {
+    let (points, parameters) = (jacobian.first().map_or(0, Vec::len), jacobian.len());
+    let finite = jacobian.iter().flatten().all(|value| value.is_finite()) && variance.is_finite();
+    if points < parameters || parameters == 0 || !finite {
+        return None;
+    }
     let norms: Vec<f64> =
         jacobian.iter().map(|column| column.iter().map(|v| v * v).sum::<f64>().sqrt()).collect();
     let scaled = DMatrix::from_fn(points, parameters, |j, k| {

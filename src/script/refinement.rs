@@ -7,10 +7,10 @@ use super::{Session, simulation};
 use crate::diag::Fault;
 use crate::fault;
 use crate::ga::errors::BAD_POPULATION;
-use crate::ga::optimizer::{Answers, METHODS, Optimizer, Setup};
+use crate::ga::optimizer::{Answers, METHODS, Optimizer, Setup, Wants};
 use crate::ga::{Gene, Genomes, Individual, Mrg32k3a, best, has_failed};
 use crate::identify::fitness::sum_of_squares;
-use crate::identify::problem::{Free, NOISE_OF_FORMULAS, difference};
+use crate::identify::problem::{Free, NOISE_OF_FORMULAS};
 use crate::identify::{CompiledModel, Model};
 use crate::registry::{self, Options};
 
@@ -45,10 +45,10 @@ impl Session {
         let n_genes = starts.n_genes();
         let genomes = Genomes::with_capacity(n_genes, 0);
         let mut done = Simulations { genomes, rows: vec![], fitness: vec![] };
-        let difference = self.difference(&refinement.request)?;
+        let noise = self.noise(&refinement.request)?;
         for start in starts.rows() {
-            let mut search = descent(refinement, start, difference)?;
-            self.follow(refinement, search.as_mut(), n_genes, &mut done)?;
+            let mut search = descent(refinement, start, noise)?;
+            self.follow(refinement, search.as_mut(), noise, &mut done)?;
         }
         let count = done.fitness.len() as u64;
         let recorder = &mut self.identification().recorder;
@@ -60,14 +60,14 @@ impl Session {
         }
     }
 
-    /// Step of finite differences in the unit cube, matched to the errors of the simulation.
-    fn difference(&mut self, request: &Request) -> Result<f64, Failure> {
+    /// Relative error of the simulated values.
+    fn noise(&mut self, request: &Request) -> Result<f64, Failure> {
         self.load_model_of(request)?;
         let program = simulation::translated(self, &request.model)?.program.clone();
         if program.sorted().states.is_empty() {
-            return Ok(difference(NOISE_OF_FORMULAS));
+            return Ok(NOISE_OF_FORMULAS);
         }
-        Ok(difference(CompiledModel::new(&request.model, program).settings().tolerance))
+        Ok(CompiledModel::new(&request.model, program).settings().tolerance)
     }
 
     /// Asks and answers until the search has converged.
@@ -75,36 +75,81 @@ impl Session {
         &mut self,
         refinement: &Refinement,
         search: &mut dyn Optimizer,
-        n_genes: usize,
+        noise: f64,
         done: &mut Simulations,
     ) -> Result<(), Failure> {
+        let n_genes = refinement.ranges.len();
         loop {
             let mut question = Genomes::with_capacity(n_genes, n_genes);
             search.ask(&mut question);
             if question.is_empty() || self.is_interrupted() {
                 return Ok(());
             }
-            let mut natural = Genomes::with_capacity(n_genes, question.len());
-            for point in question.rows() {
-                let value = |(free, &u): (&Free, &f64)| free.value(u);
-                natural.push(&refinement.ranges.iter().zip(point).map(value).collect::<Vec<f64>>());
-            }
             let first = done.fitness.len();
-            let residuals = self.residuals(refinement, &natural, done)?;
-            let objectives = &done.fitness[first..];
-            search.tell(&question, &Answers { objectives, n_objectives: 1, residuals: &residuals });
+            let residuals = self.residuals(refinement, &question, done)?;
+            let answered = done.fitness.len();
+            let jacobians = match search.wants() {
+                Wants::Jacobians => self.jacobians(refinement, &question, noise, done)?,
+                _ => Vec::new(),
+            };
+            let objectives = &done.fitness[first..answered];
+            search.tell(
+                &question,
+                &Answers {
+                    objectives,
+                    n_objectives: 1,
+                    residuals: &residuals,
+                    jacobians: &jacobians,
+                },
+            );
         }
     }
 
-    /// The residuals of some individuals, NaN where a simulation fails.
+    /// Derivatives of the residuals by the fractions, by differences of all genes at once.
+    fn jacobians(
+        &mut self,
+        refinement: &Refinement,
+        question: &Genomes,
+        noise: f64,
+        done: &mut Simulations,
+    ) -> Result<Vec<f64>, Failure> {
+        let (n, m) = (question.n_genes(), refinement.measured.len());
+        let step = noise.cbrt().clamp(1e-6, 1e-2);
+        let mut ends = Genomes::with_capacity(n, 2 * n * question.len());
+        for point in question.rows() {
+            for (j, side) in (0..n).flat_map(|j| [(j, -step), (j, step)]) {
+                let mut end = point.to_vec();
+                end[j] = (end[j] + side * end[j].abs().max(0.1)).clamp(0.0, 1.0);
+                ends.push(&end);
+            }
+        }
+        let rows = self.residuals(refinement, &ends, done)?;
+        let mut jacobians = vec![f64::NAN; question.len() * m * n];
+        for (k, j) in (0..question.len()).flat_map(|k| (0..n).map(move |j| (k, j))) {
+            let low = 2 * (k * n + j);
+            let length = ends.row(low + 1)[j] - ends.row(low)[j];
+            for point in 0..m {
+                let difference = rows[(low + 1) * m + point] - rows[low * m + point];
+                jacobians[(k * m + point) * n + j] = difference / length;
+            }
+        }
+        Ok(jacobians)
+    }
+
+    /// The residuals of some individuals of the unit cube, NaN where a simulation fails.
     fn residuals(
         &mut self,
         refinement: &Refinement,
-        genomes: &Genomes,
+        question: &Genomes,
         done: &mut Simulations,
     ) -> Result<Vec<f64>, Failure> {
         let measured = &refinement.measured;
-        let simulated = self.evaluate_population(refinement.request.clone(), genomes)?;
+        let mut genomes = Genomes::with_capacity(question.n_genes(), question.len());
+        for point in question.rows() {
+            let value = |(free, &u): (&Free, &f64)| free.value(u);
+            genomes.push(&refinement.ranges.iter().zip(point).map(value).collect::<Vec<f64>>());
+        }
+        let simulated = self.evaluate_population(refinement.request.clone(), &genomes)?;
         let rows = simulated.rows.chunks(measured.len());
         done.fitness.extend(rows.map(|row| sum_of_squares(row, measured)));
         done.rows.extend_from_slice(&simulated.rows);
@@ -117,7 +162,7 @@ impl Session {
 fn descent(
     refinement: &Refinement,
     start: &[f64],
-    difference: f64,
+    noise: f64,
 ) -> Result<Box<dyn Optimizer>, Fault> {
     let entry = registry::find("method", METHODS, "levenberg_marquardt")?;
     let method = (entry.make)(&mut Options::default())?;
@@ -128,7 +173,7 @@ fn descent(
         n_objectives: 1,
         budget: None,
         start: Some(refinement.ranges.iter().zip(start).map(fraction).collect()),
-        difference,
+        noise,
         rng: Mrg32k3a::new(&SEED)?,
     })
 }

@@ -4,7 +4,7 @@
 
 #![allow(clippy::print_stdout, reason = "it prints a table")]
 
-use gapilib::ga::optimizer::{Answers, METHODS, Method, Polished, Setup, survivors};
+use gapilib::ga::optimizer::{Answers, METHODS, Method, Polished, Setup, Wants, survivors};
 use gapilib::ga::{FAILED_FITNESS, Gene, Genomes, Mrg32k3a, hypervolume};
 use gapilib::registry::{self, Options};
 use problems::{Objectives, Residuals};
@@ -108,7 +108,7 @@ fn overhead(name: &str) -> f64 {
     let genes = (0..10).map(|j| Gene::new(format!("g{j}"), 0.0, 1.0).expect("a range")).collect();
     let rng = Mrg32k3a::new(&Mrg32k3a::DEFAULT_SEED).expect("a seed");
     let setup =
-        Setup { genes, n_objectives, budget: Some(100_000), start: None, difference: 1e-8, rng };
+        Setup { genes, n_objectives, budget: Some(100_000), start: None, noise: 1e-15, rng };
     let mut search = method(name).start(setup).expect("a search");
     let mut used = 0;
     let mut seconds = 0.0;
@@ -128,7 +128,12 @@ fn overhead(name: &str) -> f64 {
         };
         let residuals: Vec<f64> = rows.concat();
         let started = cpu_seconds();
-        let answers = Answers { objectives: &objectives, n_objectives, residuals: &residuals };
+        let answers = Answers {
+            objectives: &objectives,
+            n_objectives,
+            residuals: &residuals,
+            jacobians: &[],
+        };
         search.tell(&batch, &answers);
         seconds += cpu_seconds() - started;
         used += batch.len();

@@ -1,11 +1,11 @@
 //! Levenberg-Marquardt with bounds: Gauss-Newton steps, damped until they reduce the sum of
-//! squares; genes at a bound whose gradient points outwards stand still. Sensitivities by finite
-//! differences, all genes in one question.
+//! squares; genes at a bound whose gradient points outwards stand still. A step costs one
+//! simulation and, where it is accepted, one Jacobian.
 //!
 //! References: [Nocedal & Wright 2006](crate::bibliography#nocedal-wright-2006), §10.3;
 //! [Nielsen 1999](crate::bibliography#nielsen-1999) (the damping).
 
-use super::{Answers, Method, Optimizer, Setup, has_failed, whole};
+use super::{Answers, Method, Optimizer, Setup, Wants, whole};
 use crate::diag::Fault;
 use crate::ga::Genomes;
 use crate::registry::Entry;
@@ -34,7 +34,7 @@ struct LevenbergMarquardt {
 impl Method for LevenbergMarquardt {
     fn start(&self, setup: Setup) -> Result<Box<dyn Optimizer>, Fault> {
         let start = setup.start.unwrap_or_else(|| vec![0.5; setup.genes.len()]);
-        Ok(Box::new(Descent::new(start, setup.difference, self.steps)))
+        Ok(Box::new(Descent::new(start, self.steps)))
     }
 
     fn needs_residuals(&self) -> bool {
@@ -62,8 +62,6 @@ pub(super) struct Descent {
     /// Largest column norms so far: the scales of the genes.
     scales: Vec<f64>,
     trial: Vec<f64>,
-    differences: Vec<f64>,
-    difference: f64,
     damping: f64,
     growth: f64,
     /// Steps left.
@@ -76,7 +74,7 @@ pub(super) struct Descent {
 }
 
 impl Descent {
-    pub(super) fn new(start: Vec<f64>, difference: f64, steps: usize) -> Descent {
+    pub(super) fn new(start: Vec<f64>, steps: usize) -> Descent {
         let n = start.len();
         Descent {
             trial: start.clone(),
@@ -85,8 +83,6 @@ impl Descent {
             residuals: Vec::new(),
             jacobian: DMatrix::zeros(0, n),
             scales: vec![0.0; n],
-            differences: vec![0.0; n],
-            difference,
             damping: 1e-3,
             growth: 2.0,
             left: steps,
@@ -102,32 +98,14 @@ impl Descent {
         (&self.x, self.fitness)
     }
 
-    /// Forward differences, backward where the upper bound is near.
-    fn ask_jacobian(&mut self, batch: &mut Genomes) {
-        let mut genome = self.x.clone();
-        for j in 0..genome.len() {
-            let step = self.difference * self.x[j].abs().max(0.1);
-            let end = if self.x[j] + step > 1.0 { self.x[j] - step } else { self.x[j] + step };
-            genome[j] = end;
-            self.differences[j] = end - self.x[j];
-            batch.push(&genome);
-            genome[j] = self.x[j];
-        }
-    }
-
-    fn tell_jacobian(&mut self, answers: &Answers<'_>, count: usize) {
+    fn take_jacobian(&mut self, answers: &Answers<'_>) {
         let (m, n) = (self.residuals.len(), self.x.len());
-        self.jacobian = DMatrix::zeros(m, n);
-        for j in 0..n {
-            if has_failed(answers.fitness(j)) {
-                continue;
+        self.jacobian = DMatrix::from_row_slice(m, n, answers.jacobians);
+        for (j, mut column) in self.jacobian.column_iter_mut().enumerate() {
+            if column.iter().any(|value| !value.is_finite()) {
+                column.fill(0.0);
             }
-            for (row, (r, r0)) in
-                answers.residuals_of(j, count).iter().zip(&self.residuals).enumerate()
-            {
-                self.jacobian[(row, j)] = (r - r0) / self.differences[j];
-            }
-            self.scales[j] = self.scales[j].max(self.jacobian.column(j).norm());
+            self.scales[j] = self.scales[j].max(column.norm());
         }
         self.propose();
     }
@@ -226,28 +204,34 @@ impl Optimizer for Descent {
         }
         match self.asked {
             Asked::Start | Asked::Step => batch.push(&self.trial),
-            Asked::Jacobian => self.ask_jacobian(batch),
+            Asked::Jacobian => batch.push(&self.x),
         }
     }
 
-    fn tell(&mut self, batch: &Genomes, answers: &Answers<'_>) {
+    fn tell(&mut self, _: &Genomes, answers: &Answers<'_>) {
         match self.asked {
             Asked::Start => {
                 self.fitness = answers.residuals.iter().map(|r| r * r).sum();
                 self.residuals = answers.residuals.to_vec();
                 self.done = !self.fitness.is_finite();
-                self.asked = Asked::Jacobian;
+                self.asked = Asked::Step;
+                if !self.done {
+                    self.take_jacobian(answers);
+                }
             }
             Asked::Jacobian => {
                 self.asked = Asked::Step;
-                self.tell_jacobian(answers, batch.len());
+                self.take_jacobian(answers);
             }
             Asked::Step => self.tell_step(answers),
         }
     }
 
-    fn wants_residuals(&self) -> bool {
-        true
+    fn wants(&self) -> Wants {
+        match self.asked {
+            Asked::Start | Asked::Jacobian => Wants::Jacobians,
+            Asked::Step => Wants::Residuals,
+        }
     }
 
     fn phase(&self) -> &'static str {

@@ -30,9 +30,9 @@ pub trait Optimizer: Send {
     fn ask(&mut self, batch: &mut Genomes);
     /// The answers to the last question, one for each individual in its order.
     fn tell(&mut self, batch: &Genomes, answers: &Answers<'_>);
-    /// Whether the next question needs the residuals besides the fitness.
-    fn wants_residuals(&self) -> bool {
-        false
+    /// What the answers to the last question must hold besides the objectives.
+    fn wants(&self) -> Wants {
+        Wants::Objectives
     }
     /// What it is doing, in one word.
     fn phase(&self) -> &'static str;
@@ -48,6 +48,17 @@ pub trait Optimizer: Send {
     fn rescale(&mut self, _gene: usize, _offset: f64, _scale: f64) {}
 }
 
+/// What a question wants to know of each individual; each kind holds the ones before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Wants {
+    /// Its objectives.
+    Objectives,
+    /// Its weighted residuals.
+    Residuals,
+    /// Their derivatives by the genes.
+    Jacobians,
+}
+
 /// How good the individuals of one question are; smaller is better.
 #[derive(Debug, Clone, Copy)]
 pub struct Answers<'a> {
@@ -58,6 +69,9 @@ pub struct Answers<'a> {
     /// Residuals, individual by individual, whose sum of squares is minimised; empty unless asked
     /// for. NaN for a failed individual.
     pub residuals: &'a [f64],
+    /// Derivatives of the residuals by the genes, individual by individual, residuals × genes;
+    /// empty unless asked for. NaN where there are none.
+    pub jacobians: &'a [f64],
 }
 
 impl Answers<'_> {
@@ -70,6 +84,20 @@ impl Answers<'_> {
     pub fn residuals_of(&self, k: usize, count: usize) -> &[f64] {
         let n = self.residuals.len() / count.max(1);
         &self.residuals[k * n..(k + 1) * n]
+    }
+
+    /// The answers about the individuals `first..end` out of `count`.
+    fn part(&self, first: usize, end: usize, count: usize) -> Answers<'_> {
+        let cut = |all: &'_ [f64]| {
+            let n = all.len() / count.max(1);
+            first * n..end * n
+        };
+        Answers {
+            objectives: &self.objectives[cut(self.objectives)],
+            n_objectives: self.n_objectives,
+            residuals: &self.residuals[cut(self.residuals)],
+            jacobians: &self.jacobians[cut(self.jacobians)],
+        }
     }
 }
 
@@ -84,8 +112,8 @@ pub struct Setup {
     pub budget: Option<u64>,
     /// A point of the unit cube to include, if there is one.
     pub start: Option<Vec<f64>>,
-    /// Step of finite differences in the unit cube, matched to the noise of the simulator.
-    pub difference: f64,
+    /// Relative error of the simulated values.
+    pub noise: f64,
     /// The random numbers of the run.
     pub rng: Mrg32k3a,
 }

@@ -2,7 +2,7 @@
 //! side by side, again and again with new points.
 
 use super::levenberg_marquardt::Descent;
-use super::{Answers, Method, Optimizer, Setup, has_failed, whole};
+use super::{Answers, Method, Optimizer, Setup, Wants, has_failed, whole};
 use crate::diag::Fault;
 use crate::ga::sampling::latin_hypercube;
 use crate::ga::{Genomes, Mrg32k3a, order};
@@ -37,8 +37,8 @@ impl Method for Multistart {
         if let Some(start) = setup.start {
             sample.row_mut(0).copy_from_slice(&start);
         }
-        let (starts, difference) = (self.starts.min(self.points), setup.difference);
-        Ok(Box::new(Search { rng, starts, difference, sample, team: None }))
+        let starts = self.starts.min(self.points);
+        Ok(Box::new(Search { rng, starts, sample, team: None }))
     }
 
     fn needs_residuals(&self) -> bool {
@@ -53,7 +53,6 @@ impl Method for Multistart {
 struct Search {
     rng: Mrg32k3a,
     starts: usize,
-    difference: f64,
     sample: Genomes,
     /// The descents under way; `None` while the sample is evaluated.
     team: Option<Team>,
@@ -80,11 +79,11 @@ impl Optimizer for Search {
         let fitness: Vec<f64> = (0..batch.len()).map(|k| answers.fitness(k)).collect();
         let best = order(&fitness).into_iter().filter(|&k| !has_failed(fitness[k]));
         let starts = best.take(self.starts).map(|k| batch.row(k).to_vec());
-        self.team = Some(Team::new(starts, self.difference));
+        self.team = Some(Team::new(starts));
     }
 
-    fn wants_residuals(&self) -> bool {
-        self.team.is_some()
+    fn wants(&self) -> Wants {
+        self.team.as_ref().map_or(Wants::Objectives, Team::wants)
     }
 
     fn phase(&self) -> &'static str {
@@ -92,48 +91,47 @@ impl Optimizer for Search {
     }
 }
 
-/// Descents whose questions are asked together.
+/// Descents whose questions are asked together: trials first, then Jacobians.
 pub(super) struct Team {
     descents: Vec<Descent>,
     /// Individuals that each asked in the last question.
     shares: Vec<usize>,
+    wants: Wants,
 }
 
 impl Team {
-    pub(super) fn new(starts: impl Iterator<Item = Vec<f64>>, difference: f64) -> Team {
-        let descents: Vec<Descent> =
-            starts.map(|start| Descent::new(start, difference, STEPS)).collect();
-        Team { shares: vec![0; descents.len()], descents }
+    pub(super) fn new(starts: impl Iterator<Item = Vec<f64>>) -> Team {
+        let descents: Vec<Descent> = starts.map(|start| Descent::new(start, STEPS)).collect();
+        Team { shares: vec![0; descents.len()], descents, wants: Wants::Residuals }
     }
 
     pub(super) fn ask(&mut self, batch: &mut Genomes) {
-        for (descent, share) in self.descents.iter_mut().zip(&mut self.shares) {
-            let before = batch.len();
-            descent.ask(batch);
-            *share = batch.len() - before;
+        for wants in [Wants::Residuals, Wants::Jacobians] {
+            self.wants = wants;
+            for (descent, share) in self.descents.iter_mut().zip(&mut self.shares) {
+                let before = batch.len();
+                if descent.wants() == wants {
+                    descent.ask(batch);
+                }
+                *share = batch.len() - before;
+            }
+            if !batch.is_empty() {
+                return;
+            }
         }
     }
 
+    pub(super) fn wants(&self) -> Wants {
+        self.wants
+    }
+
     pub(super) fn tell(&mut self, batch: &Genomes, answers: &Answers<'_>) {
-        let residuals = answers.residuals.len() / batch.len().max(1);
         let mut first = 0;
         for (descent, &share) in self.descents.iter_mut().zip(&self.shares) {
-            if share == 0 {
-                continue;
+            if share > 0 {
+                descent.tell(batch, &answers.part(first, first + share, batch.len()));
+                first += share;
             }
-            let end = first + share;
-            let mut own = Genomes::with_capacity(batch.n_genes(), share);
-            (first..end).for_each(|k| own.push(batch.row(k)));
-            let m = answers.n_objectives;
-            descent.tell(
-                &own,
-                &Answers {
-                    objectives: &answers.objectives[first * m..end * m],
-                    n_objectives: m,
-                    residuals: &answers.residuals[first * residuals..end * residuals],
-                },
-            );
-            first = end;
         }
     }
 

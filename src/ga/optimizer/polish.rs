@@ -3,7 +3,7 @@
 //! another set of starts, lead to the same best.
 
 use super::multistart::Team;
-use super::{Answers, Optimizer, has_failed, key};
+use super::{Answers, Optimizer, Wants, has_failed, key};
 use crate::diag::Fault;
 use crate::ga::{Genomes, Mrg32k3a, order};
 
@@ -24,7 +24,6 @@ const GAIN: f64 = 1e-6;
 pub struct Polished {
     search: Box<dyn Optimizer>,
     team: Option<Team>,
-    difference: f64,
     /// Questions of the search since the last refinement.
     questions: usize,
     /// The best distinct individuals of this round, best first.
@@ -40,13 +39,11 @@ pub struct Polished {
 }
 
 impl Polished {
-    /// Refines the results of `search`; `difference` as in [`Setup`](super::Setup); a fitness below
-    /// `floor` is as good as none.
-    pub fn new(search: Box<dyn Optimizer>, difference: f64, floor: f64, rng: Mrg32k3a) -> Polished {
+    /// Refines the results of `search`; a fitness below `floor` is as good as none.
+    pub fn new(search: Box<dyn Optimizer>, floor: f64, rng: Mrg32k3a) -> Polished {
         Polished {
             search,
             team: None,
-            difference,
             questions: 0,
             candidates: Vec::new(),
             started: Vec::new(),
@@ -92,7 +89,7 @@ impl Polished {
         }
         self.started.extend(starts.iter().cloned());
         self.candidates.clear();
-        self.team = Some(Team::new(starts.into_iter(), self.difference));
+        self.team = Some(Team::new(starts.into_iter()));
     }
 
     fn end_round(&mut self, team: &Team) {
@@ -142,8 +139,8 @@ impl Optimizer for Polished {
         }
     }
 
-    fn wants_residuals(&self) -> bool {
-        self.team.is_some() || self.search.wants_residuals()
+    fn wants(&self) -> Wants {
+        self.team.as_ref().map_or_else(|| self.search.wants(), Team::wants)
     }
 
     fn phase(&self) -> &'static str {

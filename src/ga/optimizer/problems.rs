@@ -1,7 +1,7 @@
 //! Problems with known minima, and the loop that solves them.
 
 // What includes this file, a test or a benchmark, names these in its own way.
-use super::{Answers, FAILED_FITNESS, Gene, Genomes, Method, Mrg32k3a, Polished, Setup};
+use super::{Answers, FAILED_FITNESS, Gene, Genomes, Method, Mrg32k3a, Polished, Setup, Wants};
 use super::{hypervolume, survivors};
 
 /// Residuals at a point of the unit cube; `None` where it fails. The first objective is their sum
@@ -24,12 +24,12 @@ pub(crate) fn minimum(
         n_objectives: 1,
         budget: Some(budget),
         start: None,
-        difference: 1.5e-8,
+        noise: 1e-15,
         rng: rng.clone(),
     };
     let mut search = method.start(setup).unwrap();
     if polish {
-        search = Box::new(Polished::new(search, 1.5e-8, 0.0, rng.substream(1)));
+        search = Box::new(Polished::new(search, 0.0, rng.substream(1)));
     }
     let (mut best, mut used) = (f64::INFINITY, 0);
     while used < budget {
@@ -48,9 +48,39 @@ pub(crate) fn minimum(
         best = fitness.iter().copied().fold(best, f64::min);
         let rows: Vec<f64> =
             rows.into_iter().flat_map(|row| row.unwrap_or_else(|| vec![f64::NAN; m])).collect();
-        search.tell(&batch, &Answers { objectives: &fitness, n_objectives: 1, residuals: &rows });
+        let mut jacobians = Vec::new();
+        if search.wants() == Wants::Jacobians {
+            used += 2 * (n * batch.len()) as u64;
+            jacobians = batch.rows().flat_map(|genome| differences(genome, m, residuals)).collect();
+        }
+        let answers = Answers {
+            objectives: &fitness,
+            n_objectives: 1,
+            residuals: &rows,
+            jacobians: &jacobians,
+        };
+        search.tell(&batch, &answers);
     }
     best
+}
+
+/// Central differences, residuals × genes; NaN where it fails.
+fn differences(genome: &[f64], m: usize, residuals: &Residuals) -> Vec<f64> {
+    const STEP: f64 = 6e-6;
+    let n = genome.len();
+    let mut jacobian = vec![f64::NAN; m * n];
+    for j in 0..n {
+        let moved = |by: f64| {
+            let mut moved = genome.to_vec();
+            moved[j] += by;
+            residuals(&moved)
+        };
+        let (Some(low), Some(high)) = (moved(-STEP), moved(STEP)) else { continue };
+        for (row, (low, high)) in low.iter().zip(&high).enumerate() {
+            jacobian[row * n + j] = (high - low) / (2.0 * STEP);
+        }
+    }
+    jacobian
 }
 
 /// The polarization curve of the case study: six genes on logarithmic scales over one decade.
@@ -113,8 +143,7 @@ pub(crate) fn dominated(
     let genes = (0..n).map(|j| Gene::new(format!("g{j}"), 0.0, 1.0).unwrap()).collect();
     let n_objectives = objectives(&vec![0.5; n]).len();
     let budget_known = Some(budget as u64);
-    let setup =
-        Setup { genes, n_objectives, budget: budget_known, start: None, difference: 1e-8, rng };
+    let setup = Setup { genes, n_objectives, budget: budget_known, start: None, noise: 1e-15, rng };
     let mut search = method.start(setup).unwrap();
     let (mut members, mut used): (Vec<f64>, usize) = (Vec::new(), 0);
     while used < budget {
@@ -122,7 +151,10 @@ pub(crate) fn dominated(
         search.ask(&mut batch);
         used += batch.len();
         let found: Vec<f64> = batch.rows().flat_map(objectives).collect();
-        search.tell(&batch, &Answers { objectives: &found, n_objectives, residuals: &[] });
+        search.tell(
+            &batch,
+            &Answers { objectives: &found, n_objectives, residuals: &[], jacobians: &[] },
+        );
         // Population and offspring compete as they do within the method.
         members.extend(found);
         let kept = survivors(&members, n_objectives, population);

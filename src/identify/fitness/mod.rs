@@ -1,13 +1,14 @@
 //! Fitness functions: how far the simulation is from the measurement; smaller is better.
 
-mod huber;
+mod concentrated;
 mod log_likelihood;
-mod mean_absolute;
 mod normalized;
 mod relative;
+mod robust;
 mod root_mean_square;
 mod sum_of_squares;
 
+pub use concentrated::Concentrated;
 pub use sum_of_squares::sum_of_squares;
 
 use crate::ga::FAILED_FITNESS;
@@ -22,6 +23,68 @@ pub trait Fitness: Send + Sync {
     /// What each difference is multiplied with where the minimum is that of a sum of squares;
     /// `None` where it is not, so that least squares cannot find it.
     fn least_squares(&self, measured: &[f64], weights: &[f64]) -> Option<Vec<f64>>;
+
+    /// Where the minimum is that of a sum of squares whose factors depend on the simulation:
+    /// writes residuals r with Σ r² growing with the fitness, and factors f such that
+    /// 2 Σ f r ∂ŷ/∂p is the gradient of Σ r². `false`: the constant factors of
+    /// [`least_squares`](Fitness::least_squares) hold.
+    fn scaled(
+        &self,
+        _simulated: &[f64],
+        _measured: &[f64],
+        _weights: &[f64],
+        _residuals: &mut [f64],
+        _factors: &mut [f64],
+    ) -> bool {
+        false
+    }
+
+    /// The weights that the errors have at this simulation, where they are estimated with it:
+    /// reciprocal standard deviations.
+    fn error_weights(
+        &self,
+        _simulated: &[f64],
+        _measured: &[f64],
+        _weights: &[f64],
+    ) -> Option<Vec<f64>> {
+        None
+    }
+
+    /// The same function with the standard deviation of the weighted differences known; `None`
+    /// where it does not depend on that.
+    fn with_scale(&self, _scale: f64) -> Option<Box<dyn Fitness>> {
+        None
+    }
+
+    /// What takes the place of the residual variance where not the squares of the weighted
+    /// `residuals` are minimised.
+    fn robustness(&self, _residuals: &[f64], _freedom: f64) -> Option<Robustness> {
+        None
+    }
+}
+
+/// The asymptotic behaviour of a robust fitness.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Robustness {
+    /// v of the covariance v (JᵀJ)⁻¹.
+    pub variance: f64,
+    /// The scale s: standard deviation of the bulk of the weighted residuals.
+    pub scale: f64,
+    /// The sum of squares, s² Σ 2ρ, rises by this times s² χ² within a likelihood region.
+    pub rise: f64,
+}
+
+/// Standard deviation of normal errors from the median of their absolute values (MAD).
+pub fn median_deviation(residuals: &[f64]) -> f64 {
+    let mut size: Vec<f64> = residuals.iter().map(|r| r.abs()).collect();
+    size.sort_by(f64::total_cmp);
+    let n = size.len();
+    // 1/Φ⁻¹(3/4)
+    match n {
+        0 => f64::NAN,
+        n if n % 2 == 1 => 1.482_602_218_505_602 * size[n / 2],
+        n => 1.482_602_218_505_602 * 0.5 * (size[n / 2 - 1] + size[n / 2]),
+    }
 }
 
 /// All fitness functions; the first is the default.
@@ -29,9 +92,10 @@ pub const FITNESSES: &[&Entry<dyn Fitness>] = &[
     &sum_of_squares::ENTRY,
     &root_mean_square::ENTRY,
     &normalized::ENTRY,
-    &mean_absolute::ENTRY,
+    &robust::ABSOLUTE_ENTRY,
     &relative::ENTRY,
-    &huber::ENTRY,
+    &robust::HUBER_ENTRY,
+    &robust::TUKEY_ENTRY,
     &log_likelihood::ENTRY,
 ];
 
@@ -40,7 +104,7 @@ fn differences<'a>(
     simulated: &'a [f64],
     measured: &'a [f64],
     weights: &'a [f64],
-) -> impl Iterator<Item = f64> + 'a {
+) -> impl Iterator<Item = f64> + Clone + 'a {
     simulated.iter().zip(measured).zip(weights).map(|((s, m), w)| w * (m - s))
 }
 
@@ -70,7 +134,6 @@ mod tests {
             ("nrmse", (10.0_f64 / 3.0).sqrt() / 3.0),
             ("mae", 4.0 / 3.0),
             ("relative", (0.25_f64.powi(2) + 1.5_f64.powi(2)) / 3.0),
-            ("huber", 0.5 + 1.345 * (3.0 - 0.5 * 1.345)),
             ("log_likelihood", 1.5 * ((2.0 * std::f64::consts::PI * 10.0 / 3.0).ln() + 1.0)),
         ] {
             let found = fitness(name, &simulated, &measured, &weights);

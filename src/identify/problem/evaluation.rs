@@ -1,15 +1,16 @@
 //! Evaluates populations on all cores. What comes out depends neither on the number of threads
 //! nor on what was evaluated before: equal genes are answered from memory.
 
-use super::{Failed, Problem, Simulate};
+use super::{Failed, Free, Linearization, Problem, Simulate};
 use crate::diag::Fault;
 use crate::fault;
+use crate::ga::optimizer::Wants;
 use crate::ga::{Genomes, has_failed};
 use crate::registry::BAD_OPTION;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Individuals remembered.
 const REMEMBERED: usize = 8192;
@@ -21,6 +22,9 @@ pub struct Answered {
     pub objectives: Vec<f64>,
     /// Weighted residuals, individual by individual; empty unless asked for.
     pub residuals: Vec<f64>,
+    /// Derivatives of the weighted residuals by the genes, individual by individual, residuals ×
+    /// genes; empty unless asked for.
+    pub jacobians: Vec<f64>,
     /// Which failed, in order of the individuals.
     pub failures: Vec<(usize, Failed)>,
     /// Simulations that it took.
@@ -39,6 +43,8 @@ pub struct Evaluation {
     rows: Vec<f64>,
     memory: Memory,
     cancel: Option<Arc<AtomicBool>>,
+    /// What the tolerance of the settings is multiplied with.
+    tolerance: f64,
 }
 
 /// Answers by genes; the oldest give way.
@@ -65,8 +71,7 @@ impl Evaluation {
         let workers = (0..threads).map(|_| Ok(Mutex::new((problem.simulator)()?)));
         let measured: Vec<f64> =
             problem.series.iter().flat_map(|series| series.y.clone()).collect();
-        let weight = |series: &super::Series| vec![series.weight; series.y.len()];
-        let weights: Vec<f64> = problem.series.iter().flat_map(weight).collect();
+        let weights: Vec<f64> = problem.series.iter().flat_map(super::Series::weights).collect();
         let first = problem.objectives.first();
         let scales = first.and_then(|(_, fitness)| fitness.least_squares(&measured, &weights));
         Ok(Evaluation {
@@ -79,6 +84,7 @@ impl Evaluation {
             rows: Vec::new(),
             memory: Memory::default(),
             cancel: None,
+            tolerance: 1.0,
         })
     }
 
@@ -119,8 +125,53 @@ impl Evaluation {
         &mut self,
         problem: &Problem,
         batch: &Genomes,
-        residuals: bool,
+        wants: Wants,
     ) -> Option<Answered> {
+        let answered = match wants {
+            Wants::Jacobians => self.with_jacobians(problem, batch),
+            _ => self.without(problem, batch, wants == Wants::Residuals),
+        };
+        if self.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+            return None;
+        }
+        self.remember(batch, &answered);
+        Some(answered)
+    }
+
+    fn with_jacobians(&self, problem: &Problem, batch: &Genomes) -> Answered {
+        let (points, n) = (self.measured.len(), problem.parameters.len());
+        let (mut residuals, mut scales) = (vec![0.0; points], vec![0.0; points]);
+        let places: Vec<Vec<f64>> = batch.rows().map(|genome| problem.values(genome)).collect();
+        let mut answered = Answered::default();
+        for (k, found) in self.linearize(problem, &places).into_iter().enumerate() {
+            let (row, failed) = match found {
+                Ok(found) => {
+                    answered.simulations += found.simulations;
+                    self.scaled(problem, &found.simulated, &mut residuals, &mut scales);
+                    for (point, scale) in scales.iter().enumerate() {
+                        let one = |(free, (j, value)): (&Free, (usize, &f64))| {
+                            found.derivatives[point * n + j] * scale * free.slope(*value)
+                        };
+                        let values = places[k].iter().enumerate();
+                        answered.jacobians.extend(problem.parameters.iter().zip(values).map(one));
+                    }
+                    (found.simulated, None)
+                }
+                Err(failed) => {
+                    answered.simulations += 1;
+                    answered.jacobians.extend(vec![f64::NAN; points * n]);
+                    (vec![f64::NAN; points], Some(failed))
+                }
+            };
+            let (objectives, failed) = self.rate(problem, &row, failed);
+            answered.objectives.extend(objectives);
+            answered.failures.extend(failed.map(|failed| (k, failed)));
+            answered.residuals.extend(self.residuals(problem, &row));
+        }
+        answered
+    }
+
+    fn without(&mut self, problem: &Problem, batch: &Genomes, residuals: bool) -> Answered {
         let (n, m, points) = (batch.len(), self.n_objectives, self.measured.len());
         let mut objectives = vec![f64::NAN; n * m];
         let mut failed: Vec<Option<Failed>> = vec![None; n];
@@ -145,23 +196,19 @@ impl Evaluation {
         self.pool.install(|| {
             rows.par_chunks_mut(points).zip(&wanted).map(evaluate).collect_into_vec(&mut outcomes);
         });
-        if self.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed)) {
-            self.rows = rows;
-            return None;
-        }
         for (&k, (values, failure)) in wanted.iter().zip(outcomes) {
             objectives[k * m..(k + 1) * m].copy_from_slice(&values);
             failed[k] = failure;
         }
         let answered = Answered {
-            residuals: if residuals { self.residuals(&rows) } else { Vec::new() },
+            residuals: if residuals { self.residuals(problem, &rows) } else { Vec::new() },
             objectives,
             failures: failed.into_iter().enumerate().filter_map(|(k, f)| Some((k, f?))).collect(),
             simulations: wanted.len() as u64,
+            jacobians: Vec::new(),
         };
         self.rows = rows;
-        self.remember(batch, &answered);
-        Some(answered)
+        answered
     }
 
     /// The simulated points of one individual.
@@ -180,14 +227,48 @@ impl Evaluation {
 
     /// The simulated points of several individuals given by their values, at once.
     pub fn simulate_all(&self, values: &[Vec<f64>]) -> Vec<Result<Vec<f64>, Failed>> {
+        self.simulate_scaled(values, 1.0)
+    }
+
+    /// The same with the tolerance of the solver times `factor`.
+    pub fn simulate_scaled(
+        &self,
+        values: &[Vec<f64>],
+        factor: f64,
+    ) -> Vec<Result<Vec<f64>, Failed>> {
         let one = |values: &Vec<f64>| {
-            let worker =
-                &self.workers[rayon::current_thread_index().unwrap_or(0) % self.workers.len()];
             let mut row = vec![f64::NAN; self.measured.len()];
-            worker.lock().unwrap_or_else(PoisonError::into_inner).simulate(values, &mut row)?;
-            Ok(row)
+            let mut worker = self.worker();
+            worker.scale_tolerance(factor * self.tolerance);
+            let found = worker.simulate(values, &mut row);
+            worker.scale_tolerance(self.tolerance);
+            found.map(|()| row)
         };
         self.pool.install(|| values.par_iter().map(one).collect())
+    }
+
+    /// The simulated points at several places, with derivatives where the simulator has exact ones.
+    pub(super) fn exact_all(&self, places: &[Vec<f64>]) -> Vec<Result<Linearization, Failed>> {
+        let one = |values: &Vec<f64>| {
+            let (points, n) = (self.measured.len(), values.len());
+            let mut simulated = vec![f64::NAN; points];
+            let mut derivatives = vec![f64::NAN; points * n];
+            let mut worker = self.worker();
+            let exact = worker.sensitivities(values, &mut simulated, &mut derivatives);
+            let exact = exact == Ok(true) && derivatives.iter().all(|value| value.is_finite());
+            if !exact {
+                derivatives.clear();
+                worker.simulate(values, &mut simulated)?;
+            }
+            Ok(Linearization { simulated, derivatives, exact, simulations: 1 })
+        };
+        self.pool.install(|| places.par_iter().map(one).collect())
+    }
+
+    /// The simulator of this thread.
+    fn worker(&self) -> MutexGuard<'_, Box<dyn Simulate>> {
+        let place = rayon::current_thread_index().unwrap_or(0) % self.workers.len();
+        self.workers[place].lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The answers of an earlier run are remembered as if they were new.
@@ -212,31 +293,92 @@ impl Evaluation {
         genome: &[f64],
         row: &mut [f64],
     ) -> (Vec<f64>, Option<Failed>) {
-        let worker = &self.workers[rayon::current_thread_index().unwrap_or(0) % self.workers.len()];
-        let mut worker = worker.lock().unwrap_or_else(PoisonError::into_inner);
-        match worker.simulate(&problem.values(genome), row) {
-            Ok(()) => {
-                let value = |(_, f): &(String, Box<dyn super::Fitness>)| {
-                    f.fitness(row, &self.measured, &self.weights)
-                };
-                let values: Vec<f64> = problem.objectives.iter().map(value).collect();
-                let unrated = values.iter().position(|value| has_failed(*value));
-                (values, unrated.map(|k| unrated_by(&problem.objectives[k].0)))
-            }
-            Err(failed) => {
-                row.fill(f64::NAN);
-                (vec![failed.fitness(); self.n_objectives], Some(failed))
-            }
+        let failed = self.worker().simulate(&problem.values(genome), row).err();
+        if failed.is_some() {
+            row.fill(f64::NAN);
         }
+        self.rate(problem, row, failed)
     }
 
-    fn residuals(&self, rows: &[f64]) -> Vec<f64> {
-        let Some(scales) = &self.scales else { return Vec::new() };
-        let row = |row: &[f64]| {
-            let triple = row.iter().zip(&self.measured).zip(scales);
-            triple.map(|((s, m), scale)| scale * (s - m)).collect::<Vec<f64>>()
+    /// The objectives of a simulation, and why it failed.
+    fn rate(
+        &self,
+        problem: &Problem,
+        row: &[f64],
+        failed: Option<Failed>,
+    ) -> (Vec<f64>, Option<Failed>) {
+        if let Some(failed) = failed {
+            return (vec![failed.fitness(); self.n_objectives], Some(failed));
+        }
+        let value = |(_, f): &(String, Box<dyn super::Fitness>)| {
+            f.fitness(row, &self.measured, &self.weights)
         };
-        rows.chunks_exact(self.measured.len()).flat_map(row).collect()
+        let values: Vec<f64> = problem.objectives.iter().map(value).collect();
+        let unrated = values.iter().position(|value| has_failed(*value));
+        (values, unrated.map(|k| unrated_by(&problem.objectives[k].0)))
+    }
+
+    fn residuals(&self, problem: &Problem, rows: &[f64]) -> Vec<f64> {
+        if self.scales.is_none() {
+            return Vec::new();
+        }
+        let (mut all, mut factors) = (vec![0.0; rows.len()], vec![0.0; self.measured.len()]);
+        let n = self.measured.len();
+        for (row, own) in rows.chunks_exact(n).zip(all.chunks_exact_mut(n)) {
+            self.scaled(problem, row, own, &mut factors);
+        }
+        all
+    }
+
+    /// Residuals of one simulation whose squares add up to what least squares minimises, and the
+    /// factors that make derivatives of the points those of the residuals.
+    pub(super) fn scaled(
+        &self,
+        problem: &Problem,
+        simulated: &[f64],
+        residuals: &mut [f64],
+        factors: &mut [f64],
+    ) {
+        let fitness = &problem.objectives[0].1;
+        if fitness.scaled(simulated, &self.measured, &self.weights, residuals, factors) {
+            return;
+        }
+        let scales = self.scales.as_deref().unwrap_or(&self.weights);
+        factors.copy_from_slice(scales);
+        let points = simulated.iter().zip(&self.measured).zip(scales);
+        residuals.iter_mut().zip(points).for_each(|(r, ((s, m), w))| *r = w * (s - m));
+    }
+
+    /// The weights that the errors have at this simulation: reciprocal standard deviations where
+    /// these are known or estimated.
+    pub(super) fn error_weights(&self, problem: &Problem, simulated: &[f64]) -> Vec<f64> {
+        let fitness = problem.objectives.first().map(|(_, fitness)| fitness);
+        fitness
+            .and_then(|own| own.error_weights(simulated, &self.measured, &self.weights))
+            .or_else(|| self.scales.clone())
+            .unwrap_or_else(|| self.weights.clone())
+    }
+
+    /// The first objective of a simulation.
+    pub(super) fn objective(&self, problem: &Problem, simulated: &[f64]) -> f64 {
+        problem.objectives[0].1.fitness(simulated, &self.measured, &self.weights)
+    }
+
+    /// From now on the points count these weights; what was remembered holds no longer.
+    pub(super) fn reweigh(&mut self, problem: &Problem, weights: Vec<f64>) {
+        let fitness = problem.objectives.first();
+        self.scales = fitness.and_then(|(_, own)| own.least_squares(&self.measured, &weights));
+        self.weights = weights;
+        self.forget();
+    }
+
+    /// From now on simulators solve with their tolerance times this.
+    pub(super) fn scale_tolerance(&mut self, factor: f64) {
+        for worker in &self.workers {
+            worker.lock().unwrap_or_else(PoisonError::into_inner).scale_tolerance(factor);
+        }
+        self.tolerance = factor;
+        self.forget();
     }
 }
 

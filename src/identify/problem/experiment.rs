@@ -13,6 +13,8 @@ use std::sync::atomic::AtomicBool;
 
 /// A failed simulation is tried once more with the tolerance times this and another integrator.
 const TIGHTER: f64 = 0.01;
+/// No tolerance is tightened beyond this, where errors of rounding begin.
+const SMALLEST_TOLERANCE: f64 = 1e-12;
 
 /// An experiment: one simulation of one model.
 #[derive(Clone)]
@@ -57,6 +59,8 @@ struct Stage {
     values: Vec<f64>,
     settings: Settings,
     retry: Option<Settings>,
+    /// The tolerances of both as they were set.
+    tolerances: [f64; 2],
     x_name: String,
     /// For each observation the times, or in X the points.
     points: Vec<Vec<f64>>,
@@ -99,6 +103,17 @@ impl Simulate for ModelSimulator {
         Ok(())
     }
 
+    fn scale_tolerance(&mut self, factor: f64) {
+        for stage in &mut self.stages {
+            let [first, second] =
+                stage.tolerances.map(|own| (own * factor).max(SMALLEST_TOLERANCE.min(own)));
+            stage.settings.tolerance = first;
+            if let Some(retry) = &mut stage.retry {
+                retry.tolerance = second;
+            }
+        }
+    }
+
     fn cancel_by(&mut self, flag: Option<Arc<AtomicBool>>) {
         for stage in &mut self.stages {
             stage.settings.cancel.clone_from(&flag);
@@ -137,6 +152,10 @@ impl Stage {
             instance: model.instance(&varied, &observed)?,
             places: experiment.parameters.iter().map(|(place, _)| *place).collect(),
             values: Vec::with_capacity(varied.len()),
+            tolerances: [
+                settings.tolerance,
+                retry(&settings).map_or(settings.tolerance, |retry| retry.tolerance),
+            ],
             retry: retry(&settings),
             settings,
             x_name: x_name.clone(),

@@ -20,9 +20,9 @@ impl Solution {
             "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}</title><style>{STYLE}</style></head><body>\n<h1>{0}</h1>\n",
             escaped(&self.title)
         );
-        for note in &self.notes {
+        for finding in &self.findings {
             // Writing into a String cannot fail.
-            _ = writeln!(page, "<p class=\"note\">{}</p>", escaped(note));
+            _ = writeln!(page, "<p class=\"note\">{}</p>", escaped(&finding.sentence));
         }
         _ = writeln!(page, "<pre>{}</pre>", escaped(self.text().trim()));
         page += "<h2>Fit and residuals</h2>\n";

@@ -2,7 +2,7 @@
 //! length and a checksum. A run that ended in the middle of a record has lost that record alone.
 //!
 //! ```text
-//! file   = "GAPIRUN1", fingerprint of the problem (8 bytes), record, record, …
+//! file   = "GAPIRUN2", fingerprint of the problem (8 bytes), record, record, …
 //! record = length of the payload (8 bytes), CRC-32 of it (4 bytes), payload
 //! ```
 //!
@@ -11,7 +11,7 @@
 use super::evaluation::Answered;
 use super::{Failed, FailureKind};
 
-const MAGIC: &[u8; 8] = b"GAPIRUN1";
+const MAGIC: &[u8; 8] = b"GAPIRUN2";
 
 /// One question of the method with its answers.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -57,7 +57,8 @@ pub fn encode(record: &Record) -> Vec<u8> {
         put_text(&mut payload, name);
         payload.extend(value.to_le_bytes());
     }
-    for numbers in [&record.answered.objectives, &record.answered.residuals] {
+    let Answered { objectives, residuals, jacobians, .. } = &record.answered;
+    for numbers in [objectives, residuals, jacobians] {
         put_count(&mut payload, numbers.len());
         numbers.iter().for_each(|value| payload.extend(value.to_le_bytes()));
     }
@@ -121,6 +122,7 @@ fn record(reader: &mut Reader<'_>) -> Option<Record> {
     }
     record.answered.objectives = reader.numbers()?;
     record.answered.residuals = reader.numbers()?;
+    record.answered.jacobians = reader.numbers()?;
     for _ in 0..reader.count()? {
         let k = reader.count()?;
         let kind = *FailureKind::ALL.get(usize::from(reader.take(1)?[0]))?;
@@ -196,6 +198,7 @@ mod tests {
             answered: Answered {
                 objectives: vec![1.0, f64::INFINITY, -0.0],
                 residuals: vec![0.1],
+                jacobians: vec![0.5, -0.5],
                 failures: vec![(
                     1,
                     Failed { kind: FailureKind::Solver, cause: "log ≤ 0".into(), progress: 0.25 },

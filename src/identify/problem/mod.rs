@@ -6,14 +6,21 @@
 //! a [`Record`]; a run that is given the records of an earlier one goes the same way again without
 //! simulating, and then on: that is how an interrupted run is resumed to the same end.
 
+mod checks;
+mod conclusion;
+mod effects;
+mod error_model;
 mod evaluation;
 mod experiment;
 mod failure;
 mod failure_region;
+mod finding;
 mod fingerprint;
 mod html;
 mod importance;
+pub mod inference;
 mod inseparable;
+mod jacobian;
 mod journal;
 mod notes;
 mod profile;
@@ -26,20 +33,25 @@ mod statistics;
 mod summary;
 mod text;
 
+pub use conclusion::{Conclusion, conclude};
+pub use error_model::{ErrorModel, Sigma, SigmaFormula, decide, likelihood};
 pub use evaluation::Evaluation;
 pub use experiment::{Experiment, ModelSimulator, Observation};
 pub use failure::{Failed, FailureKind};
 pub use failure_region::{FailureRegion, failure_region};
+pub use finding::{Finding, FindingKind, Severity};
 pub use fingerprint::Fingerprint;
 pub use importance::{ANALYSES, Analysis, Importance, ParameterImportance, analysis};
+pub use inference::{Inference, Inferred, infer};
 pub use inseparable::{Form, Inseparable};
+pub use jacobian::Linearization;
 pub use journal::{Journal, Record, decode, encode, first_frame, frame, header};
 pub use profile::{Profile, Profiles, profiles};
 pub use run::{Best, Run};
 pub use script_result::ScriptResult;
 pub use space::Free;
-pub use statistics::{ResidualTest, Statistics, residual_test, student_quantile};
-pub use summary::{Solution, SolvedParameter, SolvedSeries};
+pub use statistics::{ResidualTest, Statistics, distributions, residual_test};
+pub use summary::{ChiSquare, Solution, SolvedParameter, SolvedSeries, Verdict};
 
 use super::fitness::Fitness;
 use crate::diag::Fault;
@@ -49,12 +61,6 @@ use std::sync::atomic::AtomicBool;
 
 /// Relative error of simulated values where nothing is integrated.
 pub const NOISE_OF_FORMULAS: f64 = 1e-12;
-
-/// Step of finite differences in the unit cube: the square root of the relative error of the
-/// simulated values, where the errors of the difference and of the simulation are alike.
-pub fn difference(noise: f64) -> f64 {
-    noise.sqrt().clamp(1e-8, 1e-2)
-}
 
 /// Something that turns values of the free parameters into simulated points.
 pub trait Simulate: Send {
@@ -105,8 +111,33 @@ pub struct Series {
     pub x: Vec<f64>,
     /// Y of the points.
     pub y: Vec<f64>,
-    /// Every difference counts times this.
+    /// Every difference counts times this, besides the reciprocal of its sigma.
     pub weight: f64,
+    /// The standard deviation of the errors.
+    pub sigma: Sigma,
+    /// The column of the data that Y was read from.
+    pub column: String,
+    /// Rows of the points in the data, the first below the heading is 1; empty where points have
+    /// no rows, and then they are counted.
+    pub rows: Vec<usize>,
+    /// Rows that were left out because a number is missing.
+    pub missing: Vec<usize>,
+}
+
+impl Series {
+    /// Its name in messages: `experiment / variable`.
+    pub fn label(&self) -> String {
+        match self.experiment.is_empty() {
+            true => self.y_name.clone(),
+            false => format!("{} / {}", self.experiment, self.y_name),
+        }
+    }
+
+    /// What the difference of each point counts, as far as it is known before the fit; a formula
+    /// for sigma is taken at the measured values.
+    pub fn weights(&self) -> Vec<f64> {
+        self.sigma.weights(&self.y, self.weight)
+    }
 }
 
 /// When a run ends; the first that holds ends it.
@@ -150,6 +181,8 @@ pub struct Problem {
     pub stop: Stop,
     /// Relative error of the simulated values, for finite differences: 1e-15 for a formula.
     pub noise: f64,
+    /// What is wanted beyond the estimates.
+    pub inference: Inference,
     /// Makes a simulator; one a thread.
     pub simulator: Box<dyn Fn() -> Result<Box<dyn Simulate>, Fault> + Send + Sync>,
 }
@@ -158,11 +191,6 @@ impl Problem {
     /// Number of points of all series.
     pub fn n_points(&self) -> usize {
         self.series.iter().map(|series| series.x.len()).sum()
-    }
-
-    /// Step of finite differences in the unit cube.
-    pub fn difference(&self) -> f64 {
-        difference(self.noise)
     }
 
     /// Values of the free parameters of a genome.

@@ -1,49 +1,140 @@
-//! What must be known about a solution, in words.
+//! Findings about parameters and data: what the intervals mean, and what the data cannot say.
 
+use super::checks::residual_findings;
+use super::effects::Effect;
 use super::{
-    FailureRegion, Form, Inseparable, Profiles, Solution, SolvedParameter, SolvedSeries, Statistics,
+    ErrorModel, FailureRegion, Finding, FindingKind, Form, Inseparable, Profiles, Run, Severity,
+    Solution, SolvedParameter, SolvedSeries, Statistics, Verdict,
 };
 use crate::identify::table::significant;
+use crate::identify::uncertainty_given;
 
-/// Residuals whose runs are less probable than this are no noise.
-const NO_NOISE: f64 = 0.01;
-/// Residuals below this many times the error of the simulation come from the simulation.
-const FROM_THE_SOLVER: f64 = 100.0;
 /// Beyond this condition number digits of the sensitivities are lost.
 const ILL_CONDITIONED: f64 = 1e4;
-
 /// Factors and exponents below this are those of rounding.
 const NEGLIGIBLE: f64 = 1e-12;
+/// A bound is contradicted by the data where the fit would go beyond it by so many standard errors.
+const BEYOND: f64 = 2.0;
+/// A point that is alone in its series dominates a parameter whose standard error is so many times
+/// as large without it.
+const DOMINANT: f64 = 3.0;
+/// Held-out data of the same kind have ratios of the errors up to this by chance and by the
+/// parameters' own errors; beyond ten the model is said not to hold.
+const RATIOS: [f64; 2] = [1.5, 10.0];
 
-/// The sentences, most important first. `noise`: relative error of the simulated values.
-pub(super) fn notes(solution: &Solution, statistics: &Statistics, noise: f64) -> Vec<String> {
-    let mut notes = Vec::new();
-    let name = |k: usize| solution.parameters[k].name.as_str();
-    for &k in &statistics.without_effect {
-        notes.push(format!("{} has no effect on the compared points.", name(k)));
+/// All findings, most important first.
+pub(super) fn findings(
+    solution: &Solution,
+    run: &Run,
+    statistics: &Statistics,
+    effects: &[(usize, Effect)],
+    simulated: &[f64],
+) -> Vec<Finding> {
+    let mut findings: Vec<Finding> = about_count(solution, run, statistics).into_iter().collect();
+    findings.extend(about_effects(solution, effects));
+    findings.extend(about_parameters(solution, statistics));
+    if run.problem.objectives.len() > 1 {
+        findings.push(several_objectives(solution));
     }
+    findings.extend(run.conclusion.findings.clone());
+    findings.extend(super::error_model::decided(&run.problem.series));
+    findings.extend(estimated(solution));
+    findings.extend(equal_columns(run, statistics));
+    findings.extend(dominant(run, statistics));
+    findings.extend(residual_findings(
+        &run.problem,
+        statistics,
+        simulated,
+        run.conclusion.resolved,
+    ));
+    findings.extend(solution.validation.iter().map(|own| about_validation(own, solution)));
+    findings.extend(about_missing(run));
+    findings.extend(solution.failure_region.as_ref().map(about_failures));
+    findings
+}
+
+/// Points against parameters.
+fn about_count(solution: &Solution, run: &Run, statistics: &Statistics) -> Option<Finding> {
+    let (points, parameters) = (run.problem.n_points(), solution.parameters.len());
+    let few = statistics.freedom < 1.0;
+    if !few && statistics.uncertainty.is_some() {
+        return None;
+    }
+    if !few {
+        let sentence = "Standard errors could not be computed: the simulation fails beside the \
+                        best point, or its derivatives are not finite.";
+        return Some(Finding::new(FindingKind::Missing, sentence));
+    }
+    let kind = FindingKind::TooFewPoints;
+    let sentence = format!(
+        "{points} points for {parameters} parameters leave no degree of freedom: {}. Any model \
+         with so many parameters fits such data; measure more points or fix parameters.",
+        match statistics.believed && statistics.uncertainty.is_some() {
+            true => "the standard errors rest on the given sigma alone, and nothing can be tested",
+            false => "there are no standard errors, and nothing can be tested",
+        }
+    );
+    let finding = Finding::new(kind, sentence).severity(Severity::Serious);
+    Some(finding.statistic(statistics.freedom, 1.0))
+}
+
+fn about_effects(solution: &Solution, effects: &[(usize, Effect)]) -> Vec<Finding> {
+    let one = |(k, effect): &(usize, Effect)| {
+        let parameter = &solution.parameters[*k];
+        let name = &parameter.name;
+        let end = |end: f64| significant(end, 4);
+        let [min, max] = parameter.range;
+        let (kind, sentence) = match effect {
+            Effect::None => {
+                (FindingKind::NoEffect, format!("{name} has no effect on the compared points."))
+            }
+            Effect::Steps([Some(low), Some(high)]) => (
+                FindingKind::Interval,
+                format!(
+                    "{name} acts in steps: its derivative is zero, but only values from {} to {} \
+                     fit these data, the others held. Within the step nothing is known.",
+                    end(*low),
+                    end(*high)
+                ),
+            ),
+            Effect::Steps([low, high]) => (
+                FindingKind::PracticallyNonIdentifiable,
+                format!(
+                    "{name} acts in steps: its derivative is zero, and values from {} to {} fit \
+                     these data, the others held; the range ends before the data bound it.",
+                    end(low.unwrap_or(min)),
+                    end(high.unwrap_or(max))
+                ),
+            ),
+        };
+        Finding::new(kind, sentence).parameters([name.as_str()])
+    };
+    effects.iter().map(one).collect()
+}
+
+fn about_parameters(solution: &Solution, statistics: &Statistics) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let name = |k: usize| solution.parameters[k].name.as_str();
     for group in &statistics.inseparable {
-        notes.push(inseparable(group, &name));
+        let kind = match group.form {
+            Form::Sum | Form::Product => FindingKind::StructurallyNonIdentifiable,
+            Form::Local => FindingKind::PracticallyNonIdentifiable,
+        };
+        let names = group.parameters.iter().map(|&k| name(k));
+        findings.push(Finding::new(kind, inseparable(group, &name)).parameters(names));
     }
     let alone = |k: usize| {
         !statistics.without_effect.contains(&k)
             && !statistics.inseparable.iter().any(|group| group.parameters.contains(&k))
     };
     for (k, parameter) in solution.parameters.iter().enumerate() {
-        if parameter.determined == Some(false) && alone(k) {
-            notes.push(undetermined(parameter));
+        if parameter.verdict == Some(Verdict::PracticallyNonIdentifiable) && alone(k) {
+            let finding =
+                Finding::new(FindingKind::PracticallyNonIdentifiable, undetermined(parameter));
+            findings.push(finding.parameters([parameter.name.as_str()]));
         }
         if parameter.at_bound {
-            let Some(end) = parameter.range.iter().min_by(|a, b| {
-                (*a - parameter.value).abs().total_cmp(&(*b - parameter.value).abs())
-            }) else {
-                continue;
-            };
-            notes.push(format!(
-                "{} lies at the end {} of its search range: the best value may lie beyond it.",
-                parameter.name,
-                significant(*end, 5)
-            ));
+            findings.push(at_bound(parameter, k, statistics));
         }
     }
     let pairs = solution.strongly_correlated();
@@ -52,25 +143,221 @@ pub(super) fn notes(solution: &Solution, statistics: &Statistics, noise: f64) ->
             format!("{} and {} ({})", name(*k), name(*l), significant(*c, 4))
         };
         let pairs: Vec<String> = pairs.iter().map(text).collect();
-        notes.push(format!("Hardly told apart (correlation): {}.", pairs.join(", ")));
+        let sentence = format!("Strongly correlated: {}.", pairs.join(", "));
+        findings
+            .push(Finding::new(FindingKind::Correlated, sentence).severity(Severity::Information));
     }
     if let Some(condition) = solution.condition.filter(|condition| *condition > ILL_CONDITIONED) {
-        notes.push(format!(
+        let sentence = format!(
             "The sensitivities are ill-conditioned ({}): small errors of the data change the \
              parameters much.",
             significant(condition, 2)
-        ));
-    }
-    notes.extend(solution.series.iter().filter_map(|series| about_residuals(series, noise)));
-    notes.extend(solution.failure_region.as_ref().map(about_failures));
-    if statistics.uncertainty.is_none() {
-        notes.push(
-            "Deviations could not be computed: there are not more points than parameters, or the \
-             simulation fails beside the best point."
-                .to_owned(),
         );
+        let finding = Finding::new(FindingKind::IllConditioned, sentence);
+        findings.push(finding.statistic(condition, ILL_CONDITIONED));
     }
-    notes
+    findings
+}
+
+/// Whether the data want a parameter beyond its bound, from the derivative of the sum there.
+fn at_bound(parameter: &SolvedParameter, k: usize, statistics: &Statistics) -> Finding {
+    let [min, max] = parameter.range;
+    let upper = (parameter.value - max).abs() < (parameter.value - min).abs();
+    let end = significant(if upper { max } else { min }, 5);
+    let side = if upper { "upper" } else { "lower" };
+    let column = statistics.jacobian[k].iter().zip(&statistics.weights).zip(&statistics.residuals);
+    let gradient: f64 = column.map(|((d, w), r)| d * w * r).sum();
+    let outward = if upper { 1.0 } else { -1.0 };
+    let pull = parameter.deviation.map(|se| outward * se * gradient / statistics.variance);
+    let what = match pull {
+        Some(pull) if pull > BEYOND => format!(
+            "the fit would go on beyond it, by {} standard errors if it were linear. Widen the \
+             range, or doubt the model if the bound is one of nature",
+            significant(pull, 2)
+        ),
+        Some(_) => "the data do not contradict that bound, and say only how far from it the value \
+                    may be"
+            .to_owned(),
+        None => "the best value may lie beyond it".to_owned(),
+    };
+    let finding = Finding::new(
+        FindingKind::AtBound,
+        format!("{} lies at the {side} end {end} of its search range: {what}.", parameter.name),
+    );
+    let finding = finding.parameters([parameter.name.as_str()]);
+    match pull {
+        Some(pull) => finding.statistic(pull, BEYOND),
+        None => finding,
+    }
+}
+
+fn several_objectives(solution: &Solution) -> Finding {
+    Finding::new(
+        FindingKind::Missing,
+        format!(
+            "Values, intervals and tests are those of the end of the front with the smallest `{}`; \
+             other points of the front are other compromises.",
+            solution.fitness_name
+        ),
+    )
+    .severity(Severity::Information)
+}
+
+fn estimated(solution: &Solution) -> Option<Finding> {
+    if solution.error_model != ErrorModel::Estimated {
+        return None;
+    }
+    let own = |series: &SolvedSeries| {
+        let sigma = series.sigma.filter(|_| series.sigma_estimated)?;
+        Some(format!("{} {} {}", series.y[0], significant(sigma, 4), series.y[1]))
+    };
+    let mut sigmas: Vec<String> = solution.series.iter().filter_map(own).collect();
+    sigmas.dedup();
+    let sentence = format!(
+        "Standard deviations estimated with the parameters: {}.",
+        sigmas.iter().map(|text| text.trim()).collect::<Vec<_>>().join(", ")
+    );
+    Some(Finding::new(FindingKind::ErrorModel, sentence).severity(Severity::Information))
+}
+
+fn equal_columns(run: &Run, statistics: &Statistics) -> Vec<Finding> {
+    let series = &run.problem.series;
+    let one = |&(later, earlier): &(usize, usize)| {
+        let (a, b) = (&series[earlier], &series[later]);
+        let column = |own: &super::Series| match own.column.is_empty() {
+            true => own.label(),
+            false => format!("`{}`", own.column),
+        };
+        Finding::new(
+            FindingKind::ColumnsEqual,
+            format!(
+                "The columns {} and {} hold the same numbers: they are {} points, not {}, and \
+                 count once in the standard errors.",
+                column(a),
+                column(b),
+                a.y.len(),
+                a.y.len() + b.y.len()
+            ),
+        )
+        .series(a.label())
+        .series(b.label())
+    };
+    statistics.repeated.iter().map(one).collect()
+}
+
+/// Single points, such as a value known before, that determine a parameter against the data.
+fn dominant(run: &Run, statistics: &Statistics) -> Vec<Finding> {
+    let Some(all) = &statistics.uncertainty else { return Vec::new() };
+    let (mut findings, mut first) = (Vec::new(), 0);
+    for series in &run.problem.series {
+        let place = first;
+        first += series.x.len();
+        if series.x.len() != 1 || statistics.freedom < 1.0 {
+            continue;
+        }
+        let column = |column: &Vec<f64>| {
+            let pairs = column.iter().zip(&statistics.weights).enumerate();
+            pairs.filter(|(j, _)| *j != place).map(|(_, (d, w))| d * w).collect::<Vec<f64>>()
+        };
+        let rest: Vec<Vec<f64>> = statistics.jacobian.iter().map(column).collect();
+        let Some(without) = uncertainty_given(&rest, statistics.variance) else { continue };
+        for (k, free) in run.problem.parameters.iter().enumerate() {
+            let ratio = without.standard_deviations[k] / all.standard_deviations[k];
+            if ratio.is_nan() || ratio <= DOMINANT {
+                continue;
+            }
+            let alone = match ratio.is_finite() {
+                true => format!(
+                    "the other data alone give a standard error of {}, {} times as large",
+                    significant(without.standard_deviations[k], 3),
+                    significant(ratio, 3)
+                ),
+                false => "the other data do not determine it at all".to_owned(),
+            };
+            findings.push(
+                Finding::new(
+                    FindingKind::Dominant,
+                    format!(
+                        "{} follows the single point {} of {}, as it does a prior: {alone}. \
+                         Whether that value is right these data cannot say.",
+                        free.name,
+                        significant(series.y[0], 5),
+                        series.label()
+                    ),
+                )
+                .series(series.label())
+                .parameters([free.name.as_str()])
+                .statistic(ratio, DOMINANT),
+            );
+        }
+    }
+    findings
+}
+
+/// Held-out data beside those of the fit.
+fn about_validation(own: &SolvedSeries, solution: &Solution) -> Finding {
+    let label = match own.experiment.is_empty() {
+        true => own.y[0].clone(),
+        false => format!("{} / {}", own.experiment, own.y[0]),
+    };
+    if !own.rmse.is_finite() {
+        let sentence = format!("{label}, held out for validation, could not be simulated.");
+        return Finding::new(FindingKind::Validation, sentence).series(label);
+    }
+    let same: Vec<&SolvedSeries> =
+        solution.series.iter().filter(|fitted| fitted.y[0] == own.y[0]).collect();
+    let points: usize = same.iter().map(|fitted| fitted.points.len()).sum();
+    let square: f64 = same.iter().map(|f| f.rmse * f.rmse * f.points.len() as f64).sum();
+    let fitted = (square / points as f64).sqrt();
+    let ratio = own.rmse / fitted;
+    if !ratio.is_finite() {
+        let sentence = format!(
+            "{label}, held out for validation, has an RMSE of {} {}; there is no error of the fit \
+             of {} to compare it with.",
+            significant(own.rmse, 3),
+            own.y[1],
+            own.y[0]
+        );
+        let finding = Finding::new(FindingKind::Validation, sentence);
+        return finding.severity(Severity::Information).series(label);
+    }
+    let (severity, words) = if ratio <= RATIOS[0] {
+        (Severity::Information, "the model describes data that it was not fitted to as well")
+    } else if ratio <= RATIOS[1] {
+        (Severity::Warning, "the model describes data that it was not fitted to worse")
+    } else {
+        (Severity::Serious, "the model does not hold for data that it was not fitted to")
+    };
+    let sentence = format!(
+        "{label}, held out for validation: RMSE {} against {} of the fit, {} times; {words}.",
+        significant(own.rmse, 3),
+        significant(fitted, 3),
+        significant(ratio, 3)
+    );
+    let finding = Finding::new(FindingKind::Validation, sentence).severity(severity);
+    finding.series(label).statistic(ratio, RATIOS[0])
+}
+
+fn about_missing(run: &Run) -> Vec<Finding> {
+    let one = |series: &super::Series| {
+        let n = series.missing.len();
+        let rows: Vec<String> = series.missing.iter().take(10).map(usize::to_string).collect();
+        let sentence = format!(
+            "{} of {} without a number {} left out (row{} {}{}); {} points are used.",
+            if n == 1 { "1 point".to_owned() } else { format!("{n} points") },
+            series.label(),
+            if n == 1 { "is" } else { "are" },
+            if n == 1 { "" } else { "s" },
+            rows.join(", "),
+            if n > rows.len() { ", ..." } else { "" },
+            series.x.len()
+        );
+        Finding::new(FindingKind::MissingPoints, sentence)
+            .severity(Severity::Information)
+            .series(series.label())
+            .rows(series.missing.clone())
+    };
+    run.problem.series.iter().filter(|series| !series.missing.is_empty()).map(one).collect()
 }
 
 fn inseparable<'a>(group: &Inseparable, name: &impl Fn(usize) -> &'a str) -> String {
@@ -95,12 +382,12 @@ fn inseparable<'a>(group: &Inseparable, name: &impl Fn(usize) -> &'a str) -> Str
     };
     if group.form == Form::Local {
         return format!(
-            "{all} cannot be determined separately about the best values: changing {} together changes nothing. Fix {fix} of them.",
+            "{all} are not separately identifiable about the best values: changing {} together changes nothing. Fix {fix} of them.",
             combinations.join(", or ")
         );
     }
     format!(
-        "{all} cannot be determined separately by any data of this kind: the model depends on {} alone. Fix {fix} of them.",
+        "{all} are structurally non-identifiable by data of this kind: the model depends on {} alone. Fix {fix} of them.",
         combinations.join(" and ")
     )
 }
@@ -137,7 +424,7 @@ fn undetermined(parameter: &SolvedParameter) -> String {
         None => (min, max),
     };
     format!(
-        "{} cannot be determined from these data: it may be anything between {} and {}{}.",
+        "{} is practically non-identifiable from these data: it may be anything between {} and {}{}.",
         parameter.name,
         significant(low, 4),
         significant(high, 4),
@@ -146,12 +433,12 @@ fn undetermined(parameter: &SolvedParameter) -> String {
 }
 
 /// What the profiles say beyond the linear intervals.
-pub(super) fn profile_notes(solution: &Solution, found: &Profiles) -> Vec<String> {
-    let mut notes = Vec::new();
+pub(super) fn profile_findings(solution: &Solution, found: &Profiles) -> Vec<Finding> {
+    let mut findings = Vec::new();
     for (parameter, profile) in solution.parameters.iter().zip(&found.profiles) {
         let [min, max] = parameter.range.map(|end| significant(end, 4));
         let name = &parameter.name;
-        let note = match profile.interval.map(|end| end.map(|end| significant(end, 4))) {
+        let sentence = match profile.interval.map(|end| end.map(|end| significant(end, 4))) {
             [Some(_), Some(_)] => continue,
             [None, None] => format!(
                 "By its profile {name} may be anything in its search range, {min} to {max}."
@@ -163,53 +450,31 @@ pub(super) fn profile_notes(solution: &Solution, found: &Profiles) -> Vec<String
                 "By its profile {name} is at most {high}; down to the end {min} of its range the data do not bound it."
             ),
         };
-        notes.push(note);
+        let finding = Finding::new(FindingKind::PracticallyNonIdentifiable, sentence);
+        findings.push(finding.parameters([name.as_str()]));
     }
     if let Some((values, sum)) = &found.better {
         let pairs = solution.parameters.iter().zip(values);
         let values: Vec<String> =
             pairs.map(|(p, value)| format!("{} = {}", p.name, significant(*value, 6))).collect();
-        notes.push(format!(
+        let sentence = format!(
             "The profiles came upon a better fit ({}): {}. Run again, with a larger budget or these starts.",
             significant(*sum, 7),
             values.join(", ")
-        ));
+        );
+        let finding = Finding::new(FindingKind::OtherMinimum, sentence);
+        findings.push(finding.severity(Severity::Serious));
     }
-    notes
+    findings
 }
 
-fn about_failures(region: &FailureRegion) -> String {
+fn about_failures(region: &FailureRegion) -> Finding {
     let [inside, outside] = region.failed.map(|part| format!("{:.0} %", 100.0 * part));
     let [low, high] = region.range.map(|end| significant(end, 3));
-    format!(
+    let sentence = format!(
         "Simulations fail where {} is between {low} and {high}: {inside} of the individuals there failed, {outside} elsewhere.",
         region.parameter
-    )
-}
-
-fn about_residuals(series: &SolvedSeries, noise: f64) -> Option<String> {
-    let square: f64 = series.points.iter().map(|point| point[1] * point[1]).sum();
-    let size = (square / series.points.len() as f64).sqrt();
-    if series.rmse <= FROM_THE_SOLVER * noise * size {
-        return Some(format!(
-            "The residuals of {} are as small as the errors of the simulation: these data have no \
-             noise, and deviations and intervals say nothing about measured ones.",
-            series.y[0]
-        ));
-    }
-    not_noise(series)
-}
-
-fn not_noise(series: &SolvedSeries) -> Option<String> {
-    let [runs, expected, probability, autocorrelation] = series.residual_test?;
-    (probability < NO_NOISE && runs < expected).then(|| {
-        format!(
-            "The residuals of {} are no noise: {runs} runs of equal sign where {} are expected, \
-             correlation of neighbours {}. The model misses something of these data, so the \
-             deviations are too small.",
-            series.y[0],
-            significant(expected, 3),
-            significant(autocorrelation, 2)
-        )
-    })
+    );
+    let finding = Finding::new(FindingKind::Failures, sentence).severity(Severity::Information);
+    finding.parameters([region.parameter.as_str()])
 }

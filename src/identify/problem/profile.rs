@@ -9,7 +9,8 @@
 //! Reference: [Walter & Pronzato 1997](crate::bibliography#walter-pronzato-1997), §5.
 
 use super::refit::Refit;
-use super::{Evaluation, Free, Problem, student_quantile};
+use super::statistics::distributions::{chi_square_quantile, student_quantile};
+use super::{ErrorModel, Evaluation, Free, Problem};
 use crate::diag::Fault;
 use serde::{Deserialize, Serialize};
 
@@ -71,7 +72,8 @@ pub fn profiles(
     };
     let mut walk = Walk { refit, limit: 0.0, better: None };
     let Some((best, smallest)) = walk.refit.from(best, None)? else { return Ok(None) };
-    walk.limit = smallest * (1.0 + student_quantile(freedom).powi(2) / freedom as f64);
+    let residuals = walk.refit.plain_residuals(&best);
+    walk.limit = limit(problem, smallest, freedom as f64, residuals.as_deref());
     let mut profiles = Vec::new();
     for (k, free) in problem.parameters.iter().enumerate() {
         let mut points = vec![[best[k], smallest]];
@@ -88,6 +90,25 @@ pub fn profiles(
     }
     let better = walk.better.filter(|(_, sum)| *sum < smallest * (1.0 - BETTER));
     Ok(Some(Profiles { profiles, simulations: walk.refit.simulations, better }))
+}
+
+/// The sum that the 95 % interval of one parameter stays below. Where sigma is known, S rises by
+/// χ²; else the ratio of S to the smallest is compared, with Student's quantile, which for estimated
+/// sigmas is the likelihood ratio as well, for S is n G with n ln G = -2 log L.
+/// Robust sums rise by a factor of their own.
+fn limit(problem: &Problem, smallest: f64, freedom: f64, residuals: Option<&[f64]>) -> f64 {
+    let fitness = problem.objectives.first().map(|(_, fitness)| fitness);
+    let robust = fitness.zip(residuals).and_then(|(own, r)| own.robustness(r, freedom));
+    if let Some(robust) = robust {
+        return smallest
+            + robust.scale.powi(2) * robust.rise * student_quantile(0.975, freedom).powi(2);
+    }
+    match ErrorModel::of(problem) {
+        ErrorModel::Known => smallest + chi_square_quantile(0.95, 1.0),
+        ErrorModel::OneVariance | ErrorModel::Estimated => {
+            smallest * (1.0 + student_quantile(0.975, freedom).powi(2) / freedom)
+        }
+    }
 }
 
 struct Walk<'a> {

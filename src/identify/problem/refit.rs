@@ -2,7 +2,7 @@
 
 use super::{Evaluation, Problem};
 use crate::diag::Fault;
-use crate::ga::optimizer::{Answers, METHODS, Setup};
+use crate::ga::optimizer::{Answers, METHODS, Setup, Wants};
 use crate::ga::{FAILED_FITNESS, Gene, Genomes, Mrg32k3a};
 use crate::registry::{self, Options};
 
@@ -13,8 +13,7 @@ const BUDGET: u64 = 400;
 pub(super) struct Refit<'a> {
     problem: &'a Problem,
     evaluation: &'a Evaluation,
-    measured: Vec<f64>,
-    scales: &'a [f64],
+    n_points: usize,
     /// Simulations so far.
     pub simulations: u64,
 }
@@ -25,9 +24,8 @@ pub(super) type Fitted = (Vec<f64>, f64);
 impl<'a> Refit<'a> {
     /// `None` where the first objective is no sum of squares.
     pub(super) fn new(problem: &'a Problem, evaluation: &'a Evaluation) -> Option<Refit<'a>> {
-        let measured = problem.series.iter().flat_map(|series| series.y.clone()).collect();
-        let scales = evaluation.scales()?;
-        Some(Refit { problem, evaluation, measured, scales, simulations: 0 })
+        evaluation.scales()?;
+        Some(Refit { problem, evaluation, n_points: problem.n_points(), simulations: 0 })
     }
 
     /// The best values from `start`, parameter `held` standing still; `None` where `start` cannot
@@ -60,6 +58,7 @@ impl<'a> Refit<'a> {
             let values: Vec<Vec<f64>> =
                 batch.rows().map(|genome| self.values(start, &varied, genome)).collect();
             let rows = self.residuals(&values);
+            let points = values.clone();
             let sums = rows.iter().map(|row| row.as_deref().map_or(FAILED_FITNESS, square));
             let fitness: Vec<f64> = sums.collect();
             for (values, fitness) in values.into_iter().zip(&fitness) {
@@ -67,13 +66,31 @@ impl<'a> Refit<'a> {
                     best = (values, *fitness);
                 }
             }
-            let failed = vec![f64::NAN; self.measured.len()];
+            let failed = vec![f64::NAN; self.n_points];
             let flat: Vec<f64> =
                 rows.into_iter().flat_map(|row| row.unwrap_or_else(|| failed.clone())).collect();
-            let answers = Answers { objectives: &fitness, n_objectives: 1, residuals: &flat };
+            let jacobians = match search.wants() {
+                Wants::Jacobians => self.jacobians(&points, &varied),
+                _ => Vec::new(),
+            };
+            let answers = Answers {
+                objectives: &fitness,
+                n_objectives: 1,
+                residuals: &flat,
+                jacobians: &jacobians,
+            };
             search.tell(&batch, &answers);
         }
         Ok(Some(best))
+    }
+
+    /// Weighted residuals, measured less simulated, without the factors of a robust fitness.
+    pub(super) fn plain_residuals(&self, values: &[f64]) -> Option<Vec<f64>> {
+        let simulated = self.evaluation.simulate(values).ok()?;
+        let weights = self.evaluation.error_weights(self.problem, &simulated);
+        let measured = self.problem.series.iter().flat_map(|series| &series.y);
+        let pairs = measured.zip(&simulated).zip(&weights);
+        Some(pairs.map(|((m, s), w)| w * (m - s)).collect())
     }
 
     fn search(
@@ -89,7 +106,7 @@ impl<'a> Refit<'a> {
             n_objectives: 1,
             budget: None,
             start: Some(varied.iter().map(|&k| free(k).fraction(start[k])).collect()),
-            difference: self.problem.difference(),
+            noise: self.problem.noise,
             rng: Mrg32k3a::new(&self.problem.seed)?,
         })
     }
@@ -102,11 +119,33 @@ impl<'a> Refit<'a> {
         values
     }
 
+    /// Derivatives of the residuals by the fractions of those that are varied.
+    fn jacobians(&mut self, places: &[Vec<f64>], varied: &[usize]) -> Vec<f64> {
+        let n = self.problem.parameters.len();
+        let mut jacobians = Vec::new();
+        for (place, found) in places.iter().zip(self.evaluation.linearize(self.problem, places)) {
+            let Ok(found) = found else {
+                jacobians.extend(vec![f64::NAN; self.n_points * varied.len()]);
+                continue;
+            };
+            self.simulations += found.simulations;
+            let (mut residuals, mut factors) = (vec![0.0; self.n_points], vec![0.0; self.n_points]);
+            self.evaluation.scaled(self.problem, &found.simulated, &mut residuals, &mut factors);
+            for (row, scale) in found.derivatives.chunks_exact(n).zip(&factors) {
+                let slope = |k: usize| self.problem.parameters[k].slope(place[k]);
+                jacobians.extend(varied.iter().map(|&k| row[k] * scale * slope(k)));
+            }
+        }
+        jacobians
+    }
+
     fn residuals(&mut self, values: &[Vec<f64>]) -> Vec<Option<Vec<f64>>> {
         self.simulations += values.len() as u64;
+        let n = self.n_points;
         let weighted = |row: Vec<f64>| {
-            let points = row.iter().zip(&self.measured).zip(self.scales);
-            points.map(|((s, m), w)| w * (s - m)).collect()
+            let (mut residuals, mut factors) = (vec![0.0; n], vec![0.0; n]);
+            self.evaluation.scaled(self.problem, &row, &mut residuals, &mut factors);
+            residuals
         };
         let rows = self.evaluation.simulate_all(values).into_iter();
         rows.map(|row| row.ok().map(weighted)).collect()

@@ -5,7 +5,7 @@ use super::{FailureKind, Fingerprint, Problem, Record};
 use crate::bail;
 use crate::diag::Fault;
 use crate::fault;
-use crate::ga::optimizer::{Answers, Optimizer, Polished, Setup, non_dominated};
+use crate::ga::optimizer::{Answers, Optimizer, Polished, Setup, Wants, non_dominated};
 use crate::ga::{Gene, Generation, Genomes, History, Mrg32k3a, has_failed, order};
 use crate::registry::BAD_OPTION;
 use indexmap::IndexMap;
@@ -62,6 +62,8 @@ pub struct Run {
     reference: f64,
     /// Changes made during the run, and before which question.
     pub changed: Vec<(u64, String, f64)>,
+    /// What [`conclude`](super::conclude) did after the last question.
+    pub conclusion: super::Conclusion,
 }
 
 impl Run {
@@ -107,6 +109,7 @@ impl Run {
             last_gain: 0,
             reference: f64::INFINITY,
             changed: Vec::new(),
+            conclusion: super::Conclusion::default(),
         })
     }
 
@@ -209,8 +212,8 @@ impl Run {
         if self.converged {
             return None;
         }
-        let residuals = self.optimizer.wants_residuals();
-        let answered = self.evaluation.evaluate(&self.problem, &self.batch, residuals)?;
+        let wants = self.optimizer.wants();
+        let answered = self.evaluation.evaluate(&self.problem, &self.batch, wants)?;
         let record = Record {
             seconds,
             changes: std::mem::take(&mut self.changes),
@@ -232,8 +235,7 @@ impl Run {
         }
         self.changes.clear();
         self.ask();
-        let n = self.batch.len() * self.problem.objectives.len();
-        if fingerprint(&self.batch) != record.asked || record.answered.objectives.len() != n {
+        if fingerprint(&self.batch) != record.asked || !self.is_answer(&record.answered) {
             bail!(
                 BAD_OPTION,
                 "generation {} of the checkpoint is not that of this problem", self.generations() + 1;
@@ -245,8 +247,18 @@ impl Run {
         Ok(())
     }
 
+    /// Whether these can be the answers to what was asked.
+    fn is_answer(&self, answered: &Answered) -> bool {
+        let (count, wants) = (self.batch.len(), self.optimizer.wants());
+        let residuals = if wants >= Wants::Residuals { self.problem.n_points() } else { 0 };
+        let genes = if wants == Wants::Jacobians { self.problem.parameters.len() } else { 0 };
+        answered.objectives.len() == count * self.problem.objectives.len()
+            && answered.residuals.len() == count * residuals
+            && answered.jacobians.len() == count * residuals * genes
+    }
+
     fn take(&mut self, record: &Record) {
-        let Answered { objectives, residuals, failures, simulations } = &record.answered;
+        let Answered { objectives, residuals, jacobians, failures, simulations } = &record.answered;
         let m = self.problem.objectives.len();
         let fitness: Vec<f64> = objectives.iter().step_by(m).copied().collect();
         self.seconds = record.seconds;
@@ -264,7 +276,7 @@ impl Run {
         if m > 1 {
             self.keep_front(objectives, m);
         }
-        let answers = Answers { objectives, n_objectives: m, residuals };
+        let answers = Answers { objectives, n_objectives: m, residuals, jacobians };
         self.optimizer.tell(&self.batch, &answers);
         self.asked = false;
     }
@@ -349,7 +361,7 @@ fn optimizer(problem: &Problem, evaluation: &Evaluation) -> Result<Box<dyn Optim
         n_objectives: problem.objectives.len(),
         budget: problem.stop.evaluations,
         start: starts.then(|| problem.parameters.iter().map(start).collect()),
-        difference: problem.difference(),
+        noise: problem.noise,
         rng: rng.clone(),
     };
     let search = problem.method.start(setup)?;
@@ -360,7 +372,7 @@ fn optimizer(problem: &Problem, evaluation: &Evaluation) -> Result<Box<dyn Optim
     let size: f64 = problem.series.iter().flat_map(|s| &s.y).map(|y| y * y).sum();
     // Below this the residuals are those of rounding, or of the simulator's tolerance.
     let floor = size * (problem.noise * 1e-3).powi(2).max(1e-32);
-    Ok(Box::new(Polished::new(search, problem.difference(), floor, rng.stream(1))))
+    Ok(Box::new(Polished::new(search, floor, rng.stream(1))))
 }
 
 fn fingerprint(batch: &Genomes) -> u64 {

@@ -77,6 +77,21 @@ impl Free {
         fraction.clamp(0.0, 1.0)
     }
 
+    /// What is searched in place of the value: the value itself or its natural logarithm.
+    pub(super) fn coordinate(&self, value: f64) -> f64 {
+        if self.logarithmic { value.ln() } else { value }
+    }
+
+    /// The value that belongs to a [`coordinate`](Self::coordinate).
+    pub(super) fn from_coordinate(&self, coordinate: f64) -> f64 {
+        if self.logarithmic { coordinate.exp() } else { coordinate }
+    }
+
+    /// The derivative of the coordinate by the value.
+    pub(super) fn coordinate_slope(&self, value: f64) -> f64 {
+        if self.logarithmic { value.recip() } else { 1.0 }
+    }
+
     /// The derivative of the value by the fraction, at a value.
     pub fn slope(&self, value: f64) -> f64 {
         match self.logarithmic {

@@ -1,7 +1,10 @@
 //! The solution: what was found, how well it fits, and what the data cannot tell.
 
+use super::effects::{Effect, effect};
+use super::statistics::distributions::chi_square_tails;
 use super::{
-    FailureKind, FailureRegion, Importance, Profiles, Run, Statistics, profiles, residual_test,
+    ErrorModel, FailureKind, FailureRegion, Finding, FindingKind, Form, Importance, Inferred,
+    Profiles, Run, Severity, Sigma, Statistics, profiles, residual_test,
 };
 use crate::diag::Fault;
 use crate::fault;
@@ -9,8 +12,12 @@ use crate::ga::Generation;
 use crate::registry::BAD_OPTION;
 use serde::{Deserialize, Serialize};
 
-/// A parameter counts as determined when its deviation is below this fraction of its value.
-const DETERMINED_BELOW: f64 = 0.5;
+/// A parameter counts as identifiable when its standard error is below this fraction of its value:
+/// the 95 % interval then excludes 0, and on a logarithmic scale spans less than a decade.
+const RELATIVE: f64 = 0.5;
+/// Or, on a linear scale, when its 95 % interval is below this fraction of the search range: a
+/// parameter near 0 may be known well.
+const OF_RANGE: f64 = 0.25;
 /// Correlations above this are worth a word.
 const STRONG: f64 = 0.95;
 /// Values nearer to a bound than this fraction of the range are at it.
@@ -42,8 +49,19 @@ pub struct Solution {
     pub correlations: Option<Vec<Vec<Option<f64>>>>,
     /// Condition number of the sensitivities.
     pub condition: Option<f64>,
-    /// What must be known about these numbers.
-    pub notes: Vec<String>,
+    /// What must be known about these numbers, most important first.
+    #[serde(default)]
+    pub findings: Vec<Finding>,
+    /// What was known of the errors of measurement.
+    #[serde(default = "one_variance")]
+    pub error_model: ErrorModel,
+    /// The residuals against the given sigmas; `None` where not all are given.
+    #[serde(default)]
+    pub chi_square: Option<ChiSquare>,
+    /// Negative logarithm of the likelihood of normal errors with the given or estimated standard
+    /// deviations (maximum likelihood ones); `None` where the fitness is not one of normal errors.
+    #[serde(default)]
+    pub negative_log_likelihood: Option<f64>,
     /// Why the run ended.
     pub stop: String,
     /// Questions of the method.
@@ -66,6 +84,9 @@ pub struct Solution {
     pub importance: Option<Importance>,
     /// Profiles of the parameters, where they were asked.
     pub profiles: Option<Profiles>,
+    /// What was inferred beyond the estimates.
+    #[serde(default)]
+    pub inferred: Inferred,
     /// Points of the front, where there are several objectives: parameters and objectives.
     pub front: Vec<(Vec<f64>, Vec<f64>)>,
     /// The place in the front that is farthest from the line between its ends.
@@ -117,6 +138,50 @@ pub struct SolvedParameter {
     pub determined: Option<bool>,
     /// Whether it lies at an end of its range.
     pub at_bound: bool,
+    /// What the data say about it; `None` where unknown.
+    #[serde(default)]
+    pub verdict: Option<Verdict>,
+}
+
+/// What the data say about a parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// The data bound it.
+    Identifiable,
+    /// These data do not bound it; others of the kind may.
+    PracticallyNonIdentifiable,
+    /// No data of this kind bound it: it acts only in a combination with others.
+    StructurallyNonIdentifiable,
+    /// It changes nothing that was compared.
+    WithoutEffect,
+}
+
+impl Verdict {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Verdict::Identifiable => "identifiable",
+            Verdict::PracticallyNonIdentifiable => "practically non-identifiable from these data",
+            Verdict::StructurallyNonIdentifiable => "structurally non-identifiable combination",
+            Verdict::WithoutEffect => "without effect",
+        }
+    }
+}
+
+/// Weighted sum of squares where the standard deviations of the measurements are given.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ChiSquare {
+    /// The sum.
+    pub value: f64,
+    /// Points less parameters.
+    pub freedom: f64,
+    /// Probability of a larger sum by chance.
+    pub probability: f64,
+}
+
+fn one_variance() -> ErrorModel {
+    ErrorModel::OneVariance
 }
 
 /// A series with its simulation.
@@ -135,6 +200,12 @@ pub struct SolvedSeries {
     pub rmse: f64,
     /// Coefficient of determination.
     pub r_squared: Option<f64>,
+    /// Standard deviation of the measurements, root mean square; `None` where it is not known.
+    #[serde(default)]
+    pub sigma: Option<f64>,
+    /// Whether that was estimated with the parameters.
+    #[serde(default)]
+    pub sigma_estimated: bool,
     /// Runs of equal sign, how many are expected, the probability of that by chance, and the
     /// correlation of neighbours.
     pub residual_test: Option<[f64; 4]>,
@@ -163,6 +234,8 @@ impl SolvedSeries {
             file: series.file.clone(),
             rmse: (square / n).sqrt(),
             r_squared: (total > 0.0).then(|| 1.0 - square / total),
+            sigma: None,
+            sigma_estimated: series.sigma.is_estimated(),
             residual_test: test
                 .map(|t| [t.runs as f64, t.expected_runs, t.runs_probability, t.autocorrelation]),
             points,
@@ -192,16 +265,11 @@ impl Solution {
         let simulated = run.evaluation.simulate(&best.values);
         let simulated = simulated.map_err(|failed| fault!(BAD_OPTION, "{}", failed.cause))?;
         let others = elsewhere(run);
-        let statistics =
+        let mut statistics =
             Statistics::at(problem, &run.evaluation, &best.values, &simulated, &others);
-        let mut rest = simulated.as_slice();
-        let mut series = Vec::new();
-        for measured in &problem.series {
-            let (own, others) = rest.split_at(measured.x.len());
-            series.push(SolvedSeries::new(measured, own));
-            rest = others;
-        }
-        let parameters = parameters(run, &best.values, &statistics);
+        let effects = effects(run, &best.values, &simulated, &mut statistics);
+        let series = solved_series(problem, &statistics, &simulated);
+        let parameters = parameters(run, &best.values, &statistics, &effects);
         let kinds = FailureKind::ALL.iter().zip(&run.failed).filter(|(_, count)| **count > 0);
         let mut solution = Solution {
             title: problem.title.clone(),
@@ -225,18 +293,22 @@ impl Solution {
             parameters,
             series,
             validation,
-            notes: Vec::new(),
+            findings: Vec::new(),
+            error_model: ErrorModel::of(problem),
+            chi_square: chi_square(run, &statistics),
+            negative_log_likelihood: negative_log_likelihood(run, &statistics),
             stop: stop.to_owned(),
             generations: run.generations(),
             evaluations: run.evaluations,
             simulations: run.simulations,
-            simulations_for_statistics: statistics.simulations,
+            simulations_for_statistics: statistics.simulations + run.conclusion.simulations,
             failures: kinds.map(|(kind, count)| (kind.name().to_owned(), *count)).collect(),
             causes: run.causes.clone(),
             failure_region: super::failure_region(&problem.parameters, &run.kept),
             changes: run.changed.clone(),
             importance: None,
             profiles: None,
+            inferred: Inferred::default(),
             knee: knee(&run.front),
             hypervolume: front_volume(&run.front),
             front: run.front.clone(),
@@ -249,30 +321,39 @@ impl Solution {
             trace: run.trace.clone(),
             individuals: run.kept.clone(),
         };
-        solution.notes = super::notes::notes(&solution, &statistics, problem.noise);
+        let own = super::notes::findings(&solution, run, &statistics, &effects, &simulated);
+        solution.findings = own;
         Ok(solution)
     }
 
-    /// Adds the profiles of all parameters and what they tell.
-    ///
-    /// # Errors
-    ///
-    /// A fitness that is no sum of squares, or too few points.
-    pub fn add_profiles(&mut self, run: &Run) -> Result<(), Fault> {
-        let Some(best) = &run.best else { return Ok(()) };
+    /// Adds the profiles of all parameters and what they say; where there are none, a finding says
+    /// why, and the solution stays as it is.
+    pub fn add_profiles(&mut self, run: &Run) {
+        match self.profiled(run) {
+            Ok(Some(found)) => {
+                self.findings.extend(super::notes::profile_findings(self, &found));
+                self.profiles = Some(found);
+            }
+            Ok(None) => {}
+            Err(fault) => self.findings.push(
+                Finding::new(FindingKind::Missing, format!("{}.", fault.message))
+                    .severity(Severity::Information),
+            ),
+        }
+    }
+
+    fn profiled(&self, run: &Run) -> Result<Option<Profiles>, Fault> {
+        let Some(best) = &run.best else { return Ok(None) };
         let half = |p: &SolvedParameter| p.interval.map(|[low, high]| 0.5 * (high - low));
         let reach: Vec<Option<f64>> = self.parameters.iter().map(half).collect();
         let found = profiles(&run.problem, &run.evaluation, &best.values, &reach)?;
         let found = found.ok_or_else(|| {
             fault!(
                 BAD_OPTION,
-                "there are no profiles of `{}` with {} points", self.fitness_name, run.problem.n_points();
-                help: "minimise a sum of squares of more points than parameters"
+                "There are no profiles of `{}` with {} points: they need a sum of squares of more points than parameters", self.fitness_name, run.problem.n_points()
             )
         })?;
-        self.notes.extend(super::notes::profile_notes(self, &found));
-        self.profiles = Some(found);
-        Ok(())
+        Ok(Some(found))
     }
 
     /// Pairs of parameters that the data can hardly tell apart.
@@ -299,34 +380,147 @@ fn elsewhere(run: &Run) -> Vec<Vec<f64>> {
     good.iter().step_by(every).map(|values| (*values).clone()).collect()
 }
 
-fn parameters(run: &Run, values: &[f64], statistics: &Statistics) -> Vec<SolvedParameter> {
+fn solved_series(
+    problem: &super::Problem,
+    statistics: &Statistics,
+    simulated: &[f64],
+) -> Vec<SolvedSeries> {
+    let mut first = 0;
+    let one = |measured: &super::Series| {
+        let places = first..first + measured.x.len();
+        first = places.end;
+        let mut solved = SolvedSeries::new(measured, &simulated[places.clone()]);
+        let square: f64 =
+            statistics.weights[places].iter().map(|w| (measured.weight / w).powi(2)).sum();
+        solved.sigma = (measured.sigma != Sigma::Unknown)
+            .then(|| (square / measured.x.len() as f64).sqrt())
+            .filter(|sigma| sigma.is_finite());
+        solved
+    };
+    problem.series.iter().map(one).collect()
+}
+
+/// What the parameters do whose derivative is zero.
+fn effects(
+    run: &Run,
+    values: &[f64],
+    simulated: &[f64],
+    statistics: &mut Statistics,
+) -> Vec<(usize, Effect)> {
+    let mut effects = Vec::new();
+    for k in statistics.without_effect.clone() {
+        let (found, simulations) =
+            effect(&run.problem, &run.evaluation, statistics, (values, simulated), k);
+        statistics.simulations += simulations;
+        effects.push((k, found));
+    }
+    effects
+}
+
+fn chi_square(run: &Run, statistics: &Statistics) -> Option<ChiSquare> {
+    if !statistics.believed {
+        return None;
+    }
+    let value: f64 = statistics.residuals.iter().map(|r| r * r).sum();
+    let freedom = run.problem.n_points() as f64 - run.problem.parameters.len() as f64;
+    let [_, probability] = chi_square_tails(value, freedom);
+    (freedom > 0.0).then_some(ChiSquare { value, freedom, probability })
+}
+
+fn negative_log_likelihood(run: &Run, statistics: &Statistics) -> Option<f64> {
+    run.evaluation.scales()?;
+    if statistics.robust {
+        return None;
+    }
+    let n = statistics.residuals.len() as f64;
+    let square: f64 = statistics.residuals.iter().map(|r| r * r).sum();
+    let of_weights: f64 = statistics.weights.iter().map(|w| w.ln()).sum();
+    let of_residuals = match ErrorModel::of(&run.problem) {
+        ErrorModel::OneVariance => 0.5 * n * ((square / n).ln() + 1.0),
+        _ => 0.5 * square,
+    };
+    let value = of_residuals - of_weights + 0.5 * n * std::f64::consts::TAU.ln();
+    value.is_finite().then_some(value)
+}
+
+fn parameters(
+    run: &Run,
+    values: &[f64],
+    statistics: &Statistics,
+    effects: &[(usize, Effect)],
+) -> Vec<SolvedParameter> {
     let one = |(k, free): (usize, &super::Free)| {
         let value = values[k];
         let deviation = statistics.uncertainty.as_ref().map(|found| found.standard_deviations[k]);
         let reach = deviation.map(|deviation| statistics.factor * deviation);
-        let determined = deviation.map(|deviation| {
-            deviation <= DETERMINED_BELOW * value.abs() && deviation <= free.max - free.min
-        });
         // Where the logarithm is searched, the interval is one of ratios.
         let interval =
             reach.filter(|reach| reach.is_finite()).map(|reach| match free.logarithmic {
-                true => [value * (-reach / value).exp(), value * (reach / value).exp()],
+                true => {
+                    let ends = [-reach, reach].map(|reach| value * (reach / value).exp());
+                    [ends[0].min(ends[1]), ends[0].max(ends[1])]
+                }
                 false => [value - reach, value + reach],
             });
+        let steps = effects.iter().find(|(place, _)| *place == k);
+        let interval = match steps {
+            Some((_, Effect::Steps([low, high]))) => {
+                Some([low.unwrap_or(free.min), high.unwrap_or(free.max)])
+            }
+            _ => interval.filter(|ends| ends.iter().all(|end| end.is_finite())),
+        };
         let place = free.fraction(value);
-        SolvedParameter {
+        let mut solved = SolvedParameter {
             name: free.name.clone(),
             unit: free.unit.clone(),
             value,
             range: [free.min, free.max],
             logarithmic: free.logarithmic,
             deviation: deviation.filter(|deviation| deviation.is_finite()),
-            interval: interval.filter(|ends| ends.iter().all(|end| end.is_finite())),
-            determined,
+            interval,
+            determined: None,
             at_bound: place.min(1.0 - place) < AT_BOUND,
-        }
+            verdict: None,
+        };
+        solved.verdict = verdict(&solved, k, statistics, steps.map(|(_, effect)| *effect));
+        solved.determined = solved.verdict.map(|verdict| verdict == Verdict::Identifiable);
+        solved
     };
     run.problem.parameters.iter().enumerate().map(one).collect()
+}
+
+fn verdict(
+    parameter: &SolvedParameter,
+    k: usize,
+    statistics: &Statistics,
+    effect: Option<Effect>,
+) -> Option<Verdict> {
+    let [min, max] = parameter.range;
+    let yes = |yes: bool| match yes {
+        true => Verdict::Identifiable,
+        false => Verdict::PracticallyNonIdentifiable,
+    };
+    match effect {
+        Some(Effect::None) => return Some(Verdict::WithoutEffect),
+        Some(Effect::Steps([Some(low), Some(high)])) => {
+            return Some(yes(high - low <= 0.5 * (max - min)));
+        }
+        Some(Effect::Steps(_)) => return Some(Verdict::PracticallyNonIdentifiable),
+        None => {}
+    }
+    let group = statistics.inseparable.iter().find(|group| group.parameters.contains(&k));
+    if let Some(group) = group {
+        return Some(match group.form {
+            Form::Sum | Form::Product => Verdict::StructurallyNonIdentifiable,
+            Form::Local => Verdict::PracticallyNonIdentifiable,
+        });
+    }
+    statistics.uncertainty.as_ref()?;
+    let Some(deviation) = parameter.deviation else { return Some(yes(false)) };
+    let small = deviation <= RELATIVE * parameter.value.abs() && deviation <= max - min;
+    let narrow =
+        !parameter.logarithmic && 2.0 * statistics.factor * deviation <= OF_RANGE * (max - min);
+    Some(yes(small || narrow))
 }
 
 fn correlations(statistics: &Statistics, n: usize) -> Option<Vec<Vec<Option<f64>>>> {

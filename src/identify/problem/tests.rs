@@ -20,7 +20,12 @@ impl Simulate for Formula {
     }
 }
 
-fn problem(method: &str, formula: fn(&[f64], f64) -> f64, truth: &[f64], noise: &[f64]) -> Problem {
+pub(super) fn problem(
+    method: &str,
+    formula: fn(&[f64], f64) -> f64,
+    truth: &[f64],
+    noise: &[f64],
+) -> Problem {
     let x: Vec<f64> = (0..noise.len()).map(|k| k as f64 / 4.0).collect();
     let y = x.iter().zip(noise).map(|(x, e)| formula(truth, *x) + e).collect();
     let free = |k: usize| Free::new(format!("p{k}"), "V", [0.1, 10.0], None, None).unwrap();
@@ -34,6 +39,10 @@ fn problem(method: &str, formula: fn(&[f64], f64) -> f64, truth: &[f64], noise: 
         x: x.clone(),
         y,
         weight: 1.0,
+        sigma: Sigma::Unknown,
+        column: String::new(),
+        rows: Vec::new(),
+        missing: Vec::new(),
     };
     let sse = registry::find("fitness", FITNESSES, "sse").unwrap();
     let entry = registry::find("method", METHODS, method).unwrap();
@@ -50,17 +59,22 @@ fn problem(method: &str, formula: fn(&[f64], f64) -> f64, truth: &[f64], noise: 
         seed: [12345.0; 6],
         stop: Stop { evaluations: Some(2000), ..Stop::default() },
         noise: 1e-15,
+        inference: Inference::default(),
         simulator: Box::new(move || Ok(Box::new(Formula(x.clone(), formula)))),
     }
 }
 
-fn decay(p: &[f64], x: f64) -> f64 {
+pub(super) fn decay(p: &[f64], x: f64) -> f64 {
     // Fails for small sums, as models do.
     if p[0] + p[1] < 1.0 { f64::NAN } else { p[0] * (-p[1] * x).exp() }
 }
 
 const NOISE: [f64; 12] =
     [0.01, -0.02, 0.015, 0.0, -0.01, 0.02, -0.015, 0.01, 0.0, -0.01, 0.005, -0.005];
+
+fn sentences(solution: &Solution) -> String {
+    solution.findings.iter().map(|f| f.sentence.as_str()).collect::<Vec<_>>().join(" ")
+}
 
 fn finish(mut run: Run) -> (Solution, Vec<Record>) {
     let mut records = Vec::new();
@@ -127,7 +141,7 @@ fn a_product_is_named_as_inseparable() {
     let product = |p: &[f64], x: f64| p[0] * p[1] * x + 1.0;
     let run = Run::new(problem("genetic", product, &[2.0, 3.0], &NOISE), 1).unwrap();
     let (solution, _) = finish(run);
-    let note = &solution.notes[0];
+    let note = &solution.findings[0].sentence;
     assert!(note.starts_with("p0, p1 cannot be determined separately by any data"), "{note}");
     assert!(note.contains("depends on p0*p1 alone. Fix one of them."), "{note}");
     assert!(solution.parameters.iter().all(|p| p.determined == Some(false)));
@@ -138,7 +152,7 @@ fn a_parameter_without_effect_is_named() {
     let line = |p: &[f64], x: f64| p[0] * x;
     let run = Run::new(problem("cma_es", line, &[2.0, 3.0], &NOISE), 1).unwrap();
     let (solution, _) = finish(run);
-    assert_eq!(solution.notes[0], "p1 has no effect on the compared points.");
+    assert_eq!(solution.findings[0].sentence, "p1 has no effect on the compared points.");
     assert!((solution.parameters[0].value - 2.0).abs() < 0.02);
     let model = solution.modelica();
     assert!(model.contains("extends M(\n    q = 1,\n    p0 = "), "{model}");
@@ -212,7 +226,7 @@ fn profiled(formula: fn(&[f64], f64) -> f64, truth: &[f64], noise: &[f64]) -> So
         run.step(0.0);
     }
     let mut solution = Solution::of(&run, "done", Vec::new()).unwrap();
-    solution.add_profiles(&run).unwrap();
+    solution.add_profiles(&run);
     solution
 }
 
@@ -225,7 +239,7 @@ fn profiles_of_a_line_have_the_linear_interval() {
     assert!(found.better.is_none());
     for (profile, parameter) in found.profiles.iter().zip(&solution.parameters) {
         // The parameters are searched on a logarithmic scale, on which their interval is reported.
-        let half = student_quantile(10) * parameter.deviation.unwrap();
+        let half = distributions::student_quantile(0.975, 10.0) * parameter.deviation.unwrap();
         let linear = [parameter.value - half, parameter.value + half];
         for (end, linear) in profile.interval.iter().zip(linear) {
             assert!((end.unwrap() - linear).abs() < 0.01 * half, "{profile:?} {linear}");
@@ -239,7 +253,7 @@ fn profiles_show_what_is_not_bounded() {
     let solution = profiled(|p, x| p[0] * p[1] * x + 1.0, &[2.0, 3.0], &NOISE);
     let found = solution.profiles.as_ref().unwrap();
     assert!(found.profiles.iter().all(|p| p.interval[1].is_none()), "{found:?}");
-    assert!(solution.notes.iter().any(|note| note.contains("By its profile p0")));
+    assert!(solution.findings.iter().any(|f| f.sentence.contains("By its profile p0")));
     assert!(solution.html().contains("<h2>Profiles</h2>"));
     assert!(solution.profiles_csv().lines().count() > 10);
 }
@@ -249,7 +263,7 @@ fn residuals_of_the_solver_are_no_missing_physics() {
     // Deterministic residuals far below the noise that the simulation is said to have.
     let wave: Vec<f64> = (0..12).map(|k| 1e-9 * f64::from(k).sin()).collect();
     let mut precise = problem("genetic", decay, &[2.0, 0.7], &wave);
-    let note = |problem: Problem| finish(Run::new(problem, 1).unwrap()).0.notes.join(" ");
+    let note = |problem: Problem| sentences(&finish(Run::new(problem, 1).unwrap()).0);
     precise.noise = 1e-8;
     let text = note(precise);
     assert!(text.contains("as small as the errors of the simulation"), "{text}");

@@ -27,12 +27,13 @@ impl Solution {
             // Writing into a String cannot fail.
             _ = writeln!(text, "  {label:<12} {value}");
         }
-        if !self.notes.is_empty() {
+        if !self.findings.is_empty() {
             text.push('\n');
         }
-        for note in &self.notes {
-            _ = writeln!(text, "  {note}");
+        for finding in &self.findings {
+            _ = writeln!(text, "  {}", finding.sentence);
         }
+        text += &self.inferred.text();
         text
     }
 
@@ -246,7 +247,7 @@ fn objectives(values: &[f64]) -> String {
     values.iter().map(|value| significant(*value, 4)).collect::<Vec<_>>().join(", ")
 }
 
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     match text.contains([',', '"', '\n']) {
         true => format!("\"{}\"", text.replace('"', "\"\"")),
         false => text.to_owned(),

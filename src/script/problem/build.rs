@@ -4,15 +4,15 @@
 //! data) becomes a class around the model, so that it means what it means in Modelica.
 
 use super::file::{ColumnEntry, ExperimentEntry, OneOrMany, ProblemFile, Role};
-use super::own_fitness;
+use super::{own_fitness, sigma};
 use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::ga::optimizer::METHODS;
 use crate::identify::fitness::{FITNESSES, Fitness};
 use crate::identify::problem::{
-    Experiment, Fingerprint, Free, ModelSimulator, NOISE_OF_FORMULAS, Observation, Problem, Series,
-    Simulate, Stop,
+    Experiment, Fingerprint, Free, Inference, ModelSimulator, NOISE_OF_FORMULAS, Observation,
+    Problem, Series, Sigma, Simulate, Stop, decide, likelihood,
 };
 use crate::identify::{CompiledModel, Model};
 use crate::mat::{self, MatFile};
@@ -21,9 +21,13 @@ use crate::script::Session;
 use crate::script::simulation::{self, Wishes};
 use crate::sim::{Settings, TimeBudget};
 use crate::source::Span;
+use indexmap::IndexMap;
 use std::fmt::Write;
 use std::path::Path;
 use std::sync::Arc;
+
+/// Fitness functions whose scale is estimated unless sigma is given.
+const ROBUST: [&str; 3] = ["huber", "tukey", "mae"];
 
 /// A problem with the experiments that are kept for validation.
 pub(super) struct Built {
@@ -82,13 +86,18 @@ pub(super) fn build(
         return Err(one(fault!(BAD_OPTION, "there is no experiment to fit")
             .help("add a table `[[experiment]]`")));
     }
-    let objectives = objectives(session, file, &series)?;
+    if file.fitness.is_none() {
+        decide(&mut series);
+    }
+    let objectives = objectives(session, file, &series, noise)?;
     let parameters = with_units(free, &experiments);
     // Made once here, so that what is wrong shows before the run.
     drop(ModelSimulator::new(&experiments).map_err(one)?);
+    let inference = super::inference::inference(file, &experiments).map_err(one)?;
     let simulator = move || Ok(Box::new(ModelSimulator::new(&experiments)?) as Box<dyn Simulate>);
     let parts = (parameters, series, objectives);
     let mut problem = assemble(file, parts, noise, Box::new(simulator)).map_err(one)?;
+    problem.inference = inference;
     problem.text = text.to_owned();
     Ok(Built { problem, validation, fingerprint: fingerprint.number() })
 }
@@ -98,12 +107,22 @@ fn objectives(
     session: &mut Session,
     file: &ProblemFile,
     series: &[Series],
+    noise: f64,
 ) -> Result<Vec<Objective>, Vec<Diagnostic>> {
+    if series.iter().any(|series| series.sigma.is_estimated()) {
+        return likelihood_alone(file, series, noise).map_err(|fault| vec![fault.at(Span::NONE)]);
+    }
     let names = match &file.fitness {
         None => vec![FITNESSES[0].name.to_owned()],
         Some(OneOrMany::One(name)) => vec![name.clone()],
         Some(OneOrMany::Many(names)) => names.clone(),
+        Some(OneOrMany::Set(entry)) => vec![entry.name.clone()],
     };
+    let settings = match &file.fitness {
+        Some(OneOrMany::Set(entry)) => entry.settings.clone(),
+        _ => IndexMap::new(),
+    };
+    let sigmas_are_known = series.iter().all(|series| series.sigma.is_known());
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
     let mut objectives = Vec::new();
     for name in names {
@@ -114,10 +133,41 @@ fn objectives(
             continue;
         }
         let entry = entry.map_err(one)?;
-        let made = (entry.make)(&mut Options::default()).map_err(one)?;
+        let mut options = Options::default();
+        if sigmas_are_known && ROBUST.contains(&entry.name) {
+            options.set("scale", 1.0);
+        }
+        settings.iter().for_each(|(name, value)| options.set(name, *value));
+        let made = (entry.make)(&mut options).map_err(one)?;
+        options.finish().map_err(one)?;
         objectives.push((entry.name.to_owned(), made));
     }
     Ok(objectives)
+}
+
+/// Estimated deviations have one objective: the likelihood.
+fn likelihood_alone(
+    file: &ProblemFile,
+    series: &[Series],
+    noise: f64,
+) -> Result<Vec<Objective>, Fault> {
+    let known = |name: &String| {
+        registry::find("fitness function", FITNESSES, name)
+            .is_ok_and(|entry| ["sum_of_squares", "log_likelihood"].contains(&entry.name))
+    };
+    let allowed = match &file.fitness {
+        None => true,
+        Some(OneOrMany::One(name)) => known(name),
+        Some(OneOrMany::Many(_) | OneOrMany::Set(_)) => false,
+    };
+    if !allowed {
+        bail!(
+            BAD_OPTION,
+            "`sigma = \"estimate\"` minimises the negative log-likelihood, not another fitness";
+            help: "remove `fitness`, or give sigmas as numbers"
+        );
+    }
+    Ok(vec![("negative log-likelihood".to_owned(), likelihood(series, noise)?)])
 }
 
 type Objective = (String, Box<dyn Fitness>);
@@ -160,6 +210,7 @@ fn assemble(
         seed: file.seed.unwrap_or([12345.0; 6]),
         stop,
         noise,
+        inference: Inference::default(),
         simulator,
     })
 }
@@ -241,8 +292,25 @@ fn experiment(
     for (y_name, wanted) in &entry.outputs {
         let wanted = wanted.entry();
         let y = column(table, &wanted, y_name).map_err(one)?;
-        let (x, y): (Vec<f64>, Vec<f64>) =
-            x.iter().copied().zip(y).filter(|(x, y)| x.is_finite() && y.is_finite()).unzip();
+        let factor = wanted.factor.unwrap_or(1.0);
+        let sigma = sigma::sigma(wanted.sigma.as_ref(), y_name, table, factor, y.len());
+        let mut sigma = sigma.map_err(one)?;
+        let whole = |row: &usize| x.get(*row).is_some_and(|x| x.is_finite()) && y[*row].is_finite();
+        let (rows, missing): (Vec<usize>, Vec<usize>) = (0..y.len()).partition(whole);
+        if let Sigma::Given(values) = &mut sigma {
+            if values.len() != y.len() {
+                return Err(one(fault!(
+                    BAD_OPTION,
+                    "the sigma of `{y_name}` in {name} has {} rows, `{y_name}` has {}",
+                    values.len(),
+                    y.len()
+                )));
+            }
+            *values = rows.iter().map(|row| values[*row]).collect();
+            values.iter().try_for_each(|value| sigma::positive(y_name, *value)).map_err(one)?;
+        }
+        let x: Vec<f64> = rows.iter().map(|row| x[*row]).collect();
+        let y: Vec<f64> = rows.iter().map(|row| y[*row]).collect();
         if x.is_empty() {
             return Err(one(fault!(BAD_OPTION, "`{y_name}` of {name} has no points")));
         }
@@ -251,8 +319,7 @@ fn experiment(
         };
         check_unit(y_name, &unit(y_name), &wanted).map_err(one)?;
         check_unit(&x_name, &unit(&x_name), &x_entry).map_err(one)?;
-        let weight = wanted.weight.unwrap_or(1.0) * entry.weight.unwrap_or(1.0)
-            / wanted.sigma.unwrap_or(1.0);
+        let weight = wanted.weight.unwrap_or(1.0) * entry.weight.unwrap_or(1.0);
         if !(weight.is_finite() && weight > 0.0) {
             return Err(one(fault!(BAD_OPTION, "the weight of `{y_name}` in {name} is {weight}")));
         }
@@ -266,6 +333,10 @@ fn experiment(
             x: x.clone(),
             y,
             weight,
+            sigma,
+            column: wanted.column.clone().unwrap_or_else(|| y_name.clone()),
+            rows: rows.iter().map(|row| row + 1).collect(),
+            missing: missing.iter().map(|row| row + 1).collect(),
         });
         observations.push(Observation { y_name: y_name.clone(), x });
     }

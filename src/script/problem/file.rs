@@ -28,6 +28,10 @@ pub(super) struct ProblemFile {
     pub seed: Option<[f64; 6]>,
     #[serde(default)]
     pub checkpoint: CheckpointEntry,
+    /// Prediction bands: whether, or of which variables beside the measured ones.
+    pub bands: Option<BandsEntry>,
+    /// The next measurement.
+    pub design: Option<DesignEntry>,
 }
 
 /// A parameter: free within a range, or fixed, or tied to others.
@@ -104,8 +108,16 @@ pub(super) struct ColumnEntry {
     /// The column's values times this are in the variable's unit.
     pub factor: Option<f64>,
     pub weight: Option<f64>,
-    /// Standard deviation of the measurement: the weight becomes its reciprocal.
-    pub sigma: Option<f64>,
+    /// Standard deviation of the measurement.
+    pub sigma: Option<SigmaEntry>,
+}
+
+/// A standard deviation: a number, or words for a column, a formula or `estimate`.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged)]
+pub(super) enum SigmaEntry {
+    Number(f64),
+    Words(String),
 }
 
 #[derive(Debug, Deserialize)]
@@ -113,6 +125,16 @@ pub(super) struct ColumnEntry {
 pub(super) enum OneOrMany {
     One(String),
     Many(Vec<String>),
+    /// A name with settings: `{ name = "huber", delta = 2 }`.
+    Set(FitnessEntry),
+}
+
+/// A fitness function with its settings.
+#[derive(Debug, Deserialize)]
+pub(super) struct FitnessEntry {
+    pub name: String,
+    #[serde(flatten)]
+    pub settings: IndexMap<String, f64>,
 }
 
 /// The method: its name and its settings.
@@ -140,6 +162,26 @@ pub(super) struct StopEntry {
 pub(super) struct CheckpointEntry {
     pub generations: Option<u64>,
     pub seconds: Option<f64>,
+}
+
+/// `true`, `false`, or names of variables.
+#[derive(Debug, Deserialize)]
+#[serde(untagged)]
+pub(super) enum BandsEntry {
+    Wanted(bool),
+    Variables(Vec<String>),
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct DesignEntry {
+    /// How many points are to be added.
+    pub points: Option<usize>,
+    /// Where X may be chosen.
+    pub range: Option<[f64; 2]>,
+    /// Variables that could be measured besides, with the standard deviation of a measurement.
+    #[serde(default)]
+    pub outputs: IndexMap<String, f64>,
 }
 
 /// Reads a problem.

@@ -8,9 +8,11 @@
 mod build;
 mod control;
 mod file;
+mod inference;
 mod live;
 mod own_fitness;
 mod record;
+mod sigma;
 
 use super::Session;
 use super::checkpoint::{self, Checkpoint};
@@ -46,6 +48,8 @@ pub struct RunOptions {
     pub folder: PathBuf,
     /// Profiles of the parameters after the fit.
     pub profile: bool,
+    /// The next measurement after the fit.
+    pub design: bool,
     /// A sensitivity analysis before the fit, by name.
     pub sensitivity: Option<String>,
     /// Its base samples; 0 for the usual number.
@@ -96,6 +100,9 @@ fn solve_text(
     let source = session.sources.add(path.display().to_string(), text.as_str());
     let file = file::read(source, &text).map_err(|error| vec![error])?;
     let mut built = build::build(session, &file, path, &text)?;
+    if options.design {
+        built.problem.inference.design.get_or_insert_with(inference::usual_design);
+    }
     if let Some(limit) = options.evaluations {
         built.problem.stop.evaluations = Some(limit);
     }
@@ -147,11 +154,17 @@ fn solve_built(
     session.world.end_view();
     run.evaluation.cancel_by(None);
     checkpoint.flush(session, run.seconds);
+    if !interrupted {
+        solving::conclude(&mut run);
+    }
     let validation = validated(&run, &validation)?;
     let mut solution = Solution::of(&run, &stop, validation)?;
     solution.importance = importance;
     if options.profile && !interrupted {
-        solution.add_profiles(&run)?;
+        solution.add_profiles(&run);
+    }
+    if !interrupted {
+        solution.inferred = solving::infer(&run)?;
     }
     session.print(&solution.text());
     write(session, &folder, &solution, run.seconds)?;
@@ -275,10 +288,15 @@ pub(super) fn write(
     .map(|(name, text)| (name.to_owned(), text))
     .into();
     files.extend(solution.fit_figures().into_iter().map(|(name, figure)| (name, figure.svg())));
-    if solution.profiles.is_some() {
-        files.push(("profiles.csv".to_owned(), solution.profiles_csv()));
-    } else {
-        discard(session, &folder.join("profiles.csv"));
+    let bands = !solution.inferred.bands.is_empty();
+    for (name, text) in [
+        ("bands.csv", bands.then(|| solution.inferred.bands_csv())),
+        ("profiles.csv", solution.profiles.is_some().then(|| solution.profiles_csv())),
+    ] {
+        match text {
+            Some(text) => files.push((name.to_owned(), text)),
+            None => discard(session, &folder.join(name)),
+        }
     }
     // What can be written is: one file that is too large must not take the others with it.
     let (mut missing, mut why) = (Vec::new(), None);

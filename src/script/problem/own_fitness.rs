@@ -61,7 +61,7 @@ pub(super) fn compiled(
         values.map(|value| format!("{value:e}")).collect::<Vec<_>>().join(", ")
     };
     let measured = list(&mut series.iter().flat_map(|series| series.y.iter().copied()));
-    let weights = list(&mut series.iter().flat_map(|s| s.y.iter().map(|_| s.weight)));
+    let weights = list(&mut series.iter().flat_map(Series::weights));
     let arguments = match inputs {
         2 => format!("gapi_simulated, {{{measured}}}"),
         3 => format!("gapi_simulated, {{{measured}}}, {{{weights}}}"),

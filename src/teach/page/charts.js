@@ -186,6 +186,6 @@ function showTell() {
   const holder = document.createElement("div");
   holder.className = "scroll";
   holder.append(table);
-  note("tell", (result.notes || []).join(" "));
+  note("tell", (result.findings || []).map(finding => finding.sentence).join(" "));
   at("tell").prepend(holder);
 }

@@ -40,6 +40,10 @@ fn analysed(
             x: vec![0.0, 1.0],
             y: vec![0.0, 0.0],
             weight: 2.0,
+            sigma: Sigma::Unknown,
+            column: String::new(),
+            rows: Vec::new(),
+            missing: Vec::new(),
         }],
         objectives: vec![("sse".into(), (FITNESSES[0].make)(&mut Options::default()).unwrap())],
         method_name: method.name.to_owned(),
@@ -48,6 +52,7 @@ fn analysed(
         seed: [12345.0; 6],
         stop: Stop::default(),
         noise: 1e-15,
+        inference: crate::identify::problem::Inference::default(),
         simulator: Box::new(move || Ok(Box::new(Formula(formula)))),
     };
     let evaluation = Evaluation::new(&problem, 2).unwrap();

@@ -1,0 +1,478 @@
+//! Tests of the residuals, as findings.
+//!
+//! All tests of one solution together raise a false alarm in at most one of a hundred cases: each
+//! is made at that level divided by their number (Bonferroni). Tests that assume what another one
+//! refutes are not made: where neighbours are alike, or the spread changes, large residuals are not
+//! outliers and their distribution is not asked.
+
+use super::statistics::distributions::{
+    chi_square_tails, f_upper, signs_two_sided, student_two_sided,
+};
+use super::statistics::outliers::outliers;
+use super::statistics::residuals::{deviation, mean, noise_beneath, normality, spearman};
+use super::{
+    ErrorModel, Finding, FindingKind, Problem, ResidualTest, Severity, Statistics, residual_test,
+};
+use crate::identify::table::significant;
+
+/// Probability of any false alarm among the residual tests of a solution.
+const FAMILY: f64 = 0.01;
+/// Tests of each series: runs, correlation, mean, signs, spread twice, distribution, outliers.
+const TESTS: usize = 8;
+/// Fewer points than these are not tested for patterns: their tests have no power at the level.
+const FEW: usize = 8;
+/// Residuals below this many times the error of the simulation come from the simulation.
+const FROM_THE_SOLVER: f64 = 100.0;
+/// Standard deviations of series that differ by less than this are not worth a word.
+const UNLIKE: f64 = 3.0;
+/// So many outliers are a distribution.
+const MANY: usize = 3;
+
+/// One series as the tests see it, in the order of X.
+struct Own<'a> {
+    label: String,
+    /// Places among all points, in the order of X.
+    points: Vec<usize>,
+    /// Weighted residuals in that order.
+    residuals: Vec<f64>,
+    rows: &'a [usize],
+    first: usize,
+    has_sigma: bool,
+}
+
+impl Own<'_> {
+    fn row(&self, point: usize) -> usize {
+        let own = point - self.first;
+        self.rows.get(own).copied().unwrap_or(own + 1)
+    }
+}
+
+/// What the residuals say about the data and the model. `simulated`: at the best values.
+/// `resolved`: whether the errors of the solver are known to be small against them.
+pub(super) fn residual_findings(
+    problem: &Problem,
+    statistics: &Statistics,
+    simulated: &[f64],
+    resolved: bool,
+) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    if statistics.freedom < 1.0 {
+        return findings;
+    }
+    let repeated = |k: usize| statistics.repeated.iter().any(|pair| pair.0 == k);
+    let all = series(problem, statistics);
+    let alpha = FAMILY / (TESTS * all.len() + 1) as f64;
+    let mut suspects = suspected_outliers(statistics, &all, alpha);
+    for (k, own) in all.iter().enumerate().filter(|(k, _)| !repeated(*k)) {
+        let size = rms(&own.points.iter().map(|&j| simulated[j]).collect::<Vec<f64>>());
+        let raw: Vec<f64> = own
+            .points
+            .iter()
+            .zip(&own.residuals)
+            .map(|(&j, r)| r / statistics.weights[j])
+            .collect();
+        if !resolved && rms(&raw) <= FROM_THE_SOLVER * problem.noise * size {
+            findings.push(no_noise(own));
+            suspects.retain(|j| !own.points.contains(j));
+            continue;
+        }
+        findings.extend(poor_fit(problem, k, own, &raw));
+        findings.extend(of_series(own, simulated, alpha, &mut suspects));
+    }
+    findings.extend(chi_square(problem, statistics, &suspects, alpha));
+    findings.extend(unlike_series(problem, statistics, &all, alpha));
+    findings
+}
+
+fn series<'a>(problem: &'a Problem, statistics: &Statistics) -> Vec<Own<'a>> {
+    let mut first = 0;
+    let one = |series: &'a super::Series| {
+        let mut points: Vec<usize> = (first..first + series.x.len()).collect();
+        let start = first;
+        points.sort_by(|a, b| series.x[a - start].total_cmp(&series.x[b - start]));
+        first += series.x.len();
+        Own {
+            label: series.label(),
+            residuals: points.iter().map(|&j| statistics.residuals[j]).collect(),
+            points,
+            rows: &series.rows,
+            first: start,
+            has_sigma: series.sigma.is_known(),
+        }
+    };
+    problem.series.iter().map(one).collect()
+}
+
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+/// Outliers of the linearised problem, each series in units of its own residuals.
+fn suspected_outliers(statistics: &Statistics, all: &[Own<'_>], alpha: f64) -> Vec<usize> {
+    let mut units = vec![0.0; statistics.residuals.len()];
+    for own in all {
+        let size = rms(&own.residuals);
+        let unit = if size > 0.0 { 1.0 / size } else { 0.0 };
+        own.points.iter().for_each(|&j| units[j] = unit);
+    }
+    let scaled: Vec<f64> = statistics.residuals.iter().zip(&units).map(|(r, u)| r * u).collect();
+    let column = |column: &Vec<f64>| {
+        let parts = column.iter().zip(&statistics.weights).zip(&units);
+        parts.map(|((d, w), u)| d * w * u).collect::<Vec<f64>>()
+    };
+    let jacobian: Vec<Vec<f64>> = statistics.jacobian.iter().map(column).collect();
+    if jacobian.iter().flatten().any(|value| !value.is_finite()) {
+        return Vec::new();
+    }
+    outliers(&jacobian, &scaled, alpha).iter().map(|outlier| outlier.point).collect()
+}
+
+fn no_noise(own: &Own<'_>) -> Finding {
+    Finding::new(
+        FindingKind::NoNoise,
+        format!(
+            "The residuals of {} are as small as the errors of the simulation: these data have no \
+             noise, and standard errors and intervals say nothing about measured ones.",
+            own.label
+        ),
+    )
+    .series(&own.label)
+}
+
+fn poor_fit(problem: &Problem, k: usize, own: &Own<'_>, raw: &[f64]) -> Option<Finding> {
+    let y = &problem.series[k].y;
+    let mean = mean(y);
+    let total: f64 = y.iter().map(|y| (y - mean).powi(2)).sum();
+    let r_squared = 1.0 - raw.iter().map(|r| r * r).sum::<f64>() / total;
+    let n = y.len() as f64;
+    let by_chance = f_upper(1.0 - r_squared, [n, n - 1.0]) >= FAMILY;
+    (total > 0.0 && y.len() > 2 && r_squared < 0.0).then(|| {
+        let (severity, words) = match by_chance {
+            true => (Severity::Information, "these data do not show that the model says more"),
+            false => (Severity::Serious, "the model does not describe these data"),
+        };
+        Finding::new(
+            FindingKind::PoorFit,
+            format!(
+                "The fit of {} is worse than a constant (R² {}): {words}.",
+                own.label,
+                significant(r_squared, 3)
+            ),
+        )
+        .severity(severity)
+        .series(&own.label)
+        .statistic(r_squared, 0.0)
+    })
+}
+
+/// Patterns, spread and distribution of one series; `suspects` keeps those outliers that are.
+fn of_series(
+    own: &Own<'_>,
+    simulated: &[f64],
+    alpha: f64,
+    suspects: &mut Vec<usize>,
+) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let kept: Vec<usize> =
+        (0..own.points.len()).filter(|&j| !suspects.contains(&own.points[j])).collect();
+    let residuals: Vec<f64> = kept.iter().map(|&j| own.residuals[j]).collect();
+    if residuals.len() < FEW {
+        findings.extend(bias(own, &residuals, None, alpha));
+        findings.extend(outlier(own, suspects));
+        return findings;
+    }
+    let test = residual_test(&residuals);
+    let serial = test
+        .filter(|test| test.runs_probability < alpha || test.autocorrelation_probability < alpha);
+    let alike = serial.is_some_and(|test| test.autocorrelation > 0.0);
+    findings.extend(bias(own, &residuals, serial.filter(|_| alike), alpha));
+    findings.extend(serial.map(|test| correlated(own, &test, alpha)));
+    if alike {
+        // Part of the pattern unless it stands alone.
+        suspects.retain(|j| !own.points.contains(j) || stands_alone(own, *j));
+        findings.extend(outlier(own, suspects));
+        return findings;
+    }
+    let fitted: Vec<f64> = kept.iter().map(|&j| simulated[own.points[j]]).collect();
+    let order: Vec<f64> = (0..kept.len()).map(|j| j as f64).collect();
+    if let Some(finding) = spread(own, &residuals, &fitted, &order, alpha) {
+        findings.push(finding);
+        suspects.retain(|j| !own.points.contains(j));
+        return findings;
+    }
+    findings.extend(outlier(own, suspects));
+    let many = own.points.iter().filter(|point| suspects.contains(point)).count();
+    let p = normality(&residuals);
+    if p < alpha || many >= MANY {
+        let p = normality(&own.residuals);
+        findings.push(heavy_tails(own, p, alpha));
+    }
+    findings
+}
+
+/// Whether neither neighbour is off to the same side by half as much.
+fn stands_alone(own: &Own<'_>, point: usize) -> bool {
+    let Some(j) = own.points.iter().position(|known| *known == point) else { return false };
+    let r = own.residuals[j];
+    let like = |l: Option<usize>| {
+        l.and_then(|l| own.residuals.get(l)).is_some_and(|other| other / r > 0.5)
+    };
+    !like(j.checked_sub(1)) && !like(Some(j + 1))
+}
+
+/// The mean of the residuals against its standard error, and their signs. Given sigmas say that
+/// the noise is independent, so that a slow pattern is not noise; else a pattern leaves fewer
+/// independent points.
+fn bias(
+    own: &Own<'_>,
+    residuals: &[f64],
+    pattern: Option<ResidualTest>,
+    alpha: f64,
+) -> Option<Finding> {
+    let n = residuals.len() as f64;
+    if n < 3.0 && !own.has_sigma {
+        return None;
+    }
+    let (mean, spread) = (mean(residuals), deviation(residuals));
+    let (size, count, freedom) = match (own.has_sigma, pattern) {
+        (true, _) => {
+            let beneath = if n < 2.0 { 0.0 } else { noise_beneath(residuals) };
+            (beneath.max(1.0), n, if n < 3.0 { f64::MAX.sqrt() } else { n - 1.0 })
+        }
+        (false, None) => (spread, n, n - 1.0),
+        (false, Some(test)) => {
+            let rho = test.autocorrelation.min(0.99);
+            let count = (n * (1.0 - rho) / (1.0 + rho)).max(2.0);
+            (spread, count, count - 1.0)
+        }
+    };
+    let t = mean * count.sqrt() / size;
+    let mut p = student_two_sided(t, freedom.min(1e6));
+    let positive = residuals.iter().filter(|r| **r > 0.0).count();
+    if pattern.is_none() {
+        p = p.min(signs_two_sided(positive as u64, residuals.len() as u64));
+    }
+    (p < alpha).then(|| {
+        let unit = if own.has_sigma { "sigma" } else { "their standard deviation" };
+        let size = if own.has_sigma { 1.0 } else { spread.max(f64::MIN_POSITIVE) };
+        Finding::new(
+            FindingKind::Bias,
+            format!(
+                "The residuals of {} are biased: their mean is {} times {unit} ({} of {} are \
+                 positive). The simulation lies {} the data on average: an offset of the sensor, \
+                 an output that contradicts another, or a model that cannot reach the data.",
+                own.label,
+                significant(mean / size, 2),
+                positive,
+                residuals.len(),
+                if mean > 0.0 { "below" } else { "above" },
+            ),
+        )
+        .series(&own.label)
+        .statistic(p, alpha)
+    })
+}
+
+fn correlated(own: &Own<'_>, test: &ResidualTest, alpha: f64) -> Finding {
+    let rho = test.autocorrelation;
+    let factor = significant(((1.0 + rho.abs()) / (1.0 - rho.abs()).max(0.01)).sqrt(), 2);
+    let numbers = format!(
+        "correlation of neighbours {}, {} runs of equal sign where {} are expected",
+        significant(rho, 2),
+        test.runs,
+        significant(test.expected_runs, 3)
+    );
+    let sentence = if rho > 0.0 {
+        format!(
+            "The residuals of {} have a pattern: {numbers}. Either the model misses something of \
+             these data (lack of fit), or their noise is autocorrelated; standard errors are too \
+             small, of slowly varying sensitivities by a factor of about {factor}.",
+            own.label
+        )
+    } else {
+        format!(
+            "The residuals of {} alternate: {numbers}. The noise is autocorrelated; standard \
+             errors are too large, of slowly varying sensitivities by a factor of about {factor}.",
+            own.label
+        )
+    };
+    Finding::new(FindingKind::Autocorrelation, sentence)
+        .series(&own.label)
+        .statistic(test.runs_probability.min(test.autocorrelation_probability), alpha)
+}
+
+fn spread(
+    own: &Own<'_>,
+    residuals: &[f64],
+    fitted: &[f64],
+    order: &[f64],
+    alpha: f64,
+) -> Option<Finding> {
+    let size: Vec<f64> = residuals.iter().map(|r| r.abs()).collect();
+    let value: Vec<f64> = fitted.iter().map(|v| v.abs()).collect();
+    let (by_value, by_x) = (spearman(&size, &value), spearman(&size, order));
+    let ((rho, p), what, help) = match by_value.1 <= by_x.1 {
+        true => (
+            by_value,
+            "the size of the output",
+            "Give `sigma` as a formula of the output or as a column, or minimise `relative`",
+        ),
+        false => (by_x, "x", "Give `sigma` as a column of the data"),
+    };
+    (p < alpha).then(|| {
+        let way = if rho > 0.0 { "grows" } else { "falls" };
+        Finding::new(
+            FindingKind::UnequalVariance,
+            format!(
+                "The spread of the residuals of {} {way} with {what} (rank correlation {}): their \
+                 variance is not constant, the fit and its standard errors are not the best. \
+                 {help}.",
+                own.label,
+                significant(rho, 2)
+            ),
+        )
+        .series(&own.label)
+        .statistic(p, alpha)
+    })
+}
+
+fn outlier(own: &Own<'_>, suspects: &[usize]) -> Option<Finding> {
+    let found: Vec<usize> =
+        (0..own.points.len()).filter(|&j| suspects.contains(&own.points[j])).collect();
+    if found.is_empty() {
+        return None;
+    }
+    let kept = (0..own.points.len()).filter(|j| !found.contains(j)).map(|j| own.residuals[j]);
+    let unit = rms(&kept.collect::<Vec<f64>>());
+    let mut rows: Vec<(usize, f64)> =
+        found.iter().map(|&j| (own.row(own.points[j]), own.residuals[j] / unit)).collect();
+    rows.sort_by_key(|row| row.0);
+    let text: Vec<String> = rows
+        .iter()
+        .map(|(row, r)| format!("row {row} ({} standard deviations)", significant(*r, 2)))
+        .collect();
+    let one = rows.len() == 1;
+    Some(
+        Finding::new(
+            FindingKind::Outlier,
+            format!(
+                "{} of {} {} far from the fit while the others agree with it: look at {}, or \
+                 minimise `huber`, which counts {} less.",
+                text.join(", "),
+                own.label,
+                if one { "is" } else { "are" },
+                if one { "this outlier" } else { "these outliers" },
+                if one { "it" } else { "them" },
+            ),
+        )
+        .series(&own.label)
+        .rows(rows.into_iter().map(|row| row.0).collect()),
+    )
+}
+
+fn heavy_tails(own: &Own<'_>, p: f64, alpha: f64) -> Finding {
+    Finding::new(
+        FindingKind::HeavyTails,
+        format!(
+            "The residuals of {} are not normally distributed (Anderson-Darling, probability {}): \
+             large ones are more frequent than in normal noise. A robust fitness such as `huber` \
+             uses such data better.",
+            own.label,
+            significant(p, 2)
+        ),
+    )
+    .series(&own.label)
+    .statistic(p, alpha)
+}
+
+/// Whether the residuals are as large as the given sigmas say, outliers left out.
+fn chi_square(
+    problem: &Problem,
+    statistics: &Statistics,
+    outliers: &[usize],
+    alpha: f64,
+) -> Option<Finding> {
+    if ErrorModel::of(problem) != ErrorModel::Known || !statistics.believed {
+        return None;
+    }
+    let kept = (0..statistics.residuals.len()).filter(|j| !outliers.contains(j));
+    let value: f64 = kept.map(|j| statistics.residuals[j].powi(2)).sum();
+    let freedom = statistics.freedom - outliers.len() as f64;
+    let [lower, upper] = chi_square_tails(value, freedom);
+    let p = 2.0 * lower.min(upper);
+    if p.is_nan() || p >= alpha {
+        return None;
+    }
+    let ratio = (value / freedom).sqrt();
+    let scaled: Vec<String> = statistics.uncertainty.as_ref().map_or_else(Vec::new, |found| {
+        let one = |(free, se): (&super::Free, &f64)| {
+            format!("{} {}", free.name, significant(ratio * se, 3))
+        };
+        problem.parameters.iter().zip(&found.standard_deviations).map(one).collect()
+    });
+    let what = if ratio > 1.0 {
+        "Either sigma is too small, or the model misses something of these data"
+    } else {
+        "Sigma is too large: this is not a very good fit"
+    };
+    Some(
+        Finding::new(
+            FindingKind::Sigma,
+            format!(
+                "The residuals are {} times the given sigma (chi-square {} for {} degrees of \
+                 freedom, probability {}). {what}. The standard errors believe sigma; scaled by \
+                 the residuals they are: {}.",
+                significant(ratio, 2),
+                significant(value, 5),
+                significant(freedom, 6),
+                significant(p, 2),
+                scaled.join(", ")
+            ),
+        )
+        .statistic(p, alpha),
+    )
+}
+
+/// Series that share one variance although their residuals differ in size.
+fn unlike_series(
+    problem: &Problem,
+    statistics: &Statistics,
+    all: &[Own<'_>],
+    alpha: f64,
+) -> Option<Finding> {
+    if ErrorModel::of(problem) != ErrorModel::OneVariance || all.len() < 2 {
+        return None;
+    }
+    let total: f64 = statistics.residuals.iter().map(|r| r * r).sum();
+    let n = statistics.residuals.len() as f64;
+    let share = statistics.freedom / n;
+    let unlike = |own: &&Own<'_>| {
+        let square: f64 = own.residuals.iter().map(|r| r * r).sum();
+        let count = own.residuals.len() as f64;
+        let (a, b) = (square / count, (total - square) / (n - count));
+        let (ratio, freedom) = match a > b {
+            true => (a / b, [count * share, (n - count) * share]),
+            false => (b / a, [(n - count) * share, count * share]),
+        };
+        ratio > UNLIKE * UNLIKE && f_upper(ratio, freedom) < alpha
+    };
+    let found: Vec<&Own<'_>> = all.iter().filter(unlike).collect();
+    if found.is_empty() {
+        return None;
+    }
+    let text: Vec<String> = all
+        .iter()
+        .map(|own| format!("{} {}", own.label, significant(rms(&own.residuals), 3)))
+        .collect();
+    let mut finding = Finding::new(
+        FindingKind::ScaleOfOutputs,
+        format!(
+            "The series share one variance, but their residuals differ in scale ({}): those with \
+             small ones have hardly a say. Give `sigma` for each output, or `sigma = \
+             \"estimate\"`.",
+            text.join(", ")
+        ),
+    );
+    finding.series = found.iter().map(|own| own.label.clone()).collect();
+    Some(finding)
+}

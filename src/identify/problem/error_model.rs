@@ -1,0 +1,177 @@
+//! The standard deviations of the measurements: given, a formula of the output, or estimated.
+
+use super::{Finding, FindingKind, Problem, Series, Severity};
+use crate::diag::Fault;
+use crate::fault;
+use crate::identify::fitness::{Concentrated, Fitness};
+use crate::registry::BAD_OPTION;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// A deviation that is estimated is at least this many times the error of the simulation: a model
+/// that passes through all points of a series would else be infinitely likely.
+const FLOOR: f64 = 10.0;
+/// Fewer points than these have no deviation of their own to be estimated.
+const FEW: usize = 3;
+
+/// A formula for sigma.
+#[derive(Clone)]
+pub struct SigmaFormula {
+    /// As it was written.
+    pub text: String,
+    /// Its value at a value of the output.
+    pub value: Arc<dyn Fn(f64) -> f64 + Send + Sync>,
+}
+
+impl std::fmt::Debug for SigmaFormula {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "SigmaFormula({})", self.text)
+    }
+}
+
+impl PartialEq for SigmaFormula {
+    fn eq(&self, other: &SigmaFormula) -> bool {
+        self.text == other.text
+    }
+}
+
+/// The standard deviation of the errors of a series.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Sigma {
+    /// Not known; all such series share one variance, weights apart.
+    #[default]
+    Unknown,
+    /// Given for each point, and believed.
+    Given(Vec<f64>),
+    /// A formula of the output, and believed.
+    Formula(SigmaFormula),
+    /// Estimated with the parameters, one for each variable.
+    Estimated,
+    /// Estimated likewise, because nothing was said and one variance for all would mean nothing.
+    Automatic,
+}
+
+impl Sigma {
+    /// Whether the deviations are known.
+    pub fn is_known(&self) -> bool {
+        matches!(self, Sigma::Given(_) | Sigma::Formula(_))
+    }
+
+    /// Whether they are estimated.
+    pub fn is_estimated(&self) -> bool {
+        matches!(self, Sigma::Estimated | Sigma::Automatic)
+    }
+
+    /// Weights of the points where the output is `values`.
+    pub fn weights(&self, values: &[f64], weight: f64) -> Vec<f64> {
+        match self {
+            Sigma::Unknown | Sigma::Estimated | Sigma::Automatic => vec![weight; values.len()],
+            Sigma::Given(sigma) => sigma.iter().map(|sigma| weight / sigma).collect(),
+            Sigma::Formula(formula) => {
+                values.iter().map(|y| weight / (formula.value)(*y)).collect()
+            }
+        }
+    }
+}
+
+/// What the deviations of a problem are, taken together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ErrorModel {
+    /// Nothing is known: one variance for all points, weights apart, from the residuals.
+    #[default]
+    OneVariance,
+    /// All deviations are known.
+    Known,
+    /// Some are estimated with the parameters.
+    Estimated,
+}
+
+impl ErrorModel {
+    /// That of a problem.
+    pub fn of(problem: &Problem) -> ErrorModel {
+        let series = &problem.series;
+        if series.iter().any(|series| series.sigma.is_estimated()) {
+            ErrorModel::Estimated
+        } else if !series.is_empty() && series.iter().all(|series| series.sigma.is_known()) {
+            ErrorModel::Known
+        } else {
+            ErrorModel::OneVariance
+        }
+    }
+}
+
+/// Decides about the series without sigma: where sigmas of others are given, or units differ, they
+/// are estimated, for a sum of squares of different units means nothing. Series with a weight of
+/// their own are left as they are.
+pub fn decide(series: &mut [Series]) {
+    let open = |series: &Series| series.sigma == Sigma::Unknown && series.weight == 1.0;
+    let mixed = series.iter().any(|series| series.sigma != Sigma::Unknown);
+    if mixed || (units_differ(series) && series.iter().all(open)) {
+        series.iter_mut().filter(|own| open(own)).for_each(|own| own.sigma = Sigma::Automatic);
+    }
+}
+
+fn units_differ(series: &[Series]) -> bool {
+    series.windows(2).any(|pair| pair[0].y_unit != pair[1].y_unit)
+}
+
+/// Says which deviations were estimated without being asked for.
+pub(super) fn decided(series: &[Series]) -> Option<Finding> {
+    let own: Vec<&Series> = series.iter().filter(|own| own.sigma == Sigma::Automatic).collect();
+    if own.is_empty() {
+        return None;
+    }
+    let unit = |unit: &str| if unit.is_empty() { "1".to_owned() } else { unit.to_owned() };
+    let names: Vec<String> =
+        own.iter().map(|own| format!("{} in {}", own.label(), unit(&own.y_unit))).collect();
+    let why = match own.len() == series.len() && units_differ(series) {
+        true => "have different units",
+        false => "stand beside series with sigma",
+    };
+    let sentence = format!(
+        "{} {why}, and no sigma is given: a sum of their squares would mean nothing. Their standard \
+         deviations were estimated with the parameters (`sigma = \"estimate\"`), so that every \
+         output has its say; give `sigma` where it is known.",
+        names.join(" and ")
+    );
+    let mut finding = Finding::new(FindingKind::ScaleOfOutputs, sentence);
+    finding.severity = Severity::Information;
+    finding.series = own.iter().map(|own| own.label()).collect();
+    Some(finding)
+}
+
+/// The likelihood of series of which some deviations are estimated, one for each variable.
+///
+/// # Errors
+///
+/// A variable with too few points for a deviation of its own.
+pub fn likelihood(series: &[Series], noise: f64) -> Result<Box<dyn Fitness>, Fault> {
+    let mut names: Vec<&str> = Vec::new();
+    let (mut groups, mut sizes) = (Vec::new(), Vec::<Vec<f64>>::new());
+    for own in series {
+        let group = own.sigma.is_estimated().then(|| {
+            names.iter().position(|name| *name == own.y_name).unwrap_or_else(|| {
+                names.push(&own.y_name);
+                sizes.push(Vec::new());
+                names.len() - 1
+            })
+        });
+        if let Some(group) = group {
+            sizes[group].extend(own.y.iter().map(|y| own.weight * y));
+        }
+        groups.extend(own.y.iter().map(|_| group));
+    }
+    for (name, values) in names.iter().zip(&sizes).filter(|(_, values)| values.len() < FEW) {
+        return Err(fault!(
+            BAD_OPTION,
+            "the sigma of `{name}` cannot be estimated from {} point{}", values.len(), if values.len() == 1 { "" } else { "s" };
+            help: "give it as a number"
+        ));
+    }
+    let floor = |values: &Vec<f64>| {
+        let square = values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64;
+        (FLOOR * noise * square.sqrt()).max(1e-150)
+    };
+    Ok(Box::new(Concentrated::new(&groups, sizes.iter().map(floor).collect())))
+}

@@ -1,0 +1,135 @@
+//! Prediction bands by the delta method: 95 % confidence of the simulated curve, and 95 %
+//! prediction of a new measurement.
+//!
+//! At a point of gradient g the curve has the variance v = gᵀCg, C being the covariance of the
+//! estimates, and a new measurement of standard deviation σ the variance v + σ². Half-widths are
+//! Student's quantile times the roots. Both are pointwise, and linear in the parameters.
+//!
+//! Reference: [Seber & Wild 1989](crate::bibliography#seber-wild-1989), section 5.1.
+
+use super::predictions::linear;
+use super::{Inferred, Local, Predict, Reach, Wanted};
+use crate::diag::Fault;
+use crate::identify::problem::Problem;
+use crate::identify::table::significant;
+use serde::{Deserialize, Serialize};
+
+/// Points of a curve: as many as a plot of usual width shows.
+const POINTS: usize = 101;
+
+/// Bands about one curve.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Band {
+    /// The experiment.
+    pub experiment: String,
+    /// The variable and its unit.
+    pub y: [String; 2],
+    /// What it is given over, and the unit.
+    pub x: [String; 2],
+    /// The measured series that it belongs to; `None` for a variable that was not measured.
+    pub series: Option<usize>,
+    /// The curve.
+    pub points: Vec<BandPoint>,
+}
+
+/// A point of a curve with its 95 % half-widths.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct BandPoint {
+    /// X.
+    pub x: f64,
+    /// The simulated value.
+    pub y: f64,
+    /// Half-width of the confidence band; `None` where the data leave the curve open.
+    pub confidence: Option<f64>,
+    /// Half-width of the prediction band; `None` also for variables that were not measured.
+    pub prediction: Option<f64>,
+}
+
+/// Adds the bands of all experiments.
+pub(super) fn add(
+    problem: &Problem,
+    predict: &dyn Predict,
+    local: &Local,
+    found: &mut Inferred,
+) -> Result<(), Fault> {
+    let variables = &problem.inference.band_variables;
+    let wanted = Wanted { variables, reach: Reach::Measured, points: POINTS };
+    let (curves, linear) = linear(problem, predict, &local.values, &wanted)?;
+    found.refusals.extend(curves.refusals);
+    let linear = match linear {
+        Ok(linear) => linear,
+        Err(failed) => {
+            found.refusals.push(format!("There are no bands: {}.", failed.cause));
+            return Ok(());
+        }
+    };
+    let mut place = 0;
+    for curve in curves.curves {
+        let point = |(k, x): (usize, &f64)| {
+            let variance = local.information.variance_of(&linear.gradients[place + k]);
+            let half = |variance: f64| local.quantile * variance.sqrt();
+            let noise = curve.series.map(|series| local.noise_at(problem, series, *x));
+            let both = variance.zip(noise).map(|(variance, noise)| variance + noise * noise);
+            BandPoint {
+                x: *x,
+                y: linear.values[place + k],
+                confidence: variance.map(half),
+                prediction: both.map(half),
+            }
+        };
+        let points = curve.points.iter().enumerate().map(point).collect();
+        place += curve.points.len();
+        let (experiment, series) = (curve.experiment, curve.series);
+        found.bands.push(Band { experiment, y: curve.y, x: curve.x, series, points });
+    }
+    Ok(())
+}
+
+impl Band {
+    /// What is worth a word: how well a variable is known that was not measured, and where the
+    /// data leave a curve open.
+    pub(super) fn sentence(&self) -> Option<String> {
+        let open = |point: &&BandPoint| point.confidence.is_none();
+        let name = format!("{} of {}", self.y[0], self.experiment);
+        let [x, unit] = &self.x;
+        let x = if unit.is_empty() { x.clone() } else { format!("{x} in {unit}") };
+        if let Some(first) = self.points.iter().find(open) {
+            let last = self.points.iter().rev().find(open).unwrap_or(first);
+            let [low, high] = [first.x, last.x].map(|x| significant(x, 3));
+            return Some(format!(
+                "The data do not determine {name} between {low} and {high} ({x})."
+            ));
+        }
+        if self.series.is_some() {
+            return None;
+        }
+        let half = |point: &BandPoint| point.confidence.unwrap_or(f64::INFINITY);
+        let widest = self.points.iter().max_by(|a, b| half(a).total_cmp(&half(b)))?;
+        Some(format!(
+            "{name}, which was not measured, is known to ±{} {} or better (95 %); the band is widest at {} ({x}).",
+            significant(half(widest), 2),
+            self.y[1],
+            significant(widest.x, 3),
+        ))
+    }
+}
+
+impl Inferred {
+    /// `bands.csv`: all bands.
+    pub fn bands_csv(&self) -> String {
+        let mut text = String::from("experiment,variable,x,y,confidence_95,prediction_95\n");
+        let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+        for band in &self.bands {
+            for BandPoint { x, y, confidence, prediction } in &band.points {
+                text += &format!(
+                    "{},{},{x},{y},{},{}\n",
+                    crate::identify::problem::text::quoted(&band.experiment),
+                    crate::identify::problem::text::quoted(&band.y[0]),
+                    number(*confidence),
+                    number(*prediction)
+                );
+            }
+        }
+        text
+    }
+}

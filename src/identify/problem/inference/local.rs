@@ -1,0 +1,203 @@
+//! The linear approximation of a fit about its best point: weighted Jacobian, covariance of the
+//! estimates, and variances of what depends on them (delta method).
+//!
+//! With the weighted Jacobian J and the variance s² of the weighted residuals, the Fisher
+//! information is F = JᵀJ/s² and a quantity of gradient g has the variance gᵀF⁻¹g. Parameters are
+//! scaled by the lengths of their columns, so that their units do not matter.
+//!
+//! Reference: [Walter & Pronzato 1997](crate::bibliography#walter-pronzato-1997), chapters 5 and 6.
+
+use super::super::statistics::{sensitivities, student_quantile};
+use super::super::{Evaluation, Problem};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+
+/// Singular values of the Jacobian below this fraction of the largest count as zero, however exact
+/// or inexact the simulation is: the limits of `Statistics`, so that both name the same parameters.
+const RANK: [f64; 2] = [1e-7, 1e-4];
+/// A direction of the parameters counts for a gradient beyond this share of its length: far above
+/// rounding (1e-16 times the condition), far below what a band could show.
+const SHARE: f64 = 1e-6;
+/// Residuals below this many times the error of the simulation come from the simulation.
+const FROM_THE_SOLVER: f64 = 100.0;
+
+/// The fit about its best point.
+pub struct Local {
+    /// The estimates.
+    pub values: Vec<f64>,
+    /// Points simulated with them.
+    pub simulated: Vec<f64>,
+    /// What differences are multiplied with to become residuals.
+    pub scales: Vec<f64>,
+    /// Weighted residuals, measured less simulated.
+    pub residuals: Vec<f64>,
+    /// Jacobian of the weighted simulated points: points × parameters.
+    pub jacobian: DMatrix<f64>,
+    /// Variance of the weighted residuals: their sum of squares by the degrees of freedom.
+    pub variance: f64,
+    /// Points less parameters.
+    pub freedom: usize,
+    /// Half-width of a 95 % interval as a multiple of the standard error.
+    pub quantile: f64,
+    /// The Fisher information.
+    pub information: Information,
+}
+
+/// A Fisher information matrix and its inverse, in parameters scaled to unit diagonal.
+#[derive(Debug, Clone)]
+pub struct Information {
+    /// Scaled parameter = parameter × size.
+    sizes: Vec<f64>,
+    /// Eigenvalues and eigenvectors of the scaled information.
+    eigen: SymmetricEigen<f64, nalgebra::Dyn>,
+    /// Eigenvalues below this are zero.
+    zero: f64,
+}
+
+impl Local {
+    /// The approximation at `values`.
+    ///
+    /// # Errors
+    ///
+    /// Why there is none, as the end of a sentence.
+    pub fn at(
+        problem: &Problem,
+        evaluation: &Evaluation,
+        values: &[f64],
+    ) -> Result<Local, &'static str> {
+        let scales = evaluation.scales().ok_or("the fitness is not a sum of squares")?.to_vec();
+        let freedom = scales.len().saturating_sub(values.len());
+        if freedom == 0 {
+            return Err("there are not more points than parameters");
+        }
+        let simulated = evaluation.simulate(values);
+        let simulated = simulated.map_err(|_| "the best point cannot be simulated")?;
+        let (columns, _) = sensitivities(problem, evaluation, values, &simulated);
+        let jacobian =
+            DMatrix::from_fn(scales.len(), values.len(), |j, k| columns[k][j] * scales[j]);
+        if jacobian.iter().any(|entry| !entry.is_finite()) {
+            return Err("the simulation fails beside the best point");
+        }
+        let measured = problem.series.iter().flat_map(|series| &series.y);
+        let residual = |((m, s), scale): ((&f64, &f64), &f64)| scale * (m - s);
+        let residuals: Vec<f64> = measured.zip(&simulated).zip(&scales).map(residual).collect();
+        let square = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
+        let size = scales.iter().zip(&simulated).map(|(w, s)| (w * s).powi(2)).sum::<f64>();
+        let floor = (FROM_THE_SOLVER * problem.noise).powi(2) * size;
+        if square(&residuals) <= floor {
+            return Err(
+                "the residuals are as small as the errors of the simulation, so that nothing is known of the noise",
+            );
+        }
+        let variance = square(&residuals) / freedom as f64;
+        let gram = jacobian.tr_mul(&jacobian) / variance;
+        let information = Information::new(&gram, Local::tolerance(problem.noise));
+        Ok(Local {
+            values: values.to_vec(),
+            simulated,
+            scales,
+            residuals,
+            jacobian,
+            variance,
+            freedom,
+            quantile: student_quantile(freedom),
+            information,
+        })
+    }
+
+    /// Singular values of a Jacobian below this fraction of the largest are those of its errors.
+    /// `noise`: relative error of the simulation.
+    pub fn tolerance(noise: f64) -> f64 {
+        noise.powf(2.0 / 3.0).clamp(RANK[0], RANK[1])
+    }
+
+    /// The standard deviation of a measurement of series `series` at `x`: that of the measured
+    /// point nearest to it.
+    pub fn noise_at(&self, problem: &Problem, series: usize, x: f64) -> f64 {
+        let first: usize = problem.series[..series].iter().map(|series| series.x.len()).sum();
+        let own = problem.series[series].x.iter().enumerate();
+        let nearest = own.min_by(|a, b| (a.1 - x).abs().total_cmp(&(b.1 - x).abs()));
+        let scale = nearest.map_or(1.0, |(k, _)| self.scales[first + k]);
+        self.variance.sqrt() / scale
+    }
+}
+
+impl Information {
+    /// Of the matrix F in natural units. `tolerance`: singular values of the Jacobian that count
+    /// as zero, as a fraction of the largest.
+    pub fn new(information: &DMatrix<f64>, tolerance: f64) -> Information {
+        let n = information.nrows();
+        let size = |k: usize| information[(k, k)].sqrt();
+        let sizes: Vec<f64> = (0..n).map(|k| if size(k) > 0.0 { size(k) } else { 1.0 }).collect();
+        let scaled = DMatrix::from_fn(n, n, |k, l| information[(k, l)] / (sizes[k] * sizes[l]));
+        let eigen = SymmetricEigen::new(scaled);
+        let zero = tolerance * tolerance * eigen.eigenvalues.max().max(0.0);
+        Information { sizes, eigen, zero }
+    }
+
+    /// gᵀF⁻¹g; `None` where the data leave a direction open on which g depends.
+    pub fn variance_of(&self, gradient: &[f64]) -> Option<f64> {
+        let scaled = gradient.iter().zip(&self.sizes).map(|(g, size)| g / size);
+        let scaled = DVector::from_iterator(gradient.len(), scaled);
+        let length = scaled.norm();
+        let mut variance = 0.0;
+        for (value, vector) in
+            self.eigen.eigenvalues.iter().zip(self.eigen.eigenvectors.column_iter())
+        {
+            let part = vector.dot(&scaled);
+            if *value > self.zero {
+                variance += part * part / value;
+            } else if part.abs() > SHARE * length {
+                return None;
+            }
+        }
+        variance.is_finite().then_some(variance)
+    }
+
+    /// The variance of every parameter; `None` where it is unbounded.
+    pub fn variances(&self) -> Vec<Option<f64>> {
+        let n = self.sizes.len();
+        let unit = |k: usize| (0..n).map(|l| if k == l { 1.0 } else { 0.0 }).collect::<Vec<f64>>();
+        (0..n).map(|k| self.variance_of(&unit(k))).collect()
+    }
+
+    /// ln det F; −∞ where the data leave a direction open.
+    pub fn log_determinant(&self) -> f64 {
+        let values = self.eigen.eigenvalues.iter();
+        let logs =
+            values.map(|value| if *value > self.zero { value.ln() } else { f64::NEG_INFINITY });
+        logs.sum::<f64>() + 2.0 * self.sizes.iter().map(|size| size.ln()).sum::<f64>()
+    }
+
+    /// ln det F with open directions counted as the smallest information that counts, so that
+    /// matrices with open directions can be compared.
+    pub fn floored_log_determinant(&self) -> f64 {
+        let logs = self.eigen.eigenvalues.iter().map(|value| value.max(self.zero).ln());
+        logs.sum::<f64>() + 2.0 * self.sizes.iter().map(|size| size.ln()).sum::<f64>()
+    }
+
+    /// The sum of the variances, open directions counted in the same way.
+    pub fn floored_trace_of_inverse(&self) -> f64 {
+        let vectors = &self.eigen.eigenvectors;
+        let entry = |(k, size): (usize, &f64)| {
+            let values = self.eigen.eigenvalues.iter().enumerate();
+            let parts = values.map(|(d, value)| vectors[(k, d)].powi(2) / value.max(self.zero));
+            parts.sum::<f64>() / (size * size)
+        };
+        self.sizes.iter().enumerate().map(entry).sum()
+    }
+
+    /// The covariance of the parameters; `None` where a direction is open.
+    pub fn covariance(&self) -> Option<DMatrix<f64>> {
+        let n = self.sizes.len();
+        if self.eigen.eigenvalues.iter().any(|value| *value <= self.zero) {
+            return None;
+        }
+        let vectors = &self.eigen.eigenvectors;
+        let entry = |k: usize, l: usize| {
+            let parts =
+                (0..n).map(|d| vectors[(k, d)] * vectors[(l, d)] / self.eigen.eigenvalues[d]);
+            parts.sum::<f64>() / (self.sizes[k] * self.sizes[l])
+        };
+        Some(DMatrix::from_fn(n, n, entry))
+    }
+}

@@ -1,0 +1,206 @@
+//! What the data tell about the parameters found, and whether the residuals look like noise.
+//!
+//! With the sensitivities J of the weighted residuals at the best point and their variance
+//! s² = Σ r² / (points − parameters), or 1 where the deviations of the measurements are given and
+//! believed, the covariance is s² (JᵀJ)⁻¹ and an interval reaches t s as
+//! far as Student's distribution says. Both hold where the model is nearly linear about the best
+//! point; a profile says more.
+//!
+//! Series that hold the same numbers count once: each of m has its weights divided by √m.
+//!
+//! Reference: [Walter & Pronzato 1997](crate::bibliography#walter-pronzato-1997), chapter 5.
+
+pub mod distributions;
+pub(super) mod outliers;
+pub(super) mod residuals;
+
+pub use residuals::{ResidualTest, residual_test};
+
+use super::inseparable::{self, Form, Inseparable, Sensitivities};
+use super::{ErrorModel, Evaluation, Problem, Series};
+use crate::identify::{Uncertainty, uncertainty_given};
+use distributions::normal_quantile;
+pub use distributions::student_quantile;
+
+/// A singular value this far below the largest is none, however exact the simulation is, and
+/// however inexact.
+const RANK: [f64; 2] = [1e-7, 1e-4];
+/// Errors of a simulation beyond which a lack of rank must show at several points to be believed.
+const EXACT: f64 = 1e-9;
+/// Derivatives that over the whole range would change the points by less than this part of the
+/// largest are rounding.
+const NO_EFFECT: f64 = 1e-10;
+/// The upper end of a 95 % interval as a probability.
+const UPPER: f64 = 0.975;
+
+/// What the data tell.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Statistics {
+    /// Standard errors and correlations; `None` where they cannot be computed.
+    pub uncertainty: Option<Uncertainty>,
+    /// Half-widths of the 95 % intervals, as multiples of a standard error: a quantile of
+    /// Student's distribution, or of the normal one where sigma is given.
+    pub factor: f64,
+    /// Points less parameters; equal series count once.
+    pub freedom: f64,
+    /// Whether the deviations of the measurements are known and believed.
+    pub believed: bool,
+    /// v of the covariance v (JᵀJ)⁻¹ of the weighted sensitivities: 1 where sigma is believed, the
+    /// residual variance, or for robust fitness functions that of M-estimators.
+    pub variance: f64,
+    /// Whether the fitness is a robust one.
+    pub robust: bool,
+    /// Weights of the points: reciprocal standard deviations where these are known or estimated.
+    pub weights: Vec<f64>,
+    /// Weighted residuals, measured less simulated.
+    pub residuals: Vec<f64>,
+    /// Series that hold the same numbers as an earlier one: the later and the earlier.
+    pub repeated: Vec<(usize, usize)>,
+    /// Condition number of the sensitivities, columns of unit length.
+    pub condition: Option<f64>,
+    /// Groups of parameters that only together have an effect.
+    pub inseparable: Vec<Inseparable>,
+    /// Parameters without any effect on the compared points at the best values.
+    pub without_effect: Vec<usize>,
+    /// Sensitivities of the simulated points by the parameters, column by column, without weights.
+    pub jacobian: Vec<Vec<f64>>,
+    /// Simulations that it took.
+    pub simulations: u64,
+}
+
+impl Statistics {
+    /// Computes them at `values`, where the simulated points are `simulated`. `others`: points
+    /// elsewhere in the search space, which tell how far a lack of rank goes.
+    pub fn at(
+        problem: &Problem,
+        evaluation: &Evaluation,
+        values: &[f64],
+        simulated: &[f64],
+        others: &[Vec<f64>],
+    ) -> Statistics {
+        let repeated = repeated(&problem.series);
+        let shares = shares(&problem.series, &repeated);
+        let weights: Vec<f64> = evaluation.error_weights(problem, simulated);
+        let scales: Vec<f64> = weights.iter().zip(&shares).map(|(w, s)| w * s.sqrt()).collect();
+        let (jacobian, mut simulations) = sensitivities(problem, evaluation, values);
+        let columns = weighted(&jacobian, &scales);
+        let measured = problem.series.iter().flat_map(|series| &series.y);
+        let pairs = measured.zip(simulated).zip(&weights);
+        let residuals: Vec<f64> = pairs.map(|((m, s), w)| w * (m - s)).collect();
+        let freedom = shares.iter().sum::<f64>() - values.len() as f64;
+        let robust = problem.objectives.first().and_then(|(_, fitness)| {
+            fitness.robustness(&residuals, freedom).filter(|_| freedom > 0.0)
+        });
+        let plain =
+            robust.is_none() && evaluation.scales().is_some_and(|own| own == evaluation.weights());
+        let believed = plain
+            && ErrorModel::of(problem) == ErrorModel::Known
+            && problem.objectives[0].0 != "log_likelihood";
+        let square: f64 = residuals.iter().zip(&shares).map(|(r, share)| share * r * r).sum();
+        let variance = match robust {
+            Some(robust) => robust.variance,
+            None if believed => 1.0,
+            None => square / freedom,
+        };
+        let uncertainty = if freedom > 0.0 || believed && freedom == 0.0 {
+            uncertainty_given(&columns, variance)
+        } else {
+            None
+        };
+        let best = Sensitivities { values: values.to_vec(), columns };
+        let tolerance = problem.noise.powf(2.0 / 3.0).clamp(RANK[0], RANK[1]);
+        let mut rank = inseparable::rank(&best, &[], tolerance);
+        if !rank.inseparable.is_empty() {
+            let elsewhere = elsewhere(problem, evaluation, others, &scales, &mut simulations);
+            rank = inseparable::rank(&best, &elsewhere, tolerance);
+            rank.inseparable.retain(|group| problem.noise < EXACT || group.form != Form::Local);
+        }
+        Statistics {
+            uncertainty,
+            factor: match believed {
+                true => normal_quantile(UPPER),
+                false => student_quantile(UPPER, freedom),
+            },
+            freedom,
+            believed,
+            variance,
+            robust: robust.is_some(),
+            weights,
+            residuals,
+            repeated,
+            condition: rank.condition,
+            inseparable: rank.inseparable,
+            without_effect: rank.without_effect,
+            jacobian,
+            simulations,
+        }
+    }
+}
+
+/// Series of the same numbers as an earlier one.
+fn repeated(series: &[Series]) -> Vec<(usize, usize)> {
+    let same = |a: &Series, b: &Series| a.y.len() >= 3 && a.x == b.x && a.y == b.y;
+    let pair = |k: usize| (0..k).find(|&l| same(&series[k], &series[l])).map(|l| (k, l));
+    (0..series.len()).filter_map(pair).collect()
+}
+
+/// What each point counts: 1, or 1/m where m series hold the same numbers.
+fn shares(series: &[Series], repeated: &[(usize, usize)]) -> Vec<f64> {
+    let first = |k: usize| repeated.iter().find(|pair| pair.0 == k).map_or(k, |pair| pair.1);
+    let count = |k: usize| (0..series.len()).filter(|l| first(*l) == first(k)).count() as f64;
+    series.iter().enumerate().flat_map(|(k, own)| vec![1.0 / count(k); own.y.len()]).collect()
+}
+
+fn weighted(jacobian: &[Vec<f64>], scales: &[f64]) -> Vec<Vec<f64>> {
+    let column =
+        |column: &Vec<f64>| column.iter().zip(scales).map(|(j, s)| j * s).collect::<Vec<f64>>();
+    jacobian.iter().map(column).collect()
+}
+
+/// The sensitivities at other points, as far as these can be simulated.
+fn elsewhere(
+    problem: &Problem,
+    evaluation: &Evaluation,
+    others: &[Vec<f64>],
+    scales: &[f64],
+    simulations: &mut u64,
+) -> Vec<Sensitivities> {
+    let mut found = Vec::new();
+    for (values, simulated) in others.iter().zip(evaluation.simulate_all(others)) {
+        *simulations += 1;
+        if simulated.is_err() {
+            continue;
+        }
+        let (jacobian, took) = sensitivities(problem, evaluation, values);
+        *simulations += took;
+        let columns = weighted(&jacobian, scales);
+        if columns.iter().flatten().all(|value| value.is_finite()) {
+            found.push(Sensitivities { values: values.clone(), columns });
+        }
+    }
+    found
+}
+
+/// Derivatives of the simulated points, column by column, and the simulations that they took.
+/// Columns that do not exceed the errors of the simulation are zero.
+pub(super) fn sensitivities(
+    problem: &Problem,
+    evaluation: &Evaluation,
+    values: &[f64],
+) -> (Vec<Vec<f64>>, u64) {
+    let n = values.len();
+    let Some(Ok(found)) = evaluation.linearize(problem, &[values.to_vec()]).pop() else {
+        return (vec![vec![f64::NAN; problem.n_points()]; n], 1);
+    };
+    let size = found.simulated.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+    let column = |k: usize| -> Vec<f64> {
+        let free = &problem.parameters[k];
+        let column: Vec<f64> = found.derivatives.iter().skip(k).step_by(n).copied().collect();
+        let most = column.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
+        match most * (free.max - free.min) <= NO_EFFECT * size {
+            true => vec![0.0; column.len()],
+            false => column,
+        }
+    };
+    ((0..n).map(column).collect(), found.simulations)
+}

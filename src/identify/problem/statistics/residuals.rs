@@ -1,0 +1,168 @@
+//! Tests of residuals that need no distribution of their own: serial correlation, mean, spread,
+//! normality.
+//!
+//! References: [Wald & Wolfowitz 1940](crate::bibliography#wald-wolfowitz-1940) (runs);
+//! [Anderson & Darling 1952](crate::bibliography#anderson-darling-1952), p-values of D'Agostino and
+//! Stephens 1986, table 4.9, for mean and variance estimated (normality).
+
+use super::distributions::{normal_two_sided, runs_two_sided, student_two_sided};
+
+/// Whether residuals in the order of X look like noise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ResidualTest {
+    /// Runs of equal sign.
+    pub runs: usize,
+    /// How many would be expected.
+    pub expected_runs: f64,
+    /// Probability of as few or as many runs by chance.
+    pub runs_probability: f64,
+    /// Correlation of neighbours.
+    pub autocorrelation: f64,
+    /// Probability of a correlation as far from 0 by chance.
+    pub autocorrelation_probability: f64,
+}
+
+/// The tests of residuals in their order; `None` for fewer than three.
+pub fn residual_test(residuals: &[f64]) -> Option<ResidualTest> {
+    let n = residuals.len();
+    if n < 3 {
+        return None;
+    }
+    let signs: Vec<bool> = residuals.iter().map(|r| *r >= 0.0).collect();
+    let runs = 1 + signs.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    let above = signs.iter().filter(|sign| **sign).count();
+    let below = n - above;
+    let count = n as f64;
+    let mean = mean(residuals);
+    let square: f64 = residuals.iter().map(|r| (r - mean).powi(2)).sum();
+    let neighbours: f64 =
+        residuals.windows(2).map(|pair| (pair[0] - mean) * (pair[1] - mean)).sum();
+    let autocorrelation = if square > 0.0 { neighbours / square } else { 0.0 };
+    // Without correlation its mean is -1/n and its variance about 1/n (Moran 1948).
+    let z = (autocorrelation + 1.0 / count) * count.sqrt();
+    Some(ResidualTest {
+        runs,
+        expected_runs: 1.0 + 2.0 * above as f64 * below as f64 / count,
+        runs_probability: runs_two_sided(runs, above as u64, below as u64),
+        autocorrelation,
+        autocorrelation_probability: normal_two_sided(z),
+    })
+}
+
+pub(in super::super) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Standard deviation about the mean; NaN for one value.
+pub(in super::super) fn deviation(values: &[f64]) -> f64 {
+    let mean = mean(values);
+    let square: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+    (square / (values.len() as f64 - 1.0)).sqrt()
+}
+
+/// Standard deviation of independent noise beneath a slow pattern, from successive differences
+/// (von Neumann 1941).
+pub(in super::super) fn noise_beneath(values: &[f64]) -> f64 {
+    let square: f64 = values.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum();
+    (0.5 * square / (values.len() as f64 - 1.0)).sqrt()
+}
+
+/// Spearman's rank correlation and its probability by chance, from Student's distribution.
+pub(in super::super) fn spearman(a: &[f64], b: &[f64]) -> (f64, f64) {
+    let (a, b) = (ranks(a), ranks(b));
+    let (ma, mb) = (mean(&a), mean(&b));
+    let product: f64 = a.iter().zip(&b).map(|(a, b)| (a - ma) * (b - mb)).sum();
+    let square = |v: &[f64], m: f64| v.iter().map(|v| (v - m).powi(2)).sum::<f64>();
+    let size = (square(&a, ma) * square(&b, mb)).sqrt();
+    if size == 0.0 {
+        return (0.0, 1.0);
+    }
+    let rho = (product / size).clamp(-1.0, 1.0);
+    let freedom = a.len() as f64 - 2.0;
+    let t = rho * (freedom / (1.0 - rho * rho).max(1e-300)).sqrt();
+    (rho, student_two_sided(t, freedom))
+}
+
+/// Ranks from 1; equal values share the mean of theirs.
+fn ranks(values: &[f64]) -> Vec<f64> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
+    let mut ranks = vec![0.0; values.len()];
+    let mut first = 0;
+    while first < order.len() {
+        let same =
+            order[first..].iter().take_while(|k| values[**k] == values[order[first]]).count();
+        let rank = first as f64 + 0.5 * (same as f64 + 1.0);
+        order[first..first + same].iter().for_each(|k| ranks[*k] = rank);
+        first += same;
+    }
+    ranks
+}
+
+/// Probability of values that are as far from normal ones, mean and variance estimated: the test of
+/// Anderson and Darling, which weighs the tails. NaN for fewer than eight values.
+pub(in super::super) fn normality(values: &[f64]) -> f64 {
+    use statrs::distribution::{ContinuousCDF, Normal};
+    let n = values.len() as f64;
+    let (mean, size) = (mean(values), deviation(values));
+    if n < 8.0 || size.is_nan() || size <= 0.0 {
+        return f64::NAN;
+    }
+    let mut z: Vec<f64> = values.iter().map(|v| (v - mean) / size).collect();
+    z.sort_by(f64::total_cmp);
+    let normal = Normal::standard();
+    let part = |k: usize| {
+        let ln = |p: f64| p.max(f64::MIN_POSITIVE).ln();
+        (2 * k + 1) as f64 * (ln(normal.cdf(z[k])) + ln(normal.sf(z[z.len() - 1 - k])))
+    };
+    let a = -n - (0..z.len()).map(part).sum::<f64>() / n;
+    let a = a * (1.0 + 0.75 / n + 2.25 / (n * n));
+    let p = match a {
+        a if a >= 0.6 => (1.2937 - 5.709 * a + 0.0186 * a * a).exp(),
+        a if a > 0.34 => (0.9177 - 4.279 * a - 1.38 * a * a).exp(),
+        a if a > 0.2 => 1.0 - (-8.318 + 42.796 * a - 59.938 * a * a).exp(),
+        a => 1.0 - (-13.436 + 101.14 * a - 223.73 * a * a).exp(),
+    };
+    // Beyond 13 the formula, a parabola, would rise again.
+    if a > 13.0 { 0.0 } else { p.clamp(0.0, 1.0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn waves_are_not_noise_and_noise_is() {
+        let wave: Vec<f64> = (0..60).map(|k| (f64::from(k) / 10.0).sin()).collect();
+        let test = residual_test(&wave).unwrap();
+        assert_eq!(test.runs, 2);
+        assert!(test.runs_probability < 1e-6 && test.autocorrelation > 0.9);
+        assert!(test.autocorrelation_probability < 1e-6);
+        let mut rng = crate::ga::Mrg32k3a::new(&[12345.0; 6]).unwrap();
+        let noise: Vec<f64> = (0..60).map(|_| rng.normal()).collect();
+        let test = residual_test(&noise).unwrap();
+        assert!(test.runs_probability > 0.01 && test.autocorrelation_probability > 0.01);
+        assert!((noise_beneath(&noise) / deviation(&noise) - 1.0).abs() < 0.2);
+    }
+
+    /// scipy.stats.spearmanr of the same values.
+    #[test]
+    fn ranks_are_correlated_as_scipy_does() {
+        let a = [1.0, 2.0, 2.0, 4.0, 5.0, 6.0, 7.0, 8.0];
+        let b = [2.0, 1.0, 4.0, 3.0, 7.0, 8.0, 6.0, 5.0];
+        let (rho, p) = spearman(&a, &b);
+        assert!((rho - 0.7065994945288229).abs() < 1e-12, "{rho}");
+        assert!((p - 0.05006339467042145).abs() < 1e-9, "{p}");
+    }
+
+    #[test]
+    fn heavy_tails_are_not_normal() {
+        let grid =
+            |f: fn(f64) -> f64| -> Vec<f64> { (1..80).map(|k| f(f64::from(k) / 80.0)).collect() };
+        let normal = grid(|p| super::super::distributions::normal_quantile(p));
+        assert!(normality(&normal) > 0.9, "{}", normality(&normal));
+        let cauchy = grid(|p| (std::f64::consts::PI * (p - 0.5)).tan());
+        assert!(normality(&cauchy) < 1e-6, "{}", normality(&cauchy));
+        assert!(normality(&normal[..5]).is_nan());
+    }
+}

@@ -1,0 +1,144 @@
+//! The standard deviation of a measurement as the problem file gives it: a number, a column of the
+//! data, a formula of the output, or `estimate`.
+
+use super::file::SigmaEntry;
+use crate::bail;
+use crate::diag::Fault;
+use crate::fault;
+use crate::identify::problem::{Sigma, SigmaFormula};
+use crate::mat::MatFile;
+use crate::registry::BAD_OPTION;
+use crate::source::SourceId;
+use crate::syntax::ast::{BinaryOperator, Expression, ExpressionKind, UnaryOperator};
+use std::sync::Arc;
+
+/// What is written for deviations that are estimated.
+const ESTIMATE: &str = "estimate";
+
+/// Sigma of the output `name`: all rows of a column, or what needs none. `factor` turns values of
+/// columns into the output's unit.
+///
+/// # Errors
+///
+/// Numbers that are not positive, texts that are neither a column nor a formula of the output.
+pub(super) fn sigma(
+    entry: Option<&SigmaEntry>,
+    name: &str,
+    table: &MatFile,
+    factor: f64,
+    rows: usize,
+) -> Result<Sigma, Fault> {
+    match entry {
+        None => Ok(Sigma::Unknown),
+        Some(SigmaEntry::Number(value)) => {
+            positive(name, *value)?;
+            Ok(Sigma::Given(vec![*value; rows]))
+        }
+        Some(SigmaEntry::Words(words)) if words == ESTIMATE => Ok(Sigma::Estimated),
+        Some(SigmaEntry::Words(words)) => match table.matrix(words) {
+            Ok(column) => {
+                Ok(Sigma::Given(column.row_major().iter().map(|v| v * factor.abs()).collect()))
+            }
+            Err(_) => formula(name, words).map(Sigma::Formula),
+        },
+    }
+}
+
+/// Refuses what cannot be a standard deviation.
+///
+/// # Errors
+///
+/// Numbers that are not positive.
+pub(super) fn positive(name: &str, value: f64) -> Result<(), Fault> {
+    if !(value.is_finite() && value > 0.0) {
+        bail!(BAD_OPTION, "the sigma of `{name}` is {value}"; help: "a standard deviation is positive");
+    }
+    Ok(())
+}
+
+fn formula(name: &str, text: &str) -> Result<SigmaFormula, Fault> {
+    let not = || {
+        fault!(
+            BAD_OPTION,
+            "the sigma of `{name}` is `{text}`, which is neither a column of the data nor a formula of the output";
+            help: "write a number, the name of a column, \"estimate\", or a formula such as \"0.01 + 0.05*abs({name})\" of numbers, `{name}` (or `y`), + - * / ^, abs, sqrt, exp, log, min and max"
+        )
+    };
+    let tree = crate::syntax::parse_expression(SourceId::NONE, text).map_err(|_| not())?;
+    if value(&tree, name, 1.0).is_none() {
+        return Err(not());
+    }
+    let own = name.to_owned();
+    let value = Arc::new(move |y: f64| value(&tree, &own, y).unwrap_or(f64::NAN));
+    Ok(SigmaFormula { text: text.to_owned(), value })
+}
+
+/// The value of a formula where the output is `y`; `None` where it is not one.
+fn value(tree: &Expression, name: &str, y: f64) -> Option<f64> {
+    let of = |tree: &Expression| value(tree, name, y);
+    match &tree.kind {
+        ExpressionKind::Real(number) => Some(*number),
+        ExpressionKind::Integer(number) => Some(*number as f64),
+        ExpressionKind::Reference(_) => {
+            let written = crate::syntax::print::expression(tree);
+            (written == name || written == "y").then_some(y)
+        }
+        ExpressionKind::Unary { operator: UnaryOperator::Minus, operand } => Some(-of(operand)?),
+        ExpressionKind::Unary { operator: UnaryOperator::Plus, operand } => of(operand),
+        ExpressionKind::Binary { operator, left, right } => {
+            let (a, b) = (of(left)?, of(right)?);
+            match operator {
+                BinaryOperator::Add => Some(a + b),
+                BinaryOperator::Subtract => Some(a - b),
+                BinaryOperator::Multiply => Some(a * b),
+                BinaryOperator::Divide => Some(a / b),
+                BinaryOperator::Power => Some(a.powf(b)),
+                _ => None,
+            }
+        }
+        ExpressionKind::Tuple(parts) => match &parts[..] {
+            [Some(inner)] => of(inner),
+            _ => None,
+        },
+        ExpressionKind::Call { function, arguments } if arguments.named.is_empty() => {
+            let [part] = &function.parts[..] else { return None };
+            let values: Option<Vec<f64>> = arguments.positional.iter().map(of).collect();
+            call(part.name.as_str(), &values?)
+        }
+        _ => None,
+    }
+}
+
+fn call(function: &str, arguments: &[f64]) -> Option<f64> {
+    match (function, arguments) {
+        ("abs", [a]) => Some(a.abs()),
+        ("sqrt", [a]) => Some(a.sqrt()),
+        ("exp", [a]) => Some(a.exp()),
+        ("log", [a]) => Some(a.ln()),
+        ("min", [a, b]) => Some(a.min(*b)),
+        ("max", [a, b]) => Some(a.max(*b)),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formulas_have_the_value_of_their_expression() {
+        let at = |text: &str, y: f64| (formula("cell.v", text).unwrap().value)(y);
+        assert_eq!(at("0.01 + 0.05*abs(y)", -2.0), 0.01 + 0.05 * 2.0);
+        assert_eq!(at("sqrt(0.5^2 + (cell.v/10)^2)", 5.0), (0.25f64 + 0.25).sqrt());
+        assert_eq!(at("max(1e-3, -y)", 1.0), 1e-3);
+    }
+
+    #[test]
+    fn what_is_not_a_formula_of_the_output_is_refused() {
+        for text in ["sigam", "0.1*x", "0.1 +", "sin(y)", "{1, 2}", ""] {
+            let fault = formula("y", text).unwrap_err();
+            assert!(fault.message.contains("neither a column"), "{text}: {}", fault.message);
+        }
+        assert!(positive("y", 0.0).is_err() && positive("y", f64::NAN).is_err());
+    }
+}
