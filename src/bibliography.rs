@@ -65,6 +65,16 @@
 //! - **shampine-reichelt-1997** — L. F. Shampine, M. W. Reichelt: The MATLAB ODE suite. SIAM
 //!   Journal on Scientific Computing 18(1), 1997, 1–22 (NDF formulas).
 //!
+//! <a id="feehery-tolsma-barton-1997"></a>
+//! - **feehery-tolsma-barton-1997** — W. F. Feehery, J. E. Tolsma, P. I. Barton: Efficient
+//!   sensitivity analysis of large-scale differential-algebraic systems. Applied Numerical
+//!   Mathematics 25(1), 1997, 41–54.
+//!
+//! <a id="galan-feehery-barton-1999"></a>
+//! - **galan-feehery-barton-1999** — S. Galán, W. F. Feehery, P. I. Barton: Parametric sensitivity
+//!   functions for hybrid discrete/continuous systems. Applied Numerical Mathematics 31(1), 1999,
+//!   17–47.
+//!
 //! <a id="hindmarsh-2005"></a>
 //! - **hindmarsh-2005** — A. C. Hindmarsh et al.: SUNDIALS, suite of nonlinear and
 //!   differential/algebraic equation solvers. ACM Transactions on Mathematical Software 31(3),
@@ -217,8 +227,38 @@
 //! - **huber-1964** — P. J. Huber: Robust estimation of a location parameter. Annals of Mathematical
 //!   Statistics 35(1), 1964, 73–101.
 //!
-//! <a id="seber-wild-1989"></a>
-//! - **seber-wild-1989** — G. A. F. Seber, C. J. Wild: Nonlinear regression. Wiley, 1989.
-//!
 //! <a id="fedorov-1972"></a>
 //! - **fedorov-1972** — V. V. Fedorov: Theory of optimal experiments. Academic Press, 1972.
+//!
+//! <a id="bates-watts-1981"></a>
+//! - **bates-watts-1981** — D. M. Bates, D. G. Watts: A relative offset orthogonality convergence
+//!   criterion for nonlinear least squares. Technometrics 23(2), 1981, 179–183.
+//!
+//! <a id="efron-tibshirani-1993"></a>
+//! - **efron-tibshirani-1993** — B. Efron, R. J. Tibshirani: An introduction to the bootstrap.
+//!   Chapman and Hall, 1993.
+//!
+//! <a id="davison-hinkley-1997"></a>
+//! - **davison-hinkley-1997** — A. C. Davison, D. V. Hinkley: Bootstrap methods and their
+//!   application. Cambridge University Press, 1997.
+//!
+//! <a id="haario-2006"></a>
+//! - **haario-2006** — H. Haario, M. Laine, A. Mira, E. Saksman: DRAM, efficient adaptive MCMC.
+//!   Statistics and Computing 16, 2006, 339–354.
+//!
+//! <a id="gelman-1996"></a>
+//! - **gelman-1996** — A. Gelman, G. O. Roberts, W. R. Gilks: Efficient Metropolis jumping rules.
+//!   Bayesian Statistics 5, 1996, 599–607.
+//!
+//! <a id="gelman-2013"></a>
+//! - **gelman-2013** — A. Gelman, J. B. Carlin, H. S. Stern, D. B. Dunson, A. Vehtari, D. B. Rubin:
+//!   Bayesian data analysis. 3rd edition, Chapman and Hall, 2013.
+//!
+//! <a id="vehtari-2021"></a>
+//! - **vehtari-2021** — A. Vehtari, A. Gelman, D. Simpson, B. Carpenter, P.-C. Bürkner:
+//!   Rank-normalization, folding, and localization: an improved R-hat for assessing convergence of
+//!   MCMC. Bayesian Analysis 16(2), 2021, 667–718.
+//!
+//! <a id="burnham-anderson-2002"></a>
+//! - **burnham-anderson-2002** — K. P. Burnham, D. R. Anderson: Model selection and multimodel
+//!   inference. 2nd edition, Springer, 2002.

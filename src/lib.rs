@@ -53,7 +53,7 @@
 //! - [`flatten`], [`dae`], [`compile`]: from a class to a program that evaluates itself;
 //! - [`sim`]: integrators, events, trajectories; knows nothing of Modelica;
 //! - [`ga`], [`identify`]: the genetic algorithm; populations of simulations, and what they tell;
-//! - [`mat`], [`results`], [`plot`]: files and figures;
+//! - [`mat`], [`results`], [`plot`], [`page`]: files, figures, HTML pages;
 //! - [`models`]: the Modelica packages that are part of the program;
 //! - [`script`]: sessions and their commands; [`cli`]: the command line, the only door outside.
 
@@ -74,6 +74,7 @@ pub mod ga;
 pub mod graph;
 pub mod identify;
 pub mod mat;
+pub mod page;
 pub mod plot;
 pub mod results;
 pub mod script;

@@ -272,6 +272,7 @@ pub(super) struct HelpArgs {
 Examples:
   gapi identify scripts/problems/polarization.toml
   gapi identify scripts/problems/polarization.toml --out fit1 --threads 2
+  gapi identify one.toml two.toml              compare two models of the same data
   gapi identify my.toml --resume               go on after Ctrl-C, a crash or a power cut
   gapi identify my.toml --watch settings.toml  change settings while it runs
 
@@ -291,6 +292,9 @@ pub(super) struct IdentifyArgs {
     /// The problem (.toml)
     #[arg(value_hint = ValueHint::FilePath)]
     pub problem: PathBuf,
+    /// Further problems of the same data: the models are compared
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub others: Vec<PathBuf>,
     /// Folder for results, figures and the checkpoint [default: one for each problem below `results`]
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,
@@ -315,6 +319,12 @@ pub(super) struct IdentifyArgs {
     /// After the fit, which further measurements would shrink the intervals most
     #[arg(long)]
     pub design: bool,
+    /// After the fit, intervals by fits to data drawn anew
+    #[arg(long)]
+    pub bootstrap: bool,
+    /// After the fit, the posterior distribution by Markov chains
+    #[arg(long)]
+    pub posterior: bool,
     /// First analyse how much each parameter matters: `morris` or `sobol`
     #[arg(long, value_name = "WAY")]
     pub sensitivity: Option<String>,
@@ -448,8 +458,8 @@ pub(super) struct SimulateArgs {
     /// Draw a variable over time, in the terminal or as --figure says (repeatable)
     #[arg(long, value_name = "VARIABLE")]
     pub plot: Vec<String>,
-    /// Where the drawing of --plot goes
-    #[arg(long, value_name = "FILE.svg", requires = "plot", value_hint = ValueHint::FilePath)]
+    /// Where the drawing of --plot goes: a file that ends in .svg, .png or .pdf
+    #[arg(long, value_name = "FILE", requires = "plot", value_hint = ValueHint::FilePath)]
     pub figure: Option<PathBuf>,
 }
 

@@ -1,30 +1,51 @@
 //! `gapi identify`: solves a problem that is written in a file.
 
 use super::args::{Global, IdentifyArgs};
+use super::comparison;
 use super::output::Output;
 use super::session;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
+use crate::identify::problem::Solution;
 use crate::script::problem::{RunOptions, solve};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Solves the problem.
+/// How a run ended.
+pub(super) enum Ended {
+    Solved(Box<Solution>),
+    Not(ExitCode),
+}
+
+/// Solves the problem, or several and compares them.
 pub(super) fn identify(arguments: &IdentifyArgs, global: &Global) -> ExitCode {
+    if !arguments.others.is_empty() {
+        return comparison::identify_all(arguments, global);
+    }
+    match solve_one(arguments, global, &arguments.problem, Path::new("")) {
+        Ended::Solved(_) => ExitCode::SUCCESS,
+        Ended::Not(code) => code,
+    }
+}
+
+/// Solves one problem into its folder below `results`, or into `folder` within the one that is wanted.
+pub(super) fn solve_one(
+    arguments: &IdentifyArgs,
+    global: &Global,
+    problem: &Path,
+    folder: &Path,
+) -> Ended {
     let mut terminal = Terminal::new(global.color, arguments.quiet);
     if arguments.plain {
         terminal.forbid_view();
     }
-    let output = Output::of(
-        "gapi identify",
-        &arguments.problem,
-        arguments.out.as_deref(),
-        arguments.overwrite,
-    );
+    let wanted = arguments.out.as_ref().map(|out| out.join(folder));
+    let output = Output::of("gapi identify", problem, wanted.as_deref(), arguments.overwrite);
     let output = match output {
         Ok(output) => output,
         Err(message) => {
             terminal::eprint(&format!("error: {message}\n"));
-            return ExitCode::from(2);
+            return Ended::Not(ExitCode::from(2));
         }
     };
     let threads = arguments.threads.map(usize::from);
@@ -32,7 +53,7 @@ pub(super) fn identify(arguments: &IdentifyArgs, global: &Global) -> ExitCode {
         Ok(world) => world,
         Err(error) => {
             terminal::eprint(&format!("error: the working directory cannot be read: {error}\n"));
-            return ExitCode::FAILURE;
+            return Ended::Not(ExitCode::FAILURE);
         }
     };
     world.catch_interrupts();
@@ -41,16 +62,18 @@ pub(super) fn identify(arguments: &IdentifyArgs, global: &Global) -> ExitCode {
         resume: arguments.resume,
         fresh: arguments.fresh,
         watch: arguments.watch.clone(),
+        folder: PathBuf::new(),
         profile: arguments.profile,
         design: arguments.design,
+        bootstrap: arguments.bootstrap,
+        posterior: arguments.posterior,
         sensitivity: arguments.sensitivity.clone(),
         samples: arguments.samples.unwrap_or(0) as usize,
         evaluations: arguments.evaluations,
-        ..RunOptions::default()
     };
-    match solve(&mut session, &arguments.problem, &options) {
-        Ok(_) if session.is_interrupted() => ExitCode::from(130),
-        Ok(_) => ExitCode::SUCCESS,
-        Err(errors) => session::failed(&mut session, errors),
+    match solve(&mut session, problem, &options) {
+        Ok(_) if session.is_interrupted() => Ended::Not(ExitCode::from(130)),
+        Ok(solution) => Ended::Solved(Box::new(solution)),
+        Err(errors) => Ended::Not(session::failed(&mut session, errors)),
     }
 }

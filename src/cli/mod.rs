@@ -4,6 +4,7 @@
 mod args;
 mod check;
 mod compare;
+mod comparison;
 mod completions;
 mod explain;
 mod help;

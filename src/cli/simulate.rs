@@ -54,6 +54,7 @@ fn run(
         Some(path) => Some(results::format_of_file(&path.to_string_lossy()).map_err(one)?),
         None => None,
     };
+    let picture = arguments.figure.as_deref().map(plot::Picture::of).transpose().map_err(one)?;
     if let Some(pass) = &arguments.dump {
         let text = simulation::dump(session, class, pass)?;
         session.print(&text);
@@ -82,7 +83,7 @@ fn run(
         session.print(&statistics(&simulated.statistics));
     }
     if !arguments.plot.is_empty() {
-        draw(session, class, arguments, &simulated.table).map_err(one)?;
+        draw(session, class, (arguments, picture), &simulated.table).map_err(one)?;
     }
     match (&arguments.output, format) {
         (Some(path), Some(format)) => {
@@ -191,6 +192,9 @@ fn statistics(s: &Statistics) -> String {
         ("factorizations", s.factorizations),
         ("state events", s.state_events),
         ("time events", s.time_events),
+        ("chattering relations followed", s.followed),
+        ("slides along discontinuities", s.slides),
+        ("accumulations of impacts", s.accumulations),
     ];
     rows.iter().map(|(name, count)| format!("  {name:34}{count:>10}\n")).collect()
 }
@@ -199,14 +203,14 @@ fn statistics(s: &Statistics) -> String {
 fn draw(
     session: &mut Session,
     class: &str,
-    arguments: &SimulateArgs,
+    (arguments, picture): (&SimulateArgs, Option<plot::Picture>),
     table: &ResultTable,
 ) -> Result<(), Fault> {
     let panels = arguments.plot.iter().map(|name| panel(table, name));
     let figure = Figure { title: class.to_owned(), panels: panels.collect::<Result<_, _>>()? };
-    match &arguments.figure {
-        Some(path) => {
-            session.write_file(path, figure.svg().as_bytes())?;
+    match arguments.figure.as_ref().zip(picture) {
+        Some((path, format)) => {
+            session.write_file(path, &figure.picture(format)?)?;
             session.print(&format!("figure: {}\n", path.display()));
         }
         None => session.print(&figure.text(CHART.0, CHART.1)),

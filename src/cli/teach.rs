@@ -164,6 +164,10 @@ fn draw(trace: &Trace, file: &Path, generation: usize) -> Result<(), Trouble> {
     if generation > has {
         return Err(Trouble::Message(format!("the run has {has} generations")));
     }
+    if file.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("svg")) {
+        let message = format!("`{}` does not end in `.svg`: --svg writes SVG only", file.display());
+        return Err(Trouble::Message(message));
+    }
     write(file, &picture::picture(trace, generation - 1))?;
     terminal::print(&format!("written to {}\n", file.display()));
     Ok(())

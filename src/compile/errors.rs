@@ -16,6 +16,11 @@ crate::codes! {
         "## What it means\nThe simulation could not be finished: the step became too small, a loop did not converge, or a budget is used up.\n\n\
          ## Example\nA pole of the solution at the time named.\n\n\
          ## What to do\nLook at the time and the equations named; loosen the tolerance, give start values, or check the parameters.",
+    /// A relation that would cause events without end.
+    CHATTERING = "chattering":
+        "## What it means\nA relation would switch again and again at one place. The simulation goes on: the relation is evaluated between steps, or the solution slides along it with the mean of both branches (Filippov), or it rests where impacts have accumulated.\n\n\
+         ## Example\n`der(x) = if x > 0 then -1 else 1` stays at `x = 0`.\n\n\
+         ## What to do\nNothing, if this is what the model means. Otherwise write a hysteresis, `smooth` or `noEvent`; `method` and tolerance do not change it.",
     /// Initial values that could not be found.
     INITIALIZATION_FAILED = "initialization-failed":
         "## What it means\nNo consistent values could be found for the start of the simulation.\n\n\

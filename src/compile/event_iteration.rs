@@ -17,9 +17,12 @@ use super::relations::Change;
 use super::system::{System, run};
 use crate::sim::{EventOutcome, Failure};
 use crate::symbolic::VarId;
+use rustc_hash::FxHashSet;
 
-/// Most rounds of an event iteration.
+/// Rounds of an event iteration after which values that come back are looked for.
 const MAX_ROUNDS: usize = 100;
+/// Most rounds, however new the values are: a counter that counts itself never has the same again.
+const MOST_ROUNDS: usize = 10_000;
 /// Most passes of a round.
 const MAX_PASSES: usize = 60;
 /// Passes in which all relations may change; from then on one after the other.
@@ -141,6 +144,7 @@ impl System {
             }
             *slot = value;
         }
+        self.carry_to_previous();
         changed
     }
 
@@ -229,7 +233,12 @@ impl System {
     fn iterate(&mut self, t: f64) -> Result<EventOutcome, Failure> {
         let (mut changed, mut terminated) = (false, false);
         let mut is_stepwise = false;
-        for _ in 0..MAX_ROUNDS {
+        let mut known = FxHashSet::default();
+        for round in 0..MOST_ROUNDS {
+            // Values that come back do so for ever; those that are new each time may be a chain.
+            if round >= MAX_ROUNDS && !known.insert(self.values_of_events()) {
+                break;
+            }
             let moves = match is_stepwise {
                 true => self.pass(t, Stage::Event, Change::All)?.is_some(),
                 false => match self.settle(t, Stage::Event) {
@@ -245,6 +254,7 @@ impl System {
                 },
             };
             terminated |= self.check_at_event(t)?;
+            self.carry_through_event()?;
             let set = self.reinitialize()?;
             let moved = self.update_previous();
             changed |= set | moves;
@@ -256,6 +266,16 @@ impl System {
             }
         }
         Err(Failure::EventIteration { variable: self.unstable })
+    }
+
+    /// What decides how an event iteration goes on, as bits.
+    fn values_of_events(&self) -> Vec<u64> {
+        let program = &self.program;
+        let discrete = program.events.discrete.iter().chain(&program.sorted.states);
+        let relations = program.relations.iter().map(|relation| relation.register);
+        let previous = program.events.previous.iter().map(|previous| previous.register);
+        let all = discrete.map(|v| v.0).chain(relations).chain(previous);
+        all.map(|register| self.registers[register as usize].to_bits()).collect()
     }
 
     /// Solves once and updates relations; what changed, if anything.
@@ -290,10 +310,35 @@ impl System {
                 Some(moved) => any |= moved == Moved::Relation,
             }
         }
-        match self.find_combination(t, stage) {
+        if self.find_combination(t, stage) {
+            return Ok(true);
+        }
+        match self.settle_leniently(t, stage)? {
             true => Ok(true),
             false => Err(Failure::EventIteration { variable: self.unstable }),
         }
+    }
+
+    /// The same where relations are excused that hold but for what the tolerance makes of their
+    /// sides; whether they then come to rest.
+    fn settle_leniently(&mut self, t: f64, stage: Stage) -> Result<bool, Failure> {
+        self.is_lenient = true;
+        let mut rests = Ok(false);
+        for _ in 0..MAX_PASSES {
+            match self.pass(t, stage, Change::First) {
+                Ok(None) => {
+                    rests = Ok(true);
+                    break;
+                }
+                Ok(Some(_)) => {}
+                Err(failure) => {
+                    rests = Err(failure);
+                    break;
+                }
+            }
+        }
+        self.is_lenient = false;
+        rests
     }
 
     /// Keeps the values of the variables of discrete loops.
@@ -338,10 +383,11 @@ impl System {
         run(&reinits.tape, &mut self.registers)?;
         let mut any = false;
         let pairs = reinits.outputs.chunks_exact(2).zip(&program.events.reinitialized);
-        for (pair, (state, negated)) in pairs {
+        for (number, (pair, (state, negated))) in pairs.enumerate() {
             if self.registers[pair[0] as usize] != 0.0 {
                 let value = self.registers[pair[1] as usize];
                 self.registers[state.0 as usize] = if *negated { -value } else { value };
+                self.carry_through_reinit(number, *negated);
                 any = true;
             }
         }
@@ -374,14 +420,18 @@ impl System {
 
     /// Times at which a rounding of time jumps or a sample is due next.
     pub(super) fn scheduled(&self) -> impl Iterator<Item = f64> {
-        let jumps = self.program.events.roundings.iter().filter_map(|rounding| {
-            let (slope, rest) = rounding.time?;
-            let value = self.registers[rounding.register as usize];
-            let next = if slope > 0.0 { value + 1.0 } else { value };
-            Some((next - self.registers[rest as usize]) / slope)
-        });
         let samples = self.clocks.iter().map(Clock::time);
-        jumps.chain(samples).filter(|time| time.is_finite())
+        self.jumps_of_roundings().flatten().chain(samples).filter(|time| time.is_finite())
+    }
+
+    /// For every rounding the time at which it jumps next, if it is one of time.
+    pub(super) fn jumps_of_roundings(&self) -> impl Iterator<Item = Option<f64>> {
+        self.program.events.roundings.iter().map(|rounding| {
+            let (factor, rest) = rounding.time?;
+            let value = self.registers[rounding.register as usize];
+            let next = if factor > 0.0 { value + 1.0 } else { value };
+            Some((next - self.registers[rest as usize]) / factor)
+        })
     }
 
     /// Values of all discrete variables and their previous ones, for an event at the end;

@@ -33,6 +33,9 @@ impl Program {
             SimErrorKind::TimeBudget => "the time allowed is used up",
             SimErrorKind::Singular => "the Jacobian is singular",
             SimErrorKind::Chattering => "events follow each other without end",
+            SimErrorKind::Accumulation => {
+                "events accumulate, infinitely many up to this time, and there is no solution beyond"
+            }
             _ => "a value is not finite",
         };
         let (words, span) = match culprit.and_then(|culprit| self.culprit(culprit)) {

@@ -23,40 +23,92 @@ pub(super) fn differentiate_sequence(
     next: &mut u32,
 ) -> Differentiated {
     let one = pool.constant(1.0);
-    let mut slopes: FxHashMap<VarId, BTreeMap<usize, Expr>> = FxHashMap::default();
+    let mut forward = Forward::new(pool, next);
     for (column, variable) in columns.iter().enumerate() {
-        slopes.insert(*variable, BTreeMap::from([(column, one)]));
+        forward.seed(*variable, BTreeMap::from([(column, one)]));
     }
     let mut extended = Vec::new();
-    let mut solved = Solved::default();
     for assignment in sequence {
         extended.push(*assignment);
-        let mut row = match *pool.node(assignment.value) {
+        forward.assign(assignment, &mut extended);
+    }
+    let rows = outputs.iter().map(|output| forward.row(*output)).collect();
+    Differentiated { sequence: extended, rows }
+}
+
+/// Derivatives of variables by columns, carried through assignments one after the other.
+pub(super) struct Forward<'a> {
+    pub(super) pool: &'a mut Pool,
+    rows: FxHashMap<VarId, BTreeMap<usize, Expr>>,
+    solved: Solved,
+    next: &'a mut u32,
+}
+
+impl<'a> Forward<'a> {
+    /// Where every variable has derivatives of zero; `next` numbers new variables.
+    pub(super) fn new(pool: &'a mut Pool, next: &'a mut u32) -> Forward<'a> {
+        Forward { pool, rows: FxHashMap::default(), solved: Solved::default(), next }
+    }
+
+    /// Gives the derivatives of a variable by column; those left out are zero.
+    pub(super) fn seed(&mut self, variable: VarId, row: BTreeMap<usize, Expr>) {
+        self.rows.insert(variable, row);
+        // What was found of linear systems may depend on it.
+        self.solved.clear();
+    }
+
+    /// The derivatives of the variable that is assigned; assignments of new variables, which hold
+    /// them, are added to `extended`.
+    pub(super) fn assign(&mut self, assignment: &Assignment, extended: &mut Vec<Assignment>) {
+        let value = assignment.value;
+        let mut row = match *self.pool.node(value) {
             Node::Solution { matrix, right, output, .. } => {
-                let columns = solved.entry((matrix, right)).or_insert_with(|| {
-                    chain_by_column(pool, assignment.value, [matrix, right], &slopes)
-                });
-                of_unknown(pool, columns, output)
+                let (pool, rows) = (&mut *self.pool, &self.rows);
+                let columns = self
+                    .solved
+                    .entry((matrix, right))
+                    .or_insert_with(|| chain_by_column(pool, value, [matrix, right], rows));
+                of_unknown(self.pool, columns, output)
             }
-            _ => chain(pool, assignment.value, &slopes),
+            _ => chain(self.pool, value, &self.rows),
         };
-        for slope in row.values_mut() {
-            let simple = pool.as_constant(*slope).is_some() || pool.as_variable(*slope).is_some();
+        self.name(&mut row, assignment.equation, extended);
+        self.rows.insert(assignment.variable, row);
+    }
+
+    /// Gives names to derivatives that are more than a number or a variable.
+    pub(super) fn name(
+        &mut self,
+        row: &mut BTreeMap<usize, Expr>,
+        equation: usize,
+        extended: &mut Vec<Assignment>,
+    ) {
+        for value in row.values_mut() {
+            let simple =
+                self.pool.as_constant(*value).is_some() || self.pool.as_variable(*value).is_some();
             if !simple {
-                let variable = VarId(*next);
-                *next += 1;
-                extended.push(Assignment {
-                    variable,
-                    value: *slope,
-                    equation: assignment.equation,
-                });
-                *slope = pool.variable(variable);
+                let variable = VarId(*self.next);
+                *self.next += 1;
+                extended.push(Assignment { variable, value: *value, equation });
+                *value = self.pool.variable(variable);
             }
         }
-        slopes.insert(assignment.variable, row);
     }
-    let rows = outputs.iter().map(|output| chain(pool, *output, &slopes)).collect();
-    Differentiated { sequence: extended, rows }
+
+    /// The derivatives of an expression by column; zeros left out.
+    pub(super) fn row(&mut self, e: Expr) -> BTreeMap<usize, Expr> {
+        chain(self.pool, e, &self.rows)
+    }
+
+    /// The derivative of a variable.
+    pub(super) fn of(&self, variable: VarId, column: usize) -> Option<Expr> {
+        self.rows.get(&variable)?.get(&column).copied()
+    }
+
+    /// The expressions and the number of the next new variable.
+    pub(super) fn parts(&mut self) -> (&mut Pool, &mut u32) {
+        (self.pool, self.next)
+    }
 }
 
 /// Slopes of an unknown of linear systems by columns, by matrix and right side.

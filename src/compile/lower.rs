@@ -164,6 +164,11 @@ impl<'a> TapeBuilder<'a> {
         }
     }
 
+    /// Writes a value that has been computed to a register; nothing is computed afterwards.
+    pub(super) fn copy(&mut self, d: Register, a: Register) {
+        self.tape.code.push(Instruction::Move { d, a });
+    }
+
     /// Computes an expression; returns where its value is.
     pub(super) fn emit(&mut self, root: Expr) -> Register {
         let mut stack = vec![(root, false)];

@@ -25,6 +25,8 @@ mod regions;
 mod relations;
 mod routines;
 mod selection;
+mod sensitivity;
+mod sliding;
 mod slopes;
 mod system;
 mod tape;
@@ -32,4 +34,6 @@ mod translation;
 
 pub use notices::Told;
 pub use program::{Access, ParameterInfo, Program, VariableInfo};
+pub use sensitivity::SensitivityCode;
+pub use sliding::Treated;
 pub use system::System;

@@ -8,6 +8,7 @@ use super::jacobian::differentiate_sequence;
 use super::lower::{Registers, TapeBuilder};
 use super::machine_code::MachineCode;
 use super::notices::Notice;
+use super::sliding::memoryless;
 use super::system::System;
 use super::tape::{Register, Tape};
 use crate::dae::{Assertion, Assignment, Block, Kind, Level, SortedDae, Variable};
@@ -154,6 +155,8 @@ pub struct Program {
     pub(super) sequence: Vec<Assignment>,
     /// The same where all algebraic unknowns of the integrator are given.
     pub(super) integrated: Vec<Assignment>,
+    /// What must be zero there.
+    pub(super) residuals: Vec<Expr>,
     /// The unknowns of the integrator: states, then [`Program::iteration`].
     pub(super) unknowns: Vec<VarId>,
     /// The algebraic ones.
@@ -189,6 +192,8 @@ pub struct Program {
     pub(super) crossing_relations: Vec<usize>,
     /// For every block that is solved at once, the relations in it.
     pub(super) relations_of_blocks: Vec<Vec<usize>>,
+    /// For every relation, whether only functions of the relations follow from it at events.
+    pub(super) memoryless: Vec<bool>,
     pub(super) selections: Vec<CompiledSelection>,
     pub(super) observe: Outputs,
     pub(super) assertions: Vec<(usize, Outputs)>,
@@ -409,6 +414,7 @@ impl Program {
             }
         }
         let relations_of_blocks = relations_of_blocks(&pool, &sorted);
+        let memoryless = memoryless(&pool, &sorted);
         sorted.dae.pool = pool;
         let variables = variables(&sorted, &observed);
         let parameters = parameters(&sorted);
@@ -417,6 +423,7 @@ impl Program {
             registers,
             sequence,
             integrated,
+            residuals,
             unknowns,
             iteration,
             n_auxiliary,
@@ -440,6 +447,7 @@ impl Program {
             crossings_vary_in_time,
             crossings,
             relations_of_blocks,
+            memoryless,
             selections,
             observe,
             assertions,

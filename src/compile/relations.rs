@@ -8,6 +8,9 @@
 //!
 //! A relation that has so been kept once has these bounds in all later steps.
 //!
+//! Where no values of the relations agree with what they decide, those whose sides differ by less
+//! than errors of y as large as the tolerance are excused: ε is as large for them until they change.
+//!
 //! ε is a little more than what rounding makes of the sides. Without it the value of a relation
 //! that decides which equations hold, and that they bring to its very limit (a friction element
 //! that just begins to slide), would depend on rounding errors and never come to rest.
@@ -32,8 +35,8 @@ pub(super) enum Change {
 }
 
 /// How far a relation is from having another value, given the one it has; negative beyond that.
-fn distance(operator: RelationOperator, holds: bool, a: f64, b: f64) -> f64 {
-    let margin = RELATIVE * a.abs().max(b.abs()) + ABSOLUTE;
+fn distance(operator: RelationOperator, holds: bool, (a, b): (f64, f64), excused: f64) -> f64 {
+    let margin = (RELATIVE * a.abs().max(b.abs()) + ABSOLUTE).max(excused);
     match operator {
         RelationOperator::Greater | RelationOperator::GreaterEqual if holds => a - b + margin,
         RelationOperator::Greater | RelationOperator::GreaterEqual => b - a + margin,
@@ -62,6 +65,7 @@ impl System {
                 self.unstable = register;
                 self.has_changed[at] = true;
                 self.restless[at] = true;
+                self.excused[at] = 0.0;
                 self.registers[register as usize] = f64::from(u8::from(!before));
             }
         }
@@ -87,9 +91,17 @@ impl System {
         if exact == before || !self.has_changed[at] {
             return exact;
         }
-        let keeps = distance(operator, before, a, b) >= 0.0;
-        self.held[at] |= keeps;
-        before == keeps
+        if distance(operator, before, (a, b), 0.0) >= 0.0 {
+            self.held[at] = true;
+            return before;
+        }
+        let excused = if self.is_lenient { self.uncertainty[at] } else { self.excused[at] };
+        let keeps = excused > 0.0 && distance(operator, before, (a, b), excused) >= 0.0;
+        if keeps {
+            (self.held[at], self.excused[at]) = (true, excused);
+            return before;
+        }
+        exact
     }
 
     /// Writes the crossing functions of relations and roundings; y is loaded and solved.
@@ -104,9 +116,10 @@ impl System {
             let relation = &program.relations[*at];
             let holds = self.registers[relation.register as usize] != 0.0;
             let [a, b] = [pair[0], pair[1]].map(|side| self.registers[side as usize]);
+            let excused = self.excused[*at];
             *z = match self.held[*at] {
-                true if holds => distance(relation.operator, true, a, b),
-                true => -distance(relation.operator, false, a, b),
+                true if holds => distance(relation.operator, true, (a, b), excused),
+                true => -distance(relation.operator, false, (a, b), excused),
                 false => a - b,
             };
         }

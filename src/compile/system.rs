@@ -3,17 +3,20 @@
 use super::event_iteration::{Clock, Stage, either, same_time};
 use super::history::History;
 use super::hoist::Hoisting;
+use super::lower::Registers;
 use super::memory::Memory;
 use super::newton::LoopSolver;
 use super::notices::Notices;
 use super::program::{Access, Outputs, Program, Step, compile_continuous, resolved};
 use super::relations::Change;
 use super::selection::Choice;
+use super::sensitivity::Sensitivity;
+use super::sliding::{Modes, Treated};
 use super::tape::{Instruction, Tape};
 use crate::dae::Homotopy;
 use crate::diag::Fault;
 use crate::fault;
-use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern};
+use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
 use crate::symbolic::{Expr, Pool, VarId, function};
 use std::sync::Arc;
 
@@ -40,6 +43,11 @@ pub struct System {
     pub(super) restless: Vec<bool>,
     /// Whether relations have been kept at a value that their sides did not quite have.
     pub(super) held: Vec<bool>,
+    /// What the tolerance makes of the sides of relations, and whether it excuses relations that do
+    /// not hold, and by how much it has.
+    pub(super) uncertainty: Vec<f64>,
+    pub(super) is_lenient: bool,
+    pub(super) excused: Vec<f64>,
     nominal: Vec<f64>,
     /// One for every loop of the initial system, of the system, and of that at events, in order.
     initial_solvers: Vec<LoopSolver>,
@@ -62,8 +70,16 @@ pub struct System {
     pub(super) sampled: bool,
     /// The variable that changed last in an event iteration.
     pub(super) unstable: u32,
+    /// Derivatives that are carried along, if any are.
+    pub(super) sensitivity: Option<Box<Sensitivity>>,
     /// What is told of a simulation, where somebody listens.
     pub(super) notices: Option<Notices>,
+    /// The modes on both sides of relations.
+    pub(super) modes: Modes,
+    /// What was done about relations that chattered.
+    pub(super) treated: Vec<Treated>,
+    /// Of the observed variables those of which a mean is a value.
+    has_means: Vec<bool>,
 }
 
 impl System {
@@ -78,6 +94,9 @@ impl System {
             has_changed: vec![false; program.relations.len()],
             restless: vec![false; program.relations.len()],
             held: vec![false; program.relations.len()],
+            uncertainty: vec![0.0; program.relations.len()],
+            is_lenient: false,
+            excused: vec![0.0; program.relations.len()],
             nominal: vec![1.0; n],
             initial_solvers: Vec::new(),
             solvers: Vec::new(),
@@ -91,7 +110,11 @@ impl System {
             delay_times: vec![0.0; program.events.delays.len()],
             sampled: false,
             unstable: 0,
+            sensitivity: None,
             notices: None,
+            modes: Modes::default(),
+            treated: Vec::new(),
+            has_means: program.observed.iter().map(|v| program.has_means(*v)).collect(),
             program,
         };
         system.evaluate_nominals();
@@ -134,11 +157,11 @@ impl System {
         let program = self.program.clone();
         let mut pool = program.sorted.dae.pool.clone();
         let outputs = expressions(&program, &mut pool, variables);
-        let mut registers = program.registers.clone();
-        let observed =
-            compile_continuous(&pool, &mut registers, &program.sequence, &outputs, Hoisting::Known);
+        let (registers, observed) = observing(&program, &pool, &outputs);
         self.registers.extend(&registers);
         self.observed = Some(observed);
+        let variables = variables.iter().map(|at| program.variables()[*at].variable);
+        self.has_means = variables.map(|v| program.has_means(v)).collect();
     }
 
     /// The value of a parameter or constant (position in [`Program::variables`]) after
@@ -161,6 +184,9 @@ impl System {
         if !self.histories.is_empty() {
             self.load_delayed(t);
         }
+        if self.sensitivity.is_some() {
+            self.load_derivatives(y);
+        }
     }
 
     /// Loads y, and solves for the iteration variables that it does not hold.
@@ -173,8 +199,11 @@ impl System {
     }
 
     fn unload(&self, y: &mut [f64]) {
-        for (variable, value) in self.program.unknowns.iter().zip(y) {
+        for (variable, value) in self.program.unknowns.iter().zip(y.iter_mut()) {
             *value = self.registers[variable.0 as usize];
+        }
+        if self.sensitivity.is_some() {
+            self.unload_derivatives(y);
         }
     }
 
@@ -339,6 +368,8 @@ impl System {
         self.take_start_values_of_events();
         self.has_changed.fill(false);
         self.held.fill(false);
+        self.uncertainty.fill(0.0);
+        self.excused.fill(0.0);
         self.update_relations(t, Change::All);
         self.has_changed.fill(false);
         for (choice, selection) in self.choices.iter_mut().zip(&program.selections) {
@@ -451,6 +482,7 @@ impl DaeSystem for System {
 
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         self.forget_notices();
+        self.treated.clear();
         self.solve_initial_system(t)?;
         self.check_initial_values()?;
         self.assert_at_event()?;
@@ -458,6 +490,7 @@ impl DaeSystem for System {
         self.improve_choices()?;
         self.start_clocks(t)?;
         self.start_histories(t)?;
+        self.start_sensitivities()?;
         self.iterate_at_start(t)?;
         self.improve_choices()?;
         self.unload(y);
@@ -501,10 +534,12 @@ impl DaeSystem for System {
         self.load(t, y);
         self.registers.calls.next_instant();
         self.has_changed.fill(false);
+        self.enter_event(t)?;
         let mut outcome = self.event(t)?;
         if self.improve_choices()? {
             outcome = either(outcome, EventOutcome::Continue { y_changed: true });
         }
+        self.leave_event(outcome)?;
         self.unload(y);
         Ok(outcome)
     }
@@ -541,12 +576,70 @@ impl DaeSystem for System {
         self.notice(t)
     }
 
+    fn set_uncertainty(&mut self, crossings: &[f64]) {
+        self.keep_uncertainty(crossings);
+    }
+
+    fn prepare_modes(&mut self, t: f64, y: &[f64], sides: &[Side]) -> Result<bool, Failure> {
+        self.load(t, y);
+        self.compute_modes(sides)
+    }
+
+    fn enter_mode(&mut self, mode: usize) {
+        self.load_mode(mode);
+    }
+
+    fn can_follow(&self, crossing: usize) -> bool {
+        self.is_memoryless(crossing)
+    }
+
+    fn follow(&mut self, t: f64, y: &[f64], sides: &[(usize, bool)]) -> Result<(), Failure> {
+        self.load(t, y);
+        self.change_sides(sides)
+    }
+
+    fn has_means(&self, observed: usize) -> bool {
+        self.has_means.get(observed).is_none_or(|has| *has)
+    }
+
+    fn note_treatment(&mut self, t: f64, crossing: usize, treatment: Treatment) {
+        self.note_treated(t, crossing, treatment);
+    }
+
+    fn n_directions(&self) -> usize {
+        self.sensitivity.as_ref().map_or(0, |sensitivity| sensitivity.code.n_columns())
+    }
+
+    fn directions(&self, out: &mut [f64]) {
+        self.magnitudes_of_parameters(out);
+    }
+
+    fn sensitivity_rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.load(t, y);
+        let Some(sensitivity) = &self.sensitivity else { return Ok(()) };
+        read(&sensitivity.code.rhs, &mut self.registers, out).map_err(|f| self.refine(f))
+    }
+
+    fn crossed(&mut self, crossing: Option<usize>, span: f64) {
+        self.note_cause(crossing, span);
+    }
+
     fn n_observed(&self) -> usize {
+        if let Some(sensitivity) = &self.sensitivity {
+            return sensitivity.code.observe.outputs.len();
+        }
         self.observed.as_ref().unwrap_or(&self.program.observe).outputs.len()
     }
 
     fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         self.load_solved(t, y)?;
+        if self.solves_loops {
+            self.differentiate_algebraic()?;
+        }
+        if let Some(sensitivity) = &self.sensitivity {
+            let code = &sensitivity.code.observe;
+            return read(code, &mut self.registers, out).map_err(|f| self.refine(f));
+        }
         let observed = self.observed.as_ref().unwrap_or(&self.program.observe);
         read(observed, &mut self.registers, out).map_err(|f| self.refine(f))
     }
@@ -559,6 +652,14 @@ pub(super) fn expressions(program: &Program, pool: &mut Pool, variables: &[usize
         _ => resolved(pool, &program.sorted, program.variables()[*at].variable),
     };
     variables.iter().map(of).collect()
+}
+
+/// Code for what a system observes, with the registers that the system has then.
+pub(super) fn observing(program: &Program, pool: &Pool, outputs: &[Expr]) -> (Registers, Outputs) {
+    let mut registers = program.registers.clone();
+    let sequence = &program.sequence;
+    let code = compile_continuous(pool, &mut registers, sequence, outputs, Hoisting::Known);
+    (registers, code)
 }
 
 /// Computes the outputs of code that computes nothing else.

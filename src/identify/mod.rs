@@ -17,6 +17,7 @@ mod probe;
 mod problems;
 mod program;
 mod recorder;
+mod report;
 mod seeds;
 mod table;
 mod uncertainty;

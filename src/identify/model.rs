@@ -48,6 +48,22 @@ pub trait Instance: Send {
     fn set(&mut self, genome: &[f64]) -> Result<(), Fault>;
     /// The system to simulate.
     fn system(&mut self) -> &mut dyn DaeSystem;
+    /// From the next simulation on, the observed variables are followed by their derivatives for the
+    /// varied parameters, parameter by parameter; or no longer.
+    ///
+    /// # Errors
+    ///
+    /// Why there are none, in words that follow on "because"; then it observes values alone.
+    fn differentiate(&mut self, wanted: bool) -> Result<(), String> {
+        match wanted {
+            true => Err("the model has no equations to differentiate".to_owned()),
+            false => Ok(()),
+        }
+    }
+    /// Why the last simulation with derivatives could not go on, if it was for these.
+    fn sensitivity_refusal(&self) -> Option<String> {
+        None
+    }
     /// Why a simulation failed, in one sentence without the time.
     fn explain(&self, error: &SimError) -> String;
 }

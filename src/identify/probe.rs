@@ -9,7 +9,7 @@ use super::fitness::FITNESSES;
 use super::problem::{
     Experiment, Finding, FindingKind, Free, Inference, ModelSimulator, Observation, Problem, Run,
     ScriptResult, Series, Severity, Sigma, Simulate, Solution, SolvedParameter, SolvedSeries, Stop,
-    conclude, failure_region,
+    conclude, draw_curves, failure_region,
 };
 use super::recorder::{Best, Compared, Recorder};
 use super::table::significant;
@@ -27,6 +27,9 @@ const BUDGET: u64 = 200;
 const BETTER: f64 = 1e-6;
 /// What a run says that has ended by itself.
 const CONVERGED: &str = "the method has converged";
+/// Steps after which a descent is cut, the default of the method: one that asked less often has
+/// ended by itself.
+const STEPS: u64 = 200;
 /// A seed for scripts that draw no random numbers: least squares need none, but a run has one.
 const NO_SEED: [f64; 6] = [12345.0; 6];
 
@@ -59,7 +62,7 @@ impl Ending<'_> {
     }
 
     /// The problem of least squares; `Err` says why there is none.
-    fn problem(&self, best: &Best) -> Result<Problem, String> {
+    fn problem(&self, best: &Best) -> Result<(Problem, Vec<Experiment>), String> {
         if self.interrupted {
             return Err("the run was interrupted".to_owned());
         }
@@ -82,15 +85,17 @@ impl Ending<'_> {
             .enumerate()
             .map(|(k, ((compared, _), model))| experiment(compared, model, name(best, k)))
             .collect();
-        self.assembled(best, series, experiments).map_err(|fault| fault.message)
+        let problem = self.assembled(best, series, &experiments);
+        Ok((problem.map_err(|fault| fault.message)?, experiments))
     }
 
     fn assembled(
         &self,
         best: &Best,
         series: Vec<Series>,
-        experiments: Vec<Experiment>,
+        experiments: &[Experiment],
     ) -> Result<Problem, Fault> {
+        let experiments = experiments.to_vec();
         let fitness = registry::find("fitness function", FITNESSES, "sum_of_squares")?;
         let method = registry::find("method", METHODS, "levenberg_marquardt")?;
         let parameters = self.parameters(best)?;
@@ -140,7 +145,11 @@ impl Ending<'_> {
     }
 
     /// Least squares from the best individual, with everything that follows from its minimum.
-    fn probed(&self, best: &Best, problem: Problem) -> Result<Solution, String> {
+    fn probed(
+        &self,
+        best: &Best,
+        (problem, experiments): (Problem, Vec<Experiment>),
+    ) -> Result<Solution, String> {
         let before = best.sum_of_squares().ok_or("the measured values are not known")?;
         let mut run = Run::new(problem, self.threads).map_err(|fault| fault.message)?;
         let stop = loop {
@@ -151,12 +160,14 @@ impl Ending<'_> {
                 return Err("it was cancelled".to_owned());
             }
         };
-        let at_minimum = run.stop().is_some_and(|stop| stop == CONVERGED);
+        // A descent that has used up its steps ends as well, but not at a minimum.
+        let at_minimum = stop == CONVERGED && run.generations() < STEPS;
         conclude(&mut run);
         let solution = Solution::of(&run, &stop, Vec::new()).map_err(|fault| fault.message)?;
         let mut solution = if at_minimum { solution } else { without_verdicts(solution) };
         let generations = self.recorder.history.generations.len();
         let who = if generations > 1 { "The genetic algorithm" } else { "The script" };
+        draw_curves(&experiments, &mut solution, &[]);
         let probe = sentence((who, best, before), &solution, at_minimum);
         solution.simulations_for_statistics += run.simulations;
         solution.script = Some(ScriptResult {

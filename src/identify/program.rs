@@ -1,10 +1,10 @@
 //! Compiled programs as models to identify.
 
 use super::{Instance, Model, Parameter};
-use crate::compile::{Program, System, VariableInfo};
+use crate::compile::{Program, SensitivityCode, System, VariableInfo};
 use crate::diag::Fault;
 use crate::sim::{DaeSystem, OutputGrid, Settings, SimError};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Output points where the `experiment` annotation gives no interval.
 const INTERVALS: usize = 500;
@@ -15,12 +15,38 @@ const MOST_INTERVALS: f64 = 1e6;
 pub struct CompiledModel {
     name: String,
     program: Arc<Program>,
+    sensitivities: Arc<Sensitivities>,
+}
+
+/// Code for derivatives that was made, or why it was not, by parameters and observed variables: all
+/// instances share it.
+#[derive(Default)]
+struct Sensitivities(Mutex<Vec<Known>>);
+
+/// Positions of parameters and variables with what was made for them.
+type Known = (Vec<usize>, Vec<usize>, Result<Arc<SensitivityCode>, String>);
+
+impl Sensitivities {
+    fn code(
+        &self,
+        program: &Arc<Program>,
+        parameters: &[usize],
+        observed: &[usize],
+    ) -> Result<Arc<SensitivityCode>, String> {
+        let mut list = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((.., known)) = list.iter().find(|(p, o, _)| p == parameters && o == observed) {
+            return known.clone();
+        }
+        let made = SensitivityCode::compile(program, parameters, observed);
+        list.push((parameters.to_vec(), observed.to_vec(), made.clone()));
+        made
+    }
 }
 
 impl CompiledModel {
     /// Names a program; the name carries the modification.
     pub fn new(name: impl Into<String>, program: Arc<Program>) -> CompiledModel {
-        CompiledModel { name: name.into(), program }
+        CompiledModel { name: name.into(), program, sensitivities: Arc::default() }
     }
 
     fn variable(&self, name: &str) -> Option<&VariableInfo> {
@@ -108,7 +134,8 @@ impl Model for CompiledModel {
             .collect::<Result<_, _>>()?;
         let mut system = self.program.system();
         system.observe_only(&positions);
-        Ok(Box::new(CompiledInstance { system, slots }))
+        let sensitivities = self.sensitivities.clone();
+        Ok(Box::new(CompiledInstance { system, slots, positions, sensitivities }))
     }
 }
 
@@ -116,6 +143,9 @@ struct CompiledInstance {
     system: System,
     /// Positions of the varied parameters.
     slots: Vec<usize>,
+    /// Positions of the observed variables.
+    positions: Vec<usize>,
+    sensitivities: Arc<Sensitivities>,
 }
 
 impl Instance for CompiledInstance {
@@ -126,6 +156,20 @@ impl Instance for CompiledInstance {
 
     fn system(&mut self) -> &mut dyn DaeSystem {
         &mut self.system
+    }
+
+    fn differentiate(&mut self, wanted: bool) -> Result<(), String> {
+        self.system.differentiate(None);
+        if wanted {
+            let program = self.system.program();
+            let code = self.sensitivities.code(program, &self.slots, &self.positions)?;
+            self.system.differentiate(Some(&code));
+        }
+        Ok(())
+    }
+
+    fn sensitivity_refusal(&self) -> Option<String> {
+        self.system.sensitivity_refusal().map(str::to_owned)
     }
 
     fn explain(&self, error: &SimError) -> String {

@@ -1,21 +1,13 @@
 //! From a figure to a picture.
 
 use super::figure::{Axis, Figure, Mark, Panel, Scale, Series};
-use super::svg::{Anchor, Svg, number, text_width};
+use super::look::{FILE, Letters, Look, PAGE, SMALL, SOLID};
+use super::svg::{Anchor, Svg, Writing, raised, text_width};
 use super::ticks::{Ticks, power_of_ten};
 
-/// Okabe and Ito (2008), black first, the two that print darkest next.
-const PALETTE: [&str; 8] =
-    ["#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#f0e442"];
-
-const WIDTH: f64 = 640.0;
 const RIGHT: f64 = 24.0;
 const GAP: f64 = 22.0;
 const BELOW: f64 = 52.0;
-const INK: &str = "fill=\"#222222\"";
-const FRAME: &str = "fill=\"none\" stroke=\"#444444\" stroke-width=\"1\"";
-const GRID: &str = "stroke=\"#e2e2e2\" stroke-width=\"0.8\"";
-const FINE_GRID: &str = "stroke=\"#f1f1f1\" stroke-width=\"0.8\"";
 
 /// The area for data of one panel.
 struct Area<'a> {
@@ -25,36 +17,91 @@ struct Area<'a> {
     height: f64,
     x: &'a Ticks,
     y: &'a Ticks,
+    look: &'static Look,
 }
 
 impl Figure {
     /// The figure as an SVG document, 640 pixels wide.
     pub fn svg(&self) -> String {
-        let y_ticks: Vec<Ticks> = self.panels.iter().map(ticks_of_y).collect();
-        let x_scale = self.panels.first().map_or(Scale::Linear, |panel| panel.x.scale);
-        let all = self.panels.iter().flat_map(|panel| &panel.series);
-        let x_ticks = Ticks::new(all.flat_map(|series| series.x.iter().copied()), x_scale, 8);
-        let left = left_margin(&y_ticks);
-        let legend = legend_rows(&self.panels, left);
-        let title_height = if self.title.is_empty() { 12.0 } else { 38.0 };
-        let top = title_height + 22.0 * legend.len() as f64 + 4.0;
-        let heights: f64 = self.panels.iter().map(|panel| panel.height).sum();
-        let gaps = GAP * self.panels.len().saturating_sub(1) as f64;
-        let mut svg = Svg::new(WIDTH, top + heights + gaps + BELOW, &self.title);
-        let middle = 0.5 * (left + WIDTH - RIGHT);
-        let bold = format!("font-size=\"15\" font-weight=\"bold\" {INK}");
-        svg.text((middle, 26.0), Anchor::Middle, &bold, &self.title);
-        for (row, entries) in legend.iter().enumerate() {
-            draw_legend(&mut svg, entries, left, title_height + 22.0 * row as f64 + 8.0);
+        self.document(&FILE, Letters::Text)
+    }
+
+    /// The same without any font or transparency: letters are drawn as outlines.
+    pub(super) fn outlined(&self) -> String {
+        self.document(&SOLID, Letters::Outlines)
+    }
+
+    fn document(&self, look: &'static Look, letters: Letters) -> String {
+        let layout = Layout::of(self, look);
+        let svg = Svg::new(look.width, layout.height, &self.title, letters);
+        self.draw(svg, &layout)
+    }
+
+    /// The figure as an SVG element of a page: narrower, so that its letters stay readable on a
+    /// phone, in colours that the style of the page defines (`--ink`, `--frame`, `--grid`,
+    /// `--fine-grid`, `--paper`, `--c0` to `--c7`). `label` is what a screen reader says.
+    pub fn inline(&self, label: &str) -> String {
+        self.within(&PAGE, label)
+    }
+
+    /// The same, for figures that stand side by side.
+    pub fn small(&self, label: &str) -> String {
+        self.within(&SMALL, label)
+    }
+
+    fn within(&self, look: &'static Look, label: &str) -> String {
+        let layout = Layout::of(self, look);
+        self.draw(Svg::inline(look.width, layout.height, label), &layout)
+    }
+
+    fn draw(&self, mut svg: Svg, layout: &Layout) -> String {
+        let Layout { look, left, title_height, .. } = *layout;
+        let middle = 0.5 * (left + look.width - RIGHT);
+        let heading = Writing { bold: true, ..look.writing(15.0) };
+        if !self.title.is_empty() {
+            svg.text((middle, 26.0), Anchor::Middle, heading, &self.title);
         }
-        let mut top = top;
-        for (place, (panel, y)) in self.panels.iter().zip(&y_ticks).enumerate() {
-            let (width, height) = (WIDTH - RIGHT - left, panel.height);
-            let area = Area { left, top, width, height, x: &x_ticks, y };
+        for (row, entries) in layout.legend.iter().enumerate() {
+            draw_legend(&mut svg, entries, look, (left, title_height + 22.0 * row as f64 + 8.0));
+        }
+        let mut top = layout.top;
+        for (place, (panel, y)) in self.panels.iter().zip(&layout.y_ticks).enumerate() {
+            let (width, height) = (look.width - RIGHT - left, panel.height);
+            let area = Area { left, top, width, height, x: &layout.x_ticks, y, look };
             area.draw(&mut svg, panel, place + 1 == self.panels.len());
             top += panel.height + GAP;
         }
         svg.finish()
+    }
+}
+
+/// Where the parts of a figure lie.
+struct Layout<'a> {
+    look: &'static Look,
+    y_ticks: Vec<Ticks>,
+    x_ticks: Ticks,
+    left: f64,
+    legend: Vec<Vec<&'a Series>>,
+    title_height: f64,
+    top: f64,
+    height: f64,
+}
+
+impl<'a> Layout<'a> {
+    fn of(figure: &'a Figure, look: &'static Look) -> Layout<'a> {
+        let y_ticks: Vec<Ticks> = figure.panels.iter().map(ticks_of_y).collect();
+        let x_scale = figure.panels.first().map_or(Scale::Linear, |panel| panel.x.scale);
+        let all = figure.panels.iter().flat_map(|panel| &panel.series);
+        let count = (look.width / 80.0) as usize;
+        let x_ticks = Ticks::new(all.flat_map(|series| series.x.iter().copied()), x_scale, count);
+        let left = left_margin(&y_ticks);
+        let legend = legend_rows(&figure.panels, look.width - RIGHT - left);
+        let title_height = if figure.title.is_empty() { 12.0 } else { 38.0 };
+        let top = title_height + 22.0 * legend.len() as f64 + 4.0;
+        let heights: f64 = figure.panels.iter().map(|panel| panel.height).sum();
+        let gaps = GAP * figure.panels.len().saturating_sub(1) as f64;
+        let height = top + heights + gaps + BELOW;
+        Layout { look, y_ticks, x_ticks, left, legend, title_height, top, height }
     }
 }
 
@@ -70,13 +117,13 @@ fn left_margin(y_ticks: &[Ticks]) -> f64 {
 }
 
 /// The named series, in rows that fit the width.
-fn legend_rows(panels: &[Panel], left: f64) -> Vec<Vec<&Series>> {
+fn legend_rows(panels: &[Panel], room: f64) -> Vec<Vec<&Series>> {
     let mut rows: Vec<Vec<&Series>> = Vec::new();
     let mut used = f64::INFINITY;
     let named = panels.iter().flat_map(|panel| &panel.series).filter(|s| !s.name.is_empty());
     for series in named {
         let width = legend_width(series);
-        if used + width > WIDTH - RIGHT - left {
+        if used + width > room {
             rows.push(Vec::new());
             used = 0.0;
         }
@@ -90,46 +137,67 @@ fn legend_width(series: &Series) -> f64 {
     34.0 + text_width(&series.name, 12.5) + 22.0
 }
 
-fn draw_legend(svg: &mut Svg, entries: &[&Series], left: f64, y: f64) {
-    let mut x = left;
+fn draw_legend(svg: &mut Svg, entries: &[&Series], look: &'static Look, (mut x, y): (f64, f64)) {
     for series in entries {
         let middle = (x + 13.0, y);
         match series.mark {
-            Mark::Line | Mark::Thin => {
-                svg.polyline(&[(x, y), (x + 26.0, y)], &stroke(series));
+            Mark::Line | Mark::Thin | Mark::Dashed => {
+                svg.polyline(&[(x, y), (x + 26.0, y)], &stroke(series, look));
             }
-            Mark::Points => svg.circle(middle, 3.4, &open_circle(series)),
-            Mark::Stems => svg.circle(middle, 2.6, &dot(series)),
+            Mark::Area => svg.rectangle([x, y - 6.0, 26.0, 12.0], &area(series, look)),
+            Mark::Points => svg.circle(middle, 3.4, &open_circle(series, look)),
+            Mark::Stems | Mark::Dots => svg.circle(middle, 2.6, &dot(series, look)),
+            Mark::Crosses => svg.path(&cross(middle), &cross_style(series, look)),
         }
-        let style = format!("font-size=\"12.5\" {INK}");
-        svg.text((x + 34.0, y + 4.2), Anchor::Start, &style, &series.name);
+        svg.text((x + 34.0, y + 4.2), Anchor::Start, look.writing(12.5), &series.name);
         x += legend_width(series);
     }
 }
 
-fn colour(series: &Series) -> &'static str {
-    PALETTE[series.colour % PALETTE.len()]
+fn colour(series: &Series, look: &'static Look) -> &'static str {
+    look.palette[series.colour % look.palette.len()]
 }
 
-fn stroke(series: &Series) -> String {
-    let pen = match series.mark {
-        Mark::Thin => "stroke-width=\"0.8\" stroke-opacity=\"0.7\"",
-        _ => "stroke-width=\"1.8\"",
+fn stroke(series: &Series, look: &'static Look) -> String {
+    let plain = || (look.palette[series.colour % look.palette.len()].into(), String::new());
+    let ((colour, opacity), pen) = match series.mark {
+        Mark::Thin => (look.faint(series.colour, "stroke-opacity", 0.7), "stroke-width=\"0.8\""),
+        Mark::Dashed => (plain(), "stroke-width=\"1.5\" stroke-dasharray=\"7 4\""),
+        _ => (plain(), "stroke-width=\"1.8\""),
     };
-    format!("stroke=\"{}\" {pen} stroke-linejoin=\"round\"", colour(series))
+    format!("stroke=\"{colour}\" {pen}{opacity} stroke-linejoin=\"round\"")
 }
 
-fn open_circle(series: &Series) -> String {
-    format!("fill=\"#ffffff\" stroke=\"{}\" stroke-width=\"1.3\"", colour(series))
+fn open_circle(series: &Series, look: &'static Look) -> String {
+    let paper = look.paper;
+    format!("fill=\"{paper}\" stroke=\"{}\" stroke-width=\"1.3\"", colour(series, look))
 }
 
-fn dot(series: &Series) -> String {
-    format!("fill=\"{}\"", colour(series))
+fn dot(series: &Series, look: &'static Look) -> String {
+    format!("fill=\"{}\"", colour(series, look))
+}
+
+fn area(series: &Series, look: &'static Look) -> String {
+    let (colour, opacity) = look.faint(series.colour, "fill-opacity", 0.22);
+    format!("fill=\"{colour}\"{opacity}")
+}
+
+fn cloud(series: &Series, look: &'static Look) -> String {
+    let (colour, opacity) = look.faint(series.colour, "stroke-opacity", 0.55);
+    format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"3.6\"{opacity}")
+}
+
+fn cross((x, y): (f64, f64)) -> String {
+    format!("M{:.1} {:.1}l7 7m0 -7l-7 7", x - 3.5, y - 3.5)
+}
+
+fn cross_style(series: &Series, look: &'static Look) -> String {
+    format!("fill=\"none\" stroke=\"{}\" stroke-width=\"2\"", colour(series, look))
 }
 
 fn axis_title(axis: &Axis, exponent: i32) -> String {
     let power = if exponent == 0 { String::new() } else { power_of_ten(exponent) };
-    match (&*power, &*shown_unit(&axis.unit)) {
+    match (&*power, &*marked_unit(&axis.unit)) {
         ("", "") => axis.label.clone(),
         (power, "") => format!("{} [{power}]", axis.label),
         ("", unit) => format!("{} [{unit}]", axis.label),
@@ -141,9 +209,9 @@ impl Area<'_> {
     fn draw(&self, svg: &mut Svg, panel: &Panel, is_last: bool) {
         self.draw_grid(svg);
         if panel.zero_line {
-            self.draw_level(svg, 0.0, "stroke=\"#888888\" stroke-width=\"1\"");
+            self.draw_level(svg, 0.0, self.look.zero);
         }
-        svg.rectangle([self.left, self.top, self.width, self.height], FRAME);
+        svg.rectangle([self.left, self.top, self.width, self.height], self.look.frame);
         for series in &panel.series {
             self.draw_series(svg, series);
         }
@@ -175,65 +243,73 @@ impl Area<'_> {
     }
 
     fn draw_grid(&self, svg: &mut Svg) {
-        self.y.minor.iter().for_each(|value| self.draw_level(svg, *value, FINE_GRID));
-        self.x.minor.iter().for_each(|value| self.draw_upright(svg, *value, FINE_GRID));
-        self.y.major.iter().for_each(|(value, _)| self.draw_level(svg, *value, GRID));
-        self.x.major.iter().for_each(|(value, _)| self.draw_upright(svg, *value, GRID));
+        let Look { grid, fine_grid, .. } = self.look;
+        self.y.minor.iter().for_each(|value| self.draw_level(svg, *value, fine_grid));
+        self.x.minor.iter().for_each(|value| self.draw_upright(svg, *value, fine_grid));
+        self.y.major.iter().for_each(|(value, _)| self.draw_level(svg, *value, grid));
+        self.x.major.iter().for_each(|(value, _)| self.draw_upright(svg, *value, grid));
     }
 
     fn draw_labels(&self, svg: &mut Svg, panel: &Panel, is_last: bool) {
-        let small = format!("font-size=\"12\" {INK}");
+        let (small, large) = (self.look.writing(12.0), self.look.writing(13.0));
         for (value, label) in &self.y.major {
             if let Some(y) = self.y_of(*value) {
-                svg.text((self.left - 8.0, y + 4.2), Anchor::End, &small, label);
+                svg.text((self.left - 8.0, y + 4.2), Anchor::End, small, label);
             }
         }
-        let (x, y) = (number(18.0), number(self.top + 0.5 * self.height));
-        let turned = format!("font-size=\"13\" {INK} transform=\"rotate(-90 {x} {y})\"");
+        let upright = Writing { upright: true, ..large };
         let middle = (18.0, self.top + 0.5 * self.height);
-        svg.text(middle, Anchor::Middle, &turned, &axis_title(&panel.y, self.y.exponent));
+        svg.text(middle, Anchor::Middle, upright, &axis_title(&panel.y, self.y.exponent));
         if !is_last {
             return;
         }
         for (value, label) in &self.x.major {
             if let Some(x) = self.x_of(*value) {
-                svg.text((x, self.bottom() + 18.0), Anchor::Middle, &small, label);
+                svg.text((x, self.bottom() + 18.0), Anchor::Middle, small, label);
             }
         }
         let place = (self.left + 0.5 * self.width, self.bottom() + 40.0);
-        let large = format!("font-size=\"13\" {INK}");
-        svg.text(place, Anchor::Middle, &large, &axis_title(&panel.x, self.x.exponent));
+        svg.text(place, Anchor::Middle, large, &axis_title(&panel.x, self.x.exponent));
     }
 
     fn draw_series(&self, svg: &mut Svg, series: &Series) {
+        let look = self.look;
         let places = series.x.iter().zip(&series.y);
         let places: Vec<Option<(f64, f64)>> =
             places.map(|(x, y)| self.x_of(*x).zip(self.y_of(*y))).collect();
         let shown = || places.iter().copied().flatten();
         match series.mark {
-            Mark::Line | Mark::Thin => {
+            Mark::Line | Mark::Thin | Mark::Dashed => {
                 for part in places.split(Option::is_none) {
                     let points: Vec<(f64, f64)> = part.iter().copied().flatten().collect();
                     self.draw_line(svg, &thinned(&points), series);
                 }
             }
-            Mark::Points => shown().for_each(|at| svg.circle(at, 3.4, &open_circle(series))),
-            Mark::Stems => {
-                let zero = self.y_of(0.0).unwrap_or(self.bottom());
-                let style = format!("stroke=\"{}\" stroke-width=\"1.2\"", colour(series));
-                for (x, y) in shown() {
-                    svg.polyline(&[(x, zero), (x, y)], &style);
-                    svg.circle((x, y), 2.6, &dot(series));
-                }
+            Mark::Area => svg.polygon(&shown().collect::<Vec<_>>(), &area(series, look)),
+            Mark::Points => shown().for_each(|at| svg.circle(at, 3.4, &open_circle(series, look))),
+            Mark::Dots => svg.dots(&shown().collect::<Vec<_>>(), &cloud(series, look)),
+            Mark::Crosses => {
+                let path: String = shown().map(cross).collect();
+                svg.path(&path, &cross_style(series, look));
             }
+            Mark::Stems => self.draw_stems(svg, shown(), series),
+        }
+    }
+
+    fn draw_stems(&self, svg: &mut Svg, shown: impl Iterator<Item = (f64, f64)>, series: &Series) {
+        let zero = self.y_of(0.0).unwrap_or(self.bottom());
+        let style = format!("stroke=\"{}\" stroke-width=\"1.2\"", colour(series, self.look));
+        for (x, y) in shown {
+            svg.polyline(&[(x, zero), (x, y)], &style);
+            svg.circle((x, y), 2.6, &dot(series, self.look));
         }
     }
 
     fn draw_line(&self, svg: &mut Svg, points: &[(f64, f64)], series: &Series) {
         match points {
             [] => {}
-            [alone] => svg.circle(*alone, 1.6, &dot(series)),
-            _ => svg.polyline(points, &stroke(series)),
+            [alone] => svg.circle(*alone, 1.6, &dot(series, self.look)),
+            _ => svg.polyline(points, &stroke(series, self.look)),
         }
     }
 }
@@ -255,8 +331,18 @@ fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     kept
 }
 
-/// A unit of Modelica (MLS chapter 19) with its exponents raised and its products as dots.
-fn shown_unit(unit: &str) -> String {
+/// A power of ten as it is read: `10⁻³` for −3.
+pub fn power(exponent: i32) -> String {
+    raised(&power_of_ten(exponent))
+}
+
+/// A unit of Modelica as it is read: `A/cm²` for `A/cm2`.
+pub fn shown_unit(unit: &str) -> String {
+    raised(&marked_unit(unit))
+}
+
+/// A unit of Modelica (MLS chapter 19), its products as dots and its exponents marked `^{…}`.
+fn marked_unit(unit: &str) -> String {
     let mut out = String::new();
     let is_exponent = |c: char| c.is_ascii_digit() || c == '-' || c == '+';
     let mut rest = unit;
@@ -278,9 +364,9 @@ mod tests {
 
     #[test]
     fn units_show_exponents_and_products() {
-        assert_eq!(shown_unit("A/cm2"), "A/cm^{2}");
-        assert_eq!(shown_unit("kg.m.s-2"), "kg·m·s^{−2}");
-        assert_eq!(shown_unit("1"), "1");
+        assert_eq!(marked_unit("A/cm2"), "A/cm^{2}");
+        assert_eq!(marked_unit("kg.m.s-2"), "kg·m·s^{−2}");
+        assert_eq!(marked_unit("1"), "1");
     }
 
     #[test]

@@ -71,6 +71,15 @@ pub enum Mark {
     Points,
     /// A vertical line from zero to each point, with a dot at its end.
     Stems,
+    /// A dashed line from point to point, for limits.
+    Dashed,
+    /// A small filled dot at each point, for clouds of thousands.
+    Dots,
+    /// A cross at each point.
+    Crosses,
+    /// The area that the points enclose, faint: a band is its lower edge and then its upper edge
+    /// backwards.
+    Area,
 }
 
 impl Axis {

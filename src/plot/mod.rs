@@ -1,5 +1,5 @@
-//! Figures as SVG, and as text for terminals: panels with points and lines, linear and logarithmic axes, a legend above the
-//! data. The same figure gives the same bytes.
+//! Figures as SVG, PNG and PDF, and as text for terminals: panels with points, lines and bands,
+//! linear and logarithmic axes, a legend above the data. The same figure gives the same bytes.
 //!
 //! Text is laid out without font files: widths are estimates for a sans-serif face, used only to
 //! keep labels apart. Colours are the palette of Okabe and Ito, which readers with any kind of
@@ -7,10 +7,16 @@
 
 mod chart;
 mod draw;
+pub mod errors;
 mod figure;
+mod look;
+mod outline;
+mod picture;
 mod ready;
 mod svg;
 mod ticks;
 
+pub use draw::{power, shown_unit};
 pub use figure::{Axis, Figure, Mark, Panel, Scale, Series};
+pub use picture::Picture;
 pub use ready::{Comparison, convergence, fit};

@@ -1,5 +1,7 @@
 //! The few SVG elements that figures need, with numbers rounded to hundredths of a pixel.
 
+use super::look::Letters;
+use super::outline;
 use std::fmt::Write;
 
 /// Where text stands relative to its place.
@@ -13,18 +15,46 @@ pub(super) enum Anchor {
 /// A picture under construction.
 pub(super) struct Svg {
     text: String,
+    letters: Letters,
 }
 
+/// How a piece of text looks.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Writing {
+    /// Height of the font in pixels.
+    pub(super) size: f64,
+    pub(super) bold: bool,
+    /// From bottom to top instead of from left to right.
+    pub(super) upright: bool,
+    pub(super) colour: &'static str,
+}
+
+const FACES: &str =
+    "font-family=\"Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif\"";
+
 impl Svg {
-    pub(super) fn new(width: f64, height: f64, title: &str) -> Svg {
+    /// A picture of its own file.
+    pub(super) fn new(width: f64, height: f64, title: &str, letters: Letters) -> Svg {
         let (width, height, title) = (number(width), number(height), escape(title));
         Svg {
             text: format!(
                 "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-                 viewBox=\"0 0 {width} {height}\" role=\"img\" font-family=\"Helvetica, Arial, \
-                 'Liberation Sans', 'DejaVu Sans', sans-serif\">\n<title>{title}</title>\n\
+                 viewBox=\"0 0 {width} {height}\" role=\"img\" {FACES}>\n<title>{title}</title>\n\
                  <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n"
             ),
+            letters,
+        }
+    }
+
+    /// A picture within a page, as wide as the page gives it room and in the page's face;
+    /// `title` is what is read out.
+    pub(super) fn inline(width: f64, height: f64, title: &str) -> Svg {
+        let (width, height, title) = (number(width), number(height), escape(title));
+        Svg {
+            text: format!(
+                "<svg viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"{title}\">\n"
+            ),
+            letters: Letters::Text,
         }
     }
 
@@ -35,9 +65,28 @@ impl Svg {
 
     /// A line through points; `style` are further attributes.
     pub(super) fn polyline(&mut self, points: &[(f64, f64)], style: &str) {
-        let places: Vec<String> =
-            points.iter().map(|(x, y)| format!("{},{}", number(*x), number(*y))).collect();
-        self.put(format_args!("<polyline points=\"{}\" fill=\"none\" {style}/>", places.join(" ")));
+        let places = places(points);
+        self.put(format_args!("<polyline points=\"{places}\" fill=\"none\" {style}/>"));
+    }
+
+    /// The area within points; `style` are further attributes.
+    pub(super) fn polygon(&mut self, points: &[(f64, f64)], style: &str) {
+        self.put(format_args!("<polygon points=\"{}\" {style}/>", places(points)));
+    }
+
+    /// Pen strokes of no length, which round ends make to dots: many of them in few bytes.
+    pub(super) fn dots(&mut self, points: &[(f64, f64)], style: &str) {
+        let mut path = String::new();
+        for (x, y) in points {
+            // Writing into a String cannot fail.
+            _ = write!(path, "M{x:.1} {y:.1}h0");
+        }
+        self.put(format_args!("<path d=\"{path}\" stroke-linecap=\"round\" {style}/>"));
+    }
+
+    /// A path as SVG writes it.
+    pub(super) fn path(&mut self, path: &str, style: &str) {
+        self.put(format_args!("<path d=\"{path}\" {style}/>"));
     }
 
     pub(super) fn circle(&mut self, (x, y): (f64, f64), radius: f64, style: &str) {
@@ -53,21 +102,53 @@ impl Svg {
     }
 
     /// Text; `^{…}` in it is raised.
-    pub(super) fn text(&mut self, (x, y): (f64, f64), anchor: Anchor, style: &str, text: &str) {
+    pub(super) fn text(&mut self, at: (f64, f64), anchor: Anchor, writing: Writing, text: &str) {
+        match self.letters {
+            Letters::Text => self.letters(at, anchor, writing, text),
+            Letters::Outlines => self.outlines(at, anchor, writing, text),
+        }
+    }
+
+    fn letters(&mut self, (x, y): (f64, f64), anchor: Anchor, writing: Writing, text: &str) {
         let anchor = match anchor {
             Anchor::Start => "start",
             Anchor::Middle => "middle",
             Anchor::End => "end",
         };
-        let (x, y, text) = (number(x), number(y), raised(&escape(text)));
+        let (x, y, text) = (number(x), number(y), escape(&raised(text)));
+        let Writing { size, bold, upright, colour } = writing;
+        let bold = if bold { " font-weight=\"bold\"" } else { "" };
+        let turn =
+            if upright { format!(" transform=\"rotate(-90 {x} {y})\"") } else { String::new() };
         self.put(format_args!(
-            "<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\" {style}>{text}</text>"
+            "<text x=\"{x}\" y=\"{y}\" text-anchor=\"{anchor}\" font-size=\"{size}\"{bold} \
+             fill=\"{colour}\"{turn}>{text}</text>"
+        ));
+    }
+
+    fn outlines(&mut self, (x, y): (f64, f64), anchor: Anchor, writing: Writing, text: &str) {
+        let (path, width) = outline::of(&raised(text), writing.size, writing.bold);
+        let before = match anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => -0.5 * width,
+            Anchor::End => -width,
+        };
+        let (x, y, before) = (number(x), number(y), number(before));
+        let turn = if writing.upright { " rotate(-90)" } else { "" };
+        self.put(format_args!(
+            "<path transform=\"translate({x} {y}){turn} translate({before} 0)\" fill=\"{}\" d=\"{path}\"/>",
+            writing.colour
         ));
     }
 
     fn put(&mut self, element: std::fmt::Arguments) {
         writeln!(self.text, "{element}").expect("writing into a String does not fail");
     }
+}
+
+fn places(points: &[(f64, f64)]) -> String {
+    let place = |(x, y): &(f64, f64)| format!("{},{}", number(*x), number(*y));
+    points.iter().map(place).collect::<Vec<_>>().join(" ")
 }
 
 /// A coordinate with at most two decimals.
@@ -94,7 +175,7 @@ fn escape(text: &str) -> String {
 
 /// Writes `10^{-3}` with raised digits. They are letters of their own, not shifted parts: viewers
 /// disagree about where shifted parts of centred text lie.
-fn raised(text: &str) -> String {
+pub(super) fn raised(text: &str) -> String {
     let mut parts = text.split("^{");
     let mut out = parts.next().unwrap_or_default().to_owned();
     for part in parts {
@@ -105,7 +186,7 @@ fn raised(text: &str) -> String {
     out
 }
 
-fn raised_letter(letter: char) -> char {
+pub(super) fn raised_letter(letter: char) -> char {
     match letter {
         '0' => '⁰',
         '1' => '¹',

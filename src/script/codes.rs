@@ -13,6 +13,7 @@ pub fn all() -> Vec<Code> {
         crate::external::errors::CODES,
         crate::mat::errors::CODES,
         crate::results::errors::CODES,
+        crate::plot::errors::CODES,
         crate::flatten::errors::CODES,
         crate::dae::errors::CODES,
         crate::compile::errors::CODES,

@@ -1,7 +1,7 @@
 //! Simulations that begin where another one ended.
 
 use crate::compile::System;
-use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern};
+use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
 
 /// A system whose states have given values at the start, whatever its initial equations say; all
 /// other variables follow from them. Discrete variables keep the values that initialization gave
@@ -95,6 +95,34 @@ impl DaeSystem for Continued {
 
     fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
         self.system.check(t, y)
+    }
+
+    fn set_uncertainty(&mut self, crossings: &[f64]) {
+        self.system.set_uncertainty(crossings);
+    }
+
+    fn prepare_modes(&mut self, t: f64, y: &[f64], sides: &[Side]) -> Result<bool, Failure> {
+        self.system.prepare_modes(t, y, sides)
+    }
+
+    fn enter_mode(&mut self, mode: usize) {
+        self.system.enter_mode(mode);
+    }
+
+    fn can_follow(&self, crossing: usize) -> bool {
+        self.system.can_follow(crossing)
+    }
+
+    fn follow(&mut self, t: f64, y: &[f64], sides: &[(usize, bool)]) -> Result<(), Failure> {
+        self.system.follow(t, y, sides)
+    }
+
+    fn has_means(&self, observed: usize) -> bool {
+        self.system.has_means(observed)
+    }
+
+    fn note_treatment(&mut self, t: f64, crossing: usize, treatment: Treatment) {
+        self.system.note_treatment(t, crossing, treatment);
     }
 
     fn n_observed(&self) -> usize {

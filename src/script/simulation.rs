@@ -4,13 +4,13 @@ use super::Session;
 use super::continuation::Continued;
 use super::errors::{BAD_PARAMETER_VALUE, INTERRUPTED, SHARED_NAME, UNKNOWN_PARAMETER};
 use super::retranslation::{self, Changed, Changes};
-use crate::compile::errors::ASSERTION_FAILED;
-use crate::compile::{Access, Program, System, Told};
+use crate::compile::errors::{ASSERTION_FAILED, CHATTERING};
+use crate::compile::{Access, Program, System, Told, Treated};
 use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::flatten::{self, Experiment, FlatModel, Variability};
 use crate::name::Ident;
 use crate::results::{ResultTable, Series, Values};
-use crate::sim::{self, OutputGrid, Settings, Simulator, Statistics, Trajectory};
+use crate::sim::{self, OutputGrid, Settings, Simulator, Statistics, Trajectory, Treatment};
 use crate::source::Span;
 use crate::value::Value;
 use crate::{bail, dae, fault, syntax};
@@ -290,6 +290,7 @@ pub fn simulate(
     system.system.listen();
     let run = Simulator::new().run(&mut system, &settings, &mut trajectory);
     tell(session, &system.system);
+    report_treatments(session, &system.system);
     let written = system.system.journal().carry_out(session).at(call);
     match run {
         Ok(statistics) => {
@@ -302,6 +303,26 @@ pub fn simulate(
             Err(Fault::new(INTERRUPTED, "interrupted").at(call))
         }
         Err(error) => Err(model.program.explain(&error)),
+    }
+}
+
+/// What was done about relations that would have switched without end, once for each.
+fn report_treatments(session: &mut Session, system: &System) {
+    for Treated { time, treatment, span } in system.treated() {
+        let words = match treatment {
+            Treatment::Followed => {
+                "this relation switches again and again while its sides hardly differ; it is \
+                 evaluated between steps, without events"
+            }
+            Treatment::Slides => {
+                "the solution slides along this relation, with the mean of both branches"
+            }
+            Treatment::Rests => "impacts accumulate at this relation; the solution rests there",
+        };
+        if session.models.told.insert((*span, words.to_owned())) {
+            let message = format!("{words} (from t = {time})");
+            session.report(Fault::new(CHATTERING, message).at(*span).warning());
+        }
     }
 }
 

@@ -95,6 +95,8 @@ pub enum SimErrorKind {
     Singular,
     /// More events than make sense in this interval.
     Chattering,
+    /// Infinitely many events up to a time, and no solution beyond it.
+    Accumulation,
     /// A value became infinite or not a number.
     NotFinite,
 }

@@ -47,12 +47,13 @@
 //! ```
 //!
 //! The systems are those of [`DaeSystem`]: semi-explicit, index 1. Not handled here: index reduction
-//! and the choice of states (done before), sliding along a discontinuity (reported as
-//! chattering).
+//! and the choice of states (done before).
 //!
 //! References: [Brenan, Campbell & Petzold 1996](crate::bibliography#brenan-campbell-petzold-1996),
 //! [Shampine & Reichelt 1997](crate::bibliography#shampine-reichelt-1997).
 
+mod accumulation;
+mod chattering;
 mod error;
 mod event;
 mod integrators;
@@ -63,6 +64,7 @@ mod norm;
 mod problems;
 mod settings;
 mod simulator;
+mod sliding;
 mod statistics;
 mod system;
 #[cfg(test)]
@@ -76,5 +78,5 @@ pub use newton::{Equations, Newton, NewtonFailure};
 pub use settings::{OutputGrid, Settings, TimeBudget};
 pub use simulator::{Simulator, simulate};
 pub use statistics::Statistics;
-pub use system::{DaeSystem, EventOutcome, Pattern};
+pub use system::{DaeSystem, EventOutcome, Pattern, Side, Treatment};
 pub use trajectory::Trajectory;

@@ -1,12 +1,15 @@
 //! The loop of a simulation.
 
+use super::chattering::{Watch, nominal_share};
 use super::event::CrossingSearch;
-use super::integrators::{Integrator, Problem, WithoutUnknowns};
+use super::integrators::{Integrator, Problem, WithoutUnknowns, bdf};
+use super::sliding::{MOST_SURFACES, Sliding};
 use super::{
     Culprit, DaeSystem, EventOutcome, Failure, Settings, SimError, SimErrorKind, Statistics,
     Trajectory,
 };
 use crate::registry::Options;
+use std::cell::OnceCell;
 use std::sync::atomic::Ordering;
 
 /// So many events in a row within the time below are chattering.
@@ -32,10 +35,36 @@ pub struct Simulator {
     /// The integrator of the last run, by the name of its method.
     integrator: Option<(&'static str, Box<dyn Integrator>)>,
     without_unknowns: WithoutUnknowns,
+    /// Slides where the method is explicit.
+    implicit: Option<Box<dyn Integrator>>,
     crossings: CrossingSearch,
-    nominal: Vec<f64>,
+    watch: Watch,
+    nominals: Nominals,
     y: Vec<f64>,
     observed: Vec<f64>,
+}
+
+/// Nominal values of y, without and with shares of surfaces.
+#[derive(Default)]
+pub(super) struct Nominals {
+    plain: Vec<f64>,
+    with_shares: [OnceCell<Vec<f64>>; MOST_SURFACES],
+    /// That of a share.
+    share: f64,
+}
+
+impl Nominals {
+    pub(super) fn plain(&self) -> &[f64] {
+        &self.plain
+    }
+
+    /// With so many shares at a place.
+    pub(super) fn with_shares(&self, place: usize, k: usize) -> &[f64] {
+        self.with_shares[k - 1].get_or_init(|| {
+            let (before, behind) = self.plain.split_at(place);
+            [before, &vec![self.share; k], behind].concat()
+        })
+    }
 }
 
 /// Simulates a system with a workspace of its own.
@@ -71,13 +100,12 @@ impl Simulator {
         // Explicit methods see no algebraic variables if the system can do without; and without
         // states there is nothing to integrate, only equations to solve at every point.
         let is_explicit = integrator(&mut self.integrator, settings).is_explicit();
-        system.solve_loops(is_explicit || system.n_differential() == 0);
+        let solves_loops = is_explicit || system.n_differential() == 0;
+        system.solve_loops(solves_loops);
         let n = system.n_differential() + system.n_algebraic();
         self.resize(system, n);
-        system.nominal(&mut self.nominal);
-        for nominal in self.nominal.iter_mut().filter(|n| !n.is_finite() || **n <= 0.0) {
-            *nominal = 1.0;
-        }
+        self.y.resize(n * (1 + system.n_directions()), 0.0);
+        self.set_nominals(system, settings.tolerance);
         out.reset(system.n_observed());
         let integrator: &mut dyn Integrator = if n == 0 {
             &mut self.without_unknowns
@@ -88,16 +116,22 @@ impl Simulator {
         if let Some(kind) = refused(settings, integrator, system) {
             return Err(SimError { time: settings.start, kind, culprit: None });
         }
+        let mut system = Sliding::new(system);
         let mut run = Run {
             problem: Problem {
-                system,
-                nominal: &self.nominal,
+                system: &mut system,
+                nominal: self.nominals.plain(),
                 settings,
                 deadline: settings.time_budget.map(|budget| (budget.clock)() + budget.seconds),
                 statistics: &mut statistics,
             },
             integrator,
+            implicit: self.implicit.get_or_insert_with(bdf::new).as_mut(),
+            is_explicit,
+            solves_loops,
             crossings: &mut self.crossings,
+            watch: &mut self.watch,
+            nominals: &self.nominals,
             y: &mut self.y,
             observed: &mut self.observed,
             out,
@@ -115,10 +149,21 @@ impl Simulator {
     }
 
     fn resize(&mut self, system: &dyn DaeSystem, n: usize) {
-        self.nominal.resize(n, 1.0);
+        self.nominals.plain.resize(n, 1.0);
         self.y.resize(n, 0.0);
         self.observed.resize(system.n_observed(), 0.0);
         self.crossings.resize(system.n_crossings());
+        self.watch.resize(system.n_crossings());
+    }
+
+    fn set_nominals(&mut self, system: &dyn DaeSystem, tolerance: f64) {
+        let nominals = &mut self.nominals;
+        system.nominal(&mut nominals.plain);
+        for nominal in nominals.plain.iter_mut().filter(|n| !n.is_finite() || **n <= 0.0) {
+            *nominal = 1.0;
+        }
+        nominals.share = nominal_share(tolerance);
+        nominals.with_shares.iter_mut().for_each(|with| drop(with.take()));
     }
 }
 
@@ -161,14 +206,22 @@ enum After {
 }
 
 /// A simulation in progress; `t` and `y` are how far it has come.
-struct Run<'a> {
-    problem: Problem<'a>,
-    integrator: &'a mut dyn Integrator,
-    crossings: &'a mut CrossingSearch,
-    y: &'a mut [f64],
+pub(super) struct Run<'a> {
+    pub(super) problem: Problem<'a>,
+    pub(super) integrator: &'a mut dyn Integrator,
+    /// Takes the place of an explicit one in slides, and the other way round.
+    pub(super) implicit: &'a mut dyn Integrator,
+    /// Whether the method asked for is explicit.
+    pub(super) is_explicit: bool,
+    /// Whether the system solves its loops itself.
+    pub(super) solves_loops: bool,
+    pub(super) crossings: &'a mut CrossingSearch,
+    pub(super) watch: &'a mut Watch,
+    pub(super) nominals: &'a Nominals,
+    pub(super) y: &'a mut Vec<f64>,
     observed: &'a mut [f64],
     out: &'a mut Trajectory,
-    t: f64,
+    pub(super) t: f64,
     /// The next output point and its number.
     next_output: Option<f64>,
     output_number: usize,
@@ -190,6 +243,7 @@ impl Run<'_> {
                 break;
             }
         }
+        self.end_slide();
         let finished = self.problem.system.finish(self.t, self.y);
         match finished.map_err(SimErrorKind::Evaluation)? {
             true => self.record(),
@@ -211,12 +265,12 @@ impl Run<'_> {
         self.restart()
     }
 
-    fn restart(&mut self) -> Result<(), SimErrorKind> {
+    pub(super) fn restart(&mut self) -> Result<(), SimErrorKind> {
         self.start_crossings()?;
         self.integrator.restart(&mut self.problem, self.t, self.y)
     }
 
-    fn start_crossings(&mut self) -> Result<bool, SimErrorKind> {
+    pub(super) fn start_crossings(&mut self) -> Result<bool, SimErrorKind> {
         self.crossings.start(&mut self.problem, self.t, self.y).map_err(SimErrorKind::Evaluation)
     }
 
@@ -243,8 +297,11 @@ impl Run<'_> {
         let settings = self.problem.settings;
         let span = settings.stop - settings.start;
         let is_near = self.t - self.last_jump <= FARTHER * BEHIND[0] * span;
-        let is_algebraic = self.problem.system.n_algebraic() > 0;
-        if kind != SimErrorKind::StepSize || !is_algebraic || is_near {
+        // Derivatives do not follow a solution that jumps for no reason of its own.
+        let is_algebraic =
+            self.problem.system.n_algebraic() > 0 && self.problem.system.n_directions() == 0;
+        let is_sliding = self.problem.system.is_constrained();
+        if kind != SimErrorKind::StepSize || !is_algebraic || is_near || is_sliding {
             return Err(kind);
         }
         let (begin, before) = (self.t, self.y.to_vec());
@@ -291,7 +348,11 @@ impl Run<'_> {
                     self.record_before(event)?;
                     self.remember(begin, event)?;
                     self.problem.statistics.state_events += 1;
+                    self.count_switches(begin, event)?;
                     let after = self.handle_event(event, true)?;
+                    if after != After::Terminated && self.treat_chattering()? {
+                        return Ok(After::Restarted);
+                    }
                     if after != After::Resume || event >= end {
                         return Ok(after);
                     }
@@ -307,6 +368,7 @@ impl Run<'_> {
                     self.remember(begin, end)?;
                     self.t = end;
                     self.y.copy_from_slice(self.integrator.state());
+                    self.look_between_steps()?;
                     self.check()?;
                     if self.next_output == Some(end) {
                         self.record()?;
@@ -400,6 +462,11 @@ impl Run<'_> {
         self.t = t;
         self.watch_for_chattering()?;
         self.record()?;
+        let was_constrained = self.problem.system.is_constrained();
+        let (surfaces, contacts) = self.end_slide();
+        let crossing = if told_by_sign { self.crossings.last() } else { None };
+        let span = self.problem.settings.stop - self.problem.settings.start;
+        self.problem.system.crossed(crossing, span);
         let mut outcome = self.event(t)?;
         while outcome == EventOutcome::Again {
             outcome = match self.event(t)? {
@@ -412,6 +479,7 @@ impl Run<'_> {
         }
         match outcome {
             EventOutcome::Terminate => return Ok(After::Terminated),
+            _ if was_constrained => self.go_on_constrained(&surfaces, contacts)?,
             EventOutcome::Continue { y_changed: true } | EventOutcome::Again => self.restart()?,
             EventOutcome::Continue { y_changed: false } => {
                 let confirmed = self.start_crossings()?;
@@ -445,7 +513,7 @@ impl Run<'_> {
             SimErrorKind::StepSize | SimErrorKind::Singular | SimErrorKind::NotFinite => {
                 self.fastest_unknown().map(|at| Culprit::Unknown(at as u32))
             }
-            SimErrorKind::Chattering => {
+            SimErrorKind::Chattering | SimErrorKind::Accumulation => {
                 self.crossings.last().map(|at| Culprit::Crossing(at as u32))
             }
             _ => None,
@@ -454,10 +522,11 @@ impl Run<'_> {
 
     /// The unknown that is not finite, or else changes fastest.
     fn fastest_unknown(&mut self) -> Option<usize> {
+        let n = self.problem.nominal.len();
         if let Some(at) = self.y.iter().position(|y| !y.is_finite()) {
-            return Some(at);
+            return Some(at).filter(|at| *at < n);
         }
-        let mut slopes = vec![0.0; self.y.len()];
+        let mut slopes = vec![0.0; n];
         self.problem.system.rhs(self.t, self.y, &mut slopes).ok()?;
         if let Some(at) = slopes.iter().position(|slope| !slope.is_finite()) {
             return Some(at);
@@ -487,7 +556,7 @@ impl Run<'_> {
         self.next_output = settings.output.point(settings.start, settings.stop, self.output_number);
     }
 
-    fn record(&mut self) -> Result<(), SimErrorKind> {
+    pub(super) fn record(&mut self) -> Result<(), SimErrorKind> {
         let observed = self.problem.system.observe(self.t, self.y, self.observed);
         observed.map_err(|failure: Failure| SimErrorKind::Evaluation(failure))?;
         self.out.push(self.t, self.observed);

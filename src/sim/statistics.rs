@@ -11,6 +11,8 @@ pub struct Statistics {
     pub newton_failures: u64,
     /// Evaluations of the right-hand side.
     pub rhs_evaluations: u64,
+    /// Evaluations of the sensitivity equations.
+    pub sensitivity_evaluations: u64,
     /// Evaluations of the Jacobian.
     pub jacobian_evaluations: u64,
     /// Numeric factorizations.
@@ -19,4 +21,10 @@ pub struct Statistics {
     pub state_events: u64,
     /// Time events.
     pub time_events: u64,
+    /// Relations that chattered and were evaluated between steps from then on.
+    pub followed: u64,
+    /// Intervals in which the solution slid along discontinuities.
+    pub slides: u64,
+    /// Accumulations of impacts behind which the solution rests.
+    pub accumulations: u64,
 }

@@ -39,6 +39,23 @@ pub trait DaeSystem {
     fn jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure>;
     /// Writes consistent initial values of y at `t` (MLS §8.6).
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure>;
+    /// Number of directions along which derivatives are carried. Where there are any, y holds
+    /// behind its own n values n derivatives for each direction, and observed variables are followed
+    /// by their derivatives, direction by direction.
+    fn n_directions(&self) -> usize {
+        0
+    }
+    /// Writes the magnitude of what each direction changes, positive: a derivative times that is as
+    /// large as y.
+    fn directions(&self, _out: &mut [f64]) {}
+    /// Writes the derivatives of (f, g) along each direction, those of y (behind y) given.
+    fn sensitivity_rhs(&mut self, _t: f64, _y: &[f64], _out: &mut [f64]) -> Result<(), Failure> {
+        Ok(())
+    }
+    /// What leads to the event that [`DaeSystem::handle_event`] is going to handle: the crossing
+    /// function that has changed its sign, or `None` if its time has come. `span` is the length of
+    /// the simulation.
+    fn crossed(&mut self, _crossing: Option<usize>, _span: f64) {}
     /// Number of zero-crossing functions.
     fn n_crossings(&self) -> usize {
         0
@@ -83,6 +100,32 @@ pub trait DaeSystem {
     fn check(&mut self, _t: f64, _y: &[f64]) -> Result<(), Failure> {
         Ok(())
     }
+    /// Is told what errors of y as large as the tolerance make of the crossing functions.
+    fn set_uncertainty(&mut self, _crossings: &[f64]) {}
+    /// Prepares to be evaluated on either side of surfaces, in all combinations;
+    /// whether it can: not where values of events remember on which side they were before.
+    fn prepare_modes(&mut self, _t: f64, _y: &[f64], _sides: &[Side]) -> Result<bool, Failure> {
+        Ok(false)
+    }
+    /// From here on it is evaluated in one of the combinations prepared: bit i of `mode` is set on
+    /// the positive side of surface i.
+    fn enter_mode(&mut self, _mode: usize) {}
+    /// Whether [`DaeSystem::follow`] works for a crossing function: nothing happens at its events
+    /// but that equations have other branches.
+    fn can_follow(&self, _crossing: usize) -> bool {
+        false
+    }
+    /// Changes branches without an event: these crossing functions are positive, or negative, from
+    /// (t, y) on.
+    fn follow(&mut self, _t: f64, _y: &[f64], _sides: &[(usize, bool)]) -> Result<(), Failure> {
+        Ok(())
+    }
+    /// Whether the mean of values in several modes is a value of an observed variable.
+    fn has_means(&self, _observed: usize) -> bool {
+        true
+    }
+    /// Is told how the simulation went on at a crossing function, for messages to the user.
+    fn note_treatment(&mut self, _t: f64, _crossing: usize, _treatment: Treatment) {}
     /// Number of observed variables.
     fn n_observed(&self) -> usize;
     /// Writes the observed variables at (t, y).
@@ -101,6 +144,28 @@ pub enum EventOutcome {
     Again,
     /// `terminate(…)` was called.
     Terminate,
+}
+
+/// A crossing function that is zero on a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Side {
+    /// The function.
+    pub crossing: usize,
+    /// The number of the surface.
+    pub surface: usize,
+    /// Whether it is positive on the negative side of the surface.
+    pub is_reversed: bool,
+}
+
+/// How a simulation goes on where events would follow each other without end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Treatment {
+    /// The branches change between steps, without events.
+    Followed,
+    /// The solution slides along the zeros of the crossing function, with the mean of both sides.
+    Slides,
+    /// Impacts that accumulate are over: the solution rests at the zero of the crossing function.
+    Rests,
 }
 
 /// A sparsity pattern in compressed columns.

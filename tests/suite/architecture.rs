@@ -12,6 +12,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("name", &[]),
     ("graph", &[]),
     ("models", &[]),
+    ("page", &[]),
     ("diag", &["source"]),
     ("registry", &["diag"]),
     ("symbolic", &["diag"]),
@@ -40,8 +41,8 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "name", "source", "diag",
         ],
     ),
-    ("teach", &["ga", "plot", "diag"]),
-    ("identify", &["compile", "results", "plot", "sim", "ga", "registry", "name", "diag"]),
+    ("teach", &["ga", "page", "plot", "diag"]),
+    ("identify", &["compile", "results", "page", "plot", "sim", "ga", "registry", "name", "diag"]),
     (
         "script",
         &[

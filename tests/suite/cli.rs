@@ -441,6 +441,15 @@ fn simulations_tell_their_cost_and_draw() {
     assert!(out.contains("figure: x.svg"), "{out}");
     let svg = fs::read_to_string(here.path().join("x.svg")).unwrap();
     assert!(svg.starts_with("<svg") || svg.contains("<svg"), "{svg}");
+    for (name, magic) in [("x.png", &b"\x89PNG\r\n"[..]), ("x.pdf", b"%PDF-")] {
+        let (code, _, errors) = gapi(&here, &[&arguments[..], &["--figure", name]].concat());
+        assert_eq!(code, 0, "{errors}");
+        assert!(fs::read(here.path().join(name)).unwrap().starts_with(magic), "{name}");
+    }
+    let (code, out, errors) = gapi(&here, &[&arguments[..], &["--figure", "x.jpg"]].concat());
+    assert!(code != 0 && errors.contains("`.svg`, `.png` or `.pdf`"), "{errors}");
+    assert_eq!(out, "", "refused before anything is simulated");
+    assert!(!here.path().join("x.jpg").exists());
     let wrong = ["simulate", "Decay.mo", "--model", "Decay", "--plot", "y"];
     let (code, _, said) = gapi(&here, &wrong);
     assert!(code == 1 && said.contains("[unknown-result-variable]"), "{said}");

@@ -26,7 +26,7 @@ fn flat(text: &str) -> Result<FlatModel, Diagnostic> {
     flattened.map(|f| f.model).map_err(|mut errors| errors.swap_remove(0))
 }
 
-fn compiled(text: &str) -> Result<Arc<Program>, Diagnostic> {
+pub(super) fn compiled(text: &str) -> Result<Arc<Program>, Diagnostic> {
     flat(text).and_then(|flat| sort(&flat)).and_then(Program::compile)
 }
 
@@ -52,7 +52,7 @@ pub(super) fn simulated(text: &str, stop: f64) -> Run {
 }
 
 /// The model of this name in `tests/simulation`.
-fn file(name: &str) -> String {
+pub(super) fn file(name: &str) -> String {
     let root = env!("CARGO_MANIFEST_DIR");
     std::fs::read_to_string(format!("{root}/tests/simulation/{name}.mo")).expect("a model")
 }
@@ -284,21 +284,6 @@ fn an_if_equation_switches_at_its_conditions() {
     near(run.last("x"), 0.5, 1e-7);
     near(run.last("y"), -0.5, 1e-7);
     all_near(&run.jumps("y"), &[1.0, half], 1e-7);
-}
-
-#[test]
-fn a_relay_without_hysteresis_chatters_and_is_reported() {
-    for (body, time) in [
-        ("equation der(x) = if x > 0 then -1 else 1;", 1.0),
-        ("Boolean b = x > 0; equation der(x) = if b then -1 - x else 1;", 2.0f64.ln()),
-    ] {
-        let text = &format!("model R Real x(start = 1, fixed = true); {body} end R;");
-        let (program, _, rows, ended) = attempt(text, 2.0);
-        let error = ended.expect_err("it cannot slide");
-        near(error.time, time, 1e-2);
-        assert_eq!(program.explain(&error).code.slug, "simulation-failed");
-        assert!(rows.len() < 10_000, "{}", rows.len());
-    }
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::shipped::project;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-fn chromium() -> Option<PathBuf> {
+pub(crate) fn chromium() -> Option<PathBuf> {
     if let Some(named) = std::env::var_os("GAPILIB_CHROMIUM") {
         return Some(PathBuf::from(named));
     }
@@ -34,7 +34,7 @@ fn shown(chromium: &Path, here: &Path, page: &str) -> String {
 }
 
 /// What the script of the test has reported: one line for each check.
-fn reports(dom: &str) -> Vec<String> {
+pub(crate) fn reports(dom: &str) -> Vec<String> {
     let inner = dom.split_once("[[").and_then(|(_, rest)| Some(rest.split_once("]]")?.0));
     inner.unwrap_or_else(|| panic!("no report in\n{dom}")).lines().map(str::to_owned).collect()
 }

@@ -1,7 +1,9 @@
 //! Figures.
 
-use gapilib::plot::{self, Axis, Comparison, Figure, Mark, Panel, Series};
+use gapilib::plot::{self, Axis, Comparison, Figure, Mark, Panel, Picture, Series};
 use proptest::prelude::*;
+use resvg::tiny_skia::Pixmap;
+use std::path::Path;
 
 fn polarization() -> Figure {
     let x: Vec<f64> = (0..18).map(|i| 0.002 + 0.085 * f64::from(i)).collect();
@@ -40,12 +42,60 @@ fn convergence() -> Figure {
 #[test]
 fn ready_figures_are_drawn_the_same_each_time() {
     for (name, make) in [("fit", polarization as fn() -> Figure), ("convergence", convergence)] {
-        let svg = make().svg();
-        assert_eq!(svg, make().svg());
-        if let Ok(folder) = std::env::var("GAPI_FIGURES") {
-            std::fs::write(format!("{folder}/{name}.svg"), &svg).unwrap();
+        for (ending, format) in
+            [("svg", Picture::Svg), ("png", Picture::Png), ("pdf", Picture::Pdf)]
+        {
+            let bytes = make().picture(format).unwrap();
+            assert!(bytes == make().picture(format).unwrap(), "{name}.{ending}");
+            if let Ok(folder) = std::env::var("GAPI_FIGURES") {
+                std::fs::write(format!("{folder}/{name}.{ending}"), &bytes).unwrap();
+            }
         }
     }
+}
+
+#[test]
+fn the_ending_of_the_name_says_the_format() {
+    let of = |name: &str| Picture::of(Path::new(name));
+    assert_eq!(of("a.b/q.SVG").unwrap(), Picture::Svg);
+    assert_eq!(of("q.png").unwrap(), Picture::Png);
+    assert_eq!(of("q.pdf").unwrap(), Picture::Pdf);
+    for name in ["q.jpg", "q", "svg", ".png"] {
+        let message = of(name).unwrap_err().message;
+        assert!(message.contains("`.svg`, `.png` or `.pdf`"), "{message}");
+    }
+}
+
+/// Darkness between two places, in pixels of the figure.
+fn dark(picture: &Pixmap, [x1, y1, x2, y2]: [u32; 4]) -> usize {
+    let all = (2 * y1..2 * y2).flat_map(|y| (2 * x1..2 * x2).map(move |x| (x, y)));
+    all.filter(|(x, y)| picture.pixel(*x, *y).unwrap().red() < 128).count()
+}
+
+#[test]
+fn a_png_shows_lines_and_letters() {
+    let figure = polarization();
+    let picture = Pixmap::decode_png(&figure.picture(Picture::Png).unwrap()).unwrap();
+    let svg = figure.svg();
+    let height = svg.split("height=\"").nth(1).and_then(|rest| rest.split('"').next());
+    let height: u32 = height.unwrap().parse().unwrap();
+    assert_eq!((picture.width(), picture.height()), (1280, 2 * height));
+    // The title, and the label of the vertical axis, which stands upright.
+    assert!(dark(&picture, [100, 12, 600, 32]) > 500);
+    assert!(dark(&picture, [8, 100, 22, 300]) > 300);
+    assert_eq!(dark(&picture, [0, 0, 6, height]), 0, "a margin is empty");
+    let mut untitled = polarization();
+    untitled.title = String::new();
+    let picture = Pixmap::decode_png(&untitled.picture(Picture::Png).unwrap()).unwrap();
+    assert_eq!(dark(&picture, [0, 0, 640, 8]), 0);
+}
+
+#[test]
+fn a_pdf_is_drawn_without_a_font_of_the_machine() {
+    let bytes = polarization().picture(Picture::Pdf).unwrap();
+    assert!(bytes.starts_with(b"%PDF-") && bytes.trim_ascii_end().ends_with(b"%%EOF"));
+    let text = String::from_utf8_lossy(&bytes);
+    assert!(text.contains("/MediaBox") && !text.contains("/FontFile"), "{} bytes", bytes.len());
 }
 
 #[test]
@@ -92,12 +142,19 @@ proptest! {
         title in "[ -M<>&\"é]{0,12}",
     ) {
         let axis = |log| if log { Axis::logarithmic("a", "b") } else { Axis::linear("a", "b") };
-        let series = [Mark::Line, Mark::Thin, Mark::Points, Mark::Stems].map(|mark| Series {
+        let marks = [
+            Mark::Line, Mark::Thin, Mark::Points, Mark::Stems, Mark::Dashed, Mark::Dots,
+            Mark::Crosses, Mark::Area,
+        ];
+        let series = marks.map(|mark| Series {
             name: title.clone(), x: x.clone(), y: y[..x.len()].to_vec(), mark, colour: 9,
         });
         let panel = Panel { x: axis(log_x), y: axis(log_y), height: 100.0, zero_line: true, series: series.to_vec() };
-        let svg = Figure { title, panels: vec![panel] }.svg();
-        prop_assert!(!svg.contains("NaN") && !svg.contains("inf"), "{}", svg);
-        prop_assert!(svg.len() < 60_000);
+        let figure = Figure { title, panels: vec![panel] };
+        for svg in [figure.svg(), figure.inline("what it shows"), figure.small("the same")] {
+            prop_assert!(!svg.contains("NaN") && !svg.contains("inf"), "{}", svg);
+            prop_assert!(svg.len() < 60_000);
+        }
+        prop_assert!(figure.picture(Picture::Pdf).is_ok());
     }
 }

@@ -247,6 +247,24 @@ impl Evaluation {
         self.pool.install(|| values.par_iter().map(one).collect())
     }
 
+    /// Runs a job for every number below `count` on all threads, each with a simulator of its own.
+    pub(super) fn each<T: Send>(
+        &self,
+        count: usize,
+        job: impl Fn(usize, &mut dyn Simulate) -> T + Sync,
+    ) -> Vec<T> {
+        let one = |number: usize| {
+            let mut worker = self.worker();
+            job(number, worker.as_mut())
+        };
+        self.pool.install(|| (0..count).into_par_iter().map(one).collect())
+    }
+
+    /// Whether simulations have been cancelled.
+    pub(super) fn is_cancelled(&self) -> bool {
+        self.cancel.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed))
+    }
+
     /// The simulated points at several places, with derivatives where the simulator has exact ones.
     pub(super) fn exact_all(&self, places: &[Vec<f64>]) -> Vec<Result<Linearization, Failed>> {
         let one = |values: &Vec<f64>| {

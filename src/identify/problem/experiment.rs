@@ -13,6 +13,8 @@ use std::sync::atomic::AtomicBool;
 
 /// A failed simulation is tried once more with the tolerance times this and another integrator.
 const TIGHTER: f64 = 0.01;
+/// The method that integrates sensitivities with the model.
+const WITH_SENSITIVITIES: &str = "dassl";
 /// No tolerance is tightened beyond this, where errors of rounding begin.
 const SMALLEST_TOLERANCE: f64 = 1e-12;
 
@@ -48,6 +50,7 @@ pub struct ModelSimulator {
     stages: Vec<Stage>,
     simulator: Simulator,
     trajectory: Trajectory,
+    refusal: Option<String>,
 }
 
 /// One experiment, ready to run.
@@ -79,6 +82,7 @@ impl ModelSimulator {
             stages,
             simulator: Simulator::new(),
             trajectory: Trajectory::default(),
+            refusal: None,
         })
     }
 }
@@ -92,15 +96,40 @@ impl Simulate for ModelSimulator {
             let out = &mut out[first..first + length];
             first += length;
             let run = stage.run(parameters, &mut self.simulator, &mut self.trajectory, out);
-            run.map_err(|mut failed| {
-                failed.progress = (number as f64 + failed.progress) / count as f64;
-                if count > 1 {
-                    failed.cause = format!("{}: {}", stage.name, failed.cause);
-                }
-                failed
-            })?;
+            run.map_err(|failed| located(failed, (number, count), &stage.name))?;
         }
         Ok(())
+    }
+
+    fn sensitivities(
+        &mut self,
+        parameters: &[f64],
+        out: &mut [f64],
+        derivatives: &mut [f64],
+    ) -> Result<bool, Failed> {
+        self.refusal = None;
+        let (count, genes) = (self.stages.len(), parameters.len());
+        let mut first = 0;
+        for (number, stage) in self.stages.iter_mut().enumerate() {
+            let length: usize = stage.points.iter().map(Vec::len).sum();
+            let rows = first..first + length;
+            let derivatives = &mut derivatives[rows.start * genes..rows.end * genes];
+            first += length;
+            let workspace = (&mut self.simulator, &mut self.trajectory);
+            let run = stage.differentiate(parameters, workspace, &mut out[rows], derivatives);
+            match run.map_err(|failed| located(failed, (number, count), &stage.name))? {
+                Ok(()) => {}
+                Err(refusal) => {
+                    self.refusal = Some(refusal);
+                    return Ok(false);
+                }
+            }
+        }
+        Ok(true)
+    }
+
+    fn sensitivity_refusal(&self) -> Option<&str> {
+        self.refusal.as_deref()
     }
 
     fn scale_tolerance(&mut self, factor: f64) {
@@ -122,6 +151,15 @@ impl Simulate for ModelSimulator {
             }
         }
     }
+}
+
+/// A failure of one experiment among several.
+fn located(mut failed: Failed, (number, count): (usize, usize), name: &str) -> Failed {
+    failed.progress = (number as f64 + failed.progress) / count as f64;
+    if count > 1 {
+        failed.cause = format!("{name}: {}", failed.cause);
+    }
+    failed
 }
 
 impl Stage {
@@ -184,6 +222,98 @@ impl Stage {
         Err(failed)
     }
 
+    /// Simulates with derivatives for all parameters of the problem; `Err` within `Ok` says why there
+    /// are none.
+    fn differentiate(
+        &mut self,
+        parameters: &[f64],
+        (simulator, trajectory): (&mut Simulator, &mut Trajectory),
+        out: &mut [f64],
+        derivatives: &mut [f64],
+    ) -> Result<Result<(), String>, Failed> {
+        self.values.clear();
+        self.values.extend(self.places.iter().map(|&place| parameters[place]));
+        let is_static = self.instance.system().n_differential() == 0;
+        let method = self.settings.method.name;
+        if !is_static && method != WITH_SENSITIVITIES {
+            return Ok(Err(format!("the method `{method}` integrates no sensitivities")));
+        }
+        if let Err(refusal) = self.instance.differentiate(true) {
+            return Ok(Err(refusal));
+        }
+        let attempt = self.attempt(false, simulator, trajectory);
+        let refusal = self.instance.sensitivity_refusal();
+        // From here on values alone.
+        let _ = self.instance.differentiate(false);
+        match (attempt, refusal) {
+            (Ok(()), _) => {}
+            (Err(_), Some(refusal)) => return Ok(Err(refusal)),
+            (Err(failed), None) if failed.kind == FailureKind::Solver => {
+                let cause = &failed.cause;
+                return Ok(Err(format!("the sensitivity equations were not solved: {cause}")));
+            }
+            (Err(failed), None) => return Err(failed),
+        }
+        self.read(trajectory, out)?;
+        self.read_derivatives(trajectory, parameters.len(), derivatives)?;
+        match derivatives.iter().all(|value| value.is_finite()) {
+            true => Ok(Ok(())),
+            false => Ok(Err("a derivative is not finite".to_owned())),
+        }
+    }
+
+    /// The derivatives of all points by all parameters of the problem, point by point.
+    fn read_derivatives(
+        &self,
+        trajectory: &Trajectory,
+        genes: usize,
+        derivatives: &mut [f64],
+    ) -> Result<(), Failed> {
+        derivatives.fill(0.0);
+        let observed = self.points.len() + usize::from(self.in_x);
+        let mut rows = derivatives.chunks_exact_mut(genes.max(1));
+        for (column, points) in self.points.iter().enumerate() {
+            for (point, row) in points.iter().zip(&mut rows) {
+                for (k, place) in self.places.iter().enumerate() {
+                    let of = |column: usize| observed * (k + 1) + column;
+                    row[*place] += match self.in_x {
+                        true => self.derivative_in_x(trajectory, column, *point, of),
+                        false => trajectory.at(of(column), *point),
+                    }
+                    .ok_or_else(|| missing("the simulation ended early"))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The derivative of y at a given X: dy − (dy/dX) dX at the rows on both sides, and linear
+    /// between them. Both are of second order in the distance of the rows.
+    fn derivative_in_x(
+        &self,
+        trajectory: &Trajectory,
+        column: usize,
+        target: f64,
+        of: impl Fn(usize) -> usize,
+    ) -> Option<f64> {
+        let x_column = self.points.len();
+        let (x, y) = (trajectory.column(x_column), trajectory.column(column));
+        let (dx, dy) = (trajectory.column(of(x_column)), trajectory.column(of(column)));
+        let times = trajectory.time();
+        let k = Path { times, x }.slice_of(&self.x_name, target).ok()?;
+        let share = (target - x[k]) / (x[k + 1] - x[k]);
+        // Not across an event, which has two rows.
+        let first = k.checked_sub(1).filter(|before| times[*before] < times[k]).unwrap_or(k);
+        let last = Some(k + 2).filter(|at| times.get(*at).is_some_and(|t| *t > times[k + 1]));
+        let last = last.unwrap_or(k + 1);
+        let at_given_x = |row: usize, ends: [usize; 2]| {
+            let [a, b] = ends;
+            dy[row] - (y[b] - y[a]) / (x[b] - x[a]) * dx[row]
+        };
+        let (before, behind) = (at_given_x(k, [first, k + 1]), at_given_x(k + 1, [k, last]));
+        Some(before + share * (behind - before))
+    }
+
     fn attempt(
         &mut self,
         again: bool,
@@ -206,11 +336,6 @@ impl Stage {
     }
 
     fn read(&self, trajectory: &Trajectory, out: &mut [f64]) -> Result<(), Failed> {
-        let missing = |cause: &str| Failed {
-            kind: FailureKind::Points,
-            cause: cause.to_owned(),
-            progress: 1.0,
-        };
         let mut first = 0;
         for (column, points) in self.points.iter().enumerate() {
             let out = &mut out[first..first + points.len()];
@@ -233,6 +358,11 @@ impl Stage {
             false => Err(missing("a simulated value is not finite")),
         }
     }
+}
+
+/// The points could not be read.
+fn missing(cause: &str) -> Failed {
+    Failed { kind: FailureKind::Points, cause: cause.to_owned(), progress: 1.0 }
 }
 
 /// Other settings for a second attempt; none for methods with fixed step.

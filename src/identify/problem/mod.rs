@@ -8,6 +8,7 @@
 
 mod checks;
 mod conclusion;
+mod curve;
 mod effects;
 mod error_model;
 mod evaluation;
@@ -16,7 +17,6 @@ mod failure;
 mod failure_region;
 mod finding;
 mod fingerprint;
-mod html;
 mod importance;
 pub mod inference;
 mod inseparable;
@@ -34,6 +34,7 @@ mod summary;
 mod text;
 
 pub use conclusion::{Conclusion, conclude};
+pub use curve::draw_curves;
 pub use error_model::{ErrorModel, Sigma, SigmaFormula, decide, likelihood};
 pub use evaluation::Evaluation;
 pub use experiment::{Experiment, ModelSimulator, Observation};
@@ -84,6 +85,11 @@ pub trait Simulate: Send {
         _derivatives: &mut [f64],
     ) -> Result<bool, Failed> {
         Ok(false)
+    }
+    /// Why the last call of [`sensitivities`](Simulate::sensitivities) gave none, in words that
+    /// follow on "because"; `None` if it gave some.
+    fn sensitivity_refusal(&self) -> Option<&str> {
+        None
     }
     /// From now on the tolerance of the solver is the one of the settings times `factor`; 1 puts it
     /// back. Without effect where nothing is integrated.

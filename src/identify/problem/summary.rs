@@ -209,6 +209,9 @@ pub struct SolvedSeries {
     /// Runs of equal sign, how many are expected, the probability of that by chance, and the
     /// correlation of neighbours.
     pub residual_test: Option<[f64; 4]>,
+    /// The simulated curve between the points, by ascending X, where it was simulated.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub curve: Vec<[f64; 2]>,
     /// X, measured, simulated.
     #[serde(deserialize_with = "super::saved::points")]
     pub points: Vec<[f64; 3]>,
@@ -238,6 +241,7 @@ impl SolvedSeries {
             sigma_estimated: series.sigma.is_estimated(),
             residual_test: test
                 .map(|t| [t.runs as f64, t.expected_runs, t.runs_probability, t.autocorrelation]),
+            curve: Vec::new(),
             points,
         }
     }
@@ -397,7 +401,9 @@ fn solved_series(
             .filter(|sigma| sigma.is_finite());
         solved
     };
-    problem.series.iter().map(one).collect()
+    // Priors, the last, count as points, but they are not data.
+    let solved = problem.series.iter().map(one);
+    solved.filter(|series| series.experiment != super::inference::PRIOR).collect()
 }
 
 /// What the parameters do whose derivative is zero.

@@ -220,6 +220,8 @@ impl SolvedSeries {
     fn figure(&self, title: &str) -> Option<Figure> {
         let column = |j: usize| self.points.iter().map(|point| point[j]).collect::<Vec<f64>>();
         let (x, measured, simulated) = (column(0), column(1), column(2));
+        let (curve_x, curve_y): (Vec<f64>, Vec<f64>) =
+            self.curve.iter().map(|[x, y]| (*x, *y)).unzip();
         simulated.iter().all(|value| value.is_finite()).then(|| {
             plot::fit(&Comparison {
                 title,
@@ -228,7 +230,7 @@ impl SolvedSeries {
                 x: &x,
                 measured: &measured,
                 simulated: &simulated,
-                curve: (&[], &[]),
+                curve: (&curve_x, &curve_y),
             })
         })
     }

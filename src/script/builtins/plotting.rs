@@ -3,7 +3,7 @@
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
-use crate::plot::{Axis, Figure, Mark, Panel, Series};
+use crate::plot::{Axis, Figure, Mark, Panel, Picture, Series};
 use crate::results::ResultTable;
 use crate::script::errors::BAD_ARGUMENT;
 use crate::script::{Dialect, Session};
@@ -37,7 +37,7 @@ pub(super) const OPENMODELICA: Family = Family {
 #[derive(Default)]
 struct Plots {
     drawn: usize,
-    last_drawn: Option<String>,
+    last_drawn: Option<Figure>,
     last_results: Option<String>,
     /// What `plotArray` and `plotScatter` draw on: drawn already when it has series.
     vectors: Option<Figure>,
@@ -300,18 +300,14 @@ fn write(session: &mut Session, figure: &Figure) -> Result<(), Fault> {
     plots.drawn += 1;
     let name = format!("plot_{}.svg", plots.drawn);
     let path = session.world.output_dir().join(name);
-    write_drawn(session, &path, figure.svg())
-}
-
-fn write_drawn(session: &mut Session, path: &Path, svg: String) -> Result<(), Fault> {
-    session.write_file(path, svg.as_bytes())?;
-    session.extension::<Plots>().last_drawn = Some(svg);
+    session.write_file(&path, figure.svg().as_bytes())?;
+    session.extension::<Plots>().last_drawn = Some(figure.clone());
     Ok(())
 }
 
 const EXPORT_PLOT_AS_IMAGE: &str = r#"
 function ExportPlotAsImage "Writes the plot drawn last to a file."
-  input String fileName "ends in .svg";
+  input String fileName "ends in .svg, .png or .pdf";
   input Integer id = -1 "has no effect: the last plot is written";
   input Boolean includeInLog = true "has no effect";
   input Boolean onlyActiveSubplot = false "has no effect";
@@ -321,17 +317,12 @@ end ExportPlotAsImage;
 
 fn export_plot_as_image(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let file: String = args.take("fileName")?;
-    if !file.to_ascii_lowercase().ends_with(".svg") {
-        bail!(
-            BAD_ARGUMENT,
-            "`{file}` does not end in `.svg`: plots are drawn as SVG only";
-            help: "write `ExportPlotAsImage(\"plot.svg\")`"
-        );
-    }
-    let Some(svg) = session.extension::<Plots>().last_drawn.clone() else {
+    let format = Picture::of(Path::new(&file))?;
+    let Some(figure) = session.extension::<Plots>().last_drawn.clone() else {
         bail!(BAD_ARGUMENT, "no plot has been drawn")
     };
-    let written = session.write_file(Path::new(&file), svg.as_bytes());
+    let bytes = figure.picture(format)?;
+    let written = session.write_file(Path::new(&file), &bytes);
     Ok(session.succeeded(written))
 }
 

@@ -4,12 +4,13 @@
 //! data) becomes a class around the model, so that it means what it means in Modelica.
 
 use super::file::{ColumnEntry, ExperimentEntry, OneOrMany, ProblemFile, Role};
-use super::{own_fitness, sigma};
+use super::{dynamics, own_fitness, sigma};
 use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::ga::optimizer::METHODS;
 use crate::identify::fitness::{FITNESSES, Fitness};
+use crate::identify::problem::inference::adjust;
 use crate::identify::problem::{
     Experiment, Fingerprint, Free, Inference, ModelSimulator, NOISE_OF_FORMULAS, Observation,
     Problem, Series, Sigma, Simulate, Stop, decide, likelihood,
@@ -32,6 +33,8 @@ const ROBUST: [&str; 3] = ["huber", "tukey", "mae"];
 /// A problem with the experiments that are kept for validation.
 pub(super) struct Built {
     pub problem: Problem,
+    /// The experiments that are fitted, for drawing their curves.
+    pub experiments: Vec<Experiment>,
     pub validation: Vec<(Experiment, Vec<Series>)>,
     /// Changes when the problem or its data change.
     pub fingerprint: u64,
@@ -39,9 +42,11 @@ pub(super) struct Built {
 
 /// Something that a class around the model must hold.
 #[derive(Default)]
-struct Around {
-    modifications: Vec<String>,
-    declarations: String,
+pub(super) struct Around {
+    pub(super) modifications: Vec<String>,
+    pub(super) declarations: String,
+    /// A section of initial equations, or nothing.
+    pub(super) equations: String,
 }
 
 /// Builds the problem.
@@ -93,13 +98,16 @@ pub(super) fn build(
     let parameters = with_units(free, &experiments);
     // Made once here, so that what is wrong shows before the run.
     drop(ModelSimulator::new(&experiments).map_err(one)?);
+    let fitted = experiments.clone();
     let inference = super::inference::inference(file, &experiments).map_err(one)?;
     let simulator = move || Ok(Box::new(ModelSimulator::new(&experiments)?) as Box<dyn Simulate>);
     let parts = (parameters, series, objectives);
     let mut problem = assemble(file, parts, noise, Box::new(simulator)).map_err(one)?;
     problem.inference = inference;
+    let adjustments = super::inference::adjustments(file, &problem.parameters).map_err(one)?;
+    adjust(&mut problem, adjustments).map_err(one)?;
     problem.text = text.to_owned();
-    Ok(Built { problem, validation, fingerprint: fingerprint.number() })
+    Ok(Built { problem, experiments: fitted, validation, fingerprint: fingerprint.number() })
 }
 
 /// The fitness functions by name: those of the program, else functions written in Modelica.
@@ -275,6 +283,17 @@ fn experiment(
     let mut around = Around::default();
     let parameters = settle(file, entry, &name, free, &mut around).map_err(one)?;
     inputs(entry, table, &x, &mut around).map_err(one)?;
+    let mut observed = Vec::new();
+    for (place, (y_name, wanted)) in entry.outputs.iter().enumerate() {
+        let wanted = wanted.entry();
+        let delayed = dynamics::delayed(file, y_name, place, &wanted, &x_name, &mut around);
+        observed.push(delayed.map_err(one)?);
+    }
+    if entry.steady_state {
+        let class = class_of(session, file, number, &around)?;
+        let plain = simulation::translated(session, &class)?.program.clone();
+        dynamics::steady(file, entry, plain.sorted(), &mut around).map_err(one)?;
+    }
     let class = class_of(session, file, number, &around)?;
     let translated = simulation::translated(session, &class)?;
     let program = translated.program.clone();
@@ -289,7 +308,7 @@ fn experiment(
     let mut settings = simulation::settings(&program.experiment(), &wishes).map_err(one)?;
     limit(session, entry, &mut settings).map_err(one)?;
     let (mut observations, mut series) = (Vec::new(), Vec::new());
-    for (y_name, wanted) in &entry.outputs {
+    for ((y_name, wanted), observed) in entry.outputs.iter().zip(observed) {
         let wanted = wanted.entry();
         let y = column(table, &wanted, y_name).map_err(one)?;
         let factor = wanted.factor.unwrap_or(1.0);
@@ -338,7 +357,7 @@ fn experiment(
             rows: rows.iter().map(|row| row + 1).collect(),
             missing: missing.iter().map(|row| row + 1).collect(),
         });
-        observations.push(Observation { y_name: y_name.clone(), x });
+        observations.push(Observation { y_name: observed, x });
     }
     if observations.is_empty() {
         return Err(one(fault!(BAD_OPTION, "{name} has no outputs to compare")));
@@ -386,6 +405,7 @@ fn settle(
     let mut places = Vec::new();
     for (number, (name, parameter)) in file.parameters.iter().enumerate() {
         let initial = parameter.initial;
+        let delay = dynamics::is_delay(file, name);
         let value = match parameter.role(name)? {
             Role::Free { .. } => {
                 let full = if parameter.per_experiment {
@@ -396,16 +416,23 @@ fn settle(
                 let Some(place) = free.iter().position(|free| free.name == full) else {
                     bail!(BAD_OPTION, "`{name}` is identified for each experiment, so that {experiment} has no value of it"; help: "fix it there with `set`")
                 };
-                if !initial {
+                if !initial && !delay {
                     places.push((place, name.clone()));
                     continue;
                 }
-                let own = format!("gapi_initial_{number}");
+                let own = match delay {
+                    true => dynamics::delay_name(number),
+                    false => format!("gapi_initial_{number}"),
+                };
                 let middle = free[place].value(0.5);
                 _ = writeln!(around.declarations, "  parameter Real {own} = {middle:e};");
                 places.push((place, own.clone()));
+                if delay {
+                    continue;
+                }
                 own
             }
+            Role::Fixed(_) | Role::Tied(_) if delay => continue,
             Role::Fixed(value) => format!("{value:e}"),
             Role::Tied(expression) => expression,
         };
@@ -464,7 +491,7 @@ fn class_of(
     number: usize,
     around: &Around,
 ) -> Result<String, Vec<Diagnostic>> {
-    if around.modifications.is_empty() {
+    if around.modifications.is_empty() && around.declarations.is_empty() {
         return Ok(file.model.clone());
     }
     let (class, inner) = match file.model.split_once('(') {
@@ -475,9 +502,10 @@ fn class_of(
     let all: Vec<&str> = own.chain(around.modifications.iter().map(String::as_str)).collect();
     let name = format!("GAPILibExperiment{}", number + 1);
     let text = format!(
-        "model {name}\n  extends {class}(\n    {});\n{}end {name};\n",
+        "model {name}\n  extends {class}(\n    {});\n{}{}end {name};\n",
         all.join(",\n    "),
-        around.declarations
+        around.declarations,
+        around.equations
     );
     session.load_text(&format!("experiment {} of the problem", number + 1), &text)?;
     Ok(name)

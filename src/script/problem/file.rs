@@ -32,6 +32,13 @@ pub(super) struct ProblemFile {
     pub bands: Option<BandsEntry>,
     /// The next measurement.
     pub design: Option<DesignEntry>,
+    /// Inequalities between parameters.
+    #[serde(default)]
+    pub constraints: Vec<String>,
+    /// Fits to data drawn anew.
+    pub bootstrap: Option<BootstrapEntry>,
+    /// Markov chains.
+    pub posterior: Option<PosteriorEntry>,
 }
 
 /// A parameter: free within a range, or fixed, or tied to others.
@@ -53,6 +60,8 @@ pub(super) struct ParameterEntry {
     /// Every experiment has its own.
     #[serde(default)]
     pub per_experiment: bool,
+    /// What is known of it without the data.
+    pub prior: Option<PriorEntry>,
 }
 
 /// An experiment.
@@ -80,6 +89,9 @@ pub(super) struct ExperimentEntry {
     /// Not used for the fit, compared at the end.
     #[serde(default)]
     pub validation: bool,
+    /// Before it all derivatives were zero.
+    #[serde(default)]
+    pub steady_state: bool,
     pub stop_time: Option<f64>,
     pub tolerance: Option<f64>,
     pub integrator: Option<String>,
@@ -110,6 +122,18 @@ pub(super) struct ColumnEntry {
     pub weight: Option<f64>,
     /// Standard deviation of the measurement.
     pub sigma: Option<SigmaEntry>,
+    /// How the errors are distributed: `normal` or `lognormal`.
+    pub error: Option<String>,
+    /// Seconds by which it is measured later: a number or a parameter.
+    pub delay: Option<DelayEntry>,
+}
+
+/// A number, or the name of a parameter of the problem that is not one of the model.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged)]
+pub(super) enum DelayEntry {
+    Seconds(f64),
+    Parameter(String),
 }
 
 /// A standard deviation: a number, or words for a column, a formula or `estimate`.
@@ -184,6 +208,40 @@ pub(super) struct DesignEntry {
     pub outputs: IndexMap<String, f64>,
 }
 
+/// `"uniform"`, `{ mean, sd }` or `{ median, factor }`.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(untagged)]
+pub(super) enum PriorEntry {
+    Name(String),
+    Numbers(PriorNumbers),
+}
+
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PriorNumbers {
+    pub mean: Option<f64>,
+    pub sd: Option<f64>,
+    pub median: Option<f64>,
+    pub factor: Option<f64>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BootstrapEntry {
+    pub samples: Option<usize>,
+    /// `residuals`, `parametric` or `cases`.
+    pub resampling: Option<String>,
+    /// `bca`, `percentile` or `basic`.
+    pub interval: Option<String>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PosteriorEntry {
+    /// Draws of each chain at most.
+    pub samples: Option<usize>,
+}
+
 /// Reads a problem.
 ///
 /// # Errors
@@ -200,7 +258,16 @@ pub(super) fn read(source: SourceId, text: &str) -> Result<ProblemFile, Diagnost
 
 impl ColumnEntry {
     pub(super) fn named(column: Option<String>) -> ColumnEntry {
-        ColumnEntry { variable: None, column, unit: None, factor: None, weight: None, sigma: None }
+        ColumnEntry {
+            variable: None,
+            column,
+            unit: None,
+            factor: None,
+            weight: None,
+            sigma: None,
+            error: None,
+            delay: None,
+        }
     }
 }
 

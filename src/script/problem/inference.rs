@@ -1,11 +1,16 @@
 //! What a problem file asks beyond the estimates, checked against its models.
 
-use super::file::{BandsEntry, DesignEntry, ProblemFile};
+use super::file::{
+    BandsEntry, BootstrapEntry, DesignEntry, PosteriorEntry, PriorEntry, PriorNumbers, ProblemFile,
+};
 use crate::bail;
 use crate::diag::{Fault, suggest};
 use crate::fault;
-use crate::identify::problem::Experiment;
-use crate::identify::problem::inference::{DesignSettings, Inference, ModelPredictions};
+use crate::identify::problem::inference::{
+    Adjustments, BootstrapSettings, Constraint, DesignSettings, Distribution, Inference,
+    IntervalKind, ModelPredictions, PosteriorSettings, Prior, Resampling,
+};
+use crate::identify::problem::{Experiment, Free};
 use crate::registry::BAD_OPTION;
 
 /// Points of a design unless the file says how many.
@@ -30,7 +35,126 @@ pub(super) fn inference(
     band_variables.iter().try_for_each(|name| known("bands", name, experiments))?;
     let design = file.design.as_ref().map(|entry| design(entry, experiments)).transpose()?;
     let predict = ModelPredictions { experiments: experiments.to_vec() };
-    Ok(Inference { predict: Some(Box::new(predict)), bands, band_variables, design })
+    Ok(Inference {
+        predict: Some(Box::new(predict)),
+        bands,
+        band_variables,
+        design,
+        bootstrap: file.bootstrap.as_ref().map(bootstrap).transpose()?,
+        posterior: file.posterior.as_ref().map(posterior).transpose()?,
+        ..Inference::default()
+    })
+}
+
+/// Priors, constraints and log-normal data.
+///
+/// # Errors
+///
+/// What cannot be read.
+pub(super) fn adjustments(file: &ProblemFile, free: &[Free]) -> Result<Adjustments, Fault> {
+    let mut priors = Vec::new();
+    for (name, entry) in &file.parameters {
+        let Some(prior) = &entry.prior else { continue };
+        let distribution = distribution(name, prior)?;
+        let of_experiments = format!("{name}@");
+        let own = |free: &Free| free.name == *name || free.name.starts_with(&of_experiments);
+        let places: Vec<usize> =
+            free.iter().enumerate().filter(|(_, free)| own(free)).map(|(k, _)| k).collect();
+        if places.is_empty() {
+            bail!(BAD_OPTION, "`{name}` has a prior, but it is not estimated"; help: "give it `min` and `max`");
+        }
+        priors.extend(places.into_iter().map(|parameter| Prior { parameter, distribution }));
+    }
+    let names: Vec<String> = free.iter().map(|free| free.name.clone()).collect();
+    let constraints = file.constraints.iter().map(|text| Constraint::new(text, &names));
+    let constraints = constraints.collect::<Result<Vec<Constraint>, Fault>>()?;
+    let used = file.experiment.iter().filter(|experiment| !experiment.validation);
+    let outputs = used.flat_map(|experiment| &experiment.outputs);
+    let mut logarithmic = Vec::new();
+    for (k, (name, output)) in outputs.enumerate() {
+        match output.entry().error.as_deref() {
+            None | Some("normal") => {}
+            Some("lognormal") => logarithmic.push(k),
+            Some(other) => {
+                bail!(BAD_OPTION, "the `error` of `{name}` is `{other}`"; help: "write \"normal\" or \"lognormal\"")
+            }
+        }
+    }
+    Ok(Adjustments { priors, constraints, logarithmic })
+}
+
+fn distribution(name: &str, entry: &PriorEntry) -> Result<Distribution, Fault> {
+    match entry {
+        PriorEntry::Name(kind) if kind == "uniform" => Ok(Distribution::Uniform),
+        PriorEntry::Numbers(PriorNumbers {
+            mean: Some(mean),
+            sd: Some(sd),
+            median: None,
+            factor: None,
+        }) => Ok(Distribution::Normal { mean: *mean, sd: *sd }),
+        PriorEntry::Numbers(PriorNumbers {
+            mean: None,
+            sd: None,
+            median: Some(median),
+            factor: Some(factor),
+        }) => Ok(Distribution::LogNormal { median: *median, factor: *factor }),
+        _ => {
+            bail!(BAD_OPTION, "the prior of `{name}` cannot be read"; help: "write `{{ mean = 1, sd = 0.1 }}`, `{{ median = 1, factor = 1.5 }}` for a log-normal one, or \"uniform\"")
+        }
+    }
+}
+
+/// Replicates of a bootstrap unless the file says how many: the ends of 95 % intervals are then
+/// those of the 25th replicate from either side.
+const REPLICATES: usize = 1000;
+/// Draws of each chain at most, unless the file says otherwise.
+const DRAWS: usize = 8000;
+
+/// The bootstrap that `--bootstrap` asks for where the file says nothing.
+pub(super) fn usual_bootstrap() -> BootstrapSettings {
+    BootstrapSettings {
+        samples: REPLICATES,
+        resampling: Resampling::Residuals,
+        interval: IntervalKind::Bca,
+    }
+}
+
+/// The posterior that `--posterior` asks for where the file says nothing.
+pub(super) fn usual_posterior() -> PosteriorSettings {
+    PosteriorSettings { samples: DRAWS }
+}
+
+fn bootstrap(entry: &BootstrapEntry) -> Result<BootstrapSettings, Fault> {
+    let usual = usual_bootstrap();
+    let samples = entry.samples.unwrap_or(usual.samples);
+    if !(100..=1_000_000).contains(&samples) {
+        bail!(BAD_OPTION, "`samples` of `bootstrap` is {samples}"; help: "write a number from 100 to 1000000; 95 % intervals need about 1000");
+    }
+    let resampling = match entry.resampling.as_deref() {
+        None | Some("residuals") => Resampling::Residuals,
+        Some("parametric") => Resampling::Parametric,
+        Some("cases") => Resampling::Cases,
+        Some(other) => {
+            bail!(BAD_OPTION, "the `resampling` of `bootstrap` is `{other}`"; help: "write \"residuals\", \"parametric\" or \"cases\"")
+        }
+    };
+    let interval = match entry.interval.as_deref() {
+        None | Some("bca") => IntervalKind::Bca,
+        Some("percentile") => IntervalKind::Percentile,
+        Some("basic") => IntervalKind::Basic,
+        Some(other) => {
+            bail!(BAD_OPTION, "the `interval` of `bootstrap` is `{other}`"; help: "write \"bca\", \"percentile\" or \"basic\"")
+        }
+    };
+    Ok(BootstrapSettings { samples, resampling, interval })
+}
+
+fn posterior(entry: &PosteriorEntry) -> Result<PosteriorSettings, Fault> {
+    let samples = entry.samples.unwrap_or(DRAWS);
+    if !(100..=10_000_000).contains(&samples) {
+        bail!(BAD_OPTION, "`samples` of `posterior` is {samples}"; help: "write a number from 100 to 10000000");
+    }
+    Ok(PosteriorSettings { samples })
 }
 
 /// The design that `--design` asks for where the file says nothing.

@@ -7,6 +7,7 @@
 
 mod build;
 mod control;
+mod dynamics;
 mod file;
 mod inference;
 mod live;
@@ -30,6 +31,8 @@ use control::Watched;
 use live::Live;
 use std::path::{Path, PathBuf};
 
+/// Files that not every run writes.
+const OPTIONAL: [&str; 4] = ["bands.csv", "bootstrap.csv", "posterior.csv", "profiles.csv"];
 /// The journal's file.
 const JOURNAL: &str = "run.journal";
 /// Seconds between two looks at the watched settings.
@@ -50,6 +53,10 @@ pub struct RunOptions {
     pub profile: bool,
     /// The next measurement after the fit.
     pub design: bool,
+    /// Fits to data drawn anew after the fit.
+    pub bootstrap: bool,
+    /// Markov chains after the fit.
+    pub posterior: bool,
     /// A sensitivity analysis before the fit, by name.
     pub sensitivity: Option<String>,
     /// Its base samples; 0 for the usual number.
@@ -103,6 +110,12 @@ fn solve_text(
     if options.design {
         built.problem.inference.design.get_or_insert_with(inference::usual_design);
     }
+    if options.bootstrap {
+        built.problem.inference.bootstrap.get_or_insert_with(inference::usual_bootstrap);
+    }
+    if options.posterior {
+        built.problem.inference.posterior.get_or_insert_with(inference::usual_posterior);
+    }
     if let Some(limit) = options.evaluations {
         built.problem.stop.evaluations = Some(limit);
     }
@@ -117,7 +130,7 @@ fn solve_built(
     options: &RunOptions,
     every: (Option<u64>, f64),
 ) -> Result<Solution, Fault> {
-    let Built { problem, validation, fingerprint } = built;
+    let Built { problem, experiments, validation, fingerprint } = built;
     let folder = session.world.output_dir().join(&options.folder);
     let mut run = Run::new(problem, session.world.threads())?;
     let importance = analysed(session, &run, &folder, options)?;
@@ -157,15 +170,20 @@ fn solve_built(
     if !interrupted {
         solving::conclude(&mut run);
     }
-    let validation = validated(&run, &validation)?;
-    let mut solution = Solution::of(&run, &stop, validation)?;
+    let validated = validated(&run, &validation)?;
+    let mut solution = Solution::of(&run, &stop, validated)?;
     solution.importance = importance;
     if options.profile && !interrupted {
         solution.add_profiles(&run);
     }
+    let mut interrupted = interrupted;
     if !interrupted {
+        run.evaluation.cancel_by(session.world.interrupt_flag());
         solution.inferred = solving::infer(&run)?;
+        run.evaluation.cancel_by(None);
+        interrupted = session.world.interrupted();
     }
+    solving::draw_curves(&experiments, &mut solution, &validation);
     session.print(&solution.text());
     write(session, &folder, &solution, run.seconds)?;
     if let Some(why) = checkpoint.broken() {
@@ -288,15 +306,13 @@ pub(super) fn write(
     .map(|(name, text)| (name.to_owned(), text))
     .into();
     files.extend(solution.fit_figures().into_iter().map(|(name, figure)| (name, figure.svg())));
-    let bands = !solution.inferred.bands.is_empty();
-    for (name, text) in [
-        ("bands.csv", bands.then(|| solution.inferred.bands_csv())),
-        ("profiles.csv", solution.profiles.is_some().then(|| solution.profiles_csv())),
-    ] {
-        match text {
-            Some(text) => files.push((name.to_owned(), text)),
-            None => discard(session, &folder.join(name)),
-        }
+    files
+        .extend(solution.inferred.tables().into_iter().map(|(name, text)| (name.to_owned(), text)));
+    if solution.profiles.is_some() {
+        files.push(("profiles.csv".to_owned(), solution.profiles_csv()));
+    }
+    for name in OPTIONAL.iter().filter(|name| !files.iter().any(|(own, _)| own == *name)) {
+        discard(session, &folder.join(name));
     }
     // What can be written is: one file that is too large must not take the others with it.
     let (mut missing, mut why) = (Vec::new(), None);

@@ -3,6 +3,8 @@
 use super::*;
 use crate::script::world::MemoryWorld;
 
+mod inference;
+
 const MODEL: &str = "model Tank
   parameter Real k(unit = \"1/s\") = 1;
   parameter Real area = 1;

@@ -21,19 +21,26 @@
 //! References: [Shampine & Reichelt 1997](crate::bibliography#shampine-reichelt-1997);
 //! [Brenan, Campbell & Petzold 1996](crate::bibliography#brenan-campbell-petzold-1996).
 
+mod sensitivities;
+
 use super::{Integrator, Problem};
 use crate::registry::Entry;
 use crate::sim::linear::Factorization;
 use crate::sim::norm::{set_weights, weighted_rms};
-use crate::sim::{Pattern, SimErrorKind};
+use crate::sim::{DaeSystem, Pattern, SimErrorKind};
 
 pub(in crate::sim) const ENTRY: Entry<dyn Integrator> = Entry {
     name: "dassl",
     aliases: &["bdf", "ida", "cvode", "lsodar"],
     summary: "variable-order, variable-step BDF, orders 1 to 5 (gapilib's own; not the code DASSL)",
     reference: "shampine-reichelt-1997",
-    make: |_| Ok(Box::new(Bdf::default())),
+    make: |_| Ok(new()),
 };
+
+/// The method without workspace yet.
+pub(in crate::sim) fn new() -> Box<dyn Integrator> {
+    Box::new(Bdf::default())
+}
 
 const MAX_ORDER: usize = 5;
 const KAPPA: [f64; 6] = [0.0, -0.1850, -1.0 / 9.0, -0.0823, -0.0415, 0.0];
@@ -62,6 +69,8 @@ fn error_constant(order: usize) -> f64 {
 #[derive(Default)]
 struct Bdf {
     n_differential: usize,
+    /// Length of y; behind it all vectors hold its derivatives along directions, n for each.
+    n: usize,
     t: f64,
     /// Step length and order of the differences, also of the last step until the next begins.
     h: f64,
@@ -83,6 +92,9 @@ struct Bdf {
     delta: Vec<f64>,
     /// Of the tested unknowns.
     weights: Vec<f64>,
+    /// Of their derivatives, and the magnitudes of the directions.
+    direction_weights: Vec<f64>,
+    magnitudes: Vec<f64>,
     iteration: IterationMatrix,
     /// How fast the corrector converged lately, and after how many iterations.
     rate: f64,
@@ -216,7 +228,7 @@ impl Bdf {
         }
         let order = self.order;
         let gain = |error: f64, order: usize| error.powf(-1.0 / (order as f64 + 1.0));
-        let norm = |difference: usize| weighted_rms(&self.differences[difference], &self.weights);
+        let norm = |difference: usize| self.norm(&self.differences[difference], self.weights.len());
         let mut best = (gain(self.error, order), order);
         if order > 1 {
             let lower = gain(error_constant(order - 1) * norm(order), order - 1);
@@ -273,19 +285,20 @@ impl Bdf {
     ) -> Result<Corrected, SimErrorKind> {
         self.y.copy_from_slice(&self.predicted);
         self.correction.fill(0.0);
+        let n = self.n;
         let mut last = f64::INFINITY;
         for iteration in 1..=if full { MAX_FULL_ITERATIONS } else { MAX_ITERATIONS } {
             if full && iteration > 1 {
-                self.iteration.evaluate(problem, t_new, &self.y)?;
+                self.iteration.evaluate(problem, t_new, &self.y[..n])?;
                 self.iteration.factorize(problem, c)?;
             }
-            problem.rhs(t_new, &self.y, &mut self.rhs)?;
-            self.delta.copy_from_slice(&self.rhs);
+            problem.rhs(t_new, &self.y[..n], &mut self.rhs[..n])?;
+            self.delta[..n].copy_from_slice(&self.rhs[..n]);
             let known = self.psi.iter().zip(&self.correction).take(self.n_differential);
             for (delta, (psi, correction)) in self.delta.iter_mut().zip(known) {
                 *delta = c * *delta - psi - correction;
             }
-            self.iteration.solve(problem.nominal, &mut self.delta);
+            self.iteration.solve(problem.nominal, &mut self.delta[..n]);
             let norm = weighted_rms(&self.delta, &self.weights);
             if !norm.is_finite() || (norm > 2.0 * last && norm > ROUNDING && !full) {
                 return Ok(Corrected::Slow);
@@ -293,8 +306,9 @@ impl Bdf {
             if iteration > 1 {
                 self.rate = (norm / last).max(0.3 * self.rate);
             }
-            self.y.iter_mut().zip(&self.delta).for_each(|(y, delta)| *y += delta);
-            self.correction.iter_mut().zip(&self.delta).for_each(|(d, delta)| *d += delta);
+            let delta = &self.delta[..n];
+            self.y.iter_mut().zip(delta).for_each(|(y, delta)| *y += delta);
+            self.correction.iter_mut().zip(delta).for_each(|(d, delta)| *d += delta);
             // With an old Jacobian a small first step tells nothing about stiff and algebraic
             // equations.
             let is_trusted = iteration > 1 || self.iteration.is_current;
@@ -324,7 +338,7 @@ impl Bdf {
         }
         loop {
             if !self.iteration.is_evaluated {
-                self.iteration.evaluate(problem, t_new, &self.predicted)?;
+                self.iteration.evaluate(problem, t_new, &self.predicted[..self.n])?;
             }
             if self.iteration.factorized_for != Some(c) {
                 self.iteration.factorize(problem, c)?;
@@ -343,11 +357,42 @@ impl Bdf {
         }
     }
 
+    /// Solves the corrector for y and, where its error is small enough, for its derivatives.
+    fn attempt(
+        &mut self,
+        problem: &mut Problem,
+        t_new: f64,
+        full: bool,
+    ) -> Result<usize, SimErrorKind> {
+        let iterations = self.correct(problem, t_new, full)?;
+        self.error = self.error_of_attempt();
+        if self.error <= 1.0 && self.y.len() > self.n {
+            self.correct_directions(problem, t_new)?;
+            self.error = self.error_with_directions();
+        }
+        Ok(iterations)
+    }
+
     /// The error of the attempt relative to the tolerance.
     fn error_of_attempt(&self) -> f64 {
         let tested = if self.fresh { self.n_differential } else { self.weights.len() };
-        let norm = weighted_rms(&self.correction, &self.weights[..tested]);
-        error_constant(self.order) * norm
+        error_constant(self.order) * weighted_rms(&self.correction, &self.weights[..tested])
+    }
+
+    /// The same with the derivatives along all directions.
+    fn error_with_directions(&self) -> f64 {
+        let tested = if self.fresh { self.n_differential } else { self.weights.len() };
+        error_constant(self.order) * self.norm(&self.correction, tested)
+    }
+
+    /// The norm of a vector of all unknowns, of each direction the first `tested`.
+    fn norm(&self, vector: &[f64], tested: usize) -> f64 {
+        let norm = weighted_rms(vector, &self.weights[..tested]);
+        if vector.len() == self.n {
+            norm
+        } else {
+            norm.max(self.norm_of_directions(vector, tested))
+        }
     }
 
     fn accept(&mut self, t_new: f64) {
@@ -364,7 +409,9 @@ impl Bdf {
         }
         if self.fresh {
             for difference in &mut self.differences[2..4] {
-                difference[self.n_differential..].fill(0.0);
+                for values in difference.chunks_exact_mut(self.n.max(1)) {
+                    values[self.n_differential..].fill(0.0);
+                }
             }
         }
         self.fresh = false;
@@ -401,7 +448,7 @@ impl Bdf {
     /// Begins anew from where it is, with order 1 and the step at hand: what came before does not
     /// tell what comes.
     fn forget(&mut self, problem: &mut Problem) -> Result<(), SimErrorKind> {
-        problem.rhs(self.t, &self.differences[0], &mut self.rhs)?;
+        problem.rhs(self.t, &self.differences[0][..self.n], &mut self.rhs[..self.n])?;
         self.order = 1;
         self.equal_steps = 0;
         self.fresh = true;
@@ -409,7 +456,7 @@ impl Bdf {
         for i in 0..self.n_differential {
             self.differences[1][i] = self.h * self.rhs[i];
         }
-        Ok(())
+        self.start_directions(problem, self.t)
     }
 }
 
@@ -420,11 +467,12 @@ impl Integrator for Bdf {
 
     fn restart(&mut self, problem: &mut Problem, t: f64, y: &[f64]) -> Result<(), SimErrorKind> {
         self.resize(y.len());
+        self.n = problem.nominal.len();
         self.n_differential = problem.system.n_differential();
         self.weights.resize(problem.n_tested(), 0.0);
         self.iteration.prepare(problem);
         self.t = t;
-        problem.rhs(t, y, &mut self.rhs)?;
+        problem.rhs(t, &y[..self.n], &mut self.rhs[..self.n])?;
         self.h = problem.first_step(t, y, &self.rhs);
         self.order = 1;
         self.equal_steps = 0;
@@ -436,13 +484,14 @@ impl Integrator for Bdf {
         for i in 0..self.n_differential {
             self.differences[1][i] = self.h * self.rhs[i];
         }
-        Ok(())
+        self.start_directions(problem, t)
     }
 
     fn step(&mut self, problem: &mut Problem, limit: f64) -> Result<(), SimErrorKind> {
         let smallest = problem.smallest_step(self.t);
         let tolerance = SAFETY * problem.settings.tolerance;
         set_weights(tolerance, &self.differences[0], problem.nominal, &mut self.weights);
+        self.set_direction_weights(problem, tolerance);
         self.adapt(problem);
         let mut failures = 0;
         loop {
@@ -450,11 +499,11 @@ impl Integrator for Bdf {
             let reaches_limit = self.approach(limit);
             let t_new = if reaches_limit { limit } else { self.t + self.h };
             self.predict();
-            let (failure, factor) = match self.correct(problem, t_new, failures >= MOST_FAILURES) {
+            let corrected = self.attempt(problem, t_new, failures >= MOST_FAILURES);
+            let (failure, factor) = match corrected {
                 Ok(iterations) => {
                     let budget = 2.0 * MAX_ITERATIONS as f64 + 1.0;
                     self.safety = 0.9 * budget / (budget - 1.0 + iterations as f64);
-                    self.error = self.error_of_attempt();
                     if self.error <= 1.0 {
                         self.accept(t_new);
                         problem.statistics.steps += 1;

@@ -2,7 +2,7 @@
 
 use super::Problem;
 use crate::sim::linear::Factorization;
-use crate::sim::{Pattern, SimErrorKind};
+use crate::sim::{DaeSystem, Pattern, SimErrorKind};
 
 /// s M − J for a Jacobian that is kept, columns scaled by nominal values.
 #[derive(Default)]

@@ -10,6 +10,7 @@ mod rodas;
 mod rungekutta;
 mod without_unknowns;
 
+use super::sliding::Sliding;
 use super::{DaeSystem, Settings, SimErrorKind, Statistics, TimeBudget};
 use crate::diag::Fault;
 use crate::registry::{self, Entry};
@@ -58,7 +59,7 @@ pub trait Integrator: Send {
 /// What an integrator works on.
 pub struct Problem<'a> {
     /// The system.
-    pub system: &'a mut dyn DaeSystem,
+    pub(super) system: &'a mut Sliding<'a>,
     /// Typical magnitude of every y, positive and finite.
     pub nominal: &'a [f64],
     /// What is asked for.
@@ -74,6 +75,18 @@ impl Problem<'_> {
     fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), SimErrorKind> {
         self.statistics.rhs_evaluations += 1;
         self.system.rhs(t, y, out).map_err(SimErrorKind::Evaluation)?;
+        if out.iter().all(|value| value.is_finite()) {
+            Ok(())
+        } else {
+            Err(SimErrorKind::NotFinite)
+        }
+    }
+
+    /// Evaluates the derivatives of the right-hand side along all directions, y with its own given;
+    /// an error also if one is not finite.
+    fn sensitivity_rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), SimErrorKind> {
+        self.statistics.sensitivity_evaluations += 1;
+        self.system.sensitivity_rhs(t, y, out).map_err(SimErrorKind::Evaluation)?;
         if out.iter().all(|value| value.is_finite()) {
             Ok(())
         } else {

@@ -18,7 +18,7 @@ use super::{Integrator, Problem};
 use crate::registry::Entry;
 use crate::sim::linear::Factorization;
 use crate::sim::norm::{set_weights, weighted_rms};
-use crate::sim::{Pattern, SimErrorKind};
+use crate::sim::{DaeSystem, Pattern, SimErrorKind};
 
 pub(super) const ENTRY: Entry<dyn Integrator> = Entry {
     name: "radau",

@@ -16,8 +16,8 @@
 use super::mass_matrix::ShiftedMatrix;
 use super::{Integrator, Problem};
 use crate::registry::Entry;
-use crate::sim::SimErrorKind;
 use crate::sim::norm::{set_weights, weighted_rms};
+use crate::sim::{DaeSystem, SimErrorKind};
 
 pub(super) const ENTRY: Entry<dyn Integrator> = Entry {
     name: "rodas4",

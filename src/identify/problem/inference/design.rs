@@ -12,12 +12,12 @@
 //! References: [Fedorov 1972](crate::bibliography#fedorov-1972);
 //! [Walter & Pronzato 1997](crate::bibliography#walter-pronzato-1997), chapter 6.
 
-use super::local::Information;
+use super::local::{Information, quantile};
 use super::predictions::{Linear, linear};
-use super::{Curve, Inferred, Local, Reach, Wanted};
+use super::{Curve, Inferred, Local, PRIOR, Reach, Wanted};
 use crate::diag::Fault;
 use crate::fault;
-use crate::identify::problem::{Problem, student_quantile};
+use crate::identify::problem::Problem;
 use crate::identify::table::significant;
 use crate::registry::BAD_OPTION;
 use nalgebra::DMatrix;
@@ -218,7 +218,7 @@ impl<'a> Search<'a> {
 
     /// Relative half-widths with so many points more.
     fn half_widths(&self, information: &Information, added: usize) -> Vec<Option<f64>> {
-        let quantile = student_quantile(self.local.freedom + added);
+        let quantile = quantile(self.local.known, self.local.freedom + added as f64);
         let half = |variance: Option<f64>| variance.map(|variance| quantile * variance.sqrt());
         information.variances().into_iter().map(half).collect()
     }
@@ -354,6 +354,9 @@ impl<'a> Search<'a> {
                 );
             }
             first += points;
+            if own[0].experiment == PRIOR {
+                continue;
+            }
             let x = own.iter().flat_map(|series| &series.x);
             let (low, high) =
                 x.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(*x), b.max(*x)));

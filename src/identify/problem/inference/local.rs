@@ -7,8 +7,8 @@
 //!
 //! Reference: [Walter & Pronzato 1997](crate::bibliography#walter-pronzato-1997), chapters 5 and 6.
 
-use super::super::statistics::{sensitivities, student_quantile};
-use super::super::{Evaluation, Problem};
+use super::super::statistics::distributions::{normal_quantile, student_quantile};
+use super::super::{Evaluation, Problem, Statistics};
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// Singular values of the Jacobian below this fraction of the largest count as zero, however exact
@@ -17,6 +17,8 @@ const RANK: [f64; 2] = [1e-7, 1e-4];
 /// A direction of the parameters counts for a gradient beyond this share of its length: far above
 /// rounding (1e-16 times the condition), far below what a band could show.
 const SHARE: f64 = 1e-6;
+/// The upper end of a 95 % interval as a probability.
+const UPPER: f64 = 0.975;
 /// Residuals below this many times the error of the simulation come from the simulation.
 const FROM_THE_SOLVER: f64 = 100.0;
 
@@ -35,7 +37,9 @@ pub struct Local {
     /// Variance of the weighted residuals: their sum of squares by the degrees of freedom.
     pub variance: f64,
     /// Points less parameters.
-    pub freedom: usize,
+    pub freedom: f64,
+    /// Whether the standard deviations of the measurements are known, so that the variance is 1.
+    pub known: bool,
     /// Half-width of a 95 % interval as a multiple of the standard error.
     pub quantile: f64,
     /// The Fisher information.
@@ -64,31 +68,31 @@ impl Local {
         evaluation: &Evaluation,
         values: &[f64],
     ) -> Result<Local, &'static str> {
-        let scales = evaluation.scales().ok_or("the fitness is not a sum of squares")?.to_vec();
-        let freedom = scales.len().saturating_sub(values.len());
-        if freedom == 0 {
-            return Err("there are not more points than parameters");
-        }
+        evaluation.scales().ok_or("the fitness is not a sum of squares")?;
         let simulated = evaluation.simulate(values);
         let simulated = simulated.map_err(|_| "the best point cannot be simulated")?;
-        let (columns, _) = sensitivities(problem, evaluation, values, &simulated);
-        let jacobian =
-            DMatrix::from_fn(scales.len(), values.len(), |j, k| columns[k][j] * scales[j]);
+        let found = Statistics::at(problem, evaluation, values, &simulated, &[]);
+        if !found.repeated.is_empty() {
+            return Err("two series hold the same numbers");
+        }
+        let Statistics { weights: scales, residuals, freedom, believed, .. } = found;
+        if freedom <= 0.0 {
+            return Err("there are not more points than parameters");
+        }
+        let entry = |j: usize, k: usize| found.jacobian[k][j] * scales[j];
+        let jacobian = DMatrix::from_fn(scales.len(), values.len(), entry);
         if jacobian.iter().any(|entry| !entry.is_finite()) {
             return Err("the simulation fails beside the best point");
         }
-        let measured = problem.series.iter().flat_map(|series| &series.y);
-        let residual = |((m, s), scale): ((&f64, &f64), &f64)| scale * (m - s);
-        let residuals: Vec<f64> = measured.zip(&simulated).zip(&scales).map(residual).collect();
-        let square = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
+        let square = residuals.iter().map(|residual| residual * residual).sum::<f64>();
         let size = scales.iter().zip(&simulated).map(|(w, s)| (w * s).powi(2)).sum::<f64>();
         let floor = (FROM_THE_SOLVER * problem.noise).powi(2) * size;
-        if square(&residuals) <= floor {
+        if !believed && square <= floor {
             return Err(
                 "the residuals are as small as the errors of the simulation, so that nothing is known of the noise",
             );
         }
-        let variance = square(&residuals) / freedom as f64;
+        let variance = if believed { 1.0 } else { square / freedom };
         let gram = jacobian.tr_mul(&jacobian) / variance;
         let information = Information::new(&gram, Local::tolerance(problem.noise));
         Ok(Local {
@@ -99,7 +103,8 @@ impl Local {
             jacobian,
             variance,
             freedom,
-            quantile: student_quantile(freedom),
+            known: believed,
+            quantile: found.factor,
             information,
         })
     }
@@ -119,6 +124,11 @@ impl Local {
         let scale = nearest.map_or(1.0, |(k, _)| self.scales[first + k]);
         self.variance.sqrt() / scale
     }
+}
+
+/// The 97.5 % quantile of the normal distribution where sigma is known, else of Student's.
+pub(super) fn quantile(known: bool, freedom: f64) -> f64 {
+    if known { normal_quantile(UPPER) } else { student_quantile(UPPER, freedom) }
 }
 
 impl Information {

@@ -1,17 +1,30 @@
 //! Inference at the minimum: what follows from the data beyond the estimates.
 //!
-//! Prediction bands about the curves, the next measurement (optimal design of experiments), all
-//! from the Jacobian and the covariance of the estimates. Everything here is a function of the
-//! problem and the best point; nothing changes the fit.
+//! Prediction bands about the curves and the next measurement (optimal design of experiments) from
+//! the Jacobian and the covariance of the estimates, the bootstrap, the posterior distribution.
+//! They are functions of the problem and the best point and do not change the fit. Priors,
+//! constraints and log-normal data do: they are part of the problem that is solved.
 
+mod adjusted;
 mod bands;
+mod bootstrap;
+mod comparison;
+mod constraint;
 mod design;
+mod least_squares;
 mod local;
+mod posterior;
 mod predictions;
+mod prior_data;
 
+pub use adjusted::{Adjustments, Distribution, PRIOR, Prior, adjust};
 pub use bands::{Band, BandPoint};
+pub use bootstrap::{Bootstrap, BootstrapSettings, Bootstrapped, IntervalKind, Resampling};
+pub use comparison::{Compared, Comparison, Likelihood, Nested, compare};
+pub use constraint::Constraint;
 pub use design::{DesignSettings, NextMeasurement, Plan, Proposal};
 pub use local::Local;
+pub use posterior::{Posterior, PosteriorSettings, Sampled, diagnostics};
 pub use predictions::{Curve, Curves, ModelPredictions, Predict, Reach, Wanted};
 
 use super::Run;
@@ -30,17 +43,39 @@ pub struct Inference {
     pub band_variables: Vec<String>,
     /// The next measurement, where it is asked for.
     pub design: Option<DesignSettings>,
+    /// The bootstrap, where it is asked for.
+    pub bootstrap: Option<BootstrapSettings>,
+    /// The posterior, where it is asked for.
+    pub posterior: Option<PosteriorSettings>,
+    /// Priors; those with a width are points behind the measured ones.
+    pub priors: Vec<Prior>,
+    /// Constraints, which the simulator checks.
+    pub constraints: Vec<Constraint>,
+    /// Series whose logarithms are compared.
+    pub logarithmic: Vec<usize>,
 }
 
 /// What inference has found.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Inferred {
+    /// The likelihood of the fit, for comparisons; `None` where there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub likelihood: Option<Likelihood>,
     /// Bands about the curves, for each experiment and variable.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bands: Vec<Band>,
     /// The next measurement.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub next_measurement: Option<NextMeasurement>,
+    /// The bootstrap.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bootstrap: Option<Bootstrap>,
+    /// The posterior.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub posterior: Option<Posterior>,
+    /// What must be known about priors and constraints.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub remarks: Vec<String>,
     /// What could not be inferred, and why.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub refusals: Vec<String>,
@@ -54,13 +89,17 @@ pub struct Inferred {
 pub fn infer(run: &Run) -> Result<Inferred, Fault> {
     let wanted = &run.problem.inference;
     let mut found = Inferred::default();
-    let asked = wanted.bands || wanted.design.is_some();
-    let (Some(best), true) = (&run.best, asked) else { return Ok(found) };
+    let Some(best) = &run.best else { return Ok(found) };
+    found.likelihood = comparison::likelihood(run, &best.values);
+    found.remarks.extend(prior_data::at_constraints(&run.problem, &best.values));
+    if wanted.is_empty() {
+        return Ok(found);
+    }
     let local = match Local::at(&run.problem, &run.evaluation, &best.values) {
         Ok(local) => local,
         Err(why) => {
-            if wanted.design.is_some() || !wanted.band_variables.is_empty() {
-                found.refusals.push(format!("There are no bands and no plan: {why}."));
+            if wanted.more_than_bands() {
+                found.refusals.push(format!("Nothing is inferred beyond the estimates: {why}."));
             }
             return Ok(found);
         }
@@ -73,10 +112,53 @@ pub fn infer(run: &Run) -> Result<Inferred, Fault> {
     if let Some(settings) = &wanted.design {
         design::add(&run.problem, settings, &local, &mut found)?;
     }
+    found.remarks.extend(prior_data::compared(&run.problem, &local));
+    if let Some(settings) = &wanted.bootstrap {
+        bootstrap::add(run, settings, &local, &mut found)?;
+    }
+    if let Some(settings) = &wanted.posterior {
+        posterior::add(run, settings, &local, &mut found)?;
+    }
     Ok(found)
 }
 
+impl Inference {
+    fn is_empty(&self) -> bool {
+        !self.bands && self.priors.is_empty() && !self.more_than_bands()
+    }
+
+    /// Whether something was asked for that is not computed anyway.
+    fn more_than_bands(&self) -> bool {
+        !self.band_variables.is_empty()
+            || self.design.is_some()
+            || self.bootstrap.is_some()
+            || self.posterior.is_some()
+    }
+}
+
+/// A table of numbers below names.
+fn table_csv<'a>(names: impl Iterator<Item = &'a str>, rows: &[Vec<f64>]) -> String {
+    let names: Vec<String> = names.map(super::text::quoted).collect();
+    let mut text = names.join(",") + "\n";
+    for row in rows {
+        let cells: Vec<String> = row.iter().map(f64::to_string).collect();
+        text += &(cells.join(",") + "\n");
+    }
+    text
+}
+
 impl Inferred {
+    /// The tables for files: names and contents.
+    pub fn tables(&self) -> Vec<(&'static str, String)> {
+        let mut tables = Vec::new();
+        if !self.bands.is_empty() {
+            tables.push(("bands.csv", self.bands_csv()));
+        }
+        tables.extend(self.bootstrap.as_ref().map(|found| ("bootstrap.csv", found.csv())));
+        tables.extend(self.posterior.as_ref().map(|found| ("posterior.csv", found.csv())));
+        tables
+    }
+
     /// The sentences of the report, with an empty line before each group.
     pub fn text(&self) -> String {
         let mut text = String::new();
@@ -92,6 +174,13 @@ impl Inferred {
         }
         let bands: Vec<String> = self.bands.iter().filter_map(Band::sentence).collect();
         group("", &bands);
+        if let Some(bootstrap) = &self.bootstrap {
+            group("  Bootstrap\n", &bootstrap.sentences());
+        }
+        if let Some(posterior) = &self.posterior {
+            group("  Posterior\n", &posterior.sentences());
+        }
+        group("", &self.remarks);
         group("", &self.refusals);
         text
     }

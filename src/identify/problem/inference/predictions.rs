@@ -90,8 +90,31 @@ pub(super) fn linear(
         std::iter::once(values.to_vec()).chain(ends.iter().cloned()).collect();
     let mut curves = predict.curves(&around, wanted)?;
     let points = curves.curves.iter().map(|curve| curve.points.len()).sum();
-    let linear = differentiate(curves.simulator.as_mut(), values, &ends, points);
+    let mut linear = differentiate(curves.simulator.as_mut(), values, &ends, points);
+    if let Ok(linear) = &mut linear {
+        as_series(problem, &mut curves.curves, linear);
+    }
     Ok((curves, linear))
+}
+
+/// Curves of measured series are named as these, and log-normal ones are those of the logarithms.
+fn as_series(problem: &Problem, curves: &mut [Curve], linear: &mut Linear) {
+    let mut first = 0;
+    for curve in curves {
+        let own = first..first + curve.points.len();
+        first = own.end;
+        let Some(series) = curve.series else { continue };
+        let measured = &problem.series[series];
+        curve.y = [measured.y_name.clone(), measured.y_unit.clone()];
+        if !problem.inference.logarithmic.contains(&series) {
+            continue;
+        }
+        for place in own {
+            let value = linear.values[place];
+            linear.gradients[place].iter_mut().for_each(|gradient| *gradient /= value);
+            linear.values[place] = value.ln();
+        }
+    }
 }
 
 /// Below and above every parameter, within the ranges: the step that balances the error of a

@@ -4,7 +4,7 @@ use super::*;
 use crate::ga::optimizer::METHODS;
 use crate::identify::fitness::FITNESSES;
 use crate::identify::problem::{
-    Failed, Free, Problem, Series, Simulate, Statistics, Stop, student_quantile,
+    Failed, Free, Problem, Series, Sigma, Simulate, Statistics, Stop, distributions,
 };
 use crate::registry::{self, Options};
 
@@ -56,6 +56,11 @@ impl Predict for Formulas {
     }
 }
 
+/// The 97.5 % quantile of Student's distribution.
+pub(super) fn student_quantile(freedom: usize) -> f64 {
+    distributions::student_quantile(0.975, freedom as f64)
+}
+
 /// Noise of mean square near 1, always the same.
 pub(super) fn noise(n: usize) -> Vec<f64> {
     let mut rng = crate::ga::Mrg32k3a::new(&[12345.0; 6]).unwrap();
@@ -76,6 +81,10 @@ pub(super) fn problem(function: Function, x: &[f64], y: &[f64], ranges: &[[f64; 
         x: x.to_vec(),
         y: y.to_vec(),
         weight: 1.0,
+        sigma: Sigma::Unknown,
+        column: "y".into(),
+        rows: Vec::new(),
+        missing: Vec::new(),
     };
     let sse = registry::find("fitness", FITNESSES, "sse").unwrap();
     let entry = registry::find("method", METHODS, "levenberg_marquardt").unwrap();
@@ -293,4 +302,110 @@ fn without_noise_nothing_is_planned() {
     let found = infer(&finished(problem)).unwrap();
     assert!(found.next_measurement.is_none());
     assert!(found.refusals[0].contains("as small as the errors of the simulation"));
+}
+
+/// With known standard deviations and normal priors the estimate and its covariance are those of
+/// (XᵀX/σ² + Λ)⁻¹.
+#[test]
+fn normal_priors_of_a_straight_line_are_conjugate() {
+    let x: Vec<f64> = (0..6).map(f64::from).collect();
+    let y: Vec<f64> = x.iter().zip(noise(6)).map(|(x, e)| 1.0 + 0.5 * x + 0.2 * e).collect();
+    let mut problem = problem(line, &x, &y, &[[-10.0, 10.0], [-10.0, 10.0]]);
+    problem.series[0].sigma = Sigma::Given(vec![0.2; 6]);
+    problem.objectives[0].0 = "sum_of_squares".into();
+    let prior =
+        |parameter, mean, sd| Prior { parameter, distribution: Distribution::Normal { mean, sd } };
+    let priors = vec![prior(0, 2.0, 0.1), prior(1, 0.3, 1e-3)];
+    adjust(&mut problem, Adjustments { priors, ..Adjustments::default() }).unwrap();
+    let run = finished(problem);
+    let (n, sx, sxx): (f64, f64, f64) = (6.0, 15.0, 55.0);
+    let (sy, sxy): (f64, f64) = (y.iter().sum(), x.iter().zip(&y).map(|(x, y)| x * y).sum());
+    let [a, b, d] = [25.0 * n + 100.0, 25.0 * sx, 25.0 * sxx + 1e6];
+    let [u, v] = [25.0 * sy + 100.0 * 2.0, 25.0 * sxy + 1e6 * 0.3];
+    let determinant = a * d - b * b;
+    let expected = [(d * u - b * v) / determinant, (a * v - b * u) / determinant];
+    let best = &run.best.as_ref().unwrap().values;
+    for (found, expected) in best.iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-7, "{found} {expected}");
+    }
+    let local = Local::at(&run.problem, &run.evaluation, best).unwrap();
+    let variances = local.information.variances();
+    assert!((variances[0].unwrap() / (d / determinant) - 1.0).abs() < 1e-6);
+    assert!((variances[1].unwrap() / (a / determinant) - 1.0).abs() < 1e-6);
+    let found = infer(&run).unwrap();
+    let remarks = &found.remarks;
+    let begins = |k: usize, text: &str| remarks[k].starts_with(text);
+    assert!(begins(0, "The data contradict the prior of p0: the estimate lies 3."), "{remarks:?}");
+    assert!(begins(1, "What is known of p1 comes from its prior"), "{remarks:?}");
+    assert_eq!(remarks.len(), 2);
+    let solution = crate::identify::problem::Solution::of(&run, "", Vec::new()).unwrap();
+    assert_eq!(solution.series.len(), 1, "a prior is not data");
+}
+
+#[test]
+fn priors_need_known_deviations_and_a_width() {
+    let build = |distribution, known| {
+        let mut problem = problem(line, &[0.0, 1.0], &[0.0, 1.0], &[[-1.0, 1.0], [0.1, 1.0]]);
+        problem.objectives[0].0 = "sum_of_squares".into();
+        if known {
+            problem.series[0].sigma = Sigma::Given(vec![1.0; 2]);
+        }
+        let priors = vec![Prior { parameter: 0, distribution }];
+        let added = Adjustments { priors, ..Adjustments::default() };
+        adjust(&mut problem, added).map_err(|fault| fault.message)
+    };
+    let normal = |sd| Distribution::Normal { mean: 0.0, sd };
+    assert!(build(normal(1.0), true).is_ok());
+    assert!(build(normal(1.0), false).unwrap_err().contains("are not known"));
+    assert!(build(normal(0.0), true).unwrap_err().contains("no width"));
+    assert!(build(Distribution::LogNormal { median: 1.0, factor: 1.0 }, true).is_err());
+    let message = build(Distribution::LogNormal { median: 1.0, factor: 2.0 }, true).unwrap_err();
+    assert!(message.contains("range begins at -1"), "{message}");
+}
+
+#[test]
+fn log_normal_data_are_fitted_by_their_logarithms() {
+    let growth: Function = |p, x| p[0] * (p[1] * x).exp();
+    let x: Vec<f64> = (0..10).map(f64::from).collect();
+    let y: Vec<f64> =
+        x.iter().zip(noise(10)).map(|(x, e)| 2.0 * (0.5 * x + 0.2 * e).exp()).collect();
+    let mut problem = problem(growth, &x, &y, &[[0.1, 10.0], [-2.0, 2.0]]);
+    let added = Adjustments { logarithmic: vec![0], ..Adjustments::default() };
+    adjust(&mut problem, added).unwrap();
+    let run = finished(problem);
+    let (mean_x, mean_y) = (4.5, y.iter().map(|y| y.ln()).sum::<f64>() / 10.0);
+    let sxy: f64 = x.iter().zip(&y).map(|(x, y)| (x - mean_x) * y.ln()).sum();
+    let slope = sxy / 82.5;
+    let best = &run.best.as_ref().unwrap().values;
+    assert!((best[1] - slope).abs() < 1e-6, "{} {slope}", best[1]);
+    assert!((best[0].ln() - (mean_y - slope * mean_x)).abs() < 1e-6);
+}
+
+#[test]
+fn constraints_hold_and_are_named_where_they_are_active() {
+    let x: Vec<f64> = (0..10).map(f64::from).collect();
+    let y: Vec<f64> = x.iter().zip(noise(10)).map(|(x, e)| 3.0 + 0.5 * x + 0.1 * e).collect();
+    let solved = |text: &str| {
+        let mut problem = problem(line, &x, &y, &[[0.0, 10.0], [0.0, 10.0]]);
+        let entry = registry::find("method", METHODS, "genetic").unwrap();
+        problem.method = (entry.make)(&mut Options::default()).unwrap();
+        problem.polish = true;
+        let names = ["p0".to_owned(), "p1".to_owned()];
+        let constraints = vec![Constraint::new(text, &names).unwrap()];
+        adjust(&mut problem, Adjustments { constraints, ..Adjustments::default() }).unwrap();
+        let run = finished(problem);
+        (run.best.as_ref().unwrap().values.clone(), infer(&run).unwrap())
+    };
+    let (free, found) = solved("p1 < p0");
+    assert!((free[0] - 3.0).abs() < 0.2 && found.remarks.is_empty(), "{free:?}");
+    let (bound, found) = solved("p0 <= p1");
+    assert!(bound[0] <= bound[1]);
+    // On the limit the best is p (1 + x): p = Σ (1 + x) y / Σ (1 + x)².
+    let up: f64 = x.iter().zip(&y).map(|(x, y)| (1.0 + x) * y).sum();
+    let expected = up / x.iter().map(|x| (1.0 + x) * (1.0 + x)).sum::<f64>();
+    assert!(
+        (bound[0] - expected).abs() < 0.05 && (bound[1] - expected).abs() < 0.05,
+        "{bound:?} {expected}"
+    );
+    assert!(found.remarks[0].contains("`p0 <= p1`"), "{:?}", found.remarks);
 }

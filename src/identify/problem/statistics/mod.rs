@@ -20,7 +20,7 @@ use super::inseparable::{self, Form, Inseparable, Sensitivities};
 use super::{ErrorModel, Evaluation, Problem, Series};
 use crate::identify::{Uncertainty, uncertainty_given};
 use distributions::normal_quantile;
-pub use distributions::student_quantile;
+pub(super) use distributions::student_quantile;
 
 /// A singular value this far below the largest is none, however exact the simulation is, and
 /// however inexact.

@@ -1,0 +1,45 @@
+//! `gapi identify a.toml b.toml`: solves several problems of the same data and compares the models.
+
+use super::args::{Global, IdentifyArgs};
+use super::identify::{Ended, solve_one};
+use super::terminal;
+use crate::identify::problem::Solution;
+use crate::identify::problem::inference::compare;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Solves every problem into a folder of its name, and compares.
+pub(super) fn identify_all(arguments: &IdentifyArgs, global: &Global) -> ExitCode {
+    let problems: Vec<&Path> = std::iter::once(arguments.problem.as_path())
+        .chain(arguments.others.iter().map(PathBuf::as_path))
+        .collect();
+    let name =
+        |problem: &Path| problem.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let names: Vec<String> = problems.iter().map(|problem| name(problem)).collect();
+    if let Some(twice) = (1..names.len()).find(|&k| names[..k].contains(&names[k])) {
+        terminal::eprint(&format!(
+            "error: two of the problems are called `{}`, and so would be their folders\n",
+            names[twice]
+        ));
+        return ExitCode::from(2);
+    }
+    let mut solutions: Vec<Solution> = Vec::new();
+    for (problem, name) in problems.iter().zip(&names) {
+        match solve_one(arguments, global, problem, Path::new(name)) {
+            Ended::Solved(solution) => solutions.push(*solution),
+            Ended::Not(code) => return code,
+        }
+    }
+    let named: Vec<(String, &Solution)> = names.into_iter().zip(&solutions).collect();
+    match compare(&named) {
+        Ok(comparison) => {
+            terminal::print(&comparison.text());
+            ExitCode::SUCCESS
+        }
+        Err(fault) => {
+            let help = fault.helps.first().map_or(String::new(), |help| format!("help: {help}\n"));
+            terminal::eprint(&format!("error: {}\n{help}", fault.message));
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,267 @@
+//! A problem with priors, constraints and data that are fitted by their logarithms.
+//!
+//! Everything is brought into the form of least squares, so that every method, every statistic and
+//! the profiles take part: a prior is one more point, measured at its mean with its standard
+//! deviation (the maximum a posteriori estimate), log-normal data are compared by their
+//! logarithms, and a point that violates a constraint is refused before it is simulated.
+
+use super::Constraint;
+use crate::bail;
+use crate::diag::Fault;
+use crate::fault;
+use crate::identify::problem::{ErrorModel, Failed, FailureKind, Problem, Series, Sigma, Simulate};
+use crate::registry::BAD_OPTION;
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// The experiment to which the points of priors belong.
+pub const PRIOR: &str = "(prior)";
+
+/// What is known of a parameter without the data.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Distribution {
+    /// Normal.
+    Normal {
+        /// Mean.
+        mean: f64,
+        /// Standard deviation.
+        sd: f64,
+    },
+    /// The logarithm is normal.
+    LogNormal {
+        /// Median.
+        median: f64,
+        /// Exponential of the standard deviation of the logarithm: two thirds lie within the
+        /// median divided and multiplied by it.
+        factor: f64,
+    },
+    /// Uniform over the range, whatever the scale of the search.
+    Uniform,
+}
+
+/// The prior of a parameter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prior {
+    /// The place of the parameter.
+    pub parameter: usize,
+    /// Its distribution.
+    pub distribution: Distribution,
+}
+
+/// What is added to a problem.
+#[derive(Debug, Clone, Default)]
+pub struct Adjustments {
+    /// Priors.
+    pub priors: Vec<Prior>,
+    /// Constraints between parameters.
+    pub constraints: Vec<Constraint>,
+    /// Series whose data are log-normal.
+    pub logarithmic: Vec<usize>,
+}
+
+impl Prior {
+    /// What the point of this prior is compared with, the standard deviation, and whether it is
+    /// the logarithm that counts; `None` for a uniform one.
+    pub fn point(&self) -> Option<(f64, f64, bool)> {
+        match self.distribution {
+            Distribution::Normal { mean, sd } => Some((mean, sd, false)),
+            Distribution::LogNormal { median, factor } => Some((median.ln(), factor.ln(), true)),
+            Distribution::Uniform => None,
+        }
+    }
+}
+
+/// Adds priors, constraints and logarithms to a problem.
+///
+/// # Errors
+///
+/// Priors without known standard deviations or of impossible numbers, measured values that have
+/// no logarithm.
+pub fn adjust(problem: &mut Problem, added: Adjustments) -> Result<(), Fault> {
+    let points = problem.n_points();
+    let logarithmic = logarithms(problem, &added.logarithmic)?;
+    let weighed: Vec<Prior> =
+        added.priors.iter().copied().filter(|prior| prior.point().is_some()).collect();
+    if !weighed.is_empty() && ErrorModel::of(problem) != ErrorModel::Known {
+        bail!(
+            BAD_OPTION,
+            "a prior must be weighed against the data, but their standard deviations are not known";
+            help: "give every output its `sigma`"
+        );
+    }
+    if !weighed.is_empty() && problem.objectives[0].0 != "sum_of_squares" {
+        bail!(BAD_OPTION, "`{}` cannot be weighed against a prior", problem.objectives[0].0; help: "minimise `sum_of_squares`");
+    }
+    for prior in &weighed {
+        problem.series.push(pseudo_series(problem, prior)?);
+    }
+    problem.inference.priors = added.priors;
+    problem.inference.logarithmic = added.logarithmic;
+    problem.inference.constraints.clone_from(&added.constraints);
+    if weighed.is_empty() && added.constraints.is_empty() && logarithmic.is_empty() {
+        return Ok(());
+    }
+    let shared =
+        Arc::new(Shared { points, logarithmic, priors: weighed, constraints: added.constraints });
+    let refuse: Box<dyn Fn() -> Result<Box<dyn Simulate>, Fault> + Send + Sync> =
+        Box::new(|| Err(fault!(BAD_OPTION, "there is no simulator")));
+    let inner = std::mem::replace(&mut problem.simulator, refuse);
+    problem.simulator = Box::new(move || {
+        Ok(Box::new(Adjusted { inner: inner()?, shared: Arc::clone(&shared) }) as Box<dyn Simulate>)
+    });
+    Ok(())
+}
+
+/// The measured values of these series become logarithms; their points in the row of all.
+fn logarithms(problem: &mut Problem, series: &[usize]) -> Result<Vec<Range<usize>>, Fault> {
+    let mut ranges = Vec::new();
+    let mut first = 0;
+    for (k, own) in problem.series.iter_mut().enumerate() {
+        let range = first..first + own.x.len();
+        first = range.end;
+        if !series.contains(&k) {
+            continue;
+        }
+        if let Some(place) = own.y.iter().position(|y| *y <= 0.0) {
+            bail!(
+                BAD_OPTION,
+                "`{}` is log-normal, but {} was measured at {} = {}", own.y_name, own.y[place], own.x_name, own.x[place];
+                help: "leave such points out, or use a normal error"
+            );
+        }
+        if matches!(own.sigma, Sigma::Formula(_)) {
+            bail!(BAD_OPTION, "`{}` is log-normal, and its sigma is a formula", own.y_name; help: "give the standard deviation of the logarithm as a number");
+        }
+        own.y.iter_mut().for_each(|y| *y = y.ln());
+        own.y_name = format!("ln({})", own.y_name);
+        own.y_unit = String::new();
+        ranges.push(range);
+    }
+    Ok(ranges)
+}
+
+/// A prior as a measured point.
+fn pseudo_series(problem: &Problem, prior: &Prior) -> Result<Series, Fault> {
+    let name = &problem.parameters[prior.parameter].name;
+    let point =
+        prior.point().filter(|(mean, sd, _)| mean.is_finite() && sd.is_finite() && *sd > 0.0);
+    let Some((mean, sd, logarithm)) = point else {
+        bail!(BAD_OPTION, "the prior of `{name}` has no width or no centre"; help: "write `prior = {{ mean = 1, sd = 0.1 }}` or `prior = {{ median = 1, factor = 1.5 }}`, the factor above 1")
+    };
+    if logarithm && problem.parameters[prior.parameter].min <= 0.0 {
+        bail!(BAD_OPTION, "the prior of `{name}` is log-normal, but its range begins at {}", problem.parameters[prior.parameter].min; help: "give a positive minimum");
+    }
+    Ok(Series {
+        experiment: PRIOR.to_owned(),
+        y_name: if logarithm { format!("ln({name})") } else { name.clone() },
+        y_unit: String::new(),
+        x_name: String::new(),
+        x_unit: String::new(),
+        file: String::new(),
+        x: vec![0.0],
+        y: vec![mean],
+        weight: 1.0,
+        sigma: Sigma::Given(vec![sd]),
+        column: String::new(),
+        rows: Vec::new(),
+        missing: Vec::new(),
+    })
+}
+
+struct Shared {
+    /// Points that the model simulates.
+    points: usize,
+    logarithmic: Vec<Range<usize>>,
+    priors: Vec<Prior>,
+    constraints: Vec<Constraint>,
+}
+
+/// A simulator with priors behind its points.
+struct Adjusted {
+    inner: Box<dyn Simulate>,
+    shared: Arc<Shared>,
+}
+
+impl Shared {
+    /// Refuses values that violate a constraint, the nearer to it the better.
+    fn check(&self, parameters: &[f64]) -> Result<(), Failed> {
+        for constraint in &self.constraints {
+            let violation = constraint.violation(parameters);
+            if violation > 0.0 {
+                return Err(Failed {
+                    kind: FailureKind::Model,
+                    cause: format!("the constraint `{}` does not hold", constraint.text),
+                    progress: 0.5 / (1.0 + violation),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn finish(&self, parameters: &[f64], out: &mut [f64]) -> Result<(), Failed> {
+        for range in &self.logarithmic {
+            for value in &mut out[range.clone()] {
+                if *value <= 0.0 {
+                    return Err(Failed {
+                        kind: FailureKind::Points,
+                        cause: "a simulated value of log-normal data is not positive".to_owned(),
+                        progress: 1.0,
+                    });
+                }
+                *value = value.ln();
+            }
+        }
+        for (value, prior) in out[self.points..].iter_mut().zip(&self.priors) {
+            let own = parameters[prior.parameter];
+            *value = if matches!(prior.distribution, Distribution::LogNormal { .. }) {
+                own.ln()
+            } else {
+                own
+            };
+        }
+        Ok(())
+    }
+}
+
+impl Simulate for Adjusted {
+    fn simulate(&mut self, parameters: &[f64], out: &mut [f64]) -> Result<(), Failed> {
+        self.shared.check(parameters)?;
+        self.inner.simulate(parameters, &mut out[..self.shared.points])?;
+        self.shared.finish(parameters, out)
+    }
+
+    fn sensitivities(
+        &mut self,
+        parameters: &[f64],
+        out: &mut [f64],
+        derivatives: &mut [f64],
+    ) -> Result<bool, Failed> {
+        self.shared.check(parameters)?;
+        let (n, points) = (parameters.len(), self.shared.points);
+        let (own, rest) = derivatives.split_at_mut(points * n);
+        if !self.inner.sensitivities(parameters, &mut out[..points], own)? {
+            return Ok(false);
+        }
+        for range in &self.shared.logarithmic {
+            for place in range.clone() {
+                own[place * n..(place + 1) * n].iter_mut().for_each(|d| *d /= out[place]);
+            }
+        }
+        for (row, prior) in rest.chunks_exact_mut(n).zip(&self.shared.priors) {
+            row.fill(0.0);
+            let logarithm = matches!(prior.distribution, Distribution::LogNormal { .. });
+            row[prior.parameter] = if logarithm { 1.0 / parameters[prior.parameter] } else { 1.0 };
+        }
+        self.shared.finish(parameters, out)?;
+        Ok(true)
+    }
+
+    fn scale_tolerance(&mut self, factor: f64) {
+        self.inner.scale_tolerance(factor);
+    }
+
+    fn cancel_by(&mut self, flag: Option<Arc<AtomicBool>>) {
+        self.inner.cancel_by(flag);
+    }
+}

@@ -1,0 +1,321 @@
+//! Comparison of models that were fitted to the same data: Akaike's and Schwarz' criteria, Akaike
+//! weights, and the likelihood ratio where one model is a special case of the other.
+//!
+//! ln L is that of normal errors; a common standard deviation that is not given is estimated and
+//! counts as a parameter. AICc = 2k − 2 ln L + 2k(k+1)/(n−k−1), BIC = k ln n − 2 ln L, and twice the
+//! difference of ln L of nested models is distributed as χ² with the difference of k.
+//!
+//! Reference: [Burnham & Anderson 2002](crate::bibliography#burnham-anderson-2002).
+
+use super::PRIOR;
+use crate::bail;
+use crate::diag::Fault;
+use crate::fault;
+use crate::identify::problem::{ErrorModel, Run, Solution};
+use crate::identify::table::significant;
+use crate::registry::BAD_OPTION;
+use serde::{Deserialize, Serialize};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+use std::f64::consts::TAU;
+use std::fmt::Write;
+
+/// A model of at least this Akaike weight is called the better one (evidence ratio 19 to 1).
+const DECIDED: f64 = 0.95;
+/// The larger of two nested models is needed below this probability.
+const SIGNIFICANT: f64 = 0.05;
+/// A larger model whose ln L is lower by more than this has not reached its minimum.
+const NOT_REACHED: f64 = 1e-3;
+
+/// The likelihood of a fit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Likelihood {
+    /// Logarithm of the largest likelihood.
+    pub log: f64,
+    /// Measured points.
+    pub points: usize,
+    /// Estimated quantities: parameters, and the standard deviation where it is not given.
+    pub estimated: usize,
+    /// Whether the standard deviations of the measurements are given.
+    pub known_sigma: bool,
+}
+
+/// The models side by side.
+#[derive(Debug, Clone, Serialize)]
+pub struct Comparison {
+    /// One row for each, in the order given.
+    pub models: Vec<Compared>,
+    /// Likelihood ratio tests of nested pairs.
+    pub nested: Vec<Nested>,
+    /// The judgement.
+    pub sentence: String,
+}
+
+/// One model.
+#[derive(Debug, Clone, Serialize)]
+pub struct Compared {
+    /// Its name.
+    pub name: String,
+    /// Its likelihood.
+    pub likelihood: Likelihood,
+    /// Akaike's criterion, corrected for few points; `None` with too few.
+    pub aicc: Option<f64>,
+    /// Schwarz' criterion.
+    pub bic: f64,
+    /// Akaike weight; `None` with too few points.
+    pub weight: Option<f64>,
+}
+
+/// A pair of nested models.
+#[derive(Debug, Clone, Serialize)]
+pub struct Nested {
+    /// Place of the special case.
+    pub smaller: usize,
+    /// Place of the model that contains it.
+    pub larger: usize,
+    /// Twice the difference of ln L.
+    pub statistic: f64,
+    /// Additional estimated quantities.
+    pub freedom: usize,
+    /// Probability of such a difference if the special case is right; `None` where the larger
+    /// model fits worse, so that its minimum was not reached.
+    pub probability: Option<f64>,
+}
+
+/// The likelihood at the best point; `None` where the fitness is not a sum of squares.
+pub(super) fn likelihood(run: &Run, values: &[f64]) -> Option<Likelihood> {
+    let problem = &run.problem;
+    run.evaluation.scales()?;
+    let simulated = run.evaluation.simulate(values).ok()?;
+    let weights = run.evaluation.error_weights(problem, &simulated);
+    let data = || problem.series.iter().filter(|series| series.experiment != PRIOR);
+    let measured: Vec<f64> = data().flat_map(|series| series.y.iter().copied()).collect();
+    let n = measured.len() as f64;
+    let points = measured.iter().zip(&simulated).zip(&weights);
+    let square: f64 = points.map(|((m, s), w)| (w * (m - s)).powi(2)).sum();
+    let of_weights: f64 = weights[..measured.len()].iter().map(|weight| weight.ln()).sum();
+    let error_model = ErrorModel::of(problem);
+    let mut names: Vec<&str> = data()
+        .filter(|series| series.sigma.is_estimated())
+        .map(|series| series.y_name.as_str())
+        .collect();
+    names.sort_unstable();
+    names.dedup();
+    let (of_residuals, deviations) = match error_model {
+        ErrorModel::OneVariance => (0.5 * n * ((square / n).ln() + 1.0), 1),
+        ErrorModel::Known => (0.5 * square, 0),
+        ErrorModel::Estimated => (0.5 * square, names.len()),
+    };
+    let log = of_weights - of_residuals - 0.5 * n * TAU.ln();
+    let estimated = values.len() + deviations;
+    let known_sigma = error_model == ErrorModel::Known;
+    let found = Likelihood { log, points: measured.len(), estimated, known_sigma };
+    log.is_finite().then_some(found)
+}
+
+/// Compares solutions by name.
+///
+/// # Errors
+///
+/// Solutions of different data or without a likelihood.
+pub fn compare(solutions: &[(String, &Solution)]) -> Result<Comparison, Fault> {
+    let Some((first_name, first)) = solutions.first() else {
+        bail!(BAD_OPTION, "there are no models to compare");
+    };
+    for (name, solution) in &solutions[1..] {
+        if !same_data(first, solution) {
+            bail!(
+                BAD_OPTION,
+                "`{first_name}` and `{name}` are fitted to different data, so that their likelihoods cannot be compared";
+                help: "give both the same experiments, points and outputs"
+            );
+        }
+    }
+    let mut models = Vec::new();
+    for (name, solution) in solutions {
+        let likelihood = solution.inferred.likelihood.ok_or_else(|| {
+            fault!(BAD_OPTION, "`{name}` minimises `{}`, which is not the likelihood of normal errors", solution.fitness_name; help: "minimise `sum_of_squares`")
+        })?;
+        models.push(compared(name, likelihood));
+    }
+    if models.iter().any(|m| m.likelihood.known_sigma != models[0].likelihood.known_sigma) {
+        bail!(
+            BAD_OPTION,
+            "the standard deviations of the measurements are given for some of the models only";
+            help: "give every output the same `sigma` in all problems, or leave it out in all"
+        );
+    }
+    weigh(&mut models);
+    let pairs = (0..models.len()).flat_map(|a| (0..models.len()).map(move |b| (a, b)));
+    let nested: Vec<Nested> = pairs
+        .filter(|&(a, b)| a != b && is_special_case(solutions[a].1, solutions[b].1))
+        .map(|(a, b)| ratio(&models, a, b))
+        .collect();
+    let sentence = sentence(&models, &nested);
+    Ok(Comparison { models, nested, sentence })
+}
+
+fn same_data(a: &Solution, b: &Solution) -> bool {
+    let data = |solution: &Solution| -> Vec<(String, String, Vec<[u64; 2]>)> {
+        let points = |p: &[f64; 3]| [p[0].to_bits(), p[1].to_bits()];
+        let one = |s: &crate::identify::problem::SolvedSeries| {
+            (s.x[0].clone(), s.y[0].clone(), s.points.iter().map(points).collect())
+        };
+        solution.series.iter().map(one).collect()
+    };
+    data(a) == data(b)
+}
+
+fn compared(name: &str, likelihood: Likelihood) -> Compared {
+    let (k, n) = (likelihood.estimated as f64, likelihood.points as f64);
+    let enough = n - k - 1.0 > 0.0;
+    let aicc = 2.0 * k - 2.0 * likelihood.log + 2.0 * k * (k + 1.0) / (n - k - 1.0);
+    Compared {
+        name: name.to_owned(),
+        likelihood,
+        aicc: enough.then_some(aicc),
+        bic: k * n.ln() - 2.0 * likelihood.log,
+        weight: None,
+    }
+}
+
+/// Akaike weights: exp(−Δ/2) by their sum, where all have the criterion.
+fn weigh(models: &mut [Compared]) {
+    let all: Option<Vec<f64>> = models.iter().map(|model| model.aicc).collect();
+    let Some(all) = all else { return };
+    let least = all.iter().copied().fold(f64::INFINITY, f64::min);
+    let shares: Vec<f64> = all.iter().map(|aicc| (-0.5 * (aicc - least)).exp()).collect();
+    let sum: f64 = shares.iter().sum();
+    models.iter_mut().zip(shares).for_each(|(model, share)| model.weight = Some(share / sum));
+}
+
+/// Whether every setting of the smaller problem is one of the larger, with more parameters
+/// estimated there.
+fn is_special_case(smaller: &Solution, larger: &Solution) -> bool {
+    let read = |solution: &Solution| solution.problem.parse::<toml::Table>().ok();
+    let (Some(small), Some(large)) = (read(smaller), read(larger)) else { return false };
+    let same = |key: &str| small.get(key) == large.get(key);
+    if !["model", "files", "experiment", "constraints"].into_iter().all(same)
+        || smaller.parameters.len() >= larger.parameters.len()
+    {
+        return false;
+    }
+    let table = |file: &toml::Table| file.get("parameters").and_then(|p| p.as_table().cloned());
+    let (Some(small), Some(large)) = (table(&small), table(&large)) else { return false };
+    let is_free = |entry: &toml::Value| entry.get("min").is_some();
+    let fits = |(name, entry): (&String, &toml::Value)| match large.get(name) {
+        Some(other) if is_free(other) => match entry.get("fixed").and_then(number) {
+            // A fixed value must lie in the range of the larger model.
+            Some(value) => contains(other, value),
+            None => is_free(entry) && entry.get("prior") == other.get("prior"),
+        },
+        Some(other) => entry == other,
+        None => false,
+    };
+    let known = |(name, entry): (&String, &toml::Value)| is_free(entry) || small.contains_key(name);
+    small.iter().all(fits) && large.iter().all(known)
+}
+
+fn number(value: &toml::Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|value| value as f64))
+}
+
+fn contains(range: &toml::Value, value: f64) -> bool {
+    let end = |name| range.get(name).and_then(number);
+    end("min").zip(end("max")).is_some_and(|(min, max)| (min..=max).contains(&value))
+}
+
+fn ratio(models: &[Compared], smaller: usize, larger: usize) -> Nested {
+    let (a, b) = (models[smaller].likelihood, models[larger].likelihood);
+    let statistic = 2.0 * (b.log - a.log);
+    let freedom = b.estimated - a.estimated;
+    let distribution = ChiSquared::new(freedom as f64).ok();
+    let probability = distribution.map(|own| 1.0 - own.cdf(statistic.max(0.0)));
+    let probability = probability.filter(|_| statistic > -NOT_REACHED);
+    Nested { smaller, larger, statistic, freedom, probability }
+}
+
+fn sentence(models: &[Compared], nested: &[Nested]) -> String {
+    let mut text = judgement(models);
+    for pair in nested {
+        let (small, large) = (&models[pair.smaller].name, &models[pair.larger].name);
+        let said = match pair.probability {
+            None => format!(
+                " {large} contains {small} and yet fits worse: its search has not reached the minimum."
+            ),
+            Some(p) if p < SIGNIFICANT => format!(
+                " {small} is a special case of {large}, and the likelihood ratio rejects it (p = {}).",
+                significant(p, 2)
+            ),
+            Some(p) => format!(
+                " {small} is a special case of {large}, and the likelihood ratio gives no reason for the larger model (p = {}).",
+                significant(p, 2)
+            ),
+        };
+        text += &said;
+    }
+    if nested.is_empty() && models.len() > 1 {
+        text += " No model is a special case of another, so that there is no likelihood ratio.";
+    }
+    text
+}
+
+fn judgement(models: &[Compared]) -> String {
+    let weight = |model: &&Compared| model.weight.unwrap_or(f64::NAN);
+    if models.iter().any(|model| model.weight.is_none()) {
+        return "There are too few points to weigh the models.".to_owned();
+    }
+    let mut order: Vec<&Compared> = models.iter().collect();
+    order.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
+    let best = order[0];
+    if weight(&best) >= DECIDED {
+        return format!(
+            "These data speak for {} (Akaike weight {}).",
+            best.name,
+            significant(weight(&best), 3)
+        );
+    }
+    let named = order.iter().map(|m| format!("{} {}", m.name, significant(weight(m), 2)));
+    format!(
+        "These data do not decide between the models (Akaike weights: {}).",
+        named.collect::<Vec<_>>().join(", ")
+    )
+}
+
+impl Comparison {
+    /// The table and the sentence.
+    pub fn text(&self) -> String {
+        let mut rows = vec![
+            ["model", "points", "estimated", "ln L", "AICc", "BIC", "weight"].map(str::to_owned),
+        ];
+        for model in &self.models {
+            let Likelihood { log, points, estimated, .. } = model.likelihood;
+            let or = |value: Option<f64>, digits| {
+                value.map_or("-".to_owned(), |value| significant(value, digits))
+            };
+            rows.push([
+                model.name.clone(),
+                points.to_string(),
+                estimated.to_string(),
+                significant(log, 6),
+                or(model.aicc, 6),
+                significant(model.bic, 6),
+                or(model.weight, 3),
+            ]);
+        }
+        let width = |k: usize| rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..7).map(width).collect();
+        let mut text = String::from("\n");
+        for row in &rows {
+            let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
+            // Writing into a String cannot fail.
+            _ = writeln!(text, "  {}", cells.collect::<Vec<_>>().join("  ").trim_end());
+        }
+        _ = writeln!(text, "\n  {}", self.sentence);
+        text
+    }
+
+    /// `comparison.json`.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string_pretty(self).unwrap_or_default()
+    }
+}

@@ -1,0 +1,222 @@
+//! Constraints between parameters, such as `a < b` or `a + 2*b <= 10`: inequalities of arithmetic
+//! expressions as in Modelica.
+
+use crate::bail;
+use crate::diag::{Fault, suggest};
+use crate::fault;
+use crate::registry::BAD_OPTION;
+use crate::source::SourceId;
+use crate::syntax::ast::{
+    BinaryOperator, ComponentReference, Expression, ExpressionKind, UnaryOperator,
+};
+use crate::syntax::parse_expression;
+
+/// Values nearer to a constraint than this fraction of its sides are at it.
+const AT_LIMIT: f64 = 1e-3;
+
+/// An inequality that must hold.
+#[derive(Debug, Clone)]
+pub struct Constraint {
+    /// As it is written.
+    pub text: String,
+    smaller: Term,
+    larger: Term,
+}
+
+/// An arithmetic expression of the parameters.
+#[derive(Debug, Clone)]
+enum Term {
+    Number(f64),
+    Parameter(usize),
+    Negative(Box<Term>),
+    Binary(BinaryOperator, Box<Term>, Box<Term>),
+    Function(fn(f64) -> f64, Box<Term>),
+}
+
+/// Functions of one argument.
+const FUNCTIONS: &[(&str, fn(f64) -> f64)] = &[
+    ("abs", f64::abs),
+    ("exp", f64::exp),
+    ("log", f64::ln),
+    ("log10", f64::log10),
+    ("sqrt", f64::sqrt),
+];
+
+impl Constraint {
+    /// Reads an inequality of these parameters.
+    ///
+    /// # Errors
+    ///
+    /// Anything else.
+    pub fn new(text: &str, parameters: &[String]) -> Result<Constraint, Fault> {
+        let read = parse_expression(SourceId::NONE, text);
+        let read = read.map_err(|error| {
+            fault!(BAD_OPTION, "the constraint `{text}` cannot be read: {}", error.message)
+        })?;
+        let ExpressionKind::Binary { operator, left, right } = &read.kind else {
+            return Err(not_an_inequality(text));
+        };
+        let (left, right) = (term(text, left, parameters)?, term(text, right, parameters)?);
+        let (smaller, larger) = match operator {
+            BinaryOperator::Less | BinaryOperator::LessEqual => (left, right),
+            BinaryOperator::Greater | BinaryOperator::GreaterEqual => (right, left),
+            BinaryOperator::Equal => bail!(
+                BAD_OPTION,
+                "the constraint `{text}` is an equation";
+                help: "tie one parameter to the others: `b = {{ tied = \"2*a\" }}`"
+            ),
+            _ => return Err(not_an_inequality(text)),
+        };
+        Ok(Constraint { text: text.to_owned(), smaller, larger })
+    }
+
+    /// By how much it is violated, as a fraction of its sides; 0 where it holds.
+    pub fn violation(&self, parameters: &[f64]) -> f64 {
+        let margin = self.margin(parameters);
+        if margin >= 0.0 {
+            0.0
+        } else if margin.is_nan() {
+            f64::INFINITY
+        } else {
+            -margin
+        }
+    }
+
+    /// Whether these values lie at its limit.
+    pub fn is_active(&self, parameters: &[f64]) -> bool {
+        self.margin(parameters).abs() < AT_LIMIT
+    }
+
+    fn margin(&self, parameters: &[f64]) -> f64 {
+        let (smaller, larger) = (self.smaller.value(parameters), self.larger.value(parameters));
+        let size = smaller.abs() + larger.abs();
+        if size == 0.0 { 0.0 } else { (larger - smaller) / size }
+    }
+}
+
+fn not_an_inequality(text: &str) -> Fault {
+    fault!(BAD_OPTION, "the constraint `{text}` is not an inequality"; help: "write for example \"a < b\" or \"a + b <= 10\"")
+}
+
+fn term(text: &str, expression: &Expression, parameters: &[String]) -> Result<Term, Fault> {
+    let inner =
+        |expression: &Expression| Ok::<_, Fault>(Box::new(term(text, expression, parameters)?));
+    match &expression.kind {
+        ExpressionKind::Real(value) => Ok(Term::Number(*value)),
+        ExpressionKind::Integer(value) => Ok(Term::Number(*value as f64)),
+        ExpressionKind::Reference(reference) => parameter(text, reference, parameters),
+        ExpressionKind::Unary { operator: UnaryOperator::Plus, operand } => {
+            term(text, operand, parameters)
+        }
+        ExpressionKind::Unary { operator: UnaryOperator::Minus, operand } => {
+            Ok(Term::Negative(inner(operand)?))
+        }
+        ExpressionKind::Binary { operator, left, right } if is_arithmetic(*operator) => {
+            Ok(Term::Binary(*operator, inner(left)?, inner(right)?))
+        }
+        ExpressionKind::Call { function, arguments } => {
+            let name = written(function);
+            let known = FUNCTIONS.iter().find(|(own, _)| *own == name);
+            match (known, arguments.positional.as_slice(), arguments.named.as_slice()) {
+                (Some((_, function)), [argument], []) => {
+                    Ok(Term::Function(*function, inner(argument)?))
+                }
+                _ => {
+                    bail!(BAD_OPTION, "the constraint `{text}` calls `{name}`"; help: "use + - * / ^ abs exp log log10 sqrt")
+                }
+            }
+        }
+        // Parentheses are read as a list of one element where they hold more than arithmetic.
+        ExpressionKind::Tuple(list) => match list.as_slice() {
+            [Some(only)] => term(text, only, parameters),
+            _ => Err(not_an_inequality(text)),
+        },
+        _ => {
+            bail!(BAD_OPTION, "the constraint `{text}` holds more than arithmetic"; help: "write one inequality for each")
+        }
+    }
+}
+
+fn is_arithmetic(operator: BinaryOperator) -> bool {
+    use BinaryOperator::{Add, Divide, Multiply, Power, Subtract};
+    matches!(operator, Add | Subtract | Multiply | Divide | Power)
+}
+
+fn written(reference: &ComponentReference) -> String {
+    let parts: Vec<&str> = reference.parts.iter().map(|part| part.name.as_str()).collect();
+    parts.join(".")
+}
+
+fn parameter(
+    text: &str,
+    reference: &ComponentReference,
+    parameters: &[String],
+) -> Result<Term, Fault> {
+    let name = written(reference);
+    let plain = reference.parts.iter().all(|part| part.subscripts.is_empty());
+    match parameters.iter().position(|own| *own == name).filter(|_| plain) {
+        Some(place) => Ok(Term::Parameter(place)),
+        None => Err(fault!(
+            BAD_OPTION,
+            "the constraint `{text}` names `{name}`, which is not an estimated parameter"
+        )
+        .help_if(suggest::did_you_mean(&name, parameters.iter().map(String::as_str)))),
+    }
+}
+
+impl Term {
+    fn value(&self, parameters: &[f64]) -> f64 {
+        match self {
+            Term::Number(value) => *value,
+            Term::Parameter(place) => parameters[*place],
+            Term::Negative(term) => -term.value(parameters),
+            Term::Function(function, term) => function(term.value(parameters)),
+            Term::Binary(operator, left, right) => {
+                let (a, b) = (left.value(parameters), right.value(parameters));
+                match operator {
+                    BinaryOperator::Add => a + b,
+                    BinaryOperator::Subtract => a - b,
+                    BinaryOperator::Multiply => a * b,
+                    BinaryOperator::Divide => a / b,
+                    _ => a.powf(b),
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names() -> Vec<String> {
+        ["a", "b.c"].map(str::to_owned).to_vec()
+    }
+
+    #[test]
+    fn inequalities_hold_or_are_violated_by_a_share() {
+        let read = |text| Constraint::new(text, &names()).unwrap();
+        assert_eq!(read("a < b.c").violation(&[1.0, 2.0]), 0.0);
+        assert!((read("a < b.c").violation(&[3.0, 1.0]) - 0.5).abs() < 1e-15);
+        assert_eq!(read("2*(a + sqrt(b.c)) >= -1").violation(&[1.0, 4.0]), 0.0);
+        assert!(read("log(a) <= b.c^2").violation(&[1e9, 1.0]) > 0.8);
+        assert!(read("log(a) <= 1").violation(&[-1.0, 0.0]).is_infinite(), "no logarithm");
+        assert!(
+            read("a < b.c").is_active(&[1.0, 1.0001]) && !read("a < b.c").is_active(&[1.0, 2.0])
+        );
+    }
+
+    #[test]
+    fn anything_else_is_refused() {
+        let message = |text| Constraint::new(text, &names()).unwrap_err().message;
+        assert!(message("a == b.c").contains("is an equation"));
+        assert!(message("a + b.c").contains("is not an inequality"));
+        assert!(message("a < d").contains("`d`, which is not an estimated parameter"));
+        assert!(message("a < sin(b.c)").contains("calls `sin`"));
+        assert!(message("a < ").contains("cannot be read"));
+        assert!(
+            message("a < b.c < 3").contains("cannot be read")
+                || message("a < b.c < 3").contains("more than")
+        );
+    }
+}

@@ -1,0 +1,56 @@
+//! The objective over the generations.
+
+use super::Section;
+use super::explanations::CONVERGENCE;
+use super::parts::{explained, figure, number, one_panel, series};
+use super::view::View;
+use crate::ga::has_failed;
+use crate::plot::{Axis, Figure, Mark};
+use maud::html;
+
+pub(super) fn section(view: &View) -> Option<Section> {
+    let history = &view.solution.history;
+    if history.len() < 2 {
+        return None;
+    }
+    let best: Vec<f64> = history.iter().map(|generation| generation.best).collect();
+    let mean: Vec<f64> = history.iter().map(|generation| generation.mean).collect();
+    let label = format!(
+        "The objective over {} generations: best so far, best of the generation, and mean",
+        history.len()
+    );
+    let caption = html! {
+        "After " (history.len()) " generations the best so far is " (number(view.solution.fitness, 5)) "."
+    };
+    let content = html! {
+        (figure(&drawing(&best, &mean), &label, &caption))
+        (explained(&CONVERGENCE))
+    };
+    Some(Section { id: "convergence", heading: "Convergence", content, wide: false })
+}
+
+fn drawing(best: &[f64], mean: &[f64]) -> Figure {
+    let numbered = |values: &[f64]| -> Vec<(f64, f64)> {
+        let shown = |value: &f64| if has_failed(*value) { f64::NAN } else { *value };
+        values.iter().enumerate().map(|(k, value)| (k as f64 + 1.0, shown(value))).collect()
+    };
+    let mut so_far = f64::INFINITY;
+    let falling: Vec<f64> = best
+        .iter()
+        .map(|value| {
+            so_far = so_far.min(*value);
+            so_far
+        })
+        .collect();
+    let objective = "objective (smaller is better)";
+    let y = match best.iter().filter(|value| value.is_finite()).all(|value| *value > 0.0) {
+        true => Axis::logarithmic(objective, ""),
+        false => Axis::linear(objective, ""),
+    };
+    let all = vec![
+        series("mean", &numbered(mean), Mark::Thin, 2),
+        series("best of the generation", &numbered(best), Mark::Line, 5),
+        series("best so far", &numbered(&falling), Mark::Line, 1),
+    ];
+    one_panel(Axis::linear("generation", ""), y, 230.0, all)
+}

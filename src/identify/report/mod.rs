@@ -1,0 +1,92 @@
+//! The report page: what a run found, how well it fits, and what the data say about it, as one HTML
+//! file without any request to elsewhere.
+//!
+//! The page has no script. Figures are SVG in colours of the style sheet, so that they follow the
+//! reader's choice of light or dark; tables that are wider than the screen scroll by themselves and
+//! can be reached with the keyboard. A section whose data are missing is left out. Each statistic
+//! is explained in a line with its threshold, and leads to the chapter of the guide on reading
+//! reports, which is part of the page.
+
+mod convergence;
+mod explanations;
+mod fit;
+mod front;
+mod guide;
+mod minima;
+mod pairs;
+mod parts;
+mod profiles;
+mod residuals;
+mod run;
+mod sensitivity;
+mod summary;
+mod table;
+mod traces;
+mod view;
+mod waterfall;
+
+use super::problem::Solution;
+use crate::page::Page;
+use maud::{Markup, html};
+use view::View;
+
+const STYLE: &str = include_str!("style.css");
+
+impl Solution {
+    /// `report.html`.
+    pub fn html(&self) -> String {
+        let view = View::of(self);
+        Page { title: &self.title, style: STYLE, scripts: &[], data: &[], body: body(&view) }
+            .document()
+    }
+}
+
+/// A section of the page: the id that links lead to, its heading, and what stands in it.
+struct Section {
+    id: &'static str,
+    heading: &'static str,
+    content: Markup,
+    /// As wide as the page instead of a column.
+    wide: bool,
+}
+
+fn body(view: &View) -> Markup {
+    let sections: Vec<Section> = [
+        table::section(view),
+        fit::section(view),
+        convergence::section(view),
+        waterfall::section(view),
+        residuals::section(view),
+        minima::section(view),
+        pairs::section(view),
+        profiles::section(view),
+        sensitivity::section(view),
+        front::section(view),
+        traces::section(view),
+        run::section(view),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    html! {
+        a.skip href="#content" { "Skip to the result" }
+        header { (summary::head(view)) }
+        nav aria-label="Sections" {
+            @for section in &sections { a href={ "#" (section.id) } { (section.heading) } }
+            a href="#guide" { "How to read this page" }
+        }
+        main #content {
+            @for section in &sections {
+                section.wide[section.wide] id=(section.id) aria-labelledby={ (section.id) "-heading" } {
+                    h2 id={ (section.id) "-heading" } { (section.heading) }
+                    (section.content)
+                }
+            }
+            section.wide #guide aria-labelledby="guide-heading" {
+                h2 #guide-heading { "How to read this page" }
+                (guide::chapter())
+            }
+        }
+        footer { p { "gapilib " (view.solution.version) } }
+    }
+}

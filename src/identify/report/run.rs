@@ -1,0 +1,96 @@
+//! What the run took, what failed, every generation, and the problem as it was written.
+
+use super::Section;
+use super::parts::{number, scrolling};
+use super::view::View;
+use crate::identify::problem::Solution;
+use maud::{Markup, html};
+
+/// Generations in the table; of a longer run an even choice.
+const ROWS: usize = 200;
+/// Causes of failure that are named.
+const CAUSES: usize = 5;
+
+pub(super) fn section(view: &View) -> Option<Section> {
+    let solution = view.solution;
+    let content = html! {
+        (counts(solution))
+        @if !solution.history.is_empty() {
+            details {
+                summary { "Generations" }
+                (scrolling("Generations", &generations(solution)))
+            }
+        }
+        @if !solution.problem.is_empty() {
+            details {
+                summary { "The problem as it was written" }
+                (scrolling("The problem", &html! { pre { (solution.problem) } }))
+            }
+        }
+    };
+    Some(Section { id: "run", heading: "The run", content, wide: true })
+}
+
+fn counts(solution: &Solution) -> Markup {
+    let failed: u64 = solution.failures.values().sum();
+    let share = 100.0 * failed as f64 / solution.evaluations.max(1) as f64;
+    let mut causes: Vec<(&String, &u64)> = solution.causes.iter().collect();
+    causes.sort_by(|a, b| b.1.cmp(a.1));
+    let seed = solution.seed.map_or_else(
+        || "-".to_owned(),
+        |seed| seed.map(|entry| entry.to_string()).join(" "),
+    );
+    html! {
+        dl.facts {
+            div { dt { "Generations" } dd { (solution.generations) } }
+            div { dt { "Individuals" } dd { (solution.evaluations) ", " (failed) " failed (" (number(share, 2)) "\u{a0}%)" } }
+            div { dt { "Simulations" } dd { (solution.simulations) " for the search, " (solution.simulations_for_statistics) " for the standard errors"
+                @if let Some(profiles) = &solution.profiles { ", " (profiles.simulations) " for the profiles" } } }
+            div { dt { "Seed" } dd { (seed) } }
+        }
+        @if !causes.is_empty() {
+            p { "Failures:" }
+            ul { @for (cause, count) in causes.iter().take(CAUSES) { li { (count) " × " (cause) } } }
+        }
+        @if !solution.changes.is_empty() {
+            p { "Changed during the run:" }
+            ul {
+                @for (generation, setting, value) in &solution.changes {
+                    li { (setting) " = " (value) " after generation " (generation) }
+                }
+            }
+        }
+    }
+}
+
+fn generations(solution: &Solution) -> Markup {
+    let every = solution.history.len().div_ceil(ROWS).max(1);
+    let last = solution.history.len().saturating_sub(1);
+    let shown = solution.history.iter().enumerate().filter(|(k, _)| k % every == 0 || *k == last);
+    html! {
+        table {
+            thead {
+                tr {
+                    @for heading in ["Generation", "Best", "Mean", "Worst", "Failures"] {
+                        th scope="col" { (heading) }
+                    }
+                    @for parameter in &solution.parameters { th scope="col" { (parameter.name) } }
+                }
+            }
+            tbody {
+                @for (k, generation) in shown {
+                    tr {
+                        th scope="row" { (k + 1) }
+                        td { (number(generation.best, 6)) }
+                        td { (number(generation.mean, 4)) }
+                        td { (number(generation.worst, 4)) }
+                        td { (generation.failures) }
+                        @for value in solution.trace.get(k).into_iter().flatten() {
+                            td { (number(*value, 6)) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! The head of the page: what was found in a few lines, and what must be known about it.
+
+use super::parts::number;
+use super::view::View;
+use crate::identify::problem::Verdict;
+use maud::{Markup, html};
+
+pub(super) fn head(view: &View) -> Markup {
+    let solution = view.solution;
+    let points: usize = solution.series.iter().map(|series| series.points.len()).sum();
+    html! {
+        h1 { (solution.title) }
+        p.lead { (verdict(view)) }
+        dl.facts {
+            div { dt { "Model" } dd { (solution.model) } }
+            div { dt { "Objective (" (solution.fitness_name) ")" } dd { (number(solution.fitness, 6)) } }
+            div { dt { "Measured points" } dd { (points) } }
+            @if let Some(test) = &solution.chi_square {
+                div { dt { "Chi-square (expected)" }
+                    dd { (number(test.value, 4)) " (" (number(test.freedom, 4)) "), probability " (number(test.probability, 2)) } }
+            }
+            div { dt { "Method" } dd { (solution.method) } }
+            div { dt { "Stopped" } dd { (solution.stop) } }
+        }
+        @if !view.notes.is_empty() {
+            section aria-labelledby="notes-heading" {
+                h2 #notes-heading { "What you must know" }
+                ul.notes { @for note in &view.notes { li class=(note.weight) { (note.sentence) } } }
+            }
+        }
+        @if !view.next.is_empty() {
+            section aria-labelledby="next-heading" {
+                h2 #next-heading { "The next measurement" }
+                ul.next { @for sentence in &view.next { li { (sentence) } } }
+            }
+        }
+    }
+}
+
+/// One or two sentences: how the search ended, and how many parameters are identifiable.
+fn verdict(view: &View) -> Markup {
+    let parameters = &view.solution.parameters;
+    let judged: Vec<Verdict> = parameters.iter().filter_map(|p| p.verdict).collect();
+    let identifiable = judged.iter().filter(|v| **v == Verdict::Identifiable).count();
+    html! {
+        @if let Some(ending) = &view.ending {
+            strong.good[ending.minimum].bad[!ending.minimum] { (ending.sentence) } " "
+        }
+        @if judged.is_empty() {
+            "Standard errors are not available: nothing is said about identifiability."
+        } @else if identifiable == parameters.len() {
+            @if identifiable == 1 { "The parameter is identifiable from these data." }
+            @else { "All " (identifiable) " parameters are identifiable from these data." }
+        } @else {
+            (identifiable) " of " (parameters.len())
+            @if parameters.len() == 1 { " parameter is " } @else { " parameters are " }
+            "identifiable from these data."
+        }
+    }
+}

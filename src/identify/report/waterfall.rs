@@ -1,0 +1,52 @@
+//! Where every descent ended, sorted: a plateau shows that several starts reach one minimum.
+
+use super::Section;
+use super::explanations::WATERFALL;
+use super::parts::{explained, figure, number, one_panel, series};
+use super::view::{Descent, View};
+use crate::plot::{Axis, Figure, Mark};
+use maud::html;
+
+/// Descents within this relative distance of the best reached the same objective: what is drawn as
+/// one plateau.
+const SAME: f64 = 1e-3;
+
+pub(super) fn section(view: &View) -> Option<Section> {
+    if view.descents.is_empty() {
+        return None;
+    }
+    let mut sorted = view.descents.clone();
+    sorted.sort_by(|a, b| a.objective.total_cmp(&b.objective));
+    let best = sorted[0].objective;
+    let reached = sorted.iter().filter(|d| d.objective - best <= SAME * best.abs()).count();
+    let sentence = format!(
+        "The best objective, {}, was reached by {reached} of {} {}.",
+        number(best, 5),
+        sorted.len(),
+        if sorted.len() == 1 { "descent" } else { "descents" }
+    );
+    let caption = html! { (sentence) };
+    let content = html! {
+        (figure(&drawing(&sorted), &sentence, &caption))
+        (explained(&WATERFALL))
+    };
+    Some(Section { id: "waterfall", heading: "All descents", content, wide: false })
+}
+
+fn drawing(sorted: &[Descent]) -> Figure {
+    let numbered = || sorted.iter().enumerate().map(|(k, descent)| (k as f64 + 1.0, descent));
+    let pick = |minimum: bool| -> Vec<(f64, f64)> {
+        numbered().filter(|(_, d)| d.minimum == minimum).map(|(k, d)| (k, d.objective)).collect()
+    };
+    let positive = sorted.iter().all(|descent| descent.objective > 0.0);
+    let objective = "objective (smaller is better)";
+    let y = if positive { Axis::logarithmic(objective, "") } else { Axis::linear(objective, "") };
+    let line: Vec<(f64, f64)> = numbered().map(|(k, descent)| (k, descent.objective)).collect();
+    let mut all =
+        vec![series("", &line, Mark::Thin, 1), series("minimum", &pick(true), Mark::Points, 1)];
+    let cut = pick(false);
+    if !cut.is_empty() {
+        all.push(series("cut off", &cut, Mark::Crosses, 2));
+    }
+    one_panel(Axis::linear("descent, sorted", ""), y, 230.0, all)
+}

@@ -1,0 +1,112 @@
+//! What happens before and behind an experiment: a steady state before it, and delays of its
+//! measurements. Both become part of the class around the model.
+
+use super::build::Around;
+use super::file::{ColumnEntry, DelayEntry, ExperimentEntry, ProblemFile, Role};
+use crate::bail;
+use crate::dae::SortedDae;
+use crate::diag::Fault;
+use crate::registry::BAD_OPTION;
+use std::fmt::Write;
+
+/// Whether a parameter of the problem is a delay of measurements and not a parameter of the model.
+pub(super) fn is_delay(file: &ProblemFile, name: &str) -> bool {
+    let outputs = file.experiment.iter().flat_map(|experiment| experiment.outputs.values());
+    let mut delays = outputs.filter_map(|output| output.entry().delay);
+    delays.any(|delay| matches!(delay, DelayEntry::Parameter(own) if own == name))
+}
+
+/// The name in the class around the model of a delay that is a parameter.
+pub(super) fn delay_name(number: usize) -> String {
+    format!("gapi_delay_{number}")
+}
+
+/// Declares the delayed variable of an output; its name, or that of the output itself where it is
+/// not delayed.
+///
+/// # Errors
+///
+/// Negative delays, parameters that there are not, X other than time.
+pub(super) fn delayed(
+    file: &ProblemFile,
+    y_name: &str,
+    place: usize,
+    entry: &ColumnEntry,
+    x_name: &str,
+    around: &mut Around,
+) -> Result<String, Fault> {
+    let Some(delay) = &entry.delay else { return Ok(y_name.to_owned()) };
+    if x_name != "time" {
+        bail!(BAD_OPTION, "`{y_name}` is delayed, but measured over `{x_name}`"; help: "delays need `time` as X");
+    }
+    let negative = |value: f64| {
+        Fault::new(BAD_OPTION, format!("the delay of `{y_name}` may be {value}"))
+            .help("a measurement cannot come before its cause: give a delay of 0 or more")
+    };
+    let arguments = match delay {
+        DelayEntry::Seconds(seconds) if seconds.is_finite() && *seconds >= 0.0 => {
+            format!("{seconds:e}")
+        }
+        DelayEntry::Seconds(seconds) => return Err(negative(*seconds)),
+        DelayEntry::Parameter(name) => {
+            let Some(number) = file.parameters.get_index_of(name) else {
+                bail!(BAD_OPTION, "the delay of `{y_name}` is `{name}`, which is not among the parameters"; help: "add `{name} = {{ min = 0, max = 10 }}` to `[parameters]`")
+            };
+            match file.parameters[number].role(name)? {
+                Role::Free { range: [min, max], .. } if min >= 0.0 => {
+                    format!("{}, {max:e}", delay_name(number))
+                }
+                Role::Free { range: [min, _], .. } => return Err(negative(min)),
+                Role::Fixed(value) if value >= 0.0 => format!("{value:e}"),
+                Role::Fixed(value) => return Err(negative(value)),
+                Role::Tied(_) => {
+                    bail!(BAD_OPTION, "the delay `{name}` is tied"; help: "give it `min` and `max`, or `fixed`")
+                }
+            }
+        }
+    };
+    let name = format!("gapi_delayed_{place}");
+    // Writing into a String cannot fail.
+    _ = writeln!(around.declarations, "  Real {name} = delay({y_name}, {arguments});");
+    Ok(name)
+}
+
+/// The class around the model begins with all derivatives zero.
+///
+/// # Errors
+///
+/// States whose initial values are given besides; models without states.
+pub(super) fn steady(
+    file: &ProblemFile,
+    entry: &ExperimentEntry,
+    model: &SortedDae,
+    around: &mut Around,
+) -> Result<(), Fault> {
+    let given = file.parameters.iter().find(|(_, parameter)| parameter.initial);
+    if let Some(name) = given.map(|(name, _)| name).or_else(|| entry.start.keys().next()) {
+        bail!(BAD_OPTION, "an experiment in steady state has no initial value of `{name}` to choose"; help: "leave out `steady_state` or the initial value");
+    }
+    if model.states.is_empty() {
+        bail!(BAD_OPTION, "`{}` has no states that could be steady", file.model; help: "leave out `steady_state`");
+    }
+    let mut released: Vec<String> = Vec::new();
+    around.equations.push_str("initial equation\n");
+    for state in &model.states {
+        let name = model.dae.variables[state.0 as usize].name.to_string();
+        _ = writeln!(around.equations, "  der({name}) = 0;");
+        let released_name = match name.split_once('[') {
+            None => format!("{name}(fixed = false)"),
+            Some((array, rest)) if rest.find(']') == Some(rest.len() - 1) => {
+                format!("{array}(each fixed = false)")
+            }
+            Some(_) => {
+                bail!(BAD_OPTION, "the state `{name}` lies within an array of components, which `steady_state` does not support"; help: "write an `initial equation` into the model")
+            }
+        };
+        if !released.contains(&released_name) {
+            released.push(released_name);
+        }
+    }
+    around.modifications.append(&mut released);
+    Ok(())
+}

@@ -1,0 +1,167 @@
+//! Problems that ask for more than estimates.
+
+use super::*;
+use crate::identify::problem::inference::compare;
+
+const EMPTIES: &str = "
+model = \"Free\"
+files = [\"tank.mo\"]
+[parameters]
+k = { min = 0.1, max = 5 }
+area = { min = 0.1, max = 10 }
+[[experiment]]
+name = \"empties\"
+data = \"d.csv\"
+outputs = { q = { column = \"q\", sigma = 0.01 } }
+tolerance = 1e-9
+[stop]
+evaluations = 600
+";
+
+/// q of the emptying tank with an error that alternates.
+fn data() -> String {
+    let mut sign = 1.0;
+    let mut rows = Vec::new();
+    for k in 0..17 {
+        let t = f64::from(k) / 4.0;
+        sign = -sign * if k % 3 == 0 { -1.0 } else { 1.0 };
+        rows.push(format!("{t},{}", 0.8 * height(t, 1.0, 0.0) + 0.01 * sign));
+    }
+    format!("time,q\n{}\n", rows.join("\n"))
+}
+
+fn value(solution: &Solution, name: &str) -> f64 {
+    solution.parameters.iter().find(|p| p.name == name).unwrap().value
+}
+
+#[test]
+fn bands_and_plans_reach_beyond_what_was_measured() {
+    let problem = EMPTIES.replace(
+        "[parameters]",
+        "bands = [\"h\"]\n[design]\npoints = 4\nrange = [0, 10]\noutputs = { h = 0.001 }\n[parameters]",
+    );
+    let solution = solved(&[("p.toml", problem), ("d.csv", data())]);
+    let bands = &solution.inferred.bands;
+    let names: Vec<&str> = bands.iter().map(|band| band.y[0].as_str()).collect();
+    assert_eq!(names, ["q", "h"]);
+    // h begins at 1 whatever the parameters are.
+    assert!(bands[1].points[0].confidence.unwrap() < 1e-9);
+    assert!(bands[1].points[50].confidence.unwrap() > 1e-3);
+    assert_eq!(bands[0].points.last().unwrap().x, 4.0, "as far as it is simulated");
+    let next = solution.inferred.next_measurement.as_ref().unwrap();
+    let plans: Vec<_> = next.proposals.iter().filter(|p| p.criterion == "interval").collect();
+    // An exact output is worth more than a noisy one: it gives k/area, and q gives k.
+    assert_eq!(plans[1].plans[0].variable, "h", "{plans:?}");
+    let text = solution.text();
+    assert!(text.contains("would bring area from ±"), "{text}");
+    assert!(text.contains("h of empties, which was not measured, is known to ±0."), "{text}");
+    let again: Solution = serde_json::from_str(&solution.to_json()).unwrap();
+    assert_eq!(again.text(), text);
+}
+
+#[test]
+fn priors_weigh_against_the_data() {
+    // The amplitude gives k with a standard error of about 1 %, so a prior of 0.01 % dominates it.
+    let prior = |prior: &str| EMPTIES.replace("max = 5 }", &format!("max = 5, prior = {prior} }}"));
+    let solve = |prior_text: &str| solved(&[("p.toml", prior(prior_text)), ("d.csv", data())]);
+    let narrow = solve("{ mean = 0.82, sd = 0.0001 }");
+    assert!((value(&narrow, "k") - 0.82).abs() < 1e-3, "{}", value(&narrow, "k"));
+    assert_eq!(narrow.series.len(), 1);
+    assert!(narrow.text().contains("What is known of k comes from its prior"), "{}", narrow.text());
+    let wide = solve("{ median = 0.82, factor = 3 }");
+    assert!((value(&wide, "k") - 0.8).abs() < 0.02, "{}", value(&wide, "k"));
+    assert!(!wide.text().contains("prior of k"), "{}", wide.text());
+    let refused = |text: &str| refusal(text, &data());
+    assert!(refused(&prior("{ mean = 0.8 }")).contains("cannot be read"));
+    let without = prior("{ mean = 0.8, sd = 0.1 }").replace(", sigma = 0.01", "");
+    assert!(refused(&without).contains("must be weighed against the data"));
+    let fixed =
+        EMPTIES.replace("k = { min = 0.1, max = 5 }", "k = { fixed = 1, prior = \"uniform\" }");
+    assert!(refused(&fixed).contains("`k` has a prior, but it is not estimated"));
+}
+
+#[test]
+fn a_steady_state_before_the_experiment() {
+    let steps = "model Steps\n  extends Tank(u = if time < 1 then 1 else 3);\nend Steps;\n";
+    let problem = EMPTIES
+        .replace("\"Free\"", "\"Steps\"")
+        .replace("[\"tank.mo\"]", "[\"tank.mo\", \"steps.mo\"]")
+        .replace("[[experiment]]", "[[experiment]]\nsteady_state = true");
+    let data = table("time,q", |t| {
+        let h = if t < 1.0 { 1.25 } else { 3.75 - 2.5 * (-0.4 * (t - 1.0)).exp() };
+        (0.8 * h).to_string()
+    });
+    let files =
+        [("p.toml", problem.clone()), ("d.csv", data.clone()), ("steps.mo", steps.to_owned())];
+    let solution = solved(&files);
+    // q depends on k/area alone in this experiment.
+    let rate = value(&solution, "k") / value(&solution, "area");
+    assert!((rate - 0.4).abs() < 1e-4, "{rate}");
+    assert!(solution.series[0].rmse < 1e-5, "{}", solution.series[0].rmse);
+    let with_start =
+        EMPTIES.replace("[[experiment]]", "[[experiment]]\nsteady_state = true\nstart = { h = 2 }");
+    assert!(refusal(&with_start, &data).contains("no initial value of `h` to choose"));
+}
+
+#[test]
+fn delays_are_estimated() {
+    let later = |t: f64| if t < 0.6 { 0.8 } else { 0.8 * height(t - 0.6, 1.0, 0.0) };
+    let data = table("time,q", |t| later(t).to_string());
+    let problem = EMPTIES
+        .replace("sigma = 0.01", "sigma = 0.01, delay = \"tau\"")
+        .replace("[parameters]", "[parameters]\ntau = { min = 0, max = 2 }");
+    let solution = solved(&[("p.toml", problem.clone()), ("d.csv", data.clone())]);
+    assert!((value(&solution, "tau") - 0.6).abs() < 2e-3, "{}", value(&solution, "tau"));
+    assert!((value(&solution, "k") - 0.8).abs() < 2e-3, "{}", value(&solution, "k"));
+    assert_eq!(solution.series[0].y[0], "q");
+    assert_eq!(solution.inferred.bands[0].y[0], "q");
+    let fixed = EMPTIES.replace("sigma = 0.01", "sigma = 0.01, delay = 0.6");
+    let solution = solved(&[("p.toml", fixed.clone()), ("d.csv", data.clone())]);
+    assert!((value(&solution, "area") - 2.0).abs() < 5e-3, "{}", value(&solution, "area"));
+    assert!(refusal(&fixed.replace("delay = 0.6", "delay = -1"), &data).contains("may be -1"));
+    let unknown = fixed.replace("delay = 0.6", "delay = \"lag\"");
+    assert!(refusal(&unknown, &data).contains("not among the parameters"));
+}
+
+#[test]
+fn nested_models_are_compared() {
+    let fixed = |area: &str| {
+        EMPTIES.replace("area = { min = 0.1, max = 10 }", &format!("area = {{ fixed = {area} }}"))
+    };
+    let solve = |text: String| solved(&[("p.toml", text), ("d.csv", data())]);
+    let (both, right, wrong) = (solve(EMPTIES.to_owned()), solve(fixed("2")), solve(fixed("2.2")));
+    let named = |name: &str| name.to_owned();
+    let found = compare(&[(named("small"), &right), (named("large"), &both)]).unwrap();
+    assert_eq!(found.nested.len(), 1);
+    assert_eq!((found.nested[0].smaller, found.nested[0].freedom), (0, 1));
+    assert!(found.nested[0].probability.unwrap() > 0.05, "{:?}", found.nested);
+    assert!(found.sentence.contains("gives no reason for the larger model"), "{}", found.sentence);
+    let found = compare(&[(named("wrong"), &wrong), (named("large"), &both)]).unwrap();
+    assert!(found.sentence.starts_with("These data speak for large"), "{}", found.sentence);
+    assert!(found.sentence.contains("the likelihood ratio rejects it"), "{}", found.sentence);
+    // ln L of known deviations: −χ²/2 − n ln(σ √2π).
+    let square: f64 = right.series[0].points.iter().map(|p| ((p[1] - p[2]) / 0.01).powi(2)).sum();
+    let log = -0.5 * square - 17.0 * (0.01 * std::f64::consts::TAU.sqrt()).ln();
+    let likelihood = right.inferred.likelihood.unwrap();
+    assert!((likelihood.log - log).abs() < 1e-9 * log.abs());
+    assert_eq!((likelihood.points, likelihood.estimated), (17, 1));
+    let other =
+        solved(&[("p.toml", EMPTIES.to_owned()), ("d.csv", data().replace("0.5,", "0.51,"))]);
+    let message = compare(&[(named("a"), &both), (named("b"), &other)]).unwrap_err().message;
+    assert!(message.contains("different data"), "{message}");
+}
+
+#[test]
+fn what_a_model_does_not_have_cannot_be_inferred() {
+    let refused = |added: &str| {
+        refusal(&EMPTIES.replace("[parameters]", &format!("{added}\n[parameters]")), &data())
+    };
+    assert!(refused("bands = [\"x\"]").contains("`bands` names `x`, which is not a Real variable"));
+    assert!(refused("[design]\npoints = 0").contains("`points` of `design` is 0"));
+    assert!(refused("[design]\noutputs = { h = -1 }").contains("standard deviation of `h`"));
+    assert!(refused("[design]\nrange = [1, 0]").contains("goes from 1 to 0"));
+    assert!(refused("constraints = [\"k = area\"]").contains("cannot be read"));
+    assert!(refused("constraints = [\"k < q\"]").contains("not an estimated parameter"));
+    assert!(refused("[bootstrap]\nresampling = \"all\"").contains("`all`"));
+    assert!(refused("[posterior]\nsamples = 3").contains("`samples` of `posterior` is 3"));
+}
