@@ -191,9 +191,21 @@
 //! - **auger-hansen-2005** — A. Auger, N. Hansen: A restart CMA evolution strategy with increasing
 //!   population size. IEEE Congress on Evolutionary Computation, 2005, 1769–1776.
 //!
-//! <a id="nielsen-1999"></a>
-//! - **nielsen-1999** — H. B. Nielsen: Damping parameter in Marquardt's method. Report
-//!   IMM-REP-1999-05, Technical University of Denmark, 1999.
+//! <a id="more-1978"></a>
+//! - **more-1978** — J. J. Moré: The Levenberg-Marquardt algorithm: implementation and theory.
+//!   Numerical Analysis, Lecture Notes in Mathematics 630, Springer, 1978, 105–116.
+//!
+//! <a id="transtrum-sethna-2012"></a>
+//! - **transtrum-sethna-2012** — M. K. Transtrum, J. P. Sethna: Improvements to the
+//!   Levenberg-Marquardt algorithm for nonlinear least-squares minimization. arXiv:1201.5885, 2012.
+//!
+//! <a id="bates-watts-1981"></a>
+//! - **bates-watts-1981** — D. M. Bates, D. G. Watts: A relative offset orthogonality convergence
+//!   criterion for nonlinear least squares. Technometrics 23(2), 1981, 179–183.
+//!
+//! <a id="boender-rinnooy-kan-1987"></a>
+//! - **boender-rinnooy-kan-1987** — C. G. E. Boender, A. H. G. Rinnooy Kan: Bayesian stopping rules
+//!   for multistart global optimization methods. Mathematical Programming 37, 1987, 59–80.
 //!
 //! <a id="gao-han-2012"></a>
 //! - **gao-han-2012** — F. Gao, L. Han: Implementing the Nelder-Mead simplex algorithm with adaptive

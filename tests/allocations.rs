@@ -7,7 +7,7 @@
 #![allow(unsafe_code, reason = "an allocator cannot be written without")]
 #![allow(clippy::print_stdout, reason = "the figures are asked for with --nocapture")]
 
-use gapilib::compile::{Program, System};
+use gapilib::compile::{Program, SensitivityCode, System};
 use gapilib::dae::sort;
 use gapilib::flatten::{self, Library, LibraryFiles};
 use gapilib::ga::optimizer::METHODS;
@@ -78,9 +78,9 @@ fn live_bytes() -> i64 {
 
 /// A chain of capacities that is heated at one end and radiates at the other: a sparse Jacobian, and
 /// an equation that is solved by iteration in every step.
-const CHAIN: &str = "model Chain Real T[20](each start = 1, each fixed = true); Real q[21]; \
+const CHAIN: &str = "model Chain parameter Real k = 100; Real T[20](each start = 1, each fixed = true); Real q[21]; \
     equation q[1] + exp(q[1]) = 2 + sin(20*time) - T[1]; q[21] = T[20]^4; \
-    for i in 2:20 loop q[i] = 100*(T[i - 1] - T[i])*(1 + T[i]); end for; \
+    for i in 2:20 loop q[i] = k*(T[i - 1] - T[i])*(1 + T[i]); end for; \
     for i in 1:20 loop der(T[i]) = q[i] - q[i + 1]; end for; end Chain;";
 
 fn chain() -> System {
@@ -122,22 +122,41 @@ fn steps_allocate_nothing() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let mut system = chain();
     for method in ["dassl", "rodas4", "radau"] {
-        let (mut simulator, mut trajectory) = (Simulator::new(), Trajectory::default());
-        let mut cost = |tolerance: f64| {
-            let settings = settings(method, tolerance);
-            // Until tapes that run often are machine code.
-            for _ in 0..50 {
-                simulator.run(&mut system, &settings, &mut trajectory).expect("it succeeds");
-            }
-            let before = allocations();
-            let statistics = simulator.run(&mut system, &settings, &mut trajectory);
-            (statistics.expect("it succeeds").steps, allocations() - before)
-        };
-        let (few, at_start) = cost(1e-3);
-        let (many, then) = cost(1e-6);
-        assert!(many > 2 * few, "{method}: {few} and {many} steps");
-        assert_eq!(then, at_start, "{method}: {few} and {many} steps");
+        no_step_allocates(&mut system, method);
     }
+}
+
+#[test]
+fn steps_with_sensitivities_allocate_nothing() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut system = chain();
+    let program = system.program().clone();
+    let k = program.find_parameter("k").expect("declared");
+    let end = program.find_variable("T[20]").expect("declared");
+    system.observe_only(&[end]);
+    let code = SensitivityCode::compile(&program, &[k], &[end]).expect("it has derivatives");
+    system.differentiate(Some(&code));
+    no_step_allocates(&mut system, "dassl");
+}
+
+/// Simulations with more steps allocate no more.
+#[track_caller]
+fn no_step_allocates(system: &mut System, method: &str) {
+    let (mut simulator, mut trajectory) = (Simulator::new(), Trajectory::default());
+    let mut cost = |tolerance: f64| {
+        let settings = settings(method, tolerance);
+        // Until tapes that run often are machine code.
+        for _ in 0..50 {
+            simulator.run(system, &settings, &mut trajectory).expect("it succeeds");
+        }
+        let before = allocations();
+        let statistics = simulator.run(system, &settings, &mut trajectory);
+        (statistics.expect("it succeeds").steps, allocations() - before)
+    };
+    let (few, at_start) = cost(1e-3);
+    let (many, then) = cost(1e-6);
+    assert!(many > 2 * few, "{method}: {few} and {many} steps");
+    assert_eq!(then, at_start, "{method}: {few} and {many} steps");
 }
 
 /// Numbers from 0 to 1 that look random (a linear congruential generator).

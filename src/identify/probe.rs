@@ -7,7 +7,7 @@
 
 use super::fitness::FITNESSES;
 use super::problem::{
-    Experiment, Finding, FindingKind, Free, Inference, ModelSimulator, Observation, Problem, Run,
+    EndingKind, Experiment, Finding, FindingKind, Free, Inference, ModelSimulator, Observation, Problem, Run,
     ScriptResult, Series, Severity, Sigma, Simulate, Solution, SolvedParameter, SolvedSeries, Stop,
     conclude, draw_curves, failure_region,
 };
@@ -25,11 +25,6 @@ use std::sync::Arc;
 const BUDGET: u64 = 200;
 /// Relative reduction of the sum of squares that is worth a number.
 const BETTER: f64 = 1e-6;
-/// What a run says that has ended by itself.
-const CONVERGED: &str = "the method has converged";
-/// Steps after which a descent is cut, the default of the method: one that asked less often has
-/// ended by itself.
-const STEPS: u64 = 200;
 /// A seed for scripts that draw no random numbers: least squares need none, but a run has one.
 const NO_SEED: [f64; 6] = [12345.0; 6];
 
@@ -160,10 +155,9 @@ impl Ending<'_> {
                 return Err("it was cancelled".to_owned());
             }
         };
-        // A descent that has used up its steps ends as well, but not at a minimum.
-        let at_minimum = stop == CONVERGED && run.generations() < STEPS;
         conclude(&mut run);
         let solution = Solution::of(&run, &stop, Vec::new()).map_err(|fault| fault.message)?;
+        let at_minimum = solution.ending.kind == EndingKind::Minimum;
         let mut solution = if at_minimum { solution } else { without_verdicts(solution) };
         let generations = self.recorder.history.generations.len();
         let who = if generations > 1 { "The genetic algorithm" } else { "The script" };

@@ -174,6 +174,7 @@ fn descent(
         budget: None,
         start: Some(refinement.ranges.iter().zip(start).map(fraction).collect()),
         noise,
+        size: refinement.measured.iter().map(|y| y * y).sum::<f64>().sqrt(),
         rng: Mrg32k3a::new(&SEED)?,
     })
 }

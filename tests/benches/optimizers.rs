@@ -107,8 +107,15 @@ fn overhead(name: &str) -> f64 {
     let n_objectives = if name == "nsga2" { 2 } else { 1 };
     let genes = (0..10).map(|j| Gene::new(format!("g{j}"), 0.0, 1.0).expect("a range")).collect();
     let rng = Mrg32k3a::new(&Mrg32k3a::DEFAULT_SEED).expect("a seed");
-    let setup =
-        Setup { genes, n_objectives, budget: Some(100_000), start: None, noise: 1e-15, rng };
+    let setup = Setup {
+        genes,
+        n_objectives,
+        budget: Some(100_000),
+        start: None,
+        noise: 1e-15,
+        size: 1.0,
+        rng,
+    };
     let mut search = method(name).start(setup).expect("a search");
     let mut used = 0;
     let mut seconds = 0.0;

@@ -245,6 +245,9 @@ impl System {
             read_into(&code.speeds, self, &mut own.behind)?;
             self.shift_states(&code, &own.behind, -1.0);
         }
+        if outcome != EventOutcome::Again {
+            code.time.iter().for_each(|time| self.registers[*time as usize] = 0.0);
+        }
         self.differentiate_algebraic()
     }
 

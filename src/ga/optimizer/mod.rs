@@ -6,15 +6,20 @@
 //! business. The method of the paper alone works in the ranges of the genes.
 
 mod cma_es;
+mod descents;
 mod gapilib2006;
 mod genetic;
 mod levenberg_marquardt;
+mod linear_model;
 mod lshade;
 mod multistart;
 mod nelder_mead;
 mod nsga2;
 mod polish;
 
+pub use descents::{DescentEnd, DescentReport, reached};
+pub use levenberg_marquardt::MINIMUM;
+pub use linear_model::Offset;
 pub use nsga2::{Survivor, non_dominated, survivors};
 pub use polish::Polished;
 
@@ -33,6 +38,10 @@ pub trait Optimizer: Send {
     /// What the answers to the last question must hold besides the objectives.
     fn wants(&self) -> Wants {
         Wants::Objectives
+    }
+    /// The descents by least squares so far, in their order.
+    fn descents(&self) -> Vec<DescentReport> {
+        Vec::new()
     }
     /// What it is doing, in one word.
     fn phase(&self) -> &'static str;
@@ -114,6 +123,8 @@ pub struct Setup {
     pub start: Option<Vec<f64>>,
     /// Relative error of the simulated values.
     pub noise: f64,
+    /// Root of the sum of squares of the measured values, weighted as the residuals are.
+    pub size: f64,
     /// The random numbers of the run.
     pub rng: Mrg32k3a,
 }
@@ -168,6 +179,22 @@ fn whole(
         return Err(fault!(BAD_OPTION, "`{name}` is {value}, which is not a whole number"));
     }
     Ok(value as usize)
+}
+
+/// The test of a minimum at a point of the unit cube from the weighted residuals there and their
+/// derivatives (residuals × genes); `noise` and `size` as in [`Setup`].
+pub fn test_minimum(
+    point: &[f64],
+    residuals: &[f64],
+    jacobian: &[f64],
+    [noise, size]: [f64; 2],
+) -> (Offset, bool) {
+    let accuracy = levenberg_marquardt::Accuracy { noise, size };
+    let tolerance = accuracy.rank_tolerance();
+    let model = linear_model::LinearModel::new(residuals, jacobian, point.len(), tolerance);
+    let offset = model.offset(point);
+    let length = residuals.iter().map(|r| r * r).sum::<f64>().sqrt();
+    (offset, levenberg_marquardt::is_minimum(&offset, length, accuracy, MINIMUM))
 }
 
 /// A key that orders fitness with NaN last.

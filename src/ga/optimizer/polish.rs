@@ -1,104 +1,157 @@
-//! A search whose best distinct individuals are refined by Levenberg-Marquardt from time to time.
-//! The search itself is not disturbed. It ends when two rounds in a row, the second of them with
-//! another set of starts, lead to the same best.
+//! A search and multistart together: rounds of the search (a genetic algorithm, say) and a Latin
+//! hypercube give the starts of descents by least squares. The search itself is not disturbed. It
+//! all ends when the best minimum was reached from several starts and few others can be expected.
 
-use super::multistart::Team;
-use super::{Answers, Optimizer, Wants, has_failed, key};
+use super::descents::Pool;
+use super::levenberg_marquardt::Accuracy;
+use super::{Answers, DescentReport, Optimizer, Setup, Wants, has_failed, key};
 use crate::diag::Fault;
-use crate::ga::{Genomes, Mrg32k3a, order};
+use crate::ga::sampling::latin_hypercube;
+use crate::ga::{Genomes, Mrg32k3a};
 
-/// Questions of the search between two refinements.
+/// Questions of the search between two rounds of descents; before the first there is one.
 const QUESTIONS: usize = 10;
-/// Individuals that are refined together.
-const STARTS: usize = 3;
-/// Individuals remembered as candidates.
+/// Points of a Latin hypercube: this many for each gene, within limits.
+const POINTS: usize = 10;
+const SAMPLE: [usize; 2] = [30, 150];
+/// Descents of a round that begin at points of the search, of the hypercube, and beside the best
+/// minimum so far.
+const FROM_SEARCH: usize = 1;
+const FROM_SAMPLE: usize = 2;
+const FROM_BEST: usize = 1;
+/// Genes of the best minimum that are drawn anew at most. Minima often differ in few: a frequency,
+/// the place of a peak (ENSO has 9 genes, and two periods decide).
+const REDRAWN: usize = 3;
+/// Individuals of a question remembered as candidates.
 const CANDIDATES: usize = 24;
-/// Individuals nearer than this in every gene are the same.
+/// Individuals nearer than this in every gene are the same start.
 const DISTINCT: f64 = 0.05;
-/// Refinements without improvement that end the run.
-const ROUNDS_WITHOUT_GAIN: usize = 3;
-/// The smallest relative gain that counts.
-const GAIN: f64 = 1e-6;
 
-/// A search with refinements.
+/// What is asked at present.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Stage {
+    Search(usize),
+    Sample,
+    Descents,
+}
+
+/// A search with descents.
 pub struct Polished {
-    search: Box<dyn Optimizer>,
-    team: Option<Team>,
-    /// Questions of the search since the last refinement.
-    questions: usize,
-    /// The best distinct individuals of this round, best first.
-    candidates: Vec<(Vec<f64>, f64)>,
-    /// Where refinements have started, so that none starts twice near the same place.
-    started: Vec<Vec<f64>>,
-    best: f64,
-    rounds_without_gain: usize,
-    exhausted: bool,
-    /// The sum of squares at which the answers are noise of rounding.
-    floor: f64,
+    /// `None` for multistart alone.
+    search: Option<Box<dyn Optimizer>>,
+    pool: Pool,
+    stage: Stage,
     rng: Mrg32k3a,
+    points: usize,
+    from_sample: usize,
+    /// A point given by the user, until a descent has begun there.
+    given: Option<Vec<f64>>,
+    /// The best of the search and of the hypercube since the last round.
+    found: Vec<(Vec<f64>, f64)>,
+    sampled: Vec<(Vec<f64>, f64)>,
+    /// The best of those beside the best minimum.
+    beside: Vec<(Vec<f64>, f64)>,
 }
 
 impl Polished {
-    /// Refines the results of `search`; a fitness below `floor` is as good as none.
-    pub fn new(search: Box<dyn Optimizer>, floor: f64, rng: Mrg32k3a) -> Polished {
+    /// Descents besides `search`, with random numbers of their own.
+    pub fn new(search: Box<dyn Optimizer>, setup: &Setup, rng: Mrg32k3a) -> Polished {
+        let points = (POINTS * setup.genes.len()).clamp(SAMPLE[0], SAMPLE[1]);
+        let alone = Polished::alone(setup, points, FROM_SAMPLE);
+        Polished { search: Some(search), stage: Stage::Search(1), rng, ..alone }
+    }
+
+    /// Descents from hypercubes alone, with so many points and descents in a round.
+    pub(super) fn alone(setup: &Setup, points: usize, from_sample: usize) -> Polished {
         Polished {
-            search,
-            team: None,
-            questions: 0,
-            candidates: Vec::new(),
-            started: Vec::new(),
-            best: f64::INFINITY,
-            rounds_without_gain: 0,
-            exhausted: false,
-            floor,
-            rng,
+            search: None,
+            pool: Pool::new(Accuracy::of(setup)),
+            stage: Stage::Sample,
+            rng: setup.rng.clone(),
+            points,
+            from_sample,
+            given: setup.start.clone(),
+            found: Vec::new(),
+            sampled: Vec::new(),
+            beside: Vec::new(),
         }
     }
 
-    fn remember(&mut self, batch: &Genomes, answers: &Answers<'_>) {
-        let fitness: Vec<f64> = (0..batch.len()).map(|k| answers.fitness(k)).collect();
-        for k in order(&fitness).into_iter().take(STARTS * 2) {
-            if has_failed(fitness[k]) {
-                break;
+    /// The starts of the next round, and how many of them owe nothing to earlier descents: what the
+    /// user gave, then the best that are far from each other and from where descents have been. What
+    /// is better than all descents always counts.
+    fn starts(&mut self) -> (Vec<Vec<f64>>, usize) {
+        let mut starts: Vec<Vec<f64>> = self.given.take().into_iter().collect();
+        let mut independent = 0;
+        let smallest = self.pool.smallest();
+        let sources = [
+            (&mut self.found, FROM_SEARCH),
+            (&mut self.sampled, self.from_sample),
+            (&mut self.beside, FROM_BEST),
+        ];
+        for (number, (candidates, count)) in sources.into_iter().enumerate() {
+            let wanted = starts.len() + count;
+            for (genome, fitness) in candidates.drain(..) {
+                let known = self.pool.visited().chain(starts.iter().map(Vec::as_slice));
+                let fresh = known.into_iter().all(|known| is_far(known, &genome));
+                if starts.len() < wanted && (fresh || fitness < smallest) {
+                    starts.push(genome);
+                }
             }
-            self.candidates.push((batch.row(k).to_vec(), fitness[k]));
-        }
-        self.candidates.sort_by(|a, b| key(a.1).total_cmp(&key(b.1)));
-        let mut distinct: Vec<(Vec<f64>, f64)> = Vec::with_capacity(CANDIDATES);
-        for candidate in self.candidates.drain(..) {
-            if distinct.len() < CANDIDATES
-                && distinct.iter().all(|kept| is_far(&kept.0, &candidate.0))
-            {
-                distinct.push(candidate);
+            if number < 2 {
+                independent = starts.len();
             }
         }
-        self.candidates = distinct;
+        (starts, independent)
     }
 
-    /// The best individual always, then those far from every earlier start, then a random one.
-    fn begin_round(&mut self, n_genes: usize) {
-        let mut starts: Vec<Vec<f64>> = Vec::new();
-        for (number, (genome, _)) in self.candidates.iter().enumerate() {
-            let fresh = self.started.iter().chain(&starts).all(|known| is_far(known, genome));
-            if starts.len() < STARTS && (number == 0 || fresh) {
-                starts.push(genome.clone());
+    /// The points of a sample: a Latin hypercube, and from the second round on as many with some
+    /// genes of the best minimum drawn anew.
+    fn sample(&mut self, batch: &mut Genomes) {
+        let n = batch.n_genes();
+        let sample = latin_hypercube(n, self.points, &mut self.rng);
+        sample.rows().for_each(|genome| batch.push(genome));
+        let Some(best) = self.pool.best_place().filter(|_| n > 1) else { return };
+        let mut genome = best.to_vec();
+        for other in latin_hypercube(n, self.points, &mut self.rng).rows() {
+            genome.copy_from_slice(best);
+            let redrawn = 1 + (self.rng.uniform() * REDRAWN.min(n - 1) as f64) as usize;
+            for _ in 0..redrawn {
+                let gene = ((self.rng.uniform() * n as f64) as usize).min(n - 1);
+                genome[gene] = other[gene];
             }
+            batch.push(&genome);
         }
-        if starts.len() < STARTS {
-            starts.push((0..n_genes).map(|_| self.rng.uniform()).collect());
-        }
-        self.started.extend(starts.iter().cloned());
-        self.candidates.clear();
-        self.team = Some(Team::new(starts.into_iter()));
     }
 
-    fn end_round(&mut self, team: &Team) {
-        let found = team.results().first().map_or(f64::INFINITY, |best| best.1);
-        let gained = found < self.best * (1.0 - GAIN) && self.best > self.floor;
-        self.rounds_without_gain = if gained { 0 } else { self.rounds_without_gain + 1 };
-        self.best = self.best.min(found);
-        self.questions = 0;
+    fn next_stage(&mut self) {
+        self.stage = match (self.stage, &self.search) {
+            (Stage::Search(left), _) if left > 1 => Stage::Search(left - 1),
+            (Stage::Search(_), _) => Stage::Sample,
+            (Stage::Sample, _) => {
+                let (starts, independent) = self.starts();
+                self.pool.begin(starts, independent);
+                Stage::Descents
+            }
+            (Stage::Descents, Some(_)) => Stage::Search(QUESTIONS),
+            (Stage::Descents, None) => Stage::Sample,
+        };
     }
+}
+
+/// Keeps the best of both.
+fn remember(
+    kept: &mut Vec<(Vec<f64>, f64)>,
+    batch: &Genomes,
+    answers: &Answers<'_>,
+    which: std::ops::Range<usize>,
+) {
+    let all = which.map(|k| (k, answers.fitness(k)));
+    let mut good: Vec<(usize, f64)> = all.filter(|(_, fitness)| !has_failed(*fitness)).collect();
+    good.sort_by(|a, b| key(a.1).total_cmp(&key(b.1)));
+    kept.extend(good.iter().take(CANDIDATES).map(|&(k, f)| (batch.row(k).to_vec(), f)));
+    kept.sort_by(|a, b| key(a.1).total_cmp(&key(b.1)));
+    kept.truncate(CANDIDATES);
 }
 
 fn is_far(a: &[f64], b: &[f64]) -> bool {
@@ -107,55 +160,99 @@ fn is_far(a: &[f64], b: &[f64]) -> bool {
 
 impl Optimizer for Polished {
     fn ask(&mut self, batch: &mut Genomes) {
-        if let Some(mut team) = self.team.take() {
-            team.ask(batch);
+        // Each stage asks something, but for a search that has converged and a round that is over.
+        for _ in 0..4 {
+            match self.stage {
+                Stage::Search(_) => {
+                    if let Some(search) = &mut self.search {
+                        search.ask(batch);
+                    }
+                    if batch.is_empty() {
+                        self.stage = Stage::Sample;
+                    }
+                }
+                Stage::Sample => {
+                    self.sample(batch);
+                }
+                Stage::Descents => {
+                    self.pool.ask(batch);
+                    if batch.is_empty() && self.pool.is_enough() {
+                        if self.pool.finish() {
+                            self.pool.ask(batch);
+                        }
+                        return;
+                    }
+                    if batch.is_empty() {
+                        self.next_stage();
+                    }
+                }
+            }
             if !batch.is_empty() {
-                self.team = Some(team);
                 return;
             }
-            self.end_round(&team);
-        }
-        if self.exhausted || self.rounds_without_gain >= ROUNDS_WITHOUT_GAIN {
-            return;
-        }
-        if self.questions < QUESTIONS {
-            self.search.ask(batch);
-            self.exhausted = batch.is_empty();
-        }
-        if batch.is_empty() {
-            self.begin_round(batch.n_genes());
-            self.ask(batch);
         }
     }
 
     fn tell(&mut self, batch: &Genomes, answers: &Answers<'_>) {
-        match &mut self.team {
-            Some(team) => team.tell(batch, answers),
-            None => {
-                self.questions += 1;
-                self.remember(batch, answers);
-                self.search.tell(batch, answers);
+        match (self.stage, &mut self.search) {
+            (Stage::Descents, _) => return self.pool.tell(batch.len(), answers),
+            (Stage::Search(_), Some(search)) => {
+                remember(&mut self.found, batch, answers, 0..batch.len());
+                search.tell(batch, answers);
+            }
+            _ => {
+                let count = batch.len().min(self.points);
+                remember(&mut self.sampled, batch, answers, 0..count);
+                remember(&mut self.beside, batch, answers, count..batch.len());
             }
         }
+        self.next_stage();
     }
 
     fn wants(&self) -> Wants {
-        self.team.as_ref().map_or_else(|| self.search.wants(), Team::wants)
+        match (self.stage, &self.search) {
+            (Stage::Descents, _) => self.pool.wants(),
+            (Stage::Search(_), Some(search)) => search.wants(),
+            _ => Wants::Objectives,
+        }
     }
 
     fn phase(&self) -> &'static str {
-        if self.team.is_some() { "refinement" } else { self.search.phase() }
+        match (self.stage, &self.search) {
+            (Stage::Descents, _) => "least squares",
+            (Stage::Search(_), Some(search)) => search.phase(),
+            _ => "sampling",
+        }
+    }
+
+    fn descents(&self) -> Vec<DescentReport> {
+        self.pool.reports()
     }
 
     fn change(&mut self, setting: &str, value: f64) -> Result<(), Fault> {
-        self.search.change(setting, value)
+        match &mut self.search {
+            Some(search) => search.change(setting, value),
+            None => Err(crate::fault!(
+                crate::registry::BAD_OPTION,
+                "`{setting}` cannot be changed to {value} during the run"
+            )),
+        }
     }
 
     fn rescale(&mut self, gene: usize, offset: f64, scale: f64) {
-        self.search.rescale(gene, offset, scale);
-        let known = self.candidates.iter_mut().map(|candidate| &mut candidate.0);
-        for genome in known.chain(&mut self.started) {
-            genome[gene] = (offset + scale * genome[gene]).clamp(0.0, 1.0);
+        if let Some(search) = &mut self.search {
+            search.rescale(gene, offset, scale);
+        }
+        // Derivatives and distances of the descents belong to the ranges that were.
+        self.pool.clear();
+        self.found.clear();
+        self.sampled.clear();
+        self.beside.clear();
+        if self.stage == Stage::Descents {
+            self.next_stage();
+        }
+        if let Some(given) = &mut self.given {
+            given[gene] = (offset + scale * given[gene]).clamp(0.0, 1.0);
         }
     }
 }

@@ -25,11 +25,12 @@ pub(crate) fn minimum(
         budget: Some(budget),
         start: None,
         noise: 1e-15,
+        size: 1.0,
         rng: rng.clone(),
     };
-    let mut search = method.start(setup).unwrap();
+    let mut search = method.start(setup.clone()).unwrap();
     if polish {
-        search = Box::new(Polished::new(search, 0.0, rng.substream(1)));
+        search = Box::new(Polished::new(search, &setup, rng.substream(1)));
     }
     let (mut best, mut used) = (f64::INFINITY, 0);
     while used < budget {
@@ -143,7 +144,15 @@ pub(crate) fn dominated(
     let genes = (0..n).map(|j| Gene::new(format!("g{j}"), 0.0, 1.0).unwrap()).collect();
     let n_objectives = objectives(&vec![0.5; n]).len();
     let budget_known = Some(budget as u64);
-    let setup = Setup { genes, n_objectives, budget: budget_known, start: None, noise: 1e-15, rng };
+    let setup = Setup {
+        genes,
+        n_objectives,
+        budget: budget_known,
+        start: None,
+        noise: 1e-15,
+        size: 1.0,
+        rng,
+    };
     let mut search = method.start(setup).unwrap();
     let (mut members, mut used): (Vec<f64>, usize) = (Vec::new(), 0);
     while used < budget {

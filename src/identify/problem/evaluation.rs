@@ -1,7 +1,7 @@
 //! Evaluates populations on all cores. What comes out depends neither on the number of threads
 //! nor on what was evaluated before: equal genes are answered from memory.
 
-use super::{Failed, Free, Linearization, Problem, Simulate};
+use super::{Failed, Linearization, Problem, Simulate};
 use crate::diag::Fault;
 use crate::fault;
 use crate::ga::optimizer::Wants;
@@ -98,6 +98,12 @@ impl Evaluation {
         self.scales.as_deref()
     }
 
+    /// Root of the sum of squares of the measured values, scaled as residuals are.
+    pub(super) fn size(&self) -> f64 {
+        let scales = self.scales.as_deref().unwrap_or(&self.weights);
+        self.measured.iter().zip(scales).map(|(y, s)| (y * s).powi(2)).sum::<f64>().sqrt()
+    }
+
     /// What differences of the points count.
     pub(super) fn weights(&self) -> &[f64] {
         &self.weights
@@ -140,21 +146,13 @@ impl Evaluation {
 
     fn with_jacobians(&self, problem: &Problem, batch: &Genomes) -> Answered {
         let (points, n) = (self.measured.len(), problem.parameters.len());
-        let (mut residuals, mut scales) = (vec![0.0; points], vec![0.0; points]);
         let places: Vec<Vec<f64>> = batch.rows().map(|genome| problem.values(genome)).collect();
         let mut answered = Answered::default();
         for (k, found) in self.linearize(problem, &places).into_iter().enumerate() {
             let (row, failed) = match found {
                 Ok(found) => {
                     answered.simulations += found.simulations;
-                    self.scaled(problem, &found.simulated, &mut residuals, &mut scales);
-                    for (point, scale) in scales.iter().enumerate() {
-                        let one = |(free, (j, value)): (&Free, (usize, &f64))| {
-                            found.derivatives[point * n + j] * scale * free.slope(*value)
-                        };
-                        let values = places[k].iter().enumerate();
-                        answered.jacobians.extend(problem.parameters.iter().zip(values).map(one));
-                    }
+                    answered.jacobians.extend(self.weighted(problem, &places[k], &found));
                     (found.simulated, None)
                 }
                 Err(failed) => {
@@ -169,6 +167,23 @@ impl Evaluation {
             answered.residuals.extend(self.residuals(problem, &row));
         }
         answered
+    }
+
+    /// Derivatives of the weighted residuals by the fractions of the ranges, residuals × genes.
+    pub(super) fn weighted(
+        &self,
+        problem: &Problem,
+        values: &[f64],
+        found: &Linearization,
+    ) -> Vec<f64> {
+        let ranges = problem.parameters.iter().zip(values);
+        let slopes: Vec<f64> = ranges.map(|(free, value)| free.slope(*value)).collect();
+        let points = self.measured.len();
+        let (mut residuals, mut scales) = (vec![0.0; points], vec![0.0; points]);
+        self.scaled(problem, &found.simulated, &mut residuals, &mut scales);
+        let rows = found.derivatives.chunks_exact(values.len()).zip(&scales);
+        rows.flat_map(|(row, scale)| row.iter().zip(&slopes).map(move |(d, s)| d * s * scale))
+            .collect()
     }
 
     fn without(&mut self, problem: &Problem, batch: &Genomes, residuals: bool) -> Answered {
@@ -336,7 +351,7 @@ impl Evaluation {
         (values, unrated.map(|k| unrated_by(&problem.objectives[k].0)))
     }
 
-    fn residuals(&self, problem: &Problem, rows: &[f64]) -> Vec<f64> {
+    pub(super) fn residuals(&self, problem: &Problem, rows: &[f64]) -> Vec<f64> {
         if self.scales.is_none() {
             return Vec::new();
         }

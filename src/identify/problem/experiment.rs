@@ -245,14 +245,11 @@ impl Stage {
         let refusal = self.instance.sensitivity_refusal();
         // From here on values alone.
         let _ = self.instance.differentiate(false);
-        match (attempt, refusal) {
-            (Ok(()), _) => {}
-            (Err(_), Some(refusal)) => return Ok(Err(refusal)),
-            (Err(failed), None) if failed.kind == FailureKind::Solver => {
-                let cause = &failed.cause;
-                return Ok(Err(format!("the sensitivity equations were not solved: {cause}")));
-            }
-            (Err(failed), None) => return Err(failed),
+        if let Err(failed) = attempt {
+            // Whether the model itself fails, a simulation without derivatives tells.
+            let because =
+                |failed: Failed| format!("its equations gave no derivatives: {}", failed.cause);
+            return Ok(Err(refusal.unwrap_or_else(|| because(failed))));
         }
         self.read(trajectory, out)?;
         self.read_derivatives(trajectory, parameters.len(), derivatives)?;

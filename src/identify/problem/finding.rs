@@ -6,6 +6,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FindingKind {
+    /// The best point is not a minimum.
+    NotAMinimum,
     /// A parameter changes no compared point anywhere in its range.
     NoEffect,
     /// Parameters of which no data of this kind determine more than a combination.

@@ -10,6 +10,7 @@ mod checks;
 mod conclusion;
 mod curve;
 mod effects;
+mod ending;
 mod error_model;
 mod evaluation;
 mod experiment;
@@ -35,6 +36,7 @@ mod text;
 
 pub use conclusion::{Conclusion, conclude};
 pub use curve::draw_curves;
+pub use ending::{Ending, EndingKind, OtherMinimum, SolvedDescent};
 pub use error_model::{ErrorModel, Sigma, SigmaFormula, decide, likelihood};
 pub use evaluation::Evaluation;
 pub use experiment::{Experiment, ModelSimulator, Observation};
@@ -43,7 +45,7 @@ pub use failure_region::{FailureRegion, failure_region};
 pub use finding::{Finding, FindingKind, Severity};
 pub use fingerprint::Fingerprint;
 pub use importance::{ANALYSES, Analysis, Importance, ParameterImportance, analysis};
-pub use inference::{Inference, Inferred, infer};
+pub use inference::{Band, BandPoint, Inference, Inferred, infer};
 pub use inseparable::{Form, Inseparable};
 pub use jacobian::Linearization;
 pub use journal::{Journal, Record, decode, encode, first_frame, frame, header};
@@ -73,7 +75,7 @@ pub trait Simulate: Send {
     fn simulate(&mut self, parameters: &[f64], out: &mut [f64]) -> Result<(), Failed>;
     /// Like [`simulate`](Simulate::simulate), and writes into `derivatives` the derivative of every
     /// point by every parameter, point by point (points × parameters). `Ok(false)` where there are
-    /// no exact ones; then neither is written, and the caller takes differences.
+    /// no exact ones; then what was written is not used, and the caller takes differences.
     ///
     /// # Errors
     ///
@@ -208,5 +210,7 @@ impl Problem {
     }
 }
 
+#[cfg(test)]
+mod findings_tests;
 #[cfg(test)]
 mod tests;

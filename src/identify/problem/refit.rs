@@ -107,6 +107,7 @@ impl<'a> Refit<'a> {
             budget: None,
             start: Some(varied.iter().map(|&k| free(k).fraction(start[k])).collect()),
             noise: self.problem.noise,
+            size: self.evaluation.size(),
             rng: Mrg32k3a::new(&self.problem.seed)?,
         })
     }

@@ -1,17 +1,22 @@
 //! A run: the method asks, the simulator answers, until a stop condition holds.
 
+use super::ending::Cause;
 use super::evaluation::{Answered, Evaluation};
-use super::{FailureKind, Fingerprint, Problem, Record};
+use super::{FailureKind, Fingerprint, Problem, Record, Stop};
 use crate::bail;
 use crate::diag::Fault;
 use crate::fault;
-use crate::ga::optimizer::{Answers, Optimizer, Polished, Setup, Wants, non_dominated};
+use crate::ga::optimizer::{
+    Answers, DescentReport, Optimizer, Polished, Setup, Wants, non_dominated,
+};
 use crate::ga::{Gene, Generation, Genomes, History, Mrg32k3a, has_failed, order};
 use crate::registry::BAD_OPTION;
 use indexmap::IndexMap;
 
 /// The smallest relative improvement that is one.
 const IMPROVEMENT: f64 = 1e-6;
+/// Evaluations of a run without any stop condition.
+const EVALUATIONS: u64 = 20_000;
 /// Individuals kept for the figures.
 const KEPT: usize = 4000;
 /// Different causes of failure kept apart.
@@ -62,6 +67,7 @@ pub struct Run {
     reference: f64,
     /// Changes made during the run, and before which question.
     pub changed: Vec<(u64, String, f64)>,
+    cause: Cause,
     /// What [`conclude`](super::conclude) did after the last question.
     pub conclusion: super::Conclusion,
 }
@@ -73,7 +79,7 @@ impl Run {
     ///
     /// Problems without parameters, points or objectives; a method that cannot solve this one;
     /// whatever the simulator's maker refuses.
-    pub fn new(problem: Problem, threads: usize) -> Result<Run, Fault> {
+    pub fn new(mut problem: Problem, threads: usize) -> Result<Run, Fault> {
         if problem.parameters.is_empty() || problem.n_points() == 0 || problem.objectives.is_empty()
         {
             bail!(BAD_OPTION, "there are no parameters, no points or no fitness functions");
@@ -81,6 +87,9 @@ impl Run {
         let several = problem.objectives.len() > 1;
         if several && !problem.method.handles_several_objectives() {
             bail!(BAD_OPTION, "`{}` minimises one fitness function, not {}", problem.method_name, problem.objectives.len(); help: "use `nsga2`");
+        }
+        if problem.stop == Stop::default() {
+            problem.stop.evaluations = Some(EVALUATIONS);
         }
         let evaluation = Evaluation::new(&problem, threads)?;
         if problem.method.needs_residuals() && !evaluation.has_residuals() {
@@ -109,6 +118,7 @@ impl Run {
             last_gain: 0,
             reference: f64::INFINITY,
             changed: Vec::new(),
+            cause: Cause::User,
             conclusion: super::Conclusion::default(),
         })
     }
@@ -125,6 +135,20 @@ impl Run {
 
     /// Why the run is over, in words; `None` while it is not.
     pub fn stop(&mut self) -> Option<String> {
+        let condition = self.condition();
+        self.cause = if condition.is_some() { Cause::Condition } else { Cause::User };
+        if condition.is_some() {
+            return condition;
+        }
+        self.ask();
+        if self.converged {
+            self.cause = Cause::Converged;
+        }
+        self.converged.then(|| "the method has converged".to_owned())
+    }
+
+    /// The stop condition that holds, in words.
+    fn condition(&self) -> Option<String> {
         let stop = self.problem.stop;
         let best = self.best.as_ref().map_or(f64::INFINITY, |best| best.fitness);
         if let Some(target) = stop.target.filter(|target| best <= *target) {
@@ -133,18 +157,39 @@ impl Run {
         if let Some(limit) = stop.generations.filter(|limit| self.generations() >= *limit) {
             return Some(format!("{limit} generations"));
         }
-        if let Some(limit) = stop.evaluations.filter(|limit| self.evaluations >= *limit) {
+        // A Jacobian by differences is one individual, but many simulations.
+        let evaluations = self.evaluations.max(self.simulations);
+        if let Some(limit) = stop.evaluations.filter(|limit| evaluations >= *limit) {
             return Some(format!("{limit} evaluations"));
         }
         if let Some(limit) = stop.seconds.filter(|limit| self.seconds >= *limit) {
             return Some(format!("{limit} seconds"));
         }
         let idle = self.generations() - self.last_gain;
-        if let Some(limit) = stop.stagnation.filter(|limit| idle >= *limit) {
-            return Some(format!("{limit} generations without improvement"));
+        let limit = stop.stagnation.filter(|limit| idle >= *limit)?;
+        Some(format!("{limit} generations without improvement"))
+    }
+
+    /// What ended the search; the user, where nothing else did.
+    pub(super) fn cause(&self) -> Cause {
+        self.cause
+    }
+
+    /// The descents by least squares so far.
+    pub(super) fn descents(&self) -> Vec<DescentReport> {
+        self.optimizer.descents()
+    }
+
+    /// Goes to a better point that was found beside the search, as by a profile: statistics are
+    /// those of this point from now on. Returns whether it is better.
+    pub fn go_to(&mut self, values: &[f64]) -> bool {
+        let Ok(simulated) = self.evaluation.simulate(values) else { return false };
+        let fitness = self.evaluation.objective(&self.problem, &simulated);
+        let is_better = self.best.as_ref().is_none_or(|best| fitness < best.fitness);
+        if is_better && !has_failed(fitness) {
+            self.best = Some(Best { values: values.to_vec(), fitness });
         }
-        self.ask();
-        self.converged.then(|| "the method has converged".to_owned())
+        is_better
     }
 
     /// Changes a setting of the method, or with `min NAME` and `max NAME` a range, or a stop
@@ -362,17 +407,15 @@ fn optimizer(problem: &Problem, evaluation: &Evaluation) -> Result<Box<dyn Optim
         budget: problem.stop.evaluations,
         start: starts.then(|| problem.parameters.iter().map(start).collect()),
         noise: problem.noise,
+        size: evaluation.size(),
         rng: rng.clone(),
     };
-    let search = problem.method.start(setup)?;
+    let search = problem.method.start(setup.clone())?;
     let polished = problem.polish && problem.method.can_be_polished() && evaluation.has_residuals();
     if !polished {
         return Ok(search);
     }
-    let size: f64 = problem.series.iter().flat_map(|s| &s.y).map(|y| y * y).sum();
-    // Below this the residuals are those of rounding, or of the simulator's tolerance.
-    let floor = size * (problem.noise * 1e-3).powi(2).max(1e-32);
-    Ok(Box::new(Polished::new(search, floor, rng.stream(1))))
+    Ok(Box::new(Polished::new(search, &setup, rng.stream(1))))
 }
 
 fn fingerprint(batch: &Genomes) -> u64 {

@@ -44,12 +44,13 @@ impl Free {
         if min == max {
             bail!(BAD_RANGE, "the search range of `{name}` is the one value {min}"; help: "fix it instead: `fixed = {min}`");
         }
-        let logarithmic = logarithmic.unwrap_or(min > 0.0 && max > DECADE * min);
-        if logarithmic && min <= 0.0 {
+        let wide = (min > 0.0 && max > DECADE * min) || (max < 0.0 && min < DECADE * max);
+        let logarithmic = logarithmic.unwrap_or(wide);
+        if logarithmic && min <= 0.0 && max >= 0.0 {
             bail!(
                 BAD_RANGE,
-                "`{name}` is searched on a logarithmic scale, but its range begins at {min}";
-                help: "give a positive minimum, or `scale = \"linear\"`"
+                "`{name}` is searched on a logarithmic scale, but its range {min} to {max} reaches 0";
+                help: "give a range of one sign, or `scale = \"linear\"`"
             );
         }
         if let Some(start) = start.filter(|start| !(min..=max).contains(start)) {
@@ -61,7 +62,10 @@ impl Free {
     /// The value at the fraction `u` of the range, 0 ≤ u ≤ 1.
     pub fn value(&self, u: f64) -> f64 {
         let value = match self.logarithmic {
-            true => (self.min.ln() + (self.max.ln() - self.min.ln()) * u).exp(),
+            true => {
+                let [low, high] = [self.min, self.max].map(|end| end.abs().ln());
+                (low + (high - low) * u).exp().copysign(self.min)
+            }
             false => self.min + (self.max - self.min) * u,
         };
         value.clamp(self.min, self.max)
@@ -77,19 +81,21 @@ impl Free {
         fraction.clamp(0.0, 1.0)
     }
 
-    /// What is searched in place of the value: the value itself or its natural logarithm.
+    /// What is searched in place of the value, growing with it: the value itself or its natural
+    /// logarithm, of a negative value less the logarithm of its size.
     pub(super) fn coordinate(&self, value: f64) -> f64 {
-        if self.logarithmic { value.ln() } else { value }
+        if self.logarithmic { value.abs().ln() * self.min.signum() } else { value }
     }
 
     /// The value that belongs to a [`coordinate`](Self::coordinate).
     pub(super) fn from_coordinate(&self, coordinate: f64) -> f64 {
-        if self.logarithmic { coordinate.exp() } else { coordinate }
+        let sign = self.min.signum();
+        if self.logarithmic { sign * (sign * coordinate).exp() } else { coordinate }
     }
 
     /// The derivative of the coordinate by the value.
     pub(super) fn coordinate_slope(&self, value: f64) -> f64 {
-        if self.logarithmic { value.recip() } else { 1.0 }
+        if self.logarithmic { value.abs().recip() } else { 1.0 }
     }
 
     /// The derivative of the value by the fraction, at a value.
@@ -117,6 +123,24 @@ mod tests {
             assert!((free.slope(value) - slope).abs() < 1e-6 * slope);
         }
         assert!((free(true).value(0.5) - 0.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn negative_ranges_are_searched_by_their_size() {
+        let free = Free::new("a", "V", [-100.0, -0.01], None, None).unwrap();
+        assert!(free.logarithmic && (free.value(0.5) + 1.0).abs() < 1e-12);
+        assert_eq!((free.value(0.0), free.value(1.0)), (-100.0, -0.01));
+        for u in [0.0, 0.2, 0.9] {
+            let value = free.value(u);
+            assert!((free.fraction(value) - u).abs() < 1e-12);
+            assert!((free.from_coordinate(free.coordinate(value)) - value).abs() < 1e-12 * -value);
+            let h = 1e-6;
+            let slope = (free.value(u + h) - free.value(u)) / h;
+            assert!((free.slope(value) - slope).abs() < 1e-4 * slope);
+            let along =
+                (free.coordinate(value * (1.0 - h)) - free.coordinate(value)) / (-value * h);
+            assert!((free.coordinate_slope(value) - along).abs() < 1e-4 * along, "{along}");
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The solution: what was found, how well it fits, and what the data cannot tell.
 
 use super::effects::{Effect, effect};
+use super::ending::{self, Ending, EndingKind, OtherMinimum, SolvedDescent};
 use super::statistics::distributions::chi_square_tails;
 use super::{
     ErrorModel, FailureKind, FailureRegion, Finding, FindingKind, Form, Importance, Inferred,
@@ -64,6 +65,14 @@ pub struct Solution {
     pub negative_log_likelihood: Option<f64>,
     /// Why the run ended.
     pub stop: String,
+    /// Whether it ended at a minimum, and how that is known.
+    pub ending: Ending,
+    /// The descents by least squares, in their order.
+    #[serde(default)]
+    pub descents: Vec<SolvedDescent>,
+    /// Minima beside the best whose sum of squares lies within the 95 % limit of the likelihood.
+    #[serde(default)]
+    pub other_minima: Vec<OtherMinimum>,
     /// Questions of the method.
     pub generations: u64,
     /// Individuals evaluated.
@@ -274,6 +283,13 @@ impl Solution {
         let effects = effects(run, &best.values, &simulated, &mut statistics);
         let series = solved_series(problem, &statistics, &simulated);
         let parameters = parameters(run, &best.values, &statistics, &effects);
+        let ending = Ending::of(run, &best.values);
+        let descents = ending::descents(run);
+        let limit = super::conclusion::limit(&statistics);
+        let other_minima = match ending.kind {
+            EndingKind::Minimum => ending::other_minima(&descents, limit),
+            _ => Vec::new(),
+        };
         let kinds = FailureKind::ALL.iter().zip(&run.failed).filter(|(_, count)| **count > 0);
         let mut solution = Solution {
             title: problem.title.clone(),
@@ -302,10 +318,15 @@ impl Solution {
             chi_square: chi_square(run, &statistics),
             negative_log_likelihood: negative_log_likelihood(run, &statistics),
             stop: stop.to_owned(),
+            descents,
+            other_minima,
             generations: run.generations(),
             evaluations: run.evaluations,
             simulations: run.simulations,
-            simulations_for_statistics: statistics.simulations + run.conclusion.simulations,
+            simulations_for_statistics: statistics.simulations
+                + run.conclusion.simulations
+                + ending.simulations,
+            ending,
             failures: kinds.map(|(kind, count)| (kind.name().to_owned(), *count)).collect(),
             causes: run.causes.clone(),
             failure_region: super::failure_region(&problem.parameters, &run.kept),
@@ -327,7 +348,23 @@ impl Solution {
         };
         let own = super::notes::findings(&solution, run, &statistics, &effects, &simulated);
         solution.findings = own;
+        if solution.ending.kind != EndingKind::Minimum {
+            solution.drop_verdicts();
+        }
+        solution.findings.extend(ending::about_other_minima(&solution));
         Ok(solution)
+    }
+
+    /// Takes away everything that holds at a minimum only, and says that this is none.
+    fn drop_verdicts(&mut self) {
+        for parameter in &mut self.parameters {
+            (parameter.deviation, parameter.interval, parameter.verdict) = (None, None, None);
+        }
+        (self.correlations, self.condition) = (None, None);
+        self.findings.retain(|finding| ending::holds_anywhere(finding.kind));
+        let words = self.ending.words.clone();
+        let finding = Finding::new(FindingKind::NotAMinimum, words).severity(Severity::Serious);
+        self.findings.insert(0, finding);
     }
 
     /// Adds the profiles of all parameters and what they say; where there are none, a finding says

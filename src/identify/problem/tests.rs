@@ -142,7 +142,7 @@ fn a_product_is_named_as_inseparable() {
     let run = Run::new(problem("genetic", product, &[2.0, 3.0], &NOISE), 1).unwrap();
     let (solution, _) = finish(run);
     let note = &solution.findings[0].sentence;
-    assert!(note.starts_with("p0, p1 cannot be determined separately by any data"), "{note}");
+    assert!(note.starts_with("p0, p1 are structurally non-identifiable by data"), "{note}");
     assert!(note.contains("depends on p0*p1 alone. Fix one of them."), "{note}");
     assert!(solution.parameters.iter().all(|p| p.determined == Some(false)));
 }

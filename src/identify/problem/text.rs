@@ -1,6 +1,6 @@
 //! The solution as text: for people, as CSV, as Modelica and as script.
 
-use super::{Profile, Solution, SolvedParameter, SolvedSeries};
+use super::{Profile, Solution, SolvedParameter, SolvedSeries, Verdict};
 use crate::identify::table::significant;
 use crate::plot::{self, Comparison, Figure};
 use std::fmt::Write;
@@ -41,6 +41,18 @@ impl Solution {
         let mut facts = vec![("model", self.model.clone()), ("objective", self.objective_values())];
         facts.extend(self.series.iter().map(|series| ("series", series_line(series))));
         facts.extend(self.validation.iter().map(|series| ("validation", series_line(series))));
+        if let Some(chi) = &self.chi_square {
+            let text = format!(
+                "{} for {} degrees of freedom, probability of more {}",
+                significant(chi.value, 5),
+                chi.freedom,
+                significant(chi.probability, 3)
+            );
+            facts.push(("chi-square", text));
+        }
+        if let Some(value) = self.negative_log_likelihood {
+            facts.push(("-log L", significant(value, 7)));
+        }
         if let Some(condition) = self.condition {
             facts.push(("condition", significant(condition, 3)));
         }
@@ -269,6 +281,10 @@ fn series_line(series: &SolvedSeries) -> String {
         significant(series.rmse, 4),
         series.y[1]
     );
+    if let Some(sigma) = series.sigma {
+        let how = if series.sigma_estimated { "estimated" } else { "given" };
+        _ = write!(line, ", sigma {} ({how})", significant(sigma, 4));
+    }
     if let Some(r_squared) = series.r_squared {
         _ = write!(line, ", R2 {}", significant(r_squared, 6));
     }
@@ -308,8 +324,8 @@ fn cells(parameter: &SolvedParameter) -> [String; 7] {
         None => "-".to_owned(),
     };
     let mut remarks = Vec::new();
-    if parameter.determined == Some(false) {
-        remarks.push("not identifiable from these data");
+    if let Some(verdict) = parameter.verdict.filter(|verdict| *verdict != Verdict::Identifiable) {
+        remarks.push(verdict.words());
     }
     if parameter.at_bound {
         remarks.push("at the end of its range");

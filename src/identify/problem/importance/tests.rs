@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::identify::fitness::FITNESSES;
-use crate::identify::problem::{Failed, FailureKind, Free, Series, Simulate, Stop};
+use crate::identify::problem::{Failed, FailureKind, Free, Series, Sigma, Simulate, Stop};
 
 struct Formula<F>(F);
 
@@ -40,7 +40,7 @@ fn analysed(
             x: vec![0.0, 1.0],
             y: vec![0.0, 0.0],
             weight: 2.0,
-            sigma: Sigma::Unknown,
+            sigma: crate::identify::problem::Sigma::Unknown,
             column: String::new(),
             rows: Vec::new(),
             missing: Vec::new(),

@@ -19,6 +19,11 @@ const RANK: [f64; 2] = [1e-7, 1e-4];
 const SHARE: f64 = 1e-6;
 /// The upper end of a 95 % interval as a probability.
 const UPPER: f64 = 0.975;
+/// Beyond this relative offset the best values lie farther from the minimum than a tenth of their
+/// standard errors, and what is linear about them does not hold about the minimum.
+const MINIMUM: f64 = 0.1;
+/// Values nearer to a bound than this fraction of the range are held by it.
+const AT_BOUND: f64 = 1e-6;
 /// Residuals below this many times the error of the simulation come from the simulation.
 const FROM_THE_SOLVER: f64 = 100.0;
 
@@ -34,12 +39,16 @@ pub struct Local {
     pub residuals: Vec<f64>,
     /// Jacobian of the weighted simulated points: points × parameters.
     pub jacobian: DMatrix<f64>,
-    /// Variance of the weighted residuals: their sum of squares by the degrees of freedom.
+    /// Variance of the weighted residuals: 1 where sigma is known, else their sum of squares by the
+    /// degrees of freedom.
     pub variance: f64,
     /// Points less parameters.
     pub freedom: f64,
     /// Whether the standard deviations of the measurements are known, so that the variance is 1.
     pub known: bool,
+    /// Whether the fit minimises a robust loss: the variance is then that of its estimates, and not
+    /// that of a measurement.
+    pub robust: bool,
     /// Half-width of a 95 % interval as a multiple of the standard error.
     pub quantile: f64,
     /// The Fisher information.
@@ -75,7 +84,8 @@ impl Local {
         if !found.repeated.is_empty() {
             return Err("two series hold the same numbers");
         }
-        let Statistics { weights: scales, residuals, freedom, believed, .. } = found;
+        let Statistics { weights: scales, residuals, freedom, believed, variance, robust, .. } =
+            found;
         if freedom <= 0.0 {
             return Err("there are not more points than parameters");
         }
@@ -92,9 +102,17 @@ impl Local {
                 "the residuals are as small as the errors of the simulation, so that nothing is known of the noise",
             );
         }
-        let variance = if believed { 1.0 } else { square / freedom };
         let gram = jacobian.tr_mul(&jacobian) / variance;
         let information = Information::new(&gram, Local::tolerance(problem.noise));
+        // Where sigma is believed, a standard error is 1 and not what is left of the residuals.
+        let spread = if believed { variance.max(square / freedom) } else { square / freedom };
+        let gradient = jacobian.tr_mul(&DVector::from_column_slice(&residuals));
+        if !robust
+            && offset(problem, values, &gradient, &information) / variance.sqrt()
+                > MINIMUM * spread.sqrt()
+        {
+            return Err("the best values are not a minimum of the sum of squares");
+        }
         Ok(Local {
             values: values.to_vec(),
             simulated,
@@ -104,6 +122,7 @@ impl Local {
             variance,
             freedom,
             known: believed,
+            robust,
             quantile: found.factor,
             information,
         })
@@ -124,6 +143,24 @@ impl Local {
         let scale = nearest.map_or(1.0, |(k, _)| self.scales[first + k]);
         self.variance.sqrt() / scale
     }
+}
+
+/// How far the Gauss-Newton step would move the weighted points, root mean square over the
+/// parameters, times the root of the variance, which the information holds: the numerator of the
+/// relative offset of Bates and Watts. Parameters that a bound holds are left out.
+fn offset(
+    problem: &Problem,
+    values: &[f64],
+    gradient: &DVector<f64>,
+    information: &Information,
+) -> f64 {
+    let inside = |(k, part): (usize, &f64)| {
+        let place = problem.parameters[k].fraction(values[k]);
+        if place.min(1.0 - place) < AT_BOUND { 0.0 } else { *part }
+    };
+    let parts: Vec<f64> = gradient.iter().enumerate().map(inside).collect();
+    let moved = information.variance_of(&parts).unwrap_or(0.0);
+    (moved / values.len() as f64).sqrt()
 }
 
 /// The 97.5 % quantile of the normal distribution where sigma is known, else of Student's.

@@ -113,6 +113,16 @@ pub fn infer(run: &Run) -> Result<Inferred, Fault> {
         design::add(&run.problem, settings, &local, &mut found)?;
     }
     found.remarks.extend(prior_data::compared(&run.problem, &local));
+    if local.robust {
+        found.likelihood = None;
+        if wanted.bootstrap.is_some() || wanted.posterior.is_some() {
+            found.refusals.push(format!(
+                "There is neither a bootstrap nor a posterior of the robust loss `{}`: minimise `sum_of_squares` for them.",
+                run.problem.objectives[0].0
+            ));
+        }
+        return Ok(found);
+    }
     if let Some(settings) = &wanted.bootstrap {
         bootstrap::add(run, settings, &local, &mut found)?;
     }

@@ -409,3 +409,25 @@ fn constraints_hold_and_are_named_where_they_are_active() {
     );
     assert!(found.remarks[0].contains("`p0 <= p1`"), "{:?}", found.remarks);
 }
+
+#[test]
+fn nothing_is_inferred_beside_a_minimum() {
+    let (x, y) = beginning();
+    let mut problem = problem(saturation, &x, &y, &RANGES);
+    let predict = Formulas { measured: saturation, others: Vec::new(), end: 10.0 };
+    problem.inference.predict = Some(Box::new(predict));
+    problem.inference.design = Some(DesignSettings { points: 4, range: None, outputs: Vec::new() });
+    let mut run = finished(problem);
+    let best = run.best.as_ref().unwrap().values.clone();
+    let local = Local::at(&run.problem, &run.evaluation, &best).unwrap();
+    let error = local.information.variances()[0].unwrap().sqrt();
+    // By a thousandth of a standard error, and by a half, the other parameter held.
+    for (part, holds) in [(0.001, true), (0.5, false)] {
+        let mut values = best.clone();
+        values[0] += part * error;
+        run.best.as_mut().unwrap().values = values;
+        let found = infer(&run).unwrap();
+        assert_eq!(found.next_measurement.is_some(), holds, "{part}");
+        assert_eq!(found.refusals.iter().any(|why| why.contains("are not a minimum")), !holds);
+    }
+}

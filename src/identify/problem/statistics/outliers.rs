@@ -94,6 +94,9 @@ pub(in super::super) fn basis(jacobian: &[Vec<f64>], kept: &[usize]) -> DMatrix<
             columns.push(rest / left);
         }
     }
+    if columns.is_empty() {
+        return DMatrix::zeros(kept.len(), 0);
+    }
     DMatrix::from_columns(&columns).resize_vertically(kept.len(), 0.0)
 }
 
@@ -140,6 +143,15 @@ mod tests {
         let shift = last.dot(&own) / last[39];
         assert_eq!(found.point, 39);
         assert!((found.studentised - shift / se).abs() < 1e-9, "{found:?} {}", shift / se);
+    }
+
+    #[test]
+    fn without_derivatives_residuals_are_compared_as_they_are() {
+        let (_, mut r) = line();
+        r[7] = 3.0;
+        let found = outliers(&[vec![0.0; 40]], &r, 1e-3);
+        assert_eq!(found.len(), 1);
+        assert_eq!(found[0].point, 7);
     }
 
     #[test]

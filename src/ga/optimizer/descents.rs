@@ -1,0 +1,227 @@
+//! Descents of least squares from several starts: how each ended, which of them reached the same
+//! minimum, and whether further starts are worth their cost.
+//!
+//! Reference: [Boender & Rinnooy Kan 1987](crate::bibliography#boender-rinnooy-kan-1987): where n
+//! descents have ended in w different minima, w (n − 1) / (n − w − 2) are expected in all.
+
+use super::levenberg_marquardt::{Accuracy, COARSE, Descent, FINE};
+use super::{Answers, Wants};
+use crate::ga::Genomes;
+use serde::{Deserialize, Serialize};
+
+/// Descents from different starts that must agree before a search ends early.
+const AGREEING: usize = 3;
+/// Minima not found yet, expected, above which a search goes on.
+const MISSING: f64 = 1.0;
+/// Steps of a descent in one round; most of the problems of NIST need fewer.
+const STEPS: usize = 40;
+/// Steps to make the best minimum finer.
+const FINE_STEPS: usize = 100;
+
+/// How a descent ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DescentEnd {
+    /// At a minimum: the test of Bates and Watts holds.
+    Minimum,
+    /// Its steps were used up, or the search ended before it did.
+    StepLimit,
+    /// No step reduces the sum of squares beyond the errors of the simulation.
+    NoDescent,
+    /// Nothing that is varied has an effect there.
+    Flat,
+    /// Its start could not be simulated.
+    Failed,
+}
+
+/// One descent.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DescentReport {
+    /// Where it started and where it ended, in the unit cube.
+    pub start: Vec<f64>,
+    /// Where it stands.
+    pub end: Vec<f64>,
+    /// The sum of squares there.
+    pub objective: f64,
+    /// How it ended.
+    pub ending: DescentEnd,
+    /// The relative offset there, where there are degrees of freedom.
+    pub offset: Option<f64>,
+    /// Steps tried.
+    pub steps: u64,
+    /// The number of the end: descents that ended at the same place share it; 0 is the best.
+    pub group: usize,
+}
+
+/// All descents of a search; those of a round are asked together, trials first, then Jacobians.
+pub(super) struct Pool {
+    descents: Vec<Descent>,
+    /// Whether each began at a point that owes nothing to other descents.
+    independent: Vec<bool>,
+    active: Vec<usize>,
+    /// Individuals that each of the active ones asked in the last question.
+    shares: Vec<usize>,
+    wants: Wants,
+    accuracy: Accuracy,
+}
+
+impl Pool {
+    pub(super) fn new(accuracy: Accuracy) -> Pool {
+        Pool {
+            descents: Vec::new(),
+            independent: Vec::new(),
+            active: Vec::new(),
+            shares: Vec::new(),
+            wants: Wants::Jacobians,
+            accuracy,
+        }
+    }
+
+    /// Begins a round: descends from these starts, goes on with the best of the descents whose steps
+    /// were used up, and makes the best minimum finer. The first `independent` starts owe nothing
+    /// to earlier descents.
+    pub(super) fn begin(&mut self, starts: Vec<Vec<f64>>, independent: usize) {
+        self.active.clear();
+        let open = |k: &usize| !self.descents[*k].has_ended();
+        if let Some(open) = self.smallest_of(open) {
+            self.descents[open].grant(STEPS, COARSE);
+            self.active.push(open);
+        }
+        self.refine();
+        for (number, start) in starts.into_iter().enumerate() {
+            self.active.push(self.descents.len());
+            self.descents.push(Descent::new(start, self.accuracy, STEPS, COARSE));
+            self.independent.push(number < independent);
+        }
+        self.shares = vec![0; self.active.len()];
+    }
+
+    /// Goes on with the best descent where it can come nearer to its minimum.
+    fn refine(&mut self) {
+        if let Some(best) = self.best().filter(|best| self.descents[*best].can_be_refined()) {
+            self.descents[best].grant(FINE_STEPS, FINE);
+            self.active.push(best);
+        }
+    }
+
+    /// Goes on with the best minimum alone; whether there is anything to do.
+    pub(super) fn finish(&mut self) -> bool {
+        self.active.clear();
+        self.refine();
+        self.shares = vec![0; self.active.len()];
+        !self.active.is_empty()
+    }
+
+    /// Asks for the next individuals; without any the round is over.
+    pub(super) fn ask(&mut self, batch: &mut Genomes) {
+        for wants in [Wants::Residuals, Wants::Jacobians] {
+            self.wants = wants;
+            for (&k, share) in self.active.iter().zip(&mut self.shares) {
+                let before = batch.len();
+                if self.descents[k].wants_now() == wants {
+                    self.descents[k].ask_next(batch);
+                }
+                *share = batch.len() - before;
+            }
+            if !batch.is_empty() {
+                return;
+            }
+        }
+        self.active.clear();
+    }
+
+    pub(super) fn wants(&self) -> Wants {
+        self.wants
+    }
+
+    pub(super) fn tell(&mut self, count: usize, answers: &Answers<'_>) {
+        let mut first = 0;
+        for (&k, &share) in self.active.iter().zip(&self.shares) {
+            if share > 0 {
+                self.descents[k].take(&answers.part(first, first + share, count));
+                first += share;
+            }
+        }
+    }
+
+    /// Forgets everything, as the ranges have changed.
+    pub(super) fn clear(&mut self) {
+        *self = Pool::new(self.accuracy);
+    }
+
+    /// The descent with the smallest sum of squares.
+    fn best(&self) -> Option<usize> {
+        self.smallest_of(|_| true)
+    }
+
+    fn smallest_of(&self, is_meant: impl Fn(&usize) -> bool) -> Option<usize> {
+        let sum = |k: &usize| self.descents[*k].sum();
+        (0..self.descents.len())
+            .filter(|k| sum(k).is_finite() && is_meant(k))
+            .min_by(|a, b| sum(a).total_cmp(&sum(b)))
+    }
+
+    /// Where the best descent stands.
+    pub(super) fn best_place(&self) -> Option<&[f64]> {
+        self.best().map(|best| self.descents[best].places()[1])
+    }
+
+    /// The smallest sum of squares.
+    pub(super) fn smallest(&self) -> f64 {
+        self.best().map_or(f64::INFINITY, |best| self.descents[best].sum())
+    }
+
+    /// Where descents have started and ended.
+    pub(super) fn visited(&self) -> impl Iterator<Item = &[f64]> {
+        self.descents.iter().flat_map(Descent::places)
+    }
+
+    /// The number of the end of each descent, in the order of the sums of squares.
+    fn groups(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.descents.len()).collect();
+        order.sort_by(|a, b| self.descents[*a].sum().total_cmp(&self.descents[*b].sum()));
+        let mut groups = vec![0; order.len()];
+        let mut first: Vec<usize> = Vec::new();
+        for k in order {
+            let known = first.iter().position(|&one| self.descents[one].agrees(&self.descents[k]));
+            groups[k] = known.unwrap_or(first.len());
+            if known.is_none() {
+                first.push(k);
+            }
+        }
+        groups
+    }
+
+    /// Whether the best minimum was reached often enough, and few others can be expected.
+    pub(super) fn is_enough(&self) -> bool {
+        // Descents from beside others are no evidence.
+        let all = self.reports().into_iter().zip(&self.independent);
+        let reports: Vec<DescentReport> =
+            all.filter(|(_, independent)| **independent).map(|(report, _)| report).collect();
+        let ended = reports
+            .iter()
+            .filter(|report| !matches!(report.ending, DescentEnd::StepLimit | DescentEnd::Failed));
+        let n = ended.clone().count();
+        let mut different: Vec<usize> = ended.map(|report| report.group).collect();
+        different.sort_unstable();
+        different.dedup();
+        let (n, w) = (n as f64, different.len() as f64);
+        let expected = w * (n - 1.0) / (n - w - 2.0);
+        reached(&reports) >= AGREEING && n > w + 2.0 && expected <= w + MISSING
+    }
+
+    pub(super) fn reports(&self) -> Vec<DescentReport> {
+        let groups = self.groups();
+        let report =
+            |(descent, group): (&Descent, usize)| DescentReport { group, ..descent.report() };
+        self.descents.iter().zip(groups).map(report).collect()
+    }
+}
+
+/// Descents that ended at the best minimum; 0 where the best is none.
+pub fn reached(reports: &[DescentReport]) -> usize {
+    reports
+        .iter()
+        .filter(|report| report.group == 0 && report.ending == DescentEnd::Minimum)
+        .count()
+}

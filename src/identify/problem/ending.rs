@@ -1,0 +1,247 @@
+//! How a run ended: at a minimum by a test that can fail, or at the end of its steps or its budget.
+//! What the data determine is said of a minimum only.
+//!
+//! The test is that of Bates and Watts at the best point: the part of the residuals in the tangent
+//! plane of the model is small against the part across it, so that the parameters lie within a
+//! thousandth of their standard errors of the minimum. Genes held by a bound are left out; residuals
+//! of the size of rounding are tested by the step of Gauss and Newton.
+//!
+//! Reference: [Bates & Watts 1981](crate::bibliography#bates-watts-1981).
+
+use super::{Evaluation, Finding, FindingKind, Linearization, Problem, Run, Severity, Solution};
+use crate::ga::optimizer::{DescentEnd, DescentReport, MINIMUM, Offset, reached, test_minimum};
+use crate::identify::table::significant;
+use serde::{Deserialize, Serialize};
+
+/// Where a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EndingKind {
+    /// At a minimum, by the test.
+    Minimum,
+    /// The steps of the best descent were used up.
+    StepLimit,
+    /// A stop condition ended the search before a minimum.
+    Budget,
+    /// The user ended the run before a minimum.
+    Stopped,
+    /// No step reduces the objective beyond the errors of the simulation.
+    NoDescent,
+    /// The objective is not a sum of squares, so that the test cannot be made.
+    #[default]
+    Untested,
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Ending {
+    /// In one word.
+    pub kind: EndingKind,
+    /// The relative offset at the best point; `None` where it cannot be computed.
+    pub relative_offset: Option<f64>,
+    /// How many descents reached the best minimum, of how many; `None` without descents.
+    pub reached: Option<[usize; 2]>,
+    /// In one sentence.
+    pub words: String,
+    /// Simulations of the test.
+    pub simulations: u64,
+}
+
+/// A descent of least squares, with values of the parameters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SolvedDescent {
+    /// Where it started.
+    pub start: Vec<f64>,
+    /// Where it ended.
+    pub end: Vec<f64>,
+    /// The sum of squares there; `None` where the start could not be simulated.
+    pub objective: Option<f64>,
+    /// How it ended.
+    pub ending: DescentEnd,
+    /// The relative offset at its end.
+    pub relative_offset: Option<f64>,
+    /// Steps tried.
+    pub steps: u64,
+    /// Descents with the same number ended at the same place; 0 is the best.
+    pub group: usize,
+}
+
+/// A minimum beside the best that the data do not exclude.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct OtherMinimum {
+    /// Values of the parameters.
+    pub values: Vec<f64>,
+    /// The sum of squares there.
+    pub objective: f64,
+    /// Descents that reached it.
+    pub reached: usize,
+}
+
+/// What ended the search, as far as it is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Cause {
+    Condition,
+    Converged,
+    User,
+}
+
+impl Ending {
+    /// Tests the best point of a run.
+    pub(super) fn of(run: &Run, values: &[f64]) -> Ending {
+        let descents = run.descents();
+        let count = descents.len();
+        let reached = (count > 0).then(|| [reached(&descents), count]);
+        let untested = |simulations| Ending {
+            kind: EndingKind::Untested,
+            relative_offset: None,
+            reached,
+            words: untested(&run.problem),
+            simulations,
+        };
+        if !run.evaluation.has_residuals() || run.problem.objectives.len() > 1 {
+            return untested(0);
+        }
+        let found = run.evaluation.linearize(&run.problem, &[values.to_vec()]).pop();
+        let Some(Ok(found)) = found else { return untested(1) };
+        let (offset, is_minimum) = tested(&run.problem, &run.evaluation, values, &found);
+        let kind = if is_minimum { EndingKind::Minimum } else { otherwise(run, &descents) };
+        Ending {
+            kind,
+            relative_offset: offset.relative.filter(|relative| relative.is_finite()),
+            reached,
+            words: words(kind, &offset, reached),
+            simulations: found.simulations,
+        }
+    }
+}
+
+fn tested(
+    problem: &Problem,
+    evaluation: &Evaluation,
+    values: &[f64],
+    found: &Linearization,
+) -> (Offset, bool) {
+    let parameters = &problem.parameters;
+    let point: Vec<f64> = parameters.iter().zip(values).map(|(f, v)| f.fraction(*v)).collect();
+    let residuals = evaluation.residuals(problem, &found.simulated);
+    let jacobian = evaluation.weighted(problem, values, found);
+    test_minimum(&point, &residuals, &jacobian, [problem.noise, evaluation.size()])
+}
+
+fn otherwise(run: &Run, descents: &[DescentReport]) -> EndingKind {
+    let best = descents.iter().min_by(|a, b| a.objective.total_cmp(&b.objective));
+    match (run.cause(), best.map(|best| best.ending)) {
+        (Cause::User, _) => EndingKind::Stopped,
+        (Cause::Condition, _) => EndingKind::Budget,
+        (Cause::Converged, Some(DescentEnd::StepLimit)) => EndingKind::StepLimit,
+        (Cause::Converged, _) => EndingKind::NoDescent,
+    }
+}
+
+fn untested(problem: &Problem) -> String {
+    if problem.objectives.len() > 1 {
+        return "Several objectives have a front, not a minimum: there are no intervals."
+            .to_owned();
+    }
+    format!(
+        "Whether this is a minimum cannot be tested: `{}` is not a sum of squares, or the simulation \
+         fails beside the best point. There are no intervals.",
+        problem.objectives[0].0
+    )
+}
+
+fn words(kind: EndingKind, offset: &Offset, reached: Option<[usize; 2]>) -> String {
+    let limit = significant(MINIMUM, 1);
+    let measure = match offset.relative.filter(|relative| relative.is_finite()) {
+        Some(relative) => format!("relative offset {}", significant(relative, 2)),
+        None => format!("step of Gauss and Newton {} of the ranges", significant(offset.step, 2)),
+    };
+    let why = match kind {
+        EndingKind::Minimum => {
+            let by = reached.filter(|[n, _]| *n > 0).map_or_else(String::new, |[n, of]| {
+                format!(", reached by {n} of {of} descent{}", if of == 1 { "" } else { "s" })
+            });
+            return format!("Minimum found ({measure}){by}.");
+        }
+        EndingKind::StepLimit => "the steps of the descent are used up",
+        EndingKind::Budget => "the budget is used up",
+        EndingKind::Stopped => "the run was stopped by you",
+        EndingKind::NoDescent | EndingKind::Untested => {
+            "no step reduces the objective beyond the errors of the simulation"
+        }
+    };
+    format!(
+        "This is not a minimum: {why} ({measure}; below {limit} at a minimum). There are no \
+         intervals, and nothing is said about identifiability."
+    )
+}
+
+/// The descents of a run, in their order.
+pub(super) fn descents(run: &Run) -> Vec<SolvedDescent> {
+    let one = |report: DescentReport| SolvedDescent {
+        start: run.problem.values(&report.start),
+        end: run.problem.values(&report.end),
+        objective: Some(report.objective).filter(|sum| sum.is_finite()),
+        ending: report.ending,
+        relative_offset: report.offset.filter(|offset| offset.is_finite()),
+        steps: report.steps,
+        group: report.group,
+    };
+    run.descents().into_iter().map(one).collect()
+}
+
+/// Minima whose sum of squares is below `limit`, but for the best, best first.
+pub(super) fn other_minima(descents: &[SolvedDescent], limit: f64) -> Vec<OtherMinimum> {
+    let is_near = |descent: &&SolvedDescent| {
+        descent.group > 0
+            && descent.ending == DescentEnd::Minimum
+            && descent.objective.is_some_and(|sum| sum <= limit)
+    };
+    let mut others: Vec<(usize, OtherMinimum)> = Vec::new();
+    for descent in descents.iter().filter(is_near) {
+        match others.iter_mut().find(|(group, _)| *group == descent.group) {
+            Some((_, known)) => known.reached += 1,
+            None => others.push((
+                descent.group,
+                OtherMinimum {
+                    values: descent.end.clone(),
+                    objective: descent.objective.unwrap_or(f64::NAN),
+                    reached: 1,
+                },
+            )),
+        }
+    }
+    others.sort_by(|a, b| a.1.objective.total_cmp(&b.1.objective));
+    others.into_iter().map(|(_, other)| other).collect()
+}
+
+/// Findings that need no minimum.
+pub(super) fn holds_anywhere(kind: FindingKind) -> bool {
+    matches!(
+        kind,
+        FindingKind::MissingPoints
+            | FindingKind::ColumnsEqual
+            | FindingKind::ScaleOfOutputs
+            | FindingKind::ErrorModel
+            | FindingKind::SolverTolerance
+            | FindingKind::Failures
+            | FindingKind::Missing
+    )
+}
+
+/// A finding for each other minimum.
+pub(super) fn about_other_minima(solution: &Solution) -> Vec<Finding> {
+    let one = |other: &OtherMinimum| {
+        let pairs = solution.parameters.iter().zip(&other.values);
+        let values: Vec<String> =
+            pairs.map(|(p, value)| format!("{} = {}", p.name, significant(*value, 5))).collect();
+        let sentence = format!(
+            "Another minimum fits these data as well within the 95 % limit ({} against {}): {}.",
+            significant(other.objective, 6),
+            significant(solution.fitness, 6),
+            values.join(", ")
+        );
+        Finding::new(FindingKind::OtherMinimum, sentence).severity(Severity::Serious)
+    };
+    solution.other_minima.iter().map(one).collect()
+}
