@@ -7,9 +7,9 @@
 
 use super::fitness::FITNESSES;
 use super::problem::{
-    EndingKind, Experiment, Finding, FindingKind, Free, Inference, ModelSimulator, Observation, Problem, Run,
-    ScriptResult, Series, Severity, Sigma, Simulate, Solution, SolvedParameter, SolvedSeries, Stop,
-    conclude, draw_curves, failure_region,
+    EndingKind, Experiment, Finding, FindingKind, Free, Inference, ModelSimulator, Observation,
+    Problem, Run, ScriptResult, Series, Severity, Sigma, Simulate, Solution, SolvedParameter,
+    SolvedSeries, Stop, conclude, draw_curves, failure_region,
 };
 use super::recorder::{Best, Compared, Recorder};
 use super::table::significant;
