@@ -110,9 +110,12 @@ pub(super) struct RunArgs {
     /// The script (.mos)
     #[arg(value_hint = ValueHint::FilePath, required_unless_present = "parse_only")]
     pub script: Option<PathBuf>,
-    /// Folder for results and figures
-    #[arg(long, default_value = "results", value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub out: PathBuf,
+    /// Folder for results and figures [default: one for each script below `results`]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Replace the results of another problem in that folder
+    #[arg(long)]
+    pub overwrite: bool,
     /// Threads to use [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
@@ -131,6 +134,9 @@ pub(super) struct RunArgs {
     /// Record what the genetic algorithm did, for `gapi teach`
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub trace: Option<PathBuf>,
+    /// Leave out the least squares that end an identification, from its best individual
+    #[arg(long)]
+    pub no_probe: bool,
     /// Show errors only
     #[arg(long, short)]
     pub quiet: bool,
@@ -260,7 +266,7 @@ Examples:
 `:help` lists the commands of the prompt.")]
 pub(super) struct ReplArgs {
     /// Folder for results and figures
-    #[arg(long, default_value = "results", value_name = "DIR", value_hint = ValueHint::DirPath)]
+    #[arg(long, default_value = "results/repl", value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: PathBuf,
     /// A script to run first
     #[arg(value_hint = ValueHint::FilePath)]
@@ -317,9 +323,12 @@ pub(super) struct IdentifyArgs {
     /// Further problems of the same data: the models are compared
     #[arg(value_hint = ValueHint::FilePath)]
     pub others: Vec<PathBuf>,
-    /// Folder for results, figures and the checkpoint
-    #[arg(long, default_value = "results", value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub out: PathBuf,
+    /// Folder for results, figures and the checkpoint [default: one for each problem below `results`]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Replace the results of another problem in that folder
+    #[arg(long)]
+    pub overwrite: bool,
     /// Threads to use [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
@@ -396,9 +405,12 @@ pub(super) struct TeachArgs {
     /// Write one page with all steps, for any browser, in place of the text
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub html: Option<PathBuf>,
-    /// Folder for the results and the trace of the run
-    #[arg(long, default_value = "results", value_name = "DIR", value_hint = ValueHint::DirPath)]
-    pub out: PathBuf,
+    /// Folder for the results and the trace of the run [default: one for each script below `results`]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Replace the results of another problem in that folder
+    #[arg(long)]
+    pub overwrite: bool,
 }
 
 /// Arguments of `gapi lesson`.
@@ -533,11 +545,12 @@ Examples:
   gapi report results
   gapi report results --output fit.html
 
-It reads result.json, history.csv and individuals.csv, as `gapi identify` has written them.
+It reads result.json, history.csv and individuals.csv, as `gapi run` and `gapi identify` have
+written them; in a folder of several problems those that were written last.
 
 Exit code: 0 if the report was written, 1 if a file is missing or damaged.")]
 pub(super) struct ReportArgs {
-    /// The folder with the results of `gapi identify`
+    /// The folder with the results of `gapi run` or `gapi identify`
     #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub folder: PathBuf,
     /// The page [default: report.html in the folder]

@@ -2,12 +2,13 @@
 
 use super::args::{Global, IdentifyArgs};
 use super::comparison;
+use super::output::Output;
 use super::session;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use crate::identify::problem::Solution;
 use crate::script::problem::{RunOptions, solve};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// How a run ended.
@@ -27,7 +28,7 @@ pub(super) fn identify(arguments: &IdentifyArgs, global: &Global) -> ExitCode {
     }
 }
 
-/// Solves one problem into a folder within that of the results.
+/// Solves one problem into its folder below `results`, or into `folder` within the one that is wanted.
 pub(super) fn solve_one(
     arguments: &IdentifyArgs,
     global: &Global,
@@ -38,8 +39,17 @@ pub(super) fn solve_one(
     if arguments.plain {
         terminal.forbid_view();
     }
+    let wanted = arguments.out.as_ref().map(|out| out.join(folder));
+    let output = Output::of("gapi identify", problem, wanted.as_deref(), arguments.overwrite);
+    let output = match output {
+        Ok(output) => output,
+        Err(message) => {
+            terminal::eprint(&format!("error: {message}\n"));
+            return Ended::Not(ExitCode::from(2));
+        }
+    };
     let threads = arguments.threads.map(usize::from);
-    let world = match SystemWorld::new(terminal, &arguments.out, threads) {
+    let world = match SystemWorld::for_results(terminal, output, threads) {
         Ok(world) => world,
         Err(error) => {
             terminal::eprint(&format!("error: the working directory cannot be read: {error}\n"));
@@ -52,7 +62,7 @@ pub(super) fn solve_one(
         resume: arguments.resume,
         fresh: arguments.fresh,
         watch: arguments.watch.clone(),
-        folder: folder.to_owned(),
+        folder: PathBuf::new(),
         profile: arguments.profile,
         design: arguments.design,
         bootstrap: arguments.bootstrap,

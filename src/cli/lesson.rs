@@ -1,6 +1,7 @@
 //! `gapi lesson N`: short scripts that teach one thing each.
 
 use super::args::{Global, LessonArgs};
+use super::output::{Output, RESULTS};
 use super::session;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
@@ -91,11 +92,14 @@ fn copied(file: &Path, text: &str) -> Result<(PathBuf, String), String> {
 
 fn run(file: &Path, arguments: &LessonArgs, global: &Global) -> ExitCode {
     let terminal = Terminal::new(global.color, false);
-    let results = arguments.folder.join("results");
-    let world = match SystemWorld::new(terminal, &results, None) {
+    let world =
+        Output::below(&arguments.folder.join(RESULTS), "gapi lesson", file).and_then(|output| {
+            SystemWorld::for_results(terminal, output, None).map_err(|error| error.to_string())
+        });
+    let world = match world {
         Ok(world) => world,
-        Err(error) => {
-            terminal::eprint(&format!("error: the working directory cannot be read: {error}\n"));
+        Err(message) => {
+            terminal::eprint(&format!("error: {message}\n"));
             return ExitCode::FAILURE;
         }
     };

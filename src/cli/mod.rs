@@ -13,6 +13,7 @@ mod lesson;
 mod limits;
 mod live;
 mod new;
+mod output;
 mod parsing;
 mod repl;
 mod report;

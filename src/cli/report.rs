@@ -1,7 +1,7 @@
-//! `gapi report`: draws the report of `gapi identify` again from its files.
+//! `gapi report`: draws the report of a run again from its files.
 
 use super::args::{Global, ReportArgs};
-use super::session;
+use super::{output, session};
 use crate::diag::Fault;
 use crate::identify::problem::Solution;
 use crate::script::Session;
@@ -22,10 +22,11 @@ pub(super) fn report(arguments: &ReportArgs, global: &Global) -> ExitCode {
 }
 
 fn draw(session: &mut Session, arguments: &ReportArgs) -> Result<(), Fault> {
-    let read = |name: &str| session.read_text(&arguments.folder.join(name));
+    let folder = output::latest_of(&arguments.folder);
+    let read = |name: &str| session.read_text(&folder.join(name));
     let (json, history) = (read("result.json")?, read("history.csv")?);
     let solution = Solution::read(&json, &history, &read("individuals.csv")?)?;
-    let page = arguments.output.clone().unwrap_or_else(|| arguments.folder.join("report.html"));
+    let page = arguments.output.clone().unwrap_or_else(|| folder.join("report.html"));
     session.print(&solution.text());
     write(session, &page, &solution)?;
     session.print(&format!("\n  written to {}\n", page.display()));

@@ -1,6 +1,7 @@
 //! `gapi run SCRIPT`: runs a script.
 
 use super::args::{Global, RunArgs};
+use super::output::Output;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, parsing, session};
@@ -18,8 +19,16 @@ pub(super) fn run(arguments: &RunArgs, global: &Global) -> ExitCode {
     if arguments.plain {
         terminal.forbid_view();
     }
+    let output = Output::of("gapi run", script, arguments.out.as_deref(), arguments.overwrite);
+    let output = match output {
+        Ok(output) => output,
+        Err(message) => {
+            terminal::eprint(&format!("error: {message}\n"));
+            return ExitCode::from(2);
+        }
+    };
     let threads = arguments.threads.map(usize::from);
-    let world = match SystemWorld::new(terminal, &arguments.out, threads) {
+    let world = match SystemWorld::for_results(terminal, output, threads) {
         Ok(world) => world,
         Err(error) => {
             terminal::eprint(&format!("error: the working directory cannot be read: {error}\n"));
@@ -60,7 +69,8 @@ fn options(arguments: &RunArgs) -> Options {
     let seconds = arguments.checkpoint;
     let journaling =
         if arguments.resume { Journaling::Resume(seconds) } else { Journaling::Fresh(seconds) };
-    Options { echo, strictness, journaling, ..arguments.freedom.options() }
+    let no_probe = arguments.no_probe;
+    Options { echo, strictness, journaling, no_probe, ..arguments.freedom.options() }
 }
 
 fn write_transcript(

@@ -1,6 +1,7 @@
 //! `gapi teach SCRIPT`: a run of the genetic algorithm, step by step.
 
 use super::args::{Global, TeachArgs};
+use super::output::{Output, RESULTS, latest_of, shown};
 use super::session;
 use super::teach_screen;
 use super::terminal::{self, Terminal};
@@ -12,7 +13,7 @@ use crate::teach::quiz::{self, Score};
 use crate::teach::screen::Screen;
 use crate::teach::{Trace, Walk, page, picture, plain};
 use std::io::IsTerminal as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// What changes a run: from which generation on, counted from 1, and the statement.
@@ -50,7 +51,7 @@ fn taught(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
         return draw(&trace, file, arguments.generation);
     }
     match &arguments.html {
-        Some(page) => write_page(trace, page, &arguments.out, is_script),
+        Some(page) => write_page(trace, page, &results(arguments)?, is_script),
         None => show(Walk::new(trace), session, arguments, global),
     }
 }
@@ -61,18 +62,34 @@ fn read(file: &Path) -> Result<Trace, Trouble> {
     trace.map_err(|message| Trouble::Message(format!("`{}`: {message}", file.display())))
 }
 
+/// The folder of the run.
+fn output(arguments: &TeachArgs) -> Result<Output, Trouble> {
+    let (wanted, overwrite) = (arguments.out.as_deref(), arguments.overwrite);
+    Output::of("gapi teach", &arguments.input, wanted, overwrite).map_err(Trouble::Message)
+}
+
+/// Where the report of the run may lie: that of a recorded trace is the one that is named, or the
+/// one written last.
+fn results(arguments: &TeachArgs) -> Result<PathBuf, Trouble> {
+    let is_script = arguments.input.extension().is_some_and(|extension| extension == "mos");
+    match &arguments.out {
+        Some(folder) => Ok(folder.clone()),
+        None if is_script => output(arguments).map(|output| output.folder),
+        None => Ok(latest_of(Path::new(RESULTS))),
+    }
+}
+
 /// Runs the script with a trace beside its results, and reads the trace; the session remains.
 fn recorded(
     arguments: &TeachArgs,
     global: &Global,
     change: Option<Change<'_>>,
 ) -> Result<(Trace, Session), Trouble> {
-    let out = match change {
-        Some(_) => arguments.out.join("what_if"),
-        None => arguments.out.clone(),
-    };
+    let output = output(arguments)?;
+    let output = if change.is_some() { output.within("what_if") } else { output };
+    let out = output.folder.clone();
     let terminal = Terminal::new(global.color, true);
-    let world = SystemWorld::new(terminal, &out, None).map_err(|error| {
+    let world = SystemWorld::for_results(terminal, output, None).map_err(|error| {
         Trouble::Message(format!("the working directory cannot be read: {error}"))
     })?;
     world.catch_interrupts();
@@ -109,7 +126,7 @@ fn compare(
     let changed = branch(arguments, global, (generation, change))?;
     let branches = Branches { original, changed: &changed, generation, change };
     let figure = branches.figure();
-    let file = arguments.out.join("what_if.svg");
+    let file = shown(&output(arguments)?.folder.join("what_if.svg"));
     terminal::print(&format!("{}\n\n{}\n", branches.summary(), figure.text(64, 14)));
     write(&file, &figure.svg())?;
     terminal::print(&format!("written to {}\n", file.display()));

@@ -1,6 +1,7 @@
 //! The world of a real run: disk, clock, environment, terminal, Ctrl-C.
 
 use super::limits::Reason;
+use super::output::Output;
 use super::terminal::Terminal;
 use crate::models;
 use crate::script::view::View;
@@ -25,6 +26,8 @@ pub(super) struct SystemWorld {
     reason: Reason,
     /// How often it has written a file.
     changes: u64,
+    /// The folder for the results, as long as nothing was written into it.
+    unclaimed: Option<Output>,
 }
 
 impl SystemWorld {
@@ -45,7 +48,29 @@ impl SystemWorld {
             started: Instant::now(),
             reason: Reason::default(),
             changes: 0,
+            unclaimed: None,
         })
+    }
+
+    /// A world whose folder for results says whose they are when the first is written.
+    pub(super) fn for_results(
+        terminal: Terminal,
+        output: Output,
+        threads: Option<usize>,
+    ) -> io::Result<Self> {
+        let world = SystemWorld::new(terminal, &output.folder, threads)?;
+        Ok(SystemWorld { unclaimed: Some(output), ..world })
+    }
+
+    /// Before a file is written.
+    fn claim(&mut self, path: &Path) {
+        self.changes += 1;
+        if path.starts_with(&self.output)
+            && let Some(output) = self.unclaimed.take()
+        {
+            // What cannot be written shows with the file itself.
+            let _ = output.claim();
+        }
     }
 
     /// What stops the run when it is set, and why it was.
@@ -106,13 +131,15 @@ impl World for SystemWorld {
     }
 
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
-        self.changes += 1;
-        write_atomically(&self.at(path), bytes)
+        let path = self.at(path);
+        self.claim(&path);
+        write_atomically(&path, bytes)
     }
 
     fn append(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
-        self.changes += 1;
-        let mut file = fs::OpenOptions::new().append(true).create(true).open(self.at(path))?;
+        let path = self.at(path);
+        self.claim(&path);
+        let mut file = fs::OpenOptions::new().append(true).create(true).open(path)?;
         file.write_all(bytes)
     }
 
@@ -278,7 +305,7 @@ fn followed(path: &Path, links: usize) -> PathBuf {
 }
 
 /// Writes beside the file and renames, so that an interrupted write leaves the old file whole.
-fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
+pub(super) fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let Some(name) = path.file_name() else {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "not a file name"));
     };

@@ -6,6 +6,7 @@ use super::errors::{
 use super::model::{Instance, Model, Parameter};
 use super::points::{Path, time_of};
 use super::pointwise::Pointwise;
+use super::problem::NOISE_OF_FORMULAS;
 use super::{Quantity, Study};
 use crate::diag::{Fault, suggest};
 use crate::ga::Genomes;
@@ -37,6 +38,7 @@ pub struct Question {
 /// Simulates populations of one model; made once and used for all generations.
 pub struct Evaluator {
     study: Arc<Study>,
+    model: Arc<dyn Model>,
     parameters: Vec<Parameter>,
     x: Vec<f64>,
     plan: Plan,
@@ -115,7 +117,12 @@ impl Evaluator {
     ///
     /// Parameters and variables that the model does not have, parameters that cannot vary, no
     /// measured points or points that are not finite, points that the simulation cannot reach.
-    pub fn new(model: &dyn Model, question: Question, threads: usize) -> Result<Evaluator, Fault> {
+    pub fn new(
+        shared: Arc<dyn Model>,
+        question: Question,
+        threads: usize,
+    ) -> Result<Evaluator, Fault> {
+        let model = shared.as_ref();
         check_points(&question.x)?;
         let parameters = identified_parameters(model, &question.parameters)?;
         let varied: Vec<String> =
@@ -146,6 +153,7 @@ impl Evaluator {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(helpers).build().ok();
         Ok(Evaluator {
             study: Arc::new(study),
+            model: Arc::clone(&shared),
             parameters,
             x: question.x,
             plan,
@@ -160,19 +168,20 @@ impl Evaluator {
         &self.study
     }
 
+    /// The model.
+    pub fn model(&self) -> &Arc<dyn Model> {
+        &self.model
+    }
+
+    /// Relative error of the simulated values: the solver's, where anything is integrated.
+    pub fn noise(&mut self) -> f64 {
+        let states = self.workers[0].instance.system().n_differential();
+        if states == 0 { NOISE_OF_FORMULAS } else { self.settings.tolerance }
+    }
+
     /// The measured points.
     pub fn x(&self) -> &[f64] {
         &self.x
-    }
-
-    /// The identified parameters, in the order of the genes.
-    pub fn parameters(&self) -> &[Parameter] {
-        &self.parameters
-    }
-
-    /// The settings of the simulations.
-    pub fn settings(&self) -> &Settings {
-        &self.settings
     }
 
     /// Simulates every individual. One that fails does not end the others.

@@ -6,6 +6,7 @@ use super::{Evaluator, Question};
 use crate::diag::Code;
 use crate::ga::Genomes;
 use crate::ga::errors::{BAD_RANGE, SIZE_MISMATCH};
+use std::sync::Arc;
 
 fn question(x_name: &str, x: &[f64]) -> Question {
     Question { x_name: x_name.to_owned(), x: x.to_vec(), ..Question::default() }
@@ -16,7 +17,7 @@ fn genomes(values: &[f64]) -> Genomes {
 }
 
 fn simulate(x_name: &str, x: &[f64]) -> Vec<f64> {
-    let mut evaluator = Evaluator::new(&Decay, question(x_name, x), 1).unwrap();
+    let mut evaluator = Evaluator::new(Arc::new(Decay), question(x_name, x), 1).unwrap();
     evaluator.evaluate(&genomes(&[0.7, 3.0])).unwrap().rows
 }
 
@@ -45,14 +46,14 @@ fn points_over_a_simulated_variable_are_interpolated() {
     };
     let found = simulate("s", &x[1..]);
     assert_close(&found, |k| 3.0 * (-0.7 * time_of(x[k + 1])).exp(), 1e-4);
-    let mut evaluator = Evaluator::new(&Decay, question("s", &[9.0]), 1).unwrap();
+    let mut evaluator = Evaluator::new(Arc::new(Decay), question("s", &[9.0]), 1).unwrap();
     let failed = evaluator.evaluate(&genomes(&[0.7, 3.0])).unwrap();
     assert!(failed.messages()[0].contains("`s` = 9"), "{:?}", failed.failures);
 }
 
 #[test]
 fn a_failed_individual_does_not_disturb_the_others() {
-    let mut evaluator = Evaluator::new(&Decay, question("time", &[0.0, 1.0]), 1).unwrap();
+    let mut evaluator = Evaluator::new(Arc::new(Decay), question("time", &[0.0, 1.0]), 1).unwrap();
     let simulated = evaluator.evaluate(&genomes(&[1.0, 2.0, 11.0, 2.0, 1.0, 4.0])).unwrap();
     assert!(simulated.rows[2].is_nan() && simulated.rows[3].is_nan());
     let messages = simulated.messages();
@@ -65,7 +66,8 @@ fn a_failed_individual_does_not_disturb_the_others() {
 fn threads_do_not_change_a_bit() {
     let values: Vec<f64> = (0..80).map(|k| 0.1 + 0.137 * f64::from(k)).collect();
     let all = |threads| {
-        let mut evaluator = Evaluator::new(&Decay, question("i", &[0.5, 1.5]), threads).unwrap();
+        let mut evaluator =
+            Evaluator::new(Arc::new(Decay), question("i", &[0.5, 1.5]), threads).unwrap();
         let simulated = evaluator.evaluate(&genomes(&values)).unwrap();
         let bits: Vec<u64> = simulated.rows.iter().map(|value| value.to_bits()).collect();
         (bits, simulated.failures)
@@ -79,7 +81,7 @@ fn wrong_questions_are_refused() {
     let code = |change: fn(&mut Question)| -> Code {
         let mut question = question("time", &[0.0, 1.0]);
         change(&mut question);
-        Evaluator::new(&Decay, question, 1).err().unwrap().code
+        Evaluator::new(Arc::new(Decay), question, 1).err().unwrap().code
     };
     assert_eq!(code(|q| q.parameters = vec!["c".into()]), PARAMETER_NOT_FOUND);
     assert_eq!(code(|q| q.parameters = vec!["n".into()]), FIXED_PARAMETER);
@@ -93,7 +95,7 @@ fn wrong_questions_are_refused() {
 
 #[test]
 fn wrong_populations_are_refused() {
-    let mut evaluator = Evaluator::new(&Decay, question("time", &[0.0, 1.0]), 1).unwrap();
+    let mut evaluator = Evaluator::new(Arc::new(Decay), question("time", &[0.0, 1.0]), 1).unwrap();
     let three = Genomes::new(3, vec![1.0; 3]).unwrap();
     assert_eq!(evaluator.evaluate(&three).unwrap_err().code, SIZE_MISMATCH);
     let fault = evaluator.evaluate(&genomes(&[1.0, 2.0, 1.0, 101.0])).unwrap_err();

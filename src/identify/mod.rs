@@ -8,24 +8,26 @@ pub mod problem;
 mod evaluation;
 #[cfg(test)]
 mod evaluation_tests;
+mod generation;
 mod model;
-mod outcome;
+mod objective;
 mod points;
 mod pointwise;
+mod probe;
 #[cfg(test)]
 mod problems;
 mod program;
 mod recorder;
 mod report;
-mod sensitivity;
+mod seeds;
 mod table;
 mod uncertainty;
 
 pub use evaluation::{Evaluator, FailedSimulation, Question, Simulated};
 pub use model::{Instance, Model, Parameter};
-pub use outcome::{Correlated, FitPoint, Identified, Outcome};
+pub use objective::Objective;
 pub use points::{Path, time_of};
+pub use probe::Ending;
 pub use program::CompiledModel;
-pub use recorder::{Best, FitnessSource, Measurement, Quantity, Recorder, Study};
-pub use sensitivity::deviations;
+pub use recorder::{Best, Compared, Measurement, Quantity, Recorder, Study};
 pub use uncertainty::{Uncertainty, uncertainty, uncertainty_given};

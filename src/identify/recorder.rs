@@ -1,16 +1,19 @@
 //! Follows a run of scripts, whatever they are called and whatever their variables: the functions
-//! of GAPILib tell it what they are given and what they answer, and it puts generations, the best
-//! individual and the counts together.
+//! of GAPILib report what they are given and what they answer, and the recorder puts generations,
+//! the best individual and the counts together.
 //!
 //! A generation ends with `Fit_Order`, which gets a population and its fitness; in scripts that
-//! sort by themselves it ends when the next simulation follows a `Fit` for all individuals. So a
-//! script may evaluate its population in one call or one by one, with its own fitness function or
-//! its own sorting. When it has both of its own, nobody tells the recorder the fitness, and it
-//! compares by the sum of squares.
+//! sort by themselves it ends when an experiment is simulated again after `Fit` got all its
+//! individuals. So a script may evaluate its population in one call or one by one, with several
+//! experiments whose results it sums, with its own fitness function or its own sorting. When it has
+//! both of its own, the fitness is not known, and individuals are compared by the sum of squares.
 
 use super::Simulated;
 use super::fitness::sum_of_squares;
-use crate::ga::{FAILED_FITNESS, Genomes, History, has_failed};
+use super::generation::{self, Generation};
+use super::objective::{Objective, recognised};
+use super::seeds::Seeds;
+use crate::ga::{Genomes, History, has_failed};
 use indexmap::IndexMap;
 use std::sync::Arc;
 
@@ -18,6 +21,11 @@ use std::sync::Arc;
 const MAX_CAUSES: usize = 50;
 /// The cause under which all further messages are counted.
 const OTHER_CAUSES: &str = "other causes";
+/// Individuals of generations that may turn out to be parts of one: a population of 100 in the 36
+/// experiments of `scripts/humidity` has 3600.
+const PROVISIONAL: usize = 10_000;
+/// Individuals kept for the figures.
+const KEPT: usize = 4000;
 
 /// What is simulated: the model, what varies, what is compared.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +49,7 @@ pub struct Quantity {
     pub unit: String,
 }
 
-/// Where the measured data come from.
+/// Where measured data come from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measurement {
     /// The file as the script names it.
@@ -52,32 +60,32 @@ pub struct Measurement {
     pub y: Vec<f64>,
 }
 
-/// Which fitness decided what is best.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FitnessSource {
-    /// `Fit` of GAPILib.
-    SumOfSquares,
-    /// A function of the script, seen by `Fit_Order`.
-    Script,
-    /// Nobody told: the sum of squares was taken to compare.
-    Assumed,
+/// A series beside the simulation of an individual.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Compared {
+    /// What was simulated.
+    pub study: Arc<Study>,
+    /// The measured X.
+    pub x: Vec<f64>,
+    /// The simulated Y.
+    pub simulated: Vec<f64>,
+    /// The measured Y; `None` where the script has not shown it.
+    pub measured: Option<Vec<f64>>,
+    /// The file that it was read from; empty where not known.
+    pub file: String,
 }
 
 /// The best individual of the run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Best {
-    /// What was simulated.
-    pub study: Arc<Study>,
     /// Its genes.
     pub genome: Vec<f64>,
     /// Its fitness.
     pub fitness: f64,
-    /// Its simulated Y at the measured points.
-    pub simulated: Vec<f64>,
-    /// The measured X of those points.
-    pub x: Vec<f64>,
-    /// The measured Y of those points; `None` where nobody told.
-    pub measured: Option<Vec<f64>>,
+    /// What the fitness is.
+    pub objective: Objective,
+    /// Everything that it was compared with.
+    pub compared: Vec<Compared>,
 }
 
 /// What was observed of a run.
@@ -87,12 +95,14 @@ pub struct Recorder {
     pub history: History,
     /// The best individual so far.
     pub best: Option<Best>,
-    /// The measured data read last.
-    pub measurement: Option<Measurement>,
-    /// The seed that the random numbers of the first population began with.
-    pub seed: Option<[f64; 6]>,
+    /// The genes of the best individual so far after each generation.
+    pub trace: Vec<Vec<f64>>,
+    /// Evenly chosen individuals and their fitness.
+    pub kept: Vec<(Vec<f64>, f64)>,
     /// The search ranges used last: minima and maxima.
     pub ranges: Option<(Vec<f64>, Vec<f64>)>,
+    /// Smallest and largest gene of all individuals that were simulated.
+    pub spanned: Option<(Vec<f64>, Vec<f64>)>,
     /// Number of simulations.
     pub evaluations: u64,
     /// Number of failed simulations.
@@ -101,61 +111,38 @@ pub struct Recorder {
     pub causes: IndexMap<String, u64>,
     /// What the user changed while the run went on, and from which generation on.
     pub changes: Vec<(usize, String)>,
-    /// The random numbers being drawn: the seed they began with, and the one they go on with.
-    chain: Option<Chain>,
+    measurements: Vec<Measurement>,
+    seeds: Seeds,
+    keep_every: u64,
+    ordered: u64,
     /// Individuals of the generation that ended last.
     generation_size: usize,
     sorted_by_fit_order: bool,
-    fitness_by_fit: bool,
-    pending: Pending,
-}
-
-/// Calls of `Ram_Gen_ARENA`, each with the seed that the one before gave.
-#[derive(Debug, Clone, Copy)]
-struct Chain {
-    first: [f64; 6],
-    next: [f64; 6],
-}
-
-/// Individuals simulated since the last generation ended.
-#[derive(Debug, Clone, Default)]
-struct Pending {
-    study: Option<Arc<Study>>,
-    x: Vec<f64>,
-    /// What `Fit` compared with.
-    measured: Option<Vec<f64>>,
-    genomes: Vec<Vec<f64>>,
-    simulated: Vec<Vec<f64>>,
-    fitness: Vec<f64>,
+    pending: Generation,
+    /// Generations that ended without `Fit_Order`, each with what was best before it.
+    provisional: Vec<(Generation, Option<Best>)>,
 }
 
 impl Recorder {
     /// `Exp_Adq_SISO` has read data.
     pub fn measured(&mut self, measurement: Measurement) {
-        self.measurement = Some(measurement);
+        self.measurements.push(measurement);
     }
 
-    /// `Ram_Gen_ARENA` was called with `seed` and gave `next` to go on with.
-    pub fn seeded(&mut self, seed: [f64; 6], next: [f64; 6]) {
-        let first = match self.chain {
-            Some(chain) if chain.next == seed => chain.first,
-            _ => seed,
-        };
-        self.chain = Some(Chain { first, next });
-        if self.evaluations == 0 {
-            self.seed = Some(first);
-        }
-        self.seed.get_or_insert(first);
+    /// `Ram_Gen_ARENA` was called with `seed`, at the place `site` of a script, and gave `next` to
+    /// go on with.
+    pub fn seeded(&mut self, seed: [f64; 6], next: [f64; 6], site: u64) {
+        self.seeds.drawn(seed, next, site, self.evaluations > 0);
     }
 
-    /// Begins to record another run and returns the one before, finished. Its random numbers are
-    /// those drawn with the seed that a script set last.
+    /// The seed that the random numbers of the run began with.
+    pub fn seed(&self) -> Option<[f64; 6]> {
+        self.seeds.seed
+    }
+
+    /// Begins to record another run and returns the one before, finished.
     pub fn begin_next(&mut self) -> Recorder {
-        let next = Recorder {
-            seed: self.chain.map(|chain| chain.first),
-            chain: self.chain,
-            ..Recorder::default()
-        };
+        let next = Recorder { seeds: self.seeds.of_next_run(), ..Recorder::default() };
         let mut before = std::mem::replace(self, next);
         before.finish();
         before
@@ -174,93 +161,68 @@ impl Recorder {
         genomes: &Genomes,
         simulated: &Simulated,
     ) {
-        if !self.sorted_by_fit_order && self.pending.is_rated() {
+        let ends = !self.sorted_by_fit_order
+            && self.pending.is_rated()
+            && self.pending.has_rated(study, x);
+        if ends {
             self.end_pending_generation();
+        }
+        let generations = self.history.generations.len();
+        if let Some(seed) = self.seeds.goes_on(generations) {
+            let entries = seed.map(|entry| entry.to_string()).join(", ");
+            self.changes.push((generations + 1, format!("seed := {{{entries}}}")));
         }
         self.evaluations += genomes.len() as u64;
         for failure in simulated.failures.iter().flatten() {
             self.count_failure(&failure.cause);
         }
-        let pending = &mut self.pending;
-        if pending.x != x || pending.study.as_ref() != Some(study) {
-            *pending = Pending { study: Some(study.clone()), x: x.to_vec(), ..Pending::default() };
-        }
-        pending.genomes.extend(genomes.rows().map(<[f64]>::to_vec));
-        pending.simulated.extend(simulated.rows.chunks(x.len().max(1)).map(<[f64]>::to_vec));
+        self.span(genomes);
+        self.pending.add(study, x, genomes, simulated);
     }
 
-    /// `Fit` has rated the simulations of the last individuals. Calls about anything else, such as
-    /// the check of a result with other data, are none of ours.
-    pub fn rated(&mut self, fitness: &[f64], measured: &[f64]) {
-        let pending = &mut self.pending;
-        if fitness.len() > pending.genomes.len() || measured.len() != pending.x.len() {
-            return;
-        }
-        self.fitness_by_fit = true;
-        pending.measured = Some(measured.to_vec());
-        if pending.fitness.len() + fitness.len() > pending.genomes.len() {
-            pending.fitness.clear();
-        }
-        pending.fitness.extend_from_slice(fitness);
+    /// `Fit` has compared `rows`, those of some individuals one after the other, with `measured`.
+    /// Rows that no `Eval` has given, and those of generations that have ended, are none of ours.
+    pub fn rated(&mut self, rows: &[f64], measured: &[f64]) {
+        self.pending.rate(rows, measured);
     }
 
     /// `Fit_Order` got a population with its fitness: a generation ends.
     pub fn ordered(&mut self, population: &Genomes, fitness: &[f64]) {
-        let first = !std::mem::replace(&mut self.sorted_by_fit_order, true);
-        if first && self.evaluations == population.len() as u64 {
-            // Evaluated one by one, the individuals of this generation were taken for generations.
-            self.history = History::default();
+        if !std::mem::replace(&mut self.sorted_by_fit_order, true) {
+            self.take_back(population);
         }
-        if self.pending.genomes.is_empty() || population.len() != fitness.len() {
+        if self.pending.is_empty() || population.len() != fitness.len() {
             return;
         }
-        self.history.record(fitness);
-        self.generation_size = fitness.len();
-        let best = crate::ga::best(population, fitness);
-        if let Some(best) = best
-            && let Some(k) = self.pending.genomes.iter().position(|known| *known == best.genome)
-        {
-            self.keep_if_better(k, best.fitness);
-        }
-        self.pending.clear();
+        let individuals: Vec<Vec<f64>> = population.rows().map(<[f64]>::to_vec).collect();
+        self.end_generation(&individuals, fitness, true);
     }
 
     /// The run has ended or was interrupted: ends the generation that is complete.
     pub fn finish(&mut self) {
-        let nobody_told = self.history.generations.is_empty() && !self.fitness_by_fit;
-        if nobody_told && let Some(measurement) = &self.measurement {
-            let rate = |row: &Vec<f64>| match row.len() == measurement.y.len() {
-                true => sum_of_squares(row, &measurement.y),
-                false => FAILED_FITNESS,
-            };
-            self.pending.fitness = self.pending.simulated.iter().map(rate).collect();
-        }
-        if self.pending.is_rated() && (!self.sorted_by_fit_order || self.is_next_generation()) {
+        let not_shown = self.history.generations.is_empty() && !self.pending.has_ratings();
+        let complete = self.pending.is_rated() && !self.sorted_by_fit_order;
+        let interrupted =
+            self.pending.is_rated() && self.sorted_by_fit_order && self.is_next_generation();
+        if !self.pending.is_empty() && (not_shown || complete || interrupted) {
             self.end_pending_generation();
         }
+        self.pending.clear();
     }
 
     /// Whether what is pending may be a generation that was interrupted before `Fit_Order`, and not
-    /// a simulation for another purpose.
+    /// a simulation for another purpose. What a script adds up is known by `Fit_Order` alone.
     fn is_next_generation(&self) -> bool {
-        let alike = |best: &Best| {
-            best.x == self.pending.x && Some(&best.study) == self.pending.study.as_ref()
+        let Some((study, x, count)) = self.pending.only() else { return false };
+        let alike = |best: &Best| match best.compared.as_slice() {
+            [one] => {
+                one.x == x
+                    && *one.study == *study
+                    && best.objective == Objective::SumOfSquares(vec![1.0])
+            }
+            _ => false,
         };
-        self.pending.genomes.len() == self.generation_size && self.best.as_ref().is_some_and(alike)
-    }
-
-    /// Which fitness decided.
-    pub fn fitness_source(&self) -> FitnessSource {
-        match (self.fitness_by_fit, self.sorted_by_fit_order) {
-            (true, _) => FitnessSource::SumOfSquares,
-            (false, true) => FitnessSource::Script,
-            (false, false) => FitnessSource::Assumed,
-        }
-    }
-
-    /// The measured Y of the best individual's points, if known.
-    pub fn measured_y(&self) -> Option<&[f64]> {
-        self.best.as_ref()?.measured.as_deref()
+        count == self.generation_size && self.best.as_ref().is_some_and(alike)
     }
 
     fn count_failure(&mut self, cause: &str) {
@@ -270,45 +232,124 @@ impl Recorder {
         *self.causes.entry(cause.to_owned()).or_insert(0) += 1;
     }
 
-    fn end_pending_generation(&mut self) {
-        self.history.record(&self.pending.fitness);
-        if let Some(&k) = crate::ga::order(&self.pending.fitness).first() {
-            self.keep_if_better(k, self.pending.fitness[k]);
+    fn span(&mut self, genomes: &Genomes) {
+        let Some(first) = genomes.rows().next() else { return };
+        let known = self.spanned.take().filter(|(low, _)| low.len() == first.len());
+        let (mut low, mut high) = known.unwrap_or_else(|| (first.to_vec(), first.to_vec()));
+        for genome in genomes.rows() {
+            for (k, &gene) in genome.iter().enumerate() {
+                (low[k], high[k]) = (low[k].min(gene), high[k].max(gene));
+            }
         }
+        self.spanned = Some((low, high));
+    }
+
+    /// At the first `Fit_Order`: what was taken for generations before, because nothing sorted,
+    /// were individuals or experiments of this one.
+    fn take_back(&mut self, population: &Genomes) {
+        let mut known: Vec<u64> = population.rows().map(generation::key).collect();
+        known.sort_unstable();
+        while let Some((part, before)) =
+            self.provisional.pop_if(|(part, _)| part.is_part_of(&known))
+        {
+            let mut whole = part;
+            whole.append(std::mem::take(&mut self.pending));
+            self.pending = whole;
+            self.best = before;
+            self.history.generations.pop();
+            self.trace.pop();
+        }
+        self.provisional = Vec::new();
+    }
+
+    /// A generation that the script has not sorted: the sum over its series.
+    fn end_pending_generation(&mut self) {
+        let individuals = self.pending.genomes().to_vec();
+        let experiments = self.pending.covering(&individuals);
+        let sums = self.pending.sums(&experiments, &individuals, &self.measurements);
+        let total = |sums: &Vec<f64>| if sums.is_empty() { f64::NAN } else { sums.iter().sum() };
+        let mut fitness: Vec<f64> = sums.iter().map(total).collect();
+        if fitness.iter().all(|fitness| fitness.is_nan()) {
+            return self.pending.clear();
+        }
+        for value in fitness.iter_mut().filter(|value| has_failed(**value)) {
+            *value = crate::ga::FAILED_FITNESS;
+        }
+        let (part, before) = (self.pending.clone(), self.best.clone());
+        self.end_generation(&individuals, &fitness, false);
+        if !self.sorted_by_fit_order {
+            self.provisional.push((part, before));
+            while self.provisional.iter().map(|(part, _)| part.size()).sum::<usize>() > PROVISIONAL
+            {
+                self.provisional.remove(0);
+            }
+        }
+    }
+
+    fn end_generation(&mut self, individuals: &[Vec<f64>], fitness: &[f64], sorted: bool) {
+        self.history.record(fitness);
+        self.generation_size = fitness.len();
+        if let Some(&k) = crate::ga::order(fitness).first() {
+            self.keep_if_better(k, individuals, fitness, sorted);
+        }
+        let best = self.best.as_ref().map_or_else(Vec::new, |best| best.genome.clone());
+        self.trace.push(best);
+        self.keep(individuals, fitness);
         self.pending.clear();
     }
 
-    /// Keeps pending individual `k` when it is better than the best so far.
-    fn keep_if_better(&mut self, k: usize, fitness: f64) {
-        let better = self.best.as_ref().is_none_or(|best| fitness < best.fitness);
-        if !better || has_failed(fitness) {
+    /// Keeps individual `k` when it is better than the best so far.
+    fn keep_if_better(&mut self, k: usize, all: &[Vec<f64>], fitness: &[f64], sorted: bool) {
+        let better = self.best.as_ref().is_none_or(|best| fitness[k] < best.fitness);
+        if !better || has_failed(fitness[k]) {
             return;
         }
-        let Some(study) = self.pending.study.clone() else { return };
-        let read = self.measurement.as_ref().filter(|read| read.x == self.pending.x);
-        let measured = self.pending.measured.clone().or(read.map(|read| read.y.clone()));
-        self.best = Some(Best {
-            study,
-            genome: self.pending.genomes[k].clone(),
-            fitness,
-            simulated: self.pending.simulated[k].clone(),
-            x: self.pending.x.clone(),
-            measured,
-        });
+        let genome = &all[k];
+        let experiments = self.pending.covering(all);
+        let compared = self.pending.compared(&experiments, genome, &self.measurements);
+        if compared.is_empty() {
+            return;
+        }
+        let objective = match (sorted, self.pending.has_ratings(), compared.len()) {
+            (false, true, 1) => Objective::SumOfSquares(vec![1.0]),
+            (false, ..) => Objective::Assumed,
+            (true, ..) => {
+                recognised(&self.pending.sums(&experiments, all, &self.measurements), fitness)
+            }
+        };
+        let objective = objective.agreeing(self.best.as_ref().map(|best| &best.objective));
+        self.best = Some(Best { genome: genome.clone(), fitness: fitness[k], objective, compared });
+    }
+
+    /// Every n-th individual, n doubled when there are too many.
+    fn keep(&mut self, individuals: &[Vec<f64>], fitness: &[f64]) {
+        self.keep_every = self.keep_every.max(1);
+        for (genome, &fitness) in individuals.iter().zip(fitness) {
+            if self.ordered.is_multiple_of(self.keep_every) {
+                self.kept.push((genome.clone(), fitness));
+            }
+            self.ordered += 1;
+            if self.kept.len() >= KEPT {
+                let mut number = 0;
+                self.kept.retain(|_| {
+                    number += 1;
+                    number % 2 == 1
+                });
+                self.keep_every *= 2;
+            }
+        }
     }
 }
 
-impl Pending {
-    /// Whether there are individuals and all have a fitness.
-    fn is_rated(&self) -> bool {
-        !self.genomes.is_empty() && self.fitness.len() == self.genomes.len()
-    }
-
-    fn clear(&mut self) {
-        self.genomes.clear();
-        self.simulated.clear();
-        self.fitness.clear();
-        self.measured = None;
+impl Best {
+    /// The sum of squared residuals over all series, each times its weight; `None` where the
+    /// objective is not of this kind or data are not known.
+    pub fn sum_of_squares(&self) -> Option<f64> {
+        let weights = self.objective.weights(self.compared.len())?;
+        let one = |(compared, weight): (&Compared, f64)| {
+            Some(weight * sum_of_squares(&compared.simulated, compared.measured.as_deref()?))
+        };
+        self.compared.iter().zip(weights).map(one).sum()
     }
 }
 
@@ -345,7 +386,7 @@ mod tests {
         let rows = simulated(&[3.0, 1.0, f64::NAN]);
         for _ in 0..2 {
             recorder.evaluated(&study(), &[0.0], &population, &rows);
-            recorder.rated(&[9.0, 1.0, 1e60], &[0.0]);
+            recorder.rated(&rows.rows, &[0.0]);
             recorder.ordered(&population, &[9.0, 1.0, 1e60]);
         }
         recorder.finish();
@@ -354,9 +395,9 @@ mod tests {
         assert_eq!((recorder.evaluations, recorder.failures), (6, 2));
         assert_eq!(recorder.causes["log of -1"], 2);
         let best = recorder.best.as_ref().unwrap();
-        assert_eq!((best.genome[0], best.fitness, best.simulated[0]), (1.0, 1.0, 1.0));
-        assert_eq!(recorder.fitness_source(), FitnessSource::SumOfSquares);
-        assert_eq!(recorder.measured_y(), Some(&[0.0][..]));
+        assert_eq!((best.genome[0], best.fitness, best.compared[0].simulated[0]), (1.0, 1.0, 1.0));
+        assert_eq!(best.objective, Objective::SumOfSquares(vec![1.0]));
+        assert_eq!(best.compared[0].measured, Some(vec![0.0]));
     }
 
     #[test]
@@ -379,36 +420,107 @@ mod tests {
     fn another_run_has_its_own_seed() {
         let seed = |entry: f64| [entry; 6];
         let mut recorder = Recorder::default();
-        recorder.seeded(seed(1.0), seed(2.0));
-        recorder.seeded(seed(2.0), seed(3.0));
+        recorder.seeded(seed(1.0), seed(2.0), 1);
         recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &simulated(&[7.0]));
-        recorder.seeded(seed(3.0), seed(4.0));
+        recorder.seeded(seed(2.0), seed(4.0), 2);
         recorder.ordered(&genomes(&[5.0]), &[42.0]);
-        recorder.seeded(seed(7.0), seed(8.0));
-        recorder.seeded(seed(8.0), seed(9.0));
+        recorder.seeded(seed(7.0), seed(8.0), 1);
         let before = recorder.begin_next();
-        assert_eq!((before.seed, before.evaluations), (Some(seed(1.0)), 1));
-        recorder.seeded(seed(9.0), seed(10.0));
-        assert_eq!((recorder.seed, recorder.evaluations), (Some(seed(7.0)), 0));
-        // Another seed before anything was simulated is the one that counts, not one for later.
-        recorder.seeded(seed(20.0), seed(21.0));
-        recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &simulated(&[7.0]));
-        recorder.seeded(seed(30.0), seed(31.0));
-        assert_eq!(recorder.seed, Some(seed(20.0)));
+        assert_eq!((before.seed(), before.evaluations), (Some(seed(1.0)), 1));
+        recorder.seeded(seed(8.0), seed(10.0), 1);
+        assert_eq!((recorder.seed(), recorder.evaluations), (Some(seed(7.0)), 0));
+    }
+
+    /// Two populations are simulated before either is compared, and compared the other way round.
+    #[test]
+    fn genes_belong_to_the_rows_that_fit_was_given() {
+        let mut recorder = Recorder::default();
+        recorder.evaluated(&study(), &[0.0], &genomes(&[1.1]), &simulated(&[1.1]));
+        recorder.evaluated(
+            &study(),
+            &[0.0],
+            &genomes(&[2.0, 3.0, 4.0]),
+            &simulated(&[2.0, 3.0, 4.0]),
+        );
+        recorder.rated(&[2.0, 3.0, 4.0], &[3.0]);
+        assert!(recorder.history.generations.is_empty());
+        recorder.rated(&[1.1], &[3.0]);
+        recorder.finish();
+        let best = recorder.best.as_ref().unwrap();
+        assert_eq!((best.genome[0], best.fitness, best.compared[0].simulated[0]), (3.0, 0.0, 3.0));
+        assert_eq!(recorder.history.generations.len(), 1);
+    }
+
+    /// Some rows of an `Eval`, and rows of several put together, are known as well.
+    #[test]
+    fn rows_are_known_wherever_they_stand() {
+        let mut recorder = Recorder::default();
+        recorder.evaluated(&study(), &[0.0], &genomes(&[1.0, 2.0]), &simulated(&[1.0, 2.0]));
+        recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &simulated(&[5.0]));
+        recorder.rated(&[5.0, 2.0], &[4.0]);
+        assert!(!recorder.pending.is_rated(), "one of three was not compared");
+        recorder.rated(&[17.0], &[4.0]);
+        assert!(!recorder.pending.is_rated(), "that row is not known");
+        recorder.rated(&[1.0], &[4.0]);
+        recorder.finish();
+        let best = recorder.best.as_ref().unwrap();
+        assert_eq!((best.genome[0], best.fitness), (5.0, 1.0));
+    }
+
+    fn second() -> Arc<Study> {
+        Arc::new(Study { model: "M2".to_owned(), ..(*study()).clone() })
+    }
+
+    /// Two experiments a generation, whose sums the script adds; `total` is what it adds up.
+    fn two_experiments(total: fn(f64, f64) -> f64) -> Recorder {
+        let mut recorder = Recorder::default();
+        for generation in 0..3 {
+            let genes: Vec<f64> =
+                [1.0, 2.0, 3.0, 4.0, 5.0].map(|g| g + f64::from(generation)).into();
+            let (first, other): (Vec<f64>, Vec<f64>) = genes.iter().map(|g| (*g, 2.0 * g)).unzip();
+            recorder.evaluated(&study(), &[0.0], &genomes(&genes), &simulated(&first));
+            recorder.rated(&first, &[4.0]);
+            recorder.evaluated(&second(), &[0.0], &genomes(&genes), &simulated(&other));
+            recorder.rated(&other, &[9.0]);
+            let sums = genes.iter().map(|g| total((g - 4.0).powi(2), (2.0 * g - 9.0).powi(2)));
+            recorder.ordered(&genomes(&genes), &sums.collect::<Vec<f64>>());
+        }
+        recorder.finish();
+        recorder
+    }
+
+    #[test]
+    fn a_generation_with_several_experiments_is_one() {
+        let recorder = two_experiments(|a, b| a + b);
+        assert_eq!((recorder.history.generations.len(), recorder.evaluations), (3, 30));
+        assert_eq!(recorder.history.generations[0].best, 1.0, "not a partial sum");
+        let best = recorder.best.as_ref().unwrap();
+        assert_eq!((best.genome[0], best.fitness), (4.0, 1.0));
+        assert_eq!(best.objective, Objective::SumOfSquares(vec![1.0, 1.0]));
+        let models: Vec<&str> = best.compared.iter().map(|c| c.study.model.as_str()).collect();
+        assert_eq!((models, best.sum_of_squares()), (vec!["M", "M2"], Some(1.0)));
+    }
+
+    #[test]
+    fn the_weights_of_the_script_are_found() {
+        let best = two_experiments(|a, b| a + 0.25 * b).best.unwrap();
+        let Objective::SumOfSquares(weights) = &best.objective else { panic!("{best:?}") };
+        assert!((weights[0] - 1.0).abs() < 1e-9 && (weights[1] - 0.25).abs() < 1e-9);
+        assert_eq!(two_experiments(|a, b| a + b * b).best.unwrap().objective, Objective::Script);
     }
 
     #[test]
     fn a_check_with_other_data_is_no_generation() {
         let mut recorder = Recorder::default();
         recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &simulated(&[3.0]));
-        recorder.rated(&[9.0], &[0.0]);
+        recorder.rated(&[3.0], &[0.0]);
         recorder.ordered(&genomes(&[5.0]), &[9.0]);
         recorder.evaluated(&study(), &[1.0], &genomes(&[5.0]), &simulated(&[3.0]));
-        recorder.rated(&[0.0], &[3.0]);
+        recorder.rated(&[3.0], &[3.0]);
         recorder.finish();
         assert_eq!(recorder.history.generations.len(), 1);
         assert_eq!(recorder.best.as_ref().unwrap().fitness, 9.0);
-        assert_eq!(recorder.measured_y(), Some(&[0.0][..]));
+        assert_eq!(recorder.best.unwrap().compared[0].measured, Some(vec![0.0]));
     }
 
     #[test]
@@ -431,7 +543,7 @@ mod tests {
         recorder.ordered(&genomes(&[5.0]), &[42.0]);
         recorder.finish();
         assert_eq!(recorder.best.as_ref().unwrap().fitness, 42.0);
-        assert_eq!(recorder.fitness_source(), FitnessSource::Script);
+        assert_eq!(recorder.best.unwrap().objective, Objective::Script);
     }
 
     #[test]
@@ -441,7 +553,7 @@ mod tests {
         recorder.evaluated(&study(), &[0.0], &genomes(&[5.0]), &simulated(&[3.0]));
         recorder.finish();
         assert_eq!(recorder.best.as_ref().unwrap().fitness, 4.0);
-        assert_eq!(recorder.fitness_source(), FitnessSource::Assumed);
+        assert_eq!(recorder.best.unwrap().objective, Objective::Assumed);
     }
 
     #[test]

@@ -7,29 +7,39 @@ use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::ga::Genomes;
 use crate::identify::errors::{BAD_DATA, DATA_SIZES_DIFFER};
+use crate::identify::problem::{Fingerprint, NOISE_OF_FORMULAS, Solution};
 use crate::identify::{
-    CompiledModel, Evaluator, FitPoint, Measurement, Outcome, Question, Recorder, Simulated, Study,
-    Uncertainty, deviations,
+    CompiledModel, Ending, Evaluator, Measurement, Question, Recorder, Simulated, Study,
 };
 use crate::mat;
-use crate::plot::{self, Comparison, Figure};
 use crate::source::Span;
 use std::path::Path;
+use std::sync::Arc;
+
+/// Evaluators kept: a script may simulate several experiments in each generation.
+const PREPARED: usize = 40;
 
 /// What a session knows of the identification that its scripts carry out.
 #[derive(Default)]
 pub(super) struct Identification {
     /// What was observed of the run.
     pub(super) recorder: Recorder,
-    /// The evaluator of the last request, for the next generation, and the revision of the classes
-    /// that it was made from.
-    prepared: Option<(Request, u64, Evaluator)>,
+    /// The evaluators of the last requests, for the next generation; the latest is the last.
+    prepared: Vec<Prepared>,
     /// When the run began.
     started: Option<f64>,
     /// Whether measured data could not be read.
     pub(super) data_missing: bool,
     /// Runs reported so far.
     reported: usize,
+}
+
+/// An evaluator that is ready for the next population.
+struct Prepared {
+    request: Request,
+    /// The revision of the classes that it was made from.
+    revision: u64,
+    evaluator: Evaluator,
 }
 
 /// The arguments of `Eval` but for the population.
@@ -84,6 +94,18 @@ impl Session {
         Ok(Measurement { file: file.to_owned(), x, y })
     }
 
+    /// A number for the place in the scripts that a command was called from: the same whenever the
+    /// script is read again.
+    pub(super) fn site_of_call(&self) -> u64 {
+        let span = self.call_site();
+        let mut site = Fingerprint::default();
+        if let Some(source) = self.sources.get(span.source) {
+            site.add(source.name.as_bytes());
+        }
+        site.add(&span.start.to_le_bytes());
+        site.number()
+    }
+
     /// Notes measured data. Data read after generations have been evaluated begin another run: the
     /// one before is reported.
     pub(super) fn measured(&mut self, measurement: Measurement) -> Result<(), Fault> {
@@ -103,9 +125,9 @@ impl Session {
         genomes: &Genomes,
     ) -> Result<Simulated, Failure> {
         let revision = self.classes.revision();
-        let mut evaluator = match self.identification().prepared.take() {
-            Some((known, at, evaluator)) if known == request && at == revision => evaluator,
-            _ => self.prepare(&request)?,
+        let mut evaluator = match self.identification().take_prepared(&request, revision) {
+            Some(evaluator) => evaluator,
+            None => self.prepare(&request)?,
         };
         let simulated = match self.journaled(&request, genomes)? {
             Some(known) => known,
@@ -120,7 +142,7 @@ impl Session {
         let identification = self.identification();
         identification.recorder.evaluated(evaluator.study(), evaluator.x(), genomes, &simulated);
         let (study, x) = (evaluator.study().clone(), evaluator.x().to_vec());
-        identification.prepared = Some((request, revision, evaluator));
+        identification.prepared.push(Prepared { request, revision, evaluator });
         self.trace_simulation((&study, &x), genomes, &simulated)?;
         self.show_run(&study, genomes);
         Ok(simulated)
@@ -129,11 +151,11 @@ impl Session {
     /// Simulates one individual once more, with the model and at the points of the last `Eval`: Y
     /// there, or why there is none. Nothing of it is counted or recorded.
     pub fn simulate_again(&mut self, genes: &[f64]) -> Result<Vec<f64>, String> {
-        let Some((_, _, evaluator)) = &mut self.extension::<Identification>().prepared else {
+        let Some(last) = self.extension::<Identification>().prepared.last_mut() else {
             return Err("no model was simulated".to_owned());
         };
         let genomes = Genomes::new(genes.len(), genes.to_vec()).map_err(|fault| fault.message)?;
-        let simulated = evaluator.evaluate(&genomes).map_err(|fault| fault.message)?;
+        let simulated = last.evaluator.evaluate(&genomes).map_err(|fault| fault.message)?;
         match simulated.failures.first() {
             Some(Some(failed)) => Err(failed.to_string()),
             _ => Ok(simulated.rows),
@@ -168,7 +190,22 @@ impl Session {
         self.load_model_of(request)?;
         let model = self.model_of(request)?;
         let threads = self.world.threads();
-        Ok(Evaluator::new(&model, request.question.clone(), threads)?)
+        Ok(Evaluator::new(Arc::new(model), request.question.clone(), threads)?)
+    }
+}
+
+impl Identification {
+    /// The evaluator of this request, if it is at hand and the classes have not changed since.
+    fn take_prepared(&mut self, request: &Request, revision: u64) -> Option<Evaluator> {
+        let known = self.prepared.iter().position(|known| known.request == *request);
+        if let Some(place) = known {
+            let known = self.prepared.remove(place);
+            return (known.revision == revision).then_some(known.evaluator);
+        }
+        if self.prepared.len() >= PREPARED {
+            self.prepared.remove(0);
+        }
+        None
     }
 }
 
@@ -195,37 +232,37 @@ fn report(session: &mut Session) -> Result<(), Diagnostic> {
 /// The report of a run: the table for people, and the files for programs. Nothing when no
 /// individual was simulated successfully.
 fn report_run(session: &mut Session) -> Result<(), Fault> {
-    let seconds = session.world.monotonic_seconds();
     let interrupted = session.is_interrupted();
+    let (threads, probe) = (session.world.threads(), !session.options.no_probe);
     let identification = session.extension::<Identification>();
-    let started = identification.started.take().unwrap_or(seconds);
+    let started = identification.started.take();
     let recorder = identification.recorder.begin_next();
-    let evaluator = identification.prepared.as_mut().map(|(_, _, evaluator)| evaluator);
-    let (uncertainty, evaluations) = what_the_data_tell(&recorder, evaluator);
-    let Some(mut outcome) = Outcome::of(&recorder, uncertainty.as_ref(), evaluations) else {
-        return Ok(());
-    };
-    outcome.interrupted = interrupted;
-    outcome.wall_seconds = seconds - started;
-    session.world.end_view();
-    session.print(&outcome.table());
-    write_files(session, &outcome)
-}
-
-fn what_the_data_tell(
-    recorder: &Recorder,
-    evaluator: Option<&mut Evaluator>,
-) -> (Option<Uncertainty>, u64) {
-    let (Some(best), Some(evaluator)) = (&recorder.best, evaluator) else { return (None, 0) };
-    match recorder.measured_y() {
-        Some(measured) if *evaluator.study() == best.study => {
-            deviations(evaluator, best, measured).unwrap_or((None, 0))
-        }
-        _ => (None, 0),
+    let Some(best) = &recorder.best else { return Ok(()) };
+    let mut noise = NOISE_OF_FORMULAS;
+    let mut models = Vec::new();
+    for compared in &best.compared {
+        let own = |prepared: &&mut Prepared| {
+            prepared.evaluator.study() == &compared.study && prepared.evaluator.x() == compared.x
+        };
+        let own = identification.prepared.iter_mut().rev().find(own);
+        models.push(own.map(|own| {
+            noise = noise.max(own.evaluator.noise());
+            own.evaluator.model().clone()
+        }));
     }
+    let ending = Ending { recorder: &recorder, models, noise, threads, probe, interrupted };
+    let Some(solution) = ending.solution() else { return Ok(()) };
+    session.world.end_view();
+    session.print(&solution.text());
+    let now = session.world.monotonic_seconds();
+    let seconds = now - started.unwrap_or(now);
+    session.print(&format!("  {:<12} {seconds:.2} s\n", "time"));
+    write_files(session, &solution, seconds)
 }
 
-fn write_files(session: &mut Session, outcome: &Outcome) -> Result<(), Fault> {
+/// Writes the files of a run into the folder of the results; those of further runs of the session
+/// into folders within it.
+fn write_files(session: &mut Session, solution: &Solution, seconds: f64) -> Result<(), Fault> {
     let identification = session.extension::<Identification>();
     identification.reported += 1;
     let run = identification.reported;
@@ -233,38 +270,5 @@ fn write_files(session: &mut Session, outcome: &Outcome) -> Result<(), Fault> {
     if run > 1 {
         folder.push(format!("run-{run}"));
     }
-    let files = [
-        ("result.json", outcome.to_json()),
-        ("history.csv", outcome.history_csv()),
-        ("fit.csv", outcome.fit_csv()),
-        ("fit.svg", fit_figure(outcome).svg()),
-        ("convergence.svg", convergence_figure(outcome).svg()),
-    ];
-    for (name, text) in files {
-        session.write_file(&folder.join(name), text.as_bytes())?;
-    }
-    let place = format!("\n  written to {}\n", folder.display());
-    session.print(&place);
-    Ok(())
-}
-
-/// Measured and simulated points, and their residuals.
-fn fit_figure(outcome: &Outcome) -> Figure {
-    let column = |value: fn(&FitPoint) -> f64| outcome.fit.iter().map(value).collect::<Vec<f64>>();
-    let [x, y] = &outcome.axes;
-    plot::fit(&Comparison {
-        title: &outcome.model,
-        x_label: (&x.name, &x.unit),
-        y_label: (&y.name, &y.unit),
-        x: &column(|point| point.x),
-        measured: &column(|point| point.measured),
-        simulated: &column(|point| point.simulated),
-        curve: (&[], &[]),
-    })
-}
-
-fn convergence_figure(outcome: &Outcome) -> Figure {
-    let best: Vec<f64> = outcome.history.iter().map(|generation| generation.best).collect();
-    let mean: Vec<f64> = outcome.history.iter().map(|generation| generation.mean).collect();
-    plot::convergence(&outcome.model, &best, &mean)
+    super::problem::write(session, &folder, solution, seconds)
 }

@@ -30,6 +30,8 @@ pub(super) struct Refinement {
 /// Everything simulated so far, as one generation.
 struct Simulations {
     genomes: Genomes,
+    /// Their simulated points, one after the other.
+    rows: Vec<f64>,
     fitness: Vec<f64>,
 }
 
@@ -41,7 +43,8 @@ impl Session {
         starts: &Genomes,
     ) -> Result<(Individual, u64), Failure> {
         let n_genes = starts.n_genes();
-        let mut done = Simulations { genomes: Genomes::with_capacity(n_genes, 0), fitness: vec![] };
+        let genomes = Genomes::with_capacity(n_genes, 0);
+        let mut done = Simulations { genomes, rows: vec![], fitness: vec![] };
         let noise = self.noise(&refinement.request)?;
         for start in starts.rows() {
             let mut search = descent(refinement, start, noise)?;
@@ -49,7 +52,7 @@ impl Session {
         }
         let count = done.fitness.len() as u64;
         let recorder = &mut self.identification().recorder;
-        recorder.rated(&done.fitness, &refinement.measured);
+        recorder.rated(&done.rows, &refinement.measured);
         recorder.ordered(&done.genomes, &done.fitness);
         match best(&done.genomes, &done.fitness).filter(|found| !has_failed(found.fitness)) {
             Some(found) => Ok((found, count)),
@@ -149,6 +152,7 @@ impl Session {
         let simulated = self.evaluate_population(refinement.request.clone(), &genomes)?;
         let rows = simulated.rows.chunks(measured.len());
         done.fitness.extend(rows.map(|row| sum_of_squares(row, measured)));
+        done.rows.extend_from_slice(&simulated.rows);
         genomes.rows().for_each(|genome| done.genomes.push(genome));
         let points = simulated.rows.iter().zip(measured.iter().cycle());
         Ok(points.map(|(simulated, measured)| simulated - measured).collect())

@@ -69,6 +69,8 @@ pub struct Options {
     pub permissions: Permissions,
     /// Whether what the simulations answer is kept on the way.
     pub journaling: Journaling,
+    /// Leave out the least squares that end an identification, from its best individual.
+    pub no_probe: bool,
 }
 
 /// Whether a run of scripts keeps a journal of its simulations in the output folder, from which it

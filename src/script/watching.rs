@@ -7,7 +7,7 @@ use super::view::{Fitted, Spread, View, labelled};
 use super::world::Progress;
 use crate::diag::Diagnostic;
 use crate::ga::Genomes;
-use crate::identify::{Quantity, Recorder, Study};
+use crate::identify::{Compared, Quantity, Recorder, Study};
 use crate::syntax;
 
 const HELP: &str = "\
@@ -91,19 +91,19 @@ fn view(recorder: &Recorder, study: &Study, genomes: &Genomes, progress: Progres
             generation: Spread::of(genes.iter().map(fraction).collect())?,
         })
     };
-    let fitted = |best: &crate::identify::Best| Fitted {
-        y_name: labelled(&study.y.name, &study.y.unit),
-        x_name: labelled(&study.x.name, &study.x.unit),
-        x: best.x.clone(),
-        measured: best.measured.clone().unwrap_or_default(),
-        simulated: best.simulated.clone(),
+    let fitted = |compared: &Compared| Fitted {
+        y_name: labelled(&compared.study.y.name, &compared.study.y.unit),
+        x_name: labelled(&compared.study.x.name, &compared.study.x.unit),
+        x: compared.x.clone(),
+        measured: compared.measured.clone().unwrap_or_default(),
+        simulated: compared.simulated.clone(),
     };
     View {
         title: format!("Identification of {}", study.model),
         progress,
         best: recorder.history.generations.iter().map(|generation| generation.best).collect(),
         spreads: study.parameters.iter().enumerate().filter_map(spread).collect(),
-        fitted: best.map(fitted).into_iter().collect(),
+        fitted: best.iter().flat_map(|best| &best.compared).map(fitted).collect(),
     }
 }
 

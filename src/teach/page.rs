@@ -45,7 +45,7 @@ pub fn belongs(trace: &Trace, result: &str) -> bool {
     let best = best.map(|(_, fitness)| fitness).min_by(f64::total_cmp);
     result["model"] == json!(trace.subject.model)
         && result["generations"] == json!(trace.generations.len())
-        && best.is_some_and(|best| result["best_fit"] == json!(best))
+        && best.is_some_and(|best| result["script"]["fitness"] == json!(best))
 }
 
 fn escaped(text: &str) -> String {

@@ -98,7 +98,7 @@ fn damaged_traces_are_no_panic() {
 #[test]
 fn a_page_is_whole_and_needs_no_network() {
     let trace = Trace::read(&sample::run(3, 12345.0).bytes).unwrap();
-    let text = page::page(trace, Some(r#"{"details": []}"#));
+    let text = page::page(trace, Some(r#"{"parameters": []}"#));
     assert!(!text.contains("{{"), "a part is not filled in");
     assert!(!text.contains("src=") && !text.contains("@import") && !text.contains("url("));
     let data = text.split_once(r#"id="data">"#).unwrap().1.split_once("</script>").unwrap().0;

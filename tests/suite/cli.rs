@@ -294,6 +294,38 @@ fn results_that_cannot_be_written_are_an_error() {
     assert_eq!(errors.matches("error[").count(), 1, "{errors}");
 }
 
+/// Each problem writes into a folder of its own, equal runs write equal bytes, and `gapi report`
+/// draws the page of either kind of run again.
+#[test]
+fn no_problem_replaces_the_results_of_another() {
+    let job = main_job("3");
+    let other = job.replace("N_Cycle = 3", "N_Cycle = 2");
+    let here = folder(&[("job.mos", &job)]);
+    fs::create_dir(here.path().join("sub")).unwrap();
+    fs::write(here.path().join("sub/job.mos"), &other).unwrap();
+    let read = |name: &str| fs::read(here.path().join(name)).unwrap();
+    let (code, out, errors) = gapi(&here, &["run", "job.mos"]);
+    assert!(code == 0 && out.contains("results/job\n"), "{out}{errors}");
+    let names = ["result.json", "history.csv", "fit.csv", "individuals.csv", "report.html"];
+    let all = || names.map(|name| read(&format!("results/job/{name}")));
+    let first = all();
+    let (code, out, _) = gapi(&here, &["run", "sub/job.mos"]);
+    assert!(code == 0 && out.contains("results/job-2\n"), "{out}");
+    assert!(all() == first, "another problem of the same name has replaced them");
+    assert_eq!(gapi(&here, &["run", "job.mos"]).0, 0);
+    assert!(all() == first, "equal runs, equal bytes");
+    let page = read("results/job/report.html");
+    fs::remove_file(here.path().join("results/job/report.html")).unwrap();
+    let (code, out, errors) = gapi(&here, &["report", "results"]);
+    assert!(code == 0 && out.contains("least squares from there reaches"), "{out}{errors}");
+    assert!(read("results/job/report.html") == page, "of the run before, which was the last");
+    let refused = gapi(&here, &["run", "sub/job.mos", "--out", "results/job"]);
+    assert!(refused.0 == 2 && refused.2.contains("--overwrite"), "{refused:?}");
+    assert!(all() == first);
+    let asked = gapi(&here, &["run", "sub/job.mos", "--out", "results/job", "--overwrite"]);
+    assert!(asked.0 == 0 && all() != first, "{asked:?}");
+}
+
 #[cfg(unix)]
 fn interrupt(child: &Child) {
     let id = child.id().to_string();
@@ -324,7 +356,7 @@ fn an_interrupted_identification_writes_what_it_has() {
     assert_eq!(output.status.code(), Some(130), "{errors}");
     assert!(errors.contains("interrupted"), "{errors}");
     for name in ["history.csv", "result.json"] {
-        assert!(here.path().join("results").join(name).is_file(), "{name}: {shown}\n{errors}");
+        assert!(here.path().join("results/job").join(name).is_file(), "{name}: {shown}\n{errors}");
     }
 }
 

@@ -37,10 +37,13 @@ fn the_main_job_writes_what_it_promises() {
     assert_eq!(result["evaluations"], 400);
     assert_eq!(result["model"], "CaseStudies.PolarizationCurve(i_max=1.46)");
     assert_eq!(result["seed"][5], 12345.0);
-    assert_eq!(result["details"][5]["unit"], "A/cm2");
-    assert_eq!(result["details"][5]["range"][0], 1.47);
+    assert_eq!(result["parameters"][5]["unit"], "A/cm2");
+    assert_eq!(result["parameters"][5]["range"][0], 1.47);
     let history = written(&session, "history.csv");
-    assert_eq!(history.lines().next(), Some("generation,best,mean,worst,failures"));
+    assert_eq!(
+        history.lines().next(),
+        Some("generation,best,mean,worst,failures,A,In,Io,B,R,Ilim")
+    );
     assert_eq!(history.lines().count(), 5);
     let best: Vec<f64> = history
         .lines()
@@ -54,55 +57,177 @@ fn the_main_job_writes_what_it_promises() {
     }
 }
 
-/// The sum of squares of the best individual, computed here from its parameters and the data.
+/// The sums of squares of the script's best individual and of the minimum, computed here from their
+/// parameters and the data.
 #[test]
-fn the_reported_fit_is_that_of_the_reported_parameters() {
+fn the_reported_objective_values_are_those_of_the_reported_parameters() {
     let session = run("", 3, "");
     let result = result(&session);
-    let value = |name: &str| result["parameters"][name].as_f64().unwrap();
-    let [a, i_n, io, b, r, ilim] = ["A", "In", "Io", "B", "R", "Ilim"].map(value);
-    let voltage = |i: f64| {
-        let total = i + i_n;
-        1.2 - r * total - a * (total / io).ln() + b * (1.0 - total / ilim).ln()
+    let sum = |value: &dyn Fn(&str) -> f64| -> f64 {
+        let [a, i_n, io, b, r, ilim] = ["A", "In", "Io", "B", "R", "Ilim"].map(value);
+        let voltage = |i: f64| {
+            let total = i + i_n;
+            1.2 - r * total - a * (total / io).ln() + b * (1.0 - total / ilim).ln()
+        };
+        let data = shipped::project("scripts/data/ecsim_nafion112/c12_n20_rh50_p15psig.csv");
+        let text = std::fs::read_to_string(data).unwrap();
+        let points = text.lines().skip(1).map(|line| line.split_once(',').unwrap());
+        points
+            .map(|(i, v)| (i.parse::<f64>().unwrap(), v.parse::<f64>().unwrap()))
+            .map(|(i, measured)| (measured - voltage(i)).powi(2))
+            .sum()
     };
-    let data = shipped::project("scripts/data/ecsim_nafion112/c12_n20_rh50_p15psig.csv");
-    let sum: f64 = std::fs::read_to_string(data)
-        .unwrap()
-        .lines()
-        .skip(1)
-        .map(|line| line.split_once(',').unwrap())
-        .map(|(i, v)| (i.parse::<f64>().unwrap(), v.parse::<f64>().unwrap()))
-        .map(|(i, measured)| (measured - voltage(i)).powi(2))
-        .sum();
-    let best_fit = result["best_fit"].as_f64().unwrap();
-    assert!((best_fit - sum).abs() < 1e-12 * sum.max(1.0), "{best_fit} {sum}");
-    let rmse = result["rmse"].as_f64().unwrap();
-    assert!((rmse - (sum / 14.0).sqrt()).abs() < 1e-12);
+    let script = &result["script"];
+    let best = script["fitness"].as_f64().unwrap();
+    let expected = sum(&|name| script["parameters"][name].as_f64().unwrap());
+    assert!((best - expected).abs() < 1e-12 * expected.max(1.0), "{best} {expected}");
+    let parameters = result["parameters"].as_array().unwrap();
+    let of = |name: &str| parameters.iter().find(|own| own["name"] == name).unwrap();
+    let least = result["fitness"].as_f64().unwrap();
+    let expected = sum(&|name| of(name)["value"].as_f64().unwrap());
+    assert!((least - expected).abs() < 1e-9 * expected, "{least} {expected}");
+    let rmse = result["series"][0]["rmse"].as_f64().unwrap();
+    assert!((rmse - (expected / 14.0).sqrt()).abs() < 1e-9 * rmse);
+}
+
+/// The minimum of the shipped curve and its standard errors, computed independently with scipy
+/// (`least_squares` with `x_scale = 'jac'`, and `s² (JᵀJ)⁻¹`): the script ends beside it, and its
+/// own values stay what they are.
+#[test]
+fn least_squares_from_the_script_s_best_individual_reach_the_minimum() {
+    let with = run("", 50, "");
+    let found = result(&with);
+    let best = found["script"]["fitness"].as_f64().unwrap();
+    assert!((3e-6..5e-3).contains(&best), "{best}");
+    let least = found["fitness"].as_f64().unwrap();
+    assert!((least - 2.462_09e-6).abs() < 1e-10, "{least}");
+    let probe = found["script"]["probe"].as_str().unwrap();
+    assert!(probe.contains("least squares from there reaches 2.4621e-6"), "{probe}");
+    assert!(probe.contains("This is a minimum"), "{probe}");
+    for (k, value, percent) in [(3, 0.10642, 32.0), (4, 0.255_86, 7.3), (5, 2.0283, 7.3)] {
+        let own = &found["parameters"][k];
+        let [at, error] = ["value", "deviation"].map(|key| own[key].as_f64().unwrap());
+        assert!((at - value).abs() < 2e-3 * value, "{own}");
+        assert!((100.0 * error / at - percent).abs() < 0.02 * percent, "{own}");
+        assert_eq!(own["determined"], true, "{own}");
+    }
+    let text = "RunScript(\"GAPILib_INI.mos\")\nN_Cycle = 50\nRunScript(\"GAPILib_CYCLE.mos\")\n";
+    let world = shipped::world().with_file("scripts/test.mos", text);
+    let options = gapilib::script::Options { no_probe: true, ..Default::default() };
+    let mut without = Session::new(Box::new(world)).with_options(options);
+    without.run_file(Path::new("scripts/test.mos"));
+    assert_eq!(written(&with, "history.csv"), written(&without, "history.csv"));
+    let alone = result(&without);
+    assert_eq!(alone["script"]["parameters"], found["script"]["parameters"]);
+    assert_eq!(alone["fitness"], found["script"]["fitness"]);
+    for own in alone["parameters"].as_array().unwrap() {
+        assert!(own["deviation"].is_null() && own["determined"].is_null(), "{own}");
+        assert!(own["interval"].is_null(), "{own}");
+    }
 }
 
 #[test]
-fn fifty_generations_fit_the_measured_curve_roughly() {
-    let best = result(&run("", 50, ""))["best_fit"].as_f64().unwrap();
-    // The least-squares optimum is 2.462e-6; nothing can be better.
-    assert!((2.46e-6..5e-3).contains(&best), "{best}");
+fn the_twin_is_fitted_by_the_script_as_ever() {
+    let result = result(&run("twin", 50, ""));
+    assert!(result["script"]["fitness"].as_f64().unwrap() < 2e-2);
+    let failed: u64 = result["failures"]["simulation"].as_u64().unwrap();
+    assert!(failed > 0, "a range that reaches into failures");
 }
 
+/// Two populations are simulated before either is compared, the second is compared first: the
+/// parameters belong to the rows that `Fit` was given.
 #[test]
-fn the_twin_is_fitted_and_its_resistance_called_not_determined() {
-    let session = run("twin", 50, "");
-    let result = result(&session);
-    assert!(result["best_fit"].as_f64().unwrap() < 2e-2);
-    assert!(result["failures"].as_u64().unwrap() > 0, "a range that reaches into failures");
-    let resistance = &result["details"][4];
-    assert_eq!((&resistance["name"], &resistance["determined"]), (&"R".into(), &false.into()));
+fn parameters_belong_to_the_rows_that_fit_was_given() {
+    let model = "model Line \"y = a t\"\n  parameter Real a = 1;\n  output Real y = a*time;\n  \
+                 annotation(experiment(StopTime = 1));\nend Line;\n";
+    let script = "X := {0.0, 0.5, 1.0};\nY := {0.0, 1.55, 2.95};\n\
+                  D1 := Eval(\"Line.mo\", \"Line\", X, {{1.1}}, {\"a\"}, \"time\", \"y\");\n\
+                  D2 := Eval(\"Line.mo\", \"Line\", X, {{2.0}, {3.0}, {4.0}}, {\"a\"}, \"time\", \"y\");\n\
+                  F2 := Fit(D2, Y);\nF1 := Fit(D1, Y);\n";
+    let world = shipped::world().with_file("Line.mo", model).with_file("test.mos", script);
+    let run = shipped::run_in(world, "test.mos");
+    assert_eq!(run.errors, "");
+    let result = result(&run.session);
+    assert_eq!(result["script"]["parameters"]["a"], 3.0);
+    let best = result["script"]["fitness"].as_f64().unwrap();
+    assert!((best - 0.005).abs() < 1e-12, "{best}");
+    assert_eq!((&result["generations"], &result["evaluations"]), (&1.into(), &4.into()));
+}
+
+/// Two curves with one slope: the script adds up what `Fit` says of both. One row of history for
+/// each generation, and statistics over all points.
+#[test]
+fn several_experiments_in_a_generation_are_one_generation() {
+    let models = "model Line\n  parameter Real a = 1;\n  output Real y = a*time;\n  \
+                  annotation(experiment(StopTime = 1));\nend Line;\n\
+                  model Square\n  parameter Real a = 1;\n  output Real y = a*time^2;\n  \
+                  annotation(experiment(StopTime = 1));\nend Square;\n";
+    let script = "loadModel(\"Both.mo\");\nX1 := {0.0, 0.5, 1.0};\nY1 := {0.1, 1.4, 3.1};\n\
+                  X2 := {0.25, 0.5, 0.75, 1.0};\nY2 := {0.2, 0.8, 1.6, 3.0};\n\
+                  pop := {{1.0}, {2.0}, {2.5}, {4.0}, {5.0}};\nfor g in 1:3 loop\n  \
+                  D1 := Eval(\"\", \"Line\", X1, pop, {\"a\"}, \"time\", \"y\");\n  \
+                  F1 := Fit(D1, Y1);\n  \
+                  D2 := Eval(\"\", \"Square\", X2, pop, {\"a\"}, \"time\", \"y\");\n  \
+                  F2 := Fit(D2, Y2);\n  \
+                  (pop, F) := Fit_Order(pop, F1 + F2, 5, 3, 1);\n  \
+                  pop[5,1] := 2.5 + 0.1*g;\nend for;\n";
+    let script = script.replace("loadModel(\"Both.mo\")", "openModel(\"Both.mo\")");
+    let world = shipped::world().with_file("Both.mo", models).with_file("test.mos", script);
+    let run = shipped::run_in(world, "test.mos");
+    assert_eq!(run.errors, "");
+    let result = result(&run.session);
+    assert_eq!((&result["generations"], &result["evaluations"]), (&3.into(), &30.into()));
+    assert_eq!(written(&run.session, "history.csv").lines().count(), 4);
+    assert_eq!(result["script"]["fitness_name"], "sum of squares");
+    // Least squares over both series, by hand: Σ x y / Σ x².
+    let points =
+        [(0.0, 0.1), (0.5, 1.4), (1.0, 3.1), (0.0625, 0.2), (0.25, 0.8), (0.5625, 1.6), (1.0, 3.0)];
+    let [xy, xx, yy]: [f64; 3] =
+        points.iter().fold([0.0; 3], |[xy, xx, yy], (x, y)| [xy + x * y, xx + x * x, yy + y * y]);
+    let (slope, least) = (xy / xx, yy - xy * xy / xx);
+    let own = &result["parameters"][0];
+    assert!((own["value"].as_f64().unwrap() - slope).abs() < 1e-6 * slope, "{own} {slope}");
+    assert!((result["fitness"].as_f64().unwrap() - least).abs() < 1e-9, "{least}");
+    // Seven points, one parameter.
+    let error = (least / 6.0 / xx).sqrt();
+    assert!((own["deviation"].as_f64().unwrap() - error).abs() < 1e-4 * error, "{own} {error}");
+    assert_eq!(result["series"].as_array().unwrap().len(), 2);
+}
+
+/// A run restores population and seed from files behind its initialization, as a script does that
+/// goes on where another has ended: the seed reported is the restored one.
+#[test]
+fn a_restored_seed_is_the_one_that_is_reported() {
+    let restored = "writeMatrix(\"seed.mat\", \"Seed\", [1, 2, 3, 4, 5, 6]);\n\
+                    Seed := readMatrix(\"seed.mat\", \"Seed\", 1, 6);";
+    let result = result(&run("", 3, restored));
+    assert_eq!(result["seed"], serde_json::json!([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]));
+    // In one session, with the state that the first run has left.
+    let script = "RunScript(\"GAPILib_INI.mos\")\nN_Cycle = 3\nRunScript(\"GAPILib_CYCLE.mos\")\n\
+                  writeMatrix(\"seed.mat\", \"Seed\", Seed);\n\
+                  Seed := readMatrix(\"seed.mat\", \"Seed\", 1, 6);\nSaved := Seed;\n\
+                  for k in 1:N_Population loop\n  (Ram_list, Seed) := Ram_Gen_ARENA(Seed, N_Parameters);\n  \
+                  New_Generation[k,:] := Param_Min + (Param_Max - Param_Min).*Ram_list[1,:];\nend for\n\
+                  (State_Exp_Adq, SizeMatrix, Xexp, Yexp) := Exp_Adq_SISO(\"data/ecsim_nafion112/c12_n20_rh50_p15psig.mat\", \"i\", \"V\");\n\
+                  RunScript(\"GAPILib_CYCLE.mos\")\n";
+    let run = shipped::run("scripts/test.mos", script);
+    assert_eq!(run.errors, "");
+    let read = |name: &str| -> serde_json::Value {
+        serde_json::from_str(&written(&run.session, name)).unwrap()
+    };
+    assert_eq!(read("result.json")["seed"][0], 12345.0);
+    let saved = run.session.variable("Saved").expect("assigned").as_reals().expect("numbers");
+    assert_eq!(read("run-2/result.json")["seed"], serde_json::json!(saved));
 }
 
 #[test]
 fn the_noise_free_twin_has_its_optimum_at_the_published_values() {
     let published =
         "New_Generation[1,:] := {0.0390, 1.4e-3, 1.5856e-6, 0.0918, 7.2860e-4, 0.2265};";
-    let best = result(&run("twin", 1, published))["best_fit"].as_f64().unwrap();
+    let result = result(&run("twin", 1, published));
+    let best = result["script"]["fitness"].as_f64().unwrap();
     assert!(best < 1e-27, "{best}");
+    assert!(result["fitness"].as_f64().unwrap() < 1e-27, "nothing is lost");
 }
 
 #[test]
@@ -112,7 +237,7 @@ fn own_fitness_and_own_stop_condition_replace_those_of_the_library() {
     let shipped::Run { session, errors, .. } = shipped::run("scripts/own_fitness/test.mos", script);
     assert_eq!(errors, "");
     let result = result(&session);
-    let best = result["best_fit"].as_f64().unwrap();
+    let best = result["fitness"].as_f64().unwrap();
     let worst = written(&session, "fit.csv")
         .lines()
         .skip(1)
@@ -121,7 +246,10 @@ fn own_fitness_and_own_stop_condition_replace_those_of_the_library() {
     assert!((best - worst).abs() < 1e-15, "the fitness is the largest distance: {best} {worst}");
     assert!(best <= 0.2);
     assert!(result["generations"].as_u64().unwrap() < 200, "the stop condition ended it");
-    assert_eq!(result["fitness"], "function of the script");
+    assert_eq!(result["script"]["fitness_name"], "function of the script");
+    let probe = result["script"]["probe"].as_str().unwrap();
+    assert!(probe.contains("a function of its own, not a sum of squares"), "{probe}");
+    assert!(result["parameters"][0]["deviation"].is_null());
 }
 
 #[test]
@@ -142,7 +270,8 @@ fn an_interrupted_run_writes_what_it_has_and_says_so() {
     let run = shipped::run_in(world, "scripts/test.mos");
     assert!(run.status.interrupted && run.status.code == 130);
     let result = result(&run.session);
-    assert_eq!(result["interrupted"], true);
+    assert_eq!(result["script"]["interrupted"], true);
+    assert!(result["parameters"][0]["determined"].is_null(), "no verdict");
     let generations = result["generations"].as_u64().unwrap();
     assert!((1..5000).contains(&generations), "{generations}");
     assert_eq!(written(&run.session, "history.csv").lines().count() as u64, generations + 1);
@@ -285,23 +414,36 @@ fn one_thread_and_two_write_the_same_bytes() {
         files(&out)
     };
     let (one, two) = (run("1"), run("2"));
-    assert_eq!(one.len(), 5, "{:?}", one.iter().map(|(name, _)| name).collect::<Vec<_>>());
+    let names: Vec<&str> = one.iter().map(|(name, _)| name.as_str()).collect();
+    let expected = [
+        "Calibrated.mo",
+        "calibrated.mos",
+        "convergence.svg",
+        "fit.csv",
+        "fit.svg",
+        "history.csv",
+        "individuals.csv",
+        "origin.json",
+        "report.html",
+        "result.json",
+    ];
+    assert_eq!(names, expected);
+    assert!(folder.path().join("1/timing.json").is_file(), "the time is in a file of its own");
     for ((name, one), (_, two)) in one.iter().zip(&two) {
         assert_eq!(one, two, "{name}");
     }
 }
 
-/// Names and contents of the files of a folder, without the line that tells the time.
+/// Names and contents of the files of a folder, without the one that holds the time.
 fn files(folder: &Path) -> Vec<(String, String)> {
     let mut found: Vec<(String, String)> = std::fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().path())
         .map(|path| {
             let text = std::fs::read_to_string(&path).unwrap();
-            let lines: Vec<&str> =
-                text.lines().filter(|line| !line.contains("wall_seconds")).collect();
-            (path.file_name().unwrap().to_string_lossy().into_owned(), lines.join("\n"))
+            (path.file_name().unwrap().to_string_lossy().into_owned(), text)
         })
+        .filter(|(name, _)| name != "timing.json")
         .collect();
     found.sort();
     found

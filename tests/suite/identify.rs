@@ -117,7 +117,7 @@ fn inputs_follow_the_data_and_initial_states_are_found() {
     filled_tank(folder.path());
     let (code, text) = run(folder.path(), &["tank.toml"]);
     assert_eq!(code, 0, "{text}");
-    let result = result(folder.path(), "results");
+    let result = result(folder.path(), "results/tank");
     for (name, truth) in [("k", 0.8), ("area", 2.0), ("h", 0.3)] {
         let found = value(&result, name);
         assert!((found - truth).abs() < 1e-3 * truth, "{name} = {found}\n{text}");
@@ -147,7 +147,7 @@ print(\"k area h: \" + String(integer(1e3*values[1] + 0.5)) + \" \" + String(int
         .unwrap();
     let text = [output.stdout, output.stderr].map(|b| String::from_utf8(b).unwrap()).concat();
     assert!(text.contains("k area h: 800 2000 300"), "{text}");
-    assert!(folder.path().join("results/report.html").is_file());
+    assert!(folder.path().join("results/s/report.html").is_file());
 }
 
 /// Kills in the suite; `GAPILIB_KILLS` sets another number.
@@ -222,8 +222,8 @@ fn a_full_disk_ends_no_run_and_is_told() {
     assert!(text.contains("area") && text.contains("95 % interval"), "{text}");
     assert!(text.contains("result.json") && text.contains("could not be written"), "{text}");
     // What is small enough was written, and nothing half.
-    assert!(folder.path().join("results/Calibrated.mo").is_file());
-    assert!(!folder.path().join("results/result.json").exists());
+    assert!(folder.path().join("results/tank/Calibrated.mo").is_file());
+    assert!(!folder.path().join("results/tank/result.json").exists());
     // With room again the run is completed from what the journal holds.
     let (code, text) = run(folder.path(), &["tank.toml", "--resume"]);
     assert_eq!(code, 0, "{text}");
@@ -253,7 +253,7 @@ fn profiles_and_sensitivities_are_written() {
     // Exact data: what the tolerance leaves is no physics that the model misses.
     assert!(!text.contains("misses"), "{text}");
     for file in ["sensitivity.csv", "profiles.csv"] {
-        assert!(folder.path().join("results").join(file).is_file(), "{file}");
+        assert!(folder.path().join("results/tank").join(file).is_file(), "{file}");
     }
     let (code, text) = run(folder.path(), &["tank.toml", "--sensitivity", "guess", "--out", "o"]);
     assert!(code == 1 && text.contains("morris"), "{text}");
@@ -266,12 +266,12 @@ fn checkpoints_of_other_problems_and_damaged_ones_are_told() {
     fs::create_dir(folder.path().join("results")).unwrap();
     let journal = folder.path().join("results/run.journal");
     fs::write(&journal, "no journal").unwrap();
-    let (code, text) = run(folder.path(), &["tank.toml"]);
+    let (code, text) = run(folder.path(), &["tank.toml", "--out", "results"]);
     assert!(code == 1 && text.contains("--resume") && text.contains("--fresh"), "{text}");
-    let (code, text) = run(folder.path(), &["tank.toml", "--resume"]);
+    let (code, text) = run(folder.path(), &["tank.toml", "--resume", "--out", "results"]);
     assert!(code == 1 && text.contains("no checkpoint"), "{text}");
     fs::write(&journal, b"GAPIRUN1\0\0\0\0\0\0\0\0").unwrap();
-    let (code, text) = run(folder.path(), &["tank.toml", "--resume"]);
+    let (code, text) = run(folder.path(), &["tank.toml", "--resume", "--out", "results"]);
     assert!(code == 1 && text.contains("another problem"), "{text}");
     assert_eq!(fs::read(&journal).unwrap().len(), 16, "left as it was");
 }
@@ -286,7 +286,7 @@ fn settings_are_watched_and_what_cannot_be_changed_is_told() {
     assert_eq!(code, 0, "{text}");
     assert!(text.contains("mutation = 0.4 from generation 1 on"), "{text}");
     assert!(text.contains("`colour`"), "{text}");
-    let result = result(folder.path(), "results");
+    let result = result(folder.path(), "results/tank");
     let names: Vec<&str> =
         result["changes"].as_array().unwrap().iter().map(|c| c[1].as_str().unwrap()).collect();
     assert_eq!(names, ["evaluations", "mutation", "min k"]);

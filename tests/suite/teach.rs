@@ -46,9 +46,9 @@ fn a_script_becomes_a_page() {
     let (code, _, errors) = gapi(&here, &["teach", "search.mos", "--html", "steps.html"]);
     assert_eq!(code, 0, "{errors}");
     let page = std::fs::read_to_string(here.path().join("steps.html")).unwrap();
-    let report = std::fs::read_to_string(here.path().join("results/result.json")).unwrap();
-    assert!(page.contains("Discharge") && report.contains("standard_deviation"));
-    assert!(page.contains("\"standard_deviation\""), "the page has no report");
+    let report = std::fs::read_to_string(here.path().join("results/search/result.json")).unwrap();
+    assert!(page.contains("Discharge") && report.contains("least squares from there"));
+    assert!(page.contains("least squares from there"), "the page has no report");
 }
 
 #[test]
@@ -70,7 +70,7 @@ fn a_run_is_compared_with_what_it_would_have_been() {
     let (code, out, errors) = what_if("F_Mut := 1.0", "3");
     assert_eq!(code, 0, "{errors}");
     assert!(out.contains("What if F_Mut := 1.0 from generation 3?"), "{out}");
-    assert!(here.path().join("results/what_if.svg").exists());
+    assert!(here.path().join("results/search/what_if.svg").exists());
     let of = |number: &str| -> Vec<String> {
         let line = out.lines().find(|line| line.trim_start().starts_with(number)).expect("a row");
         line.split_whitespace().skip(1).map(str::to_owned).collect()

@@ -75,10 +75,11 @@ impl Sigma {
 }
 
 /// What the deviations of a problem are, taken together.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ErrorModel {
     /// Nothing is known: one variance for all points, weights apart, from the residuals.
+    #[default]
     OneVariance,
     /// All deviations are known.
     Known,

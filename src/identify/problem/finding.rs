@@ -66,6 +66,8 @@ pub enum FindingKind {
     Constraint,
     /// A statistic that could not be computed.
     Missing,
+    /// Where the search of a script ended, and where least squares from there.
+    Search,
 }
 
 /// How much a finding changes what the numbers mean.

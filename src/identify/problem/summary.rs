@@ -28,7 +28,7 @@ const AT_BOUND: f64 = 1e-3;
 const ELSEWHERE: usize = 5;
 
 /// The solution of a problem.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Solution {
     /// The heading.
     pub title: String,
@@ -106,8 +106,12 @@ pub struct Solution {
     pub hypervolume: Option<(f64, Vec<f64>)>,
     /// Names of the objectives.
     pub objectives: Vec<String>,
-    /// The seed.
-    pub seed: [f64; 6],
+    /// What the script has found whose search least squares have ended; `None` where the problem
+    /// was solved without a script of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub script: Option<super::ScriptResult>,
+    /// The seed; `None` where no random numbers were drawn.
+    pub seed: Option<[f64; 6]>,
     /// Version of the program.
     pub version: String,
     /// The problem as it was written; empty where it was put in Rust.
@@ -124,7 +128,7 @@ pub struct Solution {
 }
 
 /// An identified parameter.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct SolvedParameter {
     /// Its name.
     pub name: String,
@@ -335,7 +339,8 @@ impl Solution {
             hypervolume: front_volume(&run.front),
             front: run.front.clone(),
             objectives: problem.objectives.iter().map(|(name, _)| name.clone()).collect(),
-            seed: problem.seed,
+            script: None,
+            seed: Some(problem.seed),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             problem: problem.text.clone(),
             history: run.history.generations.clone(),

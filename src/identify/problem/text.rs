@@ -2,15 +2,18 @@
 
 use super::{EndingKind, Profile, Solution, SolvedParameter, SolvedSeries, Verdict};
 use crate::identify::table::significant;
+use crate::plot::{self, Comparison, Figure};
 use std::fmt::Write;
 
 /// How many causes of failure are shown.
 const CAUSES: usize = 5;
+const HEADING: [&str; 7] =
+    ["parameter", "value", "unit", "standard error", "95 % interval", "range", ""];
 
 impl Solution {
     /// The report that ends a run.
     pub fn text(&self) -> String {
-        let mut text = format!("\n{}\n\n{}\n", self.title, parameter_table(&self.parameters));
+        let mut text = format!("\n{}\n\n{}\n", self.title, self.parameter_table());
         if let Some(profiles) = &self.profiles {
             let row = |profile: &Profile| {
                 let ends =
@@ -35,10 +38,7 @@ impl Solution {
     }
 
     fn facts(&self) -> Vec<(&'static str, String)> {
-        let mut facts = vec![
-            ("model", self.model.clone()),
-            ("fit", format!("{} ({})", significant(self.fitness, 7), self.fitness_name)),
-        ];
+        let mut facts = vec![("model", self.model.clone()), ("objective", self.objective_values())];
         facts.extend(self.series.iter().map(|series| ("series", series_line(series))));
         facts.extend(self.validation.iter().map(|series| ("validation", series_line(series))));
         if let Some(chi) = &self.chi_square {
@@ -75,19 +75,52 @@ impl Solution {
         let share = 100.0 * failed as f64 / self.evaluations.max(1) as f64;
         facts.push((
             "evaluations",
-            format!("{} in {} generations, {failed} failed ({share:.1} %); {} simulations, {} more for the standard errors{}", self.evaluations, self.generations, self.simulations, self.simulations_for_statistics, self.profiles.as_ref().map_or(String::new(), |all| format!(", {} for the profiles", all.simulations))),
+            format!("{} in {} generations, {failed} failed ({share:.1} %); {} simulations, {} more for {}{}", self.evaluations, self.generations, self.simulations, self.simulations_for_statistics, if self.script.is_some() { "least squares and standard errors" } else { "the standard errors" }, self.profiles.as_ref().map_or(String::new(), |all| format!(", {} for the profiles", all.simulations))),
         ));
         let mut causes: Vec<(&String, &u64)> = self.causes.iter().collect();
         causes.sort_by(|a, b| b.1.cmp(a.1));
         facts.extend(
             causes.iter().take(CAUSES).map(|(cause, count)| ("", format!("{count} x {cause}"))),
         );
+        for (generation, statement) in self.script.iter().flat_map(|script| &script.changes) {
+            facts.push(("changed", format!("{statement} in generation {generation}")));
+        }
         for (generation, setting, value) in &self.changes {
             facts.push(("changed", format!("{setting} = {value} after generation {generation}")));
         }
         facts.push(("version", format!("gapilib {}", self.version)));
-        facts.push(("seed", self.seed.map(|entry| entry.to_string()).join(" ")));
+        if let Some(seed) = self.seed {
+            facts.push(("seed", seed.map(|entry| entry.to_string()).join(" ")));
+        }
         facts
+    }
+
+    fn objective_values(&self) -> String {
+        let found = format!("{} ({})", significant(self.fitness, 7), self.fitness_name);
+        match self.script.as_ref().filter(|script| script.probed) {
+            Some(script) => format!(
+                "{} by the script ({}), {} by least squares",
+                significant(script.fitness, 5),
+                script.fitness_name,
+                significant(self.fitness, 7)
+            ),
+            None => found,
+        }
+    }
+
+    fn parameter_table(&self) -> String {
+        let mut rows = vec![HEADING.map(str::to_owned).to_vec()];
+        rows.extend(self.parameters.iter().map(|parameter| cells(parameter).to_vec()));
+        if let Some(script) = self.script.as_ref().filter(|script| script.probed) {
+            rows[0][1] = "least squares".to_owned();
+            rows[0].insert(1, "script's best".to_owned());
+            for (row, value) in rows[1..].iter_mut().zip(script.parameters.values()) {
+                row.insert(1, significant(*value, 5));
+                // Least squares follow the logarithm; the script does not.
+                row[6] = row[6].trim_end_matches(" log").to_owned();
+            }
+        }
+        aligned(&rows)
     }
 
     /// `result.json`.
@@ -154,6 +187,22 @@ impl Solution {
         text
     }
 
+    /// The objective values of the generations.
+    pub fn convergence_figure(&self) -> Figure {
+        let best: Vec<f64> = self.history.iter().map(|generation| generation.best).collect();
+        let mean: Vec<f64> = self.history.iter().map(|generation| generation.mean).collect();
+        plot::convergence(&self.model, &best, &mean)
+    }
+
+    /// Measured and simulated points of each series with their residuals, and the names of files.
+    pub fn fit_figures(&self) -> Vec<(String, Figure)> {
+        let named = |(k, series): (usize, &SolvedSeries)| {
+            let name = if k == 0 { "fit.svg".to_owned() } else { format!("fit-{}.svg", k + 1) };
+            Some((name, series.figure(&self.model)?))
+        };
+        self.series.iter().enumerate().filter_map(named).collect()
+    }
+
     /// The calibrated model: the model with the values found.
     pub fn modelica(&self) -> String {
         let (class, inner) = match self.model.split_once('(') {
@@ -178,6 +227,27 @@ impl Solution {
     pub fn script(&self) -> String {
         let shared = self.parameters.iter().filter(|p| !p.name.contains('@'));
         shared.map(|p| format!("{} = {};\n", p.name, modelica_number(p.value))).collect()
+    }
+}
+
+impl SolvedSeries {
+    /// Measured and simulated points and their residuals; `None` where a simulation failed.
+    fn figure(&self, title: &str) -> Option<Figure> {
+        let column = |j: usize| self.points.iter().map(|point| point[j]).collect::<Vec<f64>>();
+        let (x, measured, simulated) = (column(0), column(1), column(2));
+        let (curve_x, curve_y): (Vec<f64>, Vec<f64>) =
+            self.curve.iter().map(|[x, y]| (*x, *y)).unzip();
+        simulated.iter().all(|value| value.is_finite()).then(|| {
+            plot::fit(&Comparison {
+                title,
+                x_label: (&self.x[0], &self.x[1]),
+                y_label: (&self.y[0], &self.y[1]),
+                x: &x,
+                measured: &measured,
+                simulated: &simulated,
+                curve: (&curve_x, &curve_y),
+            })
+        })
     }
 }
 
@@ -232,16 +302,13 @@ fn series_line(series: &SolvedSeries) -> String {
     line
 }
 
-fn parameter_table(parameters: &[SolvedParameter]) -> String {
-    let heading = ["parameter", "value", "unit", "std. error", "95 % interval", "range", ""];
-    let mut rows = vec![heading.map(str::to_owned)];
-    rows.extend(parameters.iter().map(cells));
-    let widths: [usize; 7] = std::array::from_fn(|column| {
-        rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0)
-    });
-    let line = |row: &[String; 7]| {
-        let cells: Vec<String> =
-            row.iter().zip(widths).map(|(cell, width)| format!("{cell:<width$}")).collect();
+/// Rows of one length, their columns under each other.
+fn aligned(rows: &[Vec<String>]) -> String {
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
+    let widths: Vec<usize> = (0..rows[0].len()).map(|column| width(column).unwrap_or(0)).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:<width$}"));
+        let cells: Vec<String> = cells.collect();
         format!("  {}\n", cells.join("  ").trim_end())
     };
     rows.iter().map(line).collect()

@@ -36,7 +36,9 @@ fn counts(solution: &Solution) -> Markup {
     let share = 100.0 * failed as f64 / solution.evaluations.max(1) as f64;
     let mut causes: Vec<(&String, &u64)> = solution.causes.iter().collect();
     causes.sort_by(|a, b| b.1.cmp(a.1));
-    let seed = solution.seed.map(|entry| entry.to_string()).join(" ");
+    let seed = solution
+        .seed
+        .map_or_else(|| "-".to_owned(), |seed| seed.map(|entry| entry.to_string()).join(" "));
     html! {
         dl.facts {
             div { dt { "Generations" } dd { (solution.generations) } }

@@ -28,12 +28,14 @@ fn table(view: &View) -> Markup {
                     @for heading in COLUMNS { th scope="col" role="columnheader" { (heading) } }
                 }
             }
-            tbody role="rowgroup" { @for parameter in &view.solution.parameters { (row(parameter)) } }
+            tbody role="rowgroup" { @for parameter in &view.solution.parameters { (row(view, parameter)) } }
         }
     }
 }
 
-fn row(parameter: &SolvedParameter) -> Markup {
+fn row(view: &View, parameter: &SolvedParameter) -> Markup {
+    let script = view.solution.script.as_ref().filter(|script| script.probed);
+    let own = script.and_then(|script| script.parameters.get(&parameter.name));
     let interval = html! {
         @match parameter.interval {
             Some([low, high]) => { (number(low, 4)) " to " (number(high, 4)) }
@@ -41,7 +43,12 @@ fn row(parameter: &SolvedParameter) -> Markup {
         }
     };
     let cells = [
-        html! { strong { (quantity(parameter.value, 5, &parameter.unit)) } },
+        html! {
+            strong { (quantity(parameter.value, 5, &parameter.unit)) }
+            @if let Some(own) = own {
+                br; "script's best: " (quantity(*own, 5, &parameter.unit))
+            }
+        },
         interval,
         html! { (standard_error(parameter)) },
         verdict(parameter),

@@ -113,7 +113,8 @@ fn ram_gen_arena(session: &mut Session, mut args: Args) -> Result<Value, Failure
     let mut rng = Mrg32k3a::new(&seed)?;
     let first = rng.state();
     let numbers = (0..count).map(|_| rng.uniform()).collect();
-    session.identification().recorder.seeded(first, rng.state());
+    let site = session.site_of_call();
+    session.identification().recorder.seeded(first, rng.state(), site);
     session.traced(|tracer, place| tracer.drawn(place, first, count as usize))?;
     Ok(Value::Tuple(vec![row(numbers), row(rng.state().to_vec())]))
 }
@@ -217,7 +218,7 @@ fn fit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     }
     let rows = (0..simulated.rows).map(|k| simulated.row(k));
     let fitness: Vec<f64> = rows.map(|row| sum_of_squares(row, &measured)).collect();
-    session.identification().recorder.rated(&fitness, &measured);
+    session.identification().recorder.rated(&simulated.elements, &measured);
     session
         .traced(|tracer, place| tracer.rated(place, &fitness, &simulated.elements, &measured))?;
     Ok(fitness.into())

@@ -38,6 +38,8 @@ use control::Watched;
 use live::Live;
 use std::path::{Path, PathBuf};
 
+/// Files that not every run writes.
+const OPTIONAL: [&str; 4] = ["bands.csv", "bootstrap.csv", "posterior.csv", "profiles.csv"];
 /// The journal's file.
 const JOURNAL: &str = "run.journal";
 /// Seconds between two looks at the watched settings.
@@ -195,7 +197,7 @@ fn solve_built(
     }
     solving::draw_curves(&experiments, &mut solution, &validation);
     session.print(&solution.text());
-    write(session, &folder, &solution)?;
+    write(session, &folder, &solution, run.seconds)?;
     if let Some(why) = checkpoint.broken() {
         session.report_fault(fault!(BAD_OPTION, "the checkpoint could not be written: {why}"));
     }
@@ -295,8 +297,14 @@ fn validated(
     Ok(solved)
 }
 
-fn write(session: &mut Session, folder: &Path, solution: &Solution) -> Result<(), Fault> {
-    let files = [
+/// Writes the files of a solution. What differs between equal runs, the time, has a file of its own.
+pub(super) fn write(
+    session: &mut Session,
+    folder: &Path,
+    solution: &Solution,
+    seconds: f64,
+) -> Result<(), Fault> {
+    let mut files: Vec<(String, String)> = [
         ("result.json", solution.to_json()),
         ("history.csv", solution.history_csv()),
         ("fit.csv", solution.fit_csv()),
@@ -304,26 +312,48 @@ fn write(session: &mut Session, folder: &Path, solution: &Solution) -> Result<()
         ("Calibrated.mo", solution.modelica()),
         ("calibrated.mos", solution.script()),
         ("report.html", solution.html()),
-    ];
-    let inferred = solution.inferred.tables();
-    let profiles = solution.profiles.is_some().then(|| ("profiles.csv", solution.profiles_csv()));
+        ("convergence.svg", solution.convergence_figure().svg()),
+        ("timing.json", format!("{{\n  \"wall_seconds\": {seconds:.3}\n}}\n")),
+    ]
+    .map(|(name, text)| (name.to_owned(), text))
+    .into();
+    files.extend(solution.fit_figures().into_iter().map(|(name, figure)| (name, figure.svg())));
+    files
+        .extend(solution.inferred.tables().into_iter().map(|(name, text)| (name.to_owned(), text)));
+    if solution.profiles.is_some() {
+        files.push(("profiles.csv".to_owned(), solution.profiles_csv()));
+    }
+    for name in OPTIONAL.iter().filter(|name| !files.iter().any(|(own, _)| own == *name)) {
+        discard(session, &folder.join(name));
+    }
     // What can be written is: one file that is too large must not take the others with it.
     let (mut missing, mut why) = (Vec::new(), None);
-    for (name, text) in files.into_iter().chain(inferred).chain(profiles) {
-        if let Err(fault) = session.write_file(&folder.join(name), text.as_bytes()) {
+    for (name, text) in files {
+        if let Err(fault) = session.write_file(&folder.join(&name), text.as_bytes()) {
             missing.push(name);
             why.get_or_insert(fault);
         }
     }
     match why {
         None => session.print(&format!("\n  written to {}\n", folder.display())),
-        Some(fault) => bail!(
-            BAD_OPTION,
-            "{} could not be written into `{}`: {}", missing.join(", "), folder.display(), fault.message;
-            help: "make room or choose another folder with `--out`; what the run has found stands above"
-        ),
+        Some(mut fault) => {
+            let (missing, folder) = (missing.join(", "), folder.display());
+            fault.message =
+                format!("{missing} could not be written into `{folder}`: {}", fault.message);
+            return Err(fault.help(
+                "make room or choose another folder with `--out`; what the run has found stands above",
+            ));
+        }
     }
     Ok(())
+}
+
+/// A file of an earlier run that this one does not write.
+fn discard(session: &mut Session, path: &Path) {
+    if session.world.exists(path) {
+        // What cannot be removed is not read by `gapi report` either.
+        let _ = session.world.remove(path);
+    }
 }
 
 #[cfg(test)]

@@ -166,7 +166,7 @@ function drawFamily(which) {
 const percent = value => (value < 10 ? value.toPrecision(2) : Math.round(value)) + " %";
 function showTell() {
   const result = DATA.result;
-  if (!result || !Array.isArray(result.details)) return note("tell", "The run has left no report of the deviations.");
+  if (!result || !Array.isArray(result.parameters) || !result.script) return note("tell", "The run has left no report.");
   const table = document.createElement("table");
   const row = (cells, tag) => {
     const tr = document.createElement("tr");
@@ -174,17 +174,18 @@ function showTell() {
     table.append(tr);
     return tr;
   };
-  row(["parameter", "value", "deviation", "determined?"], "th");
-  for (const d of result.details) {
-    const deviation = d.standard_deviation === null || d.standard_deviation === undefined ? "unknown" : percent(100 * d.standard_deviation / Math.abs(d.value));
-    const verdict = d.determined === true ? "yes" : d.determined === false ? "no" : "unknown";
-    const tr = row([d.name, short(d.value) + (d.unit ? " " + d.unit : ""), deviation, verdict], "td");
-    if (d.determined === false) tr.lastChild.className = "doubt";
+  const script = result.script, given = value => value !== null && value !== undefined;
+  row(["parameter", "script's best", "least squares", "standard error", "identifiable?"], "th");
+  for (const p of result.parameters) {
+    const own = script.parameters[p.name], unit = p.unit ? " " + p.unit : "";
+    const error = given(p.deviation) ? percent(100 * p.deviation / Math.abs(p.value)) : "unknown";
+    const verdict = p.determined === true ? "yes" : p.determined === false ? "no" : "unknown";
+    const tr = row([p.name, given(own) ? short(own) + unit : "-", script.probed ? short(p.value) + unit : "-", error, verdict], "td");
+    if (p.determined === false) tr.lastChild.className = "doubt";
   }
   const holder = document.createElement("div");
   holder.className = "scroll";
   holder.append(table);
-  const pairs = (result.correlated || []).map(c => c.pair.join(" and ") + " (" + c.correlation.toFixed(3) + ")");
-  note("tell", pairs.length ? "Strongly correlated: " + pairs.join(", ") + ". A change of one is made up for by the other, so a good fit does not mean right values." : "No two parameters are strongly correlated.");
+  note("tell", (result.findings || []).map(finding => finding.sentence).join(" "));
   at("tell").prepend(holder);
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 const AT_LIMIT: f64 = 1e-3;
 
 /// The smaller and the larger side at values of the parameters.
-pub(super) type Sides = Arc<dyn Fn(&[f64]) -> [f64; 2] + Send + Sync>;
+pub type Sides = Arc<dyn Fn(&[f64]) -> [f64; 2] + Send + Sync>;
 
 /// An inequality that must hold.
 #[derive(Clone)]

@@ -1,0 +1,159 @@
+//! Which function of the sums of squares a script minimises, found from the values that it sorts
+//! by: a script sums the results of several calls of `Fit` as it likes, and what it gives to
+//! `Fit_Order` decides.
+
+use crate::ga::has_failed;
+use nalgebra::{DMatrix, DVector};
+
+/// Relative difference up to which a sum is the one that the script has formed; its additions in
+/// another order differ by rounding only, some 1e-15 for each term.
+const SAME: f64 = 1e-9;
+
+/// What a script minimises.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Objective {
+    /// The sum of the squared residuals of all series, each times its weight.
+    SumOfSquares(Vec<f64>),
+    /// The square root of such a sum, so that its minimum is the same.
+    Root(Vec<f64>),
+    /// A function of the script's own.
+    Script,
+    /// Not known: the script sorts by itself. The sum of squares is taken to compare.
+    Assumed,
+}
+
+impl Objective {
+    /// What the script minimises by all that was seen: where the generations do not agree, as with
+    /// the larger one of two sums, it is none of these.
+    pub(super) fn agreeing(self, before: Option<&Objective>) -> Objective {
+        let same = |a: &[f64], b: &[f64]| {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-6 * a.max(*b))
+        };
+        let agrees = match (before, &self) {
+            (None, _) => true,
+            (Some(Objective::SumOfSquares(a)), Objective::SumOfSquares(b)) => same(a, b),
+            (Some(Objective::Root(a)), Objective::Root(b)) => same(a, b),
+            (Some(before), now) => before == now,
+        };
+        if agrees { self } else { Objective::Script }
+    }
+
+    /// Its name in reports.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Objective::SumOfSquares(weights) if weights.iter().all(|weight| *weight == 1.0) => {
+                "sum of squares"
+            }
+            Objective::SumOfSquares(_) => "weighted sum of squares",
+            Objective::Root(_) => "root of a sum of squares",
+            Objective::Script => "function of the script",
+            Objective::Assumed => "sum of squares (the script's own fitness is not known)",
+        }
+    }
+
+    /// The weights of the series where the minimum is that of a sum of squares; `None` where it is
+    /// not.
+    pub fn weights(&self, series: usize) -> Option<Vec<f64>> {
+        match self {
+            Objective::SumOfSquares(weights) | Objective::Root(weights) => Some(weights.clone()),
+            Objective::Assumed => Some(vec![1.0; series]),
+            Objective::Script => None,
+        }
+    }
+}
+
+/// The objective that has the values `fitness` for individuals with these sums of squares:
+/// `sums[k]` has one entry for each series.
+pub(super) fn recognised(sums: &[Vec<f64>], fitness: &[f64]) -> Objective {
+    let good: Vec<(&[f64], f64)> = sums
+        .iter()
+        .zip(fitness)
+        .filter(|(sums, fitness)| {
+            !sums.is_empty() && !has_failed(**fitness) && !sums.iter().any(|sum| has_failed(*sum))
+        })
+        .map(|(sums, fitness)| (sums.as_slice(), *fitness))
+        .collect();
+    let Some(series) = good.first().map(|(sums, _)| sums.len()) else { return Objective::Script };
+    if let Some(weights) = weights(&good, series) {
+        return Objective::SumOfSquares(weights);
+    }
+    let squares: Vec<(&[f64], f64)> = good.iter().map(|(sums, f)| (*sums, f * f)).collect();
+    weights(&squares, series).map_or(Objective::Script, Objective::Root)
+}
+
+/// The weights with which the sums add up to the values: all 1, else those of least squares.
+fn weights(values: &[(&[f64], f64)], series: usize) -> Option<Vec<f64>> {
+    let holds = |weights: &[f64]| {
+        values.iter().all(|(sums, value)| {
+            let total: f64 = sums.iter().zip(weights).map(|(sum, weight)| sum * weight).sum();
+            (total - value).abs() <= SAME * value.abs()
+        })
+    };
+    let ones = vec![1.0; series];
+    if holds(&ones) {
+        return Some(ones);
+    }
+    let mut different: Vec<f64> = values.iter().map(|(_, value)| *value).collect();
+    different.sort_by(f64::total_cmp);
+    different.dedup();
+    // With fewer values than this any weights would do.
+    if different.len() < series + 2 || different[0] <= 0.0 {
+        return None;
+    }
+    let rows = DMatrix::from_fn(values.len(), series, |k, e| values[k].0[e] / values[k].1);
+    let solved = rows.svd(true, true).solve(&DVector::repeat(values.len(), 1.0), 1e-12).ok()?;
+    let largest = solved.amax();
+    let rounded = |weight: &f64| {
+        let weight = if weight.abs() <= SAME * largest { 0.0 } else { *weight };
+        if (weight - 1.0).abs() <= SAME { 1.0 } else { weight }
+    };
+    let weights: Vec<f64> = solved.iter().map(rounded).collect();
+    (weights.iter().all(|weight| *weight >= 0.0) && holds(&weights)).then_some(weights)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SUMS: [[f64; 2]; 5] = [[1.0, 10.0], [2.0, 7.0], [0.5, 30.0], [4.0, 4.0], [9.0, 0.25]];
+
+    fn found(of: impl Fn(&[f64; 2]) -> f64) -> Objective {
+        let sums: Vec<Vec<f64>> = SUMS.iter().map(|sums| sums.to_vec()).collect();
+        recognised(&sums, &SUMS.iter().map(of).collect::<Vec<f64>>())
+    }
+
+    #[test]
+    fn what_the_script_adds_up_is_recognised() {
+        assert_eq!(found(|s| s[0] + s[1]), Objective::SumOfSquares(vec![1.0, 1.0]));
+        assert_eq!(found(|s| s[1]), Objective::SumOfSquares(vec![0.0, 1.0]));
+        assert_eq!(found(|s| (s[0] + s[1]).sqrt()), Objective::Root(vec![1.0, 1.0]));
+        let Objective::SumOfSquares(weights) = found(|s| 3.0 * s[0] + 0.5 * s[1]) else {
+            panic!("a weighted sum")
+        };
+        assert!((weights[0] - 3.0).abs() < 1e-9 && (weights[1] - 0.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn another_function_is_not_taken_for_a_sum() {
+        assert_eq!(found(|s| s[0].max(s[1])), Objective::Script);
+        assert_eq!(found(|s| s[0] * s[1]), Objective::Script);
+        assert_eq!(found(|s| s[0] - 0.1 * s[1]), Objective::Script);
+        assert_eq!(found(|s| s[0] + s[1] + 1e-6), Objective::Script);
+    }
+
+    #[test]
+    fn generations_that_do_not_agree_have_no_sum_of_squares() {
+        let sum = |weights: &[f64]| Objective::SumOfSquares(weights.to_vec());
+        assert_eq!(sum(&[1.0]).agreeing(None), sum(&[1.0]));
+        assert_eq!(sum(&[1.0]).agreeing(Some(&sum(&[1.0 + 1e-9]))), sum(&[1.0]));
+        assert_eq!(sum(&[0.0, 1.0]).agreeing(Some(&sum(&[1.0, 0.0]))), Objective::Script);
+        assert_eq!(sum(&[0.0, 1.0]).agreeing(Some(&Objective::Script)), Objective::Script);
+    }
+
+    #[test]
+    fn few_individuals_do_not_make_weights() {
+        let sums = [vec![1.0, 2.0], vec![2.0, 1.0]];
+        assert_eq!(recognised(&sums, &[5.0, 7.0]), Objective::Script);
+        assert_eq!(recognised(&[vec![1e60]], &[1e60]), Objective::Script, "all have failed");
+    }
+}

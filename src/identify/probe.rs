@@ -1,0 +1,362 @@
+//! The end of a script's run: its experiments as a [`Problem`], least squares from its best
+//! individual, and the [`Solution`] that this gives.
+//!
+//! A genetic algorithm ends somewhere near a minimum, and near it neither standard errors nor
+//! identifiability mean anything: both are properties of the minimum. So a few dozen simulations
+//! go there. The script's own values stay what they are and stand beside those of the minimum.
+
+use super::fitness::FITNESSES;
+use super::problem::{
+    EndingKind, Experiment, Finding, FindingKind, Free, Inference, ModelSimulator, Observation,
+    Problem, Run, ScriptResult, Series, Severity, Sigma, Simulate, Solution, SolvedParameter,
+    SolvedSeries, Stop, conclude, draw_curves, failure_region,
+};
+use super::recorder::{Best, Compared, Recorder};
+use super::table::significant;
+use super::{Model, Objective};
+use crate::diag::Fault;
+use crate::fault;
+use crate::ga::optimizer::METHODS;
+use crate::registry::{self, BAD_OPTION, Options};
+use std::sync::Arc;
+
+/// Simulations of the probe, for each parameter: from the script's best individual the shipped
+/// problems need up to 40 for each.
+const BUDGET: u64 = 200;
+/// Relative reduction of the sum of squares that is worth a number.
+const BETTER: f64 = 1e-6;
+/// A seed for scripts that draw no random numbers: least squares need none, but a run has one.
+const NO_SEED: [f64; 6] = [12345.0; 6];
+
+/// What is known of the experiments when a run ends.
+pub struct Ending<'a> {
+    /// What was observed.
+    pub recorder: &'a Recorder,
+    /// The model of each series of the best individual, in their order; `None` where it is no
+    /// longer at hand.
+    pub models: Vec<Option<Arc<dyn Model>>>,
+    /// Relative error of the simulated values.
+    pub noise: f64,
+    /// Threads to use.
+    pub threads: usize,
+    /// Whether least squares are wanted.
+    pub probe: bool,
+    /// Whether the user interrupted the run.
+    pub interrupted: bool,
+}
+
+impl Ending<'_> {
+    /// The solution; `None` when no individual was simulated successfully.
+    pub fn solution(&self) -> Option<Solution> {
+        let best = self.recorder.best.as_ref()?;
+        let solution = match self.problem(best).and_then(|problem| self.probed(best, problem)) {
+            Ok(solution) => solution,
+            Err(why) => self.unprobed(best, &why),
+        };
+        Some(self.with_search(best, solution))
+    }
+
+    /// The problem of least squares; `Err` says why there is none.
+    fn problem(&self, best: &Best) -> Result<(Problem, Vec<Experiment>), String> {
+        if self.interrupted {
+            return Err("the run was interrupted".to_owned());
+        }
+        if !self.probe {
+            return Err("it was turned off".to_owned());
+        }
+        let Some(weights) = best.objective.weights(best.compared.len()) else {
+            return Err("the script minimises a function of its own, not a sum of squares".into());
+        };
+        let models: Option<Vec<Arc<dyn Model>>> = self.models.iter().cloned().collect();
+        let models = models.ok_or("a model of the best individual is no longer loaded")?;
+        let used =
+            || best.compared.iter().zip(&weights).zip(&models).filter(|((_, w), _)| **w > 0.0);
+        let series: Option<Vec<Series>> = used()
+            .enumerate()
+            .map(|(k, ((compared, weight), _))| series(compared, weight.sqrt(), name(best, k)))
+            .collect();
+        let series = series.ok_or("the measured values are not known")?;
+        let experiments: Vec<Experiment> = used()
+            .enumerate()
+            .map(|(k, ((compared, _), model))| experiment(compared, model, name(best, k)))
+            .collect();
+        let problem = self.assembled(best, series, &experiments);
+        Ok((problem.map_err(|fault| fault.message)?, experiments))
+    }
+
+    fn assembled(
+        &self,
+        best: &Best,
+        series: Vec<Series>,
+        experiments: &[Experiment],
+    ) -> Result<Problem, Fault> {
+        let experiments = experiments.to_vec();
+        let fitness = registry::find("fitness function", FITNESSES, "sum_of_squares")?;
+        let method = registry::find("method", METHODS, "levenberg_marquardt")?;
+        let parameters = self.parameters(best)?;
+        Ok(Problem {
+            title: self.title(best),
+            model: models(best),
+            text: String::new(),
+            stop: Stop { evaluations: Some(BUDGET * parameters.len() as u64), ..Stop::default() },
+            parameters,
+            series,
+            objectives: vec![(fitness.name.to_owned(), (fitness.make)(&mut Options::default())?)],
+            method_name: method.name.to_owned(),
+            method: (method.make)(&mut Options::default())?,
+            polish: false,
+            seed: self.recorder.seed().unwrap_or(NO_SEED),
+            noise: self.noise,
+            inference: Inference::default(),
+            simulator: Box::new(move || {
+                Ok(Box::new(ModelSimulator::new(&experiments)?) as Box<dyn Simulate>)
+            }),
+        })
+    }
+
+    fn title(&self, best: &Best) -> String {
+        format!("Identified parameters of {}", models(best))
+    }
+
+    /// The parameters with the ranges of the script, or those that its individuals span.
+    fn parameters(&self, best: &Best) -> Result<Vec<Free>, Fault> {
+        let quantities = &best.compared[0].study.parameters;
+        if best.compared.iter().any(|compared| compared.study.parameters != *quantities) {
+            return Err(fault!(BAD_OPTION, "its experiments identify different parameters"));
+        }
+        let one = |(k, quantity): (usize, &super::Quantity)| {
+            let value = best.genome[k];
+            Free::new(&quantity.name, &quantity.unit, self.range(k, value), None, Some(value))
+        };
+        quantities.iter().enumerate().map(one).collect()
+    }
+
+    /// The range of a parameter, wide enough for its value.
+    fn range(&self, k: usize, value: f64) -> [f64; 2] {
+        let ranges = self.recorder.ranges.as_ref().or(self.recorder.spanned.as_ref());
+        let known = ranges.and_then(|(low, high)| Some([*low.get(k)?, *high.get(k)?]));
+        let [low, high] = known.unwrap_or([value, value]);
+        [low.min(value), high.max(value)]
+    }
+
+    /// Least squares from the best individual, with everything that follows from its minimum.
+    fn probed(
+        &self,
+        best: &Best,
+        (problem, experiments): (Problem, Vec<Experiment>),
+    ) -> Result<Solution, String> {
+        let before = best.sum_of_squares().ok_or("the measured values are not known")?;
+        let mut run = Run::new(problem, self.threads).map_err(|fault| fault.message)?;
+        let stop = loop {
+            if let Some(stop) = run.stop() {
+                break stop;
+            }
+            if run.step(0.0).is_none() {
+                return Err("it was cancelled".to_owned());
+            }
+        };
+        conclude(&mut run);
+        let solution = Solution::of(&run, &stop, Vec::new()).map_err(|fault| fault.message)?;
+        let at_minimum = solution.ending.kind == EndingKind::Minimum;
+        let mut solution = if at_minimum { solution } else { without_verdicts(solution) };
+        let generations = self.recorder.history.generations.len();
+        let who = if generations > 1 { "The genetic algorithm" } else { "The script" };
+        draw_curves(&experiments, &mut solution, &[]);
+        let probe = sentence((who, best, before), &solution, at_minimum);
+        solution.simulations_for_statistics += run.simulations;
+        solution.script = Some(ScriptResult {
+            probed: true,
+            probe,
+            probe_simulations: run.simulations,
+            ..ScriptResult::default()
+        });
+        Ok(solution)
+    }
+
+    /// The script's best individual alone; why there was no probe.
+    fn unprobed(&self, best: &Best, why: &str) -> Solution {
+        let parameter = |(k, quantity): (usize, &super::Quantity)| SolvedParameter {
+            name: quantity.name.clone(),
+            unit: quantity.unit.clone(),
+            value: best.genome[k],
+            range: self.range(k, best.genome[k]),
+            ..SolvedParameter::default()
+        };
+        let quantities = best.compared[0].study.parameters.iter().enumerate();
+        let solved = |(k, compared): (usize, &Compared)| {
+            let unknown = || vec![f64::NAN; compared.x.len()];
+            let y = compared.measured.clone().unwrap_or_else(unknown);
+            let compared = Compared { measured: Some(y), ..compared.clone() };
+            series(&compared, 1.0, name(best, k))
+                .map(|series| SolvedSeries::new(&series, &compared.simulated))
+        };
+        let probe = format!(
+            "No least squares behind the script's search: {why}. So whether this is a minimum is \
+             not known, and there are neither standard errors nor verdicts."
+        );
+        Solution {
+            title: self.title(best),
+            model: models(best),
+            fitness: best.fitness,
+            parameters: quantities.map(parameter).collect(),
+            series: best.compared.iter().enumerate().filter_map(solved).collect(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            script: Some(ScriptResult { probe, ..ScriptResult::default() }),
+            ..Solution::default()
+        }
+    }
+
+    /// Adds what the script's search was.
+    fn with_search(&self, best: &Best, mut solution: Solution) -> Solution {
+        let recorder = self.recorder;
+        let names = best.compared[0].study.parameters.iter().map(|quantity| quantity.name.clone());
+        let script = solution.script.get_or_insert_default();
+        script.parameters = names.zip(best.genome.iter().copied()).collect();
+        script.fitness = best.fitness;
+        script.fitness_name = best.objective.name().to_owned();
+        script.interrupted = self.interrupted;
+        script.changes.clone_from(&recorder.changes);
+        let mut findings = vec![search(script.probe.clone())];
+        if recorder.ranges.is_none() {
+            findings.push(search(
+                "The script names no search ranges: those in the table are what its individuals \
+                 span.",
+            ));
+        }
+        let (method, stop) = match (self.interrupted, script.probed) {
+            (true, _) => ("script", "interrupted: these are the best values found so far"),
+            (false, true) => ("script, then least squares", "the script has ended"),
+            (false, false) => ("script", "the script has ended"),
+        };
+        findings.append(&mut solution.findings);
+        if !script.probed {
+            solution.fitness_name = best.objective.name().to_owned();
+        }
+        let failed = [("simulation".to_owned(), recorder.failures)];
+        let free = self.parameters(best);
+        Solution {
+            findings,
+            method: method.to_owned(),
+            stop: stop.to_owned(),
+            generations: recorder.history.generations.len() as u64,
+            evaluations: recorder.evaluations,
+            simulations: recorder.evaluations,
+            failures: failed.into_iter().filter(|(_, count)| *count > 0).collect(),
+            causes: recorder.causes.clone(),
+            failure_region: free.ok().and_then(|free| failure_region(&free, &recorder.kept)),
+            objectives: vec![best.objective.name().to_owned()],
+            seed: recorder.seed(),
+            history: recorder.history.generations.clone(),
+            trace: recorder.trace.clone(),
+            individuals: recorder.kept.clone(),
+            ..solution
+        }
+    }
+}
+
+/// A finding about the search, which comes first.
+fn search(sentence: impl Into<String>) -> Finding {
+    Finding::new(FindingKind::Search, sentence).severity(Severity::Information)
+}
+
+/// The models of a best individual, each once.
+fn models(best: &Best) -> String {
+    let mut names: Vec<&str> =
+        best.compared.iter().map(|compared| compared.study.model.as_str()).collect();
+    names.dedup();
+    names.join(", ")
+}
+
+/// What an experiment is called: nothing where it is the only one.
+fn name(best: &Best, k: usize) -> String {
+    match best.compared.len() {
+        1 => String::new(),
+        _ => format!("experiment {}", k + 1),
+    }
+}
+
+fn series(compared: &Compared, weight: f64, experiment: String) -> Option<Series> {
+    let study = &compared.study;
+    Some(Series {
+        experiment,
+        y_name: study.y.name.clone(),
+        y_unit: study.y.unit.clone(),
+        x_name: study.x.name.clone(),
+        x_unit: study.x.unit.clone(),
+        file: compared.file.clone(),
+        x: compared.x.clone(),
+        y: compared.measured.clone()?,
+        weight,
+        sigma: Sigma::Unknown,
+        column: study.y.name.clone(),
+        rows: Vec::new(),
+        missing: Vec::new(),
+    })
+}
+
+fn experiment(compared: &Compared, model: &Arc<dyn Model>, name: String) -> Experiment {
+    let study = &compared.study;
+    let parameters = study.parameters.iter().map(|quantity| quantity.name.clone());
+    Experiment {
+        name,
+        settings: model.settings(),
+        model: Arc::clone(model),
+        x_name: study.x.name.clone(),
+        observations: vec![Observation { y_name: study.y.name.clone(), x: compared.x.clone() }],
+        parameters: parameters.enumerate().collect(),
+    }
+}
+
+/// What least squares have made of the script's best individual.
+fn sentence(
+    (who, best, before): (&str, &Best, f64),
+    solution: &Solution,
+    at_minimum: bool,
+) -> String {
+    let own = match best.objective {
+        Objective::SumOfSquares(_) => significant(best.fitness, 5),
+        _ => format!(
+            "{} ({}), a sum of squares of {}",
+            significant(best.fitness, 5),
+            best.objective.name(),
+            significant(before, 5)
+        ),
+    };
+    let after = solution.fitness;
+    let values =
+        solution.parameters.iter().map(|p| format!("{} = {}", p.name, significant(p.value, 5)));
+    let values = values.collect::<Vec<String>>().join(", ");
+    let reached = if before - after > BETTER * before {
+        let ratio = before / after;
+        let much = match ratio {
+            ratio if ratio >= 1.1 => format!("{} times better", significant(ratio, 3)),
+            ratio => format!("{} % better", significant(100.0 * (ratio - 1.0), 2)),
+        };
+        let after = significant(after, 5);
+        format!(
+            "{who} ended at {own}; least squares from there reaches {after} ({much}) at {values}."
+        )
+    } else {
+        format!("{who} ended at {own}; least squares from there finds nothing better.")
+    };
+    match at_minimum {
+        true => format!(
+            "{reached} This is a minimum; standard errors and verdicts are those of this minimum."
+        ),
+        false => format!(
+            "{reached} This is not a minimum ({}), so there are neither standard errors nor verdicts.",
+            solution.stop
+        ),
+    }
+}
+
+/// The solution without what holds at a minimum only.
+fn without_verdicts(mut solution: Solution) -> Solution {
+    for parameter in &mut solution.parameters {
+        (parameter.deviation, parameter.interval) = (None, None);
+        (parameter.determined, parameter.verdict) = (None, None);
+    }
+    (solution.correlations, solution.condition) = (None, None);
+    solution.findings.clear();
+    solution
+}
