@@ -14,7 +14,7 @@ use gapilib::ga::optimizer::METHODS;
 use gapilib::identify::CompiledModel;
 use gapilib::identify::fitness::FITNESSES;
 use gapilib::identify::problem::{
-    Experiment, Free, ModelSimulator, Observation, Problem, Run, Series, Stop,
+    Experiment, Free, Inference, ModelSimulator, Observation, Problem, Run, Series, Sigma, Stop,
 };
 use gapilib::name::Name;
 use gapilib::registry::{self, Options};
@@ -243,6 +243,10 @@ fn curve(evaluations: u64) -> Problem {
             x,
             y,
             weight: 1.0,
+            sigma: Sigma::Unknown,
+            column: "V".to_owned(),
+            rows: Vec::new(),
+            missing: Vec::new(),
         }],
         objectives: vec![(
             "sse".to_owned(),
@@ -254,6 +258,7 @@ fn curve(evaluations: u64) -> Problem {
         seed: [12345.0; 6],
         stop: Stop { evaluations: Some(evaluations), ..Stop::default() },
         noise: 1e-12,
+        inference: Inference::default(),
         simulator: Box::new(move || {
             Ok(Box::new(ModelSimulator::new(std::slice::from_ref(&experiment))?) as Box<_>)
         }),

@@ -98,6 +98,7 @@ fn problem(
         seed: [12345.0; 6],
         stop: Stop { evaluations: Some(3000), ..Stop::default() },
         noise: 1e-12,
+        inference: crate::identify::problem::Inference::default(),
         simulator: Box::new(move || Ok(Box::new(Outputs(x.clone(), formulas.clone())))),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::identify::fitness::FITNESSES;
-use crate::identify::problem::{Failed, FailureKind, Free, Series, Sigma, Simulate, Stop};
+use crate::identify::problem::{Failed, FailureKind, Free, Series, Simulate, Stop};
 
 struct Formula<F>(F);
 
