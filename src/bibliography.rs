@@ -207,6 +207,10 @@
 //! - **boender-rinnooy-kan-1987** — C. G. E. Boender, A. H. G. Rinnooy Kan: Bayesian stopping rules
 //!   for multistart global optimization methods. Mathematical Programming 37, 1987, 59–80.
 //!
+//! <a id="nielsen-1999"></a>
+//! - **nielsen-1999** — H. B. Nielsen: Damping parameter in Marquardt's method. Report
+//!   IMM-REP-1999-05, Technical University of Denmark, 1999.
+//!
 //! <a id="gao-han-2012"></a>
 //! - **gao-han-2012** — F. Gao, L. Han: Implementing the Nelder-Mead simplex algorithm with adaptive
 //!   parameters. Computational Optimization and Applications 51(1), 2012, 259–277.

@@ -14,7 +14,7 @@
   const nameless = all("svg").filter(e => !e.getAttribute("aria-label") && e.getAttribute("aria-hidden") !== "true");
   check("every figure has a name", nameless.length === 0 && all("figure svg").length > 1);
   document.querySelectorAll("details").forEach(d => { d.open = true; });
-  const small = all("figure svg text").filter(t => t.getBoundingClientRect().width > 0 && t.getScreenCTM().a * parseFloat(t.getAttribute("font-size")) < 8);
+  const small = all("figure svg text").filter(t => t.getBoundingClientRect().width > 0 && Math.hypot(t.getScreenCTM().a, t.getScreenCTM().b) * parseFloat(t.getAttribute("font-size")) < 8);
   check("no letter of a figure is smaller than 8 pixels", small.length === 0, small.map(t => t.textContent).slice(0, 5).join());
   const unseen = all("figure svg text").filter(t => getComputedStyle(t).fill === getComputedStyle(document.body).backgroundColor);
   check("letters of figures have another colour than the page", unseen.length === 0);

@@ -198,7 +198,10 @@ fn classes_are_named_without_an_option() {
     let (code, out, err) = gapi(&here, &["simulate", "Decay.mo", "Decay"]);
     assert!(code == 0 && out.starts_with("Decay: "), "{out}{err}");
     assert_eq!(gapi(&here, &["flatten", "Decay.mo", "Decay(x(start = 2))"]).0, 0);
-    let (code, _, err) = gapi(&here, &["simulate", "Decay.mo"]);
+    let (code, out, err) = gapi(&here, &["simulate", "Decay.mo"]);
+    assert!(code == 0 && out.starts_with("Decay: "), "the one class of a file: {out}{err}");
+    fs::write(here.path().join("Two.mo"), "model A end A; model B end B;").unwrap();
+    let (code, _, err) = gapi(&here, &["simulate", "Two.mo"]);
     assert!(code == 2 && err.contains("which class?"), "{err}");
     let (code, _, err) = gapi(&here, &["simulate", "missing.mo"]);
     assert!(code == 1 && err.contains("there is no file `missing.mo`"), "{err}");

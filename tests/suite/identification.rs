@@ -380,7 +380,9 @@ fn wrong_data_are_refused_with_their_codes() {
         let run = shipped::run_in(world, "test.mos");
         run.codes().iter().map(|&code| code.to_owned()).collect::<Vec<_>>()
     };
-    assert_eq!(codes("d.csv", b"i,V\n0,1\n0.1,NaN\n"), ["data-note"]);
+    let world = shipped::world().with_file("d.csv", b"i,V\n0,1\n0.1,NaN\n");
+    let run = shipped::run_in(world.with_file("test.mos", read("d.csv", "i", "V")), "test.mos");
+    assert!(run.codes().is_empty() && run.errors.contains("note[data-note]"), "{}", run.errors);
     assert_eq!(codes("d.csv", b"i,V\n0,NaN\n0.1,\n"), ["bad-data"]);
     let mat = |x: usize, y: usize| {
         let [x, y] = [x, y].map(|n| gapilib::mat::Matrix::column_vector(vec![1.0; n]));

@@ -151,7 +151,7 @@ fn what_is_missing_is_left_out() {
     let (code, _, errors) = gapi(&here, &["identify", "p.toml", "--plain", "--out", "."]);
     assert_eq!(code, 0, "{errors}");
     let page = std::fs::read_to_string(here.path().join("report.html")).unwrap();
-    for absent in ["waterfall", "pairs", "profiles", "sensitivity", "minima", "front"] {
+    for absent in ["pairs", "profiles", "sensitivity", "minima", "front"] {
         assert!(!page.contains(&format!(" id=\"{absent}\"")), "{absent}");
         assert!(!page.contains(&format!("href=\"#{absent}\"")), "{absent}");
     }

@@ -126,10 +126,24 @@ impl LinearModel {
     /// The step from `x` of at most `radius` in the scales, within the unit cube; `None` where no
     /// gene can move.
     pub(super) fn step(&self, x: &[f64], scales: &[f64], radius: f64) -> Option<Step> {
+        let projected = self.projected_step(x, scales, radius)?;
+        if projected.free.len() == self.free(x).len() {
+            return Some(projected);
+        }
+        // Genes put on their limits may spoil more than the others make good; the sum of squares
+        // always falls along the way to the step without limits.
+        let shortened = self.shortened_step(x, scales, radius);
+        Some(match shortened {
+            Some(shortened) if shortened.reduction > projected.reduction => shortened,
+            _ => projected,
+        })
+    }
+
+    /// Genes that would leave the cube are put on their limits one set after the other.
+    fn projected_step(&self, x: &[f64], scales: &[f64], radius: f64) -> Option<Step> {
         let mut free = self.free(x);
         let mut by = DVector::zeros(x.len());
         let mut damping = 0.0;
-        // Genes that would leave the cube are put on their limits one set after the other.
         while !free.is_empty() {
             let decomposition = self.decompose(&free, scales)?;
             let right = -(&self.right + &self.factor * &by);
@@ -154,10 +168,37 @@ impl LinearModel {
             free.retain(|j| !blocked.contains(j));
             free.iter().for_each(|&j| by[j] = 0.0);
         }
-        let linear = &self.factor * &by;
-        let reduction = -(2.0 * self.gradient.dot(&by) + linear.norm_squared());
+        Some(self.step_by(&by, scales, damping, free))
+    }
+
+    /// The step without limits as far as the first limit; genes that cannot move at all are left
+    /// out.
+    fn shortened_step(&self, x: &[f64], scales: &[f64], radius: f64) -> Option<Step> {
+        let mut free = self.free(x);
+        while !free.is_empty() {
+            let decomposition = self.decompose(&free, scales)?;
+            let (own, damping) = decomposition.damped(&-&self.right, radius, self.rank_tolerance);
+            let mut by = DVector::zeros(x.len());
+            let mut part = 1.0_f64;
+            for (column, &j) in free.iter().enumerate() {
+                by[j] = own[column] / scales[j];
+                if by[j] != 0.0 {
+                    part = part.min(limit(x[j], by[j]) / by[j]);
+                }
+            }
+            if part > 0.0 {
+                return Some(self.step_by(&(by * part), scales, damping, free));
+            }
+            free.retain(|&j| by[j] == 0.0 || limit(x[j], by[j]) != 0.0);
+        }
+        None
+    }
+
+    fn step_by(&self, by: &DVector<f64>, scales: &[f64], damping: f64, free: Vec<usize>) -> Step {
+        let linear = &self.factor * by;
+        let reduction = -(2.0 * self.gradient.dot(by) + linear.norm_squared());
         let length = by.iter().zip(scales).map(|(p, d)| (p * d).powi(2)).sum::<f64>().sqrt();
-        Some(Step { by: by.as_slice().to_vec(), length, reduction, damping, free })
+        Step { by: by.as_slice().to_vec(), length, reduction, damping, free }
     }
 
     /// The geodesic acceleration of a step; `gradient`: Jᵀ times the second derivative of the

@@ -2,6 +2,7 @@
 //! simulated values, and the solver's tolerance is held against the errors of the data. Where the
 //! best point moves, the fit is repeated from there by least squares.
 
+use super::checks::rms;
 use super::refit::Refit;
 use super::statistics::Statistics;
 use super::{Best, ErrorModel, Finding, FindingKind, Problem, Run, Series, Severity, Sigma};
@@ -139,6 +140,11 @@ fn refit(run: &mut Run) -> Result<(), Fault> {
     Ok(())
 }
 
+/// Residuals smaller than this part of the data are not noise of measurements, for which a finer
+/// solver would be worth its time: no instrument reads eight digits. They are what rounding in the
+/// file and the solver leave of simulated data.
+const WITHOUT_NOISE: f64 = 1e-8;
+
 /// Simulates the best point with the tolerance divided by 100; where predictions move by more than
 /// a tenth of a standard deviation of the data, the fit is repeated there, until they stay.
 fn tolerance(run: &mut Run) -> Result<(), Fault> {
@@ -146,6 +152,10 @@ fn tolerance(run: &mut Run) -> Result<(), Fault> {
     let (noise, mut factor) = (run.problem.noise, 1.0);
     let Ok(mut coarse) = run.evaluation.simulate(&first.values) else { return Ok(()) };
     let allowed = errors(run, &coarse);
+    let without_noise = rms(&allowed) <= WITHOUT_NOISE * rms(&coarse);
+    if without_noise && ErrorModel::of(&run.problem) == ErrorModel::OneVariance {
+        return Ok(());
+    }
     let (mut moved, mut most) = (false, 0.0f64);
     for _ in 0..TIMES {
         let next = factor / TIGHTER;

@@ -297,8 +297,7 @@ fn a_report_is_drawn_again_from_its_files() {
     assert_eq!(again.to_json(), solution.to_json());
     let wrong = Solution::read("{}", &history, &individuals).unwrap_err();
     assert!(wrong.message.contains("result.json"), "{}", wrong.message);
-    let cut = &individuals[..individuals.len() / 2];
-    let wrong =
-        Solution::read(&solution.to_json(), &history, cut.trim_end_matches(char::is_numeric));
+    let cut = individuals[..individuals.len() / 2].rfind(',').unwrap();
+    let wrong = Solution::read(&solution.to_json(), &history, &individuals[..cut]);
     assert!(wrong.unwrap_err().message.contains("`individuals.csv` is damaged"));
 }
