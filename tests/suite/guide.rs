@@ -37,8 +37,12 @@ fn words(command: &str) -> Vec<&str> {
 fn compare_figures(here: &TempDir, chapter: &str, text: &str) {
     for picture in text.lines().filter_map(|line| line.strip_prefix("![")?.split_once("](")) {
         let (file, made) = picture.1.trim_end_matches("\")").split_once(" \"").expect("a title");
-        let shown = std::fs::read_to_string(project("docs/src").join(file)).unwrap();
+        let place = project("docs/src").join(file);
         let made = std::fs::read_to_string(here.path().join(made)).unwrap();
+        if std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
+            std::fs::write(&place, &made).unwrap();
+        }
+        let shown = std::fs::read_to_string(place).unwrap();
         assert!(shown == made, "{chapter}: {file} is not what the examples make");
     }
 }

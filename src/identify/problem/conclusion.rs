@@ -141,9 +141,9 @@ fn refit(run: &mut Run) -> Result<(), Fault> {
 }
 
 /// Residuals smaller than this part of the data are not noise of measurements, for which a finer
-/// solver would be worth its time: no instrument reads eight digits. They are what rounding in the
+/// solver would be worth its time: instruments hardly read seven digits. They are what rounding in the
 /// file and the solver leave of simulated data.
-const WITHOUT_NOISE: f64 = 1e-8;
+const WITHOUT_NOISE: f64 = 1e-7;
 
 /// Simulates the best point with the tolerance divided by 100; where predictions move by more than
 /// a tenth of a standard deviation of the data, the fit is repeated there, until they stay.
