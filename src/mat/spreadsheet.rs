@@ -7,7 +7,7 @@ use crate::bail;
 use crate::diag::Fault;
 use crate::fault;
 use calamine::{DataRef, ExcelDateTime, Reader, Xlsx};
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
 
 /// Cells that a sheet may have.
@@ -66,8 +66,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
 }
 
 /// The places of all formulas; none where they cannot be read.
-fn formulas(bytes: &[u8], sheet: &str) -> HashSet<(u32, u32)> {
-    let mut places = HashSet::new();
+fn formulas(bytes: &[u8], sheet: &str) -> BTreeSet<(u32, u32)> {
+    let mut places = BTreeSet::new();
     let Ok(mut workbook) = Xlsx::new(Cursor::new(bytes)) else { return places };
     let Ok(mut cells) = workbook.worksheet_cells_reader(sheet) else { return places };
     while let Ok(Some(formula)) = cells.next_formula() {

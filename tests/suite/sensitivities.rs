@@ -171,8 +171,8 @@ fn a_bouncing_ball_jumps_in_its_derivatives() {
     let times = [0.3, 0.7, 0.9];
     let mut simulator = simulator(text, &["e", "h0", "g"], &["h", "v"], &times, 1e-9);
     let (values, derivatives) = sensitivities(&mut simulator, &[e, h0, g], 6);
-    let bounce: f64 = (2.0 * h0 / g as f64).sqrt();
-    let speed = (2.0 * g * h0 as f64).sqrt();
+    let bounce: f64 = (2.0 * h0 / g).sqrt();
+    let speed = (2.0 * g * h0).sqrt();
     for (at, t) in times.iter().enumerate() {
         let (h, of_h, of_v) = if *t < bounce {
             (h0 - 0.5 * g * t * t, [0.0, 1.0, -0.5 * t * t], [0.0, 0.0, -t])

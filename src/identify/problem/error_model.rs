@@ -162,7 +162,7 @@ pub fn likelihood(series: &[Series], noise: f64) -> Result<Box<dyn Fitness>, Fau
         }
         groups.extend(own.y.iter().map(|_| group));
     }
-    for (name, values) in names.iter().zip(&sizes).filter(|(_, values)| values.len() < FEW) {
+    if let Some((name, values)) = names.iter().zip(&sizes).find(|(_, values)| values.len() < FEW) {
         return Err(fault!(
             BAD_OPTION,
             "the sigma of `{name}` cannot be estimated from {} point{}", values.len(), if values.len() == 1 { "" } else { "s" };

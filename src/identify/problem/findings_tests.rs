@@ -315,12 +315,11 @@ fn a_coarse_solver_is_found_and_the_fit_repeated() {
     assert!((solution.parameters[1].value - 0.4).abs() < 2e-3, "{:?}", solution.parameters);
 }
 
+/// Outputs with their measured values and errors.
+type Measured = Vec<(Formula, Vec<f64>, Sigma)>;
+
 /// Part of the 95 % intervals that hold the truth, of both parameters.
-fn coverage(
-    runs: u32,
-    fitness: Option<&str>,
-    outputs: fn(&mut Noise) -> Vec<(Formula, Vec<f64>, Sigma)>,
-) -> f64 {
+fn coverage(runs: u32, fitness: Option<&str>, outputs: fn(&mut Noise) -> Measured) -> f64 {
     let mut inside = 0;
     for seed in 0..runs {
         let outputs = outputs(&mut Noise::new(1000 + seed));

@@ -96,7 +96,7 @@ impl Evaluation {
             let free = &problem.parameters[stencil.parameter];
             for (coordinate, _) in stencil.points() {
                 let mut point = places[stencil.place].clone();
-                point[stencil.parameter] = free.from_coordinate(coordinate);
+                point[stencil.parameter] = free.value_at_coordinate(coordinate);
                 points.push(point);
             }
         }

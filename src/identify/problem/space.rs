@@ -88,7 +88,7 @@ impl Free {
     }
 
     /// The value that belongs to a [`coordinate`](Self::coordinate).
-    pub(super) fn from_coordinate(&self, coordinate: f64) -> f64 {
+    pub(super) fn value_at_coordinate(&self, coordinate: f64) -> f64 {
         let sign = self.min.signum();
         if self.logarithmic { sign * (sign * coordinate).exp() } else { coordinate }
     }
@@ -133,7 +133,9 @@ mod tests {
         for u in [0.0, 0.2, 0.9] {
             let value = free.value(u);
             assert!((free.fraction(value) - u).abs() < 1e-12);
-            assert!((free.from_coordinate(free.coordinate(value)) - value).abs() < 1e-12 * -value);
+            assert!(
+                (free.value_at_coordinate(free.coordinate(value)) - value).abs() < 1e-12 * -value
+            );
             let h = 1e-6;
             let slope = (free.value(u + h) - free.value(u)) / h;
             assert!((free.slope(value) - slope).abs() < 1e-4 * slope);

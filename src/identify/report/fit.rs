@@ -86,7 +86,8 @@ fn drawing(solved: &SolvedSeries, curve: &[CurvePoint]) -> Figure {
 
 /// The bands of a curve; where the data leave it open there is none.
 fn bands(curve: &[CurvePoint]) -> Vec<Series> {
-    let kinds: [(&str, usize, fn(&CurvePoint) -> Option<f64>); 2] = [
+    type Half = fn(&CurvePoint) -> Option<f64>;
+    let kinds: [(&str, usize, Half); 2] = [
         ("95 % of new measurements", 3, |at| at.prediction),
         ("95 % band of the curve", 1, |at| at.confidence),
     ];

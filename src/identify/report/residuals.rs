@@ -83,7 +83,7 @@ fn reading(solution: &Solution, series: &SolvedSeries) -> Markup {
         true => series.y[0].clone(),
         false => format!("{} / {}", series.experiment, series.y[0]),
     };
-    let about = |finding: &&Finding| finding.series.iter().any(|named| *named == label);
+    let about = |finding: &&Finding| finding.series.contains(&label);
     let mut found: Vec<&str> =
         solution.findings.iter().filter(about).filter_map(|finding| name(finding.kind)).collect();
     found.dedup();

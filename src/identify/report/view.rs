@@ -162,7 +162,7 @@ fn notes(solution: &Solution) -> Vec<Note<'_>> {
 /// The curve of a fitted series: with bands where these were computed.
 fn banded(solution: &Solution, place: usize, series: &SolvedSeries) -> Vec<CurvePoint> {
     let band = solution.inferred.bands.iter().find(|band| band.series == Some(place));
-    band.map_or_else(|| curve(series), |band| points(band))
+    band.map_or_else(|| curve(series), points)
 }
 
 /// The points of a band.

@@ -59,9 +59,8 @@ fn is_rule(line: &str) -> bool {
 /// All rows of a text.
 pub(super) fn records(text: &str, separator: Separator) -> Vec<Record<'_>> {
     let mut found = Vec::new();
-    let mut lines = lines(text);
     let mut done = 0;
-    while let Some((line, content)) = lines.next() {
+    for (line, content) in lines(text) {
         if line <= done {
             continue;
         }

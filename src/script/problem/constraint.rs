@@ -23,8 +23,10 @@ enum Term {
     Function(fn(f64) -> f64, Box<Term>),
 }
 
+type Elementary = fn(f64) -> f64;
+
 /// Functions of one argument.
-const FUNCTIONS: &[(&str, fn(f64) -> f64)] = &[
+const FUNCTIONS: &[(&str, Elementary)] = &[
     ("abs", f64::abs),
     ("exp", f64::exp),
     ("log", f64::ln),
