@@ -92,7 +92,7 @@ pub fn unit(text: &str) -> Option<Unit> {
     reader.rest.is_empty().then_some(found)
 }
 
-/// The dimension of a unit, see [`unit`].
+/// The dimension of a unit, see [`unit()`].
 pub fn dimension(text: &str) -> Option<Dimension> {
     unit(text).map(|unit| unit.dimension)
 }
