@@ -34,7 +34,8 @@ impl Library {
         &self,
         name: &Name,
     ) -> Result<Option<IndexMap<Name, Arc<Function>>>, Diagnostic> {
-        if self.find(name).is_none() {
+        // What follows the first name may be inherited, which only the instantiation knows.
+        if name.first().is_none_or(|first| self.find(&Name::from(first)).is_none()) {
             return Ok(None);
         }
         super::on_deep_stack(|| self.ready_function(name))?

@@ -270,7 +270,7 @@ impl Instantiation<'_> {
         let (inner, outer) = (original.inner, original.outer);
         let text = match &redeclaration.replacement {
             Replacement::Class(element) => Text {
-                name: self.text(redeclaration.context).name.child(element.class.name.node),
+                name: self.name_within(redeclaration.context, element.class.name.node),
                 definition: element.class.clone(),
                 id: None,
                 extended: None,

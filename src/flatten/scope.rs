@@ -132,6 +132,13 @@ impl Instantiation<'_> {
         self.scope(id).text.as_ref().expect("only the top scope has no text")
     }
 
+    /// The full name of a class that stands in a scope; a modifier of a simulated model stands in
+    /// that of the whole library.
+    pub(super) fn name_within(&self, scope: ScopeId, name: Ident) -> Name {
+        let text = self.scope(scope).text.as_ref();
+        text.map_or_else(|| Name::from(name), |text| text.name.child(name))
+    }
+
     /// The instance whose components a scope's names mean.
     pub(super) fn node_of(&self, id: ScopeId) -> NodeId {
         self.scope(id).node

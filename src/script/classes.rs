@@ -26,6 +26,9 @@ pub(super) struct Classes {
     pub(super) library: Library,
     /// Those that are nowhere.
     nowhere: HashSet<Ident>,
+    /// Files that were loaded for the class that they are named after and do not define it. They
+    /// stay here when other classes are loaded, or two of them would be loaded in turn for ever.
+    misnamed: BTreeMap<Ident, PathBuf>,
     /// Functions that loaded ones call and that are no classes: copies for functions passed to them.
     copies: HashMap<Name, Arc<Function>>,
     /// Counts what changes what a name can stand for.
@@ -59,6 +62,7 @@ impl Classes {
     pub(super) fn add_directory(&mut self, path: PathBuf) {
         self.directories.push(path);
         self.nowhere.clear();
+        self.misnamed.clear();
     }
 
     /// The files or folders of all classes at the top level.
@@ -234,19 +238,44 @@ impl Session {
     }
 
     fn autoload_class(&mut self, name: Ident) -> Result<bool, Vec<Diagnostic>> {
-        let known = self.classes.library.find(&Name::from(name)).is_some();
-        if known || self.classes.nowhere.contains(&name) {
+        let nowhere = &self.classes.nowhere;
+        if self.defines(name) || nowhere.contains(&name) || self.classes.misnamed.contains_key(&name)
+        {
             return Ok(false);
         }
-        match self.search_class(name) {
-            Some(path) if self.world.is_dir(&path) => {
-                self.load_library(&path, &Name::default()).map(|_| true)
-            }
-            Some(path) => self.load_file(&path).map(|_| true),
-            None => {
-                self.classes.nowhere.insert(name);
-                Ok(false)
-            }
+        let Some(path) = self.search_class(name) else {
+            self.classes.nowhere.insert(name);
+            return Ok(false);
+        };
+        if self.world.is_dir(&path) {
+            self.load_library(&path, &Name::default())?;
+        } else {
+            self.load_file(&path)?;
+        }
+        let found = self.defines(name);
+        if !found {
+            self.classes.misnamed.insert(name, path);
+        }
+        Ok(found)
+    }
+
+    fn defines(&self, name: Ident) -> bool {
+        self.classes.library.find(&Name::from(name)).is_some()
+    }
+
+    /// What a file defines instead of the class that it is named after.
+    fn misnamed_note(&self, name: &Name) -> Option<String> {
+        let wanted = name.first()?;
+        let path = self.classes.misnamed.get(&wanted)?;
+        let own = self.classes.files.iter().filter(|(_, file)| *file == path);
+        let names: Vec<String> = own.map(|(own, _)| format!("`{own}`")).collect();
+        let file = path.file_name()?.to_string_lossy();
+        match names.is_empty() {
+            true => Some(format!("`{file}` does not define `{wanted}`")),
+            false => Some(format!(
+                "`{file}` does not define `{wanted}`; it defines {}",
+                names.join(", ")
+            )),
         }
     }
 
@@ -297,6 +326,7 @@ impl Session {
         self.classes.changed();
         self.classes.library = Library::new();
         self.classes.files.clear();
+        self.classes.misnamed.clear();
         self.classes.versions.clear();
         self.models.forget();
     }
@@ -318,7 +348,8 @@ impl Session {
         let last = known.iter().map(|full| full.rsplit('.').next().unwrap_or(full));
         let hint = suggest::did_you_mean(&wanted, known.iter().map(String::as_str))
             .or_else(|| suggest::did_you_mean(&wanted, last));
-        fault!(UNKNOWN_CLASS, "there is no class `{wanted}`").help_if(hint).help(
+        let misnamed = self.misnamed_note(name);
+        fault!(UNKNOWN_CLASS, "there is no class `{wanted}`").help_if(misnamed).help_if(hint).help(
             "load the file that defines it first, with `openModel` or `loadFile`, or name its folder with `--library`",
         )
     }
