@@ -145,7 +145,12 @@ impl World for SystemWorld {
 
     fn remove(&mut self, path: &Path) -> io::Result<()> {
         let path = self.at(path);
-        if path.is_dir() { fs::remove_dir(path) } else { fs::remove_file(path) }
+        let is_folder = path.is_dir() && !path.is_symlink();
+        if is_folder { fs::remove_dir(path) } else { fs::remove_file(path) }
+    }
+
+    fn is_link(&self, path: &Path) -> bool {
+        self.at(path).is_symlink()
     }
 
     fn exists(&self, path: &Path) -> bool {

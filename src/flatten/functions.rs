@@ -46,6 +46,7 @@ impl Library {
         name: &Name,
     ) -> Result<Option<IndexMap<Name, Arc<Function>>>, Diagnostic> {
         let mut instantiation = Instantiation::new(self);
+        instantiation.asked_function = Some(name.clone());
         let Some(Type::Class(id)) = instantiation.class_named(name)? else { return Ok(None) };
         let Some(full) = instantiation.function(id)? else { return Ok(None) };
         let mut functions: IndexMap<Name, Arc<Function>> = IndexMap::new();
@@ -156,7 +157,7 @@ impl Instantiation<'_> {
             .at(span));
         }
         // Known by name before its body is read, which may call the function itself.
-        let name = self.free_name(&self.text(id).name.clone());
+        let name = self.free_name(id, class);
         self.functions.insert(name.clone(), None);
         self.function_names.insert(id, name.clone());
         if self.is_record(class) {
@@ -210,24 +211,41 @@ impl Instantiation<'_> {
         kept
     }
 
-    /// The name, with a number if another function has it: the same text in other surroundings.
-    fn free_name(&self, name: &Name) -> Name {
-        if !self.functions.contains_key(name) {
-            return name.clone();
+    /// The name of a function, with a number if another function has it: the same text in another
+    /// environment.
+    fn free_name(&mut self, id: ScopeId, class: ScopeId) -> Name {
+        let name = self.text(id).name.clone();
+        let is_plain = self.asked_function.is_none() || self.is_record(class);
+        if !self.functions.contains_key(&name) && (is_plain || self.is_found_as(&name, id)) {
+            return name;
         }
+        // The function that is asked for keeps the name that it has there.
+        if let Some(asked) = self.asked_function.as_ref().filter(|_| self.functions.is_empty()) {
+            return asked.clone();
+        }
+        let numbered = (2..).map(|number| self.numbered(&name, number));
+        numbered.into_iter().find(|name| !self.functions.contains_key(name)).unwrap_or(name.clone())
+    }
+
+    /// Whether the library has this very function under its name, not the same text in another
+    /// environment: a package that extends others modifies what their functions see.
+    fn is_found_as(&mut self, name: &Name, id: ScopeId) -> bool {
+        !matches!(self.class_named(name), Ok(Some(Type::Class(found))) if found != id)
+    }
+
+    /// The name with a number. Functions of one instantiation alone are told apart by it; those
+    /// asked for one by one meet, so that their names say for which one they were made.
+    fn numbered(&self, name: &Name, number: usize) -> Name {
         let last = name.last().map_or("", Ident::as_str).trim_matches('\'').to_owned();
-        let numbered =
-            |number: usize| name.parent().child(Ident::new(&format!("'{last}${number}'")));
-        (2..)
-            .map(numbered)
-            .find(|name| !self.functions.contains_key(name))
-            .unwrap_or_else(|| name.clone())
+        let origin =
+            self.asked_function.as_ref().map_or(String::new(), |name| format!(" in {name}"));
+        name.parent().child(Ident::new(&format!("'{last}${number}{origin}'")))
     }
 
     /// Stores a function, unless one that differs in the name alone is known already.
     fn keep_function(&mut self, id: ScopeId, name: Name, function: Function) -> Name {
         let text = self.text(id).name.clone();
-        if name != text {
+        if name != text && self.asked_function.as_ref() != Some(&name) {
             let mut at = 1;
             let mut candidate = text.clone();
             while candidate != name {
@@ -239,8 +257,7 @@ impl Instantiation<'_> {
                     return candidate;
                 }
                 at += 1;
-                let last = text.last().map_or("", Ident::as_str).trim_matches('\'').to_owned();
-                candidate = text.parent().child(Ident::new(&format!("'{last}${at}'")));
+                candidate = self.numbered(&text, at);
             }
         }
         self.functions.insert(name.clone(), Some(Arc::new(function)));

@@ -60,6 +60,8 @@ pub(super) struct Instantiation<'a> {
     pub(super) searching: usize,
     pub(super) renaming: usize,
     pub(super) functions: IndexMap<Name, Option<Arc<Function>>>,
+    /// The function that alone is asked for; `None` for a model.
+    pub(super) asked_function: Option<Name>,
     /// The names under which functions are known.
     pub(super) function_names: FxHashMap<ScopeId, Name>,
     /// The classes of records by the names of their constructors.
@@ -109,6 +111,7 @@ impl<'a> Instantiation<'a> {
             searching: 0,
             renaming: 0,
             functions: IndexMap::new(),
+            asked_function: None,
             function_names: FxHashMap::default(),
             record_scopes: FxHashMap::default(),
             root_node: NodeId(0),

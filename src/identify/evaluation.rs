@@ -417,6 +417,9 @@ pub(super) fn plan(
         return Ok(Plan::OneByOne);
     }
     let times = if x_name == TIME {
+        if !model.has_stop_time() {
+            settings.stop = points.iter().copied().fold(settings.start, f64::max);
+        }
         let path = [settings.start, settings.stop];
         reachable(&Path { times: &path, x: &path }, x_name, points)?;
         points.to_vec()

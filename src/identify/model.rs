@@ -25,6 +25,11 @@ pub trait Model: Send + Sync {
     }
     /// How its `experiment` annotation wants it simulated.
     fn settings(&self) -> Settings;
+    /// Whether its `experiment` annotation gives a stop time; without one it is simulated as far as
+    /// the measured points reach.
+    fn has_stop_time(&self) -> bool {
+        true
+    }
     /// A system of its own, which observes these variables in this order and whose parameters
     /// `varied` can be set.
     fn instance(&self, varied: &[String], observed: &[String]) -> Result<Box<dyn Instance>, Fault>;

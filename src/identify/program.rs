@@ -134,6 +134,10 @@ impl Model for CompiledModel {
         }
     }
 
+    fn has_stop_time(&self) -> bool {
+        self.program.experiment().stop_time.is_some()
+    }
+
     fn instance(&self, varied: &[String], observed: &[String]) -> Result<Box<dyn Instance>, Fault> {
         let positions: Vec<usize> = observed
             .iter()

@@ -112,6 +112,22 @@ impl ResultTable {
         }
     }
 
+    /// Keeps the rows at these times, ascending; of several rows of one time the last, which has the
+    /// values after its events.
+    pub fn keep_times(&mut self, times: &[f64]) {
+        let is_last = |row: usize| self.time.get(row + 1).is_none_or(|next| *next > self.time[row]);
+        let is_wanted = |row: usize| {
+            times.binary_search_by(|time| time.total_cmp(&self.time[row])).is_ok() && is_last(row)
+        };
+        let rows: Vec<usize> = (0..self.time.len()).filter(|&row| is_wanted(row)).collect();
+        for series in &mut self.series {
+            if let Values::Trajectory(values) = &mut series.values {
+                *values = rows.iter().map(|&row| values[row]).collect();
+            }
+        }
+        self.time = rows.iter().map(|&row| self.time[row]).collect();
+    }
+
     /// The values of a variable at these times, interpolated linearly; at an event the value after
     /// it. A time outside the results is a fault.
     pub fn interpolate(&self, name: &str, times: &[f64]) -> Result<Vec<f64>, Fault> {

@@ -239,7 +239,9 @@ impl Session {
 
     fn autoload_class(&mut self, name: Ident) -> Result<bool, Vec<Diagnostic>> {
         let nowhere = &self.classes.nowhere;
-        if self.defines(name) || nowhere.contains(&name) || self.classes.misnamed.contains_key(&name)
+        if self.defines(name)
+            || nowhere.contains(&name)
+            || self.classes.misnamed.contains_key(&name)
         {
             return Ok(false);
         }
@@ -261,6 +263,14 @@ impl Session {
 
     fn defines(&self, name: Ident) -> bool {
         self.classes.library.find(&Name::from(name)).is_some()
+    }
+
+    /// The diagnostic of an unknown class, with what the file of its name defines instead.
+    pub(super) fn with_misnamed_file(&self, diagnostic: Diagnostic, name: &Name) -> Diagnostic {
+        match self.misnamed_note(name).filter(|_| diagnostic.code == UNKNOWN_CLASS) {
+            Some(note) => diagnostic.help(note),
+            None => diagnostic,
+        }
     }
 
     /// What a file defines instead of the class that it is named after.
@@ -377,10 +387,10 @@ impl Session {
             match self.ask_library(|library| library.function(name).map_err(one)) {
                 Ok(None) => return Ok(None),
                 Ok(Some(functions)) => {
-                    let mut functions = functions.into_iter();
-                    let own = functions.next().map(|(_, own)| own);
+                    let own = functions.values().next().cloned();
                     let Classes { library, copies, .. } = &mut self.classes;
-                    copies.extend(functions.filter(|(called, _)| !library.contains(called)));
+                    let made = functions.into_iter();
+                    copies.extend(made.filter(|(called, _)| !library.contains(called)));
                     return Ok(own);
                 }
                 Err(errors) => {

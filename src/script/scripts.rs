@@ -81,10 +81,15 @@ impl Session {
             diagnostics.into_iter().map(frame).collect::<Vec<_>>()
         };
         if let Err(fault) = self.find_script(name) {
-            self.follow_ups.script_not_run();
+            self.script_not_run();
             return Err(fault.into());
         }
         self.run_named(name).map_err(|diagnostics| Failure::Elsewhere(traced(diagnostics)))
+    }
+
+    /// What scripts that are not run would have defined is not missed.
+    pub(super) fn script_not_run(&mut self) {
+        self.follow_ups.script_not_run();
     }
 
     fn run_named(&mut self, name: &str) -> Result<(), Vec<Diagnostic>> {
@@ -92,7 +97,7 @@ impl Session {
         let path = self.find_script(name).map_err(at)?;
         let script = self.parsed_script(&path);
         if script.is_err() {
-            self.follow_ups.script_not_run();
+            self.script_not_run();
         }
         let script = script?;
         let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
@@ -172,7 +177,7 @@ impl Session {
 
     /// The script of this name: in the folder of the calling script, then in the working
     /// directory; with and without the ending; at last with other letter cases.
-    fn find_script(&mut self, name: &str) -> Result<PathBuf, Fault> {
+    pub(super) fn find_script(&mut self, name: &str) -> Result<PathBuf, Fault> {
         let folder = self.frames.last().map(|frame| frame.folder.clone()).unwrap_or_default();
         let key = (folder, self.world.current_dir(), name.to_owned());
         if let Some(path) = self.parsed.found.get(&key)

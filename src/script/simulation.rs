@@ -128,6 +128,20 @@ pub fn translate(session: &mut Session, problem: &str) -> Result<Arc<Translated>
     Ok(model)
 }
 
+/// As [`translate`]; the parameters have the values that the model gives them, whatever scripts set
+/// before.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn translate_anew(
+    session: &mut Session,
+    problem: &str,
+) -> Result<Arc<Translated>, Vec<Diagnostic>> {
+    let model = translated(session, problem)?;
+    session.models.last = Some(Current::of(model.clone()));
+    Ok(model)
+}
+
 /// As [`translate`], without changing which model dotted names refer to.
 ///
 /// # Errors
@@ -209,7 +223,8 @@ pub(super) fn flattened(
             continue;
         }
         let (flattened, imbalance) = found.map_err(|errors| {
-            errors.into_iter().map(|error| placed(error, session.call)).collect::<Vec<_>>()
+            let errors = errors.into_iter().map(|error| session.with_misnamed_file(error, &name));
+            errors.map(|error| placed(error, session.call)).collect::<Vec<_>>()
         })?;
         if let Some(imbalance) = imbalance {
             return Err(vec![dae::explain_imbalance(&flattened.model, imbalance)]);

@@ -58,6 +58,10 @@ pub trait World {
     fn exists(&self, path: &Path) -> bool;
     /// Whether it is a directory.
     fn is_dir(&self, path: &Path) -> bool;
+    /// Whether it is a symbolic link.
+    fn is_link(&self, _path: &Path) -> bool {
+        false
+    }
     /// A stamp of a file, `None` if there is none.
     fn stamp(&self, path: &Path) -> Option<Stamp>;
     /// Names of the entries of a directory, sorted.

@@ -101,7 +101,7 @@ impl OutputGrid {
     }
 
     /// The output point of this number, if there is one within the simulated interval.
-    pub(super) fn point(&self, start: f64, stop: f64, number: usize) -> Option<f64> {
+    pub fn point(&self, start: f64, stop: f64, number: usize) -> Option<f64> {
         match self {
             OutputGrid::Intervals(intervals) => {
                 let intervals = (*intervals).max(1);

@@ -5,6 +5,7 @@ use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
 use crate::script::errors::FILE_ERROR;
+use crate::script::files::cannot;
 use crate::script::{Dialect, Session};
 use crate::value::Value;
 use std::path::{Path, PathBuf};
@@ -122,7 +123,7 @@ fn move_file(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const REMOVE: &str = r#"
-function remove "Removes a file or an empty directory, if it exists."
+function remove "Removes a file, or a directory with all that is in it, if it exists; of a link the link."
   input String name;
 end remove;
 "#;
@@ -130,9 +131,20 @@ end remove;
 fn remove(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let path = PathBuf::from(args.take::<String>("name")?);
     if session.world.exists(&path) {
-        session.remove_file(&path)?;
+        remove_tree(session, &path)?;
     }
     Ok(Value::nothing())
+}
+
+/// Removes what is in a directory before the directory; links are not followed.
+fn remove_tree(session: &mut Session, path: &Path) -> Result<(), Fault> {
+    if session.world.is_dir(path) && !session.world.is_link(path) {
+        let entries = session.world.list_dir(path);
+        for entry in entries.map_err(|error| cannot("read", path, &error))? {
+            remove_tree(session, &path.join(entry))?;
+        }
+    }
+    session.remove_file(path)
 }
 
 const REMOVE_FILE: &str = r#"

@@ -1,6 +1,5 @@
 //! Simulations that begin where another one ended.
 
-use super::simulation::Experiment;
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
@@ -51,9 +50,7 @@ fn import_initial(session: &mut Session, mut args: Args) -> Result<Value, Failur
     };
     session.import_states(end.states);
     let (start, stop) = end.span;
-    let wishes = &mut session.extension::<Experiment>().0;
-    wishes.start = Some(stop);
-    wishes.stop = Some(stop + (stop - start));
+    super::simulation::begin_at(session, stop, Some(stop + (stop - start)));
     Ok(true.into())
 }
 
@@ -70,7 +67,7 @@ fn import_initial_result(session: &mut Session, mut args: Args) -> Result<Value,
     let model = model(session, "importInitialResult")?;
     let table = super::results::table(session, &file)?;
     begin_with(session, &model, &table, time)?;
-    session.extension::<Experiment>().0.start = Some(time);
+    super::simulation::begin_at(session, time, None);
     Ok(true.into())
 }
 

@@ -25,11 +25,20 @@ struct Kinds {
     inputs: bool,
     outputs: bool,
     auxiliaries: bool,
+    /// Whether the values before and after events are stored besides those of the output grid.
+    events: bool,
 }
 
 impl Default for Kinds {
     fn default() -> Kinds {
-        Kinds { states: true, derivatives: true, inputs: true, outputs: true, auxiliaries: true }
+        Kinds {
+            states: true,
+            derivatives: true,
+            inputs: true,
+            outputs: true,
+            auxiliaries: true,
+            events: true,
+        }
     }
 }
 
@@ -43,7 +52,7 @@ function experimentSetupOutput "Which kinds of variables the result files of the
   input Boolean outputs = true;
   input Boolean auxiliaries = true;
   input Boolean equidistant = true "has no effect: results are equidistant, with events";
-  input Boolean events = true "has no effect";
+  input Boolean events = true "false: the rows of the output grid alone";
   input Boolean debug = false "has no effect";
   output Boolean ok;
 end experimentSetupOutput;
@@ -56,16 +65,19 @@ fn experiment_setup_output(session: &mut Session, mut args: Args) -> Result<Valu
         inputs: args.take("inputs")?,
         outputs: args.take("outputs")?,
         auxiliaries: args.take("auxiliaries")?,
+        events: args.take("events")?,
     };
     *session.extension::<Kinds>() = kinds;
     Ok(true.into())
 }
 
-/// The variables of a simulation that its result file is to hold.
+/// The variables and rows of a simulation that its result file is to hold; `grid`: the times of
+/// the output grid.
 pub(super) fn stored(
     session: &mut Session,
     model: &Translated,
     table: &ResultTable,
+    grid: &[f64],
 ) -> ResultTable {
     let kinds = *session.extension::<Kinds>();
     let hides = session.flags.get("Advanced.StoreProtectedVariables") == Some(&false.into());
@@ -89,10 +101,14 @@ pub(super) fn stored(
     };
     let left_out: HashSet<&str> =
         variables.filter(|variable| !is_wanted(variable)).map(|variable| &*variable.name).collect();
-    match left_out.is_empty() {
+    let mut stored = match left_out.is_empty() {
         true => table.clone(),
         false => table.only(|name| !left_out.contains(name)),
+    };
+    if !kinds.events {
+        stored.keep_times(grid);
     }
+    stored
 }
 
 /// The variable of which a name is the derivative, of whatever order.

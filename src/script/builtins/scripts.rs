@@ -22,13 +22,17 @@ const RUN_SCRIPT: &str = r#"
 function RunScript "Executes a script among the variables of the calling one."
   input String script "path from the folder of the calling script, else from the working directory; the ending .mos may be left out";
   input Boolean silent = false "true: its statements show no answers";
-  output Boolean ok;
+  output Boolean ok "false if there is no such script";
 end RunScript;
 "#;
 
 fn run_script(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let script: String = args.take("script")?;
     let silent: bool = args.take("silent")?;
+    if let Err(missing) = session.find_script(&script) {
+        session.script_not_run();
+        return Ok(session.succeeded(Err(missing)));
+    }
     session.silent += usize::from(silent);
     let done = session.run_nested(&script);
     session.silent -= usize::from(silent);

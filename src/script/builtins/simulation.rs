@@ -6,7 +6,6 @@ use crate::results::{self, ResultTable};
 use crate::script::errors::NO_TRANSLATED_MODEL;
 use crate::script::simulation::{self, Simulated, Translated, Wishes};
 use crate::script::{Dialect, Session};
-use crate::sim::OutputGrid;
 use crate::value::Value;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -26,7 +25,22 @@ pub(super) const FAMILY: Family = Family {
 
 /// What `experiment` set for the simulations that say nothing else.
 #[derive(Default)]
-pub(super) struct Experiment(pub(super) Wishes);
+struct Experiment(Wishes);
+
+/// The settings of the last simulation, which `simulate()` repeats.
+#[derive(Default)]
+struct LastRun(Wishes);
+
+/// The next simulations begin at `start` and, where it is given, end at `stop`; the other settings
+/// stay what they are.
+pub(super) fn begin_at(session: &mut Session, start: f64, stop: Option<f64>) {
+    let set = |wishes: &mut Wishes| {
+        wishes.start = Some(start);
+        wishes.stop = stop.or(wishes.stop);
+    };
+    set(&mut session.extension::<Experiment>().0);
+    set(&mut session.extension::<LastRun>().0);
+}
 
 /// What `simulateModel` and its relatives are asked for.
 pub(super) struct Request {
@@ -47,17 +61,15 @@ impl Request {
 
     /// The times of the output grid.
     pub(super) fn grid(&self, model: &Translated) -> Result<Vec<f64>, Fault> {
-        let settings = simulation::settings(&model.program.experiment(), &self.wishes)?;
-        let count = match settings.output {
-            OutputGrid::Intervals(count) => count.max(1),
-            _ => 500,
-        };
-        let at = |i: usize| match i == count {
-            true => settings.stop,
-            false => settings.start + (settings.stop - settings.start) * i as f64 / count as f64,
-        };
-        Ok((0..=count).map(at).collect())
+        grid(model, &self.wishes)
     }
+}
+
+/// The times of the output grid.
+fn grid(model: &Translated, wishes: &Wishes) -> Result<Vec<f64>, Fault> {
+    let settings = simulation::settings(&model.program.experiment(), wishes)?;
+    let point = |number| settings.output.point(settings.start, settings.stop, number);
+    Ok((0..).map_while(point).collect())
 }
 
 const SIMULATE_MODEL: &str = r#"
@@ -77,24 +89,25 @@ end simulateModel;
 
 fn simulate_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let request = Request::take(session, &mut args)?;
+    *session.extension::<LastRun>() = LastRun(request.wishes.clone());
     let done = run(session, &request.problem, &request.wishes, &request.file);
     Ok(session.or_report_all(done).is_some().into())
 }
 
 const SIMULATE: &str = r#"
-function simulate "Simulates the model used last."
+function simulate "Simulates the model used last, with the settings of the last simulation or of `experiment`."
   output Boolean ok;
 end simulate;
 "#;
 
 fn simulate(session: &mut Session, _: Args) -> Result<Value, Failure> {
-    let wishes = session.extension::<Experiment>().0.clone();
+    let wishes = session.extension::<LastRun>().0.clone();
     let done = run(session, "", &wishes, "dsres");
     Ok(session.or_report_all(done).is_some().into())
 }
 
 const TRANSLATE_MODEL: &str = r#"
-function translateModel "Translates a model; dotted names of scripts mean its parameters from now on."
+function translateModel "Translates a model; dotted names of scripts mean its parameters from now on, which have the values of the model."
   input String problem = "" "Class or Class(modification); empty: the model used last";
   output Boolean ok;
 end translateModel;
@@ -102,7 +115,10 @@ end translateModel;
 
 fn translate_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let problem: String = args.take("problem")?;
-    let done = model(session, &problem);
+    let done = model(session, &problem)
+        .and_then(|model| simulation::translate_anew(session, &model.problem));
+    let experiment = session.extension::<Experiment>().0.clone();
+    *session.extension::<LastRun>() = LastRun(experiment);
     Ok(session.or_report_all(done).is_some().into())
 }
 
@@ -150,6 +166,7 @@ fn experiment(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         fixed_step: args.optional("FixedStepSize")?,
         ..Wishes::default()
     };
+    *session.extension::<LastRun>() = LastRun(wishes.clone());
     *session.extension::<Experiment>() = Experiment(wishes);
     Ok(true.into())
 }
@@ -210,7 +227,8 @@ pub(super) fn run_model(
     file: &str,
 ) -> Result<Simulated, Vec<Diagnostic>> {
     let simulated = simulation::simulate(session, model, wishes).map_err(|error| vec![error])?;
-    let table = super::output::stored(session, model, &simulated.table);
+    let grid = grid(model, wishes).at(session.call_site()).map_err(|error| vec![error])?;
+    let table = super::output::stored(session, model, &simulated.table, &grid);
     let written = write(session, table, file).at(session.call_site());
     written.map_err(|error| vec![error])?;
     Ok(simulated)
