@@ -8,6 +8,7 @@
 //!
 //! Reference: [Walter and Pronzato 1997](crate::bibliography#walter-pronzato-1997), chapter 4.
 
+use crate::singular_values::SingularValues;
 use nalgebra::DMatrix;
 
 /// Singular values below this fraction of the largest count as zero.
@@ -47,7 +48,7 @@ pub fn uncertainty_given(jacobian: &[Vec<f64>], variance: f64) -> Option<Uncerta
     let scaled = DMatrix::from_fn(points, parameters, |j, k| {
         if norms[k] > 0.0 { jacobian[k][j] / norms[k] } else { 0.0 }
     });
-    let covariance = scaled_covariance(scaled)?;
+    let covariance = scaled_covariance(&scaled)?;
     let deviations: Vec<f64> = (0..parameters)
         .map(|k| if norms[k] > 0.0 { covariance[(k, k)].sqrt() / norms[k] } else { f64::INFINITY })
         .map(|deviation| deviation * if deviation.is_finite() { variance.sqrt() } else { 1.0 })
@@ -63,14 +64,13 @@ pub fn uncertainty_given(jacobian: &[Vec<f64>], variance: f64) -> Option<Uncerta
 }
 
 /// (SᵀS)⁻¹; infinite in the rows and columns that take part in a null direction.
-fn scaled_covariance(scaled: DMatrix<f64>) -> Option<DMatrix<f64>> {
+fn scaled_covariance(scaled: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let parameters = scaled.ncols();
-    let svd = scaled.svd(false, true);
-    let directions = svd.v_t?;
-    let largest = svd.singular_values.max();
+    let found = SingularValues::of(&scaled)?;
+    let (directions, largest) = (&found.v_t, found.largest());
     let mut covariance = DMatrix::zeros(parameters, parameters);
     let mut undetermined = vec![false; parameters];
-    for (d, &value) in svd.singular_values.iter().enumerate() {
+    for (d, &value) in found.s.iter().enumerate() {
         if value > RANK_TOLERANCE * largest {
             for k in 0..parameters {
                 for l in 0..parameters {
