@@ -63,4 +63,5 @@ mod structure;
 mod syntax_properties;
 mod teach;
 mod transcripts;
+mod undetermined;
 mod watching;
