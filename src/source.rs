@@ -122,6 +122,12 @@ impl SourceMap {
             .unwrap_or("")
     }
 
+    /// Whether the first thing behind a span in its text, blanks aside, is this character.
+    pub fn is_followed_by(&self, span: Span, wanted: char) -> bool {
+        let rest = self.get(span.source).and_then(|source| source.text.get(span.end as usize..));
+        rest.is_some_and(|rest| rest.trim_start().starts_with(wanted))
+    }
+
     /// `file:line`, for traces; `<built-in>` where the place is not known.
     pub fn location(&self, span: Span) -> String {
         match (self.get(span.source), self.line_column(span)) {

@@ -71,7 +71,8 @@ fn options(arguments: &RunArgs) -> Options {
     let journaling =
         if arguments.resume { Journaling::Resume(seconds) } else { Journaling::Fresh(seconds) };
     let no_probe = arguments.no_probe;
-    Options { echo, strictness, journaling, no_probe, ..arguments.freedom.options() }
+    let quiet = arguments.quiet;
+    Options { echo, strictness, quiet, journaling, no_probe, ..arguments.freedom.options() }
 }
 
 fn write_transcript(

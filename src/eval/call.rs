@@ -60,10 +60,6 @@ impl Evaluator<'_> {
                 self.call_bound(&function, given, span)
             }
             Target::Builtin(header) if header.is_variadic() => {
-                self.expressions(&arguments.positional)?;
-                for argument in &arguments.named {
-                    self.expression(&argument.value)?;
-                }
                 self.call_builtin(&header, Vec::new(), span)
             }
             Target::Builtin(header) => {

@@ -3,11 +3,12 @@
 use super::component::Storage;
 use super::errors::UNKNOWN_VARIABLE;
 use super::variable::{Declared, Variable};
-use super::{Evaluator, Host, Scope, ValueType, depth};
+use super::{Evaluator, FunctionComponent, Host, Scope, ValueType, depth};
 use crate::diag::{At, Diagnostic, suggest};
 use crate::fault;
 use crate::name::Ident;
 use crate::source::Span;
+use crate::syntax::ast::{ExpressionKind, NamedArgument};
 use crate::value::errors::TYPE_MISMATCH;
 use crate::value::{Step, Value};
 
@@ -84,9 +85,56 @@ impl Evaluator<'_> {
             }
         }
         for (name, components) in nested {
-            self.prepare(name)?;
-            self.give_within(name, &[], components, span)?;
+            match self.fields_given(&fields[&name])? {
+                Some(own) => self.declare_part(&fields[&name], own, components, span)?,
+                None => {
+                    self.prepare(name)?;
+                    self.give_within(name, &[], components, span)?;
+                }
+            }
         }
+        Ok(())
+    }
+
+    /// The components that the declaration of a record gives it itself, so that what depends on
+    /// others follows them; `None` where it is not declared by its components.
+    fn fields_given(
+        &mut self,
+        component: &FunctionComponent,
+    ) -> Result<Option<Vec<(Ident, Given)>>, Diagnostic> {
+        let ValueType::Record(record, _) = &component.value_type else { return Ok(None) };
+        if !component.dims.is_empty() {
+            return Ok(None);
+        }
+        let Some(binding) = &component.binding else { return Ok(Some(Vec::new())) };
+        match &binding.kind {
+            ExpressionKind::Call { function, arguments }
+                if function.name().parts == record.parts && arguments.positional.is_empty() =>
+            {
+                let value = |argument: &NamedArgument| {
+                    Ok((argument.name.node, Given::Value(self.expression(&argument.value)?)))
+                };
+                arguments.named.iter().map(value).collect::<Result<_, _>>().map(Some)
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// Declares a record within a record: what the outer declaration gives comes first.
+    fn declare_part(
+        &mut self,
+        component: &FunctionComponent,
+        mut own: Vec<(Ident, Given)>,
+        given: Vec<(Ident, Given)>,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        let ValueType::Record(record, fields) = &component.value_type else { return Ok(()) };
+        own.retain(|(name, _)| given.iter().all(|(other, _)| other != name));
+        own.extend(given);
+        let Storage { value, shadow } = self.record_with(record, fields, own, span)?;
+        let declared = Declared { value_type: component.value_type.clone(), dims: Vec::new() };
+        let variable = Variable::partly_assigned(value, shadow, declared);
+        self.scope.variables.insert(component.name, variable);
         Ok(())
     }
 

@@ -37,7 +37,7 @@ pub struct Function {
 }
 
 impl Function {
-    /// Whether a call may give any arguments, which are evaluated and not passed on: a built-in
+    /// Whether a call may give any arguments, which are not looked at: a built-in
     /// marked `annotation(variadic = true)`.
     pub(super) fn is_variadic(&self) -> bool {
         self.annotation.iter().any(|argument| match argument {

@@ -17,7 +17,8 @@ impl Session {
     pub(super) fn echo_input(&mut self, span: Span) {
         let wanted = self.options.echo == Echo::Everything && self.dialect == Dialect::Dymola;
         if wanted && self.may_echo() {
-            let line = format!("{}\n", self.sources.text(span));
+            let end = if self.sources.is_followed_by(span, ';') { ";" } else { "" };
+            let line = format!("{}{end}\n", self.sources.text(span));
             self.world.print(&line);
         }
     }

@@ -61,6 +61,11 @@ impl Session {
         self.finish()
     }
 
+    /// The dialect that a text shows by what only one of them has.
+    pub fn looks_like(&self, text: &str) -> Option<Dialect> {
+        telling(&syntax::parse_script(SourceId::NONE, text).ok()?)
+    }
+
     /// Runs a script that another one names; its errors end it and come back with a trace.
     pub(super) fn run_nested(&mut self, name: &str) -> Result<(), Failure> {
         if self.frames.len() >= MAX_DEPTH {
@@ -275,7 +280,11 @@ impl Session {
 
 /// The dialect of a script: that of the first call or `=` that only one of them has.
 fn recognised(script: &Script) -> Dialect {
-    script.statements.iter().find_map(|s| dialect_of(&s.kind)).unwrap_or_default()
+    telling(script).unwrap_or_default()
+}
+
+fn telling(script: &Script) -> Option<Dialect> {
+    script.statements.iter().find_map(|s| dialect_of(&s.kind))
 }
 
 fn dialect_of(kind: &InteractiveKind) -> Option<Dialect> {

@@ -29,6 +29,16 @@ pub enum Dialect {
     OpenModelica,
 }
 
+impl Dialect {
+    /// The tool whose it is.
+    pub fn name(self) -> &'static str {
+        match self {
+            Dialect::Dymola => "Dymola",
+            Dialect::OpenModelica => "OpenModelica",
+        }
+    }
+}
+
 /// What is shown without being asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Echo {
@@ -65,6 +75,8 @@ pub struct Options {
     pub echo: Echo,
     /// What an error does.
     pub strictness: Strictness,
+    /// Whether errors alone are told on standard error, no warnings and notes.
+    pub quiet: bool,
     /// What scripts may do outside.
     pub permissions: Permissions,
     /// Whether what the simulations answer is kept on the way.
@@ -274,6 +286,13 @@ impl Session {
         self.dialect
     }
 
+    /// Follows another dialect from here on.
+    pub fn set_dialect(&mut self, dialect: Dialect) {
+        self.dialect = dialect;
+        self.options.dialect = Some(dialect);
+        self.callees.clear();
+    }
+
     /// Text for standard output and the transcript.
     pub fn print(&mut self, text: &str) {
         self.world.print(text);
@@ -296,9 +315,12 @@ impl Session {
             return;
         }
         let plain = render::render(&diagnostic, &self.sources, false);
-        match self.world.colour() {
-            true => self.world.eprint(&render::render(&diagnostic, &self.sources, true)),
-            false => self.world.eprint(&plain),
+        match (self.options.quiet && !diagnostic.is_error(), self.world.colour()) {
+            (true, _) => {}
+            (false, true) => {
+                self.world.eprint(&render::render(&diagnostic, &self.sources, true));
+            }
+            (false, false) => self.world.eprint(&plain),
         }
         if let Some(transcript) = &mut self.transcript {
             transcript.report(&plain, diagnostic.code);

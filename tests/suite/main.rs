@@ -24,6 +24,7 @@ mod guide;
 mod hybrid;
 mod hybrid_limits;
 mod identification;
+mod identification_sets;
 mod identified_models;
 mod identify;
 mod index_reduction;

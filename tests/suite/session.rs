@@ -62,15 +62,15 @@ fn everything_is_echoed_as_dymola_logs_it() {
         "x = 3;\nx = 4;\nv = {1.5, 2};\nx + 1;\nfor i in 1:2 loop x = i; end for\nclearlog();";
     let (_, output, _) = run(MemoryWorld::new(), options, script);
     insta::assert_snapshot!(output, @r"
-    x = 3
+    x = 3;
     Declaring variable: Integer x ;
-    x = 4
-    v = {1.5, 2}
+    x = 4;
+    v = {1.5, 2};
     Declaring variable: Real v [2] ;
-    x + 1
+    x + 1;
      = 5
     for i in 1:2 loop x = i; end for
-    clearlog()
+    clearlog();
      = true
     ");
 }

@@ -1,7 +1,7 @@
 //! What is typed at the prompt: statements, and commands that begin with a colon.
 
 use super::terminal;
-use crate::script::{Session, builtins, checking, simulation};
+use crate::script::{Dialect, Session, builtins, checking, simulation};
 use std::path::Path;
 use std::time::Instant;
 
@@ -13,6 +13,7 @@ Statements are executed and answered; an open bracket or a `for` goes on in the 
   :load FILE     run a script, or load a Modelica file
   :dump [CLASS]  a model, or the one translated last, sorted
   :time STMT     execute a statement and say how long it took
+  :dialect [D]   whose commands are meant: dymola or openmodelica
   :quit          leave (also Ctrl-D); Ctrl-C stops what is running
 ";
 
@@ -29,6 +30,7 @@ pub(super) fn answer(session: &mut Session, input: &str) -> Option<u8> {
         "type" => type_of(session, rest),
         "load" => return load(session, rest),
         "dump" => dump(session, rest),
+        "dialect" => dialect(session, rest),
         "time" => {
             let started = Instant::now();
             let ended = run(session, rest);
@@ -41,10 +43,28 @@ pub(super) fn answer(session: &mut Session, input: &str) -> Option<u8> {
 }
 
 fn run(session: &mut Session, text: &str) -> Option<u8> {
+    if let Some(other) = session.looks_like(text).filter(|other| *other != session.dialect()) {
+        let name = other.name();
+        let hint = format!("note: this looks like {name}; `:dialect {}`\n", name.to_lowercase());
+        terminal::eprint(&hint);
+    }
     let status = session.run_text("prompt", text);
     // What was shown at the prompt has been read.
     session.messages.forget_unread();
     status.exit.map(|_| status.code)
+}
+
+fn dialect(session: &mut Session, name: &str) {
+    let all = [Dialect::Dymola, Dialect::OpenModelica];
+    match all.into_iter().find(|dialect| dialect.name().eq_ignore_ascii_case(name)) {
+        Some(dialect) => session.set_dialect(dialect),
+        None if name.is_empty() => {}
+        None => {
+            terminal::eprint("error: there are two dialects: dymola and openmodelica\n");
+            return;
+        }
+    }
+    terminal::print(&format!("{}\n", session.dialect().name()));
 }
 
 fn help(session: &mut Session, name: &str) {

@@ -13,9 +13,14 @@ use assistance::Assistance;
 use rustyline::error::ReadlineError;
 use rustyline::history::FileHistory;
 use rustyline::{CompletionType, Config, Editor};
+use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
+
+/// What the prompt begins with.
+const BANNER: &str =
+    concat!("gapilib ", env!("CARGO_PKG_VERSION"), "; :help lists what can be typed, :quit leaves");
 
 /// Reads statements and shows their answers until the input ends.
 pub(super) fn repl(arguments: &ReplArgs, global: &Global) -> ExitCode {
@@ -44,6 +49,10 @@ pub(super) fn repl(arguments: &ReplArgs, global: &Global) -> ExitCode {
                 Err(code) => return code,
             };
         session.run_file(script);
+    }
+    if std::io::stdin().is_terminal() {
+        let dialect = session.dialect().name();
+        terminal::print(&format!("{BANNER} (commands of {dialect})\n"));
     }
     match talk(&mut session, (&arguments.freedom.limits, &stopping), colour) {
         Ok(Ok(code)) => ExitCode::from(code),

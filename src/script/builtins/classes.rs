@@ -32,6 +32,7 @@ pub(super) const FAMILY: Family = Family {
         Builtin { header: GET_PARAMETER_VALUE, run: get_parameter_value },
         Builtin { header: SET_PARAMETER_VALUE, run: set_parameter_value },
         Builtin { header: SET_ELEMENT_MODIFIER_VALUE, run: set_element_modifier_value },
+        Builtin { header: SET_COMPONENT_MODIFIER_VALUE, run: set_element_modifier_value },
         Builtin { header: GET_SIMULATION_OPTIONS, run: get_simulation_options },
         Builtin { header: SAVE_MODEL, run: save_model },
         Builtin { header: TYPE_OF, run: type_of },
@@ -269,6 +270,15 @@ function setElementModifierValue "Changes the modifier of an element of a class,
   input Expression modifier "a value, not evaluated; or $Code(= value), $Code((name = value)), $Code(()) to take it away";
   output Boolean success;
 end setElementModifierValue;
+"#;
+
+const SET_COMPONENT_MODIFIER_VALUE: &str = r#"
+function setComponentModifierValue "Changes the modifier of an element of a class, or of an element in an element."
+  input TypeName className;
+  input VariableName elementName "x, or x.start for what stands in the parentheses behind x";
+  input Expression modifier "a value, not evaluated; or $Code(= value), $Code((name = value)), $Code(()) to take it away";
+  output Boolean success;
+end setComponentModifierValue;
 "#;
 
 fn set_element_modifier_value(session: &mut Session, mut args: Args) -> Result<Value, Failure> {

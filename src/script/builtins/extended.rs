@@ -1,10 +1,13 @@
 //! Simulations with given values that return values: once, or once for each row of values.
 
+use super::linearization::write_dslin;
 use super::simulation::{Request, run_model, translated_model};
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
+use crate::results::ResultTable;
 use crate::script::errors::BAD_ARGUMENT;
+use crate::script::linearization::linearized;
 use crate::script::simulation::{Simulated, Translated};
 use crate::script::{Dialect, Session};
 use crate::value::{ArrayValue, Elements, RealMatrix, Value, element_count};
@@ -19,6 +22,9 @@ pub(super) const FAMILY: Family = Family {
         Builtin { header: SIMULATE_MULTI_RESULTS_MODEL, run: simulate_multi_results_model },
     ],
 };
+
+/// What stands among the initial names where the models are linearized too.
+const LINEARIZE: &str = "linearize:";
 
 /// A header whose inputs begin with those of `simulateModel`.
 macro_rules! header {
@@ -38,7 +44,7 @@ macro_rules! header {
   input Real tolerance = 0.0001 "relative" annotation(optional = true);
   input Real fixedstepsize = 0.0 "s, for methods with a fixed step" annotation(optional = true);
   input String resultFile = "dsres" "without an ending, .mat is added";
-  input String initialNames[:] = fill("", 0) "parameters, and states or variables with a start value";
+  input String initialNames[:] = fill("", 0) "parameters, and states or variables with a start value; linearize: for the number of a file dslin<number>.mat";
 "#,
             $rest,
             "end ",
@@ -69,7 +75,7 @@ fn simulate_extended_model(session: &mut Session, mut args: Args) -> Result<Valu
     let Some(model) = translated_model(session, &request.problem) else { return Ok(failed()) };
     let done = simulated(session, &model, &request, &names, &values)?;
     let Some(simulated) = done else { return Ok(failed()) };
-    Ok(Value::Tuple(vec![true.into(), last_values(&simulated, &finals)?.into()]))
+    Ok(Value::Tuple(vec![true.into(), last_values(&simulated.table, &finals)?.into()]))
 }
 
 const SIMULATE_MULTI_EXTENDED_MODEL: &str = header!(
@@ -87,9 +93,12 @@ fn simulate_multi_extended_model(session: &mut Session, mut args: Args) -> Resul
     let names: Vec<String> = args.take("initialNames")?;
     let values: RealMatrix = args.take("initialValues")?;
     let finals: Vec<String> = args.take("finalNames")?;
-    let (ok, elements) = each_row(session, &request, &names, &values, finals.len(), |run| {
-        last_values(run, &finals)
-    })?;
+    let (ok, elements) = match names.iter().position(|name| name == LINEARIZE) {
+        Some(at) => each_linearized(session, &request, (&names, &values), at, &finals)?,
+        None => each_row(session, &request, &names, &values, finals.len(), |run| {
+            last_values(&run.table, &finals)
+        })?,
+    };
     let (rows, columns) = (values.rows, finals.len());
     Ok(Value::Tuple(vec![ok.into(), RealMatrix { rows, columns, elements }.into()]))
 }
@@ -181,10 +190,48 @@ fn simulated(
     Ok(session.or_report_all(done))
 }
 
-fn last_values(simulated: &Simulated, names: &[String]) -> Result<Vec<f64>, Fault> {
-    let last = |name: &String| {
-        let column = simulated.table.column(name)?;
-        Ok(column.last().copied().unwrap_or(f64::NAN))
-    };
+fn last_values(table: &ResultTable, names: &[String]) -> Result<Vec<f64>, Fault> {
+    let last = |name: &String| Ok(table.column(name)?.last().copied().unwrap_or(f64::NAN));
     names.iter().map(last).collect()
+}
+
+/// Linearizes at the end of the simulation of each row; the number in column `at` is that of the
+/// file `dslin<number>.mat` that holds the linear model.
+fn each_linearized(
+    session: &mut Session,
+    request: &Request,
+    (names, values): (&[String], &RealMatrix),
+    at: usize,
+    finals: &[String],
+) -> Result<(bool, Vec<f64>), Failure> {
+    check_count(names, values.columns)?;
+    let mut all = Vec::with_capacity(values.rows * finals.len());
+    let (mut ok, mut wishes) = (true, request.wishes.clone());
+    wishes.stop = wishes.stop.or(wishes.start).or(Some(0.0));
+    let is_translated = translated_model(session, &request.problem).is_some();
+    for row in 0..values.rows {
+        let numbers = values.row(row);
+        let others = names.iter().zip(numbers).enumerate().filter(|(column, _)| *column != at);
+        let done = match is_translated {
+            true => {
+                others.into_iter().try_for_each(|(_, (n, v))| session.set_parameter(n, *v))?;
+                let linear = linearized(session, &wishes);
+                session.or_report_all(linear)
+            }
+            false => None,
+        };
+        match done {
+            Some(linear) => {
+                let file = format!("dslin{}.mat", numbers[at]);
+                let written = write_dslin(session, &file, &linear);
+                ok &= session.or_report(written).is_some();
+                all.extend(last_values(&linear.results, finals)?);
+            }
+            None => {
+                ok = false;
+                all.resize(all.len() + finals.len(), f64::NAN);
+            }
+        }
+    }
+    Ok((ok, all))
 }

@@ -1,8 +1,7 @@
 //! The commands that linearize models.
 
-use super::openmodelica::{
-    completed, shown, simulation_result, wishes, with_method_of_ours, write_results,
-};
+use super::methods::with_method_of_ours;
+use super::openmodelica::{completed, shown, simulation_result, wishes, write_results};
 use super::simflags::SimulationFlags;
 use super::simulation::{Request, translated_model};
 use super::{Args, Builtin, Failure, Family};
@@ -64,7 +63,7 @@ fn linearize_model(session: &mut Session, mut args: Args) -> Result<Value, Failu
 }
 
 /// The matrices of Dymola's layout: `ABCD` = [A, B; C, D], `nx` and the names of x, u and y.
-fn write_dslin(session: &mut Session, file: &str, linear: &Linear) -> Result<(), Fault> {
+pub(super) fn write_dslin(session: &mut Session, file: &str, linear: &Linear) -> Result<(), Fault> {
     let [x, u, y] = &linear.names;
     let whole = |i: usize, j: usize| match (i.checked_sub(x.len()), j.checked_sub(x.len())) {
         (None, None) => linear.a[(i, j)],

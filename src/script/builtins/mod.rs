@@ -19,6 +19,7 @@ mod linearization;
 mod loading;
 mod matrices;
 mod messages;
+mod methods;
 mod openmodelica;
 mod output;
 mod plotting;
@@ -34,6 +35,7 @@ mod simflags;
 mod simulation;
 mod streams;
 mod strings;
+mod styles;
 mod system;
 mod upgrade;
 mod windows;
@@ -41,7 +43,6 @@ mod windows;
 pub use args::Args;
 pub(in crate::script) use classes::component_names;
 pub use reference::reference;
-pub(in crate::script) use strings::constant;
 
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::Function;
@@ -284,6 +285,11 @@ pub fn inputs(name: &str) -> Vec<&'static str> {
     names.sort_unstable();
     names.dedup();
     names
+}
+
+/// The literal of an enumeration that scripts find without loading anything.
+pub(super) fn constant(name: &Name) -> Option<Value> {
+    strings::constant(name).or_else(|| styles::literal(name))
 }
 
 /// The packages of commands, sorted.

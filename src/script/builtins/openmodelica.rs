@@ -1,6 +1,7 @@
 //! Models as OpenModelica's scripts handle them.
 
 use super::executable::{self, Executable};
+use super::methods::with_method_of_ours;
 use super::simflags::SimulationFlags;
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
@@ -9,7 +10,7 @@ use crate::fault;
 use crate::flatten::Experiment;
 use crate::name::{Ident, Name};
 use crate::results::ResultTable;
-use crate::script::errors::{BAD_ARGUMENT, METHOD_REPLACED};
+use crate::script::errors::BAD_ARGUMENT;
 use crate::script::flat_text::{flat_text, trivial_equations};
 use crate::script::simulation::{self, Wishes};
 use crate::script::{Dialect, Session};
@@ -165,33 +166,6 @@ pub(super) fn completed(wishes: &Wishes, experiment: &Experiment) -> Wishes {
         intervals: wishes.intervals.or(intervals).or(Some(500)),
         tolerance: wishes.tolerance.or(experiment.tolerance).or(Some(1e-6)),
         ..wishes.clone()
-    }
-}
-
-/// Methods of OpenModelica that are not here. All of them keep the tolerance or have a fixed step;
-/// what is taken instead keeps the tolerance.
-const NOT_HERE: &[&str] = &[
-    "gbode",
-    "heun",
-    "impeuler",
-    "imprungekutta",
-    "irksco",
-    "qss",
-    "rungekuttaSsc",
-    "symSolver",
-    "symSolverSsc",
-    "trapezoid",
-];
-
-/// The wishes with a method that there is.
-pub(super) fn with_method_of_ours(session: &mut Session, wishes: Wishes) -> Wishes {
-    match wishes.method.as_deref().filter(|method| NOT_HERE.contains(method)) {
-        Some(method) => {
-            let text = format!("the integration method `{method}` is not here: `dassl` is taken");
-            session.note(METHOD_REPLACED, text);
-            Wishes { method: Some("dassl".to_owned()), ..wishes }
-        }
-        None => wishes,
     }
 }
 

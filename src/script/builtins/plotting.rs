@@ -6,7 +6,7 @@ use crate::diag::Fault;
 use crate::plot::{Axis, Figure, Mark, Panel, Picture, Series};
 use crate::results::ResultTable;
 use crate::script::errors::BAD_ARGUMENT;
-use crate::script::{Dialect, Session};
+use crate::script::{Dialect, Echo, Session};
 use crate::value::Value;
 use std::path::Path;
 use std::sync::Arc;
@@ -20,17 +20,22 @@ pub(super) const FAMILY: Family = Family {
         Builtin { header: CREATE_PLOT, run: create_plot },
         Builtin { header: PLOT_ARRAY, run: plot_array },
         Builtin { header: PLOT_SCATTER, run: plot_scatter },
+        Builtin { header: PLOT_PARAMETRIC_CURVE, run: plot_parametric_curve },
         Builtin { header: PLOT_EXPRESSION, run: plot_expression },
         Builtin { header: EXPORT_PLOT_AS_IMAGE, run: export_plot_as_image },
         Builtin { header: REMOVE_PLOTS, run: remove_plots },
     ],
 };
 
-/// OpenModelica's `plot`.
+/// OpenModelica's plots.
 pub(super) const OPENMODELICA: Family = Family {
     packages: &["OpenModelica.Scripting"],
     dialect: Some(Dialect::OpenModelica),
-    builtins: &[Builtin { header: PLOT_OPENMODELICA, run: plot_openmodelica }],
+    builtins: &[
+        Builtin { header: PLOT_OPENMODELICA, run: plot_openmodelica },
+        Builtin { header: PLOT_ALL, run: plot_all },
+        Builtin { header: PLOT_PARAMETRIC, run: plot_parametric },
+    ],
 };
 
 /// What was plotted so far.
@@ -53,9 +58,9 @@ function plot "Draws trajectories of the last simulation over time."
   input String y[:] "variables";
   input String legend[:] = fill("", 0);
   input Boolean plotInAll = false;
-  input Integer colors[:] = fill(0, 0);
-  input Integer patterns[:] = fill(0, 0);
-  input Integer markers[:] = fill(0, 0);
+  input Any colors = 0;
+  input Any patterns = 0;
+  input Any markers = 0;
   input Real thicknesses[:] = fill(0.0, 0);
   input Integer axes[:] = fill(0, 0);
   input Any displayUnits = fill("", 0);
@@ -67,8 +72,8 @@ fn plot(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let names: Vec<String> = args.take("y")?;
     let legends: Vec<String> = args.take("legend")?;
     let drawing = Drawing { x: "time".to_owned(), names, legends, ..Drawing::default() };
-    draw_trajectories(session, drawing)?;
-    Ok(true.into())
+    let drawn = draw_trajectories(session, drawing);
+    Ok(answer(session, drawn))
 }
 
 const CREATE_PLOT: &str = r#"
@@ -133,7 +138,10 @@ fn create_plot(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
     if drawing.names.is_empty() {
         session.extension::<Plots>().vectors = Some(drawing.empty_figure());
     } else {
-        draw_trajectories(session, drawing)?;
+        let drawn = draw_trajectories(session, drawing);
+        if answer(session, drawn) != Value::Boolean(true) {
+            return Ok(Value::Integer(0));
+        }
     }
     Ok(Value::Integer(id.max(1)))
 }
@@ -146,8 +154,8 @@ function plotArray "Draws one vector over another as a line."
   input String legend = "";
   input Integer id = 0;
   input Any color = 0;
-  input Integer pattern = 0;
-  input Integer marker = 0;
+  input Any pattern = 0;
+  input Any marker = 0;
   input Real thickness = 0.25;
   input Boolean erase = true;
   input Integer axis = 1;
@@ -161,7 +169,7 @@ function plotScatter "Draws one vector over another as points."
   input Real x[:];
   input Real y[:];
   input Any colors = 0;
-  input Integer marker = 0;
+  input Any marker = 0;
   input String legend = "";
   input Integer axis = 1;
   input String unit = "";
@@ -231,41 +239,71 @@ fn results(session: &mut Session, file: &str) -> Result<Arc<ResultTable>, Fault>
     super::results::table(session, &file)
 }
 
+/// An axis with the script's title, or the name of a variable and its unit. A title stands as it is,
+/// unless it is the name.
+fn axis((title, name): (&str, &str), unit: &str, logarithmic: bool) -> Axis {
+    let (label, unit) = match title {
+        "" => (name, unit),
+        title if title == name => (title, unit),
+        title => (title, ""),
+    };
+    if logarithmic { Axis::logarithmic(label, unit) } else { Axis::linear(label, unit) }
+}
+
 fn draw_trajectories(session: &mut Session, drawing: Drawing) -> Result<(), Fault> {
     let table = results(session, &drawing.file)?;
     let x = table.column(&drawing.x)?;
+    let unit = |name: &str| {
+        let series = table.series.iter().find(|series| series.name == name);
+        series.map_or(String::new(), |series| series.unit.clone())
+    };
+    let units: Vec<String> = drawing.names.iter().map(|name| unit(name)).collect();
+    let have_one_unit = units.windows(2).all(|pair| pair[0] == pair[1]);
     let mut series = Vec::with_capacity(drawing.names.len());
     for (at, name) in drawing.names.iter().enumerate() {
         let legend = drawing.legends.get(at).filter(|legend| !legend.is_empty());
+        let own = match units[at].as_str() {
+            own if have_one_unit || own.is_empty() => name.clone(),
+            own => format!("{name} [{own}]"),
+        };
         series.push(Series {
-            name: legend.unwrap_or(name).clone(),
+            name: legend.cloned().unwrap_or(own),
             x: x.clone(),
             y: table.column(name)?,
             mark: Mark::Line,
             colour: at + 1,
         });
     }
-    let unit = |name: &str| {
-        let series = table.series.iter().find(|series| series.name == name);
-        series.map_or(String::new(), |series| series.unit.clone())
-    };
     let x_unit = if drawing.x.eq_ignore_ascii_case("time") { "s".into() } else { unit(&drawing.x) };
-    let axis = |title: &str, name: &str, unit: &str, logarithmic: bool| {
-        let label = if title.is_empty() { name } else { title };
-        if logarithmic { Axis::logarithmic(label, unit) } else { Axis::linear(label, unit) }
-    };
     let y_name = if let [only] = drawing.names.as_slice() { only.as_str() } else { "" };
-    let y_unit = drawing.names.first().map_or(String::new(), |name| unit(name));
+    let y_unit = units.first().filter(|_| have_one_unit).map_or("", String::as_str);
     let [log_x, log_y] = drawing.logarithmic;
     let axes = [
-        axis(&drawing.bottom_title, &drawing.x, &x_unit, log_x),
-        axis(&drawing.left_title, y_name, &y_unit, log_y),
+        axis((&drawing.bottom_title, &drawing.x), &x_unit, log_x),
+        axis((&drawing.left_title, y_name), y_unit, log_y),
     ];
     session.extension::<Plots>().vectors = None;
     write(session, &figure(drawing.title, axes, series))
 }
 
-fn draw_vectors(session: &mut Session, mut args: Args, mark: Mark) -> Result<Value, Failure> {
+/// Whether a plot was drawn. That it was not is no error of the script: nothing depends on it.
+fn answer(session: &mut Session, drawn: Result<(), Fault>) -> Value {
+    let warning = |fault: Fault| fault.at(session.call_site()).warning();
+    match drawn.map_err(warning) {
+        Ok(()) => true.into(),
+        Err(warning) => {
+            session.report(warning);
+            false.into()
+        }
+    }
+}
+
+fn draw_vectors(session: &mut Session, args: Args, mark: Mark) -> Result<Value, Failure> {
+    let drawn = drawn_vectors(session, args, mark);
+    Ok(answer(session, drawn))
+}
+
+fn drawn_vectors(session: &mut Session, mut args: Args, mark: Mark) -> Result<(), Fault> {
     let (x, y): (Vec<f64>, Vec<f64>) = (args.take("x")?, args.take("y")?);
     let (legend, unit): (String, String) = (args.take("legend")?, args.take("unit")?);
     if x.len() != y.len() {
@@ -286,7 +324,7 @@ fn draw_vectors(session: &mut Session, mut args: Args, mark: Mark) -> Result<Val
     }
     write(session, &figure)?;
     session.extension::<Plots>().vectors = Some(figure);
-    Ok(true.into())
+    Ok(())
 }
 
 /// A figure with one panel.
@@ -301,6 +339,9 @@ fn write(session: &mut Session, figure: &Figure) -> Result<(), Fault> {
     let name = format!("plot_{}.svg", plots.drawn);
     let path = session.world.output_dir().join(name);
     session.write_file(&path, figure.svg().as_bytes())?;
+    if session.options.echo == Echo::Dialogue {
+        session.print(&format!("{}\n", path.display()));
+    }
     session.extension::<Plots>().last_drawn = Some(figure.clone());
     Ok(())
 }
@@ -317,13 +358,16 @@ end ExportPlotAsImage;
 
 fn export_plot_as_image(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let file: String = args.take("fileName")?;
-    let format = Picture::of(Path::new(&file))?;
+    let exported = export(session, Path::new(&file));
+    Ok(answer(session, exported))
+}
+
+fn export(session: &mut Session, file: &Path) -> Result<(), Fault> {
+    let format = Picture::of(file)?;
     let Some(figure) = session.extension::<Plots>().last_drawn.clone() else {
         bail!(BAD_ARGUMENT, "no plot has been drawn")
     };
-    let bytes = figure.picture(format)?;
-    let written = session.write_file(Path::new(&file), &bytes);
-    Ok(session.succeeded(written))
+    session.write_file(file, &figure.picture(format)?)
 }
 
 const PLOT_EXPRESSION: &str = r#"
@@ -336,7 +380,18 @@ function plotExpression "Draws an expression in variables of the last simulation
 end plotExpression;
 "#;
 
-fn plot_expression(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+fn plot_expression(session: &mut Session, args: Args) -> Result<Value, Failure> {
+    match drawn_expression(session, args) {
+        Ok(()) => Ok(true.into()),
+        Err(Failure::Here(fault)) => Ok(answer(session, Err(fault))),
+        Err(Failure::Elsewhere(errors)) => {
+            errors.into_iter().for_each(|error| session.report(error.warning()));
+            Ok(false.into())
+        }
+    }
+}
+
+fn drawn_expression(session: &mut Session, mut args: Args) -> Result<(), Failure> {
     let shown: String = args.take("mapFun")?;
     let legend: String = args.take("expressionName")?;
     let table = results(session, "")?;
@@ -344,8 +399,7 @@ fn plot_expression(session: &mut Session, mut args: Args) -> Result<Value, Failu
     let name = if legend.is_empty() { shown } else { legend };
     let series = vec![Series { name, x: table.time.clone(), y, mark: Mark::Line, colour: 1 }];
     let axes = [Axis::linear("time", "s"), Axis::linear("", "")];
-    write(session, &figure(String::new(), axes, series))?;
-    Ok(true.into())
+    Ok(write(session, &figure(String::new(), axes, series))?)
 }
 
 const PLOT_OPENMODELICA: &str = r#"
@@ -386,5 +440,99 @@ fn plot_openmodelica(session: &mut Session, mut args: Args) -> Result<Value, Fai
         logarithmic: [args.take("logX")?, args.take("logY")?],
     };
     let drawn = draw_trajectories(session, drawing);
-    Ok(session.succeeded(drawn))
+    Ok(answer(session, drawn))
+}
+
+const PLOT_ALL: &str = r#"
+function plotAll "Draws all trajectories of a result file over time."
+  input Boolean externalWindow = false "has no effect";
+  input String fileName = "<default>" "result file; default: that of the last simulation";
+  input String title = "";
+  input String grid = "simple" "has no effect";
+  input Boolean logX = false;
+  input Boolean logY = false;
+  input String xLabel = "time";
+  input String yLabel = "";
+  output Boolean success;
+end plotAll;
+"#;
+
+fn plot_all(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let file: String = args.take("fileName")?;
+    let title: String = args.take("title")?;
+    let drawn = results(session, &file).and_then(|table| {
+        let varies = |series: &&crate::results::Series| {
+            matches!(series.values, crate::results::Values::Trajectory(_))
+        };
+        let names = table.series.iter().filter(varies).map(|series| series.name.to_string());
+        let names = names.collect();
+        let x = "time".to_owned();
+        draw_trajectories(session, Drawing { title, x, names, file, ..Drawing::default() })
+    });
+    Ok(answer(session, drawn))
+}
+
+const PLOT_PARAMETRIC: &str = r#"
+function plotParametric "Draws one variable of a result file over another."
+  input VariableName xVariable;
+  input VariableName yVariable;
+  input Boolean externalWindow = false "has no effect";
+  input String fileName = "<default>" "result file; default: that of the last simulation";
+  input String title = "";
+  input String grid = "simple" "has no effect";
+  input Boolean logX = false;
+  input Boolean logY = false;
+  input String xLabel = "";
+  input String yLabel = "";
+  input Any xRange = 0 "has no effect";
+  input Any yRange = 0 "has no effect";
+  input Real curveWidth = 1.0 "has no effect";
+  input Integer curveStyle = 1 "has no effect";
+  input String legendPosition = "top" "has no effect";
+  input String footer = "" "has no effect";
+  input Boolean autoScale = true "has no effect";
+  input Boolean forceOMPlot = false "has no effect";
+  output Boolean success;
+end plotParametric;
+"#;
+
+fn plot_parametric(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let drawing = Drawing {
+        title: args.take("title")?,
+        x: args.take("xVariable")?,
+        names: vec![args.take("yVariable")?],
+        legends: Vec::new(),
+        file: args.take("fileName")?,
+        left_title: args.take("yLabel")?,
+        bottom_title: args.take("xLabel")?,
+        logarithmic: [args.take("logX")?, args.take("logY")?],
+    };
+    let drawn = draw_trajectories(session, drawing);
+    Ok(answer(session, drawn))
+}
+
+const PLOT_PARAMETRIC_CURVE: &str = r#"
+function plotParametricCurve "Draws one vector over another, both along a third."
+  input Real x[:];
+  input Real y[:];
+  input Real s[:] = fill(0.0, 0) "has no effect";
+  input String xName = "";
+  input String yName = "";
+  input String sName = "";
+  input String legend = "";
+  input Integer id = 0;
+  input Any color = 0;
+  input Any pattern = 0;
+  input Any marker = 0;
+  input Real thickness = 0.25;
+  input Boolean labelWithS = false;
+  input Boolean erase = true;
+  input Integer axis = 1;
+  input String unit = "";
+  output Boolean ok;
+end plotParametricCurve;
+"#;
+
+fn plot_parametric_curve(session: &mut Session, args: Args) -> Result<Value, Failure> {
+    draw_vectors(session, args, Mark::Line)
 }

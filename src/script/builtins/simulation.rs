@@ -1,5 +1,6 @@
 //! Translating and simulating models.
 
+use super::methods::with_method_of_ours;
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::results::{self, ResultTable};
@@ -166,6 +167,7 @@ fn experiment(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         fixed_step: args.optional("FixedStepSize")?,
         ..Wishes::default()
     };
+    let wishes = with_method_of_ours(session, wishes);
     *session.extension::<LastRun>() = LastRun(wishes.clone());
     *session.extension::<Experiment>() = Experiment(wishes);
     Ok(true.into())
@@ -175,7 +177,7 @@ fn experiment(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 fn wishes(session: &mut Session, args: &mut Args) -> Result<Wishes, Fault> {
     let set = session.extension::<Experiment>().0.clone();
     let method: Option<String> = args.optional("method")?;
-    Ok(Wishes {
+    let wishes = Wishes {
         start: args.optional("startTime")?.or(set.start),
         stop: args.optional("stopTime")?.or(set.stop),
         intervals: positive(args.optional("numberOfIntervals")?).or(set.intervals),
@@ -184,7 +186,8 @@ fn wishes(session: &mut Session, args: &mut Args) -> Result<Wishes, Fault> {
         tolerance: args.optional("tolerance")?.or(set.tolerance),
         fixed_step: args.optional("fixedstepsize")?.or(set.fixed_step),
         ..Wishes::default()
-    })
+    };
+    Ok(with_method_of_ours(session, wishes))
 }
 
 fn positive(count: Option<i64>) -> Option<usize> {

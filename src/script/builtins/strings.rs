@@ -99,7 +99,7 @@ static COMPARE_TYPE: LazyLock<Arc<EnumerationDefinition>> = LazyLock::new(|| {
 });
 
 /// The literal of `Modelica.Utilities.Types.Compare` of this full name.
-pub(in crate::script) fn constant(name: &Name) -> Option<Value> {
+pub(super) fn constant(name: &Name) -> Option<Value> {
     let definition = COMPARE_TYPE.clone();
     let literal = name.last().filter(|_| name.parent().parts == definition.name.parts)?;
     let at = definition.literals.iter().position(|known| *known == literal)?;

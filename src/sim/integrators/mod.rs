@@ -18,8 +18,16 @@ use std::sync::atomic::Ordering;
 pub(super) use without_unknowns::WithoutUnknowns;
 
 /// The methods a script may ask for.
-pub const INTEGRATORS: &[&Entry<dyn Integrator>] =
-    &[&bdf::ENTRY, &rodas::ENTRY, &radau::ENTRY, &dopri5::ENTRY, &euler::ENTRY, &rungekutta::ENTRY];
+pub const INTEGRATORS: &[&Entry<dyn Integrator>] = &[
+    &bdf::ENTRY,
+    &rodas::ENTRY,
+    &radau::ENTRY,
+    &dopri5::ENTRY,
+    &euler::ENTRY,
+    &rungekutta::ORDER_2,
+    &rungekutta::ORDER_3,
+    &rungekutta::ENTRY,
+];
 
 /// The method of this name or alias.
 ///

@@ -1,4 +1,5 @@
-//! The classical Runge-Kutta method of order 4 with fixed step.
+//! Runge-Kutta methods with fixed step: Heun's of order 2, Kutta's of order 3 and the classical one
+//! of order 4, which is
 //!
 //! ```text
 //!  0  |
@@ -25,5 +26,31 @@ static TABLEAU: Tableau = Tableau {
     nodes: &[0.0, 0.5, 0.5, 1.0],
     stages: &[&[], &[0.5], &[0.0, 0.5], &[0.0, 0.0, 1.0]],
     weights: &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0],
+    embedded: None,
+};
+
+pub(super) const ORDER_2: Entry<dyn Integrator> = Entry {
+    name: "rkfix2",
+    aliases: &["heun"],
+    summary: "Heun's explicit Runge-Kutta method, order 2, fixed step",
+    reference: "hairer-norsett-wanner-1993",
+    make: |_| Ok(Box::new(ExplicitRungeKutta::new(&HEUN))),
+};
+
+static HEUN: Tableau =
+    Tableau { nodes: &[0.0, 1.0], stages: &[&[], &[1.0]], weights: &[0.5, 0.5], embedded: None };
+
+pub(super) const ORDER_3: Entry<dyn Integrator> = Entry {
+    name: "rkfix3",
+    aliases: &[],
+    summary: "Kutta's explicit Runge-Kutta method, order 3, fixed step",
+    reference: "hairer-norsett-wanner-1993",
+    make: |_| Ok(Box::new(ExplicitRungeKutta::new(&KUTTA))),
+};
+
+static KUTTA: Tableau = Tableau {
+    nodes: &[0.0, 0.5, 1.0],
+    stages: &[&[], &[0.5], &[-1.0, 2.0]],
+    weights: &[1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0],
     embedded: None,
 };
