@@ -92,6 +92,7 @@ fn run(
     match (&arguments.output, format) {
         (Some(path), Some(format)) => {
             let bytes = format.write(&simulated.table).map_err(one)?;
+            session.permit_file(path);
             session.write_file(path, &bytes).map_err(one)?;
             session.print(&written(path));
         }
@@ -215,6 +216,7 @@ fn draw(
     let figure = Figure { title: class.to_owned(), panels: panels.collect::<Result<_, _>>()? };
     match arguments.figure.as_ref().zip(picture) {
         Some((path, format)) => {
+            session.permit_file(path);
             session.write_file(path, &figure.picture(format)?)?;
             session.print(&format!("figure: {}\n", path.display()));
         }

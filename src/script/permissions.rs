@@ -12,27 +12,13 @@ pub struct Permissions {
     /// To write and remove files anywhere, not only below the directory where the run began, the
     /// folder of the script and the output folder.
     pub write: bool,
-    /// To run programs, and to read environment variables that may hold secrets.
+    /// To run programs, and to read environment variables whose names look like those of secrets.
     pub system: bool,
 }
 
-/// Environment variables that tell no secrets.
-const HARMLESS: &[&str] = &[
-    "DYMOLA",
-    "DYMOLAPATH",
-    "HOME",
-    "LANG",
-    "MODELICALIBRARY",
-    "MODELICAPATH",
-    "OPENMODELICAHOME",
-    "OPENMODELICALIBRARY",
-    "OS",
-    "PWD",
-    "TEMP",
-    "TMP",
-    "TMPDIR",
-    "USERPROFILE",
-];
+/// Words in the names of environment variables that hold secrets.
+const SECRETIVE: &[&str] =
+    &["AUTH", "COOKIE", "CREDENTIAL", "KEY", "PASS", "PRIVATE", "SECRET", "TOKEN"];
 
 impl Session {
     /// A fault unless a file of this path may be written, made or removed.
@@ -42,6 +28,7 @@ impl Session {
         let is_inside = |folder: &PathBuf| wanted.starts_with(folder);
         if self.options.permissions.write
             || self.trusted.iter().any(is_inside)
+            || self.is_result_of_opened(&wanted)
             || is_inside(&output)
         {
             return Ok(());
@@ -52,6 +39,28 @@ impl Session {
             path.display();
             help: "allow it with `--allow-write`"
         )
+    }
+
+    /// Whether it is a file of results or data in a folder whose model a script has opened and gone
+    /// to, which is where Dymola puts them.
+    fn is_result_of_opened(&self, wanted: &Path) -> bool {
+        let ending = wanted.extension().and_then(|ending| ending.to_str());
+        let is_result = ending.is_some_and(|ending| matches!(ending, "mat" | "csv" | "txt"));
+        let folder = wanted.parent();
+        is_result && self.result_folders.iter().any(|known| Some(known.as_path()) == folder)
+    }
+
+    /// Results may be written into this folder.
+    pub(super) fn trust_results(&mut self, folder: &Path) {
+        let folder = self.world.resolved(folder);
+        if !self.result_folders.contains(&folder) {
+            self.result_folders.push(folder);
+        }
+    }
+
+    /// This file may be written, wherever it is: the user has named it on the command line.
+    pub fn permit_file(&mut self, path: &Path) {
+        self.trust(path);
     }
 
     /// Files below this folder may be written and removed.
@@ -67,7 +76,9 @@ impl Session {
         if let Some(own) = self.environment.get(name) {
             return Ok(Some(own.clone()));
         }
-        if !self.options.permissions.system && !HARMLESS.contains(&name) {
+        let capitals = name.to_ascii_uppercase();
+        let is_secretive = SECRETIVE.iter().any(|word| capitals.contains(word));
+        if is_secretive && !self.options.permissions.system {
             bail!(
                 REFUSED,
                 "the environment variable `{name}` is not read: it might hold a secret";

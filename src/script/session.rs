@@ -150,6 +150,8 @@ pub struct Session {
     pub(super) in_function: bool,
     /// Folders below which files may be written and removed.
     pub(super) trusted: Vec<PathBuf>,
+    /// Folders whose models were opened, into which results may be written.
+    pub(super) result_folders: Vec<PathBuf>,
     /// Environment variables that scripts set.
     pub(super) environment: BTreeMap<String, String>,
     /// What was said and answered so far, for `savelog`.
@@ -182,6 +184,7 @@ impl Session {
         let trusted = vec![world.current_dir()];
         Session {
             trusted,
+            result_folders: Vec::new(),
             environment: BTreeMap::new(),
             log: Transcript::default(),
             world,

@@ -42,6 +42,9 @@ mod modelica;
 mod modelica_models;
 mod models;
 mod msl;
+#[path = "../nist/mod.rs"]
+mod nist;
+mod nist_problems;
 mod notices;
 mod page;
 mod plot;
