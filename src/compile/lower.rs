@@ -174,6 +174,12 @@ impl<'a> TapeBuilder<'a> {
         self.tape.code.push(Instruction::Move { d, a });
     }
 
+    /// Writes a constant to a register that no expression reads.
+    pub(super) fn mark(&mut self, d: Register, constant: Expr) {
+        let a = self.emit(constant);
+        self.tape.code.push(Instruction::Move { d, a });
+    }
+
     /// Computes an expression; returns where its value is.
     pub(super) fn emit(&mut self, root: Expr) -> Register {
         let mut stack = vec![(root, false)];

@@ -4,6 +4,7 @@
 mod branches;
 mod combinations;
 mod continuation;
+mod difference_quotients;
 pub mod errors;
 mod event_iteration;
 mod events;

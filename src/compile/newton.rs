@@ -12,11 +12,13 @@
 //! nearest to the start values is taken, with a warning; later it is an error.
 
 use super::continuation::Continuation;
+use super::difference_quotients::quotient;
 use super::least_squares::LeastSquares;
 use super::memory::Memory;
 use super::program::CompiledLoop;
 use super::system::run;
 use crate::sim::{Equations, Failure, Newton, NewtonFailure};
+use std::sync::Arc;
 
 /// The workspace of one loop.
 #[derive(Debug, Clone)]
@@ -24,7 +26,7 @@ pub(super) struct LoopSolver {
     newton: Newton,
     least_squares: LeastSquares,
     continuation: Continuation,
-    nominal: Vec<f64>,
+    nominal: Arc<[f64]>,
     guess: Vec<f64>,
     /// Where an attempt begins, or what least squares found.
     start: Vec<f64>,
@@ -41,7 +43,7 @@ impl LoopSolver {
             newton: Newton::new(n),
             least_squares: LeastSquares::new(n),
             continuation: Continuation::new(n),
-            nominal,
+            nominal: nominal.into(),
             guess: vec![0.0; n],
             start: vec![0.0; n],
             x: vec![0.0; n],
@@ -61,10 +63,11 @@ impl LoopSolver {
             *value = r[*unknown as usize];
         }
         self.x.copy_from_slice(&self.guess);
-        let mut equations = Evaluation { torn, r };
+        let nominal = self.nominal.clone();
+        let mut equations = Evaluation { torn, r, nominal, has_jacobian: false };
         let mut outcome = self.attempt(&mut equations, initial);
         if outcome.is_err() && initial && self.guess.contains(&0.0) {
-            for ((x, guess), nominal) in self.x.iter_mut().zip(&self.guess).zip(&self.nominal) {
+            for ((x, guess), nominal) in self.x.iter_mut().zip(&self.guess).zip(&*self.nominal) {
                 *x = if *guess == 0.0 { *nominal } else { *guess };
             }
             outcome = self.attempt(&mut equations, initial).or(outcome);
@@ -120,14 +123,40 @@ impl LoopSolver {
 struct Evaluation<'a> {
     torn: &'a CompiledLoop,
     r: &'a mut Memory,
+    nominal: Arc<[f64]>,
+    /// Whether the registers hold the Jacobian at the unknowns that they hold.
+    has_jacobian: bool,
 }
 
 impl Evaluation<'_> {
+    /// Computes residuals and Jacobian. Only a residual without a value is a failure.
     fn evaluate(&mut self, x: &[f64]) -> Result<(), Failure> {
         for (unknown, value) in self.torn.unknowns.iter().zip(x) {
             self.r[*unknown as usize] = *value;
         }
-        run(&self.torn.tape, self.r)
+        let done = run(&self.torn.tape, self.r);
+        self.has_jacobian = done.is_ok();
+        match done {
+            Err(Failure::Domain { .. }) if self.r[self.torn.has_residuals as usize] == 1.0 => {
+                Ok(())
+            }
+            other => other,
+        }
+    }
+
+    /// The Jacobian where a derivative has no value.
+    fn difference_jacobian(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        let n = x.len();
+        let (mut before, mut moved) = (vec![0.0; n], x.to_vec());
+        self.residual(x, &mut before)?;
+        for (j, column) in out.chunks_exact_mut(n).enumerate() {
+            quotient(x[j], self.nominal[j], &before, column, |value, out| {
+                moved[j] = value;
+                self.residual(&moved, out)
+            })?;
+            moved[j] = x[j];
+        }
+        self.evaluate(x)
     }
 }
 
@@ -144,6 +173,9 @@ impl Equations for Evaluation<'_> {
         let here = self.torn.unknowns.iter().zip(x).all(|(u, x)| self.r[*u as usize] == *x);
         if !here {
             self.evaluate(x)?;
+        }
+        if !self.has_jacobian {
+            return self.difference_jacobian(x, out);
         }
         let n = x.len();
         for (at, register) in self.torn.jacobian.iter().enumerate() {

@@ -114,6 +114,8 @@ pub(super) struct CompiledLoop {
     pub(super) residuals: Vec<Register>,
     /// Row-major.
     pub(super) jacobian: Vec<Register>,
+    /// 1 once the tape has computed the residuals: what fails behind them is a derivative.
+    pub(super) has_residuals: Register,
     pub(super) block: u32,
 }
 
@@ -571,22 +573,31 @@ fn compile_steps(
         let slopes =
             differentiate_sequence(pool, &torn.assignments, &residuals, &torn.iteration, next);
         let zero = pool.constant(0.0);
+        let one = pool.constant(1.0);
+        let has_residuals = registers.fresh();
         let mut builder = TapeBuilder::new(pool, registers);
-        let inner: FxHashSet<VarId> = torn.assignments.iter().map(|a| a.variable).collect();
-        for Assignment { variable, value, equation } in &slopes.sequence {
+        builder.mark(has_residuals, zero);
+        for Assignment { variable, value, equation } in &torn.assignments {
             builder.origin(*equation as u32);
-            match inner.contains(variable) {
-                true => builder.store(*variable, *value),
-                false => builder.define(*variable, *value),
-            }
+            builder.store(*variable, *value);
         }
-        let n = torn.iteration.len();
         let mut results = Vec::new();
-        let mut jacobian = Vec::new();
-        for (row, (residual, equation)) in torn.residuals.iter().enumerate() {
+        for (residual, equation) in &torn.residuals {
             builder.origin(*equation as u32);
             results.push(builder.emit(*residual));
-            for column in 0..n {
+        }
+        builder.mark(has_residuals, one);
+        let inner: FxHashSet<VarId> = torn.assignments.iter().map(|a| a.variable).collect();
+        for Assignment { variable, value, equation } in &slopes.sequence {
+            if !inner.contains(variable) {
+                builder.origin(*equation as u32);
+                builder.define(*variable, *value);
+            }
+        }
+        let mut jacobian = Vec::new();
+        for (row, (_, equation)) in torn.residuals.iter().enumerate() {
+            builder.origin(*equation as u32);
+            for column in 0..torn.iteration.len() {
                 let entry = slopes.rows[row].get(&column).copied().unwrap_or(zero);
                 jacobian.push(builder.emit(entry));
             }
@@ -596,6 +607,7 @@ fn compile_steps(
             unknowns: torn.iteration.iter().map(|v| v.0).collect(),
             residuals: results,
             jacobian,
+            has_residuals,
             block: number as u32,
         }));
     }

@@ -480,7 +480,13 @@ impl DaeSystem for System {
 
     fn jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
         self.load(t, y);
-        read(&self.program.jacobian, &mut self.registers, values)
+        match read(&self.program.jacobian, &mut self.registers, values) {
+            // A derivative may have no value where the right-hand side has one.
+            Err(Failure::Domain { .. }) if self.sensitivity.is_none() => {
+                self.difference_jacobian(t, y, values)
+            }
+            other => other,
+        }
     }
 
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {

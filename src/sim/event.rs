@@ -8,8 +8,8 @@
 //!
 //! The bracket of the first change is narrowed by secants of the functions that change within it,
 //! tried a little beyond and a little before, and halved every third time. A function that changes
-//! its sign twice within one step, or within one part of it where functions vary in time, is not
-//! noticed.
+//! its sign twice within one step, or within one part of it where functions vary in time, is noticed
+//! where the parabola through its last three values does: the step is searched at its vertex then.
 
 use super::{DaeSystem, Failure, Integrator, Problem};
 
@@ -42,8 +42,26 @@ pub(super) struct CrossingSearch {
     /// Functions within their margin where the search began.
     is_near: Vec<bool>,
     perturbed: Vec<f64>,
+    /// The functions before `left`, and when; none behind an event.
+    earlier: Vec<f64>,
+    earlier_time: Option<f64>,
+    /// y at the end of the step, while a vertex is looked at.
+    kept: Vec<f64>,
     /// The functions that changed their signs at the last event.
     pub(super) switched: Vec<usize>,
+}
+
+/// Vertices nearer to zero than this part of the values at both ends are looked at: a parabola is
+/// not quite the function.
+const NEAR_ZERO: f64 = 0.05;
+
+/// The vertex of the parabola through three points, if it lies between the last two.
+fn vertex([t0, a, b]: [f64; 3], [z0, left, right]: [f64; 3]) -> Option<(f64, f64)> {
+    let (before, slope) = ((left - z0) / (a - t0), (right - left) / (b - a));
+    let curvature = (slope - before) / (b - t0);
+    let t = 0.5 * (a + b - slope / curvature);
+    let z = left + slope * (t - a) + curvature * (t - a) * (t - b);
+    (t > a && t < b && z.is_finite()).then_some((t, z))
 }
 
 pub(super) fn sign(z: f64) -> i8 {
@@ -59,9 +77,10 @@ impl CrossingSearch {
             flags.resize(n_crossings, false);
         }
         let vectors = [&mut self.left, &mut self.right, &mut self.trial, &mut self.uncertainty];
-        for vector in vectors {
+        for vector in vectors.into_iter().chain([&mut self.earlier]) {
             vector.resize(n_crossings, 0.0);
         }
+        self.earlier_time = None;
     }
 
     /// Takes the signs at (t, y) as those to be changed; whether they are others than before.
@@ -74,6 +93,7 @@ impl CrossingSearch {
         if self.signs.is_empty() {
             return Ok(false);
         }
+        self.earlier_time = None;
         self.estimate_uncertainty(problem, t, y);
         problem.system.crossings(t, y, &mut self.left)?;
         let changed = self.signs.iter().zip(&self.left).any(|(old, z)| *old != sign(*z));
@@ -123,8 +143,15 @@ impl CrossingSearch {
         problem.system.crossings(b, y, &mut self.right)?;
         self.is_near.fill(true);
         if !self.changed(&self.right) {
-            std::mem::swap(&mut self.left, &mut self.right);
-            return Ok(None);
+            match self.turning_point(problem, integrator, (a, b), y)? {
+                Some(vertex) => b = vertex,
+                None => {
+                    std::mem::swap(&mut self.earlier, &mut self.left);
+                    std::mem::swap(&mut self.left, &mut self.right);
+                    self.earlier_time = Some(a);
+                    return Ok(None);
+                }
+            }
         }
         for at in 0..self.signs.len() {
             let z = self.left[at];
@@ -162,6 +189,41 @@ impl CrossingSearch {
             }
         }
         Ok(Some(b))
+    }
+
+    /// A time within (`a`, `b`) where a sign has changed although it has not at `b`; `right` has the
+    /// functions there then. y is y(b) before and, if there is none, afterwards.
+    fn turning_point(
+        &mut self,
+        problem: &mut Problem,
+        integrator: &dyn Integrator,
+        (a, b): (f64, f64),
+        y: &mut [f64],
+    ) -> Result<Option<f64>, Failure> {
+        let Some(vertex) = self.earliest_vertex(a, b) else { return Ok(None) };
+        self.kept.clear();
+        self.kept.extend_from_slice(y);
+        integrator.interpolate(vertex, y);
+        problem.system.crossings(vertex, y, &mut self.trial)?;
+        if self.changed(&self.trial) {
+            std::mem::swap(&mut self.right, &mut self.trial);
+            return Ok(Some(vertex));
+        }
+        y.copy_from_slice(&self.kept);
+        Ok(None)
+    }
+
+    /// Where the first of the functions turns at zero or beyond, as far as parabolas tell.
+    fn earliest_vertex(&self, a: f64, b: f64) -> Option<f64> {
+        let earlier = self.earlier_time.filter(|earlier| *earlier < a)?;
+        let vertices = (0..self.signs.len()).filter_map(|at| {
+            let values = [self.earlier[at], self.left[at], self.right[at]];
+            let (t, z) = vertex([earlier, a, b], values)?;
+            let nearest = values[1].abs().min(values[2].abs());
+            let sign_of = f64::from(self.signs[at]);
+            (z * sign_of < NEAR_ZERO * nearest).then_some(t)
+        });
+        vertices.min_by(f64::total_cmp)
     }
 
     /// A function that changed its sign at the last event.

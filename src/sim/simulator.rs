@@ -27,6 +27,8 @@ const FARTHER: f64 = 1e3;
 const SMALLEST_JUMP: f64 = 1e-3;
 /// Points of every step that a system with a memory is shown.
 const POINTS_REMEMBERED: u32 = 4;
+/// Halvings of a step within which an assertion has failed: to a millionth of a millionth of it.
+const ASSERTION_TRIALS: u32 = 40;
 
 /// Simulates systems one after the other with one workspace: nothing is allocated when a system has
 /// the sizes of the one before.
@@ -369,7 +371,7 @@ impl Run<'_> {
                     self.t = end;
                     self.y.copy_from_slice(self.integrator.state());
                     self.look_between_steps()?;
-                    self.check()?;
+                    self.check_step(begin)?;
                     if self.next_output == Some(end) {
                         self.record()?;
                         self.advance_output();
@@ -548,6 +550,28 @@ impl Run<'_> {
 
     fn check(&mut self) -> Result<(), SimErrorKind> {
         self.problem.system.check(self.t, self.y).map_err(SimErrorKind::Evaluation)
+    }
+
+    /// Checks the end of a step that began at `begin`. An assertion that has failed within the step
+    /// fails at the time when it began to.
+    fn check_step(&mut self, begin: f64) -> Result<(), SimErrorKind> {
+        let Err(mut failed) = self.check() else { return Ok(()) };
+        let is_assertion = |kind: &SimErrorKind| {
+            matches!(kind, SimErrorKind::Evaluation(Failure::Assertion { .. }))
+        };
+        let mut holds = begin;
+        for _ in 0..ASSERTION_TRIALS {
+            let middle = 0.5 * (holds + self.t);
+            if !is_assertion(&failed) || middle <= holds || middle >= self.t {
+                break;
+            }
+            self.integrator.interpolate(middle, self.y);
+            match self.problem.system.check(middle, self.y).map_err(SimErrorKind::Evaluation) {
+                Err(kind) if is_assertion(&kind) => (self.t, failed) = (middle, kind),
+                _ => holds = middle,
+            }
+        }
+        Err(failed)
     }
 
     fn advance_output(&mut self) {

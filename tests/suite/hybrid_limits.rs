@@ -2,6 +2,8 @@
 //! statements choose at run time.
 
 use super::hybrid::{all_near, near, simulated};
+use super::index_reduction::{Run, compiled};
+use gapilib::sim::Settings;
 
 #[test]
 fn a_crossing_that_time_alone_makes_is_seen_though_steps_are_long() {
@@ -270,4 +272,35 @@ fn texts_change_at_events() {
     assert_eq!((run.at("code", 0.6), run.at("fresh", 0.6)), (331.0, 1.0));
     assert_eq!((run.at("code", 1.5), run.at("fresh", 1.5)), (222.0, 0.0));
     assert_eq!((run.at("code", 2.4), run.at("changes", 2.4)), (112.0, 2.0));
+}
+
+#[test]
+fn a_dip_within_one_step_is_seen() {
+    let text = "model M Real x(start = 1, fixed = true); Integer n(start = 0, fixed = true);
+        Integer never(start = 0, fixed = true);
+        equation der(x) = 2*(time - 1);
+        when x < 1e-5 then n = pre(n) + 1; end when;
+        when x < -1e-6 then never = pre(never) + 1; end when; end M;";
+    // x = (t - 1)², a polynomial, so that steps are as long as they may be.
+    for (method, tolerance) in [("dassl", 1e-6), ("dassl", 1e-9), ("radau", 1e-6)] {
+        let method = gapilib::sim::find_integrator(method).unwrap();
+        let settings = Settings { method, tolerance, stop: 2.0, ..Settings::default() };
+        let run = Run::with(text, settings);
+        assert_eq!(run.values("n").last(), Some(&1.0), "{tolerance}");
+        assert_eq!(run.values("never").last(), Some(&0.0), "{tolerance}");
+        run.follows("x", 1e-4, |t| (t - 1.0) * (t - 1.0));
+    }
+}
+
+#[test]
+fn an_assertion_fails_at_the_time_when_it_begins_to() {
+    let text = "model M Real x(start = 1, fixed = true); equation der(x) = -1;
+        assert(x > 0.5, \"level below half\"); end M;";
+    for method in ["dassl", "radau", "rodas4", "dopri5", "euler"] {
+        let method = gapilib::sim::find_integrator(method).unwrap();
+        let settings = Settings { method, ..Settings::default() };
+        let error = gapilib::sim::simulate(&mut compiled(text).system(), &settings);
+        let error = error.expect_err("the assertion fails");
+        assert!((error.time - 0.5).abs() < 1e-6, "{}: {}", method.name, error.time);
+    }
 }

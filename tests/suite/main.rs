@@ -61,6 +61,7 @@ mod sensitivities;
 mod session;
 mod shipped;
 mod simulation;
+mod singular_derivatives;
 mod structural_parameters;
 mod structure;
 mod syntax_properties;

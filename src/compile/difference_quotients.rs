@@ -1,0 +1,65 @@
+//! Difference quotients where a derivative has no finite value: `sqrt(x)` at 0, and `sqrt(x^2)`,
+//! whose symbolic derivative there is 0/0. The functions themselves have values, and a quotient over
+//! a short way is a slope that Newton's method goes on with.
+
+use super::system::System;
+use crate::sim::{DaeSystem, Failure};
+
+/// Length of the way relative to the size of the variable: between rounding errors of the function
+/// and its curvature.
+const RELATIVE_STEP: f64 = 1.5e-8;
+
+/// Writes (f(x + h eⱼ) − f(x)) / h, or the same with −h where f has no value there. `at` evaluates f
+/// where one entry of x is another; `column` receives the quotients.
+pub(super) fn quotient(
+    x: f64,
+    nominal: f64,
+    before: &[f64],
+    column: &mut [f64],
+    mut at: impl FnMut(f64, &mut [f64]) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    let size = RELATIVE_STEP * x.abs().max(nominal);
+    let forward = (x + size) - x;
+    let step = match at(x + forward, column) {
+        Ok(()) => forward,
+        Err(_) => {
+            let backward = (x - size) - x;
+            at(x + backward, column)?;
+            backward
+        }
+    };
+    column.iter_mut().zip(before).for_each(|(after, before)| *after = (*after - before) / step);
+    match column.iter().all(|slope| slope.is_finite()) {
+        true => Ok(()),
+        false => Err(Failure::Domain { place: u32::MAX }),
+    }
+}
+
+impl System {
+    /// The Jacobian of the right-hand side by difference quotients.
+    pub(super) fn difference_jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        values: &mut [f64],
+    ) -> Result<(), Failure> {
+        let n = y.len();
+        let (mut before, mut column) = (vec![0.0; n], vec![0.0; n]);
+        let (mut moved, mut nominal) = (y.to_vec(), vec![1.0; n]);
+        self.nominal(&mut nominal);
+        self.rhs(t, y, &mut before)?;
+        let program = self.program.clone();
+        for j in 0..n {
+            quotient(y[j], nominal[j], &before, &mut column, |x, out| {
+                moved[j] = x;
+                self.rhs(t, &moved, out)
+            })?;
+            moved[j] = y[j];
+            for at in program.pattern.column(j) {
+                values[at] = column[program.pattern.rows[at]];
+            }
+        }
+        self.load(t, y);
+        Ok(())
+    }
+}
