@@ -7,7 +7,8 @@ use super::session;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use crate::identify::problem::Solution;
-use crate::script::problem::{RunOptions, solve};
+use crate::script::policy::Grant;
+use crate::script::problem::{RunOptions, grant_inputs, solve};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -71,6 +72,10 @@ pub(super) fn solve_one(
         samples: arguments.samples.unwrap_or(0) as usize,
         evaluations: arguments.evaluations,
     };
+    grant_inputs(&mut session, problem);
+    if let Some(file) = &arguments.watch {
+        session.world.grant(Grant::Read(file));
+    }
     match solve(&mut session, problem, &options) {
         Ok(_) if session.is_interrupted() => Ended::Not(ExitCode::from(130)),
         Ok(solution) => Ended::Solved(Box::new(solution)),

@@ -6,6 +6,7 @@ mod check;
 mod compare;
 mod comparison;
 mod completions;
+mod disk;
 mod explain;
 mod help;
 mod identify;

@@ -5,8 +5,8 @@
 //! to it: the same file is the same problem, however much was changed in it. Beside the folders the
 //! link `latest` leads to the one that was written last.
 
+use super::disk::write_atomically;
 use super::terminal;
-use super::world::write_atomically;
 use crate::script::world::normalized;
 use std::path::{Component, Path, PathBuf};
 use std::{fs, io};

@@ -3,9 +3,11 @@
 
 use super::args::Colour;
 use super::live::Live;
+use crate::diag::visible;
 use crate::script::view::View;
 use crate::script::world::Progress;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use std::borrow::Cow;
 use std::io::{IsTerminal, Write as _};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -102,6 +104,7 @@ impl Terminal {
             self.kept.push((true, text.to_owned()));
             return;
         }
+        let text = on_terminal(std::io::stdout().is_terminal(), text);
         self.suspended(|| {
             let mut out = std::io::stdout().lock();
             let _ = out.write_all(text.as_bytes());
@@ -159,6 +162,11 @@ impl Drop for Terminal {
     }
 }
 
+/// What scripts print is shown as text on a terminal, and kept as it is elsewhere.
+fn on_terminal(is_terminal: bool, text: &str) -> Cow<'_, str> {
+    if is_terminal { visible(text) } else { Cow::Borrowed(text) }
+}
+
 fn new_bar(progress: &Progress) -> ProgressBar {
     let known = progress.total > 0;
     let template = if known {
@@ -189,5 +197,5 @@ pub(super) fn print(text: &str) {
 
 /// Writes to standard error where there is no session.
 pub(super) fn eprint(text: &str) {
-    let _ = std::io::stderr().lock().write_all(text.as_bytes());
+    let _ = std::io::stderr().lock().write_all(visible(text).as_bytes());
 }

@@ -42,6 +42,7 @@ mod models;
 mod msl;
 mod notices;
 mod page;
+mod permissions;
 mod plot;
 mod record_arrays;
 mod reference_problems;

@@ -27,6 +27,7 @@ pub(super) fn repl(arguments: &ReplArgs, global: &Global) -> ExitCode {
             return ExitCode::FAILURE;
         }
     };
+    world.own_output();
     world.catch_interrupts();
     let (flag, reason) = world.stopping();
     if let Err(message) = limits::watch(&arguments.freedom, flag.clone(), reason) {

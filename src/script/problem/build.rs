@@ -7,7 +7,7 @@ use super::data::{self, Notes};
 use super::file::{ColumnEntry, ExperimentEntry, OneOrMany, ProblemFile, Role};
 use super::{dynamics, inputs, own_fitness, sigma};
 use crate::bail;
-use crate::diag::{Diagnostic, Fault};
+use crate::diag::{Diagnostic, Fault, visible_line};
 use crate::fault;
 use crate::flatten::FlatModel;
 use crate::ga::optimizer::METHODS;
@@ -125,6 +125,14 @@ pub(super) fn build(
     Ok(Built { problem, experiments: fitted, validation, fingerprint, notes })
 }
 
+/// The title as it may stand in files and on terminals.
+fn title(file: &ProblemFile) -> String {
+    match &file.title {
+        Some(title) => visible_line(title),
+        None => format!("Identification of {}", file.model),
+    }
+}
+
 /// The fitness functions by name: those of the program, else functions written in Modelica.
 fn objectives(
     session: &mut Session,
@@ -224,7 +232,7 @@ fn assemble(
         stagnation: stop.stagnation,
     };
     Ok(Problem {
-        title: file.title.clone().unwrap_or_else(|| format!("Identification of {}", file.model)),
+        title: title(file),
         model: file.model.clone(),
         text: String::new(),
         parameters,

@@ -21,6 +21,7 @@ mod sigma;
 
 use super::Session;
 use super::checkpoint::{self, Checkpoint};
+use super::policy::Grant;
 use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
@@ -70,6 +71,22 @@ pub struct RunOptions {
     pub samples: usize,
     /// Ends the run after so many evaluations, whatever the problem says.
     pub evaluations: Option<u64>,
+}
+
+/// The user has named this problem file: the data and the models that it names may be read.
+pub fn grant_inputs(session: &mut Session, path: &Path) {
+    session.grant_input(path);
+    let Ok(text) = session.read_text(path) else { return };
+    let source = session.sources.add(path.display().to_string(), text.as_str());
+    // What is wrong with the problem shows when it is solved.
+    let Ok(file) = file::read(source, &text) else { return };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    for models in &file.files {
+        session.grant_input(&folder.join(models));
+    }
+    for experiment in &file.experiment {
+        session.world.grant(Grant::Read(&folder.join(&experiment.data)));
+    }
 }
 
 /// Solves the problem in the file `path`; writes the results into the world's folder for them.
