@@ -53,7 +53,7 @@ pub(super) fn solve_one(
     let world = match SystemWorld::for_results(terminal, output, threads) {
         Ok(world) => world,
         Err(error) => {
-            terminal::eprint(&format!("error: the working directory cannot be read: {error}\n"));
+            terminal::eprint(&format!("error: {error}\n"));
             return Ended::Not(ExitCode::FAILURE);
         }
     };

@@ -32,7 +32,7 @@ pub(super) fn run(arguments: &RunArgs, global: &Global) -> ExitCode {
     let world = match SystemWorld::for_results(terminal, output, threads) {
         Ok(world) => world,
         Err(error) => {
-            terminal::eprint(&format!("error: the working directory cannot be read: {error}\n"));
+            terminal::eprint(&format!("error: {error}\n"));
             return ExitCode::FAILURE;
         }
     };

@@ -53,7 +53,7 @@ pub(super) fn with_files(
 ) -> Result<(Session, Vec<Name>), ExitCode> {
     let world = SystemWorld::new(Terminal::new(global.color, false), "results".as_ref(), None);
     let world = world.map_err(|error| {
-        terminal::eprint(&format!("error: the working directory cannot be read: {error}\n"));
+        terminal::eprint(&format!("error: {error}\n"));
         ExitCode::FAILURE
     })?;
     let mut session = open(global, world);

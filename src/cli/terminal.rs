@@ -107,8 +107,7 @@ impl Terminal {
         let text = on_terminal(std::io::stdout().is_terminal(), text);
         self.suspended(|| {
             let mut out = std::io::stdout().lock();
-            let _ = out.write_all(text.as_bytes());
-            let _ = out.flush();
+            told(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
         });
     }
 
@@ -192,7 +191,27 @@ fn round_up(duration: Duration) -> Duration {
 
 /// Writes to standard output where there is no session.
 pub(super) fn print(text: &str) {
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+    let mut out = std::io::stdout().lock();
+    told(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
+}
+
+/// Whether something could not be written to standard output.
+static OUTPUT_FAILED: AtomicBool = AtomicBool::new(false);
+
+/// Whether all that was printed has reached standard output.
+pub(super) fn output_failed() -> bool {
+    OUTPUT_FAILED.load(Ordering::SeqCst)
+}
+
+/// Says once that standard output cannot be written. A reader that went away (`| head`) has what it
+/// wanted.
+fn told(written: std::io::Result<()>) {
+    let Err(error) = written else { return };
+    let is_new = error.kind() != std::io::ErrorKind::BrokenPipe
+        && !OUTPUT_FAILED.swap(true, Ordering::SeqCst);
+    if is_new {
+        eprint(&format!("error: standard output cannot be written: {error}\n"));
+    }
 }
 
 /// Writes to standard error where there is no session.

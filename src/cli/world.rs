@@ -2,7 +2,10 @@
 
 use super::disk::Disk;
 use super::limits::Reason;
+use super::lock::Lock;
 use super::output::Output;
+#[cfg(unix)]
+use super::signals;
 use super::terminal::Terminal;
 use crate::models;
 use crate::script::policy::{Access, Grant};
@@ -26,11 +29,13 @@ pub(super) struct SystemWorld {
     started: Instant,
     interrupt: Arc<AtomicBool>,
     reason: Reason,
+    /// Whether the folder for the results says whose they are.
+    claimed: bool,
     /// How often it has written a file.
     changes: u64,
     disk: Arc<Disk>,
-    /// The folder for the results, as long as nothing was written into it.
-    unclaimed: Option<Output>,
+    /// The folder for the results, and the lock on it once it is there.
+    results: Option<(Output, Option<Lock>)>,
 }
 
 impl SystemWorld {
@@ -40,7 +45,9 @@ impl SystemWorld {
         output: &Path,
         threads: Option<usize>,
     ) -> io::Result<Self> {
-        let current = std::env::current_dir()?;
+        let current = std::env::current_dir().map_err(|error| {
+            io::Error::new(error.kind(), format!("the working directory cannot be read: {error}"))
+        })?;
         let available = std::thread::available_parallelism().map_or(1, usize::from);
         let disk = Disk::default();
         disk.grant(Grant::Create(&current));
@@ -52,9 +59,10 @@ impl SystemWorld {
             threads: threads.unwrap_or(available).max(1),
             started: Instant::now(),
             reason: Reason::default(),
+            claimed: false,
             changes: 0,
             disk: Arc::new(disk),
-            unclaimed: None,
+            results: None,
         })
     }
 
@@ -66,7 +74,8 @@ impl SystemWorld {
     ) -> io::Result<Self> {
         let world = SystemWorld::new(terminal, &output.folder, threads)?;
         world.own_output();
-        Ok(SystemWorld { unclaimed: Some(output), ..world })
+        let lock = output.lock_if_there()?;
+        Ok(SystemWorld { results: Some((output, lock)), ..world })
     }
 
     /// The output folder belongs to the run: what is in it may be replaced.
@@ -75,16 +84,16 @@ impl SystemWorld {
     }
 
     /// Before a file is written: wherever it lies, the output folder gets results or the record of
-    /// the file.
-    fn claim(&mut self, path: &Path) {
+    /// the file. A folder that was removed meanwhile is made again.
+    fn claim(&mut self, path: &Path) -> io::Result<()> {
         self.changes += 1;
-        if self.unclaimed.is_some()
-            && self.disk.permits(path, Access::Write).is_ok()
-            && let Some(output) = self.unclaimed.take()
-        {
-            // What cannot be written shows with the file itself.
-            let _ = output.claim();
+        let Some((output, lock)) = &mut self.results else { return Ok(()) };
+        let is_claimed = self.claimed && self.output.is_dir();
+        if !is_claimed && self.disk.permits(path, Access::Write).is_ok() {
+            *lock = Some(output.claim(lock.take())?);
+            self.claimed = true;
         }
+        Ok(())
     }
 
     /// What stops the run when it is set, and why it was.
@@ -92,7 +101,8 @@ impl SystemWorld {
         (Arc::clone(&self.interrupt), Arc::clone(&self.reason))
     }
 
-    /// Makes Ctrl-C ask the run to stop; a second one ends the process at once.
+    /// Makes Ctrl-C and the system's wishes to end ask the run to stop; a second one ends the
+    /// process at once.
     pub(super) fn catch_interrupts(&self) {
         let flag = Arc::clone(&self.interrupt);
         let caught = ctrlc::set_handler(move || {
@@ -103,6 +113,8 @@ impl SystemWorld {
         });
         // Without a handler Ctrl-C ends the process as it always did.
         drop(caught);
+        #[cfg(unix)]
+        signals::catch(&self.interrupt);
     }
 
     fn at(&self, path: &Path) -> PathBuf {
@@ -126,14 +138,18 @@ impl World for SystemWorld {
 
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         let path = self.at(path);
-        self.claim(&path);
+        self.claim(&path)?;
         self.disk.write(&path, bytes)
     }
 
     fn append(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         let path = self.at(path);
-        self.claim(&path);
+        self.claim(&path)?;
         self.disk.append(&path, bytes)
+    }
+
+    fn sync(&mut self, path: &Path) -> io::Result<()> {
+        self.disk.sync(&self.at(path))
     }
 
     fn remove(&mut self, path: &Path) -> io::Result<()> {

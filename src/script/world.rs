@@ -60,6 +60,10 @@ pub trait World {
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()>;
     /// Writes behind the end of a file, which is made if there is none.
     fn append(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()>;
+    /// Makes what a file holds safe against a power cut.
+    fn sync(&mut self, _path: &Path) -> io::Result<()> {
+        Ok(())
+    }
     /// Removes a file or an empty directory.
     fn remove(&mut self, path: &Path) -> io::Result<()>;
     /// Whether a file or directory of this path exists.

@@ -49,6 +49,7 @@ mod reference_problems;
 mod repl;
 mod report_page;
 mod results;
+mod resume;
 mod script_fuzzing;
 mod script_tests;
 mod scripts;

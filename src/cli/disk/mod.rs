@@ -147,6 +147,11 @@ impl Disk {
         file.write_all(bytes)
     }
 
+    /// Makes what a file holds safe against a power cut.
+    pub(super) fn sync(&self, path: &Path) -> io::Result<()> {
+        self.to_write(path, true)?.open_to_append(true)?.sync_data()
+    }
+
     /// Removes a file, an empty folder, or a link itself.
     pub(super) fn remove(&self, path: &Path) -> io::Result<()> {
         let place = self.to_write(path, false)?;
@@ -204,6 +209,22 @@ impl Files for Disk {
 pub(super) fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let path = std::path::absolute(path)?;
     Place::of(&path, true)?.write(bytes, |_| Ok(()))
+}
+
+/// Removes the files in a folder that writing has left behind which did not come to its end.
+pub(super) fn remove_temporary_files(folder: &Path) {
+    let is_temporary = |name: &str| {
+        let random = name.strip_suffix(".tmp").and_then(|name| name.rsplit_once('.'));
+        random.is_some_and(|(_, random)| {
+            random.len() == 16 && random.bytes().all(|b| b.is_ascii_hexdigit())
+        })
+    };
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if is_temporary(&entry.file_name().to_string_lossy()) {
+            // What cannot be removed does no harm.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
 }
 
 #[cfg(test)]
