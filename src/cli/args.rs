@@ -180,6 +180,14 @@ pub(super) struct Freedom {
     /// Let scripts run programs and read all environment variables
     #[arg(long, help_heading = ALLOWED)]
     pub allow_system: bool,
+    /// When to stop
+    #[command(flatten)]
+    pub limits: Limits,
+}
+
+/// What a command may take.
+#[derive(Debug, Args, Clone)]
+pub(super) struct Limits {
     /// Stop after so many seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time_limit: Option<f64>,
@@ -379,6 +387,9 @@ pub(super) struct IdentifyArgs {
     /// Show errors only
     #[arg(long, short)]
     pub quiet: bool,
+    /// When to stop
+    #[command(flatten)]
+    pub limits: Limits,
 }
 
 /// Arguments of `gapi teach`.
@@ -503,6 +514,9 @@ pub(super) struct SimulateArgs {
     /// Where the drawing of --plot goes: a file that ends in .svg, .png or .pdf
     #[arg(long, value_name = "FILE", requires = "plot", value_hint = ValueHint::FilePath)]
     pub figure: Option<PathBuf>,
+    /// When to stop
+    #[command(flatten)]
+    pub limits: Limits,
 }
 
 /// The passes whose system can be shown, the flat model as the first.
@@ -532,6 +546,9 @@ pub(super) struct CheckArgs {
     /// The class to check as a model
     #[arg(long, value_name = "CLASS")]
     pub model: Option<String>,
+    /// When to stop
+    #[command(flatten)]
+    pub limits: Limits,
 }
 
 /// Arguments of `gapi flatten`.
@@ -547,6 +564,9 @@ pub(super) struct FlattenArgs {
     /// The class to flatten
     #[arg(long, value_name = "CLASS")]
     pub model: Option<String>,
+    /// When to stop
+    #[command(flatten)]
+    pub limits: Limits,
 }
 
 /// Arguments of `gapi report`.

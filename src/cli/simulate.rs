@@ -1,8 +1,8 @@
 //! `gapi simulate`: one simulation of one model.
 
 use super::args::{Global, SimulateArgs};
-use super::session;
 use super::terminal::Terminal;
+use super::{limits, session};
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::plot::{self, Axis, Figure, Mark, Panel};
@@ -33,6 +33,10 @@ const REDRAWN: Duration = Duration::from_millis(100);
 
 /// Simulates and writes the trajectories, or shows the last values.
 pub(super) fn simulate(arguments: &SimulateArgs, global: &Global) -> ExitCode {
+    let _watch = match limits::enforce(&arguments.limits) {
+        Ok(watch) => watch,
+        Err(code) => return code,
+    };
     let opened = session::with_class(global, arguments.model.as_ref(), &arguments.files);
     let (mut session, class) = match opened {
         Ok(opened) => opened,
@@ -95,6 +99,7 @@ fn run(
     match (&arguments.output, format) {
         (Some(path), Some(format)) => {
             let bytes = format.write(&simulated.table).map_err(one)?;
+            session.permit_file(path);
             session.write_file(path, &bytes).map_err(one)?;
             session.print(&written(path));
         }
@@ -218,6 +223,7 @@ fn draw(
     let figure = Figure { title: class.to_owned(), panels: panels.collect::<Result<_, _>>()? };
     match arguments.figure.as_ref().zip(picture) {
         Some((path, format)) => {
+            session.permit_file(path);
             session.write_file(path, &figure.picture(format)?)?;
             session.print(&format!("figure: {}\n", path.display()));
         }

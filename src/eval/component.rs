@@ -3,15 +3,22 @@
 use super::errors::MISPLACED;
 use super::scope::Owner;
 use super::variable::{Declared, Variable, named, shadow_of};
-use super::{Evaluator, FunctionComponent, Scope, ValueType};
+use super::{Evaluator, FunctionComponent, Given, Scope, ValueType};
 use crate::diag::{At, Diagnostic};
 use crate::fault;
 use crate::name::{Ident, Name};
+use crate::source::Span;
 use crate::syntax::ast::{Expression, ExpressionKind, Subscript};
 use crate::value::errors::{DOMAIN_ERROR, TYPE_MISMATCH};
 use crate::value::{RecordValue, Value};
 use indexmap::IndexMap;
 use std::sync::Arc;
+
+/// A value, and the same shape with `true` where it has one.
+pub(super) struct Storage {
+    pub(super) value: Value,
+    pub(super) shadow: Value,
+}
 
 impl Evaluator<'_> {
     /// Declares the component of this name if the function or record has one that is not declared
@@ -34,8 +41,11 @@ impl Evaluator<'_> {
                     None => Ok(()),
                 }
             }
-            Owner::Record(components) => match components.get(&name) {
-                Some(component) => self.declare(component, None, false),
+            Owner::Record(components) => match components.get_full(&name) {
+                Some((at, _, component)) => {
+                    let given = self.scope.given.get_mut(at).and_then(Option::take);
+                    self.declare(component, given, false)
+                }
                 None => Ok(()),
             },
         }
@@ -109,21 +119,24 @@ impl Evaluator<'_> {
     fn unassigned(&mut self, declared: Declared) -> Result<Variable, Diagnostic> {
         let span = self.scope.call_span;
         if let ValueType::Record(name, components) = &declared.value_type {
-            let (record, shadow) = self.record_storage(name, components)?;
-            let (value, shadow) = declared.repeated(record, shadow).at(span)?;
+            let Storage { value, shadow } = self.record_with(name, components, Vec::new(), span)?;
+            let (value, shadow) = declared.repeated(value, shadow).at(span)?;
             return Ok(Variable::partly_assigned(value, shadow, declared));
         }
         Variable::without_value(declared).at(span)
     }
 
-    /// A record whose components have their bindings' values, and which of them have one.
-    pub(super) fn record_storage(
+    /// A record whose components have the values given or else those of their bindings.
+    pub(super) fn record_with(
         &mut self,
         name: &Name,
         components: &Arc<IndexMap<Ident, FunctionComponent>>,
-    ) -> Result<(Value, Value), Diagnostic> {
+        given: Vec<(Ident, Given)>,
+        span: Span,
+    ) -> Result<Storage, Diagnostic> {
         let mut scope = Scope::of_record(components.clone(), self.scope.call_span);
         let mut inner = Evaluator { scope: &mut scope, host: self.host };
+        inner.give(given, span)?;
         let mut values = IndexMap::new();
         let mut shadows = IndexMap::new();
         for component in components.keys() {
@@ -137,10 +150,10 @@ impl Evaluator<'_> {
                 shadows.insert(*component, shadow);
             }
         }
-        Ok((
-            Value::Record(RecordValue { type_name: name.clone(), fields: values }),
-            Value::Record(RecordValue { type_name: name.clone(), fields: shadows }),
-        ))
+        Ok(Storage {
+            value: Value::Record(RecordValue { type_name: name.clone(), fields: values }),
+            shadow: Value::Record(RecordValue { type_name: name.clone(), fields: shadows }),
+        })
     }
 
     /// The sizes that declared dimensions stand for; `None` for `:`.

@@ -72,9 +72,15 @@ pub trait Host {
         Ok(false)
     }
 
-    /// Told when a script gives one of its variables a value as a whole.
-    fn assigned(&mut self, name: Ident, value: &Value) -> Result<(), Fault> {
-        let _ = (name, value);
+    /// Told when a script gives one of its variables a value as a whole; `before` is the value
+    /// that a variable without a declared type had.
+    fn assigned(
+        &mut self,
+        name: Ident,
+        before: Option<&Value>,
+        value: &Value,
+    ) -> Result<(), Fault> {
+        let _ = (name, before, value);
         Ok(())
     }
 

@@ -8,6 +8,7 @@
 mod argument;
 mod call;
 mod component;
+mod declaration;
 mod deduction;
 mod depth;
 pub mod errors;
@@ -33,6 +34,7 @@ mod vectorization;
 mod tests;
 
 pub use call::Arguments;
+pub use declaration::{Given, declare};
 pub use depth::{MAX_CALLS, with_stack};
 pub use flow::Flow;
 pub use function::{Function, FunctionBody, FunctionComponent, ValueType};

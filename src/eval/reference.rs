@@ -67,7 +67,10 @@ impl Evaluator<'_> {
         let known = !target.global && self.scope.variables.contains_key(&first.name);
         if let (Some(name), true) = (target.as_ident(), known || self.may_declare(target)) {
             if self.scope.is_script() {
-                self.host.assigned(name, &value).at(span)?;
+                let before = self.scope.variables.get(&name);
+                let undeclared = before.filter(|variable| variable.declared.is_none());
+                let before = undeclared.map(|variable| &variable.value);
+                self.host.assigned(name, before, &value).at(span)?;
             }
             return self.scope.set(name, value).at(span);
         }
@@ -125,6 +128,9 @@ impl Evaluator<'_> {
         if let Some(value) = self.host.variable(reference)? {
             return Ok(value);
         }
+        if let Some(value) = self.part_of_global(reference)? {
+            return Ok(value);
+        }
         let fault = match reference.as_ident() {
             Some(name) => self.scope.unknown(name),
             None => {
@@ -132,6 +138,25 @@ impl Evaluator<'_> {
             }
         };
         Err(fault.at(reference.span))
+    }
+
+    /// A part of a global array, such as `Package.table[2, 1]`.
+    fn part_of_global(
+        &mut self,
+        reference: &ComponentReference,
+    ) -> Result<Option<Value>, Diagnostic> {
+        const ROOT: &str = "'an array'";
+        let with_subscripts = |part: &ReferencePart| !part.subscripts.is_empty();
+        let Some(at) = reference.parts.iter().position(with_subscripts) else { return Ok(None) };
+        let mut whole = ComponentReference { parts: reference.parts[..=at].to_vec(), ..*reference };
+        whole.parts[at].subscripts.clear();
+        let Some(value) = self.host.variable(&whole)? else { return Ok(None) };
+        let root = Ident::new(ROOT);
+        self.scope.variables.insert(root, Variable::undeclared(value));
+        let path = self.path(root, &reference.parts[at..]);
+        let root = self.scope.variables.shift_remove(&root);
+        let (path, Some(root)) = (path?, root) else { return Ok(None) };
+        root.value.part(&path).map(Some).at(reference.span)
     }
 
     /// The stored value, whether complete or not.

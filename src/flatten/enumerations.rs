@@ -152,8 +152,9 @@ impl Instantiation<'_> {
             Some(Type::Predefined(Predefined::Integer)) => {
                 let value = self.resolve(argument, context, local)?;
                 Ok(Some(match self.type_of(&value) {
-                    Some(BaseType::Enumeration(_)) => ordinal(value),
-                    _ => value,
+                    Some(BaseType::Integer) => value,
+                    // Also where the type is not known here, as that of a record's component.
+                    _ => ordinal(value),
                 }))
             }
             Some(Type::Predefined(Predefined::String)) => {

@@ -1,21 +1,21 @@
 //! The classes of a session: those of its scripts, of loaded files and of libraries.
 
 use super::Session;
+use super::constants::Answers;
 use super::errors::BAD_PARAMETER_VALUE;
 use super::libraries::Warnings;
 use crate::diag::{At, Diagnostic, Fault, suggest};
-use crate::eval::{self, Function, ValueType};
+use crate::eval::Function;
 use crate::fault;
 use crate::flatten::Library;
 use crate::flatten::errors::UNKNOWN_CLASS;
 use crate::name::{Ident, Name};
 use crate::source::{SourceId, Span, Spanned};
 use crate::syntax::ast::{
-    ClassDefinition, ClassSpecifier, ComponentReference, Element, Expression, ExpressionKind,
-    Section, Subscript,
+    ClassDefinition, ComponentReference, Expression, ExpressionKind, Subscript,
 };
 use crate::syntax::{self, Outline};
-use crate::value::{EnumerationDefinition, EnumerationValue, Value};
+use crate::value::Value;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -31,6 +31,8 @@ pub(super) struct Classes {
     misnamed: BTreeMap<Ident, PathBuf>,
     /// Functions that loaded ones call and that are no classes: copies for functions passed to them.
     copies: HashMap<Name, Arc<Function>>,
+    /// Types and constants that scripts asked for.
+    pub(super) answers: Answers,
     /// Counts what changes what a name can stand for.
     revision: u64,
     /// Folders whose packages are loaded when somebody names them.
@@ -84,6 +86,7 @@ impl Classes {
         self.revision += 1;
         self.nowhere.clear();
         self.copies.clear();
+        self.answers.clear();
     }
 }
 
@@ -341,16 +344,6 @@ impl Session {
         self.models.forget();
     }
 
-    /// The type of a declaration in a script that is not a predefined one: a record.
-    pub(super) fn class_type(&mut self, name: &Name) -> Result<ValueType, Fault> {
-        let function = self.loaded_function(name).map_err(first_fault)?;
-        let record = function.and_then(|constructor| constructor.outputs.first().cloned());
-        match record {
-            Some(record) => Ok(record.value_type),
-            None => Err(self.unknown_class(name)),
-        }
-    }
-
     /// The fault of a class that is not loaded and cannot be found.
     pub(super) fn unknown_class(&self, name: &Name) -> Fault {
         let wanted = name.to_string();
@@ -377,7 +370,10 @@ impl Session {
         Ok(None)
     }
 
-    fn function_named(&mut self, name: &Name) -> Result<Option<Arc<Function>>, Diagnostic> {
+    pub(super) fn function_named(
+        &mut self,
+        name: &Name,
+    ) -> Result<Option<Arc<Function>>, Diagnostic> {
         let first = |mut errors: Vec<Diagnostic>| errors.swap_remove(0);
         if let Some(copy) = self.classes.copies.get(name) {
             return Ok(Some(copy.clone()));
@@ -400,86 +396,6 @@ impl Session {
                 }
             }
         }
-    }
-
-    /// A constant of a package, by its full name.
-    pub(super) fn constant(&mut self, name: &Name) -> Result<Option<Value>, Fault> {
-        if let Some(value) = super::builtins::constant(name) {
-            return Ok(Some(value));
-        }
-        for candidate in self.candidates(name) {
-            if candidate.parts.len() < 2 || !self.class_exists(&candidate.parent()) {
-                continue;
-            }
-            if let Some(literal) = self.enumeration_literal(&candidate) {
-                return Ok(Some(literal));
-            }
-            if let Some(value) = self.package_constant(&candidate)? {
-                return Ok(Some(value));
-            }
-        }
-        Ok(None)
-    }
-
-    /// A literal of a loaded enumeration.
-    fn enumeration_literal(&self, name: &Name) -> Option<Value> {
-        let owner = name.parent();
-        let class = self.classes.library.definition(&owner)?;
-        let ClassSpecifier::Enumeration(enumeration) = &class.specifier else { return None };
-        let literals: Vec<Ident> =
-            enumeration.literals.iter().flatten().map(|literal| literal.name.node).collect();
-        let at = literals.iter().position(|literal| Some(*literal) == name.last())?;
-        let name = Name::new(owner.parts.iter().copied());
-        let definition = Arc::new(EnumerationDefinition { name, literals });
-        Some(Value::Enumeration(EnumerationValue { definition, ordinal: at as i64 + 1 }))
-    }
-
-    /// Asks the library through a function whose output is the constant: it knows the scopes of
-    /// packages. `None` if the name does not stand for a constant of a predefined type.
-    fn package_constant(&mut self, name: &Name) -> Result<Option<Value>, Fault> {
-        const ASKING: &str = "'a constant'";
-        let name = Name::new(name.parts.iter().copied());
-        for type_name in self.likely_types(&name) {
-            let text = format!(
-                "function {ASKING} output {type_name} y; algorithm y := .{name}; end {ASKING};"
-            );
-            let Ok(asking) = syntax::parse_stored_definition(SourceId::NONE, &text) else {
-                return Ok(None);
-            };
-            let loaded = self.classes.library.load(&asking);
-            let asked = Name::parse(ASKING);
-            let function = loaded.ok().and_then(|_| self.function_named(&asked).ok().flatten());
-            self.classes.library.remove(Ident::new(ASKING));
-            let Some(function) = function else { continue };
-            let values = eval::call_function(&function, Vec::new().into(), Span::NONE, self);
-            if let Some(value) = values.ok().and_then(|mut values| values.pop()) {
-                return Ok(Some(value));
-            }
-        }
-        Ok(None)
-    }
-
-    /// The predefined types that a constant may have, the declared one first where it is written.
-    fn likely_types(&self, name: &Name) -> [&'static str; 4] {
-        let mut types = ["Real", "Integer", "Boolean", "String"];
-        let declared = self.classes.library.definition(&name.parent()).and_then(|package| {
-            let ClassSpecifier::Long(long) = &package.specifier else { return None };
-            long.sections.iter().find_map(|section| {
-                let Section::Elements { elements, .. } = section else { return None };
-                elements.iter().find_map(|element| match element {
-                    Element::Component(clause)
-                        if clause.components.iter().any(|c| Some(c.name.node) == name.last()) =>
-                    {
-                        clause.type_specifier.name.last()
-                    }
-                    _ => None,
-                })
-            })
-        });
-        if let Some(at) = types.iter().position(|name| declared.is_some_and(|d| d == *name)) {
-            types.swap(0, at);
-        }
-        types
     }
 
     /// The file that a path or a `modelica://Package/…` URI names.
@@ -576,7 +492,7 @@ fn flat_name(reference: &ComponentReference) -> Option<String> {
 }
 
 /// The message of a diagnostic, for places where only that of the caller is known.
-fn first_fault(diagnostic: Diagnostic) -> Fault {
+pub(super) fn first_fault(diagnostic: Diagnostic) -> Fault {
     let mut fault = Fault::new(diagnostic.code, diagnostic.message.clone());
     fault.helps.clone_from(&diagnostic.helps);
     fault

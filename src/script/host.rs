@@ -93,7 +93,7 @@ impl Host for Session {
         if let Some(value) = self.flag(reference) {
             return Ok(Some(value));
         }
-        if let Some(value) = self.constant(&reference.name()).at(reference.span)? {
+        if let Some(value) = self.constant(reference).at(reference.span)? {
             return Ok(Some(value));
         }
         let first = reference.parts[0].name;
@@ -117,7 +117,13 @@ impl Host for Session {
         self.assign_dotted(target, value, span)
     }
 
-    fn assigned(&mut self, name: Ident, value: &Value) -> Result<(), Fault> {
+    fn assigned(
+        &mut self,
+        name: Ident,
+        before: Option<&Value>,
+        value: &Value,
+    ) -> Result<(), Fault> {
+        self.check_kind(name, before, value)?;
         self.follow_ups.found(name);
         self.share_with_model(name, value)
     }

@@ -125,6 +125,11 @@ impl Session {
         }
     }
 
+    /// Folders that were named for libraries.
+    pub(super) fn library_folders(&self) -> &[PathBuf] {
+        self.classes.directories()
+    }
+
     fn folders(&self) -> Vec<PathBuf> {
         let current = self.world.current_dir();
         let frames = self.frames.iter().rev().flat_map(|frame| frame.folder.ancestors());

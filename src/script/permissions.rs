@@ -15,27 +15,13 @@ pub struct Permissions {
     pub read: bool,
     /// To write and remove files anywhere, those too that the run has not made.
     pub write: bool,
-    /// To run programs, and to read environment variables that may hold secrets.
+    /// To run programs, and to read environment variables whose names look like those of secrets.
     pub system: bool,
 }
 
-/// Environment variables that tell no secrets.
-const HARMLESS: &[&str] = &[
-    "DYMOLA",
-    "DYMOLAPATH",
-    "HOME",
-    "LANG",
-    "MODELICALIBRARY",
-    "MODELICAPATH",
-    "OPENMODELICAHOME",
-    "OPENMODELICALIBRARY",
-    "OS",
-    "PWD",
-    "TEMP",
-    "TMP",
-    "TMPDIR",
-    "USERPROFILE",
-];
+/// Words in the names of environment variables that hold secrets.
+const SECRETIVE: &[&str] =
+    &["AUTH", "COOKIE", "CREDENTIAL", "KEY", "PASS", "PRIVATE", "SECRET", "TOKEN"];
 
 impl Session {
     /// A fault unless a file of this path may be read, written, made or removed.
@@ -57,6 +43,19 @@ impl Session {
         self.grant_models(folder);
     }
 
+    /// Results may be written into this folder of a model that a script has opened, which is where
+    /// Dymola puts them, if the folder may be read.
+    pub(super) fn trust_results(&mut self, folder: &Path) {
+        if self.world.permits(folder, Access::Read).is_ok() {
+            self.world.grant(Grant::Results(folder));
+        }
+    }
+
+    /// This file may be written, wherever it is: the user has named it on the command line.
+    pub fn permit_file(&mut self, path: &Path) {
+        self.world.grant(Grant::Named(path));
+    }
+
     /// The folders `models` in a folder and above it may be read.
     pub fn grant_models(&mut self, folder: &Path) {
         for folder in folder.ancestors() {
@@ -69,7 +68,9 @@ impl Session {
         if let Some(own) = self.environment.get(name) {
             return Ok(Some(own.clone()));
         }
-        if !self.options.permissions.system && !HARMLESS.contains(&name) {
+        let capitals = name.to_ascii_uppercase();
+        let is_secretive = SECRETIVE.iter().any(|word| capitals.contains(word));
+        if is_secretive && !self.options.permissions.system {
             bail!(
                 REFUSED,
                 "the environment variable `{name}` is not read: it might hold a secret";

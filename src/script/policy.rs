@@ -25,6 +25,8 @@ pub enum Grant<'a> {
     Read(&'a Path),
     /// To make new files in this folder.
     Create(&'a Path),
+    /// To make new files of results and data in this folder, not below it.
+    Results(&'a Path),
     /// To make, replace and remove files in this folder, which holds the results of the run.
     Own(&'a Path),
     /// To write this one file or device, whatever it is: the user has named it.
@@ -39,9 +41,11 @@ impl<'a> Grant<'a> {
     /// The file or folder that it names.
     pub fn path(self) -> Option<&'a Path> {
         match self {
-            Grant::Read(path) | Grant::Create(path) | Grant::Own(path) | Grant::Named(path) => {
-                Some(path)
-            }
+            Grant::Read(path)
+            | Grant::Create(path)
+            | Grant::Results(path)
+            | Grant::Own(path)
+            | Grant::Named(path) => Some(path),
             Grant::ReadAll | Grant::WriteAll => None,
         }
     }
@@ -52,6 +56,7 @@ impl<'a> Grant<'a> {
         match self {
             Grant::Read(_) => Grant::Read(path),
             Grant::Create(_) => Grant::Create(path),
+            Grant::Results(_) => Grant::Results(path),
             Grant::Own(_) => Grant::Own(path),
             Grant::Named(_) => Grant::Named(path),
             Grant::ReadAll | Grant::WriteAll => self,
@@ -140,6 +145,7 @@ pub const RECORD: &str = "files_made.txt";
 pub struct Policy {
     readable: BTreeSet<PathBuf>,
     creatable: BTreeSet<PathBuf>,
+    results: BTreeSet<PathBuf>,
     own: BTreeSet<PathBuf>,
     named: BTreeSet<PathBuf>,
     made: BTreeSet<PathBuf>,
@@ -153,6 +159,7 @@ impl Policy {
         match grant {
             Grant::Read(_) => drop(self.readable.insert(real)),
             Grant::Create(_) => drop(self.creatable.insert(real)),
+            Grant::Results(_) => drop(self.results.insert(real)),
             Grant::Own(_) => drop(self.own.insert(real)),
             Grant::Named(_) => drop(self.named.insert(real)),
             Grant::ReadAll => self.reads_all = true,
@@ -228,7 +235,9 @@ impl Policy {
         if self.writes_all {
             return Ok(());
         }
-        let roots = [own, deepest(&self.creatable, real)];
+        let results =
+            real.parent().filter(|folder| is_result(real) && self.results.contains(*folder));
+        let roots = [own, deepest(&self.creatable, real), results];
         let root = roots.into_iter().flatten().max_by_key(|root| root.as_os_str().len());
         let below = root.and_then(|root| real.strip_prefix(root).ok()).ok_or(Refusal::Outside)?;
         if below.iter().any(|name| name.as_encoded_bytes().starts_with(b".")) {
@@ -253,6 +262,11 @@ fn deepest<'a>(folders: &'a BTreeSet<PathBuf>, real: &Path) -> Option<&'a Path> 
 fn is_of_system(real: &Path) -> bool {
     // Linux keeps a file system for ordinary files there.
     !real.starts_with("/dev/shm") && SYSTEM.iter().any(|folder| real.starts_with(folder))
+}
+
+/// Whether it has the name of a file of results or data.
+fn is_result(real: &Path) -> bool {
+    real.extension().is_some_and(|e| e == "mat" || e == "csv" || e == "txt")
 }
 
 /// Whether other runs would carry out what is in the file.

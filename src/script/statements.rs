@@ -4,13 +4,13 @@ use super::errors::{BAD_IMPORT, FOLLOW_UP, NO_TRANSLATED_MODEL};
 use super::session::Stop;
 use super::{Session, builtins};
 use crate::diag::{At, Diagnostic, Fault, suggest};
-use crate::eval::{self, Scope, ValueType};
+use crate::eval::{self, Scope};
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
-    Binding, ComponentClause, ComponentDeclaration, ComponentReference, Expression, Import,
-    ImportKind, InteractiveKind, InteractiveStatement, Statement, StatementKind, VariabilityPrefix,
+    ComponentReference, Expression, Import, ImportKind, InteractiveKind, InteractiveStatement,
+    Statement, StatementKind,
 };
 use crate::value::Value;
 use std::path::Path;
@@ -93,40 +93,11 @@ impl Session {
         Ok(())
     }
 
-    fn with_scope<T>(&mut self, work: impl FnOnce(&mut Scope, &mut Session) -> T) -> T {
+    pub(super) fn with_scope<T>(&mut self, work: impl FnOnce(&mut Scope, &mut Session) -> T) -> T {
         let mut scope = std::mem::take(&mut self.scope);
         let result = work(&mut scope, self);
         self.scope = scope;
         result
-    }
-
-    fn declare(&mut self, clause: &ComponentClause) -> Result<(), Diagnostic> {
-        for component in &clause.components {
-            self.declare_one(clause, component)?;
-            self.follow_ups.found(component.name.node);
-        }
-        Ok(())
-    }
-
-    fn declare_one(
-        &mut self,
-        clause: &ComponentClause,
-        component: &ComponentDeclaration,
-    ) -> Result<(), Diagnostic> {
-        let name = component.name.node;
-        let value_type = self.declared_type(clause)?;
-        let dims = [component.subscripts.as_slice(), &clause.subscripts].concat();
-        let dims =
-            self.with_scope(|scope, session| eval::evaluate_dimensions(&dims, scope, session))?;
-        let binding = match component.modification.as_ref().and_then(|m| m.binding.as_ref()) {
-            Some(Binding::Expression(expression)) => Some(self.evaluate(expression)?),
-            _ => None,
-        };
-        self.scope.declare(name, value_type, dims, binding).at(component.span)?;
-        if clause.type_prefixes.variability == Some(VariabilityPrefix::Constant) {
-            self.scope.freeze(name);
-        }
-        Ok(())
     }
 
     fn import(&mut self, import: &Import) -> Result<(), Diagnostic> {
@@ -164,7 +135,8 @@ impl Session {
         let text = name.to_string();
         let known = builtins::is_package(&text)
             || builtins::find(name, self.dialect).is_some()
-            || self.class_exists(name);
+            || self.class_exists(name)
+            || self.constant(&ComponentReference::from_name(name, span)).at(span)?.is_some();
         if known {
             return Ok(());
         }
@@ -238,16 +210,5 @@ impl Session {
         let shown = reference.name();
         fault!(NO_TRANSLATED_MODEL, "`{shown}` names a part of a model, but no model is translated";
             help: "call `translateModel(\"Package.Model\")` first")
-    }
-
-    fn declared_type(&mut self, clause: &ComponentClause) -> Result<ValueType, Diagnostic> {
-        let name = &clause.type_specifier.name;
-        Ok(match name.last().map(|last| last.as_str()) {
-            Some("Real") if name.is_simple() => ValueType::Real,
-            Some("Integer") if name.is_simple() => ValueType::Integer,
-            Some("Boolean") if name.is_simple() => ValueType::Boolean,
-            Some("String") if name.is_simple() => ValueType::String,
-            _ => self.class_type(name).at(clause.type_specifier.span)?,
-        })
     }
 }

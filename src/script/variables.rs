@@ -1,13 +1,15 @@
 //! Variables, flags and dotted names of a session.
 
-use super::Session;
 use super::builtins::component_names;
 use super::errors::NO_WINDOW;
-use crate::diag::Diagnostic;
-use crate::name::Name;
+use super::{Dialect, Session};
+use crate::diag::{Diagnostic, Fault};
+use crate::fault;
+use crate::name::{Ident, Name};
 use crate::syntax::{self, ast::ComponentReference};
-use crate::value::Value;
+use crate::value::errors::TYPE_MISMATCH;
 use crate::value::show::{Style, show};
+use crate::value::{Elements, Value};
 
 /// First identifiers of dotted names that are flags rather than parts of a model.
 const FLAG_ROOTS: &[&str] = &["Advanced", "Hidden", "Evaluate", "Design", "Check", "Dymola"];
@@ -31,6 +33,22 @@ impl Session {
             self.flags.insert(target.name().to_string(), value.clone());
         }
         is_flag
+    }
+
+    /// A variable that an assignment has made keeps its kind in Dymola's dialect: numbers stay
+    /// numbers and texts stay texts.
+    pub(super) fn check_kind(
+        &self,
+        name: Ident,
+        before: Option<&Value>,
+        value: &Value,
+    ) -> Result<(), Fault> {
+        let (Some(old), Some(new)) = (before.and_then(kind), kind(value)) else { return Ok(()) };
+        if old == new || self.dialect != Dialect::Dymola {
+            return Ok(());
+        }
+        Err(fault!(TYPE_MISMATCH, "`{name}` is a {old} and cannot become a {new}";
+            help: "take another name, or declare it anew: `{new} {name}`"))
     }
 
     /// The variables whose names match a pattern, with values and if wanted types, in alphabetic
@@ -102,6 +120,23 @@ impl Session {
         if self.windowless.insert(command) {
             self.note(NO_WINDOW, format!("`{command}` has no effect here"));
         }
+    }
+}
+
+/// What kind of values a variable holds; `None` where nothing tells.
+fn kind(value: &Value) -> Option<&'static str> {
+    match value {
+        Value::Real(_) | Value::Integer(_) => Some("Real"),
+        Value::Boolean(_) => Some("Boolean"),
+        Value::String(_) => Some("String"),
+        Value::Array(array) if array.elements.is_empty() => None,
+        Value::Array(array) => match array.elements {
+            Elements::Real(_) | Elements::Integer(_) => Some("Real"),
+            Elements::Boolean(_) => Some("Boolean"),
+            Elements::String(_) => Some("String"),
+            _ => None,
+        },
+        _ => None,
     }
 }
 

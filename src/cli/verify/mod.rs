@@ -53,6 +53,7 @@ pub(super) fn verify(arguments: &VerifyArgs, global: &Global) -> ExitCode {
 fn write(session: &mut Session, path: &Path, rows: &[Row]) -> Result<(), Fault> {
     let is_csv = path.extension().is_some_and(|extension| extension == "csv");
     let text = if is_csv { report::csv(rows) } else { report::json(rows) };
+    session.permit_file(path);
     session.write_file(path, text.as_bytes())
 }
 

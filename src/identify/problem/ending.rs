@@ -115,6 +115,17 @@ impl Ending {
     }
 }
 
+/// Whether the best point of a run is a minimum, and the simulations of the test; `None` where that
+/// cannot be tested.
+pub(super) fn is_at_minimum(run: &Run) -> Option<(bool, u64)> {
+    if !run.evaluation.has_residuals() || run.problem.objectives.len() > 1 {
+        return None;
+    }
+    let values = &run.best.as_ref()?.values;
+    let found = run.evaluation.linearize(&run.problem, std::slice::from_ref(values)).pop()?.ok()?;
+    Some((tested(&run.problem, &run.evaluation, values, &found).1, found.simulations))
+}
+
 fn tested(
     problem: &Problem,
     evaluation: &Evaluation,

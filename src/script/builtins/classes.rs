@@ -48,7 +48,7 @@ fn definition(session: &mut Session, name: &Name) -> Result<Arc<ClassDefinition>
 }
 
 /// The same as a negative answer: `None` and the reason reported.
-fn asked(session: &mut Session, name: &Name) -> Option<Arc<ClassDefinition>> {
+pub(super) fn asked(session: &mut Session, name: &Name) -> Option<Arc<ClassDefinition>> {
     match definition(session, name) {
         Ok(class) => Some(class),
         Err(Failure::Here(fault)) => session.or_report(Err(fault)),
@@ -134,10 +134,10 @@ fn get_component_count(session: &mut Session, mut args: Args) -> Result<Value, F
 }
 
 /// A component with its clause and the section it stands in.
-struct Component<'c> {
-    clause: &'c ComponentClause,
-    one: &'c ComponentDeclaration,
-    protected: bool,
+pub(super) struct Component<'c> {
+    pub(super) clause: &'c ComponentClause,
+    pub(super) one: &'c ComponentDeclaration,
+    pub(super) protected: bool,
 }
 
 /// The names of the components that a class declares itself.
@@ -155,7 +155,7 @@ pub(super) fn constant_names(class: &ClassDefinition) -> Vec<Ident> {
     constants.map(|component| component.one.name.node).collect()
 }
 
-fn components(class: &ClassDefinition) -> Vec<Component<'_>> {
+pub(super) fn components(class: &ClassDefinition) -> Vec<Component<'_>> {
     let ClassSpecifier::Long(long) = &class.specifier else { return Vec::new() };
     let mut found = Vec::new();
     for section in &long.sections {
@@ -212,7 +212,7 @@ impl Component<'_> {
     }
 }
 
-fn subscript(subscript: &Subscript) -> String {
+pub(super) fn subscript(subscript: &Subscript) -> String {
     match subscript {
         Subscript::Index(size) => print::expression(size),
         Subscript::All(_) => ":".to_owned(),

@@ -74,6 +74,7 @@ fn open_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         return Ok(false.into());
     }
     if let (true, Some(folder)) = (change, found.as_deref().and_then(Path::parent)) {
+        session.trust_results(folder);
         let changed = session.go_to(&folder.to_string_lossy());
         return Ok(session.succeeded(changed));
     }
@@ -279,7 +280,7 @@ fn get_class_names(session: &mut Session, mut args: Args) -> Result<Value, Failu
 }
 
 /// Whether a class is declared in a protected section of the class around it.
-fn is_protected(session: &mut Session, name: &Name) -> bool {
+pub(super) fn is_protected(session: &mut Session, name: &Name) -> bool {
     let Some(own) = name.last().filter(|_| name.parts.len() > 1) else { return false };
     let Some(around) = session.library().definition(&name.parent()) else { return false };
     let ClassSpecifier::Long(long) = &around.specifier else { return false };

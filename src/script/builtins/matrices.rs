@@ -113,7 +113,7 @@ fn checked_matrix(
     let elements = matrix.row_major();
     let (rows, columns) = (matrix.rows, matrix.columns);
     let notes = contents.about(&name).map(|_| contents.column(&name)).transpose()?;
-    session.note_data(&contents, notes.into_iter().flat_map(|column| column.about.notes));
+    session.note_data(&contents, notes.iter().flat_map(crate::mat::Column::notes));
     Ok(RealMatrix { rows, columns, elements }.into())
 }
 
@@ -146,7 +146,7 @@ fn write_real_matrix(session: &mut Session, mut args: Args) -> Result<Value, Fai
     write_matrix(session, args)
 }
 
-fn write_matrix(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+pub(super) fn write_matrix(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let (file, name): (String, String) = (args.take("fileName")?, args.take("matrixName")?);
     let matrix: RealMatrix = args.take("matrix")?;
     let rows: Vec<Vec<f64>> = (0..matrix.rows).map(|row| matrix.row(row).to_vec()).collect();

@@ -6,11 +6,15 @@ mod classes;
 mod clock;
 mod comparison;
 mod conversion;
+mod data_files;
+mod executable;
 mod extended;
 mod files;
 mod gapilib;
 mod header;
 mod initial;
+mod installation;
+mod introspection;
 mod linearization;
 mod loading;
 mod matrices;
@@ -105,12 +109,18 @@ pub static FAMILIES: &[&Family] = &[
     &clock::FILES,
     &comparison::FAMILY,
     &conversion::FAMILY,
+    &data_files::FAMILY,
+    &executable::FAMILY,
     &extended::FAMILY,
     &files::FAMILY,
     &files::OPENMODELICA,
     &gapilib::FAMILY,
     &problem::FAMILY,
     &initial::FAMILY,
+    &installation::FAMILY,
+    &installation::DYMOLA,
+    &introspection::FAMILY,
+    &introspection::KINDS,
     &linearization::FAMILY,
     &linearization::OPENMODELICA,
     &loading::FAMILY,

@@ -1,5 +1,6 @@
 //! Models as OpenModelica's scripts handle them.
 
+use super::executable::{self, Executable};
 use super::simflags::SimulationFlags;
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
@@ -70,7 +71,8 @@ fn simulate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let filter = filter(&given)?;
     let prefix = if prefix.is_empty() { class.to_string() } else { prefix };
     let file = format!("{prefix}_res.{format}");
-    let done = run(session, &class, &wishes, &flags, (&file, &filter));
+    let done = flags_of(session, &flags)
+        .and_then(|flags| run(session, &class, &wishes, flags, (&file, &filter)));
     let messages = match &done {
         Ok(_) => String::new(),
         Err(_) => format!("Failed to build model: {class}"),
@@ -115,15 +117,27 @@ function buildModel "Translates a model; nothing is written, it is simulated by 
   input String variableFilter = ".*";
   input String cflags = "";
   input String simflags = "";
-  output String buildModelResults[2] "the name of the class, and an empty string: there is no init file";
+  output String buildModelResults[2] "the name of the program and that of its init file, which `system` and `setInitXmlStartValue` know; empty if it cannot be translated";
 end buildModel;
 "#;
 
 fn build_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let class: Name = args.take("className")?;
-    let done = simulation::translate(session, &class.to_string());
-    let built = session.or_report_all(done).map_or(String::new(), |_| class.to_string());
-    Ok(vec![built, String::new()].into())
+    let prefix: String = args.take("fileNamePrefix")?;
+    let prefix = if prefix.is_empty() { class.to_string() } else { prefix };
+    let program = Executable {
+        wishes: wishes(&mut args)?,
+        format: args.take("outputFormat")?,
+        filter: filter(&args.take::<String>("variableFilter")?)?,
+        flags: args.take("simflags")?,
+        class,
+    };
+    let done = simulation::translate(session, &program.class.to_string());
+    if session.or_report_all(done).is_none() {
+        return Ok(vec![String::new(), String::new()].into());
+    }
+    let init_file = executable::keep(session, &prefix, program);
+    Ok(vec![prefix, init_file].into())
 }
 
 pub(super) fn wishes(args: &mut Args) -> Result<Wishes, Failure> {
@@ -184,17 +198,22 @@ pub(super) fn with_method_of_ours(session: &mut Session, wishes: Wishes) -> Wish
 /// The ending of the format that is written to no file.
 const NO_FILE: &str = ".empty";
 
+fn flags_of(session: &Session, flags: &str) -> Result<SimulationFlags, Vec<Diagnostic>> {
+    let parsed = SimulationFlags::parse(flags).at(session.call_site());
+    parsed.map_err(|error| vec![error])
+}
+
 /// Simulates and writes the results; the settings used, and the file.
-fn run(
+pub(super) fn run(
     session: &mut Session,
     class: &Name,
     wishes: &Wishes,
-    flags: &str,
+    mut flags: SimulationFlags,
     (file, filter): (&str, &Regex),
 ) -> Result<(Wishes, String), Vec<Diagnostic>> {
     let at = session.call_site();
     let one = |error: Diagnostic| vec![error];
-    let flags = SimulationFlags::parse(flags).at(at).map_err(one)?;
+    executable::preset(session, &mut flags).at(at).map_err(one)?;
     let model = simulation::translate(session, &class.to_string())?;
     let wishes = completed(wishes, &model.program.experiment());
     let file = flags.result.as_deref().unwrap_or(file);

@@ -10,11 +10,14 @@ use crate::syntax::ast::CausalityPrefix;
 use crate::value::Value;
 use std::collections::HashSet;
 
-/// The command of this file.
+/// The commands of this file.
 pub(super) const FAMILY: Family = Family {
     packages: &["DymolaCommands.SimulatorAPI"],
     dialect: Some(Dialect::Dymola),
-    builtins: &[Builtin { header: EXPERIMENT_SETUP_OUTPUT, run: experiment_setup_output }],
+    builtins: &[
+        Builtin { header: EXPERIMENT_SETUP_OUTPUT, run: experiment_setup_output },
+        Builtin { header: EXPERIMENT_GET_OUTPUT, run: experiment_get_output },
+    ],
 };
 
 /// The kinds of variables that are stored; parameters always are.
@@ -27,6 +30,11 @@ struct Kinds {
     auxiliaries: bool,
     /// Whether the values before and after events are stored besides those of the output grid.
     events: bool,
+    /// Whether the values at the stop time alone are stored.
+    only_stop_time: bool,
+    /// What is said about the format and the log, which have no effect: textual, doublePrecision,
+    /// equidistant, debug.
+    idle: [bool; 4],
 }
 
 impl Default for Kinds {
@@ -38,6 +46,8 @@ impl Default for Kinds {
             outputs: true,
             auxiliaries: true,
             events: true,
+            only_stop_time: false,
+            idle: [false, false, true, false],
         }
     }
 }
@@ -53,6 +63,7 @@ function experimentSetupOutput "Which kinds of variables the result files of the
   input Boolean auxiliaries = true;
   input Boolean equidistant = true "has no effect: results are equidistant, with events";
   input Boolean events = true "false: the rows of the output grid alone";
+  input Boolean onlyStopTime = false "true: the values at the stop time alone";
   input Boolean debug = false "has no effect";
   output Boolean ok;
 end experimentSetupOutput;
@@ -66,9 +77,41 @@ fn experiment_setup_output(session: &mut Session, mut args: Args) -> Result<Valu
         outputs: args.take("outputs")?,
         auxiliaries: args.take("auxiliaries")?,
         events: args.take("events")?,
+        only_stop_time: args.take("onlyStopTime")?,
+        idle: [
+            args.take("textual")?,
+            args.take("doublePrecision")?,
+            args.take("equidistant")?,
+            args.take("debug")?,
+        ],
     };
     *session.extension::<Kinds>() = kinds;
     Ok(true.into())
+}
+
+const EXPERIMENT_GET_OUTPUT: &str = r#"
+function experimentGetOutput "What experimentSetupOutput has set: textual, doublePrecision, states, derivatives, inputs, outputs, auxiliaries, equidistant, events, debug."
+  output Boolean settings[10];
+end experimentGetOutput;
+"#;
+
+fn experiment_get_output(session: &mut Session, _: Args) -> Result<Value, Failure> {
+    let kinds = *session.extension::<Kinds>();
+    let [textual, double, equidistant, debug] = kinds.idle;
+    let Kinds { states, derivatives, inputs, outputs, auxiliaries, events, .. } = kinds;
+    let all = [
+        textual,
+        double,
+        states,
+        derivatives,
+        inputs,
+        outputs,
+        auxiliaries,
+        equidistant,
+        events,
+        debug,
+    ];
+    Ok(all.to_vec().into())
 }
 
 /// The variables and rows of a simulation that its result file is to hold; `grid`: the times of
@@ -105,8 +148,10 @@ pub(super) fn stored(
         true => table.clone(),
         false => table.only(|name| !left_out.contains(name)),
     };
-    if !kinds.events {
-        stored.keep_times(grid);
+    match grid.last().filter(|_| kinds.only_stop_time) {
+        Some(stop) => stored.keep_times(&[*stop]),
+        None if !kinds.events => stored.keep_times(grid),
+        None => {}
     }
     stored
 }

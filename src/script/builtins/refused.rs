@@ -30,7 +30,6 @@ pub(super) const FAMILY: Family = Family {
         "exportDiagram": "diagrams are not drawn",
         "exportDocumentation": "documentation is not written",
         "exportInitial": "settings are not written to a file: a script keeps them",
-        "setInitXmlStartValue": "there is no init file: values are set by assignment or by -override",
         "reopenStandardStream": "the standard streams belong to the caller",
         "alarm": "a script has its limit of time from the command line: --time-limit",
         "decryptModel": "encrypted models are not read",

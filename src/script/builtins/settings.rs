@@ -194,7 +194,7 @@ fn get_version(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
 
 const HELP: &str = r#"
 function help "Prints the declaration of a command, or the names of all."
-  input String name = "";
+  input VariableName name = "" "the command, quoted or not";
   output Boolean ok;
 end help;
 "#;

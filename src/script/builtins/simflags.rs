@@ -18,6 +18,8 @@ pub(super) struct SimulationFlags {
     method: Option<String>,
     /// `-r`: the file for the results.
     pub(super) result: Option<String>,
+    /// `-f`: the init file, of which the values are known that scripts wrote into it.
+    pub(super) init_file: Option<String>,
     idle: Vec<String>,
 }
 
@@ -36,8 +38,15 @@ const REFUSED: &[(&str, &str)] = &[
 impl SimulationFlags {
     /// Reads flags as `-name`, `-name=value` and `-name value`.
     pub(super) fn parse(text: &str) -> Result<SimulationFlags, Fault> {
+        SimulationFlags::of_words(text.split_whitespace())
+    }
+
+    /// The same from words that were told apart before.
+    pub(super) fn of_words<'w>(
+        words: impl Iterator<Item = &'w str>,
+    ) -> Result<SimulationFlags, Fault> {
         let mut flags = SimulationFlags::default();
-        let mut words = text.split_whitespace().peekable();
+        let mut words = words.peekable();
         while let Some(word) = words.next() {
             let Some(flag) = word.strip_prefix('-') else {
                 bail!(BAD_ARGUMENT, "`{word}` in `simflags` is no flag: flags begin with `-`")
@@ -66,6 +75,7 @@ impl SimulationFlags {
             }
             "s" => self.method = Some(value),
             "r" => self.result = Some(value),
+            "f" => self.init_file = Some(value),
             _ => self.idle.push(format!("-{name}")),
         }
         Ok(())
@@ -92,6 +102,11 @@ impl SimulationFlags {
             _ => self.overrides.push((name.to_owned(), value)),
         }
         Ok(())
+    }
+
+    /// Values that come before those of `-override`.
+    pub(super) fn preset(&mut self, values: &[(String, f64)]) {
+        self.overrides.splice(0..0, values.iter().cloned());
     }
 
     /// Sets the values of the model, and says which flags have no effect.

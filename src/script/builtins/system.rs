@@ -1,7 +1,7 @@
 //! The working directory, the environment, and programs outside of the script.
 
 use super::strings::text;
-use super::{Args, Builtin, Failure, Family};
+use super::{Args, Builtin, Failure, Family, executable};
 use crate::diag::Fault;
 use crate::script::session::Stop;
 use crate::script::{Dialect, Session};
@@ -87,7 +87,11 @@ end command;
 
 /// Runs the command that an input holds and prints what it printed.
 fn status(session: &mut Session, args: &mut Args, input: &str) -> Result<i32, Fault> {
-    let (status, printed) = session.run_system_command(&args.take::<String>(input)?)?;
+    let command: String = args.take(input)?;
+    if let Some(status) = executable::answered(session, &command) {
+        return Ok(status);
+    }
+    let (status, printed) = session.run_system_command(&command)?;
     session.print(&String::from_utf8_lossy(&printed));
     Ok(status)
 }
@@ -109,7 +113,12 @@ fn system_openmodelica(session: &mut Session, mut args: Args) -> Result<Value, F
     if file.is_empty() {
         return Ok(i64::from(status(session, &mut args, "callStr")?).into());
     }
-    let (status, printed) = session.run_system_command(&args.take::<String>("callStr")?)?;
+    let command: String = args.take("callStr")?;
+    if let Some(status) = executable::answered(session, &command) {
+        session.write_file(file.as_ref(), b"")?;
+        return Ok(i64::from(status).into());
+    }
+    let (status, printed) = session.run_system_command(&command)?;
     session.write_file(file.as_ref(), &printed)?;
     Ok(i64::from(status).into())
 }

@@ -1,0 +1,113 @@
+//! Declarations of variables in scripts, where a record's components may be given one by one.
+
+use super::component::Storage;
+use super::errors::UNKNOWN_VARIABLE;
+use super::variable::{Declared, Variable};
+use super::{Evaluator, Host, Scope, ValueType, depth};
+use crate::diag::{At, Diagnostic, suggest};
+use crate::fault;
+use crate::name::Ident;
+use crate::source::Span;
+use crate::value::errors::TYPE_MISMATCH;
+use crate::value::{Step, Value};
+
+/// What a declaration gives a variable.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Given {
+    /// A value.
+    Value(Value),
+    /// Values of some components of a record; the others have those of their class.
+    Components(Vec<(Ident, Given)>),
+}
+
+/// Declares a variable of a script, anew if it exists, with what it is given. A record has the
+/// values that its class declares; other types without a value wait for an assignment.
+///
+/// # Errors
+/// What is given does not fit the type, or names a component that the record does not have.
+pub fn declare(
+    name: Ident,
+    declared: (ValueType, Vec<Option<usize>>),
+    given: Option<Given>,
+    span: Span,
+    scope: &mut Scope,
+    host: &mut dyn Host,
+) -> Result<(), Diagnostic> {
+    let _entry = depth::Entry::new();
+    let (value_type, dims) = declared;
+    let components = match given {
+        Some(Given::Value(value)) => {
+            return scope.declare(name, value_type, dims, Some(value)).at(span);
+        }
+        Some(Given::Components(components)) => components,
+        None => Vec::new(),
+    };
+    let ValueType::Record(record, fields) = &value_type else {
+        return scope.declare(name, value_type, dims, None).at(span);
+    };
+    if !components.is_empty() && !dims.is_empty() {
+        let fault = fault!(TYPE_MISMATCH, "the components of an array of records are not given here";
+            help: "assign them behind the declaration: `{name}[1].x := 2`");
+        return Err(fault.at(span));
+    }
+    let call_span = std::mem::replace(&mut scope.call_span, span);
+    let storage =
+        Evaluator { scope: &mut *scope, host }.record_with(record, fields, components, span);
+    scope.call_span = call_span;
+    let Storage { value, shadow } = storage?;
+    let declared = Declared { value_type, dims };
+    let (value, shadow) = declared.repeated(value, shadow).at(span)?;
+    scope.variables.insert(name, Variable::partly_assigned(value, shadow, declared));
+    Ok(())
+}
+
+impl Evaluator<'_> {
+    /// Declares the components of a record that are given, before those that may refer to them.
+    pub(super) fn give(
+        &mut self,
+        given: Vec<(Ident, Given)>,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        let super::scope::Owner::Record(fields) = self.scope.owner.clone() else { return Ok(()) };
+        self.scope.given.resize(fields.len(), None);
+        let mut nested = Vec::new();
+        for (name, given) in given {
+            let Some(at) = fields.get_index_of(&name) else {
+                let known = fields.keys().map(|field| field.as_str());
+                let fault = fault!(UNKNOWN_VARIABLE, "the record has no component `{name}`")
+                    .help_if(suggest::did_you_mean(name.as_str(), known));
+                return Err(fault.at(span));
+            };
+            match given {
+                Given::Value(value) => self.scope.given[at] = Some(value),
+                Given::Components(components) => nested.push((name, components)),
+            }
+        }
+        for (name, components) in nested {
+            self.prepare(name)?;
+            self.give_within(name, &[], components, span)?;
+        }
+        Ok(())
+    }
+
+    /// Overwrites components of a record that is a component itself.
+    fn give_within(
+        &mut self,
+        root: Ident,
+        path: &[Step],
+        given: Vec<(Ident, Given)>,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        for (name, given) in given {
+            let path = [path, &[Step::Field(name)]].concat();
+            match given {
+                Given::Components(inner) => self.give_within(root, &path, inner, span)?,
+                Given::Value(value) => {
+                    let Some(variable) = self.scope.variables.get_mut(&root) else { continue };
+                    variable.set_part(root, &path, value).at(span)?;
+                }
+            }
+        }
+        Ok(())
+    }
+}

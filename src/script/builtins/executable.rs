@@ -1,0 +1,183 @@
+//! The programs that OpenModelica's `buildModel` makes of models. None is written here: a command
+//! that would run one is answered by simulating the translated model.
+
+use super::openmodelica;
+use super::simflags::SimulationFlags;
+use super::{Args, Builtin, Failure, Family};
+use crate::diag::{At, Diagnostic, Fault};
+use crate::name::Name;
+use crate::script::errors::BAD_ARGUMENT;
+use crate::script::simulation::Wishes;
+use crate::script::{Dialect, Session};
+use crate::value::Value;
+use crate::{bail, fault};
+use regex::Regex;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The commands of this file.
+pub(super) const FAMILY: Family = Family {
+    packages: &["OpenModelica.Scripting"],
+    dialect: Some(Dialect::OpenModelica),
+    builtins: &[Builtin { header: SET_INIT_XML_START_VALUE, run: set_init_xml_start_value }],
+};
+
+/// The exit status of a simulation program that failed.
+const FAILED: i32 = 255;
+
+/// A model as it was built.
+#[derive(Clone)]
+pub(super) struct Executable {
+    /// The model.
+    pub(super) class: Name,
+    /// The settings of the simulation.
+    pub(super) wishes: Wishes,
+    /// The ending of its result file.
+    pub(super) format: String,
+    /// The names that are stored.
+    pub(super) filter: Regex,
+    /// Flags that every run has.
+    pub(super) flags: String,
+}
+
+/// The models that were built, by the names of their programs, and what scripts wrote into their
+/// init files.
+#[derive(Default)]
+struct Built {
+    programs: BTreeMap<String, Executable>,
+    init_files: BTreeMap<String, Vec<(String, f64)>>,
+}
+
+/// Notes a model that was built, and returns the name of its init file.
+pub(super) fn keep(session: &mut Session, prefix: &str, program: Executable) -> String {
+    let built = session.extension::<Built>();
+    let init_file = init_file(prefix);
+    built.init_files.insert(init_file.clone(), Vec::new());
+    built.programs.insert(prefix.to_owned(), program);
+    init_file
+}
+
+fn init_file(prefix: &str) -> String {
+    format!("{prefix}_init.xml")
+}
+
+/// Puts the values of the init file that flags name among them.
+///
+/// # Errors
+/// No script has made such a file.
+pub(super) fn preset(session: &mut Session, flags: &mut SimulationFlags) -> Result<(), Fault> {
+    let Some(file) = flags.init_file.clone() else { return Ok(()) };
+    let Some(values) = session.extension::<Built>().init_files.get(&file) else {
+        bail!(BAD_ARGUMENT, "no init file `{file}` is known: `setInitXmlStartValue` makes one");
+    };
+    flags.preset(values);
+    Ok(())
+}
+
+/// The exit status of a command that runs the program of a model that was built; `None` for any
+/// other command.
+pub(super) fn answered(session: &mut Session, command: &str) -> Option<i32> {
+    let (words, output) = words(command)?;
+    let (first, flags) = words.split_first()?;
+    let name = first.strip_prefix("./").or(first.strip_prefix(".\\")).unwrap_or(first);
+    let name = name.strip_suffix(".exe").unwrap_or(name);
+    let program = session.extension::<Built>().programs.get(name)?.clone();
+    let done = run(session, name, &program, flags);
+    if let Some(file) = output {
+        let written = session.write_file(Path::new(&file), b"");
+        session.or_report(written);
+    }
+    Some(if session.or_report_all(done).is_some() { 0 } else { FAILED })
+}
+
+fn run(
+    session: &mut Session,
+    name: &str,
+    program: &Executable,
+    flags: &[String],
+) -> Result<(), Vec<Diagnostic>> {
+    let all = program.flags.split_whitespace().chain(flags.iter().map(String::as_str));
+    let parsed = SimulationFlags::of_words(all).at(session.call_site());
+    let mut flags = parsed.map_err(|error| vec![error])?;
+    flags.init_file.get_or_insert_with(|| init_file(name));
+    let file = format!("{name}_res.{}", program.format);
+    let wanted = (file.as_str(), &program.filter);
+    openmodelica::run(session, &program.class, &program.wishes, flags, wanted).map(|_| ())
+}
+
+/// The words of a command line and the file that its output goes to; `None` if it is more than one
+/// command.
+fn words(command: &str) -> Option<(Vec<String>, Option<String>)> {
+    let (mut words, mut word, mut quote) = (Vec::new(), String::new(), None);
+    for c in command.chars() {
+        match (quote, c) {
+            (None, '"' | '\'') => quote = Some(c),
+            (Some(open), close) if open == close => quote = None,
+            (None, ';' | '|' | '`' | '$' | '\n') => return None,
+            (None, blank) if blank.is_whitespace() => words.push(std::mem::take(&mut word)),
+            (None, '>') => words.extend([std::mem::take(&mut word), ">".to_owned()]),
+            (_, c) => word.push(c),
+        }
+    }
+    words.push(word);
+    words.retain(|word| !word.is_empty());
+    let redirected = words.iter().position(|word| word == ">");
+    let Some(at) = redirected else {
+        return (!words.iter().any(|w| w == "&&")).then_some((words, None));
+    };
+    let rest = words.split_off(at);
+    let is_stream = |word: &&String| matches!(word.as_str(), ">" | "2" | "&1");
+    let file = rest.iter().find(|word| !is_stream(word)).cloned();
+    words.retain(|word| word != "2");
+    (!rest.iter().any(|word| word == "&&")).then_some((words, file))
+}
+
+const SET_INIT_XML_START_VALUE: &str = r#"
+function setInitXmlStartValue "Gives a parameter or a start value of a model that was built another value, in its init file or a copy of it. The file is not written: the program of the model knows it."
+  input String fileName "name of the model_init.xml, or a copy made before";
+  input String variableName;
+  input String startValue;
+  input String outputFile;
+  output Boolean success;
+end setInitXmlStartValue;
+"#;
+
+fn set_init_xml_start_value(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let (file, name): (String, String) = (args.take("fileName")?, args.take("variableName")?);
+    let (value, output): (String, String) = (args.take("startValue")?, args.take("outputFile")?);
+    let number = match value.trim() {
+        "true" => Ok(1.0),
+        "false" => Ok(0.0),
+        number => number.parse(),
+    };
+    let Ok(number) = number else {
+        session.report_fault(fault!(BAD_ARGUMENT, "`startValue` is no number: `{value}`"));
+        return Ok(false.into());
+    };
+    let init_files = &mut session.extension::<Built>().init_files;
+    let Some(mut values) = init_files.get(&file).cloned() else {
+        session
+            .report_fault(fault!(BAD_ARGUMENT, "no model was built whose init file is `{file}`";
+            help: "call `buildModel` first"));
+        return Ok(false.into());
+    };
+    values.retain(|(known, _)| *known != name);
+    values.push((name, number));
+    init_files.insert(output, values);
+    Ok(true.into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::words;
+
+    #[test]
+    fn a_command_line_is_told_apart_as_a_shell_does() {
+        let command = r#"./M -override="k=1,x0=2" -r='a b.mat' > log.txt 2>&1"#;
+        let (found, file) = words(command).expect("one command");
+        assert_eq!(found, ["./M", "-override=k=1,x0=2", "-r=a b.mat"]);
+        assert_eq!(file.as_deref(), Some("log.txt"));
+        assert_eq!(words("./M; rm x"), None);
+        assert_eq!(words("cd b && ./M"), None);
+    }
+}
