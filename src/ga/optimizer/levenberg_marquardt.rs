@@ -178,6 +178,11 @@ impl Descent {
         self.end == Some(DescentEnd::Minimum) && self.goal > FINE
     }
 
+    /// Whether a bound holds a gene where it stands.
+    pub(super) fn is_held(&self) -> bool {
+        self.offset.is_some_and(|offset| offset.held > 0)
+    }
+
     /// The sum of squares where it stands.
     pub(super) fn sum(&self) -> f64 {
         self.sum

@@ -43,6 +43,10 @@ pub struct Ending {
     pub reached: Option<[usize; 2]>,
     /// In one sentence.
     pub words: String,
+    /// How the derivatives at the best point were computed, which the standard errors rest on; `None`
+    /// where there are none.
+    #[serde(default)]
+    pub derivatives: Option<String>,
     /// Simulations of the test.
     pub simulations: u64,
 }
@@ -96,6 +100,7 @@ impl Ending {
             relative_offset: None,
             reached,
             words: untested(&run.problem),
+            derivatives: None,
             simulations,
         };
         if !run.evaluation.has_residuals() || run.problem.objectives.len() > 1 {
@@ -110,6 +115,7 @@ impl Ending {
             relative_offset: offset.relative.filter(|relative| relative.is_finite()),
             reached,
             words: words(kind, &offset, reached),
+            derivatives: Some(derivatives(&found)),
             simulations: found.simulations,
         }
     }
@@ -137,6 +143,14 @@ fn tested(
     let residuals = evaluation.residuals(problem, &found.simulated);
     let jacobian = evaluation.weighted(problem, values, found);
     test_minimum(&point, &residuals, &jacobian, [problem.noise, evaluation.size()])
+}
+
+fn derivatives(found: &Linearization) -> String {
+    match (found.exact, &found.refusal) {
+        (true, _) => "exact, by sensitivity equations".to_owned(),
+        (false, Some(refusal)) => format!("differences, because {refusal}"),
+        (false, None) => "differences".to_owned(),
+    }
 }
 
 fn otherwise(run: &Run, descents: &[DescentReport]) -> EndingKind {

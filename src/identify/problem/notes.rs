@@ -150,7 +150,9 @@ fn about_parameters(solution: &Solution, statistics: &Statistics) -> Vec<Finding
         findings
             .push(Finding::new(FindingKind::Correlated, sentence).severity(Severity::Information));
     }
-    if let Some(condition) = solution.condition.filter(|condition| *condition > ILL_CONDITIONED) {
+    // A lack of rank has been reported.
+    let condition = solution.condition.filter(|_| statistics.inseparable.is_empty());
+    if let Some(condition) = condition.filter(|condition| *condition > ILL_CONDITIONED) {
         let sentence = format!(
             "The sensitivities are ill-conditioned ({}): small errors of the data change the \
              parameters much.",
@@ -444,12 +446,19 @@ fn sum<'a>(parts: impl Iterator<Item = (&'a &'a str, &'a f64)>) -> String {
 }
 
 fn product<'a>(parts: impl Iterator<Item = (&'a &'a str, &'a f64)>) -> String {
-    let power = |(name, exponent): (&&str, &f64)| match significant(*exponent, 4).as_str() {
+    let power = |(name, exponent): (&&str, f64)| match significant(exponent, 4).as_str() {
         "1" => (*name).to_owned(),
-        negative if negative.starts_with('-') => format!("{name}^({negative})"),
         exponent => format!("{name}^{exponent}"),
     };
-    parts.map(power).collect::<Vec<_>>().join("*")
+    let (below, above): (Vec<_>, Vec<_>) = parts.partition(|(_, exponent)| **exponent < 0.0);
+    let above: Vec<String> = above.into_iter().map(|(name, e)| power((name, *e))).collect();
+    let below: Vec<String> = below.into_iter().map(|(name, e)| power((name, -*e))).collect();
+    let above = if above.is_empty() { "1".to_owned() } else { above.join("*") };
+    match below.as_slice() {
+        [] => above,
+        [one] => format!("{above}/{one}"),
+        several => format!("{above}/({})", several.join("*")),
+    }
 }
 
 fn undetermined(parameter: &SolvedParameter) -> String {

@@ -30,6 +30,9 @@ const EXACT: f64 = 1e-9;
 /// Derivatives that over the whole range would change the points by less than this part of the
 /// largest are rounding.
 const NO_EFFECT: f64 = 1e-10;
+/// Where no parameter has an effect of so many times the errors of the simulation, derivatives are
+/// errors, and say nothing of what cancels.
+const TOLD: f64 = 1e4;
 /// The upper end of a 95 % interval as a probability.
 const UPPER: f64 = 0.975;
 
@@ -117,7 +120,7 @@ impl Statistics {
         if !rank.inseparable.is_empty() {
             let elsewhere = elsewhere(problem, evaluation, others, &scales, &mut simulations);
             rank = inseparable::rank(&best, &elsewhere, tolerance);
-            rank.inseparable.retain(|group| problem.noise < EXACT || group.form != Form::Local);
+            rank.inseparable.retain(|group| problem.noise <= EXACT || group.form != Form::Local);
         }
         Statistics {
             uncertainty,
@@ -192,11 +195,26 @@ fn elsewhere(
         let (jacobian, took) = sensitivities(problem, evaluation, values);
         *simulations += took;
         let columns = weighted(&jacobian, scales);
-        if columns.iter().flatten().all(|value| value.is_finite()) {
+        let simulated = simulated.unwrap_or_default();
+        let effect =
+            largest_effect(&columns, values) > TOLD * problem.noise * size(&simulated, scales);
+        if effect && columns.iter().flatten().all(|value| value.is_finite()) {
             found.push(Sensitivities { values: values.clone(), columns });
         }
     }
     found
+}
+
+/// The largest effect of a parameter that changes by its own value: the length of its column.
+fn largest_effect(columns: &[Vec<f64>], values: &[f64]) -> f64 {
+    let effect = |(column, value): (&Vec<f64>, &f64)| {
+        column.iter().map(|d| d * d).sum::<f64>().sqrt() * value.abs()
+    };
+    columns.iter().zip(values).map(effect).fold(0.0, f64::max)
+}
+
+fn size(simulated: &[f64], scales: &[f64]) -> f64 {
+    simulated.iter().zip(scales).map(|(y, s)| (y * s).powi(2)).sum::<f64>().sqrt()
 }
 
 /// Derivatives of the simulated points, column by column, and the simulations that they took.
