@@ -44,7 +44,21 @@ pub(super) struct Global {
     /// A folder with Modelica packages, loadable by name (repeatable; also MODELICAPATH)
     #[arg(long, global = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub library: Vec<PathBuf>,
+    /// Let scripts and models read files in this folder; without DIR, everywhere (repeatable)
+    #[arg(long, global = true, value_name = "DIR", num_args = 0..=1, require_equals = true)]
+    #[arg(default_missing_value = EVERYWHERE, value_hint = ValueHint::DirPath, help_heading = ALLOWED)]
+    pub allow_read: Vec<PathBuf>,
+    /// Let scripts and models write everywhere, and replace and remove files that they have not made
+    #[arg(long, global = true, help_heading = ALLOWED)]
+    pub allow_write: bool,
 }
+
+/// `--allow-read` without a folder.
+pub(super) const EVERYWHERE: &str = "/";
+
+/// The heading of the permissions, with what holds without them.
+const ALLOWED: &str = "What scripts and models may do. They read the folder of the script, the \
+working folder and libraries, and write the output folder and new files";
 
 /// When to use colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -163,11 +177,8 @@ pub(super) struct Freedom {
     /// Whose habits scripts follow [default: recognised from the script]
     #[arg(long, value_enum, value_name = "NAME")]
     pub dialect: Option<DialectName>,
-    /// Let scripts write and remove files outside of the working, script and output folders
-    #[arg(long)]
-    pub allow_write: bool,
     /// Let scripts run programs and read all environment variables
-    #[arg(long)]
+    #[arg(long, help_heading = ALLOWED)]
     pub allow_system: bool,
     /// When to stop
     #[command(flatten)]
@@ -201,7 +212,7 @@ impl Freedom {
             DialectName::Dymola => Dialect::Dymola,
             DialectName::Openmodelica => Dialect::OpenModelica,
         });
-        let permissions = Permissions { write: self.allow_write, system: self.allow_system };
+        let permissions = Permissions { system: self.allow_system, ..Permissions::default() };
         Options { dialect, permissions, ..Options::default() }
     }
 }

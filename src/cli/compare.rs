@@ -5,6 +5,7 @@ use super::session;
 use crate::diag::{Diagnostic, Fault};
 use crate::results::{self, Agreement, Compared, ResultTable};
 use crate::script::Session;
+use crate::script::policy::Grant;
 use crate::source::Span;
 use std::path::Path;
 use std::process::ExitCode;
@@ -15,6 +16,10 @@ pub(super) fn compare(arguments: &CompareArgs, global: &Global) -> ExitCode {
         Ok((session, _)) => session,
         Err(code) => return code,
     };
+    let inputs = [Some(&arguments.result), Some(&arguments.reference), arguments.signals.as_ref()];
+    for file in inputs.into_iter().flatten() {
+        session.world.grant(Grant::Read(file));
+    }
     match run(&mut session, arguments) {
         Ok(compared) => {
             session.print(&table(&compared));

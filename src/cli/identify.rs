@@ -7,7 +7,8 @@ use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, session};
 use crate::identify::problem::Solution;
-use crate::script::problem::{RunOptions, solve};
+use crate::script::policy::Grant;
+use crate::script::problem::{RunOptions, grant_inputs, solve};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -54,7 +55,7 @@ pub(super) fn solve_one(
     let world = match SystemWorld::for_results(terminal, output, threads) {
         Ok(world) => world,
         Err(error) => {
-            terminal::eprint(&format!("error: the working directory cannot be read: {error}\n"));
+            terminal::eprint(&format!("error: {error}\n"));
             return Ended::Not(ExitCode::FAILURE);
         }
     };
@@ -77,6 +78,10 @@ pub(super) fn solve_one(
         samples: arguments.samples.unwrap_or(0) as usize,
         evaluations: arguments.evaluations,
     };
+    grant_inputs(&mut session, problem);
+    if let Some(file) = &arguments.watch {
+        session.world.grant(Grant::Read(file));
+    }
     match solve(&mut session, problem, &options) {
         Ok(_) if session.is_interrupted() => Ended::Not(session::stopped(&mut session)),
         Ok(solution) => Ended::Solved(Box::new(solution)),

@@ -6,12 +6,14 @@ mod check;
 mod compare;
 mod comparison;
 mod completions;
+mod disk;
 mod explain;
 mod help;
 mod identify;
 mod lesson;
 mod limits;
 mod live;
+mod lock;
 mod new;
 mod output;
 mod parsing;
@@ -20,6 +22,8 @@ mod report;
 mod run;
 mod scratch;
 mod session;
+#[cfg(unix)]
+mod signals;
 mod simulate;
 mod teach;
 mod teach_screen;
@@ -41,9 +45,12 @@ const STACK: usize = 256 << 20;
 /// the other codes mean stands in the help of each command.
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
+    #[cfg(unix)]
+    signals::survive_large_files();
     let work = move || with_stack(STACK - (4 << 20), || dispatch(&cli));
     let worker = std::thread::Builder::new().stack_size(STACK).spawn(work);
     match worker.map(std::thread::JoinHandle::join) {
+        Ok(Ok(_)) if terminal::output_failed() => ExitCode::FAILURE,
         Ok(Ok(code)) => code,
         // The panic has said what happened.
         Ok(Err(_)) => ExitCode::from(101),

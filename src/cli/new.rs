@@ -5,6 +5,7 @@ use super::session;
 use crate::diag::Fault;
 use crate::registry::BAD_OPTION;
 use crate::script::Session;
+use crate::script::policy::Grant;
 use crate::script::problem::{Draft, DraftOptions, draft};
 use crate::source::Span;
 use std::path::{Path, PathBuf};
@@ -22,6 +23,9 @@ pub(super) fn new(arguments: &NewArgs, global: &Global) -> ExitCode {
             .help("choose another name with `--output`, or remove it");
         return session::failed(&mut session, vec![fault.at(Span::NONE)]);
     }
+    session.world.grant(Grant::Named(&output));
+    session.grant_input(&arguments.data);
+    session.grant_input(&arguments.model);
     let options = options(arguments, &output);
     match draft(&mut session, &options).and_then(|draft| write(&mut session, &output, draft)) {
         Ok(()) => ExitCode::SUCCESS,

@@ -5,8 +5,9 @@
 //! to it: the same file is the same problem, however much was changed in it. Beside the folders the
 //! link `latest` leads to the one that was written last.
 
+use super::disk::write_atomically;
+use super::lock::{self, Lock};
 use super::terminal;
-use super::world::write_atomically;
 use crate::script::world::normalized;
 use std::path::{Component, Path, PathBuf};
 use std::{fs, io};
@@ -112,13 +113,31 @@ impl Output {
         self.holder().is_none() && self.folder.join("result.json").exists()
     }
 
-    /// Says in the folder whose results it holds, before the first of them is written.
+    /// Keeps other runs out of the folder, if it is there.
     ///
     /// # Errors
     ///
-    /// The folder cannot be made or written.
-    pub(super) fn claim(&self) -> io::Result<()> {
+    /// Another run writes into it.
+    pub(super) fn lock_if_there(&self) -> io::Result<Option<Lock>> {
+        if self.folder.is_dir() { Lock::of(&self.folder).map(Some) } else { Ok(None) }
+    }
+
+    /// Says in the folder whose results it holds, before the first of them is written, and keeps
+    /// other runs out of it.
+    ///
+    /// # Errors
+    ///
+    /// The folder cannot be made or written, or another run writes into it.
+    pub(super) fn claim(&self, lock: Option<Lock>) -> io::Result<Lock> {
         fs::create_dir_all(&self.folder)?;
+        let lock = match lock {
+            Some(lock) if self.folder.join(lock::FILE).exists() => lock,
+            _ => Lock::of(&self.folder)?,
+        };
+        self.describe().map(|()| lock)
+    }
+
+    fn describe(&self) -> io::Result<()> {
         if self.holder().as_ref() != Some(&self.origin) {
             write_atomically(&self.folder.join(ORIGIN), self.origin.as_bytes())?;
         }
@@ -208,7 +227,7 @@ mod tests {
         let all = here.path().join("results");
         let of = |script: &str| {
             let output = Output::below(&all, "gapi run", &here.path().join(script)).expect("room");
-            output.claim().expect("written");
+            output.claim(None).expect("written");
             output.folder.strip_prefix(&all).expect("below").to_owned()
         };
         assert_eq!(of("a/fit.mos"), Path::new("fit"));
@@ -226,7 +245,7 @@ mod tests {
         let of = |command: &str, script: &str, overwrite| {
             Output::of(command, &here.path().join(script), Some(&out), overwrite)
         };
-        of("gapi run", "a.mos", false).expect("free").claim().expect("written");
+        of("gapi run", "a.mos", false).expect("free").claim(None).expect("written");
         assert!(of("gapi run", "a.mos", false).is_ok());
         let refused = of("gapi run", "b.mos", false).unwrap_err();
         assert!(

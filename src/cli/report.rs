@@ -5,6 +5,7 @@ use super::{output, session};
 use crate::diag::Fault;
 use crate::identify::problem::Solution;
 use crate::script::Session;
+use crate::script::policy::Grant;
 use crate::source::Span;
 use std::path::Path;
 use std::process::ExitCode;
@@ -23,10 +24,12 @@ pub(super) fn report(arguments: &ReportArgs, global: &Global) -> ExitCode {
 
 fn draw(session: &mut Session, arguments: &ReportArgs) -> Result<(), Fault> {
     let folder = output::latest_of(&arguments.folder);
+    session.world.grant(Grant::Read(&folder));
     let read = |name: &str| session.read_text(&folder.join(name));
     let (json, history) = (read("result.json")?, read("history.csv")?);
     let solution = Solution::read(&json, &history, &read("individuals.csv")?)?;
     let page = arguments.output.clone().unwrap_or_else(|| folder.join("report.html"));
+    session.world.grant(Grant::Named(&page));
     session.print(&solution.text());
     write(session, &page, &solution)?;
     session.print(&format!("\n  written to {}\n", page.display()));

@@ -5,6 +5,7 @@ use super::output::Output;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, parsing, session};
+use crate::script::policy::Grant;
 use crate::script::{Echo, Journaling, Options, Session, Strictness, Transcript};
 use crate::source::Span;
 use std::path::Path;
@@ -32,7 +33,7 @@ pub(super) fn run(arguments: &RunArgs, global: &Global) -> ExitCode {
     let world = match SystemWorld::for_results(terminal, output, threads) {
         Ok(world) => world,
         Err(error) => {
-            terminal::eprint(&format!("error: the working directory cannot be read: {error}\n"));
+            terminal::eprint(&format!("error: {error}\n"));
             return ExitCode::FAILURE;
         }
     };
@@ -44,7 +45,8 @@ pub(super) fn run(arguments: &RunArgs, global: &Global) -> ExitCode {
     };
     let mut session = session::open(global, world).with_options(options(arguments));
     let start = session.world.current_dir();
-    if arguments.transcript.is_some() {
+    if let Some(file) = &arguments.transcript {
+        session.world.grant(Grant::Named(&start.join(file)));
         session.transcript = Some(Transcript::default());
     }
     if let Some(fault) = arguments.trace.as_deref().and_then(|path| session.trace_to(path).err()) {

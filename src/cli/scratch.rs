@@ -1,6 +1,7 @@
 //! The world of a test: it reads the disk, and keeps in memory what is written.
 
 use super::world::SystemWorld;
+use crate::script::policy::{Access, Grant, Policy};
 use crate::script::world::{Files, Progress, Stamp, World};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
@@ -14,6 +15,7 @@ pub(super) type Output = Arc<Mutex<String>>;
 /// The disk below, memory above; the clock stands still and there is one thread, so that a test
 /// gives the same text every time.
 pub(super) struct ScratchWorld {
+    policy: Policy,
     disk: SystemWorld,
     current: PathBuf,
     output: PathBuf,
@@ -28,16 +30,21 @@ impl ScratchWorld {
     /// A world whose working directory is `folder`.
     pub(super) fn new(disk: SystemWorld, folder: &Path, printed: Output) -> ScratchWorld {
         let current = disk.absolute(folder);
-        ScratchWorld {
-            output: current.join("results"),
-            current,
+        let output = current.join("results");
+        let mut world = ScratchWorld {
+            policy: Policy::default(),
+            output: output.clone(),
+            current: current.clone(),
             disk,
             files: BTreeMap::new(),
             folders: BTreeSet::new(),
             removed: BTreeSet::new(),
             changes: 0,
             printed,
-        }
+        };
+        world.grant(Grant::Create(&current));
+        world.grant(Grant::Own(&output));
+        world
     }
 }
 
@@ -46,6 +53,22 @@ fn missing(path: &Path) -> io::Error {
 }
 
 impl World for ScratchWorld {
+    fn grant(&mut self, grant: Grant<'_>) {
+        let path = grant.path().map(|path| self.absolute(path)).unwrap_or_default();
+        self.disk.grant(grant.with_path(&path));
+        self.policy.grant(grant, path);
+    }
+
+    fn permits(&self, path: &Path, access: Access) -> io::Result<()> {
+        let path = self.absolute(path);
+        match access {
+            Access::Read if self.policy.has_made(&path) => Ok(()),
+            Access::Read => self.disk.permits(&path, access),
+            // What is written stays in memory.
+            Access::Write => Ok(self.policy.may_write(&path, self.exists(&path))?),
+        }
+    }
+
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         let path = self.absolute(path);
         match self.files.get(&path) {
@@ -56,7 +79,9 @@ impl World for ScratchWorld {
     }
 
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        self.permits(path, Access::Write)?;
         let path = self.absolute(path);
+        self.policy.note_made(path.clone());
         self.changes += 1;
         self.folders.extend(path.ancestors().skip(1).map(Path::to_path_buf));
         self.files.insert(path, bytes.to_vec());
@@ -73,6 +98,7 @@ impl World for ScratchWorld {
         if !self.exists(path) {
             return Err(missing(path));
         }
+        self.permits(path, Access::Write)?;
         let path = self.absolute(path);
         self.files.remove(&path);
         self.folders.remove(&path);
@@ -121,6 +147,11 @@ impl World for ScratchWorld {
 
     fn create_dirs(&mut self, path: &Path) -> io::Result<()> {
         let path = self.absolute(path);
+        if self.is_dir(&path) {
+            return Ok(());
+        }
+        self.permits(&path, Access::Write)?;
+        self.policy.note_made(path.clone());
         self.folders.extend(path.ancestors().map(Path::to_path_buf));
         Ok(())
     }

@@ -1,24 +1,42 @@
 //! A session for the commands that work on models, and how they tell what is wrong.
 
-use super::args::Global;
+use super::args::{EVERYWHERE, Global};
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use crate::diag::{Diagnostic, Fault};
 use crate::name::Name;
 use crate::script::Session;
 use crate::script::errors::LIMIT_REACHED;
+use crate::script::policy::Grant;
 use crate::script::world::World;
 use crate::source::Span;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// A session in the system's world with the user's library folders.
 pub(super) fn open(global: &Global, world: impl World + 'static) -> Session {
     let mut session = Session::new(Box::new(world));
     for folder in library_folders(global) {
+        session.world.grant(Grant::Read(&folder));
         session.add_library_dir(&folder);
     }
+    let current = session.world.current_dir();
+    session.grant_models(&current);
+    grant_asked(&mut session, global);
     session
+}
+
+/// What `--allow-read` and `--allow-write` allow.
+fn grant_asked(session: &mut Session, global: &Global) {
+    for folder in &global.allow_read {
+        match folder == Path::new(EVERYWHERE) {
+            true => session.world.grant(Grant::ReadAll),
+            false => session.world.grant(Grant::Read(folder)),
+        }
+    }
+    if global.allow_write {
+        session.world.grant(Grant::WriteAll);
+    }
 }
 
 /// `--library` first, then `MODELICAPATH`.
@@ -37,12 +55,13 @@ pub(super) fn with_files(
 ) -> Result<(Session, Vec<Name>), ExitCode> {
     let world = SystemWorld::new(Terminal::new(global.color, false), "results".as_ref(), None);
     let world = world.map_err(|error| {
-        terminal::eprint(&format!("error: the working directory cannot be read: {error}\n"));
+        terminal::eprint(&format!("error: {error}\n"));
         ExitCode::FAILURE
     })?;
     let mut session = open(global, world);
     let (mut names, mut errors) = (Vec::new(), Vec::new());
     for file in files {
+        session.grant_input(file);
         match session.load_path(file) {
             Ok(loaded) => names.extend(loaded),
             Err(wrong) => errors.extend(wrong),

@@ -10,6 +10,7 @@ use crate::registry::BAD_OPTION;
 use crate::results::{self, ResultTable};
 use crate::script::Session;
 use crate::script::errors::FILE_ERROR;
+use crate::script::policy::Grant;
 use crate::script::simulation::{self, Simulated, Translated, Wishes};
 use crate::script::world::Progress;
 use crate::sim::Statistics;
@@ -41,6 +42,12 @@ pub(super) fn simulate(arguments: &SimulateArgs, global: &Global) -> ExitCode {
         Ok(opened) => opened,
         Err(code) => return code,
     };
+    for file in [&arguments.output, &arguments.figure].into_iter().flatten() {
+        session.world.grant(Grant::Named(file));
+    }
+    if let Some(file) = &arguments.from {
+        session.world.grant(Grant::Read(file));
+    }
     match run(&mut session, &class, arguments, global) {
         Ok(()) => ExitCode::SUCCESS,
         Err(errors) => session::failed(&mut session, errors),

@@ -89,9 +89,8 @@ fn recorded(
     let output = if change.is_some() { output.within("what_if") } else { output };
     let out = output.folder.clone();
     let terminal = Terminal::new(global.color, true);
-    let world = SystemWorld::for_results(terminal, output, None).map_err(|error| {
-        Trouble::Message(format!("the working directory cannot be read: {error}"))
-    })?;
+    let world = SystemWorld::for_results(terminal, output, None)
+        .map_err(|error| Trouble::Message(error.to_string()))?;
     world.catch_interrupts();
     let options = Options { echo: Echo::Nothing, ..Options::default() };
     let mut session = session::open(global, world).with_options(options);

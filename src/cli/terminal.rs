@@ -3,9 +3,11 @@
 
 use super::args::Colour;
 use super::live::Live;
+use crate::diag::visible;
 use crate::script::view::View;
 use crate::script::world::Progress;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use std::borrow::Cow;
 use std::io::{IsTerminal, Write as _};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -102,10 +104,10 @@ impl Terminal {
             self.kept.push((true, text.to_owned()));
             return;
         }
+        let text = on_terminal(std::io::stdout().is_terminal(), text);
         self.suspended(|| {
             let mut out = std::io::stdout().lock();
-            let _ = out.write_all(text.as_bytes());
-            let _ = out.flush();
+            told(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
         });
     }
 
@@ -159,6 +161,11 @@ impl Drop for Terminal {
     }
 }
 
+/// What scripts print is shown as text on a terminal, and kept as it is elsewhere.
+fn on_terminal(is_terminal: bool, text: &str) -> Cow<'_, str> {
+    if is_terminal { visible(text) } else { Cow::Borrowed(text) }
+}
+
 fn new_bar(progress: &Progress) -> ProgressBar {
     let known = progress.total > 0;
     let template = if known {
@@ -184,10 +191,30 @@ fn round_up(duration: Duration) -> Duration {
 
 /// Writes to standard output where there is no session.
 pub(super) fn print(text: &str) {
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+    let mut out = std::io::stdout().lock();
+    told(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
+}
+
+/// Whether something could not be written to standard output.
+static OUTPUT_FAILED: AtomicBool = AtomicBool::new(false);
+
+/// Whether all that was printed has reached standard output.
+pub(super) fn output_failed() -> bool {
+    OUTPUT_FAILED.load(Ordering::SeqCst)
+}
+
+/// Says once that standard output cannot be written. A reader that went away (`| head`) has what it
+/// wanted.
+fn told(written: std::io::Result<()>) {
+    let Err(error) = written else { return };
+    let is_new = error.kind() != std::io::ErrorKind::BrokenPipe
+        && !OUTPUT_FAILED.swap(true, Ordering::SeqCst);
+    if is_new {
+        eprint(&format!("error: standard output cannot be written: {error}\n"));
+    }
 }
 
 /// Writes to standard error where there is no session.
 pub(super) fn eprint(text: &str) {
-    let _ = std::io::stderr().lock().write_all(text.as_bytes());
+    let _ = std::io::stderr().lock().write_all(visible(text).as_bytes());
 }

@@ -1,14 +1,19 @@
 //! The world of a real run: disk, clock, environment, terminal, Ctrl-C.
 
+use super::disk::Disk;
 use super::limits::Stopping;
+use super::lock::Lock;
 use super::output::Output;
+#[cfg(unix)]
+use super::signals;
 use super::terminal::Terminal;
 use crate::models;
+use crate::script::policy::{Access, Grant};
 use crate::script::view::View;
-use crate::script::world::{Files, Progress, Stamp, World, normalized};
+use crate::script::world::{Files, Progress, Stamp, World};
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{self, Write as _};
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, LazyLock};
@@ -23,10 +28,13 @@ pub(super) struct SystemWorld {
     threads: usize,
     started: Instant,
     stopping: Stopping,
+    /// Whether the folder for the results says whose they are.
+    claimed: bool,
     /// How often it has written a file.
     changes: u64,
-    /// The folder for the results, as long as nothing was written into it.
-    unclaimed: Option<Output>,
+    disk: Arc<Disk>,
+    /// The folder for the results, and the lock on it once it is there.
+    results: Option<(Output, Option<Lock>)>,
 }
 
 impl SystemWorld {
@@ -36,8 +44,12 @@ impl SystemWorld {
         output: &Path,
         threads: Option<usize>,
     ) -> io::Result<Self> {
-        let current = std::env::current_dir()?;
+        let current = std::env::current_dir().map_err(|error| {
+            io::Error::new(error.kind(), format!("the working directory cannot be read: {error}"))
+        })?;
         let available = std::thread::available_parallelism().map_or(1, usize::from);
+        let disk = Disk::default();
+        disk.grant(Grant::Create(&current));
         Ok(SystemWorld {
             output: current.join(output),
             current,
@@ -45,8 +57,10 @@ impl SystemWorld {
             terminal,
             threads: threads.unwrap_or(available).max(1),
             started: Instant::now(),
+            claimed: false,
             changes: 0,
-            unclaimed: None,
+            disk: Arc::new(disk),
+            results: None,
         })
     }
 
@@ -57,18 +71,27 @@ impl SystemWorld {
         threads: Option<usize>,
     ) -> io::Result<Self> {
         let world = SystemWorld::new(terminal, &output.folder, threads)?;
-        Ok(SystemWorld { unclaimed: Some(output), ..world })
+        world.own_output();
+        let lock = output.lock_if_there()?;
+        Ok(SystemWorld { results: Some((output, lock)), ..world })
     }
 
-    /// Before a file is written.
-    fn claim(&mut self, path: &Path) {
+    /// The output folder belongs to the run: what is in it may be replaced.
+    pub(super) fn own_output(&self) {
+        self.disk.grant(Grant::Own(&self.output));
+    }
+
+    /// Before a file is written: wherever it lies, the output folder gets results or the record of
+    /// the file. A folder that was removed meanwhile is made again.
+    fn claim(&mut self, path: &Path) -> io::Result<()> {
         self.changes += 1;
-        if path.starts_with(&self.output)
-            && let Some(output) = self.unclaimed.take()
-        {
-            // What cannot be written shows with the file itself.
-            let _ = output.claim();
+        let Some((output, lock)) = &mut self.results else { return Ok(()) };
+        let is_claimed = self.claimed && self.output.is_dir();
+        if !is_claimed && self.disk.permits(path, Access::Write).is_ok() {
+            *lock = Some(output.claim(lock.take())?);
+            self.claimed = true;
         }
+        Ok(())
     }
 
     /// What stops the run when it is set, and why it was.
@@ -76,7 +99,8 @@ impl SystemWorld {
         self.stopping.clone()
     }
 
-    /// Makes Ctrl-C ask the run to stop; a second one ends the process at once.
+    /// Makes Ctrl-C and the system's wishes to end ask the run to stop; a second one ends the
+    /// process at once.
     pub(super) fn catch_interrupts(&self) {
         let flag = Arc::clone(&self.stopping.flag);
         let caught = ctrlc::set_handler(move || {
@@ -87,6 +111,8 @@ impl SystemWorld {
         });
         // Without a handler Ctrl-C ends the process as it always did.
         drop(caught);
+        #[cfg(unix)]
+        signals::catch(&self.stopping.flag);
     }
 
     fn at(&self, path: &Path) -> PathBuf {
@@ -94,57 +120,38 @@ impl SystemWorld {
     }
 }
 
-/// The disk, and the models in the program.
-#[derive(Debug)]
-struct Disk;
-
-impl Files for Disk {
-    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        match models::read(path) {
-            Some(bytes) => Ok(bytes.to_vec()),
-            None => fs::read(path),
-        }
-    }
-
-    fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
-        if let Some(names) = models::list(path) {
-            return Ok(names);
-        }
-        let mut names = Vec::new();
-        for entry in fs::read_dir(path)? {
-            names.push(entry?.file_name().to_string_lossy().into_owned());
-        }
-        names.sort();
-        Ok(names)
-    }
-
-    fn is_file(&self, path: &Path) -> bool {
-        models::read(path).is_some() || path.is_file()
-    }
-}
-
 impl World for SystemWorld {
+    fn grant(&mut self, grant: Grant<'_>) {
+        let path = grant.path().map(|path| self.at(path)).unwrap_or_default();
+        self.disk.grant(grant.with_path(&path));
+    }
+
+    fn permits(&self, path: &Path, access: Access) -> io::Result<()> {
+        self.disk.permits(&self.at(path), access)
+    }
+
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
-        Disk.read(&self.at(path))
+        self.disk.read(&self.at(path))
     }
 
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         let path = self.at(path);
-        self.claim(&path);
-        write_atomically(&path, bytes)
+        self.claim(&path)?;
+        self.disk.write(&path, bytes)
     }
 
     fn append(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         let path = self.at(path);
-        self.claim(&path);
-        let mut file = fs::OpenOptions::new().append(true).create(true).open(path)?;
-        file.write_all(bytes)
+        self.claim(&path)?;
+        self.disk.append(&path, bytes)
+    }
+
+    fn sync(&mut self, path: &Path) -> io::Result<()> {
+        self.disk.sync(&self.at(path))
     }
 
     fn remove(&mut self, path: &Path) -> io::Result<()> {
-        let path = self.at(path);
-        let is_folder = path.is_dir() && !path.is_symlink();
-        if is_folder { fs::remove_dir(path) } else { fs::remove_file(path) }
+        self.disk.remove(&self.at(path))
     }
 
     fn is_link(&self, path: &Path) -> bool {
@@ -167,15 +174,15 @@ impl World for SystemWorld {
     }
 
     fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
-        Disk.list_dir(&self.at(path))
+        self.disk.list_dir(&self.at(path))
     }
 
     fn files(&self) -> Arc<dyn Files> {
-        Arc::new(Disk)
+        self.disk.clone()
     }
 
     fn create_dirs(&mut self, path: &Path) -> io::Result<()> {
-        fs::create_dir_all(self.at(path))
+        self.disk.create_folders(&self.at(path))
     }
 
     fn current_dir(&self) -> PathBuf {
@@ -283,86 +290,7 @@ impl World for SystemWorld {
         self.terminal.ask(prompt)
     }
 
-    fn resolved(&self, path: &Path) -> PathBuf {
-        followed(&self.absolute(path), MAX_LINKS)
-    }
-
     fn colour(&self) -> bool {
         self.terminal.colour()
-    }
-}
-
-/// Links that lead to links; as many as operating systems follow.
-const MAX_LINKS: usize = 40;
-
-/// The path with its links followed, those too that lead to nothing yet.
-fn followed(path: &Path, links: usize) -> PathBuf {
-    for known in path.ancestors() {
-        let rest = path.strip_prefix(known).unwrap_or(Path::new(""));
-        if let Ok(real) = known.canonicalize() {
-            return real.join(rest);
-        }
-        if let (Ok(target), Some(folder)) = (std::fs::read_link(known), known.parent())
-            && links > 0
-        {
-            return followed(&normalized(&folder.join(target).join(rest)), links - 1);
-        }
-    }
-    path.to_path_buf()
-}
-
-/// Writes beside the file and renames, so that an interrupted write leaves the old file whole.
-pub(super) fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let Some(name) = path.file_name() else {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "not a file name"));
-    };
-    if fs::symlink_metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
-        // A device, a pipe or a link: replacing it would not be what was asked.
-        return fs::write(path, bytes);
-    }
-    let mut temporary_name = name.to_owned();
-    temporary_name.push(format!(".{}.tmp", std::process::id()));
-    let temporary = path.with_file_name(temporary_name);
-    let written = fs::write(&temporary, bytes).and_then(|()| fs::rename(&temporary, path));
-    if written.is_err() {
-        // The error of the write is the one to report.
-        let _ = fs::remove_file(&temporary);
-    }
-    written
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_failed_write_leaves_nothing_behind() {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let missing = folder.path().join("no such folder").join("file");
-        assert!(write_atomically(&missing, b"x").is_err());
-        let path = folder.path().join("file");
-        write_atomically(&path, b"one").expect("a writable folder");
-        write_atomically(&path, b"two").expect("a writable folder");
-        assert_eq!(fs::read(&path).expect("the file"), b"two");
-        assert_eq!(fs::read_dir(folder.path()).expect("the folder").count(), 1);
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn links_are_followed_where_they_lead_to_nothing_too() {
-        let folder = tempfile::tempdir().expect("a folder");
-        let root = folder.path().canonicalize().expect("an absolute path");
-        std::fs::create_dir(root.join("inside")).expect("made");
-        let link = |target: &str, name: &str| {
-            std::os::unix::fs::symlink(target, root.join("inside").join(name)).expect("a link");
-        };
-        link("..", "up");
-        link("../missing", "dangling");
-        link("round", "round");
-        let resolved = |path: &str| followed(&root.join("inside").join(path), MAX_LINKS);
-        assert_eq!(resolved("new/file.txt"), root.join("inside/new/file.txt"));
-        assert_eq!(resolved("up/file.txt"), root.join("file.txt"));
-        assert_eq!(resolved("dangling"), root.join("missing"));
-        assert_eq!(resolved("round").file_name(), Some("round".as_ref()));
     }
 }

@@ -6,8 +6,10 @@
 mod code;
 pub mod render;
 pub mod suggest;
+mod visible;
 
 pub use code::Code;
+pub use visible::{visible, visible_line};
 
 use crate::source::Span;
 

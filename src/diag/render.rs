@@ -5,6 +5,8 @@ use crate::source::{SourceMap, Span};
 use codespan_reporting::diagnostic as cr;
 use codespan_reporting::files::{Error, Files};
 use codespan_reporting::term;
+use codespan_reporting::term::termcolor::{Buffer, ColorSpec, WriteColor};
+use std::io;
 use std::ops::Range;
 
 /// The diagnostic as the user sees it, with or without colours (ANSI escapes).
@@ -12,15 +14,15 @@ pub fn render(diagnostic: &Diagnostic, sources: &SourceMap, colour: bool) -> Str
     let shown = convert(diagnostic, sources);
     let config = term::Config::default();
     let mut text = if colour {
-        let mut buffer = codespan_reporting::term::termcolor::Buffer::ansi();
+        let mut buffer = Shown(Buffer::ansi());
         match term::emit_to_write_style(&mut buffer, &config, sources, &shown) {
-            Ok(()) => String::from_utf8_lossy(buffer.as_slice()).into_owned(),
+            Ok(()) => String::from_utf8_lossy(buffer.0.as_slice()).into_owned(),
             Err(_) => plain_line(diagnostic),
         }
     } else {
         let mut buffer = String::new();
         match term::emit_to_string(&mut buffer, &config, sources, &shown) {
-            Ok(()) => buffer,
+            Ok(()) => super::visible(&buffer).into_owned(),
             Err(_) => plain_line(diagnostic),
         }
     };
@@ -30,8 +32,37 @@ pub fn render(diagnostic: &Diagnostic, sources: &SourceMap, colour: bool) -> Str
     text
 }
 
+/// Colours are the only commands that reach a terminal: the texts between them are made visible.
+struct Shown(Buffer);
+
+impl io::Write for Shown {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let text = String::from_utf8_lossy(bytes);
+        self.0.write_all(super::visible(&text).as_bytes())?;
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
+
+impl WriteColor for Shown {
+    fn supports_color(&self) -> bool {
+        self.0.supports_color()
+    }
+
+    fn set_color(&mut self, spec: &ColorSpec) -> io::Result<()> {
+        self.0.set_color(spec)
+    }
+
+    fn reset(&mut self) -> io::Result<()> {
+        self.0.reset()
+    }
+}
+
 fn plain_line(diagnostic: &Diagnostic) -> String {
-    format!("error[{}]: {}\n", diagnostic.code.slug, diagnostic.message)
+    format!("error[{}]: {}\n", diagnostic.code.slug, super::visible(&diagnostic.message))
 }
 
 fn convert(diagnostic: &Diagnostic, sources: &SourceMap) -> cr::Diagnostic<usize> {

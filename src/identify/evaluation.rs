@@ -163,6 +163,25 @@ impl Evaluator {
         })
     }
 
+    /// What the simulation is asked for, as a text that is the same where the settings are.
+    pub fn settings_text(&self) -> String {
+        let s = &self.settings;
+        format!(
+            "{:?}",
+            (
+                s.start,
+                s.stop,
+                s.tolerance,
+                s.method.name,
+                s.step,
+                s.initial_step,
+                s.max_step,
+                s.treats_chattering,
+                s.max_steps
+            )
+        )
+    }
+
     /// What is simulated.
     pub fn study(&self) -> &Arc<Study> {
         &self.study

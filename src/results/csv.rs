@@ -26,8 +26,7 @@ impl Format for Csv {
 
     fn write(&self, table: &ResultTable) -> Result<Vec<u8>, Fault> {
         table.check()?;
-        let names: Vec<String> =
-            table.names().map(|name| format!("\"{}\"", name.replace('"', "\"\""))).collect();
+        let names: Vec<String> = table.names().map(quoted).collect();
         let columns: Vec<Vec<f64>> = (0..table.series.len()).map(|i| table.expand(i)).collect();
         let mut text = names.join(",");
         for (row, time) in table.time.iter().enumerate() {
@@ -49,11 +48,29 @@ impl Format for Csv {
             bail!(BAD_RESULT_FILE, "the first column is not `time`");
         };
         let series = columns
-            .map(|(name, matrix)| Series::new(name, Values::Trajectory(matrix.values)))
+            .map(|(name, matrix)| Series::new(unmarked(name), Values::Trajectory(matrix.values)))
             .collect();
         let table = ResultTable { time_name, time: time.values, series };
         table.check()?;
         Ok(table)
+    }
+}
+
+/// A text as a cell in double quotes. Spreadsheets would compute what begins as a formula does: an
+/// apostrophe before it, as they write themselves, says that it is text.
+pub fn quoted(text: &str) -> String {
+    let is_formula = text.starts_with(['=', '+', '-', '@', '\t', '\r']);
+    let mark = if is_formula { "'" } else { "" };
+    format!("\"{mark}{}\"", text.replace('"', "\"\""))
+}
+
+/// The name in a cell that [`quoted`] has written. Quoted identifiers of Modelica have an even number
+/// of apostrophes.
+fn unmarked(name: String) -> String {
+    let is_marked = name.matches('\'').count() % 2 == 1;
+    match name.strip_prefix('\'') {
+        Some(rest) if is_marked => rest.to_owned(),
+        _ => name,
     }
 }
 

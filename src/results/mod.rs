@@ -13,6 +13,7 @@ mod table;
 mod tube;
 
 pub use comparison::{Agreement, Compared, compare, signals_to_compare};
+pub use csv::quoted;
 pub use table::{ResultTable, Series, Values};
 pub use tube::{Deviation, TUBE_TOLERANCE, Tube};
 

@@ -1,7 +1,8 @@
 //! Files as commands see them: found, read and written with errors that say what to do.
 
 use super::Session;
-use super::errors::FILE_ERROR;
+use super::errors::{FILE_ERROR, REFUSED};
+use super::policy::{Access, Refusal, refusal_of};
 use crate::diag::Fault;
 use crate::syntax;
 use crate::value::Value;
@@ -34,14 +35,14 @@ impl Session {
 
     /// Writes a file anew, with the directories it lies in.
     pub fn write_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
-        self.may_change(path)?;
+        self.may(Access::Write, path)?;
         self.make_parents(path)?;
         self.world.write(path, bytes).map_err(|error| cannot("write", path, &error))
     }
 
     /// Writes behind the end of a file.
     pub fn append_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
-        self.may_change(path)?;
+        self.may(Access::Write, path)?;
         self.make_parents(path)?;
         self.world.append(path, bytes).map_err(|error| cannot("write", path, &error))
     }
@@ -91,6 +92,9 @@ pub(super) fn plain(path: &str) -> String {
 
 /// The fault of a file that the system does not let us use.
 pub(super) fn cannot(verb: &str, path: &Path, error: &io::Error) -> Fault {
+    if let Some(refusal) = refusal_of(error) {
+        return refused(refusal, path);
+    }
     let reason = match error.kind() {
         io::ErrorKind::NotFound => "it does not exist".to_owned(),
         io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
@@ -101,16 +105,24 @@ pub(super) fn cannot(verb: &str, path: &Path, error: &io::Error) -> Fault {
     Fault::new(FILE_ERROR, format!("cannot {verb} `{}`: {reason}", path.display()))
 }
 
+/// The fault of a file that the policy does not let us use.
+fn refused(refusal: Refusal, path: &Path) -> Fault {
+    let verb = if refusal.is_of() == Access::Read { "read" } else { "changed" };
+    let verb = if refusal == Refusal::System { "opened" } else { verb };
+    let message = format!("`{}` is not {verb}: {}", path.display(), refusal.reason());
+    Fault::new(REFUSED, message).help_if(refusal.help().map(str::to_owned))
+}
+
 impl Session {
     /// Removes a file or an empty directory.
     pub(super) fn remove_file(&mut self, path: &Path) -> Result<(), Fault> {
-        self.may_change(path)?;
+        self.may(Access::Write, path)?;
         self.world.remove(path).map_err(|error| cannot("remove", path, &error))
     }
 
     /// Makes a directory and the ones it lies in.
     pub(super) fn create_directory(&mut self, path: &Path) -> Result<(), Fault> {
-        self.may_change(path)?;
+        self.may(Access::Write, path)?;
         self.world.create_dirs(path).map_err(|error| cannot("make", path, &error))
     }
 

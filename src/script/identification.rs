@@ -12,6 +12,7 @@ use crate::identify::{
     CompiledModel, Ending, Evaluator, Measurement, Question, Recorder, Simulated, Study,
 };
 use crate::mat;
+use crate::registry::BAD_OPTION;
 use crate::source::Span;
 use std::path::Path;
 use std::sync::Arc;
@@ -129,11 +130,17 @@ impl Session {
             Some(evaluator) => evaluator,
             None => self.prepare(&request)?,
         };
-        let simulated = match self.journaled(&request, genomes)? {
-            Some(known) => known,
+        let simulated = match self.journaled(&request, &evaluator.settings_text(), genomes)? {
+            Some(known) => {
+                if self.is_to_be_checked() {
+                    check(&mut evaluator, genomes, &known)
+                        .inspect_err(|_| self.refuse_to_resume())?;
+                }
+                known
+            }
             None => {
                 let simulated = evaluator.evaluate(genomes)?;
-                self.journal(&request, genomes, &simulated);
+                self.journal(&request, &evaluator.settings_text(), genomes, &simulated);
                 simulated
             }
         };
@@ -192,6 +199,30 @@ impl Session {
         let threads = self.world.threads();
         Ok(Evaluator::new(Arc::new(model), request.question.clone(), threads)?)
     }
+}
+
+/// The first individual, which is the best where elites are kept, and another one are computed
+/// again: if a bit differs, the earlier run was that of another model.
+fn check(evaluator: &mut Evaluator, genomes: &Genomes, known: &Simulated) -> Result<(), Failure> {
+    let mut site = Fingerprint::default();
+    site.add_numbers(genomes.values());
+    let rows = [0, site.number() as usize % genomes.len().max(1)];
+    let points = known.rows.len() / genomes.len().max(1);
+    for row in rows.into_iter().filter(|row| *row < genomes.len()) {
+        let one = Genomes::new(genomes.row(row).len(), genomes.row(row).to_vec())?;
+        let now = evaluator.evaluate(&one)?;
+        let before = &known.rows[row * points..(row + 1) * points];
+        let differs =
+            |(a, b): (&f64, &f64)| a.to_bits() != b.to_bits() && !(a.is_nan() && b.is_nan());
+        if before.len() != now.rows.len() || before.iter().zip(&now.rows).any(differs) {
+            bail!(
+                BAD_OPTION,
+                "the run cannot be resumed: individual {} of it is simulated otherwise now", row + 1;
+                help: "restore the model, its libraries and tables, the settings of the simulation, the program and the machine, or begin anew without `--resume`"
+            );
+        }
+    }
+    Ok(())
 }
 
 impl Identification {

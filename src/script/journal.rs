@@ -4,33 +4,38 @@
 //! where the earlier run was, with the same bits.
 //!
 //! ```text
-//! file = "GAPISCR1", frame, frame, …   each with its length and its checksum
+//! file = "GAPISCR2", frame, frame, …   each with its length and its checksum
 //! ```
 
 use super::builtins::Failure;
-use super::checkpoint::Checkpoint;
+use super::checkpoint::{Checkpoint, keep_old};
 use super::identification::Request;
+use super::session::Stop;
 use super::{Journaling, Session};
 use crate::bail;
 use crate::diag::Diagnostic;
 use crate::ga::Genomes;
-use crate::identify::problem::{Fingerprint, first_frame, frame};
+use crate::identify::problem::{Fingerprint, Origins, first_frame, frame, listed};
 use crate::identify::{FailedSimulation, Simulated};
 use crate::registry::BAD_OPTION;
+use crate::source::SourceId;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
-use std::path::Path;
 
 const FILE: &str = "script.journal";
-/// Where the journal of an earlier run is kept when a new one takes its place.
-const OLD: &str = "script.journal.old";
-const MAGIC: &[u8; 8] = b"GAPISCR1";
+const MAGIC: &[u8; 8] = b"GAPISCR2";
 
 /// The journal of this session, and what it still has to answer.
 #[derive(Default)]
 pub(super) struct Journal {
     checkpoint: Option<Checkpoint>,
     replay: VecDeque<Entry>,
+    /// What the entries depend on, as it was noted last.
+    noted: Origins,
+    /// What the next entry depends on, and how many texts were looked at for it.
+    origins: Option<(Origins, u32)>,
+    /// Answers taken from the earlier run.
+    answered: usize,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -39,6 +44,8 @@ enum Entry {
     Simulated { asked: u64, rows: Vec<f64>, failures: Vec<(u32, String, Option<f64>)> },
     /// The user typed this.
     Typed(String),
+    /// What the next answers depend on: the Modelica texts read so far, and the program.
+    From(Origins),
 }
 
 impl Session {
@@ -50,6 +57,7 @@ impl Session {
     pub(super) fn journaled(
         &mut self,
         request: &Request,
+        settings: &str,
         genomes: &Genomes,
     ) -> Result<Option<Simulated>, Failure> {
         let (seconds, resumes) = match self.options.journaling {
@@ -60,10 +68,11 @@ impl Session {
         if self.extension::<Journal>().checkpoint.is_none() {
             self.open_journal(seconds, resumes)?;
         }
+        self.compare_origins()?;
         let Some(entry) = self.extension::<Journal>().replay.pop_front() else { return Ok(None) };
         match entry {
             Entry::Simulated { asked, rows, failures }
-                if asked == fingerprint(request, genomes)
+                if asked == fingerprint(request, settings, genomes)
                     && rows.len() == genomes.len() * request.question.x.len() =>
             {
                 let mut all = vec![None; genomes.len()];
@@ -74,25 +83,39 @@ impl Session {
                 }
                 Ok(Some(Simulated { rows, failures: all }))
             }
-            _ => bail!(
-                BAD_OPTION,
-                "the script asks something else here than the run that is to be resumed";
-                help: "run the same script with the same data and settings, or begin anew without `--resume`"
-            ),
+            _ => {
+                self.refuse_to_resume();
+                bail!(
+                    BAD_OPTION,
+                    "the script asks something else here than the run that is to be resumed";
+                    help: "run the same script with the same data and settings, or begin anew without `--resume`"
+                )
+            }
         }
     }
 
     /// Notes what was simulated.
-    pub(super) fn journal(&mut self, request: &Request, genomes: &Genomes, simulated: &Simulated) {
+    pub(super) fn journal(
+        &mut self,
+        request: &Request,
+        settings: &str,
+        genomes: &Genomes,
+        simulated: &Simulated,
+    ) {
         if self.options.journaling == Journaling::Off {
             return;
+        }
+        let origins = self.origins();
+        if self.extension::<Journal>().noted != origins {
+            self.note_entry(&Entry::From(origins.clone()), false);
+            self.extension::<Journal>().noted = origins;
         }
         let failed = simulated.failures.iter().enumerate();
         let failures = failed.filter_map(|(k, failed)| {
             failed.as_ref().map(|failed| (k as u32, failed.cause.clone(), failed.time))
         });
         let entry = Entry::Simulated {
-            asked: fingerprint(request, genomes),
+            asked: fingerprint(request, settings, genomes),
             rows: simulated.rows.clone(),
             failures: failures.collect(),
         };
@@ -113,6 +136,60 @@ impl Session {
                 None
             }
         }
+    }
+
+    /// What the next entry depends on.
+    fn origins(&mut self) -> Origins {
+        let known = self.extension::<Journal>().origins.take();
+        let (mut origins, mut seen) = known.unwrap_or_else(|| (Origins::new(), 0));
+        self.add_models_read(&mut origins, &mut seen);
+        self.extension::<Journal>().origins = Some((origins.clone(), seen));
+        origins
+    }
+
+    /// The Modelica texts that were read from the text number `seen` on, as files to name when they
+    /// change.
+    pub(super) fn add_models_read(&self, origins: &mut Origins, seen: &mut u32) {
+        while let Some(source) = self.sources.get(SourceId(*seen)) {
+            *seen += 1;
+            if source.name.ends_with(".mo") {
+                origins.add(format!("`{}`", source.name), source.text.as_bytes());
+            }
+        }
+    }
+
+    /// The next answers of the earlier run depend on what this run depends on.
+    fn compare_origins(&mut self) -> Result<(), Failure> {
+        while let Some(Entry::From(before)) = self.extension::<Journal>().replay.front() {
+            let before = before.clone();
+            self.extension::<Journal>().replay.pop_front();
+            let changed = self.origins().changed_since(&before);
+            if !changed.is_empty() {
+                self.refuse_to_resume();
+                bail!(
+                    BAD_OPTION,
+                    "the run cannot be resumed: since then changed: {}", listed(&changed);
+                    help: "undo the changes, or begin anew without `--resume`"
+                );
+            }
+            self.extension::<Journal>().noted = before;
+        }
+        Ok(())
+    }
+
+    /// The earlier run is another one: nothing more is done, and its checkpoint stays as it is.
+    pub(super) fn refuse_to_resume(&mut self) {
+        self.extension::<Journal>().checkpoint = None;
+        self.stop.get_or_insert(Stop::Error);
+    }
+
+    /// Whether the answer taken last from the earlier run is to be computed again: the first and
+    /// the last are.
+    pub(super) fn is_to_be_checked(&mut self) -> bool {
+        let journal = self.extension::<Journal>();
+        journal.answered += 1;
+        let is_answer = |entry: &Entry| matches!(entry, Entry::Simulated { .. });
+        journal.answered == 1 || !journal.replay.iter().any(is_answer)
     }
 
     fn note_entry(&mut self, entry: &Entry, at_once: bool) {
@@ -141,32 +218,24 @@ impl Session {
                 entries.iter().filter(|entry| matches!(entry, Entry::Simulated { .. })).count();
             self.extension::<Journal>().replay = entries.into();
             self.write_file(&path, &old[..whole])?;
+            checkpoint = checkpoint.after(old[..whole].to_vec());
             self.world.eprint(&format!(
                 "resumed: {generations} calls of Eval are answered by `{}`\n",
                 path.display()
             ));
         } else {
             if exists {
-                self.keep_old(&path)?;
+                let old = keep_old(self, &path)?;
+                let text = format!(
+                    "an earlier run did not end, and `--resume` would have gone on with it; its checkpoint is kept in `{}`\n",
+                    old.display()
+                );
+                self.world.eprint(&text);
             }
             checkpoint.begin(MAGIC);
         }
         self.extension::<Journal>().checkpoint = Some(checkpoint);
         self.at_end(close);
-        Ok(())
-    }
-
-    fn keep_old(&mut self, path: &Path) -> Result<(), Failure> {
-        let old = path.with_file_name(OLD);
-        let bytes = self.read_bytes(path)?;
-        self.write_file(&old, &bytes)?;
-        // What cannot be removed is written over.
-        let _ = self.world.remove(path);
-        let text = format!(
-            "an earlier run did not end, and `--resume` would have gone on with it; its checkpoint is kept in `{}`\n",
-            old.display()
-        );
-        self.world.eprint(&text);
         Ok(())
     }
 }
@@ -201,10 +270,11 @@ fn decode(bytes: &[u8]) -> Option<(Vec<Entry>, usize)> {
     Some((entries, bytes.len() - rest.len()))
 }
 
-fn fingerprint(request: &Request, genomes: &Genomes) -> u64 {
+fn fingerprint(request: &Request, settings: &str, genomes: &Genomes) -> u64 {
     let mut fingerprint = Fingerprint::default();
     let question = &request.question;
-    for text in [&request.path, &request.model, &question.x_name, &question.y_name] {
+    let asked = [&request.path, &request.model, &question.x_name, &question.y_name];
+    for text in asked.map(String::as_str).into_iter().chain([settings]) {
         fingerprint.add(text.as_bytes());
         fingerprint.add(&[0]);
     }

@@ -32,6 +32,7 @@ mod linearization;
 mod messages;
 pub mod parsing;
 mod permissions;
+pub mod policy;
 pub mod problem;
 mod refinement;
 mod resources;

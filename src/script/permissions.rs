@@ -2,15 +2,18 @@
 
 use super::Session;
 use super::errors::REFUSED;
+use super::files::cannot;
+use super::policy::{Access, Grant};
 use crate::bail;
 use crate::diag::Fault;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// What the caller of a script allows it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Permissions {
-    /// To write and remove files anywhere, not only below the directory where the run began, the
-    /// folder of the script and the output folder.
+    /// To read files anywhere.
+    pub read: bool,
+    /// To write and remove files anywhere, those too that the run has not made.
     pub write: bool,
     /// To run programs, and to read environment variables whose names look like those of secrets.
     pub system: bool,
@@ -21,53 +24,42 @@ const SECRETIVE: &[&str] =
     &["AUTH", "COOKIE", "CREDENTIAL", "KEY", "PASS", "PRIVATE", "SECRET", "TOKEN"];
 
 impl Session {
-    /// A fault unless a file of this path may be written, made or removed.
-    pub(super) fn may_change(&self, path: &Path) -> Result<(), Fault> {
-        let wanted = self.world.resolved(path);
-        let output = self.world.resolved(&self.world.output_dir());
-        let is_inside = |folder: &PathBuf| wanted.starts_with(folder);
-        if self.options.permissions.write
-            || self.trusted.iter().any(is_inside)
-            || self.is_result_of_opened(&wanted)
-            || is_inside(&output)
-        {
-            return Ok(());
-        }
-        bail!(
-            REFUSED,
-            "`{}` is not changed: it lies outside of the directory where the run began",
-            path.display();
-            help: "allow it with `--allow-write`"
-        )
+    /// A fault unless a file of this path may be read, written, made or removed.
+    pub(super) fn may(&self, access: Access, path: &Path) -> Result<(), Fault> {
+        let verb = if access == Access::Read { "read" } else { "change" };
+        self.world.permits(path, access).map_err(|error| cannot(verb, path, &error))
     }
 
-    /// Whether it is a file of results or data in a folder whose model a script has opened and gone
-    /// to, which is where Dymola puts them.
-    fn is_result_of_opened(&self, wanted: &Path) -> bool {
-        let ending = wanted.extension().and_then(|ending| ending.to_str());
-        let is_result = ending.is_some_and(|ending| matches!(ending, "mat" | "csv" | "txt"));
-        let folder = wanted.parent();
-        is_result && self.result_folders.iter().any(|known| Some(known.as_path()) == folder)
+    /// The user has named this file or folder: it may be read, with what is beside it, the package
+    /// that it belongs to, and the folders `models` above it, where classes are looked for.
+    pub fn grant_input(&mut self, path: &Path) {
+        let path = self.world.absolute(path);
+        self.world.grant(Grant::Read(&path));
+        let folder = if self.world.is_dir(&path) { Some(&*path) } else { path.parent() };
+        let Some(folder) = folder else { return };
+        let is_package = |folder: &&Path| self.world.exists(&folder.join("package.mo"));
+        let packages = folder.ancestors().take_while(is_package).last();
+        self.world.grant(Grant::Read(packages.unwrap_or(folder)));
+        self.grant_models(folder);
     }
 
-    /// Results may be written into this folder.
+    /// Results may be written into this folder of a model that a script has opened, which is where
+    /// Dymola puts them, if the folder may be read.
     pub(super) fn trust_results(&mut self, folder: &Path) {
-        let folder = self.world.resolved(folder);
-        if !self.result_folders.contains(&folder) {
-            self.result_folders.push(folder);
+        if self.world.permits(folder, Access::Read).is_ok() {
+            self.world.grant(Grant::Results(folder));
         }
     }
 
     /// This file may be written, wherever it is: the user has named it on the command line.
     pub fn permit_file(&mut self, path: &Path) {
-        self.trust(path);
+        self.world.grant(Grant::Named(path));
     }
 
-    /// Files below this folder may be written and removed.
-    pub(super) fn trust(&mut self, folder: &Path) {
-        let folder = self.world.resolved(folder);
-        if !self.trusted.contains(&folder) {
-            self.trusted.push(folder);
+    /// The folders `models` in a folder and above it may be read.
+    pub fn grant_models(&mut self, folder: &Path) {
+        for folder in folder.ancestors() {
+            self.world.grant(Grant::Read(&folder.join("models")));
         }
     }
 
@@ -100,6 +92,6 @@ impl Session {
         let environment = self.environment.clone();
         self.world
             .run_command(command, &environment)
-            .map_err(|error| super::files::cannot("run", Path::new(command), &error))
+            .map_err(|error| cannot("run", Path::new(command), &error))
     }
 }

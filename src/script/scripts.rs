@@ -2,6 +2,7 @@
 
 use super::errors::{INTERRUPTED, LIMIT_REACHED, SCRIPT_NOT_FOUND, SCRIPTS_TOO_DEEP};
 use super::files::cannot;
+use super::policy::Grant;
 use super::session::Stop;
 use super::world::{Stamp, normalized};
 use super::{Dialect, RunStatus, Session};
@@ -36,8 +37,9 @@ pub(super) struct ParsedScripts {
 impl Session {
     /// Runs a script from the command line as the outermost one.
     pub fn run_file(&mut self, path: &Path) -> RunStatus {
-        if let Some(folder) = path.parent() {
-            self.trust(folder);
+        self.grant_input(path);
+        if let Some(folder) = self.world.absolute(path).parent() {
+            self.world.grant(Grant::Create(folder));
         }
         let name = path.to_string_lossy().into_owned();
         if let Err(diagnostics) = self.run_named(&name) {

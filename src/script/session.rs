@@ -3,6 +3,7 @@
 use super::callees::Callees;
 use super::classes::Classes;
 use super::follow_up::FollowUps;
+use super::policy::Grant;
 use super::scripts::{Frame, ParsedScripts};
 use super::simulation::{Models, Translated};
 use super::world::World;
@@ -16,7 +17,6 @@ use crate::value::Value;
 use indexmap::IndexMap;
 use std::any::{Any, TypeId};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
-use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Whose habits a script follows where the two tools differ.
@@ -160,10 +160,6 @@ pub struct Session {
     pub(super) call: Span,
     /// Whether that was in a function, whose variables the command does not see.
     pub(super) in_function: bool,
-    /// Folders below which files may be written and removed.
-    pub(super) trusted: Vec<PathBuf>,
-    /// Folders whose models were opened, into which results may be written.
-    pub(super) result_folders: Vec<PathBuf>,
     /// Environment variables that scripts set.
     pub(super) environment: BTreeMap<String, String>,
     /// What was said and answered so far, for `savelog`.
@@ -193,10 +189,7 @@ pub struct Session {
 impl Session {
     /// A session in a world, without variables or classes.
     pub fn new(world: Box<dyn World>) -> Session {
-        let trusted = vec![world.current_dir()];
         Session {
-            trusted,
-            result_folders: Vec::new(),
             environment: BTreeMap::new(),
             log: Transcript::default(),
             world,
@@ -235,6 +228,12 @@ impl Session {
     pub fn with_options(mut self, options: Options) -> Session {
         self.dialect = options.dialect.unwrap_or_default();
         self.options = options;
+        if options.permissions.read {
+            self.world.grant(Grant::ReadAll);
+        }
+        if options.permissions.write {
+            self.world.grant(Grant::WriteAll);
+        }
         self
     }
 

@@ -1,6 +1,7 @@
 //! A trace of the run for learners, written while scripts run.
 
 use super::Session;
+use super::policy::Grant;
 use crate::diag::{Diagnostic, Fault};
 use crate::identify::Study;
 use crate::source::Span;
@@ -25,7 +26,7 @@ impl Session {
     pub fn trace_to(&mut self, path: &Path) -> Result<(), Fault> {
         let path = self.world.absolute(path);
         // Whoever asks for the trace names the file: scripts do not.
-        self.trust(&path);
+        self.world.grant(Grant::Named(&path));
         self.write_file(&path, &[])?;
         self.extension::<Tracing>().active = Some((path, Tracer::default()));
         self.at_end(write_rest);

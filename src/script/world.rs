@@ -3,6 +3,7 @@
 //! Nothing below `cli/` touches the system in any other way, so a script runs in a [`MemoryWorld`]
 //! exactly as it runs on a disk.
 
+use super::policy::{Access, Grant, Policy};
 use super::view::View;
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
@@ -46,12 +47,23 @@ pub trait Files: fmt::Debug + Send + Sync {
 /// Everything that a script can do to the world and learn from it. Paths may be relative to
 /// [`World::current_dir`].
 pub trait World {
+    /// Allows something from here on: whoever starts the run does, never a script.
+    fn grant(&mut self, grant: Grant<'_>);
+    /// Whether a path may be read or written.
+    ///
+    /// # Errors
+    /// What refuses it; see [`refusal_of`](super::policy::refusal_of).
+    fn permits(&self, path: &Path, access: Access) -> io::Result<()>;
     /// The bytes of a file.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
     /// Writes a file anew.
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()>;
     /// Writes behind the end of a file, which is made if there is none.
     fn append(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()>;
+    /// Makes what a file holds safe against a power cut.
+    fn sync(&mut self, _path: &Path) -> io::Result<()> {
+        Ok(())
+    }
     /// Removes a file or an empty directory.
     fn remove(&mut self, path: &Path) -> io::Result<()>;
     /// Whether a file or directory of this path exists.
@@ -149,11 +161,6 @@ pub trait World {
     fn absolute(&self, path: &Path) -> PathBuf {
         normalized(&self.current_dir().join(path))
     }
-
-    /// Where a path leads when its links are followed, absolute; what does not exist yet is kept.
-    fn resolved(&self, path: &Path) -> PathBuf {
-        self.absolute(path)
-    }
 }
 
 /// A path with `.` and `..` resolved in the text.
@@ -202,6 +209,7 @@ impl Streams {
 /// A world in memory: files in a map, a clock that stands still, one thread.
 #[derive(Debug, Clone)]
 pub struct MemoryWorld {
+    policy: Policy,
     files: BTreeMap<PathBuf, Vec<u8>>,
     dirs: BTreeSet<PathBuf>,
     current: PathBuf,
@@ -221,7 +229,11 @@ pub type Views = Arc<Mutex<Vec<View>>>;
 
 impl Default for MemoryWorld {
     fn default() -> MemoryWorld {
+        let mut policy = Policy::default();
+        policy.grant(Grant::Create(Path::new("")), PathBuf::from("/memory"));
+        policy.grant(Grant::Own(Path::new("")), PathBuf::from("/memory/results"));
         MemoryWorld {
+            policy,
             files: BTreeMap::new(),
             dirs: [PathBuf::from("/"), PathBuf::from("/memory")].into(),
             current: PathBuf::from("/memory"),
@@ -316,14 +328,30 @@ impl Files for MemoryFiles {
 }
 
 impl World for MemoryWorld {
+    fn grant(&mut self, grant: Grant<'_>) {
+        let real = grant.path().map_or_else(PathBuf::new, |path| self.absolute(path));
+        self.policy.grant(grant, real);
+    }
+
+    fn permits(&self, path: &Path, access: Access) -> io::Result<()> {
+        let path = self.absolute(path);
+        match access {
+            // Nothing else is in memory than what belongs to the run.
+            Access::Read => Ok(()),
+            Access::Write => Ok(self.policy.may_write(&path, self.exists(&path))?),
+        }
+    }
+
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         self.files.get(&self.absolute(path)).cloned().ok_or_else(|| missing(path))
     }
 
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        self.permits(path, Access::Write)?;
         if self.is_dir(path) {
             return Err(io::Error::new(io::ErrorKind::IsADirectory, "is a directory"));
         }
+        self.policy.note_made(self.absolute(path));
         self.store(path, bytes.to_vec());
         Ok(())
     }
@@ -335,9 +363,11 @@ impl World for MemoryWorld {
     }
 
     fn remove(&mut self, path: &Path) -> io::Result<()> {
+        self.permits(path, Access::Write)?;
         let path = self.absolute(path);
         if self.files.remove(&path).is_some() || self.dirs.remove(&path) {
             self.stamps.remove(&path);
+            self.policy.note_removed(&path);
             return Ok(());
         }
         Err(missing(&path))
@@ -370,6 +400,11 @@ impl World for MemoryWorld {
 
     fn create_dirs(&mut self, path: &Path) -> io::Result<()> {
         let path = self.absolute(path);
+        if self.dirs.contains(&path) {
+            return Ok(());
+        }
+        self.permits(&path, Access::Write)?;
+        self.policy.note_made(path.clone());
         self.dirs.extend(path.ancestors().map(Path::to_path_buf));
         Ok(())
     }
@@ -461,6 +496,7 @@ mod tests {
     #[test]
     fn a_stamp_changes_with_the_content() {
         let mut world = MemoryWorld::new().with_file("x", "1");
+        world.grant(Grant::WriteAll);
         let before = world.stamp(Path::new("x"));
         assert!(world.append(Path::new("x"), b"2").is_ok());
         assert_ne!(before, world.stamp(Path::new("x")));

@@ -291,7 +291,7 @@ fn main_job(cycles: &str) -> String {
 #[test]
 fn results_that_cannot_be_written_are_an_error() {
     let here = folder(&[("job.mos", &main_job("1")), ("taken", "a file")]);
-    let (code, _, errors) = gapi(&here, &["run", "job.mos", "--out", "taken"]);
+    let (code, _, errors) = gapi(&here, &["run", "job.mos", "--allow-read", "--out", "taken"]);
     assert_eq!(code, 1);
     assert!(errors.contains("error[file-error]"), "{errors}");
     assert_eq!(errors.matches("error[").count(), 1, "{errors}");
@@ -307,25 +307,26 @@ fn no_problem_replaces_the_results_of_another() {
     fs::create_dir(here.path().join("sub")).unwrap();
     fs::write(here.path().join("sub/job.mos"), &other).unwrap();
     let read = |name: &str| fs::read(here.path().join(name)).unwrap();
-    let (code, out, errors) = gapi(&here, &["run", "job.mos"]);
+    let (code, out, errors) = gapi(&here, &["run", "job.mos", "--allow-read"]);
     assert!(code == 0 && out.contains("results/job\n"), "{out}{errors}");
     let names = ["result.json", "history.csv", "fit.csv", "individuals.csv", "report.html"];
     let all = || names.map(|name| read(&format!("results/job/{name}")));
     let first = all();
-    let (code, out, _) = gapi(&here, &["run", "sub/job.mos"]);
+    let (code, out, _) = gapi(&here, &["run", "sub/job.mos", "--allow-read"]);
     assert!(code == 0 && out.contains("results/job-2\n"), "{out}");
     assert!(all() == first, "another problem of the same name has replaced them");
-    assert_eq!(gapi(&here, &["run", "job.mos"]).0, 0);
+    assert_eq!(gapi(&here, &["run", "job.mos", "--allow-read"]).0, 0);
     assert!(all() == first, "equal runs, equal bytes");
     let page = read("results/job/report.html");
     fs::remove_file(here.path().join("results/job/report.html")).unwrap();
     let (code, out, errors) = gapi(&here, &["report", "results"]);
     assert!(code == 0 && out.contains("least squares from there reaches"), "{out}{errors}");
     assert!(read("results/job/report.html") == page, "of the run before, which was the last");
-    let refused = gapi(&here, &["run", "sub/job.mos", "--out", "results/job"]);
+    let refused = gapi(&here, &["run", "sub/job.mos", "--allow-read", "--out", "results/job"]);
     assert!(refused.0 == 2 && refused.2.contains("--overwrite"), "{refused:?}");
     assert!(all() == first);
-    let asked = gapi(&here, &["run", "sub/job.mos", "--out", "results/job", "--overwrite"]);
+    let asked =
+        gapi(&here, &["run", "sub/job.mos", "--allow-read", "--out", "results/job", "--overwrite"]);
     assert!(asked.0 == 0 && all() != first, "{asked:?}");
 }
 
@@ -340,7 +341,7 @@ fn interrupt(child: &Child) {
 fn an_interrupted_identification_writes_what_it_has() {
     use std::io::{BufRead as _, BufReader, Read as _};
     let here = folder(&[("job.mos", &main_job("1000000").replace("\nRunScript(\"GAPILib_CYCLE", "\nDATASim := Eval(SimuPath, SimuCaseStudyName, Xexp, New_Generation, Parameter_Names, X_Name, Y_Name);\nRated := Fit(DATASim, Yexp);\nprint(\"rated\")\nRunScript(\"GAPILib_CYCLE"))]);
-    let mut child = command(here.path(), &["run", "job.mos"])
+    let mut child = command(here.path(), &["run", "job.mos", "--allow-read"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()

@@ -1,7 +1,7 @@
 //! Sessions: exit codes, strictness, dialects, echo, libraries, and what lasts between statements.
 
 use gapilib::script::world::MemoryWorld;
-use gapilib::script::{Dialect, Echo, Options, Session, Strictness, Transcript};
+use gapilib::script::{Dialect, Echo, Options, Permissions, Session, Strictness, Transcript};
 use gapilib::value::Value;
 use std::path::Path;
 
@@ -130,7 +130,9 @@ fn a_script_that_changes_is_read_again() {
     let script = "RunScript(\"inner.mos\")\na = n;\n\
                   Modelica.Utilities.Streams.print(\"n = 2\", \"inner.mos\")\n\
                   RunScript(\"inner.mos\")\nb = n;";
-    let (code, _, session) = run(world, Options::default(), script);
+    let permissions = Permissions { write: true, ..Permissions::default() };
+    let options = Options { permissions, ..Options::default() };
+    let (code, _, session) = run(world, options, script);
     assert_eq!(code, 0);
     assert_eq!(session.variable("a"), Some(&Value::Integer(1)));
     assert_eq!(session.variable("b"), Some(&Value::Integer(2)));

@@ -110,7 +110,7 @@ fn another_script_does_not_go_on_with_the_journal() {
     assert!(code == 1 && text.contains("no checkpoint"), "{text}");
     // Beginning anew, the old one is kept.
     let (code, text, session) = resumed(bytes.clone(), SCRIPT, Journaling::Fresh(2.0));
-    let old = journal(&session).with_file_name("script.journal.old");
+    let old = journal(&session).with_file_name("script.journal.1");
     assert!(code == 0 && text.contains("is kept in"), "{text}");
     assert_eq!(session.world.read(&old).expect("kept"), bytes);
 }

@@ -29,10 +29,11 @@ pub(super) fn repl(arguments: &ReplArgs, global: &Global) -> ExitCode {
     let world = match SystemWorld::new(terminal, &arguments.out, None) {
         Ok(world) => world,
         Err(error) => {
-            terminal::eprint(&format!("error: the working directory cannot be read: {error}\n"));
+            terminal::eprint(&format!("error: {error}\n"));
             return ExitCode::FAILURE;
         }
     };
+    world.own_output();
     world.catch_interrupts();
     let stopping = world.stopping();
     let options = arguments.freedom.options();

@@ -11,6 +11,7 @@ use crate::diag::Fault;
 use crate::name::Name;
 use crate::results::{self, Compared};
 use crate::script::Session;
+use crate::script::policy::Grant;
 use crate::script::verification::{self, Reference, Stage, Stuck};
 use crate::script::world::Progress;
 use crate::source::Span;
@@ -40,6 +41,7 @@ pub(super) fn verify(arguments: &VerifyArgs, global: &Global) -> ExitCode {
     let rows = run(&mut session, &cases, arguments, global);
     session.print(&report::table(&rows));
     for path in &arguments.output {
+        session.world.grant(Grant::Named(path));
         if let Err(fault) = write(&mut session, path, &rows) {
             return session::failed(&mut session, vec![fault.at(Span::NONE)]);
         }

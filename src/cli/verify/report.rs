@@ -165,7 +165,7 @@ pub(super) fn csv(rows: &[Row]) -> String {
 }
 
 fn quoted(cell: &str) -> String {
-    format!("\"{}\"", cell.replace('"', "\"\"").replace(['\n', '\r'], " "))
+    crate::results::quoted(&cell.replace(['\n', '\r'], " "))
 }
 
 #[cfg(test)]

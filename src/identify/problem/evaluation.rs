@@ -144,6 +144,22 @@ impl Evaluation {
         Some(answered)
     }
 
+    /// The objectives of one individual, simulated whatever is remembered, the way that the method
+    /// wants them.
+    pub(super) fn objectives_anew(
+        &self,
+        problem: &Problem,
+        genome: &[f64],
+        wants: Wants,
+    ) -> Vec<f64> {
+        if wants == Wants::Jacobians {
+            let single = Genomes::new(genome.len(), genome.to_vec());
+            return single.map_or(Vec::new(), |one| self.with_jacobians(problem, &one).objectives);
+        }
+        let mut row = vec![f64::NAN; self.measured.len()];
+        self.pool.install(|| self.one(problem, genome, &mut row).0)
+    }
+
     fn with_jacobians(&self, problem: &Problem, batch: &Genomes) -> Answered {
         let (points, n) = (self.measured.len(), problem.parameters.len());
         let places: Vec<Vec<f64>> = batch.rows().map(|genome| problem.values(genome)).collect();

@@ -2,16 +2,16 @@
 //! length and a checksum. A run that ended in the middle of a record has lost that record alone.
 //!
 //! ```text
-//! file   = "GAPIRUN2", fingerprint of the problem (8 bytes), record, record, …
+//! file   = "GAPIRUN3", frame of the origins of the problem, record, record, …
 //! record = length of the payload (8 bytes), CRC-32 of it (4 bytes), payload
 //! ```
 //!
 //! All numbers are little-endian.
 
 use super::evaluation::Answered;
-use super::{Failed, FailureKind};
+use super::{Failed, FailureKind, Origins};
 
-const MAGIC: &[u8; 8] = b"GAPIRUN2";
+const MAGIC: &[u8; 8] = b"GAPIRUN3";
 
 /// One question of the method with its answers.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -29,8 +29,8 @@ pub struct Record {
 /// A journal that was read.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Journal {
-    /// The fingerprint of the problem.
-    pub fingerprint: u64,
+    /// What the run depends on.
+    pub origins: Origins,
     /// The records that are whole.
     pub records: Vec<Record>,
     /// How many bytes they take; what follows is damaged or was not finished.
@@ -40,9 +40,10 @@ pub struct Journal {
 }
 
 /// The beginning of a journal.
-pub fn header(fingerprint: u64) -> Vec<u8> {
+pub fn header(origins: &Origins) -> Vec<u8> {
     let mut bytes = MAGIC.to_vec();
-    bytes.extend(fingerprint.to_le_bytes());
+    // Names and numbers only.
+    bytes.extend(frame(&postcard::to_allocvec(origins).unwrap_or_default()));
     bytes
 }
 
@@ -96,7 +97,10 @@ pub fn decode(bytes: &[u8]) -> Option<Journal> {
     if reader.take(MAGIC.len())? != MAGIC {
         return None;
     }
-    let mut journal = Journal { fingerprint: reader.integer()?, ..Journal::default() };
+    let (origins, rest) = first_frame(reader.bytes)?;
+    let origins = postcard::from_bytes(origins).ok()?;
+    reader.bytes = rest;
+    let mut journal = Journal { origins, ..Journal::default() };
     journal.whole = bytes.len() - reader.bytes.len();
     while let Some(record) = whole_record(&mut reader) {
         journal.records.push(record);
@@ -210,30 +214,36 @@ mod tests {
 
     #[test]
     fn what_was_written_is_read() {
-        let mut bytes = header(42);
+        let origins = Origins::new();
+        let mut bytes = header(&origins);
         let single = encode(&record());
         bytes.extend(&single);
         bytes.extend(&single);
         let journal = decode(&bytes).unwrap();
-        assert_eq!((journal.fingerprint, journal.whole, journal.lost), (42, bytes.len(), 0));
-        assert_eq!(journal.records, [record(), record()]);
+        assert_eq!((journal.whole, journal.lost), (bytes.len(), 0));
+        assert_eq!((journal.origins, journal.records), (origins, vec![record(), record()]));
     }
 
     #[test]
     fn every_cut_and_every_damage_leaves_the_whole_records() {
-        let mut bytes = header(42);
+        let mut bytes = header(&Origins::new());
+        let begin = bytes.len();
         let single = encode(&record());
         bytes.extend(&single);
         bytes.extend(&single);
-        for end in 16..bytes.len() {
+        for end in begin..bytes.len() {
             let records = decode(&bytes[..end]).unwrap().records.len();
-            assert_eq!(records, usize::from(end >= 16 + single.len()), "cut at {end}");
+            assert_eq!(records, usize::from(end >= begin + single.len()), "cut at {end}");
         }
-        for place in 16..bytes.len() {
+        for place in 0..bytes.len() {
             let mut damaged = bytes.clone();
             damaged[place] ^= 0x40;
-            let journal = decode(&damaged).unwrap();
-            assert_eq!(journal.records.len(), usize::from(place >= 16 + single.len()), "{place}");
+            let Some(journal) = decode(&damaged) else {
+                assert!(place < begin, "{place}");
+                continue;
+            };
+            let whole = usize::from(place >= begin + single.len());
+            assert_eq!(journal.records.len(), whole, "{place}");
             assert_eq!(journal.whole + journal.lost, bytes.len());
         }
         assert!(decode(b"something else").is_none());

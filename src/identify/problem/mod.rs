@@ -43,7 +43,7 @@ pub use experiment::{Experiment, ModelSimulator, Observation};
 pub use failure::{Failed, FailureKind};
 pub use failure_region::{FailureRegion, failure_region};
 pub use finding::{Finding, FindingKind, Severity};
-pub use fingerprint::Fingerprint;
+pub use fingerprint::{Fingerprint, Origins, listed};
 pub use importance::{ANALYSES, Analysis, Importance, ParameterImportance, analysis};
 pub use inference::{Band, BandPoint, Inference, Inferred, infer};
 pub use inseparable::{Form, Inseparable};

@@ -269,12 +269,75 @@ impl Run {
         Some(record)
     }
 
+    /// Goes all steps of an earlier run again. Its best individual and another one are computed
+    /// anew: if a bit differs, it was the run of another problem.
+    ///
+    /// # Errors
+    ///
+    /// `bad-option` when this run asks or answers something else than that one did.
+    pub fn resume(&mut self, records: &[Record]) -> Result<(), Fault> {
+        let m = self.problem.objectives.len();
+        let first = |record: &Record| -> Vec<f64> {
+            record.answered.objectives.iter().step_by(m).copied().collect()
+        };
+        let all = records.iter().enumerate().flat_map(|(k, record)| {
+            first(record).into_iter().enumerate().map(move |(row, value)| (value, k, row))
+        });
+        let best = all.filter(|(value, ..)| !has_failed(*value)).min_by(|a, b| a.0.total_cmp(&b.0));
+        // The genes asked last are as good as random.
+        let random = records.last().map_or(0, |last| last.asked as usize);
+        for (k, record) in records.iter().enumerate() {
+            self.ask_again(record)?;
+            if let Some((_, _, row)) = best.filter(|(_, of, _)| *of == k) {
+                self.compute_again(record, row)?;
+            }
+            if k == random % records.len() && !self.batch.is_empty() {
+                self.compute_again(record, random % self.batch.len())?;
+            }
+            self.take_again(record);
+        }
+        Ok(())
+    }
+
+    /// An individual of the question at hand has the objectives that the record says.
+    fn compute_again(&self, record: &Record, row: usize) -> Result<(), Fault> {
+        let m = self.problem.objectives.len();
+        let before = record.answered.objectives.get(row * m..(row + 1) * m).unwrap_or_default();
+        let genome = self.batch.row(row);
+        let now = self.evaluation.objectives_anew(&self.problem, genome, self.optimizer.wants());
+        let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+        let have_failed = now.iter().chain(before).all(|value| has_failed(*value));
+        if bits(&now) == bits(before) || have_failed {
+            return Ok(());
+        }
+        bail!(
+            BAD_OPTION,
+            "individual {} of question {} of the checkpoint has the objective {}, but now {}: what is simulated has changed",
+            row + 1,
+            self.generations() + 1,
+            before.first().unwrap_or(&f64::NAN),
+            now.first().unwrap_or(&f64::NAN);
+            help: "restore the model, its libraries and tables, the program and the machine, or start anew with `--fresh`"
+        );
+    }
+
     /// Goes a step of an earlier run again.
     ///
     /// # Errors
     ///
     /// `bad-option` when this run asks something else than that one did.
     pub fn replay(&mut self, record: &Record) -> Result<(), Fault> {
+        self.ask_again(record)?;
+        self.take_again(record);
+        Ok(())
+    }
+
+    fn take_again(&mut self, record: &Record) {
+        self.evaluation.remember(&self.batch, &record.answered);
+        self.take(record);
+    }
+
+    fn ask_again(&mut self, record: &Record) -> Result<(), Fault> {
         for (setting, value) in &record.changes {
             self.change(setting, *value)?;
         }
@@ -287,8 +350,6 @@ impl Run {
                 help: "start anew, or use the version of the program that wrote the checkpoint"
             );
         }
-        self.evaluation.remember(&self.batch, &record.answered);
-        self.take(record);
         Ok(())
     }
 

@@ -266,8 +266,8 @@ fn objectives(values: &[f64]) -> String {
 }
 
 pub(super) fn quoted(text: &str) -> String {
-    match text.contains([',', '"', '\n']) {
-        true => format!("\"{}\"", text.replace('"', "\"\"")),
+    match text.contains([',', '"', '\n']) || text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
+        true => crate::results::quoted(text),
         false => text.to_owned(),
     }
 }

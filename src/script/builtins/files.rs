@@ -72,7 +72,7 @@ end list;
 fn list_files(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let path = path_of(session, &mut args, "name")?;
     let listing = if session.world.is_dir(&path) {
-        let names = session.world.list_dir(&path).unwrap_or_default();
+        let names = session.world.list_dir(&path).map_err(|error| cannot("read", &path, &error))?;
         names.iter().map(|name| format!("{name}\n")).collect()
     } else {
         session.read_text(&path)?

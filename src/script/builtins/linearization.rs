@@ -10,6 +10,7 @@ use crate::flatten::Experiment;
 use crate::mat::{self, Matrix};
 use crate::name::Name;
 use crate::script::linearization::{Linear, linearized};
+use crate::script::policy::Grant;
 use crate::script::simulation::{self, Wishes};
 use crate::script::{Dialect, Session};
 use crate::value::Value;
@@ -151,6 +152,10 @@ fn translated_and_linearized(
     let linear = set.map_err(|error| vec![error]).and_then(|()| linearized(session, &wishes));
     session.restore_values(before);
     let linear = linear?;
+    if !session.world.exists(Path::new(FILE)) {
+        // Scripts do not make Modelica files, but this one is the command's.
+        session.world.grant(Grant::Named(Path::new(FILE)));
+    }
     let written = write_results(session, &linear.results, file)
         .and_then(|()| session.write_file(Path::new(FILE), as_model(&linear, class).as_bytes()));
     written.at(at).map_err(|error| vec![error])?;

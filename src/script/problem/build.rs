@@ -7,15 +7,15 @@ use super::data::{self, Notes};
 use super::file::{ColumnEntry, ExperimentEntry, OneOrMany, ProblemFile, Role};
 use super::{dynamics, inputs, own_fitness, sigma};
 use crate::bail;
-use crate::diag::{Diagnostic, Fault};
+use crate::diag::{Diagnostic, Fault, visible_line};
 use crate::fault;
 use crate::flatten::FlatModel;
 use crate::ga::optimizer::METHODS;
 use crate::identify::fitness::{FITNESSES, Fitness};
 use crate::identify::problem::inference::adjust;
 use crate::identify::problem::{
-    Experiment, Fingerprint, Free, Inference, ModelSimulator, NOISE_OF_FORMULAS, Observation,
-    Problem, Series, Sigma, Simulate, Stop, decide, likelihood,
+    Experiment, Free, Inference, ModelSimulator, NOISE_OF_FORMULAS, Observation, Origins, Problem,
+    Series, Sigma, Simulate, Stop, decide, likelihood,
 };
 use crate::identify::{CompiledModel, Model};
 use crate::mat::{self, MatFile};
@@ -41,8 +41,8 @@ pub(super) struct Built {
     /// The experiments that are fitted, for drawing their curves.
     pub experiments: Vec<Experiment>,
     pub validation: Vec<(Experiment, Vec<Series>)>,
-    /// Changes when the problem or its data change.
-    pub fingerprint: u64,
+    /// The problem, its data, and every Modelica text that was read for it.
+    pub origins: Origins,
     /// What should be known of the data.
     pub notes: Vec<String>,
 }
@@ -79,14 +79,14 @@ pub(super) fn build(
     let file = &*file;
     let mut notes = Notes::default();
     let free = free_parameters(file).map_err(one)?;
-    let mut fingerprint = Fingerprint::default();
-    fingerprint.add(text.as_bytes());
+    let mut origins = Origins::new();
+    origins.add("the problem", text.as_bytes());
     let (mut experiments, mut series, mut validation) = (Vec::new(), Vec::new(), Vec::new());
     let mut noise: f64 = NOISE_OF_FORMULAS;
     for (number, entry) in file.experiment.iter().enumerate() {
         let data = folder.join(&entry.data);
         let bytes = session.read_bytes(&data).map_err(one)?;
-        fingerprint.add(&bytes);
+        origins.add(format!("`{}`", entry.data.display()), &bytes);
         let table = mat::read_named(&data.to_string_lossy(), &bytes).map_err(one)?;
         let built = experiment(session, file, (entry, number), &table, &free, &mut notes)?;
         let (experiment, own, has_states) = built;
@@ -121,8 +121,16 @@ pub(super) fn build(
     adjust(&mut problem, adjustments).map_err(one)?;
     problem.text = text.to_owned();
     let notes = notes.into_sentences();
-    let fingerprint = fingerprint.number();
-    Ok(Built { problem, experiments: fitted, validation, fingerprint, notes })
+    session.add_models_read(&mut origins, &mut 0);
+    Ok(Built { problem, experiments: fitted, validation, origins, notes })
+}
+
+/// The title as it may stand in files and on terminals.
+fn title(file: &ProblemFile) -> String {
+    match &file.title {
+        Some(title) => visible_line(title),
+        None => format!("Identification of {}", file.model),
+    }
 }
 
 /// The fitness functions by name: those of the program, else functions written in Modelica.
@@ -224,7 +232,7 @@ fn assemble(
         stagnation: stop.stagnation,
     };
     Ok(Problem {
-        title: file.title.clone().unwrap_or_else(|| format!("Identification of {}", file.model)),
+        title: title(file),
         model: file.model.clone(),
         text: String::new(),
         parameters,

@@ -20,13 +20,14 @@ mod record;
 mod sigma;
 
 use super::Session;
-use super::checkpoint::{self, Checkpoint};
+use super::checkpoint::{self, Checkpoint, keep_old};
+use super::policy::Grant;
 use crate::bail;
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::identify::problem::{
-    self as solving, Finding, FindingKind, Importance, ModelSimulator, Run, Severity, Simulate,
-    Solution, SolvedSeries,
+    self as solving, Finding, FindingKind, Importance, ModelSimulator, Origins, Run, Severity,
+    Simulate, Solution, SolvedSeries,
 };
 use crate::registry::BAD_OPTION;
 use crate::source::Span;
@@ -72,6 +73,22 @@ pub struct RunOptions {
     pub samples: usize,
     /// Ends the run after so many evaluations, whatever the problem says.
     pub evaluations: Option<u64>,
+}
+
+/// The user has named this problem file: the data and the models that it names may be read.
+pub fn grant_inputs(session: &mut Session, path: &Path) {
+    session.grant_input(path);
+    let Ok(text) = session.read_text(path) else { return };
+    let source = session.sources.add(path.display().to_string(), text.as_str());
+    // What is wrong with the problem shows when it is solved.
+    let Ok(file) = file::read(source, &text) else { return };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    for models in &file.files {
+        session.grant_input(&folder.join(models));
+    }
+    for experiment in &file.experiment {
+        session.world.grant(Grant::Read(&folder.join(&experiment.data)));
+    }
 }
 
 /// Solves the problem in the file `path`; writes the results into the world's folder for them.
@@ -142,11 +159,11 @@ fn solve_built(
     options: &RunOptions,
     every: (Option<u64>, f64),
 ) -> Result<Solution, Fault> {
-    let Built { problem, experiments, validation, fingerprint, notes } = built;
+    let Built { problem, experiments, validation, origins, notes } = built;
     let folder = session.world.output_dir().join(&options.folder);
     let mut run = Run::new(problem, session.world.threads())?;
     let importance = analysed(session, &run, &folder, options)?;
-    let mut checkpoint = open(session, &mut run, &folder, fingerprint, options, every)?;
+    let mut checkpoint = open(session, &mut run, &folder, &origins, options, every)?;
     let mut watched = options.watch.clone().map(Watched::new);
     let mut live = Live::default();
     run.evaluation.cancel_by(session.world.interrupt_flag());
@@ -262,7 +279,7 @@ fn open(
     session: &mut Session,
     run: &mut Run,
     folder: &Path,
-    fingerprint: u64,
+    origins: &Origins,
     options: &RunOptions,
     every: (Option<u64>, f64),
 ) -> Result<Checkpoint, Fault> {
@@ -275,20 +292,21 @@ fn open(
             help: "go on with `--resume`, or discard it with `--fresh`"
         );
     }
-    let mut bytes = solving::header(fingerprint);
+    let mut bytes = solving::header(origins);
     if options.resume && exists {
         let old = session.read_bytes(&path)?;
         let Some(journal) = solving::decode(&old) else {
             bail!(BAD_OPTION, "`{}` is no checkpoint", path.display(); help: "start anew with `--fresh`")
         };
-        if journal.fingerprint != fingerprint {
+        let changed = origins.changed_since(&journal.origins);
+        if !changed.is_empty() {
             bail!(
                 BAD_OPTION,
-                "`{}` is the checkpoint of another problem, or the problem or its data have changed", path.display();
-                help: "start anew with `--fresh`"
+                "`{}` cannot be resumed: since then changed: {}", path.display(), solving::listed(&changed);
+                help: "undo the changes, or start anew with `--fresh`"
             );
         }
-        journal.records.iter().try_for_each(|record| run.replay(record))?;
+        run.resume(&journal.records)?;
         let lost = match journal.lost {
             0 => String::new(),
             lost => {
@@ -303,8 +321,11 @@ fn open(
         session.print(&text);
         bytes = old[..journal.whole].to_vec();
     }
+    if exists && !options.resume {
+        keep_old(session, &path)?;
+    }
     session.write_file(&path, &bytes)?;
-    Ok(Checkpoint::new(path, every, run.seconds))
+    Ok(Checkpoint::new(path, every, run.seconds).after(bytes))
 }
 
 /// The experiments kept for validation, at the best values.

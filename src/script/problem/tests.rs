@@ -158,14 +158,15 @@ fn an_unfinished_run_is_never_overwritten_and_resumes_to_the_same_end() {
     let mut file = file::read(source, &text).unwrap();
     let built = build::build(&mut session, &mut file, Path::new("p.toml"), &text)
         .unwrap_or_else(|e| panic!("{}", e[0].message));
-    let mut journal = solving::header(built.fingerprint);
+    let mut journal = solving::header(&built.origins);
     let mut run_of = Run::new(built.problem, 1).unwrap();
     for k in 0..9 {
         assert!(run_of.stop().is_none());
         journal.extend(solving::encode(&run_of.step(f64::from(k)).unwrap()));
     }
     let resume = RunOptions { resume: true, ..RunOptions::default() };
-    for cut in [journal.len(), journal.len() - 1, journal.len() / 2, 16] {
+    let begin = solving::header(&built.origins).len();
+    for cut in [journal.len(), journal.len() - 1, journal.len() / 2, begin] {
         let with_journal = || {
             let world = world(&files);
             let path = crate::script::world::World::output_dir(&world).join(JOURNAL);

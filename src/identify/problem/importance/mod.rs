@@ -108,7 +108,7 @@ impl Importance {
         let [first, second] = self.headings.clone().map(|heading| heading.replace(' ', "_"));
         let mut text = format!("parameter,{first},{second},{first}_deviation,{second}_deviation\n");
         for parameter in &self.parameters {
-            text += &parameter.name;
+            text += &super::text::quoted(&parameter.name);
             for value in parameter.figures.iter().chain(&parameter.errors) {
                 _ = write!(text, ",{}", value.map_or(String::new(), |value| value.to_string()));
             }

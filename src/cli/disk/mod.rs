@@ -1,0 +1,231 @@
+//! The disk: the one place that opens the files of scripts, models and results.
+//!
+//! A path is resolved once into a [`Place`], the [`Policy`] judges where it leads, and the place is
+//! opened: what is opened is what was judged.
+
+#[cfg(unix)]
+mod place;
+#[cfg(not(unix))]
+#[path = "portable.rs"]
+mod place;
+mod record;
+
+use crate::models;
+use crate::script::policy::{Access, Grant, Policy, RECORD, Refusal};
+use crate::script::world::Files;
+use place::Place;
+use record::{Lines, Record};
+use std::collections::BTreeSet;
+use std::fs::{self, File};
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// The disk with what the user allows, and the models in the program. Paths are absolute.
+#[derive(Debug, Default)]
+pub(super) struct Disk {
+    state: Mutex<State>,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    policy: Policy,
+    /// What the user has named to be read or written, as it was written: pipes and devices have no
+    /// real path.
+    named: BTreeSet<(Access, PathBuf)>,
+    /// What was made outside of the first output folder; read when it is first needed.
+    record: Option<Record>,
+}
+
+impl Disk {
+    fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Allows something from here on.
+    pub(super) fn grant(&self, grant: Grant<'_>) {
+        let path = grant.path().unwrap_or(Path::new("/"));
+        // What cannot be resolved is not opened either.
+        let real = Place::of(path, true).map_or_else(|_| path.to_owned(), |place| place.real);
+        let mut state = self.state();
+        match grant {
+            Grant::Named(_) => drop(state.named.insert((Access::Write, path.to_owned()))),
+            Grant::Read(_) => drop(state.named.insert((Access::Read, path.to_owned()))),
+            _ => {}
+        }
+        state.policy.grant(grant, real);
+    }
+
+    /// # Errors
+    /// The path is refused, or cannot be resolved.
+    pub(super) fn permits(&self, path: &Path, access: Access) -> io::Result<()> {
+        match access {
+            Access::Read if models::read(path).is_some() => Ok(()),
+            Access::Read if self.is_named_device(access, path) => Ok(()),
+            Access::Write if self.is_named_device(access, path) => Ok(()),
+            Access::Read => self.to_read(path).map(|_| ()),
+            Access::Write => self.to_write(path, true).map(|_| ()),
+        }
+    }
+
+    fn to_read(&self, path: &Path) -> io::Result<Place> {
+        let place = Place::of(path, true)?;
+        let read = self.state().policy.may_read(&place.real);
+        if read == Err(Refusal::Reading) {
+            self.know_record();
+            self.state().policy.may_read(&place.real)?;
+        }
+        Ok(read.map(|()| place)?)
+    }
+
+    fn to_write(&self, path: &Path, follows: bool) -> io::Result<Place> {
+        let place = Place::of(path, follows)?;
+        let mut written = self.state().policy.may_write(&place.real, place.exists());
+        if place.exists() && matches!(written, Err(Refusal::Existing | Refusal::Source)) {
+            self.know_record();
+            written = self.state().policy.may_write(&place.real, true);
+        }
+        // A folder that is there need not be made.
+        Ok(written.map(|()| place)?)
+    }
+
+    /// Reads what earlier runs have made.
+    fn know_record(&self) {
+        let mut state = self.state();
+        if state.record.is_some() {
+            return;
+        }
+        let own = state.policy.own_folders().next().map(|own| own.join(RECORD));
+        let text = own.and_then(|file| fs::read_to_string(file).ok()).unwrap_or_default();
+        let record = Record::read(&text);
+        record.unchanged().for_each(|path| state.policy.note_made(path.to_owned()));
+        state.record = Some(record);
+    }
+
+    /// Notes a file that takes a name outside of the output folders.
+    fn note_made(&self, real: &Path, file: &File) -> io::Result<()> {
+        self.know_record();
+        let mut state = self.state();
+        let own = state.policy.own_folders().next().map(Path::to_owned);
+        if state.policy.own_folder_of(real).is_some() {
+            return Ok(());
+        }
+        state.policy.note_made(real.to_owned());
+        let Some(record) = &mut state.record else { return Ok(()) };
+        match (own, record.note(real, file)?) {
+            (Some(own), Some(lines)) => written_down(&own, lines),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether the user has named a pipe or a device: it is used as it is.
+    fn is_named_device(&self, access: Access, path: &Path) -> bool {
+        self.state().named.contains(&(access, path.to_owned()))
+            && fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir())
+    }
+
+    /// Writes a file anew, all of it or nothing.
+    pub(super) fn write(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        if self.is_named_device(Access::Write, path) {
+            return fs::write(path, bytes);
+        }
+        let place = self.to_write(path, true)?;
+        place.write(bytes, |file| self.note_made(&place.real, file))
+    }
+
+    /// Opens a file to write behind its end.
+    pub(super) fn append(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        if self.is_named_device(Access::Write, path) {
+            return fs::OpenOptions::new().append(true).open(path)?.write_all(bytes);
+        }
+        let place = self.to_write(path, true)?;
+        let shared = self.state().policy.writes_all();
+        let mut file = place.open_to_append(shared)?;
+        if !place.exists() {
+            self.note_made(&place.real, &file)?;
+        }
+        file.write_all(bytes)
+    }
+
+    /// Makes what a file holds safe against a power cut.
+    pub(super) fn sync(&self, path: &Path) -> io::Result<()> {
+        self.to_write(path, true)?.open_to_append(true)?.sync_data()
+    }
+
+    /// Removes a file, an empty folder, or a link itself.
+    pub(super) fn remove(&self, path: &Path) -> io::Result<()> {
+        let place = self.to_write(path, false)?;
+        place.remove()?;
+        self.state().policy.note_removed(&place.real);
+        Ok(())
+    }
+
+    /// Makes a folder and those it lies in.
+    pub(super) fn create_folders(&self, path: &Path) -> io::Result<()> {
+        if Place::of(path, true)?.is_folder() {
+            return Ok(());
+        }
+        let new = self.to_write(path, true)?.create_folders()?;
+        let mut state = self.state();
+        new.into_iter().for_each(|folder| state.policy.note_made(folder));
+        Ok(())
+    }
+}
+
+/// Writes the record in the output folder, which is made if it is missing.
+fn written_down(own: &Path, lines: Lines) -> io::Result<()> {
+    fs::create_dir_all(own)?;
+    let place = Place::of(&own.join(RECORD), false)?;
+    match lines {
+        Lines::Further(line) => place.open_to_append(false)?.write_all(line.as_bytes()),
+        Lines::All(lines) => place.write(lines.as_bytes(), |_| Ok(())),
+    }
+}
+
+impl Files for Disk {
+    fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
+        if let Some(bytes) = models::read(path) {
+            return Ok(bytes.to_vec());
+        }
+        match self.is_named_device(Access::Read, path) {
+            true => fs::read(path),
+            false => self.to_read(path)?.read(),
+        }
+    }
+
+    fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
+        match models::list(path) {
+            Some(names) => Ok(names),
+            None => self.to_read(path)?.list(),
+        }
+    }
+
+    fn is_file(&self, path: &Path) -> bool {
+        models::read(path).is_some() || path.is_file()
+    }
+}
+
+/// Writes a file of the program itself, all of it or nothing.
+pub(super) fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let path = std::path::absolute(path)?;
+    Place::of(&path, true)?.write(bytes, |_| Ok(()))
+}
+
+/// Removes the files in a folder that writing has left behind which did not come to its end.
+pub(super) fn remove_temporary_files(folder: &Path) {
+    let is_temporary = |name: &str| {
+        let random = name.strip_suffix(".tmp").and_then(|name| name.rsplit_once('.'));
+        random.is_some_and(|(_, random)| {
+            random.len() == 16 && random.bytes().all(|b| b.is_ascii_hexdigit())
+        })
+    };
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if is_temporary(&entry.file_name().to_string_lossy()) {
+            // What cannot be removed does no harm.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

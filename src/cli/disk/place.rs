@@ -1,0 +1,301 @@
+//! A path resolved once, folder by folder: every step is taken from the open folder before it and
+//! follows no link by itself, so what the policy judges is what is opened afterwards.
+//!
+//! This is what `openat2` does with `RESOLVE_NO_MAGICLINKS`, in the portable calls of POSIX.1-2008
+//! (`openat`, `fstatat`, `readlinkat`); the real path is known as a by-product.
+
+use crate::script::policy::Refusal;
+use rustix::fs::{self, AtFlags, FileType, Mode, OFlags};
+use rustix::io::Errno;
+use std::collections::VecDeque;
+use std::ffi::{OsStr, OsString};
+use std::fs::File;
+use std::hash::{BuildHasher, RandomState};
+use std::io::{self, Read as _, Write as _};
+use std::os::fd::OwnedFd;
+use std::os::unix::ffi::OsStringExt as _;
+use std::path::{Component, Path, PathBuf};
+
+/// Links that lead to links; as many as operating systems follow.
+const MAX_LINKS: usize = 40;
+
+/// An entry of a folder, which may not exist yet.
+pub(super) struct Place {
+    /// The folder, open; the deepest that exists.
+    folder: OwnedFd,
+    /// Folders below it that do not exist.
+    missing: Vec<OsString>,
+    name: OsString,
+    /// The path without links and dots.
+    pub(super) real: PathBuf,
+    kind: Option<FileType>,
+    mode: u32,
+}
+
+/// The folders walked through, from the root.
+struct Walk {
+    folders: Vec<OwnedFd>,
+    names: Vec<OsString>,
+    /// What is still to be walked.
+    ahead: VecDeque<OsString>,
+}
+
+impl Walk {
+    fn enqueue(&mut self, path: &Path) {
+        for component in path.components().rev() {
+            match component {
+                Component::Normal(name) => self.ahead.push_front(name.to_owned()),
+                Component::ParentDir => self.ahead.push_front("..".into()),
+                Component::RootDir => {
+                    self.folders.truncate(1);
+                    self.names.clear();
+                }
+                Component::CurDir | Component::Prefix(_) => {}
+            }
+        }
+    }
+
+    fn up(&mut self) {
+        if self.folders.len() > 1 {
+            self.folders.pop();
+            self.names.pop();
+        }
+    }
+
+    fn here(&self) -> io::Result<&OwnedFd> {
+        self.folders.last().ok_or_else(|| io::Error::from(io::ErrorKind::NotFound))
+    }
+
+    /// Where the walk ends: at an entry of the folder that it is in.
+    fn end(mut self, name: OsString, kind: Option<FileType>, mode: u32) -> io::Result<Place> {
+        let mut parts: Vec<OsString> = std::iter::once(name).chain(self.ahead.drain(..)).collect();
+        if parts.iter().any(|part| part == "..") {
+            return Err(io::ErrorKind::NotFound.into());
+        }
+        let mut real = PathBuf::from("/");
+        real.extend(self.names.iter().chain(&parts));
+        let name = parts.pop().unwrap_or_default();
+        let folder = self.folders.pop().ok_or(io::ErrorKind::NotFound)?;
+        Ok(Place { folder, missing: parts, name, real, kind, mode })
+    }
+
+    /// Where the walk ends: at the folder that it is in.
+    fn end_in_folder(mut self) -> io::Result<Place> {
+        let Some(name) = self.names.pop() else {
+            return self.end(".".into(), Some(FileType::Directory), 0o755);
+        };
+        self.folders.pop();
+        self.end(name, Some(FileType::Directory), 0o755)
+    }
+}
+
+impl Place {
+    /// Resolves an absolute path; a link at its end is followed if `follows`.
+    ///
+    /// # Errors
+    /// A folder cannot be entered, links go round.
+    pub(super) fn of(path: &Path, follows: bool) -> io::Result<Place> {
+        let root = fs::open("/", folder_flags(), Mode::empty())?;
+        let mut walk = Walk { folders: vec![root], names: Vec::new(), ahead: VecDeque::new() };
+        walk.enqueue(path);
+        let mut links = 0;
+        while let Some(part) = walk.ahead.pop_front() {
+            if part == ".." {
+                walk.up();
+                continue;
+            }
+            let is_last = walk.ahead.is_empty();
+            let stat = match fs::statat(walk.here()?, &part, AtFlags::SYMLINK_NOFOLLOW) {
+                Ok(stat) => stat,
+                Err(Errno::NOENT) => return walk.end(part, None, 0),
+                Err(error) => return Err(error.into()),
+            };
+            match FileType::from_raw_mode(stat.st_mode) {
+                FileType::Symlink if follows || !is_last => {
+                    links += 1;
+                    if links > MAX_LINKS {
+                        return Err(Errno::LOOP.into());
+                    }
+                    let target = fs::readlinkat(walk.here()?, &part, Vec::new())?;
+                    walk.enqueue(Path::new(&OsString::from_vec(target.into_bytes())));
+                }
+                FileType::Directory => {
+                    let folder = fs::openat(walk.here()?, &part, folder_flags(), Mode::empty())?;
+                    walk.folders.push(folder);
+                    walk.names.push(part);
+                }
+                kind if is_last => return walk.end(part, Some(kind), stat.st_mode & 0o777),
+                _ => return Err(Errno::NOTDIR.into()),
+            }
+        }
+        walk.end_in_folder()
+    }
+
+    pub(super) fn exists(&self) -> bool {
+        self.kind.is_some()
+    }
+
+    pub(super) fn is_folder(&self) -> bool {
+        self.kind == Some(FileType::Directory)
+    }
+
+    /// The bytes of the file; only of what the disk keeps, not of pipes and devices.
+    pub(super) fn read(&self) -> io::Result<Vec<u8>> {
+        let mut file = self.open(OFlags::RDONLY | OFlags::NONBLOCK)?;
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes)?;
+        Ok(bytes)
+    }
+
+    fn open(&self, flags: OFlags) -> io::Result<File> {
+        if !self.missing.is_empty() || self.kind.is_none() {
+            return Err(io::ErrorKind::NotFound.into());
+        }
+        if self.is_folder() {
+            return Err(Errno::ISDIR.into());
+        }
+        if self.kind != Some(FileType::RegularFile) {
+            return Err(Refusal::System.into());
+        }
+        let flags = flags | OFlags::NOFOLLOW | OFlags::CLOEXEC;
+        let file = File::from(fs::openat(&self.folder, &self.name, flags, Mode::empty())?);
+        // The entry may have become another one since it was looked at.
+        if !file.metadata()?.is_file() || is_made_up(&file) {
+            return Err(Refusal::System.into());
+        }
+        Ok(file)
+    }
+
+    /// The names in the folder, sorted.
+    pub(super) fn list(&self) -> io::Result<Vec<String>> {
+        if !self.missing.is_empty() || self.kind.is_none() {
+            return Err(io::ErrorKind::NotFound.into());
+        }
+        let flags = OFlags::RDONLY | OFlags::DIRECTORY | OFlags::NOFOLLOW | OFlags::CLOEXEC;
+        let folder = fs::openat(&self.folder, &self.name, flags, Mode::empty())?;
+        let mut names = Vec::new();
+        for entry in fs::Dir::read_from(&folder)? {
+            let entry = entry?;
+            let name = entry.file_name().to_string_lossy();
+            if name != "." && name != ".." {
+                names.push(name.into_owned());
+            }
+        }
+        names.sort();
+        Ok(names)
+    }
+
+    /// Writes beside the file and renames, so that an interrupted write leaves the old file whole.
+    /// `note` is told of the new file before it takes the name.
+    pub(super) fn write(
+        &self,
+        bytes: &[u8],
+        note: impl FnOnce(&File) -> io::Result<()>,
+    ) -> io::Result<()> {
+        if self.is_folder() {
+            return Err(Errno::ISDIR.into());
+        }
+        if !self.missing.is_empty() {
+            return Err(io::ErrorKind::NotFound.into());
+        }
+        if self.kind.is_some_and(|kind| kind != FileType::RegularFile) {
+            return Err(Refusal::System.into());
+        }
+        let temporary = temporary_name(&self.name);
+        let mut file = self.create(&temporary)?;
+        let written = self
+            .fill(&mut file, bytes)
+            .and_then(|()| note(&file))
+            .and_then(|()| Ok(fs::renameat(&self.folder, &temporary, &self.folder, &self.name)?));
+        if written.is_err() {
+            // The error of the write is the one to report.
+            let _ = fs::unlinkat(&self.folder, &temporary, AtFlags::empty());
+        }
+        written
+    }
+
+    /// A file that was not there before.
+    fn create(&self, name: &OsStr) -> io::Result<File> {
+        let flags = OFlags::WRONLY | OFlags::CREATE | OFlags::EXCL;
+        let flags = flags | OFlags::NOFOLLOW | OFlags::CLOEXEC;
+        Ok(fs::openat(&self.folder, name, flags, Mode::from_raw_mode(0o666))?.into())
+    }
+
+    fn fill(&self, file: &mut File, bytes: &[u8]) -> io::Result<()> {
+        if self.exists() {
+            fs::fchmod(&*file, Mode::from_raw_mode(self.mode as _))?;
+        }
+        file.write_all(bytes)?;
+        // After a power cut the name must not lead to a file without its content.
+        file.sync_data()
+    }
+
+    /// The file opened for writing behind its end, made if there is none. A file with further names
+    /// is not changed unless `shared`: one of them may lie elsewhere.
+    pub(super) fn open_to_append(&self, shared: bool) -> io::Result<File> {
+        if !self.exists() && self.missing.is_empty() {
+            return self.create(&self.name);
+        }
+        let file = self.open(OFlags::WRONLY | OFlags::APPEND | OFlags::NONBLOCK)?;
+        let names = std::os::unix::fs::MetadataExt::nlink(&file.metadata()?);
+        if names > 1 && !shared {
+            return Err(Refusal::Shared.into());
+        }
+        Ok(file)
+    }
+
+    /// Removes the file, the link or the empty folder.
+    pub(super) fn remove(&self) -> io::Result<()> {
+        if !self.missing.is_empty() {
+            return Err(io::ErrorKind::NotFound.into());
+        }
+        let flags = if self.is_folder() { AtFlags::REMOVEDIR } else { AtFlags::empty() };
+        Ok(fs::unlinkat(&self.folder, &self.name, flags)?)
+    }
+
+    /// Makes the folder and those it lies in; tells which are new.
+    pub(super) fn create_folders(self) -> io::Result<Vec<PathBuf>> {
+        if self.is_folder() {
+            return Ok(Vec::new());
+        }
+        let (mut folder, mut new) = (self.folder, Vec::new());
+        let count = self.missing.len() + 1;
+        for (k, name) in self.missing.iter().chain([&self.name]).enumerate() {
+            match fs::mkdirat(&folder, name, Mode::from_raw_mode(0o777)) {
+                Ok(()) => new.extend(self.real.ancestors().nth(count - 1 - k).map(Path::to_owned)),
+                Err(Errno::EXIST) => {}
+                Err(error) => return Err(error.into()),
+            }
+            folder = fs::openat(&folder, name, folder_flags(), Mode::empty())?;
+        }
+        Ok(new)
+    }
+}
+
+/// A folder as a step of a walk: it need not be readable.
+fn folder_flags() -> OFlags {
+    let flags = OFlags::DIRECTORY | OFlags::NOFOLLOW | OFlags::CLOEXEC;
+    #[cfg(any(target_os = "linux", target_os = "android"))]
+    let flags = flags | OFlags::PATH;
+    flags
+}
+
+/// Whether the operating system makes up the content when it is read, wherever it is mounted.
+#[cfg(target_os = "linux")]
+fn is_made_up(file: &File) -> bool {
+    /// `SYSFS_MAGIC` and `PROC_SUPER_MAGIC` of Linux's `magic.h`.
+    const MADE_UP: [u64; 2] = [0x6265_6572, 0x9fa0];
+    fs::fstatfs(file).is_ok_and(|found| MADE_UP.contains(&(found.f_type as u64)))
+}
+
+#[cfg(not(target_os = "linux"))]
+fn is_made_up(_: &File) -> bool {
+    false
+}
+
+/// A name beside this one that nobody can know before.
+pub(super) fn temporary_name(name: &OsStr) -> OsString {
+    let mut temporary = name.to_owned();
+    temporary.push(format!(".{:016x}.tmp", RandomState::new().hash_one(std::process::id())));
+    temporary
+}

@@ -1,0 +1,116 @@
+//! A path resolved once, where the calls of POSIX are missing: the folder is taken from the system
+//! in its real form, and the entry in it is judged and opened by that path.
+
+use crate::script::policy::Refusal;
+use std::ffi::{OsStr, OsString};
+use std::fs::{self, File, OpenOptions};
+use std::hash::{BuildHasher, RandomState};
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+/// An entry of a folder, which may not exist yet.
+pub(super) struct Place {
+    /// The path without links and dots.
+    pub(super) real: PathBuf,
+    kind: Option<fs::FileType>,
+}
+
+impl Place {
+    /// Resolves an absolute path; a link at its end is followed if `follows`.
+    pub(super) fn of(path: &Path, follows: bool) -> io::Result<Place> {
+        let path = &crate::script::world::normalized(path);
+        let found = fs::symlink_metadata(path).ok();
+        let is_link = found.as_ref().is_some_and(|found| found.is_symlink());
+        if let Some(kind) = found.map(|found| found.file_type())
+            && !(is_link && follows)
+        {
+            let folder = path.parent().unwrap_or(path).canonicalize()?;
+            let real = path.file_name().map_or(folder.clone(), |name| folder.join(name));
+            return Ok(Place { real, kind: Some(kind) });
+        }
+        for known in path.ancestors() {
+            if let Ok(real) = known.canonicalize() {
+                let rest = path.strip_prefix(known).unwrap_or(Path::new(""));
+                let real = if rest.as_os_str().is_empty() { real } else { real.join(rest) };
+                let kind = fs::metadata(&real).ok().map(|found| found.file_type());
+                return Ok(Place { real, kind });
+            }
+        }
+        Err(io::ErrorKind::NotFound.into())
+    }
+
+    pub(super) fn exists(&self) -> bool {
+        self.kind.is_some()
+    }
+
+    pub(super) fn is_folder(&self) -> bool {
+        self.kind.is_some_and(|kind| kind.is_dir())
+    }
+
+    fn is_device(&self) -> bool {
+        self.kind.is_some_and(|kind| !kind.is_dir() && !kind.is_file())
+    }
+
+    pub(super) fn read(&self) -> io::Result<Vec<u8>> {
+        if self.is_device() {
+            return Err(Refusal::System.into());
+        }
+        fs::read(&self.real)
+    }
+
+    pub(super) fn list(&self) -> io::Result<Vec<String>> {
+        let mut names = Vec::new();
+        for entry in fs::read_dir(&self.real)? {
+            names.push(entry?.file_name().to_string_lossy().into_owned());
+        }
+        names.sort();
+        Ok(names)
+    }
+
+    pub(super) fn write(
+        &self,
+        bytes: &[u8],
+        note: impl FnOnce(&File) -> io::Result<()>,
+    ) -> io::Result<()> {
+        if self.is_device() {
+            return Err(Refusal::System.into());
+        }
+        let name = self.real.file_name().unwrap_or_default();
+        let temporary = self.real.with_file_name(temporary_name(name));
+        let mut file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
+        let written = file.write_all(bytes).and_then(|()| file.sync_data());
+        let written = written.and_then(|()| note(&file));
+        drop(file);
+        let written = written.and_then(|()| fs::rename(&temporary, &self.real));
+        if written.is_err() {
+            // The error of the write is the one to report.
+            let _ = fs::remove_file(&temporary);
+        }
+        written
+    }
+
+    pub(super) fn open_to_append(&self, _shared: bool) -> io::Result<File> {
+        if self.is_device() {
+            return Err(Refusal::System.into());
+        }
+        OpenOptions::new().append(true).create(true).open(&self.real)
+    }
+
+    pub(super) fn remove(&self) -> io::Result<()> {
+        if self.is_folder() { fs::remove_dir(&self.real) } else { fs::remove_file(&self.real) }
+    }
+
+    pub(super) fn create_folders(self) -> io::Result<Vec<PathBuf>> {
+        let missing = self.real.ancestors().take_while(|folder| !folder.exists());
+        let new = missing.map(Path::to_owned).collect();
+        fs::create_dir_all(&self.real)?;
+        Ok(new)
+    }
+}
+
+/// A name beside this one that nobody can know before.
+pub(super) fn temporary_name(name: &OsStr) -> OsString {
+    let mut temporary = name.to_owned();
+    temporary.push(format!(".{:016x}.tmp", RandomState::new().hash_one(std::process::id())));
+    temporary
+}

@@ -1,0 +1,172 @@
+//! What scripts and models may do to the disk and to the terminal: the ways around it that were
+//! found stay closed.
+
+use crate::cli::{folder, gapi};
+use std::fs;
+use std::path::Path;
+
+/// A folder with a script, and beside its run folder a file of the user's.
+fn home(script: &str) -> tempfile::TempDir {
+    let here = folder(&[("job.mos", script), (".profile", "mine"), ("notes.txt", "mine")]);
+    fs::write(here.path().join("M.mo"), "model M Real x; equation x = 1; end M;").unwrap();
+    here
+}
+
+fn text(folder: &tempfile::TempDir, name: &str) -> String {
+    fs::read_to_string(folder.path().join(name)).unwrap_or_else(|_| "(missing)".to_owned())
+}
+
+/// Each of these does something that a script in a home folder must not do.
+#[test]
+fn what_belongs_to_the_user_stays_as_it_is() {
+    for attack in [
+        "Modelica.Utilities.Streams.print(\"evil\", \".profile\")",
+        "Modelica.Utilities.Streams.print(\"evil\", \"notes.txt\")",
+        "Modelica.Utilities.Streams.print(\"evil\", \"M.mo\")",
+        "Modelica.Utilities.Files.removeFile(\"notes.txt\")",
+        "Modelica.Utilities.Files.remove(\".profile\")",
+        "Modelica.Utilities.Files.copy(\"notes.txt\", \".profile\", true)",
+        "Modelica.Utilities.Files.move(\"notes.txt\", \"moved.txt\")",
+        "writeFile(\"notes.txt\", \"evil\")",
+        "deleteFile(\"notes.txt\")",
+        "Modelica.Utilities.Streams.writeRealMatrix(\"notes.txt\", \"m\", [1])",
+        "loadString(\"model M Real x = 1; end M;\"); saveModel(\"M.mo\", M)",
+    ] {
+        let here = home(&format!("{attack};\n"));
+        let dialect = if attack.contains("Modelica.") { "dymola" } else { "openmodelica" };
+        let (_, out, errors) = gapi(&here, &["run", "job.mos", "--dialect", dialect]);
+        assert!(errors.contains("--allow-write"), "{attack}: {out}{errors}");
+        for name in [".profile", "notes.txt"] {
+            assert_eq!(text(&here, name), "mine", "{attack}");
+        }
+        assert!(text(&here, "M.mo").starts_with("model M Real x; equation"), "{attack}");
+    }
+}
+
+#[test]
+fn what_the_user_allows_is_done() {
+    let script = "Modelica.Utilities.Streams.print(\"more\", \"notes.txt\")\n\
+                  Modelica.Utilities.Streams.print(\"model N end N;\", \"N.mo\")\n";
+    let here = home(script);
+    let (code, _, errors) = gapi(&here, &["run", "job.mos", "--allow-write"]);
+    assert_eq!(code, 0, "{errors}");
+    assert_eq!(text(&here, "notes.txt"), "minemore\n");
+    assert_eq!(text(&here, "N.mo"), "model N end N;\n");
+}
+
+/// The same script may run again: it replaces what it has made.
+#[test]
+fn a_script_replaces_its_own_files() {
+    let script = "Modelica.Utilities.Streams.writeRealMatrix(\"made.mat\", \"m\", [1]);\n\
+                  Modelica.Utilities.Streams.print(\"line\", \"made.txt\");\n";
+    let here = home(script);
+    for run in 1..=2 {
+        let (code, _, errors) = gapi(&here, &["run", "job.mos"]);
+        assert_eq!(code, 0, "run {run}: {errors}");
+    }
+    assert_eq!(text(&here, "made.txt"), "line\nline\n");
+}
+
+#[test]
+fn secrets_outside_are_not_read() {
+    let elsewhere = folder(&[("secret.txt", "a secret")]);
+    let secret = elsewhere.path().join("secret.txt").display().to_string();
+    for path in [secret.as_str(), "/proc/self/environ", "/dev/zero", "/sys/kernel/uevent_seqnum"] {
+        let here = home(&format!("print(readFile(\"{path}\"));\n"));
+        let (code, out, errors) = gapi(&here, &["run", "job.mos", "--dialect", "openmodelica"]);
+        assert!(code == 1 && errors.contains("refused-command"), "{path}: {out}{errors}");
+        assert!(!out.contains("secret") && !out.contains("PATH="), "{out}");
+    }
+    let here = home(&format!("print(readFile(\"{secret}\"));\n"));
+    let folder = format!("--allow-read={}", elsewhere.path().display());
+    for allowed in ["--allow-read", &folder] {
+        let (code, out, errors) =
+            gapi(&here, &["run", "job.mos", "--dialect", "openmodelica", allowed]);
+        assert!(code == 0 && out.contains("a secret"), "{out}{errors}");
+    }
+    let here = home("print(readFile(\"/proc/self/environ\"));\n");
+    let (code, out, _) =
+        gapi(&here, &["run", "job.mos", "--dialect", "openmodelica", "--allow-read"]);
+    assert!(code == 1 && !out.contains("PATH="), "{out}");
+}
+
+/// A link `d` makes `d/../x` another place than `x`.
+#[cfg(unix)]
+#[test]
+fn links_lead_nowhere_else() {
+    for attack in [
+        "Modelica.Utilities.Streams.print(\"evil\", \"d/../x\")",
+        "Modelica.Utilities.Streams.print(\"evil\", \"d/x\")",
+        "Modelica.Utilities.Files.createDirectory(\"d/../x\")",
+        "Modelica.Utilities.Files.removeFile(\"d/../kept\")",
+        "Modelica.Utilities.Streams.writeRealMatrix(\"d/../x.mat\", \"m\", [1])",
+        "simulateModel(\"M\", resultFile = \"d/../x\")",
+    ] {
+        let here = home(&format!("openModel(\"M.mo\");\n{attack};\n"));
+        let outside = folder(&[("kept", "mine")]);
+        fs::create_dir(outside.path().join("deep")).unwrap();
+        std::os::unix::fs::symlink(outside.path().join("deep"), here.path().join("d")).unwrap();
+        gapi(&here, &["run", "job.mos", "--dialect", "dymola"]);
+        let mut names: Vec<_> =
+            fs::read_dir(outside.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+        names.sort();
+        assert_eq!(names, ["deep", "kept"], "{attack}");
+        assert_eq!(fs::read_dir(outside.path().join("deep")).unwrap().count(), 0, "{attack}");
+    }
+}
+
+/// Models print into files, too.
+#[test]
+fn models_change_nothing_of_the_users() {
+    let model = "model W Real x(start = 0, fixed = true); equation der(x) = 1; when time > 0.5 then \
+                 Modelica.Utilities.Streams.print(\"evil\", \".bashrc\"); \
+                 Modelica.Utilities.Streams.print(\"evil\", \"notes.txt\"); end when; end W;";
+    let here = folder(&[("W.mo", model), (".bashrc", "mine"), ("notes.txt", "mine")]);
+    let (code, _, errors) = gapi(&here, &["simulate", "W.mo"]);
+    assert!(code == 1 && errors.contains("--allow-write"), "{errors}");
+    assert_eq!((text(&here, ".bashrc"), text(&here, "notes.txt")), ("mine".into(), "mine".into()));
+    let (code, _, errors) = gapi(&here, &["simulate", "W.mo", "--allow-write"]);
+    assert_eq!(code, 0, "{errors}");
+    assert_eq!(text(&here, ".bashrc"), "mineevil\n");
+}
+
+/// What the command line names is allowed, and replaced.
+#[test]
+fn what_the_command_line_names_is_written() {
+    let here = home("1 + 1\n");
+    let elsewhere = folder(&[("out.csv", "old"), ("log.txt", "old")]);
+    let path = |name: &str| elsewhere.path().join(name).display().to_string();
+    let (code, _, errors) = gapi(&here, &["simulate", "M.mo", "--output", &path("out.csv")]);
+    assert_eq!(code, 0, "{errors}");
+    assert!(text(&elsewhere, "out.csv").starts_with("\"time\""));
+    let (code, _, errors) = gapi(&here, &["run", "job.mos", "--transcript", &path("log.txt")]);
+    assert_eq!(code, 0, "{errors}");
+    assert!(text(&elsewhere, "log.txt").contains("1 + 1"));
+    #[cfg(unix)]
+    {
+        let (code, _, errors) = gapi(&here, &["simulate", "M.mo", "--output", "/dev/null"]);
+        assert!(code == 0 || errors.contains("format"), "{errors}");
+    }
+}
+
+/// A terminal carries out what stands in a diagnostic's message and source line.
+#[test]
+fn diagnostics_carry_no_commands_to_the_terminal() {
+    let here =
+        home("x = \"\u{1b}]52;c;ZXZpbA==\u{7}\" + nothing(\"\u{9b}2J\");\nerror(\"\u{1b}[2J\");\n");
+    for colour in ["never", "always"] {
+        let (_, _, errors) = gapi(&here, &["run", "job.mos", "--color", colour]);
+        assert!(!errors.contains("\u{1b}]") && !errors.contains('\u{9b}'), "{errors:?}");
+        assert!(!errors.contains("\u{1b}[2J") && !errors.contains('\u{7}'), "{errors:?}");
+        assert!(errors.contains("␛]52") && errors.contains("␛[2J"), "{errors}");
+    }
+}
+
+/// Names of files reach messages as well.
+#[test]
+fn names_of_files_carry_no_commands() {
+    let here = home("");
+    let (_, _, errors) = gapi(&here, &["run", "\u{1b}[2Jmissing.mos"]);
+    assert!(!errors.contains('\u{1b}') && errors.contains("␛[2J"), "{errors:?}");
+    assert!(!Path::new("\u{1b}[2Jmissing.mos").exists());
+}
