@@ -255,9 +255,9 @@
 //! <a id="fedorov-1972"></a>
 //! - **fedorov-1972** — V. V. Fedorov: Theory of optimal experiments. Academic Press, 1972.
 //!
-//! <a id="bates-watts-1981"></a>
-//! - **bates-watts-1981** — D. M. Bates, D. G. Watts: A relative offset orthogonality convergence
-//!   criterion for nonlinear least squares. Technometrics 23(2), 1981, 179–183.
+//! <a id="demmel-veselic-1992"></a>
+//! - **demmel-veselic-1992** — J. Demmel, K. Veselić: Jacobi's method is more accurate than QR. SIAM
+//!   Journal on Matrix Analysis and Applications 13(4), 1992, 1204–1245.
 //!
 //! <a id="efron-tibshirani-1993"></a>
 //! - **efron-tibshirani-1993** — B. Efron, R. J. Tibshirani: An introduction to the bootstrap.

@@ -80,6 +80,7 @@ pub mod plot;
 pub mod results;
 pub mod script;
 pub mod sim;
+mod singular_values;
 pub mod symbolic;
 pub mod syntax;
 pub mod teach;

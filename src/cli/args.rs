@@ -169,6 +169,14 @@ pub(super) struct Freedom {
     /// Let scripts run programs and read all environment variables
     #[arg(long)]
     pub allow_system: bool,
+    /// When to stop
+    #[command(flatten)]
+    pub limits: Limits,
+}
+
+/// What a command may take.
+#[derive(Debug, Args, Clone)]
+pub(super) struct Limits {
     /// Stop after so many seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time_limit: Option<f64>,
@@ -368,6 +376,9 @@ pub(super) struct IdentifyArgs {
     /// Show errors only
     #[arg(long, short)]
     pub quiet: bool,
+    /// When to stop
+    #[command(flatten)]
+    pub limits: Limits,
 }
 
 /// Arguments of `gapi teach`.
@@ -492,6 +503,9 @@ pub(super) struct SimulateArgs {
     /// Where the drawing of --plot goes: a file that ends in .svg, .png or .pdf
     #[arg(long, value_name = "FILE", requires = "plot", value_hint = ValueHint::FilePath)]
     pub figure: Option<PathBuf>,
+    /// When to stop
+    #[command(flatten)]
+    pub limits: Limits,
 }
 
 /// The passes whose system can be shown, the flat model as the first.
@@ -521,6 +535,9 @@ pub(super) struct CheckArgs {
     /// The class to check as a model
     #[arg(long, value_name = "CLASS")]
     pub model: Option<String>,
+    /// When to stop
+    #[command(flatten)]
+    pub limits: Limits,
 }
 
 /// Arguments of `gapi flatten`.
@@ -536,6 +553,9 @@ pub(super) struct FlattenArgs {
     /// The class to flatten
     #[arg(long, value_name = "CLASS")]
     pub model: Option<String>,
+    /// When to stop
+    #[command(flatten)]
+    pub limits: Limits,
 }
 
 /// Arguments of `gapi report`.

@@ -1,7 +1,7 @@
 //! `gapi check` and `gapi flatten`: models without running them.
 
 use super::args::{CheckArgs, FlattenArgs, Global};
-use super::session;
+use super::{limits, session};
 use crate::diag::Diagnostic;
 use crate::name::Name;
 use crate::script::{Session, checking, simulation};
@@ -9,6 +9,10 @@ use std::process::ExitCode;
 
 /// Checks all models of the files, or one down to its sorted equations.
 pub(super) fn check(arguments: &CheckArgs, global: &Global) -> ExitCode {
+    let _watch = match limits::enforce(&arguments.limits) {
+        Ok(watch) => watch,
+        Err(code) => return code,
+    };
     let (class, files) = session::class_and_files(arguments.model.as_ref(), &arguments.files);
     let (mut session, loaded) = match session::with_files(global, &files) {
         Ok(session) => session,
@@ -81,6 +85,10 @@ fn values_left_open(errors: &[Diagnostic]) -> Option<String> {
 
 /// Prints a model as flat Modelica.
 pub(super) fn flatten(arguments: &FlattenArgs, global: &Global) -> ExitCode {
+    let _watch = match limits::enforce(&arguments.limits) {
+        Ok(watch) => watch,
+        Err(code) => return code,
+    };
     let opened = session::with_class(global, arguments.model.as_ref(), &arguments.files);
     let (mut session, class) = match opened {
         Ok(opened) => opened,

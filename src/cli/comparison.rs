@@ -7,6 +7,7 @@ use crate::identify::problem::Solution;
 use crate::identify::problem::inference::compare;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Instant;
 
 /// Solves every problem into a folder of its name, and compares.
 pub(super) fn identify_all(arguments: &IdentifyArgs, global: &Global) -> ExitCode {
@@ -23,9 +24,10 @@ pub(super) fn identify_all(arguments: &IdentifyArgs, global: &Global) -> ExitCod
         ));
         return ExitCode::from(2);
     }
+    let started = Instant::now();
     let mut solutions: Vec<Solution> = Vec::new();
     for (problem, name) in problems.iter().zip(&names) {
-        match solve_one(arguments, global, problem, Path::new(name)) {
+        match solve_one(arguments, global, (problem, Path::new(name)), started) {
             Ended::Solved(solution) => solutions.push(*solution),
             Ended::Not(code) => return code,
         }

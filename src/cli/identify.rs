@@ -3,13 +3,14 @@
 use super::args::{Global, IdentifyArgs};
 use super::comparison;
 use super::output::Output;
-use super::session;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
+use super::{limits, session};
 use crate::identify::problem::Solution;
 use crate::script::problem::{RunOptions, solve};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Instant;
 
 /// How a run ended.
 pub(super) enum Ended {
@@ -22,18 +23,19 @@ pub(super) fn identify(arguments: &IdentifyArgs, global: &Global) -> ExitCode {
     if !arguments.others.is_empty() {
         return comparison::identify_all(arguments, global);
     }
-    match solve_one(arguments, global, &arguments.problem, Path::new("")) {
+    match solve_one(arguments, global, (&arguments.problem, Path::new("")), Instant::now()) {
         Ended::Solved(_) => ExitCode::SUCCESS,
         Ended::Not(code) => code,
     }
 }
 
 /// Solves one problem into its folder below `results`, or into `folder` within the one that is wanted.
+/// The limit of time counts from `started`.
 pub(super) fn solve_one(
     arguments: &IdentifyArgs,
     global: &Global,
-    problem: &Path,
-    folder: &Path,
+    (problem, folder): (&Path, &Path),
+    started: Instant,
 ) -> Ended {
     let mut terminal = Terminal::new(global.color, arguments.quiet);
     if arguments.plain {
@@ -57,6 +59,10 @@ pub(super) fn solve_one(
         }
     };
     world.catch_interrupts();
+    let _watch = match limits::watch(&arguments.limits, started, world.stopping()) {
+        Ok(watch) => watch,
+        Err(code) => return Ended::Not(code),
+    };
     let mut session = session::open(global, world);
     let options = RunOptions {
         resume: arguments.resume,
@@ -72,7 +78,7 @@ pub(super) fn solve_one(
         evaluations: arguments.evaluations,
     };
     match solve(&mut session, problem, &options) {
-        Ok(_) if session.is_interrupted() => Ended::Not(ExitCode::from(130)),
+        Ok(_) if session.is_interrupted() => Ended::Not(session::stopped(&mut session)),
         Ok(solution) => Ended::Solved(Box::new(solution)),
         Err(errors) => Ended::Not(session::failed(&mut session, errors)),
     }

@@ -9,6 +9,7 @@ use crate::script::{Echo, Journaling, Options, Session, Strictness, Transcript};
 use crate::source::Span;
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::Instant;
 
 /// Runs the script and returns its exit code.
 pub(super) fn run(arguments: &RunArgs, global: &Global) -> ExitCode {
@@ -36,11 +37,11 @@ pub(super) fn run(arguments: &RunArgs, global: &Global) -> ExitCode {
         }
     };
     world.catch_interrupts();
-    let (flag, reason) = world.stopping();
-    if let Err(message) = limits::watch(&arguments.freedom, flag, reason) {
-        terminal::eprint(&format!("error: {message}\n"));
-        return ExitCode::from(2);
-    }
+    let limits = &arguments.freedom.limits;
+    let _watch = match limits::watch(limits, Instant::now(), world.stopping()) {
+        Ok(watch) => watch,
+        Err(code) => return code,
+    };
     let mut session = session::open(global, world).with_options(options(arguments));
     let start = session.world.current_dir();
     if arguments.transcript.is_some() {

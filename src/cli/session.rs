@@ -3,10 +3,12 @@
 use super::args::Global;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Fault};
 use crate::name::Name;
 use crate::script::Session;
+use crate::script::errors::LIMIT_REACHED;
 use crate::script::world::World;
+use crate::source::Span;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -96,4 +98,12 @@ fn is_class(text: &str) -> bool {
 pub(super) fn failed(session: &mut Session, errors: Vec<Diagnostic>) -> ExitCode {
     errors.into_iter().for_each(|error| session.report(error));
     ExitCode::FAILURE
+}
+
+/// How a run ends that was stopped: by a limit, which is an error, or by the user.
+pub(super) fn stopped(session: &mut Session) -> ExitCode {
+    match session.world.stop_reason() {
+        Some(reason) => failed(session, vec![Fault::new(LIMIT_REACHED, reason).at(Span::NONE)]),
+        None => ExitCode::from(130),
+    }
 }

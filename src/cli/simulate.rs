@@ -1,8 +1,8 @@
 //! `gapi simulate`: one simulation of one model.
 
 use super::args::{Global, SimulateArgs};
-use super::session;
 use super::terminal::Terminal;
+use super::{limits, session};
 use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::plot::{self, Axis, Figure, Mark, Panel};
@@ -32,6 +32,10 @@ const REDRAWN: Duration = Duration::from_millis(100);
 
 /// Simulates and writes the trajectories, or shows the last values.
 pub(super) fn simulate(arguments: &SimulateArgs, global: &Global) -> ExitCode {
+    let _watch = match limits::enforce(&arguments.limits) {
+        Ok(watch) => watch,
+        Err(code) => return code,
+    };
     let opened = session::with_class(global, arguments.model.as_ref(), &arguments.files);
     let (mut session, class) = match opened {
         Ok(opened) => opened,

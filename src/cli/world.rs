@@ -1,6 +1,6 @@
 //! The world of a real run: disk, clock, environment, terminal, Ctrl-C.
 
-use super::limits::Reason;
+use super::limits::Stopping;
 use super::output::Output;
 use super::terminal::Terminal;
 use crate::models;
@@ -22,8 +22,7 @@ pub(super) struct SystemWorld {
     output: PathBuf,
     threads: usize,
     started: Instant,
-    interrupt: Arc<AtomicBool>,
-    reason: Reason,
+    stopping: Stopping,
     /// How often it has written a file.
     changes: u64,
     /// The folder for the results, as long as nothing was written into it.
@@ -42,11 +41,10 @@ impl SystemWorld {
         Ok(SystemWorld {
             output: current.join(output),
             current,
-            interrupt: terminal.interrupt(),
+            stopping: Stopping { flag: terminal.interrupt(), ..Stopping::default() },
             terminal,
             threads: threads.unwrap_or(available).max(1),
             started: Instant::now(),
-            reason: Reason::default(),
             changes: 0,
             unclaimed: None,
         })
@@ -74,13 +72,13 @@ impl SystemWorld {
     }
 
     /// What stops the run when it is set, and why it was.
-    pub(super) fn stopping(&self) -> (Arc<AtomicBool>, Reason) {
-        (Arc::clone(&self.interrupt), Arc::clone(&self.reason))
+    pub(super) fn stopping(&self) -> Stopping {
+        self.stopping.clone()
     }
 
     /// Makes Ctrl-C ask the run to stop; a second one ends the process at once.
     pub(super) fn catch_interrupts(&self) {
-        let flag = Arc::clone(&self.interrupt);
+        let flag = Arc::clone(&self.stopping.flag);
         let caught = ctrlc::set_handler(move || {
             if flag.swap(true, Ordering::SeqCst) {
                 #[allow(clippy::exit, reason = "the user asked twice")]
@@ -223,15 +221,19 @@ impl World for SystemWorld {
     }
 
     fn interrupted(&self) -> bool {
-        self.interrupt.load(Ordering::Relaxed)
+        let is_asked = self.stopping.flag.load(Ordering::Relaxed);
+        if is_asked {
+            self.stopping.noticed.store(true, Ordering::Relaxed);
+        }
+        is_asked
     }
 
     fn interrupt_flag(&self) -> Option<Arc<AtomicBool>> {
-        Some(Arc::clone(&self.interrupt))
+        Some(Arc::clone(&self.stopping.flag))
     }
 
     fn stop_reason(&self) -> Option<String> {
-        self.reason.get().cloned()
+        self.stopping.reason.lock().ok()?.clone()
     }
 
     fn run_command(

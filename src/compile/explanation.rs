@@ -116,9 +116,10 @@ impl Program {
                     }
                 }
             }
-            Failure::Newton { block } | Failure::Singular { block } => {
+            Failure::Newton { block } => {
                 self.explain_block(self.block(block), when, SIMULATION_FAILED)
             }
+            Failure::Singular { block } => self.explain_singular(self.block(block), when),
             Failure::Initialization { block } => {
                 let block = self.sorted.initial_blocks.get(block as usize);
                 self.explain_block(block, when, INITIALIZATION_FAILED)
@@ -173,19 +174,35 @@ impl Program {
     }
 
     fn explain_block(&self, block: Option<&Block>, when: &str, code: Code) -> Diagnostic {
-        let Some(Block::Loop(torn)) = block else {
+        let Some((names, span)) = self.torn_loop(block) else {
             return fault!(code, "an algebraic loop of `{}` did not converge {when}", self.name())
                 .at(self.first_span());
         };
-        let names: Vec<String> = torn
-            .iteration
-            .iter()
-            .map(|v| format!("`{}`", self.sorted.dae.variable(*v).name))
-            .collect();
-        let equation = torn.residuals.first().map_or(u32::MAX, |(_, equation)| *equation as u32);
-        fault!(code, "the algebraic loop of {} did not converge {when}", names.join(", ");
+        fault!(code, "the algebraic loop of {names} did not converge {when}";
             help: "give these variables start values near the solution")
-        .at(self.place(equation))
+        .at(span)
+    }
+
+    /// A loop whose Jacobian is singular where all its equations hold.
+    fn explain_singular(&self, block: Option<&Block>, when: &str) -> Diagnostic {
+        let Some((names, span)) = self.torn_loop(block) else {
+            return self.explain_block(block, when, SIMULATION_FAILED);
+        };
+        fault!(SIMULATION_FAILED,
+            "the Jacobian of the algebraic loop of {names} is singular {when}: its equations do not \
+             determine a unique solution";
+            help: "replace an equation that follows from the others by one that determines these \
+                   variables, or give them start values near another solution")
+        .at(span)
+    }
+
+    /// The iteration variables of a torn loop, and where one of its equations is written.
+    fn torn_loop(&self, block: Option<&Block>) -> Option<(String, Span)> {
+        let Some(Block::Loop(torn)) = block else { return None };
+        let name = |v: &VarId| format!("`{}`", self.sorted.dae.variable(*v).name);
+        let names: Vec<String> = torn.iteration.iter().map(name).collect();
+        let equation = torn.residuals.first().map_or(u32::MAX, |(_, equation)| *equation as u32);
+        Some((names.join(", "), self.place(equation)))
     }
 
     /// The unknowns of the linear loop that this equation solves for one of them.
@@ -207,7 +224,7 @@ impl Program {
     }
 
     /// Where an origin is written: equations, initial equations, those of events, then variables.
-    fn place(&self, origin: u32) -> Span {
+    pub(super) fn place(&self, origin: u32) -> Span {
         let dae = &self.sorted.dae;
         let equations = dae.equations.iter().chain(&dae.initial_equations);
         let mut spans = equations.chain(&dae.events.equations).map(|e| e.span);

@@ -5,7 +5,7 @@
 //! up to 2     x = b / a; by determinants where the determinant is no small difference
 //! up to 6     the same factors without a workspace where no pivot is small
 //! singular    A V = W with orthogonal columns wⱼ; x = Σ vⱼ (wⱼ·b)/(wⱼ·wⱼ) over those that are not
-//!             zero: of all solutions the smallest
+//!             zero: of all solutions the one of least norm; the other vⱼ span the null space
 //! ```
 //!
 //! A singular system without a solution fails, unless its pivots are more than rounding errors:
@@ -23,6 +23,8 @@ const SMALLEST_COLUMN: f64 = 1e-11;
 /// How far a singular system may be from having a solution, relative to its terms, and to 1.
 const CONSISTENT: f64 = 1e-6;
 const CONSISTENT_TO_ONE: f64 = 1e-9;
+/// Smaller entries of the unit vectors of a null space are rounding errors.
+const SMALLEST_PART: f64 = 1e-6;
 const MAX_SWEEPS: usize = 60;
 /// Two equations are solved by determinants where theirs is more than this part of its terms.
 pub(super) const SMALLEST_DETERMINANT: f64 = 1e-4;
@@ -66,6 +68,8 @@ pub(super) struct LinearSystem {
     right: Vec<f64>,
     x: Vec<f64>,
     is_singular: bool,
+    /// Whether the last solution was one of many.
+    is_one_of_many: bool,
     /// Whether the factors of a singular matrix are more than rounding errors.
     has_factors: bool,
     /// V and W by columns.
@@ -87,6 +91,7 @@ impl LinearSystem {
             right: vec![0.0; n],
             x: vec![0.0; n],
             is_singular: false,
+            is_one_of_many: false,
             has_factors: true,
             v: square.clone(),
             w: square,
@@ -100,6 +105,7 @@ impl LinearSystem {
         {
             self.is_factorized = false;
         }
+        self.is_one_of_many = false;
         if self.run_small(solve, r) {
             return Ok(());
         }
@@ -250,22 +256,44 @@ impl LinearSystem {
         true
     }
 
+    /// From here on [`LinearSystem::open_unknowns`] tells of solutions to come.
+    pub(super) fn forget_solution(&mut self) {
+        self.is_one_of_many = false;
+    }
+
+    /// The unknowns that the system leaves open, if its last solution was one of many: those that
+    /// the null space of A reaches.
+    pub(super) fn open_unknowns(&self) -> Vec<usize> {
+        let n = self.n;
+        if !self.is_one_of_many {
+            return Vec::new();
+        }
+        let shortest = shortest_column(&self.w, n);
+        let columns = self.w.chunks_exact(n).zip(self.v.chunks_exact(n));
+        let null: Vec<&[f64]> =
+            columns.filter(|(w, _)| dot(w, w) <= shortest).map(|(_, v)| v).collect();
+        (0..n).filter(|i| null.iter().any(|v| v[*i].abs() > SMALLEST_PART)).collect()
+    }
+
     /// Replaces the scaled b in x by the smallest solution.
     fn solve_singular(&mut self, is_slope: bool) -> Result<(), NoSolution> {
         let n = self.n;
         let b = &mut self.right;
         b.copy_from_slice(&self.x);
         self.x.fill(0.0);
-        let longest = self.w.chunks_exact(n).map(|w| dot(w, w)).fold(0.0, f64::max);
+        let shortest = shortest_column(&self.w, n);
+        let mut rank = 0;
         for (w, v) in self.w.chunks_exact(n).zip(self.v.chunks_exact(n)) {
             let square = dot(w, w);
-            if square > SMALLEST_COLUMN * SMALLEST_COLUMN * longest {
+            if square > shortest {
+                rank += 1;
                 let part = dot(w, b) / square;
                 self.x.iter_mut().zip(v).for_each(|(x, v)| *x += part * v);
             }
         }
         self.x.iter_mut().zip(&self.column_scale).for_each(|(x, scale)| *x *= scale);
         if is_slope || is_solved(&self.matrix, &self.x, b) {
+            self.is_one_of_many = rank < n && !is_slope;
             return Ok(());
         }
         if !self.has_factors {
@@ -275,6 +303,12 @@ impl LinearSystem {
         self.lu.solve(&mut self.x);
         Ok(())
     }
+}
+
+/// The square of the length up to which columns of W are zero.
+fn shortest_column(w: &[f64], n: usize) -> f64 {
+    let longest = w.chunks_exact(n).map(|w| dot(w, w)).fold(0.0, f64::max);
+    SMALLEST_COLUMN * SMALLEST_COLUMN * longest
 }
 
 /// Whether A x = b but for rounding.
@@ -350,6 +384,27 @@ mod tests {
         let x = solve(&[2.0, 0.0, 0.0, 0.0], &[3.0, 0.0], false).unwrap();
         assert!((x[0] - 1.5).abs() < 1e-12 && x[1] == 0.0);
         assert_eq!(solve(&[0.0], &[0.0], false), Some(vec![0.0]));
+    }
+
+    #[test]
+    fn the_null_space_tells_which_unknowns_are_open() {
+        let open = |a: &[f64], b: &[f64]| {
+            let n = b.len();
+            let mut r: Vec<f64> = a.iter().chain(b).copied().chain(vec![0.0; n]).collect();
+            let entries = (0..(n * n) as u32).map(|place| (place, place)).collect();
+            let right = ((n * n) as u32..(n * n + n) as u32).collect();
+            let d = (n * n + n) as u32;
+            let solve =
+                LinearSolve { system: 0, entries: Some(entries), right, d, is_slope: false };
+            let mut system = LinearSystem::new(n);
+            system.run(&solve, &mut r).unwrap();
+            system.open_unknowns()
+        };
+        // The second unknown is determined, the others are not.
+        let a = [1.0, 0.0, 1.0, 0.0, 3.0, 0.0, 2.0, 1.0, 2.0];
+        assert_eq!(open(&a, &[1.0, 6.0, 4.0]), [0, 2]);
+        assert_eq!(open(&[0.0], &[0.0]), [0]);
+        assert!(open(&[2.0, 1.0, 1.0, 1.0], &[1.0, 1.0]).is_empty());
     }
 
     #[test]

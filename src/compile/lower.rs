@@ -53,6 +53,11 @@ impl Registers {
         })
     }
 
+    /// The workspace for a matrix, if any tape solves a system with it.
+    pub(super) fn workspace_of(&self, matrix: Expr) -> Option<u32> {
+        self.workspaces.get(&matrix).copied()
+    }
+
     /// The functions that tapes on these registers call.
     pub(super) fn functions(&self) -> &Arc<Functions> {
         &self.functions

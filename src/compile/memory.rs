@@ -59,6 +59,11 @@ impl Memory {
             self.registers[*register as usize] = *value;
         }
     }
+
+    /// From here on linear systems tell of solutions to come.
+    pub(super) fn forget_solutions(&mut self) {
+        self.systems.iter_mut().for_each(LinearSystem::forget_solution);
+    }
 }
 
 impl Calls {

@@ -31,9 +31,11 @@ mod slopes;
 mod system;
 mod tape;
 mod translation;
+mod undetermined;
 
 pub use notices::Told;
 pub use program::{Access, ParameterInfo, Program, VariableInfo};
 pub use sensitivity::SensitivityCode;
 pub use sliding::Treated;
 pub use system::System;
+pub use undetermined::Undetermined;

@@ -8,8 +8,8 @@
 //!     otherwise the global Newton method, where a jump is no error
 //! ```
 //!
-//! A loop whose Jacobian is singular at the solution has none that is unique. At the start that
-//! nearest to the start values is taken; later it is an error.
+//! A loop whose Jacobian is singular at the solution need not have only this one. At the start the one
+//! nearest to the start values is taken, with a warning; later it is an error.
 
 use super::continuation::Continuation;
 use super::least_squares::LeastSquares;
@@ -29,6 +29,8 @@ pub(super) struct LoopSolver {
     /// Where an attempt begins, or what least squares found.
     start: Vec<f64>,
     x: Vec<f64>,
+    /// Whether the Jacobian is singular at the last solution.
+    pub(super) is_singular: bool,
 }
 
 impl LoopSolver {
@@ -43,6 +45,7 @@ impl LoopSolver {
             guess: vec![0.0; n],
             start: vec![0.0; n],
             x: vec![0.0; n],
+            is_singular: false,
         }
     }
 
@@ -80,6 +83,7 @@ impl LoopSolver {
 
     fn attempt(&mut self, equations: &mut Evaluation, initial: bool) -> Result<(), Failure> {
         let block = equations.torn.block;
+        self.is_singular = false;
         self.start.copy_from_slice(&self.x);
         let first = self.newton.solve(equations, &mut self.x, &self.nominal);
         let Err(failure) = first else { return Ok(()) };
@@ -92,7 +96,8 @@ impl LoopSolver {
                 Err(NewtonFailure::Singular) if !initial => {
                     return Err(Failure::Singular { block });
                 }
-                Err(_) if initial => {
+                Err(failure) if initial => {
+                    self.is_singular = failure == NewtonFailure::Singular;
                     self.x.copy_from_slice(&self.start);
                     return Ok(());
                 }

@@ -4,6 +4,7 @@
 use super::Program;
 use super::program::Outputs;
 use super::system::System;
+use super::undetermined::Open;
 use crate::bytecode::Journal;
 use crate::dae::{Assertion, Level, Part};
 use crate::sim::Failure;
@@ -29,6 +30,8 @@ pub(super) struct Notices {
     omitted: u64,
     /// Which warnings hold now, so that each is told when it begins.
     active: Vec<bool>,
+    /// What the equations left open.
+    pub(super) open: Vec<Open>,
 }
 
 #[derive(Debug, Clone)]

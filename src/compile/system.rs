@@ -50,7 +50,7 @@ pub struct System {
     pub(super) excused: Vec<f64>,
     nominal: Vec<f64>,
     /// One for every loop of the initial system, of the system, and of that at events, in order.
-    initial_solvers: Vec<LoopSolver>,
+    pub(super) initial_solvers: Vec<LoopSolver>,
     solvers: Vec<LoopSolver>,
     event_solvers: Vec<LoopSolver>,
     /// One for every selection of states.
@@ -330,6 +330,9 @@ impl System {
             Stage::Event | Stage::Continuous => (&program.steps, &mut self.solvers),
         };
         let initial = stage == Stage::Initial;
+        if initial && self.notices.is_some() {
+            self.registers.forget_solutions();
+        }
         let may_jump = stage != Stage::Continuous || program.sorted.states.is_empty();
         let mut solvers = solvers.iter_mut();
         for step in steps {
@@ -484,6 +487,7 @@ impl DaeSystem for System {
         self.forget_notices();
         self.treated.clear();
         self.solve_initial_system(t)?;
+        self.note_open_at_start(t);
         self.check_initial_values()?;
         self.assert_at_event()?;
         self.notice_at_event(t)?;
@@ -640,8 +644,13 @@ impl DaeSystem for System {
             let code = &sensitivity.code.observe;
             return read(code, &mut self.registers, out).map_err(|f| self.refine(f));
         }
+        if self.notices.is_some() {
+            self.registers.forget_solutions();
+        }
         let observed = self.observed.as_ref().unwrap_or(&self.program.observe);
-        read(observed, &mut self.registers, out).map_err(|f| self.refine(f))
+        read(observed, &mut self.registers, out).map_err(|f| self.refine(f))?;
+        self.note_open(t);
+        Ok(())
     }
 }
 

@@ -9,6 +9,7 @@ use super::call::Call;
 use super::householder::full_qr;
 use super::matrices::{column, matrix, wants, write};
 use crate::diag::Fault;
+use crate::singular_values::SingularValues;
 use nalgebra::DMatrix;
 
 pub(super) const ENTRIES: &[Entry] = &[
@@ -34,12 +35,9 @@ fn least_squares(
     if rows == 0 || columns == 0 {
         return Ok((DMatrix::zeros(columns, b.ncols()), 0.0));
     }
-    let svd = a.svd(true, true);
-    let largest = svd.singular_values.max();
-    let least = largest * relative.max(f64::EPSILON * rows.max(columns) as f64);
-    let rank = svd.singular_values.iter().filter(|value| **value > least).count();
-    let x = svd.solve(&b, least).map_err(|reason| call.fault(reason))?;
-    Ok((x, rank as f64))
+    let found = SingularValues::of(&a).ok_or_else(|| call.fault("a value is not finite"))?;
+    let least = found.largest() * relative.max(f64::EPSILON * rows.max(columns) as f64);
+    Ok((found.solve(&b, least), found.rank(least) as f64))
 }
 
 /// `(trans, m, n, nrhs, A, lda, B, ldb, work, lwork, info)`
@@ -93,17 +91,14 @@ fn dgglse(call: &mut Call<'_>) -> Result<(), Fault> {
 }
 
 /// All of U, the singular values, all of Vᵀ.
-type SingularValues = (DMatrix<f64>, DMatrix<f64>, DMatrix<f64>);
+type Factors = (DMatrix<f64>, DMatrix<f64>, DMatrix<f64>);
 
-fn singular_values(call: &Call<'_>, a: DMatrix<f64>) -> Result<SingularValues, Fault> {
-    let svd = a.svd(true, true);
-    let (Some(u), Some(v_t)) = (svd.u, svd.v_t) else {
-        return Err(call.fault("the singular vectors were not found"));
-    };
+fn singular_values(call: &Call<'_>, a: DMatrix<f64>) -> Result<Factors, Fault> {
+    let found = SingularValues::of(&a).ok_or_else(|| call.fault("a value is not finite"))?;
     Ok((
-        completed(u),
-        column(svd.singular_values.as_slice()),
-        completed(v_t.transpose()).transpose(),
+        completed(found.u),
+        column(found.s.as_slice()),
+        completed(found.v_t.transpose()).transpose(),
     ))
 }
 

@@ -30,4 +30,4 @@ pub use points::{Path, time_of};
 pub use probe::Ending;
 pub use program::CompiledModel;
 pub use recorder::{Best, Compared, Measurement, Quantity, Recorder, Study};
-pub use uncertainty::{Uncertainty, uncertainty, uncertainty_given};
+pub use uncertainty::{Uncertainty, error_of_combination, uncertainty, uncertainty_given};

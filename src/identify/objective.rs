@@ -3,7 +3,8 @@
 //! `Fit_Order` decides.
 
 use crate::ga::has_failed;
-use nalgebra::{DMatrix, DVector};
+use crate::singular_values::SingularValues;
+use nalgebra::DMatrix;
 
 /// Relative difference up to which a sum is the one that the script has formed; its additions in
 /// another order differ by rounding only, some 1e-15 for each term.
@@ -101,7 +102,7 @@ fn weights(values: &[(&[f64], f64)], series: usize) -> Option<Vec<f64>> {
         return None;
     }
     let rows = DMatrix::from_fn(values.len(), series, |k, e| values[k].0[e] / values[k].1);
-    let solved = rows.svd(true, true).solve(&DVector::repeat(values.len(), 1.0), 1e-12).ok()?;
+    let solved = SingularValues::of(&rows)?.solve(&DMatrix::repeat(values.len(), 1, 1.0), 1e-12);
     let largest = solved.amax();
     let rounded = |weight: &f64| {
         let weight = if weight.abs() <= SAME * largest { 0.0 } else { *weight };

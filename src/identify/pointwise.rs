@@ -23,36 +23,67 @@ impl Pointwise {
     pub(super) fn evaluate(
         &mut self,
         instance: &mut dyn Instance,
-        (parameters, time): (&[f64], f64),
+        at: (&[f64], f64),
         (column, x): (usize, &[f64]),
         out: &mut [f64],
     ) -> Result<(), String> {
         for (value, &x) in out.iter_mut().zip(x) {
-            self.values.clear();
-            self.values.extend_from_slice(parameters);
-            self.values.push(x);
-            instance.set(&self.values).map_err(|fault| fault.message)?;
-            let system = instance.system();
-            self.unknowns.clear();
-            self.unknowns.resize(system.n_differential() + system.n_algebraic(), 0.0);
-            self.observed.clear();
-            self.observed.resize(system.n_observed(), f64::NAN);
-            let solved = system
-                .initialize(time, &mut self.unknowns)
-                .map_err(SimErrorKind::Initialization)
-                .and_then(|()| {
-                    let checked = system.check(time, &self.unknowns);
-                    let read = |()| system.observe(time, &self.unknowns, &mut self.observed);
-                    checked
-                        .and_then(read)
-                        .map_err(|failure: Failure| SimErrorKind::Evaluation(failure))
-                });
-            if let Err(kind) = solved {
-                let error = SimError { time, kind, culprit: None };
-                return Err(format!("{} (at X = {x})", instance.explain(&error)));
-            }
+            self.solve(instance, at, x)?;
             *value = self.observed[column];
         }
         Ok(())
+    }
+
+    /// As [`evaluate`](Pointwise::evaluate) with an instance that differentiates, `observed` variables
+    /// in all; the derivatives by the parameters follow each other point by point.
+    ///
+    /// # Errors
+    ///
+    /// Why a point has no solution or no derivatives, in one sentence.
+    pub(super) fn differentiate(
+        &mut self,
+        instance: &mut dyn Instance,
+        at: (&[f64], f64),
+        (column, observed, x): (usize, usize, &[f64]),
+        (out, derivatives): (&mut [f64], &mut Vec<f64>),
+    ) -> Result<(), String> {
+        for (value, &x) in out.iter_mut().zip(x) {
+            self.solve(instance, at, x)?;
+            *value = self.observed[column];
+            let of = |parameter: usize| self.observed[observed * (parameter + 1) + column];
+            derivatives.extend((0..at.0.len()).map(of));
+        }
+        Ok(())
+    }
+
+    /// One point.
+    fn solve(
+        &mut self,
+        instance: &mut dyn Instance,
+        (parameters, time): (&[f64], f64),
+        x: f64,
+    ) -> Result<(), String> {
+        self.values.clear();
+        self.values.extend_from_slice(parameters);
+        self.values.push(x);
+        instance.set(&self.values).map_err(|fault| fault.message)?;
+        let system = instance.system();
+        let unknowns = system.n_differential() + system.n_algebraic();
+        self.unknowns.clear();
+        self.unknowns.resize(unknowns * (1 + system.n_directions()), 0.0);
+        self.observed.clear();
+        self.observed.resize(system.n_observed(), f64::NAN);
+        let solved = system
+            .initialize(time, &mut self.unknowns)
+            .map_err(SimErrorKind::Initialization)
+            .and_then(|()| {
+                let checked = system.check(time, &self.unknowns);
+                let read = |()| system.observe(time, &self.unknowns, &mut self.observed);
+                checked.and_then(read).map_err(|failure: Failure| SimErrorKind::Evaluation(failure))
+            });
+        solved.map_err(|kind| {
+            let error = SimError { time, kind, culprit: None };
+            format!("{} (at X = {x})", instance.explain(&error))
+        })
     }
 }

@@ -8,6 +8,7 @@
 //!
 //! Reference: [Walter and Pronzato 1997](crate::bibliography#walter-pronzato-1997), chapter 4.
 
+use crate::singular_values::SingularValues;
 use nalgebra::DMatrix;
 
 /// Singular values below this fraction of the largest count as zero.
@@ -47,7 +48,7 @@ pub fn uncertainty_given(jacobian: &[Vec<f64>], variance: f64) -> Option<Uncerta
     let scaled = DMatrix::from_fn(points, parameters, |j, k| {
         if norms[k] > 0.0 { jacobian[k][j] / norms[k] } else { 0.0 }
     });
-    let covariance = scaled_covariance(scaled)?;
+    let covariance = scaled_covariance(&scaled)?;
     let deviations: Vec<f64> = (0..parameters)
         .map(|k| if norms[k] > 0.0 { covariance[(k, k)].sqrt() / norms[k] } else { f64::INFINITY })
         .map(|deviation| deviation * if deviation.is_finite() { variance.sqrt() } else { 1.0 })
@@ -63,14 +64,13 @@ pub fn uncertainty_given(jacobian: &[Vec<f64>], variance: f64) -> Option<Uncerta
 }
 
 /// (SᵀS)⁻¹; infinite in the rows and columns that take part in a null direction.
-fn scaled_covariance(scaled: DMatrix<f64>) -> Option<DMatrix<f64>> {
+fn scaled_covariance(scaled: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let parameters = scaled.ncols();
-    let svd = scaled.svd(false, true);
-    let directions = svd.v_t?;
-    let largest = svd.singular_values.max();
+    let found = SingularValues::of(&scaled)?;
+    let (directions, largest) = (&found.v_t, found.largest());
     let mut covariance = DMatrix::zeros(parameters, parameters);
     let mut undetermined = vec![false; parameters];
-    for (d, &value) in svd.singular_values.iter().enumerate() {
+    for (d, &value) in found.s.iter().enumerate() {
         if value > RANK_TOLERANCE * largest {
             for k in 0..parameters {
                 for l in 0..parameters {
@@ -90,9 +90,42 @@ fn scaled_covariance(scaled: DMatrix<f64>) -> Option<DMatrix<f64>> {
     Some(covariance)
 }
 
+/// The standard error of Σ wₖ pₖ from the sensitivities and the variance of the residuals, in the
+/// directions whose singular values are above `tolerance` times the largest; `None` when a number is
+/// not finite.
+pub fn error_of_combination(
+    jacobian: &[Vec<f64>],
+    weights: &[f64],
+    variance: f64,
+    tolerance: f64,
+) -> Option<f64> {
+    let (points, parameters) = (jacobian.first().map_or(0, Vec::len), jacobian.len());
+    let norms: Vec<f64> =
+        jacobian.iter().map(|column| column.iter().map(|v| v * v).sum::<f64>().sqrt()).collect();
+    let used: Vec<usize> = (0..parameters).filter(|&k| norms[k] > 0.0).collect();
+    let scaled = DMatrix::from_fn(points, used.len(), |j, k| jacobian[used[k]][j] / norms[used[k]]);
+    let found = SingularValues::of(&scaled)?;
+    let along = |d: usize| -> f64 {
+        used.iter().enumerate().map(|(k, &own)| found.v_t[(d, k)] * weights[own] / norms[own]).sum()
+    };
+    let directions = (0..found.s.len()).filter(|&d| found.s[d] > tolerance * found.largest());
+    let square: f64 = directions.map(|d| (along(d) / found.s[d]).powi(2)).sum();
+    Some((variance * square).sqrt()).filter(|error| error.is_finite())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Of y = (a + b) x only the sum is determined: s²/Σx² is its variance, as of one slope.
+    #[test]
+    fn a_sum_has_a_standard_error_where_its_parts_have_none() {
+        let jacobian = [vec![1.0, 2.0, 3.0], vec![1.0, 2.0, 3.0]];
+        let error = error_of_combination(&jacobian, &[1.0, 1.0], 0.5, 1e-10).unwrap();
+        assert!((error - (0.5_f64 / 14.0).sqrt()).abs() < 1e-15, "{error}");
+        let difference = error_of_combination(&jacobian, &[1.0, -1.0], 0.5, 1e-10).unwrap();
+        assert!(difference < 1e-15, "nothing of the data says anything of it");
+    }
 
     /// A straight line a + b x at x = 0, 1, 2, 3 with residuals of known variance: the textbook
     /// formulas s² Σx²/(n Sxx) and s²/Sxx hold.

@@ -166,6 +166,15 @@ pub struct Column {
     pub values: Vec<f64>,
     /// What is known of them.
     pub about: About,
+    /// The sentence about values that are missing, if some are.
+    pub missing: Option<String>,
+}
+
+impl Column {
+    /// All that should be known: how the values were read, and which are missing.
+    pub fn notes(&self) -> impl Iterator<Item = String> {
+        self.about.notes.iter().chain(&self.missing).cloned()
+    }
 }
 
 /// The matrices of a file, by name, in the order of the file.
@@ -217,7 +226,7 @@ impl MatFile {
     }
 
     /// Measured values: the elements of a matrix row after row, or one of its columns, as in
-    /// `data[:,2]`. Values that are missing are noted.
+    /// `data[:,2]`.
     pub fn column(&self, name: &str) -> Result<Column, Fault> {
         let (values, about) = match part(name).filter(|_| self.own_name(name) == Ok(name)) {
             Some((matrix, j)) if !self.arrays.contains_key(name) => {
@@ -233,9 +242,8 @@ impl MatFile {
                 (values, self.about.get(own).cloned().unwrap_or_default())
             }
         };
-        let mut column = Column { values, about };
-        column.about.notes.extend(missing(name, &column));
-        Ok(column)
+        let missing = missing(name, &values);
+        Ok(Column { values, about, missing })
     }
 
     /// The name of a column without its unit, if that means no other one.
@@ -395,10 +403,9 @@ fn part(name: &str) -> Option<(&str, usize)> {
 }
 
 /// The sentence about values that are missing.
-fn missing(name: &str, column: &Column) -> Option<String> {
+fn missing(name: &str, values: &[f64]) -> Option<String> {
     const SHOWN: usize = 10;
-    let rows: Vec<usize> =
-        (0..column.values.len()).filter(|&k| !column.values[k].is_finite()).collect();
+    let rows: Vec<usize> = (0..values.len()).filter(|&k| !values[k].is_finite()).collect();
     if rows.is_empty() {
         return None;
     }
@@ -408,7 +415,7 @@ fn missing(name: &str, column: &Column) -> Option<String> {
     Some(format!(
         "{} of {} values of `{name}` {verb} missing: {what} {}{more}",
         rows.len(),
-        column.values.len(),
+        values.len(),
         shown.join(", ")
     ))
 }

@@ -71,7 +71,7 @@ impl Session {
     ) -> Result<Measurement, Fault> {
         let content = mat::read_named(file, &self.read_bytes(Path::new(file))?)?;
         let [x, y] = [content.column(&names[0])?, content.column(&names[1])?];
-        let notes = [&x, &y].into_iter().flat_map(|column| column.about.notes.clone());
+        let notes = [&x, &y].into_iter().flat_map(crate::mat::Column::notes);
         let notes: Vec<String> = notes.collect();
         let [x, y] = [x.values, y.values];
         if x.len() != y.len() {

@@ -4,8 +4,8 @@ use super::Session;
 use super::continuation::Continued;
 use super::errors::{BAD_PARAMETER_VALUE, INTERRUPTED, SHARED_NAME, UNKNOWN_PARAMETER};
 use super::retranslation::{self, Changed, Changes};
-use crate::compile::errors::{ASSERTION_FAILED, CHATTERING};
-use crate::compile::{Access, Program, System, Told, Treated};
+use crate::compile::errors::{ASSERTION_FAILED, CHATTERING, UNDETERMINED};
+use crate::compile::{Access, Program, System, Told, Treated, Undetermined};
 use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::flatten::{self, Experiment, FlatModel, Variability};
 use crate::name::Ident;
@@ -309,6 +309,7 @@ pub fn simulate(
     let run = Simulator::new().run(&mut system, &settings, &mut trajectory);
     tell(session, &system.system);
     report_treatments(session, &system.system);
+    report_undetermined(session, &system.system);
     let written = system.system.journal().carry_out(session).at(call);
     match run {
         Ok(statistics) => {
@@ -340,6 +341,37 @@ fn report_treatments(session: &mut Session, system: &System) {
         if session.models.told.insert((*span, words.to_owned())) {
             let message = format!("{words} (from t = {time})");
             session.report(Fault::new(CHATTERING, message).at(*span).warning());
+        }
+    }
+}
+
+/// The unknowns that equations which depend on each other leave open, once for each loop.
+fn report_undetermined(session: &mut Session, system: &System) {
+    for Undetermined { time, names, omitted, is_linear, span } in system.undetermined() {
+        let mut names = names.join(", ");
+        if omitted > 0 {
+            names += &format!(" and {omitted} more");
+        }
+        let (words, help) = if is_linear {
+            (
+                format!(
+                    "the equations do not determine {names}: their system is singular, and one \
+                     of many solutions is taken"
+                ),
+                "replace a redundant equation by one that determines these variables",
+            )
+        } else {
+            (
+                format!(
+                    "the equations may not determine {names}: their Jacobian is singular, and the \
+                     solution near the start values is taken"
+                ),
+                "check that none of the equations follows from the others",
+            )
+        };
+        if session.models.told.insert((span, words.clone())) {
+            let message = format!("{words} (from t = {time})");
+            session.report(Fault::new(UNDETERMINED, message).help(help).at(span).warning());
         }
     }
 }

@@ -271,7 +271,9 @@ impl Pool {
         is_slope: bool,
     ) -> Expr {
         let zero = |e: &Expr| self.as_constant(*e) == Some(0.0);
-        match self.entries(right).iter().all(zero) {
+        // Zero solves any homogeneous system, but of a singular one it is not the only solution, and
+        // whoever solves it must find that out.
+        match is_slope && self.entries(right).iter().all(zero) {
             true => self.constant(0.0),
             false => self.intern(Node::Solution { matrix, right, output, is_slope }),
         }

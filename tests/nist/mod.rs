@@ -4,21 +4,28 @@
 // What includes this file, a test or a benchmark, uses parts of it.
 #![allow(dead_code)]
 
+use gapilib::compile::Program;
+use gapilib::dae::sort;
+use gapilib::flatten::{Library, flatten};
 use gapilib::ga::optimizer::METHODS;
+use gapilib::identify::CompiledModel;
 use gapilib::identify::fitness::FITNESSES;
 use gapilib::identify::problem::{
-    Failed, FailureKind, Free, Inference, Problem, Run, Series, Sigma, Simulate, Solution, Stop,
+    Experiment, Free, Inference, ModelSimulator, Observation, Problem, Run, Series, Sigma,
+    Solution, Stop, conclude,
 };
+use gapilib::name::Name;
 use gapilib::registry::{self, Options};
-use std::f64::consts::{PI, TAU};
-
-/// y = f(b, x₁, x₂).
-type Formula = fn(&[f64], f64, f64) -> f64;
+use gapilib::sim::Settings;
+use gapilib::source::SourceId;
+use gapilib::syntax::parse_stored_definition;
+use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// A problem as NIST gives it.
 pub(crate) struct Dataset {
     pub(crate) name: &'static str,
-    formula: Formula,
+    formula: &'static str,
     /// Two starts, the certified value and its standard deviation, for each parameter.
     pub(crate) rows: Vec<[f64; 4]>,
     pub(crate) sum: f64,
@@ -26,53 +33,43 @@ pub(crate) struct Dataset {
     y: Vec<f64>,
 }
 
-pub(crate) const MODELS: &[(&str, Formula)] = &[
-    ("Misra1a", |b, x, _| b[0] * (1.0 - (-b[1] * x).exp())),
-    ("Chwirut2", |b, x, _| (-b[0] * x).exp() / (b[1] + b[2] * x)),
-    ("Chwirut1", |b, x, _| (-b[0] * x).exp() / (b[1] + b[2] * x)),
-    ("Lanczos3", lanczos),
-    ("Gauss1", gauss),
-    ("Gauss2", gauss),
-    ("DanWood", |b, x, _| b[0] * x.powf(b[1])),
-    ("Misra1b", |b, x, _| b[0] * (1.0 - (1.0 + b[1] * x / 2.0).powi(-2))),
-    ("Kirby2", |b, x, _| (b[0] + x * (b[1] + x * b[2])) / (1.0 + x * (b[3] + x * b[4]))),
-    ("Hahn1", cubic),
-    ("Nelson", |b, x, z| b[0] - b[1] * x * (-b[2] * z).exp()),
-    ("MGH17", |b, x, _| b[0] + b[1] * (-x * b[3]).exp() + b[2] * (-x * b[4]).exp()),
-    ("Lanczos1", lanczos),
-    ("Lanczos2", lanczos),
-    ("Gauss3", gauss),
-    ("Misra1c", |b, x, _| b[0] * (1.0 - (1.0 + 2.0 * b[1] * x).powf(-0.5))),
-    ("Misra1d", |b, x, _| b[0] * b[1] * x / (1.0 + b[1] * x)),
-    ("Roszman1", |b, x, _| b[0] - b[1] * x - (b[2] / (x - b[3])).atan() / PI),
-    ("ENSO", |b, x, _| {
-        let wave = |period: f64, c: f64, s: f64| {
-            c * (TAU * x / period).cos() + s * (TAU * x / period).sin()
-        };
-        b[0] + wave(12.0, b[1], b[2]) + wave(b[3], b[4], b[5]) + wave(b[6], b[7], b[8])
-    }),
-    ("MGH09", |b, x, _| b[0] * (x * x + x * b[1]) / (x * x + x * b[2] + b[3])),
-    ("Thurber", cubic),
-    ("BoxBOD", |b, x, _| b[0] * (1.0 - (-b[1] * x).exp())),
-    ("Rat42", |b, x, _| b[0] / (1.0 + (b[1] - b[2] * x).exp())),
-    ("MGH10", |b, x, _| b[0] * (b[1] / (x + b[2])).exp()),
-    ("Eckerle4", |b, x, _| b[0] / b[1] * (-0.5 * ((x - b[2]) / b[1]).powi(2)).exp()),
-    ("Rat43", |b, x, _| b[0] / (1.0 + (b[1] - b[2] * x).exp()).powf(1.0 / b[3])),
-    ("Bennett5", |b, x, _| b[0] * (b[1] + x).powf(-1.0 / b[2])),
+/// Names and right-hand sides, in Modelica.
+pub(crate) const MODELS: &[(&str, &str)] = &[
+    ("Misra1a", "b1*(1 - exp(-b2*x))"),
+    ("Chwirut2", "exp(-b1*x)/(b2 + b3*x)"),
+    ("Chwirut1", "exp(-b1*x)/(b2 + b3*x)"),
+    ("Lanczos3", LANCZOS),
+    ("Gauss1", GAUSS),
+    ("Gauss2", GAUSS),
+    ("DanWood", "b1*x^b2"),
+    ("Misra1b", "b1*(1 - (1 + b2*x/2)^(-2))"),
+    ("Kirby2", "(b1 + x*(b2 + x*b3))/(1 + x*(b4 + x*b5))"),
+    ("Hahn1", CUBIC),
+    ("Nelson", "b1 - b2*x*exp(-b3*z)"),
+    ("MGH17", "b1 + b2*exp(-x*b4) + b3*exp(-x*b5)"),
+    ("Lanczos1", LANCZOS),
+    ("Lanczos2", LANCZOS),
+    ("Gauss3", GAUSS),
+    ("Misra1c", "b1*(1 - (1 + 2*b2*x)^(-0.5))"),
+    ("Misra1d", "b1*b2*x/(1 + b2*x)"),
+    ("Roszman1", "b1 - b2*x - atan(b3/(x - b4))/pi"),
+    (
+        "ENSO",
+        "b1 + b2*cos(2*pi*x/12) + b3*sin(2*pi*x/12) + b5*cos(2*pi*x/b4) + b6*sin(2*pi*x/b4) + b8*cos(2*pi*x/b7) + b9*sin(2*pi*x/b7)",
+    ),
+    ("MGH09", "b1*(x^2 + x*b2)/(x^2 + x*b3 + b4)"),
+    ("Thurber", CUBIC),
+    ("BoxBOD", "b1*(1 - exp(-b2*x))"),
+    ("Rat42", "b1/(1 + exp(b2 - b3*x))"),
+    ("MGH10", "b1*exp(b2/(x + b3))"),
+    ("Eckerle4", "b1/b2*exp(-0.5*((x - b3)/b2)^2)"),
+    ("Rat43", "b1/(1 + exp(b2 - b3*x))^(1/b4)"),
+    ("Bennett5", "b1*(b2 + x)^(-1/b3)"),
 ];
 
-fn lanczos(b: &[f64], x: f64, _: f64) -> f64 {
-    b[0] * (-b[1] * x).exp() + b[2] * (-b[3] * x).exp() + b[4] * (-b[5] * x).exp()
-}
-
-fn gauss(b: &[f64], x: f64, _: f64) -> f64 {
-    let bell = |height: f64, at: f64, width: f64| height * (-((x - at) / width).powi(2)).exp();
-    b[0] * (-b[1] * x).exp() + bell(b[2], b[3], b[4]) + bell(b[5], b[6], b[7])
-}
-
-fn cubic(b: &[f64], x: f64, _: f64) -> f64 {
-    (b[0] + x * (b[1] + x * (b[2] + x * b[3]))) / (1.0 + x * (b[4] + x * (b[5] + x * b[6])))
-}
+const LANCZOS: &str = "b1*exp(-b2*x) + b3*exp(-b4*x) + b5*exp(-b6*x)";
+const GAUSS: &str = "b1*exp(-b2*x) + b3*exp(-((x - b4)/b5)^2) + b6*exp(-((x - b7)/b8)^2)";
+const CUBIC: &str = "(b1 + x*(b2 + x*(b3 + x*b4)))/(1 + x*(b5 + x*(b6 + x*b7)))";
 
 impl Dataset {
     /// Reads a file: numbers behind `b1 =`, the residual sum of squares, and the rows behind the
@@ -80,7 +77,7 @@ impl Dataset {
     pub(crate) fn read(name: &str) -> Dataset {
         let path = format!("{}/tests/data/nist/{name}.dat", env!("CARGO_MANIFEST_DIR"));
         let text = std::fs::read_to_string(path).expect("a file of NIST");
-        let (name, formula) = *MODELS.iter().find(|(known, _)| *known == name).expect("a model");
+        let (known, formula) = *MODELS.iter().find(|(known, _)| *known == name).expect("a model");
         let numbers = |line: &str| -> Vec<f64> {
             line.split_whitespace().filter_map(|word| word.parse().ok()).collect()
         };
@@ -100,7 +97,7 @@ impl Dataset {
         data.retain(|row| row.len() >= 2);
         let is_logarithm = name == "Nelson";
         Dataset {
-            name,
+            name: known,
             formula,
             rows,
             sum,
@@ -135,28 +132,14 @@ impl Dataset {
         };
         let sse = registry::find("fitness", FITNESSES, "sse").expect("a fitness");
         let entry = registry::find("method", METHODS, method).expect("a method");
-        let series = Series {
-            experiment: String::new(),
-            y_name: "y".into(),
-            y_unit: String::new(),
-            x_name: "x".into(),
-            x_unit: String::new(),
-            file: format!("{}.dat", self.name),
-            x: self.points.iter().map(|point| point[0]).collect(),
-            y: self.y.clone(),
-            weight: 1.0,
-            sigma: Sigma::Unknown,
-            column: "y".into(),
-            rows: Vec::new(),
-            missing: Vec::new(),
-        };
-        let (points, formula) = (self.points.clone(), self.formula);
+        let experiments: Vec<Experiment> =
+            self.groups().into_iter().map(|(z, rows)| self.experiment(z, &rows)).collect();
         Problem {
             title: self.name.into(),
             model: self.name.into(),
             text: String::new(),
             parameters: (0..self.rows.len()).map(free).collect(),
-            series: vec![series],
+            series: self.groups().into_iter().map(|(z, rows)| self.series(z, &rows)).collect(),
             objectives: vec![(
                 "sse".into(),
                 (sse.make)(&mut Options::default()).expect("a fitness"),
@@ -168,7 +151,64 @@ impl Dataset {
             stop: Stop { evaluations: Some(budget), ..Stop::default() },
             noise: 1e-15,
             inference: Inference::default(),
-            simulator: Box::new(move || Ok(Box::new(Static { points: points.clone(), formula }))),
+            simulator: Box::new(move || Ok(Box::new(ModelSimulator::new(&experiments)?))),
+        }
+    }
+
+    /// Rows of equal second predictor: what is measured at one z is one experiment.
+    fn groups(&self) -> Vec<(f64, Vec<usize>)> {
+        let mut groups: Vec<(f64, Vec<usize>)> = Vec::new();
+        for (row, [_, z]) in self.points.iter().enumerate() {
+            match groups.iter_mut().find(|(known, _)| known == z) {
+                Some((_, rows)) => rows.push(row),
+                None => groups.push((*z, vec![row])),
+            }
+        }
+        groups
+    }
+
+    fn series(&self, z: f64, rows: &[usize]) -> Series {
+        Series {
+            experiment: format!("z = {z}"),
+            y_name: "y".into(),
+            y_unit: String::new(),
+            x_name: "x".into(),
+            x_unit: String::new(),
+            file: format!("{}.dat", self.name),
+            x: rows.iter().map(|&row| self.points[row][0]).collect(),
+            y: rows.iter().map(|&row| self.y[row]).collect(),
+            weight: 1.0,
+            sigma: Sigma::Unknown,
+            column: "y".into(),
+            rows: Vec::new(),
+            missing: Vec::new(),
+        }
+    }
+
+    fn experiment(&self, z: f64, rows: &[usize]) -> Experiment {
+        let names: Vec<String> = (1..=self.rows.len()).map(|k| format!("b{k}")).collect();
+        let x: Vec<f64> = rows.iter().map(|&row| self.points[row][0]).collect();
+        let text = format!(
+            "model {} parameter Real {} = 1; parameter Real at = {:e}; constant Real z = {z:e}; \
+             constant Real pi = {PI}; Real x = at; Real y = {}; end {};",
+            self.name,
+            names.join(" = 1, "),
+            x[0],
+            self.formula,
+            self.name
+        );
+        let mut library = Library::new();
+        let stored = parse_stored_definition(SourceId(0), &text).expect("a class");
+        library.load(&stored).expect("a library");
+        let flat = flatten(&library, &Name::parse(self.name), &[]).expect("a model").model;
+        let program = Program::compile(sort(&flat).expect("it is sorted")).expect("it compiles");
+        Experiment {
+            name: format!("z = {z}"),
+            model: Arc::new(CompiledModel::new(self.name, program).driven_by("x", "at")),
+            settings: Settings::default(),
+            x_name: "x".into(),
+            observations: vec![Observation { y_name: "y".into(), x }],
+            parameters: names.into_iter().enumerate().collect(),
         }
     }
 
@@ -188,6 +228,7 @@ impl Dataset {
             }
             run.step(0.0);
         };
+        conclude(&mut run);
         Solution::of(&run, &stop, Vec::new()).expect("a solution")
     }
 
@@ -229,26 +270,6 @@ impl Dataset {
             "MGH17" => vec![(0..5).collect(), vec![0, 2, 1, 4, 3]],
             "ENSO" => vec![(0..9).collect(), vec![0, 1, 2, 6, 7, 8, 3, 4, 5]],
             _ => vec![(0..self.rows.len()).collect()],
-        }
-    }
-}
-
-/// A formula over points.
-struct Static {
-    points: Vec<[f64; 2]>,
-    formula: Formula,
-}
-
-impl Simulate for Static {
-    fn simulate(&mut self, parameters: &[f64], out: &mut [f64]) -> Result<(), Failed> {
-        for (value, [x, z]) in out.iter_mut().zip(&self.points) {
-            *value = (self.formula)(parameters, *x, *z);
-        }
-        match out.iter().all(|value| value.is_finite()) {
-            true => Ok(()),
-            false => {
-                Err(Failed { kind: FailureKind::Model, cause: "not finite".into(), progress: 0.0 })
-            }
         }
     }
 }

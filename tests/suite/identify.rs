@@ -293,3 +293,71 @@ fn settings_are_watched_and_what_cannot_be_changed_is_told() {
     assert_eq!(result["parameters"][0]["range"][0], 0.1);
     assert!(result["evaluations"].as_u64().unwrap() < 300, "{text}");
 }
+
+/// `gapi new` as a user starts it.
+fn draft(folder: &Path, arguments: &[&str]) -> (i32, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_gapi"));
+    command.arg("new").args(arguments).current_dir(folder).env_remove("MODELICAPATH");
+    let Output { status, stdout, stderr } = command.output().unwrap();
+    let text = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap()).concat();
+    (status.code().expect("ended by itself"), text)
+}
+
+#[test]
+fn a_drafted_problem_runs_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    // A curve written naturally, measured in millivolts: V = 0.9 - 0.25 i.
+    let model = "model Cell input Real i; output Real V(unit = \"V\"); parameter Real V0 = 1; \
+                 parameter Real R = 0.1; equation V = V0 - R*i; end Cell;";
+    fs::write(folder.join("cell.mo"), model).unwrap();
+    let rows: String = (0..12)
+        .map(|k| format!("{};{};x\n", 0.1 * f64::from(k), 900.0 - 25.0 * f64::from(k)))
+        .collect();
+    fs::write(folder.join("curve.csv"), format!("i;V;Bemerkung\n;mV;\n{rows}")).unwrap();
+    let (code, text) = draft(folder, &["curve.csv", "--model", "cell.mo"]);
+    assert_eq!(code, 0, "{text}");
+    let (code, text) = run(folder, &["curve.toml", "--out", "o"]);
+    assert_eq!(code, 0, "{text}");
+    let found = result(folder, "o");
+    for (name, exact) in [("V0", 0.9), ("R", 0.25)] {
+        assert!((value(&found, name) - exact).abs() < 1e-9, "{text}");
+    }
+    assert!(text.contains("derivatives  exact"), "{text}");
+    assert!(text.contains("converted from mV to V"), "{text}");
+    // What is there is never written over.
+    let (code, text) = draft(folder, &["curve.csv", "--model", "cell.mo"]);
+    assert_ne!(code, 0, "{text}");
+    let (code, text) = draft(folder, &["nothing.csv", "--model", "cell.mo"]);
+    assert!(code != 0 && text.contains("nothing.csv"), "{text}");
+}
+
+/// Only a + b acts; and where the solver is coarse, its errors must not be told for a lack of a
+/// minimum.
+#[test]
+fn what_is_determined_is_told_with_its_interval_also_where_the_solver_is_coarse() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let model = "model M parameter Real a = 0.3; parameter Real b = 0.3; \
+                 Real y(start = 2, fixed = true); equation der(y) = -(a + b)*y; end M;";
+    fs::write(folder.join("M.mo"), model).unwrap();
+    let noise = |k: u32| 0.01 * f64::from(k * 7919 % 13) / 13.0 - 0.005;
+    let row = |k: u32| {
+        let t = 0.1 * f64::from(k);
+        format!("{t},{}\n", 2.0 * (-0.7 * t).exp() + noise(k))
+    };
+    let rows: String = (0..40).map(row).collect();
+    fs::write(folder.join("d.csv"), format!("t,y\n{rows}")).unwrap();
+    let problem = "model = \"M\"\nfiles = [\"M.mo\"]\n[parameters]\na = { min = 0, max = 2 }\n\
+                   b = { min = 0, max = 2 }\n[[experiment]]\ndata = \"d.csv\"\ntolerance = 1e-4\n\
+                   x = { variable = \"time\", column = \"t\" }\noutputs = { y = \"y\" }\n";
+    fs::write(folder.join("p.toml"), problem).unwrap();
+    let (code, text) = run(folder, &["p.toml", "--out", "o"]);
+    assert_eq!(code, 0, "{text}");
+    let found = result(folder, "o");
+    assert_eq!(found["ending"]["kind"], "minimum", "{text}");
+    assert!((value(&found, "a") + value(&found, "b") - 0.7).abs() < 0.01, "{text}");
+    assert!(text.contains("the model depends on a + b alone"), "{text}");
+    assert!(text.contains("a + b is 0.69") || text.contains("a + b is 0.70"), "{text}");
+    assert!(found["parameters"][0]["interval"].is_null(), "{text}");
+}

@@ -33,7 +33,7 @@ fn wrong(file: &MatFile, expected: &Value) -> Vec<String> {
         let missing: Vec<usize> =
             (1..=read.values.len()).filter(|row| !read.values[row - 1].is_finite()).collect();
         let rows: Vec<usize> = serde_json::from_value(column["missing_rows"].clone()).unwrap();
-        let unit = read.about.unit.unwrap_or_default();
+        let unit = read.about.unit.clone().unwrap_or_default();
         let is =
             (read.values.len() as u64, finite.first().copied(), finite.last().copied(), missing);
         let should = (
@@ -45,7 +45,7 @@ fn wrong(file: &MatFile, expected: &Value) -> Vec<String> {
         if is != should || unit != column["unit"].as_str().unwrap() {
             found.push(format!("{name} is {is:?} in `{unit}`, not {should:?} {column}"));
         }
-        if !is.3.is_empty() && !read.about.notes.iter().any(|note| note.contains("missing")) {
+        if !is.3.is_empty() && !read.notes().any(|note| note.contains("missing")) {
             found.push(format!("no word about the missing values of {name}"));
         }
     }

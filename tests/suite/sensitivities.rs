@@ -348,6 +348,37 @@ fn other_methods_integrate_no_sensitivities_but_static_curves_need_none() {
 }
 
 #[test]
+fn static_curves_are_differentiated_point_by_point() {
+    // y = p x / (q + x), and z from the loop z^3 + p z = x.
+    let text = "model M parameter Real p = 1; parameter Real q = 1; parameter Real at = 1; \
+                Real x = at; Real y = p*x/(q + x); Real z(start = 1); \
+                equation z^3 + p*z = x; end M;";
+    let program = Program::compile(sort(&flat(text)).unwrap()).unwrap();
+    let x = vec![0.5, 2.0];
+    let observed = |name: &str| Observation { y_name: name.to_owned(), x: x.clone() };
+    let experiment = Experiment {
+        name: "test".to_owned(),
+        model: Arc::new(CompiledModel::new("test", program).driven_by("x", "at")),
+        settings: Settings::default(),
+        x_name: "x".to_owned(),
+        observations: vec![observed("y"), observed("z")],
+        // Parameter 1 of the problem has no effect on this experiment.
+        parameters: vec![(0, "p".to_owned()), (2, "q".to_owned())],
+    };
+    let mut simulator = ModelSimulator::new(&[experiment]).unwrap();
+    let p = [3.0, 99.0, 0.7];
+    let (values, derivatives) = sensitivities(&mut simulator, &p, 4);
+    for (k, x) in x.iter().enumerate() {
+        near(values[k], 3.0 * x / (0.7 + x), 1e-14);
+        let exact = [x / (0.7 + x), 0.0, -3.0 * x / (0.7 + x).powi(2)];
+        exact.iter().enumerate().for_each(|(j, d)| near(derivatives[3 * k + j], *d, 1e-13));
+        let z = values[2 + k];
+        near(z * z * z + 3.0 * z, *x, 1e-12);
+        near(derivatives[3 * (2 + k)], -z / (3.0 * z * z + 3.0), 1e-10);
+    }
+}
+
+#[test]
 fn an_x_that_depends_on_the_parameters_moves_the_points() {
     // x = 2 p t + t, y = p x²: at a given x only the factor changes.
     let text = "model M parameter Real p = 1; Real x; Real y; equation x = 2*p*time + time; \

@@ -2,8 +2,6 @@
 //! midst of a long simulation.
 
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
-use ratatui::crossterm::execute;
-use ratatui::crossterm::terminal::{LeaveAlternateScreen, disable_raw_mode};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
@@ -64,8 +62,7 @@ fn is_interrupt(key: KeyEvent) -> bool {
 /// As the handler of Ctrl-C does: the second time ends the process at once.
 fn interrupted(flag: &AtomicBool) {
     if flag.swap(true, Ordering::SeqCst) {
-        let _ = execute!(std::io::stderr(), LeaveAlternateScreen);
-        let _ = disable_raw_mode();
+        super::restore_terminal();
         #[allow(clippy::exit, reason = "the user asked twice")]
         std::process::exit(130);
     }

@@ -11,6 +11,7 @@ use ratatui::backend::CrosstermBackend;
 use ratatui::crossterm::execute;
 use ratatui::crossterm::terminal::{
     EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode, enable_raw_mode,
+    is_raw_mode_enabled,
 };
 use std::io::{self, Stderr, stderr};
 use std::sync::Arc;
@@ -80,9 +81,7 @@ impl Live {
         self.asked = None;
         if let Some(screen) = self.screen.take() {
             drop(screen.keys);
-            // A terminal that is gone needs nothing.
-            let _ = execute!(stderr(), LeaveAlternateScreen);
-            let _ = disable_raw_mode();
+            restore_terminal();
         }
     }
 
@@ -104,5 +103,13 @@ impl Live {
 impl Drop for Live {
     fn drop(&mut self) {
         self.close();
+    }
+}
+
+/// Leaves the screen of the live view, if it is shown. A terminal that is gone needs nothing.
+pub(super) fn restore_terminal() {
+    if is_raw_mode_enabled().unwrap_or(false) {
+        let _ = execute!(stderr(), LeaveAlternateScreen);
+        let _ = disable_raw_mode();
     }
 }

@@ -3,7 +3,8 @@
 mod assistance;
 mod commands;
 
-use super::args::{Global, ReplArgs};
+use super::args::{Global, Limits, ReplArgs};
+use super::limits::Stopping;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, session};
@@ -15,7 +16,7 @@ use rustyline::{CompletionType, Config, Editor};
 use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 /// What the prompt begins with.
 const BANNER: &str =
@@ -33,11 +34,7 @@ pub(super) fn repl(arguments: &ReplArgs, global: &Global) -> ExitCode {
         }
     };
     world.catch_interrupts();
-    let (flag, reason) = world.stopping();
-    if let Err(message) = limits::watch(&arguments.freedom, flag.clone(), reason) {
-        terminal::eprint(&format!("error: {message}\n"));
-        return ExitCode::from(2);
-    }
+    let stopping = world.stopping();
     let options = arguments.freedom.options();
     let dialect = Some(options.dialect.unwrap_or(Dialect::Dymola));
     let mut session = session::open(global, world).with_options(Options {
@@ -46,14 +43,20 @@ pub(super) fn repl(arguments: &ReplArgs, global: &Global) -> ExitCode {
         ..options
     });
     if let Some(script) = &arguments.script {
+        let _watch =
+            match limits::watch(&arguments.freedom.limits, Instant::now(), stopping.clone()) {
+                Ok(watch) => watch,
+                Err(code) => return code,
+            };
         session.run_file(script);
     }
     if std::io::stdin().is_terminal() {
         let dialect = session.dialect().name();
         terminal::print(&format!("{BANNER} (commands of {dialect})\n"));
     }
-    match talk(&mut session, &flag, colour) {
-        Ok(code) => ExitCode::from(code),
+    match talk(&mut session, (&arguments.freedom.limits, &stopping), colour) {
+        Ok(Ok(code)) => ExitCode::from(code),
+        Ok(Err(code)) => code,
         Err(error) => {
             terminal::eprint(&format!("error: the terminal cannot be read: {error}\n"));
             ExitCode::FAILURE
@@ -61,7 +64,12 @@ pub(super) fn repl(arguments: &ReplArgs, global: &Global) -> ExitCode {
     }
 }
 
-fn talk(session: &mut Session, flag: &AtomicBool, colour: bool) -> rustyline::Result<u8> {
+/// Each input has its own limits.
+fn talk(
+    session: &mut Session,
+    (limits, stopping): (&Limits, &Stopping),
+    colour: bool,
+) -> rustyline::Result<Result<u8, ExitCode>> {
     let config = Config::builder()
         .completion_type(CompletionType::List)
         .history_ignore_space(true)
@@ -80,7 +88,11 @@ fn talk(session: &mut Session, flag: &AtomicBool, colour: bool) -> rustyline::Re
             Ok(input) => {
                 let _ = editor.add_history_entry(input.trim_end());
                 // Ctrl-C ends what is running now, not what comes next.
-                flag.store(false, Ordering::SeqCst);
+                stopping.forget();
+                let _watch = match limits::watch(limits, Instant::now(), stopping.clone()) {
+                    Ok(watch) => watch,
+                    Err(code) => return Ok(Err(code)),
+                };
                 if let Some(code) = commands::answer(session, &input) {
                     break code;
                 }
@@ -93,7 +105,7 @@ fn talk(session: &mut Session, flag: &AtomicBool, colour: bool) -> rustyline::Re
     if let Some(file) = &history {
         let _ = editor.save_history(file);
     }
-    Ok(code)
+    Ok(Ok(code))
 }
 
 /// `GAPI_HISTORY`, else a file in the user's state folder.

@@ -17,6 +17,7 @@ use judgement::{Counts, Judged, judged, summary};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Instant;
 
 /// How a path in the folder of the script begins, which embedded results leave out.
 const START: &str = "<start>/";
@@ -118,8 +119,8 @@ struct Ran {
 impl Ran {
     fn new(path: &Path, freedom: &Freedom, global: &Global, embedded: bool) -> io::Result<Ran> {
         let disk = SystemWorld::new(Terminal::new(global.color, true), "results".as_ref(), None)?;
-        let (flag, reason) = disk.stopping();
-        limits::watch(freedom, flag, reason).map_err(io::Error::other)?;
+        let _watch = limits::watch(&freedom.limits, Instant::now(), disk.stopping())
+            .map_err(|_| io::Error::other("the limits cannot be watched"))?;
         let (folder, name) = (path.parent().unwrap_or(Path::new("")), path.file_name());
         let name = name.ok_or_else(|| io::Error::other("a script has a name"))?;
         let printed = Output::default();

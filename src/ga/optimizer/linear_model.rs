@@ -7,6 +7,7 @@
 //! References: [Moré 1978](crate::bibliography#more-1978) (scaling, the parameter by the secular
 //! equation); [Bates & Watts 1981](crate::bibliography#bates-watts-1981) (relative offset).
 
+use crate::singular_values::SingularValues;
 use nalgebra::{DMatrix, DVector};
 
 /// The radius may be missed by this, relative; Moré's choice.
@@ -72,13 +73,6 @@ pub struct Offset {
     pub blind: bool,
     /// Genes whose derivatives all vanish.
     pub flat: usize,
-}
-
-/// The decomposition for some of the genes, columns scaled.
-struct Decomposition {
-    u: DMatrix<f64>,
-    s: DVector<f64>,
-    v_t: DMatrix<f64>,
 }
 
 impl LinearModel {
@@ -149,7 +143,7 @@ impl LinearModel {
             let right = -(&self.right + &self.factor * &by);
             let used: f64 = by.iter().zip(scales).map(|(p, d)| (p * d).powi(2)).sum();
             let left = (radius * radius - used).max(0.01 * radius * radius).sqrt();
-            let (own, parameter) = decomposition.damped(&right, left, self.rank_tolerance);
+            let (own, parameter) = damped(&decomposition, &right, left, self.rank_tolerance);
             damping = parameter;
             let mut blocked = Vec::new();
             for (column, &j) in free.iter().enumerate() {
@@ -177,7 +171,7 @@ impl LinearModel {
         let mut free = self.free(x);
         while !free.is_empty() {
             let decomposition = self.decompose(&free, scales)?;
-            let (own, damping) = decomposition.damped(&-&self.right, radius, self.rank_tolerance);
+            let (own, damping) = damped(&decomposition, &-&self.right, radius, self.rank_tolerance);
             let mut by = DVector::zeros(x.len());
             let mut part = 1.0_f64;
             for (column, &j) in free.iter().enumerate() {
@@ -213,7 +207,7 @@ impl LinearModel {
         // (JᵀJ + λD²) a = −Jᵀ r_vv, in the scaled genes.
         let own: Vec<f64> = step.free.iter().map(|&j| gradient[j] / scales[j]).collect();
         let along = &decomposition.v_t * DVector::from_vec(own);
-        let smallest = NULL * self.rank_tolerance * decomposition.s.max();
+        let smallest = NULL * self.rank_tolerance * decomposition.largest();
         let z = DVector::from_fn(along.len(), |i, _| {
             let s = decomposition.s[i];
             if s <= smallest { 0.0 } else { -along[i] / (s * s + step.damping) }
@@ -234,7 +228,7 @@ impl LinearModel {
         let none = Offset { relative: None, step: 0.0, rank: 0, held, blind: self.blind, flat };
         let Some(found) = self.decompose(&free, &self.norms) else { return none };
         let along = found.u.tr_mul(&self.right);
-        let smallest = self.rank_tolerance * found.s.max();
+        let smallest = self.rank_tolerance * found.largest();
         let (mut inside, mut rank) = (0.0, 0);
         let mut z = DVector::zeros(found.s.len());
         for (i, &s) in found.s.iter().enumerate() {
@@ -259,7 +253,8 @@ impl LinearModel {
         (&self.factor * between).norm()
     }
 
-    fn decompose(&self, free: &[usize], scales: &[f64]) -> Option<Decomposition> {
+    /// For some of the genes, columns scaled.
+    fn decompose(&self, free: &[usize], scales: &[f64]) -> Option<SingularValues> {
         if free.is_empty() {
             return None;
         }
@@ -267,47 +262,44 @@ impl LinearModel {
         for (mut column, &j) in columns.column_iter_mut().zip(free) {
             column /= scales[j];
         }
-        let svd = columns.try_svd(true, true, f64::EPSILON, 0)?;
-        Some(Decomposition { u: svd.u?, s: svd.singular_values, v_t: svd.v_t? })
+        SingularValues::of(&columns)
     }
 }
 
-impl Decomposition {
-    /// The scaled step of at most `radius` towards the solution, and its parameter λ: the root of
-    /// ‖p(λ)‖ = radius by Newton's method on its reciprocal.
-    fn damped(
-        &self,
-        right: &DVector<f64>,
-        radius: f64,
-        rank_tolerance: f64,
-    ) -> (DVector<f64>, f64) {
-        let c = self.u.tr_mul(right);
-        // What derivatives cannot tell from zero is left out of steps of Gauss and Newton alone: a
-        // scale that was once much larger makes columns small that still matter (Eckerle4).
-        let smallest = NULL * rank_tolerance * self.s.max();
-        let at = |damping: f64| {
-            DVector::from_fn(c.len(), |i, _| {
-                let s = self.s[i];
-                if s <= smallest { 0.0 } else { s * c[i] / (s * s + damping) }
-            })
-        };
-        let mut damping = 0.0;
-        let mut z = at(damping);
-        for _ in 0..ITERATIONS {
-            let length = z.norm();
-            if length <= (1.0 + RADIUS) * radius {
-                break;
-            }
-            // d‖z‖/dλ = −Σ z² / (s² + λ) / ‖z‖
-            let slope: f64 = (0..c.len())
-                .filter(|&i| self.s[i] > smallest)
-                .map(|i| z[i] * z[i] / (self.s[i] * self.s[i] + damping))
-                .sum();
-            damping += (length / radius - 1.0) * length * length / slope;
-            z = at(damping);
+/// The scaled step of at most `radius` towards the solution, and its parameter λ: the root of
+/// ‖p(λ)‖ = radius by Newton's method on its reciprocal.
+fn damped(
+    found: &SingularValues,
+    right: &DVector<f64>,
+    radius: f64,
+    rank_tolerance: f64,
+) -> (DVector<f64>, f64) {
+    let c = found.u.tr_mul(right);
+    // What derivatives cannot tell from zero is left out of steps of Gauss and Newton alone: a
+    // scale that was once much larger makes columns small that still matter (Eckerle4).
+    let smallest = NULL * rank_tolerance * found.largest();
+    let at = |damping: f64| {
+        DVector::from_fn(c.len(), |i, _| {
+            let s = found.s[i];
+            if s <= smallest { 0.0 } else { s * c[i] / (s * s + damping) }
+        })
+    };
+    let mut damping = 0.0;
+    let mut z = at(damping);
+    for _ in 0..ITERATIONS {
+        let length = z.norm();
+        if length <= (1.0 + RADIUS) * radius {
+            break;
         }
-        (self.v_t.tr_mul(&z), damping)
+        // d‖z‖/dλ = −Σ z² / (s² + λ) / ‖z‖
+        let slope: f64 = (0..c.len())
+            .filter(|&i| found.s[i] > smallest)
+            .map(|i| z[i] * z[i] / (found.s[i] * found.s[i] + damping))
+            .sum();
+        damping += (length / radius - 1.0) * length * length / slope;
+        z = at(damping);
     }
+    (found.v_t.tr_mul(&z), damping)
 }
 
 /// How far a gene at `x` may go in the direction of `wanted`.

@@ -3,6 +3,7 @@
 //! best point moves, the fit is repeated from there by least squares.
 
 use super::checks::rms;
+use super::ending::{Cause, is_at_minimum};
 use super::refit::Refit;
 use super::statistics::Statistics;
 use super::{Best, ErrorModel, Finding, FindingKind, Problem, Run, Series, Severity, Sigma};
@@ -121,6 +122,20 @@ fn weights_at(problem: &Problem, simulated: &[f64]) -> Vec<f64> {
     weights
 }
 
+/// Goes to a better point that was found beside the search, as by a profile, and on from there by
+/// least squares; returns whether it was better.
+///
+/// # Errors
+///
+/// Those of the method's maker.
+pub fn continue_from(run: &mut Run, values: &[f64]) -> Result<bool, Fault> {
+    let is_better = run.go_to(values);
+    if is_better {
+        refit(run)?;
+    }
+    Ok(is_better)
+}
+
 /// Least squares from the best point, which it replaces; without least squares only the objective
 /// is computed anew.
 fn refit(run: &mut Run) -> Result<(), Fault> {
@@ -147,7 +162,8 @@ fn refit(run: &mut Run) -> Result<(), Fault> {
 const WITHOUT_NOISE: f64 = 1e-7;
 
 /// Simulates the best point with the tolerance divided by 100; where predictions move by more than
-/// a tenth of a standard deviation of the data, the fit is repeated there, until they stay.
+/// a tenth of a standard deviation of the data, or the search has ended where errors of the
+/// simulation hide the minimum, the fit is repeated there, until neither is so.
 fn tolerance(run: &mut Run) -> Result<(), Fault> {
     let Some(first) = run.best.clone() else { return Ok(()) };
     let (noise, mut factor) = (run.problem.noise, 1.0);
@@ -158,6 +174,7 @@ fn tolerance(run: &mut Run) -> Result<(), Fault> {
         return Ok(());
     }
     let (mut moved, mut most) = (false, 0.0f64);
+    let mut is_minimum = at_minimum(run);
     for _ in 0..TIMES {
         let next = factor / TIGHTER;
         if noise * next < SMALLEST {
@@ -168,7 +185,7 @@ fn tolerance(run: &mut Run) -> Result<(), Fault> {
         run.conclusion.simulations += 1;
         let fine = run.evaluation.simulate(&best.values);
         let shift = fine.as_ref().map_or(0.0, |fine| shift(&coarse, fine, &allowed, run));
-        if shift <= PART {
+        if shift <= PART && (is_minimum || fine.is_err()) {
             run.evaluation.scale_tolerance(factor);
             run.conclusion.resolved = fine.is_ok() && coarse != fine.unwrap_or_default();
             break;
@@ -179,13 +196,16 @@ fn tolerance(run: &mut Run) -> Result<(), Fault> {
         let Some(best) = &run.best else { break };
         let Ok(again) = run.evaluation.simulate(&best.values) else { break };
         coarse = again;
+        is_minimum = at_minimum(run);
     }
     if !moved {
         return Ok(());
     }
     let worse = run.best.as_ref().is_some_and(|best| best.fitness > WORSE * first.fitness);
-    if worse && first.fitness > 0.0 && ErrorModel::of(&run.problem) == ErrorModel::OneVariance {
-        // Data that a coarse simulation has made.
+    // Data that a coarse simulation has made.
+    let made =
+        worse && first.fitness > 0.0 && ErrorModel::of(&run.problem) == ErrorModel::OneVariance;
+    if made || most <= PART && !is_minimum {
         run.evaluation.scale_tolerance(1.0);
         run.problem.noise = noise;
         run.conclusion.resolved = false;
@@ -195,6 +215,17 @@ fn tolerance(run: &mut Run) -> Result<(), Fault> {
     let finding = coarse_solver(run, &first, [noise, noise * factor], most);
     run.conclusion.findings.push(finding);
     Ok(())
+}
+
+/// Whether nothing better is to be had from a finer solver: the best point is a minimum, or that
+/// cannot be tested, or the search was ended before it came to one.
+fn at_minimum(run: &mut Run) -> bool {
+    if run.cause() != Cause::Converged {
+        return true;
+    }
+    let Some((is_minimum, simulations)) = is_at_minimum(run) else { return true };
+    run.conclusion.simulations += simulations;
+    is_minimum
 }
 
 /// Standard deviation of each point: the given or estimated one, else that of the residuals.
@@ -239,14 +270,20 @@ fn coarse_solver(run: &Run, first: &Best, [before, after]: [f64; 2], moved: f64)
         ),
         false => "This fitness allows no fit by least squares from there".to_owned(),
     };
+    let trouble = match moved > PART {
+        true => format!(
+            "is too coarse for these data: with a finer one the simulated points move by {} standard \
+             deviations of the data",
+            significant(moved, 2)
+        ),
+        false => "leaves errors that hide where the minimum is".to_owned(),
+    };
     Finding::new(
         FindingKind::SolverTolerance,
         format!(
-            "The tolerance {} of the solver is too coarse for these data: with a finer one the \
-             simulated points move by {} standard deviations of the data. {consequence}. Set \
-             `tolerance = {}` in the experiment.",
+            "The tolerance {} of the solver {trouble}. {consequence}. Set `tolerance = {}` in the \
+             experiment.",
             significant(before, 2),
-            significant(moved, 2),
             significant(after, 2)
         ),
     )

@@ -43,6 +43,10 @@ pub struct Ending {
     pub reached: Option<[usize; 2]>,
     /// In one sentence.
     pub words: String,
+    /// How the derivatives at the best point were computed, which the standard errors rest on; `None`
+    /// where there are none.
+    #[serde(default)]
+    pub derivatives: Option<String>,
     /// Simulations of the test.
     pub simulations: u64,
 }
@@ -96,6 +100,7 @@ impl Ending {
             relative_offset: None,
             reached,
             words: untested(&run.problem),
+            derivatives: None,
             simulations,
         };
         if !run.evaluation.has_residuals() || run.problem.objectives.len() > 1 {
@@ -110,9 +115,21 @@ impl Ending {
             relative_offset: offset.relative.filter(|relative| relative.is_finite()),
             reached,
             words: words(kind, &offset, reached),
+            derivatives: Some(derivatives(&found)),
             simulations: found.simulations,
         }
     }
+}
+
+/// Whether the best point of a run is a minimum, and the simulations of the test; `None` where that
+/// cannot be tested.
+pub(super) fn is_at_minimum(run: &Run) -> Option<(bool, u64)> {
+    if !run.evaluation.has_residuals() || run.problem.objectives.len() > 1 {
+        return None;
+    }
+    let values = &run.best.as_ref()?.values;
+    let found = run.evaluation.linearize(&run.problem, std::slice::from_ref(values)).pop()?.ok()?;
+    Some((tested(&run.problem, &run.evaluation, values, &found).1, found.simulations))
 }
 
 fn tested(
@@ -126,6 +143,14 @@ fn tested(
     let residuals = evaluation.residuals(problem, &found.simulated);
     let jacobian = evaluation.weighted(problem, values, found);
     test_minimum(&point, &residuals, &jacobian, [problem.noise, evaluation.size()])
+}
+
+fn derivatives(found: &Linearization) -> String {
+    match (found.exact, &found.refusal) {
+        (true, _) => "exact, by sensitivity equations".to_owned(),
+        (false, Some(refusal)) => format!("differences, because {refusal}"),
+        (false, None) => "differences".to_owned(),
+    }
 }
 
 fn otherwise(run: &Run, descents: &[DescentReport]) -> EndingKind {

@@ -289,11 +289,13 @@ impl Evaluation {
             let mut worker = self.worker();
             let exact = worker.sensitivities(values, &mut simulated, &mut derivatives);
             let exact = exact == Ok(true) && derivatives.iter().all(|value| value.is_finite());
+            let mut refusal = None;
             if !exact {
+                refusal = worker.sensitivity_refusal().map(str::to_owned);
                 derivatives.clear();
                 worker.simulate(values, &mut simulated)?;
             }
-            Ok(Linearization { simulated, derivatives, exact, simulations: 1 })
+            Ok(Linearization { simulated, derivatives, exact, refusal, simulations: 1 })
         };
         self.pool.install(|| places.par_iter().map(one).collect())
     }

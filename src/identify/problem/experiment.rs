@@ -265,9 +265,6 @@ impl Stage {
         out: &mut [f64],
         derivatives: &mut [f64],
     ) -> Result<Result<(), String>, Failed> {
-        if self.pointwise.is_some() {
-            return Ok(Err("the points of a static curve are evaluated one by one".to_owned()));
-        }
         self.values.clear();
         self.values.extend(self.places.iter().map(|&place| parameters[place]));
         let is_static = self.instance.system().n_differential() == 0;
@@ -277,6 +274,9 @@ impl Stage {
         }
         if let Err(refusal) = self.instance.differentiate(true) {
             return Ok(Err(refusal));
+        }
+        if self.pointwise.is_some() {
+            return Ok(self.differentiate_one_by_one(parameters.len(), out, derivatives));
         }
         let attempt = self.attempt(false, simulator, trajectory);
         let refusal = self.instance.sensitivity_refusal();
@@ -293,6 +293,46 @@ impl Stage {
         match derivatives.iter().all(|value| value.is_finite()) {
             true => Ok(Ok(())),
             false => Ok(Err("a derivative is not finite".to_owned())),
+        }
+    }
+
+    /// The points of a static curve and their derivatives; an instance that differentiates no
+    /// longer remains.
+    fn differentiate_one_by_one(
+        &mut self,
+        genes: usize,
+        out: &mut [f64],
+        derivatives: &mut [f64],
+    ) -> Result<(), String> {
+        let Stage {
+            pointwise: Some(pointwise), instance, values, settings, points, places, ..
+        } = self
+        else {
+            return Ok(());
+        };
+        let at = (values.as_slice(), settings.start);
+        let (mut first, mut own, mut solved) = (0, Vec::new(), Ok(()));
+        for (column, x) in points.iter().enumerate() {
+            let to = (&mut out[first..first + x.len()], &mut own);
+            first += x.len();
+            let of = (column, points.len(), x.as_slice());
+            solved = solved.and_then(|()| pointwise.differentiate(instance.as_mut(), at, of, to));
+        }
+        let refusal = instance.sensitivity_refusal();
+        // From here on values alone.
+        let _ = instance.differentiate(false);
+        // Whether the model itself fails, points without derivatives tell.
+        solved.map_err(|cause| {
+            refusal.unwrap_or_else(|| format!("its equations gave no derivatives: {cause}"))
+        })?;
+        derivatives.fill(0.0);
+        let rows = derivatives.chunks_exact_mut(genes.max(1));
+        for (row, own) in rows.zip(own.chunks_exact(places.len().max(1))) {
+            places.iter().zip(own).for_each(|(place, value)| row[*place] += value);
+        }
+        match derivatives.iter().chain(&*out).all(|value| value.is_finite()) {
+            true => Ok(()),
+            false => Err("a derivative is not finite".to_owned()),
         }
     }
 

@@ -55,7 +55,32 @@ pub fn failure_region(
             }
         }
     }
-    best.map(|(_, region)| region)
+    best.map(|(_, region)| tightened(parameters, individuals, &failed, region))
+}
+
+/// The region without the part of it at its inner end in which nothing failed: the cut lies on a
+/// grid, the first failure need not.
+fn tightened(
+    parameters: &[Free],
+    individuals: &[(Vec<f64>, f64)],
+    failed: &[bool],
+    region: FailureRegion,
+) -> FailureRegion {
+    let Some(k) = parameters.iter().position(|free| free.name == region.parameter) else {
+        return region;
+    };
+    let below = region.range[0] == parameters[k].min;
+    let inside = |value: f64| (region.range[0]..=region.range[1]).contains(&value);
+    let failures =
+        individuals.iter().zip(failed).filter(|(one, failed)| **failed && inside(one.0[k]));
+    let values = failures.map(|(one, _)| one.0[k]);
+    let range = match below {
+        true => [region.range[0], values.fold(f64::NEG_INFINITY, f64::max)],
+        false => [values.fold(f64::INFINITY, f64::min), region.range[1]],
+    };
+    let within = |value: f64| (range[0]..=range[1]).contains(&value);
+    let places = individuals.iter().map(|(values, _)| within(values[k]));
+    Tally::of(places.zip(failed)).region(&region.parameter, range)
 }
 
 /// Individuals and failures inside and outside.
@@ -130,6 +155,7 @@ mod tests {
     fn the_half_in_which_simulations_fail_is_found() {
         let found = failure_region(&free(), &grid(|_, b| b > 7.4)).unwrap();
         assert_eq!(found.parameter, "b");
+        // The first failure of the grid.
         assert!((found.range[0] - 7.5).abs() < 1e-9 && found.range[1] == 10.0, "{found:?}");
         assert!(found.share == 1.0 && found.failed == [1.0, 0.0]);
     }

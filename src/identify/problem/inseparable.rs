@@ -8,6 +8,7 @@
 //!
 //! Reference: [Walter & Pronzato 1997](crate::bibliography#walter-pronzato-1997), chapter 2.
 
+use crate::singular_values::SingularValues;
 use nalgebra::DMatrix;
 
 /// Parts of a direction below this are none.
@@ -76,13 +77,11 @@ pub(super) fn rank(best: &Sensitivities, others: &[Sensitivities], tolerance: f6
     let scaled = DMatrix::from_fn(rows, used.len(), |row, k| {
         best.columns[used[k]].get(row).map_or(0.0, |value| value / norms[used[k]])
     });
-    let svd = scaled.svd(false, true);
-    let largest = svd.singular_values.max();
-    let condition = Some(largest / svd.singular_values.min());
-    let Some(right) = svd.v_t else { return Rank { without_effect, condition, ..Rank::default() } };
-    let null: Vec<usize> = (0..svd.singular_values.len())
-        .filter(|&d| svd.singular_values[d] <= tolerance * largest)
-        .collect();
+    let Some(SingularValues { s, v_t: right, .. }) = SingularValues::of(&scaled) else {
+        return Rank { without_effect, ..Rank::default() };
+    };
+    let condition = Some(s[0] / s[s.len() - 1]);
+    let null: Vec<usize> = (0..s.len()).filter(|&d| s[d] <= tolerance * s[0]).collect();
     // The projection onto what has no effect; which directions span it is chance.
     let projector = DMatrix::from_fn(used.len(), used.len(), |k, l| {
         null.iter().map(|&d| right[(d, k)] * right[(d, l)]).sum::<f64>()

@@ -29,6 +29,8 @@ pub struct Linearization {
     pub derivatives: Vec<f64>,
     /// Whether they are exact, not differences.
     pub exact: bool,
+    /// Why they are not, in words that follow on "because"; `None` where no reason is known.
+    pub refusal: Option<String>,
     /// Simulations that they took; one with sensitivities counts once.
     pub simulations: u64,
 }

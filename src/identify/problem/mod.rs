@@ -34,7 +34,7 @@ mod statistics;
 mod summary;
 mod text;
 
-pub use conclusion::{Conclusion, conclude};
+pub use conclusion::{Conclusion, conclude, continue_from};
 pub use curve::draw_curves;
 pub use ending::{Ending, EndingKind, OtherMinimum, SolvedDescent};
 pub use error_model::{ErrorModel, Sigma, SigmaFormula, decide, likelihood};
@@ -49,6 +49,7 @@ pub use inference::{Band, BandPoint, Inference, Inferred, infer};
 pub use inseparable::{Form, Inseparable};
 pub use jacobian::Linearization;
 pub use journal::{Journal, Record, decode, encode, first_frame, frame, header};
+pub use notes::better_by_profile;
 pub use profile::{Profile, Profiles, profiles};
 pub use run::{Best, Run};
 pub use script_result::ScriptResult;

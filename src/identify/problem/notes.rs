@@ -13,6 +13,8 @@ use crate::identify::uncertainty_given;
 const ILL_CONDITIONED: f64 = 1e4;
 /// Factors and exponents below this are those of rounding.
 const NEGLIGIBLE: f64 = 1e-12;
+/// Of changes that together change nothing, those below this part of the largest are not worth a word.
+const SMALL_CHANGE: f64 = 1e-3;
 /// A bound is contradicted by the data where the fit would go beyond it by so many standard errors.
 const BEYOND: f64 = 2.0;
 /// A point that is alone in its series dominates a parameter whose standard error is so many times
@@ -121,7 +123,8 @@ fn about_parameters(solution: &Solution, statistics: &Statistics) -> Vec<Finding
             Form::Local => FindingKind::PracticallyNonIdentifiable,
         };
         let names = group.parameters.iter().map(|&k| name(k));
-        findings.push(Finding::new(kind, inseparable(group, &name)).parameters(names));
+        let sentence = inseparable(group, &name) + &determined(group, solution, statistics);
+        findings.push(Finding::new(kind, sentence).parameters(names));
     }
     let alone = |k: usize| {
         !statistics.without_effect.contains(&k)
@@ -364,7 +367,8 @@ fn inseparable<'a>(group: &Inseparable, name: &impl Fn(usize) -> &'a str) -> Str
     let names: Vec<&str> = group.parameters.iter().map(|&k| name(k)).collect();
     let all = names.join(", ");
     let what = |combination: &Vec<f64>| {
-        let parts = names.iter().zip(combination).filter(|(_, part)| part.abs() > NEGLIGIBLE);
+        let least = if group.form == Form::Local { SMALL_CHANGE } else { NEGLIGIBLE };
+        let parts = names.iter().zip(combination).filter(|(_, part)| part.abs() > least);
         match group.form {
             Form::Sum => sum(parts),
             Form::Product => product(parts),
@@ -390,6 +394,37 @@ fn inseparable<'a>(group: &Inseparable, name: &impl Fn(usize) -> &'a str) -> Str
         "{all} are structurally non-identifiable by data of this kind: the model depends on {} alone. Fix {fix} of them.",
         combinations.join(" and ")
     )
+}
+
+/// Value and interval of what the model depends on: " a + b is 0.7005 (95 % interval 0.696 .. 0.705)."
+fn determined(group: &Inseparable, solution: &Solution, statistics: &Statistics) -> String {
+    let name = |k: usize| solution.parameters[k].name.as_str();
+    let names: Vec<&str> = group.parameters.iter().map(|&k| name(k)).collect();
+    let one = |combination: &Vec<f64>| -> Option<String> {
+        let values = group.parameters.iter().map(|&k| solution.parameters[k].value);
+        let parts = names.iter().zip(combination).filter(|(_, part)| part.abs() > NEGLIGIBLE);
+        let mut weights = vec![0.0; solution.parameters.len()];
+        let is_product = group.form == Form::Product;
+        let mut value = if is_product { 1.0 } else { 0.0 };
+        for ((&k, own), part) in group.parameters.iter().zip(values).zip(combination) {
+            weights[k] = if is_product { part / own } else { *part };
+            value = if is_product { value * own.powf(*part) } else { value + part * own };
+        }
+        let reach = statistics.factor * statistics.error_of(&weights)?;
+        let [low, high] = match is_product {
+            true => [-reach, reach].map(|reach| value * reach.exp()),
+            false => [value - reach, value + reach],
+        };
+        let text = if is_product { product(parts) } else { sum(parts) };
+        let [value, low, high] = [value, low, high].map(|value| significant(value, 4));
+        (value != "NaN").then(|| format!("{text} is {value} (95 % interval {low} .. {high})"))
+    };
+    if group.form == Form::Local {
+        return String::new();
+    }
+    let all: Option<Vec<String>> = group.combinations.iter().map(one).collect();
+    all.filter(|all| !all.is_empty())
+        .map_or_else(String::new, |all| format!(" {}.", all.join("; ")))
 }
 
 fn sum<'a>(parts: impl Iterator<Item = (&'a &'a str, &'a f64)>) -> String {
@@ -466,6 +501,18 @@ pub(super) fn profile_findings(solution: &Solution, found: &Profiles) -> Vec<Fin
         findings.push(finding.severity(Severity::Serious));
     }
     findings
+}
+
+/// That the run went to a better fit which its profiles came upon; `searched`: the objective at the end of
+/// the search.
+pub fn better_by_profile(searched: f64, solution: &Solution) -> Finding {
+    let sentence = format!(
+        "The profiles came upon a better fit than the search ({} instead of {}): everything here \
+         belongs to that one.",
+        significant(solution.fitness, 7),
+        significant(searched, 7)
+    );
+    Finding::new(FindingKind::Search, sentence)
 }
 
 fn about_failures(region: &FailureRegion) -> Finding {

@@ -144,7 +144,7 @@ impl Run {
         if self.converged {
             self.cause = Cause::Converged;
         }
-        self.converged.then(|| "the method has converged".to_owned())
+        self.converged.then(|| "the search ended by itself".to_owned())
     }
 
     /// The stop condition that holds, in words.
@@ -182,7 +182,7 @@ impl Run {
 
     /// Goes to a better point that was found beside the search, as by a profile: statistics are
     /// those of this point from now on. Returns whether it is better.
-    pub fn go_to(&mut self, values: &[f64]) -> bool {
+    pub(super) fn go_to(&mut self, values: &[f64]) -> bool {
         let Ok(simulated) = self.evaluation.simulate(values) else { return false };
         let fitness = self.evaluation.objective(&self.problem, &simulated);
         let is_better = self.best.as_ref().is_none_or(|best| fitness < best.fitness);

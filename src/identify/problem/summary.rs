@@ -359,7 +359,8 @@ impl Solution {
     /// Takes away everything that holds at a minimum only, and says that this is none.
     fn drop_verdicts(&mut self) {
         for parameter in &mut self.parameters {
-            (parameter.deviation, parameter.interval, parameter.verdict) = (None, None, None);
+            (parameter.deviation, parameter.interval) = (None, None);
+            (parameter.determined, parameter.verdict) = (None, None);
         }
         (self.correlations, self.condition) = (None, None);
         self.findings.retain(|finding| ending::holds_anywhere(finding.kind));

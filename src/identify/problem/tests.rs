@@ -96,7 +96,7 @@ fn the_truth_is_found_from_its_own_simulation() {
         assert!((found.value - truth).abs() < 1e-8, "{found:?}");
     }
     assert!(solution.failures["model"] > 0, "some individuals fail");
-    assert_eq!(solution.stop, "the method has converged");
+    assert_eq!(solution.stop, "the search ended by itself");
 }
 
 #[test]

@@ -71,6 +71,7 @@ impl Solution {
         if self.ending.kind == EndingKind::Minimum {
             facts.push(("ending", self.ending.words.clone()));
         }
+        facts.extend(self.ending.derivatives.clone().map(|how| ("derivatives", how)));
         let failed: u64 = self.failures.values().sum();
         let share = 100.0 * failed as f64 / self.evaluations.max(1) as f64;
         facts.push((

@@ -45,6 +45,9 @@ fn counts(solution: &Solution) -> Markup {
             div { dt { "Individuals" } dd { (solution.evaluations) ", " (failed) " failed (" (number(share, 2)) "\u{a0}%)" } }
             div { dt { "Simulations" } dd { (solution.simulations) " for the search, " (solution.simulations_for_statistics) " for the standard errors"
                 @if let Some(profiles) = &solution.profiles { ", " (profiles.simulations) " for the profiles" } } }
+            @if let Some(how) = &solution.ending.derivatives {
+                div { dt { "Derivatives" } dd { (how) } }
+            }
             div { dt { "Seed" } dd { (seed) } }
         }
         @if !causes.is_empty() {

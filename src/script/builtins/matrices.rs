@@ -113,7 +113,7 @@ fn checked_matrix(
     let elements = matrix.row_major();
     let (rows, columns) = (matrix.rows, matrix.columns);
     let notes = contents.about(&name).map(|_| contents.column(&name)).transpose()?;
-    session.note_data(&contents, notes.into_iter().flat_map(|column| column.about.notes));
+    session.note_data(&contents, notes.iter().flat_map(crate::mat::Column::notes));
     Ok(RealMatrix { rows, columns, elements }.into())
 }
 

@@ -322,6 +322,7 @@ fn experiment(
     };
     notes.about(table, if table.is_table() { table.warnings.clone() } else { Vec::new() });
     let x_column = data::column(table, &x_entry, &x_name, notes).map_err(one)?;
+    notes.about(table, x_column.missing.clone());
     notes.about(table, x_column.order(x_entry.column.as_deref().unwrap_or(&x_name)));
     let time = data::as_time(&x_name, &x_column, &x_entry, (table, notes)).map_err(one)?;
     let mut around = Around::default();
@@ -378,6 +379,7 @@ fn experiment(
         }
         let factor =
             data::sigma_factor(table, wanted.sigma.as_ref(), &unit(y_name), measured.factor);
+        let y_about = y.about;
         let y = measured.values;
         data::same_length([&x_name, y_name], [x.len(), y.len()]).map_err(one)?;
         let sigma = sigma::sigma(wanted.sigma.as_ref(), y_name, table, factor, y.len());
@@ -408,7 +410,7 @@ fn experiment(
         series.push(Series {
             experiment: name.clone(),
             y_name: y_name.clone(),
-            y_unit: unit(y_name),
+            y_unit: data::shown_unit(&unit(y_name), &wanted, &y_about),
             x_name: x_name.clone(),
             x_unit: unit(&x_name),
             file: entry.data.display().to_string(),

@@ -4,7 +4,7 @@
 use super::file::{ColumnEntry, SigmaEntry};
 use crate::bail;
 use crate::diag::Fault;
-use crate::mat::{Column, MatFile};
+use crate::mat::{About, Column, MatFile};
 use crate::registry::BAD_OPTION;
 use crate::units::{in_words, written};
 
@@ -39,7 +39,8 @@ impl Notes {
     }
 }
 
-/// The column of an entry as the file has it, `default` being its name unless the entry has one.
+/// The column of an entry as the file has it, `default` being its name unless the entry has one. What
+/// is missing is not noted, because points are left out in sight, inputs are not.
 ///
 /// # Errors
 ///
@@ -106,6 +107,16 @@ pub(super) fn in_unit(
     };
     notes.about(table, [format!("`{own}` is converted from {given} to {unit}{times}{added}")]);
     Ok(scaled(conversion.factor, &|value| conversion.apply(value)))
+}
+
+/// The unit that a variable is shown with: its own, or that of its values where it has none and they
+/// were not multiplied.
+pub(super) fn shown_unit(own: &str, entry: &ColumnEntry, about: &About) -> String {
+    let of_values = entry.unit.as_ref().or(about.unit.as_ref());
+    match of_values.filter(|_| own.is_empty() && entry.factor.is_none()) {
+        Some(unit) => unit.clone(),
+        None => own.to_owned(),
+    }
 }
 
 /// The times of inputs that follow the rows of X: X itself, in seconds where it is time.

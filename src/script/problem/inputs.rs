@@ -57,6 +57,7 @@ pub(super) fn inputs(
     for (number, (name, wanted)) in entry.inputs.iter().enumerate() {
         let wanted = wanted.entry();
         let column = data::column(table, &wanted, name, notes)?;
+        notes.about(table, column.missing.clone());
         data::same_length([time_name, name], [time.len(), column.values.len()])?;
         let values = data::in_unit(&column, name, &unit(name), &wanted, (table, notes))?.values;
         let pairs: Vec<(f64, f64)> = time

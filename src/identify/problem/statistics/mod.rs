@@ -18,7 +18,7 @@ pub use residuals::{ResidualTest, residual_test};
 
 use super::inseparable::{self, Form, Inseparable, Sensitivities};
 use super::{ErrorModel, Evaluation, Problem, Series};
-use crate::identify::{Uncertainty, uncertainty_given};
+use crate::identify::{Uncertainty, error_of_combination, uncertainty_given};
 use distributions::normal_quantile;
 pub(super) use distributions::student_quantile;
 
@@ -66,6 +66,10 @@ pub struct Statistics {
     pub jacobian: Vec<Vec<f64>>,
     /// Simulations that it took.
     pub simulations: u64,
+    /// What each point counts.
+    shares: Vec<f64>,
+    /// Singular values below this part of the largest are none.
+    rank_tolerance: f64,
 }
 
 impl Statistics {
@@ -133,7 +137,21 @@ impl Statistics {
             without_effect: rank.without_effect,
             jacobian,
             simulations,
+            shares,
+            rank_tolerance: tolerance,
         }
+    }
+}
+
+impl Statistics {
+    /// The standard error of Σ wₖ pₖ, also where the data determine no pₖ alone; `None` where there
+    /// are no standard errors.
+    pub(super) fn error_of(&self, weights: &[f64]) -> Option<f64> {
+        let shares = self.shares.iter().map(|share| share.sqrt());
+        let scales: Vec<f64> = self.weights.iter().zip(shares).map(|(w, s)| w * s).collect();
+        let columns = weighted(&self.jacobian, &scales);
+        self.uncertainty.as_ref()?;
+        error_of_combination(&columns, weights, self.variance, self.rank_tolerance)
     }
 }
 

@@ -1,0 +1,99 @@
+//! Systems that are structurally regular and yet singular: one of many solutions is not taken
+//! without a word, and contradictions are errors.
+
+use gapilib::script::Session;
+use gapilib::script::world::MemoryWorld;
+
+/// Exit code, and what was reported, after simulating a model of these declarations and equations.
+fn simulated(text: &str) -> (u8, String) {
+    let model = format!("model M {text} end M;");
+    let world = MemoryWorld::new().with_file("M.mo", &model);
+    let streams = world.streams();
+    let script = "openModel(\"M.mo\");\nsimulateModel(\"M\", stopTime = 1);";
+    let status = Session::new(Box::new(world)).run_text("s.mos", script);
+    (status.code, streams.errors())
+}
+
+/// The simulation reaches its end, with exactly one warning that begins thus.
+fn warns(text: &str, of: &str) {
+    let (code, errors) = simulated(text);
+    assert_eq!(code, 0, "{text}: {errors}");
+    assert_eq!(errors.matches("warning[undetermined]").count(), 1, "{text}: {errors}");
+    assert!(errors.contains(of), "{text}: {errors}");
+}
+
+#[test]
+fn redundant_equations_are_reported_with_their_unknowns() {
+    warns("Real a, b; equation a + b = 1; 2*a + 2*b = 2;", "do not determine `a`, `b`");
+    // A state is determined although what moves it is not.
+    warns(
+        "Real a, b, c(start = 0, fixed = true);
+         equation a + b = c; 2*a + 2*b = 2*c; der(c) = a - b;",
+        "do not determine `a`, `b`",
+    );
+    // Only some of the unknowns of a loop are open.
+    warns(
+        "Real a[4]; parameter Real k = 1;
+         equation a[1] + a[2] + time*a[3] = 2; k*a[1] + a[2] + 2*a[3] = 2;
+           (2 + time)*a[3] + a[1] + a[2] - a[4] = 2; a[4]*(3 + time) + a[3] = a[4] + k*a[3];",
+        "do not determine `a[1]`, `a[2]`",
+    );
+}
+
+#[test]
+fn a_coefficient_of_zero_leaves_its_unknown_open() {
+    warns("parameter Real k = 0; Real x; equation k*x = 0;", "do not determine `x`");
+    // For a while only.
+    warns(
+        "Real x; equation (if time < 0.5 then 1 else 0)*x = 0;",
+        "do not determine `x`: their system is singular, and one of many solutions is taken (from t = 0.5",
+    );
+}
+
+#[test]
+fn initial_equations_that_depend_on_each_other_are_reported() {
+    warns(
+        "parameter Real k = 2; Real x, y; equation der(x) = 1; der(y) = x;
+         initial equation x + y = 1; k*x + 2*y = 2;",
+        "do not determine `x`, `y`",
+    );
+}
+
+#[test]
+fn a_singular_jacobian_at_the_start_is_reported() {
+    let text = "Real x, y; equation (x + y)^2 = 1 + time; 2*(x + y)^2 = 2 + 2*time;";
+    let (code, errors) = simulated(text);
+    assert_eq!(code, 1, "{errors}");
+    assert!(
+        errors.contains("the Jacobian of the algebraic loop of `x`, `y` is singular"),
+        "{errors}"
+    );
+    assert!(errors.contains("may not determine `x`, `y`"), "{errors}");
+}
+
+#[test]
+fn contradictions_are_errors() {
+    for text in [
+        "Real a, b; equation a + b = 1; 2*a + 2*b = 3;",
+        "parameter Real k = 0; Real x; equation k*x = 1;",
+        "Real x; equation 0*x = 0;",
+        "Real x; equation x - x = 0;",
+    ] {
+        let (code, errors) = simulated(text);
+        assert_eq!(code, 1, "{text}: {errors}");
+        let words = ["no unique solution", "do not determine its variables"];
+        assert!(words.iter().any(|words| errors.contains(words)), "{text}: {errors}");
+    }
+}
+
+#[test]
+fn regular_systems_are_not_reported() {
+    for text in [
+        "Real a, b; equation a + b = 1; 2*a + 2.001*b = 2;",
+        "Real a, b; equation 1e-9*a + 1e9*b = 0; 1e9*a - 1e-9*b = 0;",
+        "Real a, b; equation a + (1 + time)*b = 0; a - b = 0;",
+    ] {
+        let (code, errors) = simulated(text);
+        assert!(code == 0 && errors.is_empty(), "{text}: {errors}");
+    }
+}
