@@ -66,7 +66,7 @@ pub fn uncertainty_given(jacobian: &[Vec<f64>], variance: f64) -> Option<Uncerta
 /// (SᵀS)⁻¹; infinite in the rows and columns that take part in a null direction.
 fn scaled_covariance(scaled: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let parameters = scaled.ncols();
-    let found = SingularValues::of(&scaled)?;
+    let found = SingularValues::of(scaled)?;
     let (directions, largest) = (&found.v_t, found.largest());
     let mut covariance = DMatrix::zeros(parameters, parameters);
     let mut undetermined = vec![false; parameters];

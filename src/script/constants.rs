@@ -106,10 +106,9 @@ impl Session {
         let shown = Name::new(name.parts.iter().copied());
         let function = self.asked(&format!("output .{shown} y;"))?;
         let component = function.and_then(|function| function.outputs.first().cloned());
-        let component = component
-            .ok_or_else(|| self.unknown_class(name).at(Span::NONE))
-            .inspect(|found| self.keep_type(name, Some(found.clone())));
         component
+            .ok_or_else(|| self.unknown_class(name).at(Span::NONE))
+            .inspect(|found| self.keep_type(name, Some(found.clone())))
     }
 
     fn keep_type(&mut self, name: &Name, found: Option<FunctionComponent>) {
