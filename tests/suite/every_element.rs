@@ -3,7 +3,7 @@
 //! a problem. An error is an answer; a panic or an endless loop is not. `GAPILIB_MSL` names the
 //! standard library, which is asked besides the shipped packages.
 
-use crate::conformance::{Corpus, Ended, Failure, folder, is_asked_for, judge_all, say};
+use crate::conformance::{Corpus, Ended, Failure, filter, folder, is_asked_for, judge_all, say};
 use crate::shipped::project;
 use gapilib::flatten::Library;
 use gapilib::name::Name;
@@ -65,7 +65,7 @@ fn every_function_answers() {
             session.run_text("call.mos", &format!("answer := {call};")).errors == before
         });
         // Many functions take none of these arguments: those of partial packages, of records.
-        assert!(answered * 10 > cases.len(), "{answered} of {}", cases.len());
+        assert!(filter().is_some() || answered * 10 > cases.len(), "{answered} of {}", cases.len());
     }
 }
 
