@@ -428,6 +428,7 @@ fn one_thread_and_two_write_the_same_bytes() {
         "origin.json",
         "report.html",
         "result.json",
+        "run.lock",
     ];
     assert_eq!(names, expected);
     assert!(folder.path().join("1/timing.json").is_file(), "the time is in a file of its own");
