@@ -11,9 +11,14 @@ pub(super) const FILE: &str = "run.lock";
 
 /// The lock on an output folder, held until it is dropped.
 #[derive(Debug)]
-pub(super) struct Lock(
-    #[allow(dead_code, reason = "it is the open file that holds the lock")] File,
-);
+pub(super) struct Lock(File);
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // Equal runs leave equal files: who held it is of no use any more.
+        let _ = self.0.set_len(0);
+    }
+}
 
 impl Lock {
     /// Locks a folder, and removes what a killed run has left half written in it.

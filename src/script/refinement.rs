@@ -170,6 +170,7 @@ fn descent(
     let fraction = |(free, &value): (&Free, &f64)| free.fraction(value);
     method.start(Setup {
         genes: genes.collect::<Result<_, Fault>>()?,
+        scales: Vec::new(),
         n_objectives: 1,
         budget: None,
         start: Some(refinement.ranges.iter().zip(start).map(fraction).collect()),

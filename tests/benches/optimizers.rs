@@ -109,6 +109,7 @@ fn overhead(name: &str) -> f64 {
     let rng = Mrg32k3a::new(&Mrg32k3a::DEFAULT_SEED).expect("a seed");
     let setup = Setup {
         genes,
+        scales: Vec::new(),
         n_objectives,
         budget: Some(100_000),
         start: None,

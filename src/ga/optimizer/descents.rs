@@ -11,11 +11,13 @@ use serde::{Deserialize, Serialize};
 
 /// Descents from different starts that must agree before a search ends early.
 const AGREEING: usize = 3;
-/// So many where the best minimum is a doubtful one. All descents may end beside a good minimum with a
-/// small basin: oscillations that none has found are fitted best by a slow drift at the bounds.
-const AGREEING_IF_DOUBTFUL: usize = 30;
-/// A minimum that leaves more than this part of the squares of the measured values is doubtful.
-const DOUBTFUL: f64 = 0.1;
+/// So many where the best minimum stands at a bound, and where it fits badly. All descents may end beside
+/// a good minimum with a small basin: oscillations that none has found are fitted best by a slow drift at
+/// the bounds.
+const AGREEING_AT_BOUND: usize = 8;
+const AGREEING_IF_BAD: usize = 15;
+/// A minimum that leaves more than this part of the squares of the measured values fits badly.
+const BAD: f64 = 0.1;
 /// Minima not found yet, expected, above which a search goes on.
 const MISSING: f64 = 1.0;
 /// Steps of a descent in one round; most of the problems of NIST need fewer.
@@ -212,16 +214,19 @@ impl Pool {
         different.dedup();
         let (n, w) = (n as f64, different.len() as f64);
         let expected = w * (n - 1.0) / (n - w - 2.0);
-        let agreeing = if self.is_doubtful() { AGREEING_IF_DOUBTFUL } else { AGREEING };
-        reached(&reports) >= agreeing && n > w + 2.0 && expected <= w + MISSING
+        reached(&reports) >= self.agreeing() && n > w + 2.0 && expected <= w + MISSING
     }
 
-    /// Whether the best minimum stands at a bound or fits badly.
-    fn is_doubtful(&self) -> bool {
-        self.best().is_some_and(|best| {
-            let descent = &self.descents[best];
-            descent.is_held() || descent.sum() > DOUBTFUL * self.accuracy.size.powi(2)
-        })
+    /// How many descents must agree on the best minimum.
+    fn agreeing(&self) -> usize {
+        let Some(best) = self.best().map(|best| &self.descents[best]) else { return AGREEING };
+        if best.sum() > BAD * self.accuracy.size.powi(2) {
+            AGREEING_IF_BAD
+        } else if best.is_held() {
+            AGREEING_AT_BOUND
+        } else {
+            AGREEING
+        }
     }
 
     pub(super) fn reports(&self) -> Vec<DescentReport> {

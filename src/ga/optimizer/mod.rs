@@ -7,6 +7,7 @@
 
 mod cma_es;
 mod descents;
+mod exchange;
 mod gapilib2006;
 mod genetic;
 mod levenberg_marquardt;
@@ -18,6 +19,7 @@ mod nsga2;
 mod polish;
 
 pub use descents::{DescentEnd, DescentReport, reached};
+pub use exchange::Scale;
 pub use levenberg_marquardt::MINIMUM;
 pub use linear_model::Offset;
 pub use nsga2::{Survivor, non_dominated, survivors};
@@ -115,6 +117,8 @@ impl Answers<'_> {
 pub struct Setup {
     /// The genes with the ranges in which the method of the paper works; the others use 0..1.
     pub genes: Vec<Gene>,
+    /// What the fractions of the genes mean, where that is known: genes of like terms are exchanged.
+    pub scales: Vec<Scale>,
     /// Number of objectives.
     pub n_objectives: usize,
     /// Evaluations that the whole run may take, where known: some methods plan with it.

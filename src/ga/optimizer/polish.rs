@@ -3,6 +3,7 @@
 //! all ends when the best minimum was reached from several starts and few others can be expected.
 
 use super::descents::Pool;
+use super::exchange::Exchanges;
 use super::levenberg_marquardt::Accuracy;
 use super::{Answers, DescentReport, Optimizer, Setup, Wants, has_failed, key};
 use crate::diag::Fault;
@@ -51,6 +52,7 @@ pub struct Polished {
     sampled: Vec<(Vec<f64>, f64)>,
     /// The best of those beside the best minimum.
     beside: Vec<(Vec<f64>, f64)>,
+    exchanges: Exchanges,
 }
 
 impl Polished {
@@ -74,12 +76,13 @@ impl Polished {
             found: Vec::new(),
             sampled: Vec::new(),
             beside: Vec::new(),
+            exchanges: Exchanges::new(setup.scales.clone()),
         }
     }
 
     /// The starts of the next round, and how many of them owe nothing to earlier descents: what the
     /// user gave, then the best that are far from each other and from where descents have been. What
-    /// is better than all descents always counts.
+    /// is better than all descents always counts. Last an exchange of two genes.
     fn starts(&mut self) -> (Vec<Vec<f64>>, usize) {
         let mut starts: Vec<Vec<f64>> = self.given.take().into_iter().collect();
         let mut independent = 0;
@@ -102,7 +105,14 @@ impl Polished {
                 independent = starts.len();
             }
         }
+        starts.extend(self.exchanged());
         (starts, independent)
+    }
+
+    /// A place that differs from the best minimum by an exchange of two genes.
+    fn exchanged(&mut self) -> Option<Vec<f64>> {
+        let best = self.pool.best_place()?.to_vec();
+        self.exchanges.next(&best, |a, b| !is_far(a, b))
     }
 
     /// The points of a sample: a Latin hypercube, and from the second round on as many with some
@@ -248,6 +258,7 @@ impl Optimizer for Polished {
         self.found.clear();
         self.sampled.clear();
         self.beside.clear();
+        self.exchanges = Exchanges::default();
         if self.stage == Stage::Descents {
             self.next_stage();
         }

@@ -21,6 +21,7 @@ pub(crate) fn minimum(
     let genes = (0..n).map(|j| Gene::new(format!("g{j}"), 0.0, 1.0).unwrap()).collect();
     let setup = Setup {
         genes,
+        scales: Vec::new(),
         n_objectives: 1,
         budget: Some(budget),
         start: None,
@@ -146,6 +147,7 @@ pub(crate) fn dominated(
     let budget_known = Some(budget as u64);
     let setup = Setup {
         genes,
+        scales: Vec::new(),
         n_objectives,
         budget: budget_known,
         start: None,

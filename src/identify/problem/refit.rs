@@ -103,6 +103,7 @@ impl<'a> Refit<'a> {
         let genes = varied.iter().map(|&k| Gene::new(&free(k).name, 0.0, 1.0));
         (entry.make)(&mut Options::default())?.start(Setup {
             genes: genes.collect::<Result<_, Fault>>()?,
+            scales: Vec::new(),
             n_objectives: 1,
             budget: None,
             start: Some(varied.iter().map(|&k| free(k).fraction(start[k])).collect()),

@@ -7,7 +7,7 @@ use crate::bail;
 use crate::diag::Fault;
 use crate::fault;
 use crate::ga::optimizer::{
-    Answers, DescentReport, Optimizer, Polished, Setup, Wants, non_dominated,
+    Answers, DescentReport, Optimizer, Polished, Scale, Setup, Wants, non_dominated,
 };
 use crate::ga::{Gene, Generation, Genomes, History, Mrg32k3a, has_failed, order};
 use crate::registry::BAD_OPTION;
@@ -460,10 +460,17 @@ fn optimizer(problem: &Problem, evaluation: &Evaluation) -> Result<Box<dyn Optim
         true => Gene::new(&free.name, free.min, free.max),
         false => Gene::new(&free.name, 0.0, 1.0),
     };
+    let scale = |free: &super::Free| Scale {
+        min: free.min,
+        max: free.max,
+        logarithmic: free.logarithmic,
+        unit: free.unit.clone(),
+    };
     let starts = problem.parameters.iter().any(|free| free.start.is_some());
     let start = |free: &super::Free| free.start.map_or(0.5, |value| free.fraction(value));
     let setup = Setup {
         genes: problem.parameters.iter().map(gene).collect::<Result<_, Fault>>()?,
+        scales: problem.parameters.iter().map(scale).collect(),
         n_objectives: problem.objectives.len(),
         budget: problem.stop.evaluations,
         start: starts.then(|| problem.parameters.iter().map(start).collect()),
