@@ -19,8 +19,11 @@ pub(super) fn section(view: &View) -> Option<Section> {
         "The objective over {} generations: best so far, best of the generation, and mean",
         history.len()
     );
+    // Least squares behind a script's search are none of its generations.
+    let reached =
+        best.iter().copied().filter(|best| best.is_finite()).fold(f64::INFINITY, f64::min);
     let caption = html! {
-        "After " (history.len()) " generations the best so far is " (number(view.solution.fitness, 5)) "."
+        "After " (history.len()) " generations the best so far is " (number(reached, 5)) "."
     };
     let content = html! {
         (figure(&drawing(&best, &mean), &label, &caption))

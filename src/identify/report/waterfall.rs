@@ -8,7 +8,8 @@ use crate::plot::{Axis, Figure, Mark};
 use maud::html;
 
 pub(super) fn section(view: &View) -> Option<Section> {
-    if view.descents.is_empty() {
+    // One descent is a point, and said elsewhere.
+    if view.descents.len() < 2 {
         return None;
     }
     let mut sorted = view.descents.clone();
