@@ -29,6 +29,9 @@ const COARSEST: f64 = 1e-6;
 /// Intervals, each shorter than the one before, after which events accumulate. Those of damped
 /// oscillations around a crossing get shorter, too, but z is larger than its uncertainty then.
 const SHRINKING: u32 = 6;
+/// By then they have become shorter by this factor. Noise and switching that merely becomes faster make
+/// some shorter intervals in a row, too, and go on.
+const SHRUNK: f64 = 1e-3;
 
 /// When a crossing function changed its sign last.
 #[derive(Debug, Clone, Copy)]
@@ -39,6 +42,8 @@ pub(super) struct Switches {
     intervals: [f64; 2],
     /// How many intervals in a row were shorter than the one before.
     shrinking: u32,
+    /// The interval before these.
+    longest: f64,
     /// Whether it was positive before the last change.
     pub(super) was_above: bool,
 }
@@ -47,15 +52,31 @@ impl Default for Switches {
     fn default() -> Switches {
         let never = f64::NEG_INFINITY;
         let intervals = [f64::INFINITY; 2];
-        Switches { last: never, before: never, intervals, shrinking: 0, was_above: false }
+        Switches {
+            last: never,
+            before: never,
+            intervals,
+            shrinking: 0,
+            longest: f64::INFINITY,
+            was_above: false,
+        }
     }
 }
 
 impl Switches {
+    /// Whether the intervals tend to zero.
+    fn accumulate(&self) -> bool {
+        self.shrinking >= SHRINKING && self.intervals[0] <= SHRUNK * self.longest
+    }
+
     pub(super) fn note(&mut self, t: f64, was_above: bool) {
         let interval = t - self.before;
         let [last, before] = self.intervals;
-        self.shrinking = if interval < before { self.shrinking + 1 } else { 0 };
+        if interval < before && before.is_finite() {
+            self.shrinking += 1;
+        } else {
+            (self.shrinking, self.longest) = (0, interval);
+        }
         self.intervals = [interval, last];
         (self.before, self.last) = (self.last, t);
         self.was_above = was_above;
@@ -136,7 +157,7 @@ impl Run<'_> {
     pub(super) fn watch_for_accumulation(&self) -> Result<(), SimErrorKind> {
         let accumulates = |at: &usize| {
             let is_row = self.watch.rows[*at] >= ROW;
-            is_row && self.watch.switches[*at].shrinking >= SHRINKING
+            is_row && self.watch.switches[*at].accumulate()
         };
         match self.crossings.switched.iter().any(accumulates) {
             true => Err(SimErrorKind::Accumulation),
