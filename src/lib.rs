@@ -44,6 +44,7 @@
 //! A module owns one stage and one noun, imports only modules below it (a test checks the table in
 //! `tests/suite/architecture.rs`), and never changes what the stage before it made:
 //!
+//! - [`elementary`]: elementary functions with the same bits on every machine;
 //! - [`source`], [`name`], [`diag`], [`registry`]: places, names, diagnostics, named choices;
 //! - [`syntax`]: the grammar of classes and scripts, trees, printing;
 //! - [`value`], [`eval`]: values and their operations; expressions, statements, functions;
@@ -58,13 +59,17 @@
 //! - [`models`]: the Modelica packages that are part of the program;
 //! - [`script`]: sessions and their commands; [`cli`]: the command line, the only door outside.
 
+#![cfg_attr(test, allow(clippy::disallowed_methods, reason = "expectations of tests"))]
+
 pub mod bibliography;
 pub mod diag;
+pub mod elementary;
 pub mod models;
 pub mod name;
 pub mod registry;
 pub mod source;
 
+pub mod budget;
 pub mod bytecode;
 pub mod compile;
 pub mod dae;

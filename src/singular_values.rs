@@ -8,6 +8,7 @@
 //!
 //! Reference: [Demmel & Veselić 1992](crate::bibliography#demmel-veselic-1992).
 
+use crate::elementary;
 use nalgebra::{DMatrix, DVector};
 
 /// Columns count as orthogonal when the cosine between them is below this.
@@ -93,8 +94,8 @@ fn sweep(work: &mut DMatrix<f64>, v: &mut DMatrix<f64>) -> bool {
             }
             turned = true;
             let zeta = (beta - alpha) / (2.0 * gamma);
-            let tangent = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
-            let cosine = 1.0 / tangent.hypot(1.0);
+            let tangent = zeta.signum() / (zeta.abs() + elementary::hypot(zeta, 1.0));
+            let cosine = 1.0 / elementary::hypot(tangent, 1.0);
             rotate(work, [p, q], cosine, cosine * tangent);
             rotate(v, [p, q], cosine, cosine * tangent);
         }

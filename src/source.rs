@@ -90,12 +90,7 @@ pub struct LineColumn {
 impl SourceMap {
     /// Adds a text and returns its number.
     pub fn add(&self, name: impl Into<Arc<str>>, text: impl Into<Arc<str>>) -> SourceId {
-        let text: Arc<str> = text.into();
-        let starts = std::iter::once(0)
-            .chain(text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i as u32 + 1))
-            .collect();
-        let source = Source { name: name.into(), text, line_starts: starts };
-        SourceId(self.sources.push(source) as u32)
+        SourceId(self.sources.push(Source::new(name, text)) as u32)
     }
 
     /// The source of this number; `None` for [`SourceId::NONE`].
@@ -138,6 +133,15 @@ impl SourceMap {
 }
 
 impl Source {
+    /// A text under a name.
+    pub(crate) fn new(name: impl Into<Arc<str>>, text: impl Into<Arc<str>>) -> Source {
+        let text: Arc<str> = text.into();
+        let line_starts = std::iter::once(0)
+            .chain(text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i as u32 + 1))
+            .collect();
+        Source { name: name.into(), text, line_starts }
+    }
+
     /// Line and column of a byte offset.
     pub fn line_column(&self, offset: usize) -> LineColumn {
         let line = self.line_starts.partition_point(|start| *start as usize <= offset).max(1);

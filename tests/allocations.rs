@@ -5,6 +5,7 @@
 //! static curve.
 
 #![allow(unsafe_code, reason = "an allocator cannot be written without")]
+#![allow(clippy::disallowed_methods, reason = "expected values need not have every digit")]
 #![allow(clippy::print_stdout, reason = "the figures are asked for with --nocapture")]
 
 use gapilib::compile::{Program, SensitivityCode, System};
@@ -219,6 +220,7 @@ fn curve(evaluations: u64) -> Problem {
     let y: Vec<f64> = x.iter().map(|x| 1.0 - 0.3 * x + 0.01 * (9.0 * x).sin()).collect();
     let names = ["A", "Io", "B", "R", "In"];
     let experiment = Experiment {
+        second_attempt: true,
         name: "curve".to_owned(),
         model: Arc::new(CompiledModel::new("PolarizationCurve", program)),
         settings,

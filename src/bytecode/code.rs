@@ -198,6 +198,11 @@ impl Functions {
                 let name = code.externals[*external as usize].entry.name;
                 format!("the external function `{name}` has no result")
             }
+            (Reason::Budget, _) => {
+                let words = crate::budget::exceeded();
+                let allows = "`--instruction-limit` allows more";
+                return (format!("{words} in the function `{}` ({allows})", code.name), span);
+            }
             (reason, _) => reason.words().to_owned(),
         };
         (format!("{words} in the function `{}`", code.name), span)

@@ -4,6 +4,7 @@ use super::code::{Code, ExternalCall, Functions};
 use super::failure::Reason;
 use super::number::{Dual, Number};
 use crate::diag::Fault;
+use crate::elementary;
 use crate::external::{Call, Contents, Journal, Kind, Object, Outside, Random};
 
 /// Runs an external function on numbers with derivatives, or without.
@@ -142,7 +143,7 @@ impl RunExternal for Dual<f64> {
         let slopes = match speed {
             0.0 => vec![0.0; values.len()],
             _ => {
-                let step = f64::EPSILON.cbrt() * size.max(1e-3) / speed;
+                let step = elementary::cbrt(f64::EPSILON) * size.max(1e-3) / speed;
                 let (ahead, behind) = (at(step)?, at(-step)?);
                 ahead.iter().zip(&behind).map(|(a, b)| (a - b) / (2.0 * step)).collect()
             }

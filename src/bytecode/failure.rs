@@ -57,7 +57,7 @@ impl Reason {
             Reason::Subscript => "a subscript lies outside its array",
             Reason::Assertion => "an assertion does not hold",
             Reason::Range => "the range of a loop has no end",
-            Reason::Budget => "a loop does not end",
+            Reason::Budget => "too many instructions",
             Reason::Depth => "calls are nested too deep",
             Reason::External => "an external function has no result",
             Reason::Derivative => "the derivative is not finite",

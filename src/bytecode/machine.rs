@@ -4,10 +4,9 @@ use super::code::{Code, Derivative, Functions, Instruction};
 use super::external::{Externals, RunExternal};
 use super::failure::{Failure, Reason};
 use super::number::{Dual, Number};
+use crate::budget::instruction_limit;
 use crate::external::Journal;
 
-/// Most instructions of one call from outside.
-const MAX_INSTRUCTIONS: u64 = 20_000_000;
 /// Deepest nesting of calls.
 const MAX_CALLS: usize = 2_000;
 /// Largest number of registers of all frames.
@@ -47,6 +46,11 @@ impl Machine {
     /// Forgets all external objects and the hidden state of random numbers.
     pub fn restart(&mut self) {
         self.externals.restart();
+    }
+
+    /// How many instructions the call before this took.
+    pub(crate) fn spent(&self) -> u64 {
+        instruction_limit().saturating_sub(self.budget)
     }
 
     /// What the external function said that failed last.
@@ -124,7 +128,7 @@ impl Machine {
             *register = argument;
         }
         self.callers.clear();
-        self.budget = MAX_INSTRUCTIONS;
+        self.budget = instruction_limit();
     }
 
     /// Runs a function whose frame stands at the bottom of the stack.

@@ -2,6 +2,7 @@
 
 use super::elementary::Elementary;
 use super::machine::Stacks;
+use crate::elementary;
 
 /// A number with its derivatives, or without.
 pub trait Number: Copy {
@@ -65,7 +66,7 @@ impl Number for f64 {
     }
 
     fn pow(self, b: f64) -> f64 {
-        self.powf(b)
+        elementary::powf(self, b)
     }
 
     fn unary(self, function: &Elementary) -> f64 {

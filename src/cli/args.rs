@@ -151,6 +151,9 @@ pub(super) struct RunArgs {
     /// Leave out the least squares that end an identification, from its best individual
     #[arg(long)]
     pub no_probe: bool,
+    /// Profile likelihoods from there, intervals that are right for strongly curved models, too
+    #[arg(long, conflicts_with = "no_probe")]
+    pub profile: bool,
     /// Show errors only
     #[arg(long, short)]
     pub quiet: bool,
@@ -191,9 +194,16 @@ pub(super) struct Limits {
     /// Stop after so many seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time_limit: Option<f64>,
-    /// Stop when the program takes more memory (MiB); Linux only
+    /// Stop when the program takes more memory (MiB); Linux only [default: three quarters of what
+    /// the machine or its control group has]
     #[arg(long, value_name = "MIB", value_parser = clap::value_parser!(u32).range(1..))]
     pub memory_limit: Option<u32>,
+    /// Evaluate models without machine code: slower, with the same digits
+    #[arg(long)]
+    pub interpret: bool,
+    /// Most instructions that one call of a function may take, in millions [default: 20]
+    #[arg(long, value_name = "MILLIONS", value_parser = clap::value_parser!(u32).range(1..))]
+    pub instruction_limit: Option<u32>,
 }
 
 /// A dialect.

@@ -1,10 +1,12 @@
 //! `gapi identify a.toml b.toml`: solves several problems of the same data and compares the models.
 
 use super::args::{Global, IdentifyArgs};
+use super::disk::write_atomically;
 use super::identify::{Ended, solve_one};
+use super::output::RESULTS;
 use super::terminal;
 use crate::identify::problem::Solution;
-use crate::identify::problem::inference::compare;
+use crate::identify::problem::inference::{Comparison, compare};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -36,11 +38,28 @@ pub(super) fn identify_all(arguments: &IdentifyArgs, global: &Global) -> ExitCod
     match compare(&named) {
         Ok(comparison) => {
             terminal::print(&comparison.text());
-            ExitCode::SUCCESS
+            write(&comparison, arguments.out.as_deref().unwrap_or(Path::new(RESULTS)))
         }
         Err(fault) => {
             let help = fault.helps.first().map_or(String::new(), |help| format!("help: {help}\n"));
             terminal::eprint(&format!("error: {}\n{help}", fault.message));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Writes the comparison beside the folders of its models, under their names.
+fn write(comparison: &Comparison, folder: &Path) -> ExitCode {
+    let names: Vec<&str> = comparison.models.iter().map(|model| model.name.as_str()).collect();
+    let path = folder.join(format!("comparison-{}.json", names.join("-")));
+    match write_atomically(&path, comparison.to_json().as_bytes()) {
+        Ok(()) => {
+            terminal::print(&format!("\n  written to {}\n", path.display()));
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            let path = path.display();
+            terminal::eprint(&format!("error: `{path}` cannot be written: {error}\n"));
             ExitCode::FAILURE
         }
     }

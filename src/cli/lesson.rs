@@ -87,7 +87,7 @@ fn copied(file: &Path, text: &str) -> Result<(PathBuf, String), String> {
         file.parent().map_or(Ok(()), std::fs::create_dir_all).map_err(failed)?;
         std::fs::write(file, text).map_err(failed)?;
     }
-    Ok((file.to_owned(), std::fs::read_to_string(file).map_err(failed)?))
+    Ok((file.to_owned(), super::named::read_text(file).map_err(failed)?))
 }
 
 fn run(file: &Path, arguments: &LessonArgs, global: &Global) -> ExitCode {

@@ -3,7 +3,9 @@
 
 use super::args::Limits;
 use super::live;
+use super::memory;
 use super::terminal;
+use crate::budget::limit_instructions;
 use crate::script::errors::LIMIT_REACHED;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,6 +21,8 @@ const NOTICE: Duration = Duration::from_secs(2);
 const ENDING: Duration = Duration::from_secs(60);
 /// A process that has grown to this multiple of its limit is not waited for.
 const GROWTH: u64 = 2;
+/// What is said of the default limit.
+const DEFAULT: &str = ", three quarters of what there is (`--memory-limit` changes it)";
 
 /// How a run is asked to stop.
 #[derive(Debug, Clone, Default)]
@@ -99,23 +103,33 @@ pub(super) fn enforce(limits: &Limits) -> Result<Watch, ExitCode> {
     })
 }
 
-/// A thread for the work, if there is a limit.
+/// A thread for the work, if there is a limit; machine code is left out if that is asked for.
 fn spawn(
     limits: &Limits,
-    work: impl FnOnce(Limits, &AtomicBool) + Send + 'static,
+    work: impl FnOnce(Watched, &AtomicBool) + Send + 'static,
 ) -> Result<Watch, ExitCode> {
-    let watch = Watch { over: Arc::default() };
-    if limits.time_limit.is_none() && limits.memory_limit.is_none() {
-        return Ok(watch);
+    if limits.interpret {
+        crate::compile::interpret();
     }
+    if let Some(millions) = limits.instruction_limit {
+        limit_instructions(u64::from(millions) * 1_000_000);
+    }
+    let watch = Watch { over: Arc::default() };
     let refused = |message: &str| {
         terminal::eprint(&format!("error: {message}\n"));
         ExitCode::from(2)
     };
-    if limits.memory_limit.is_some() && taken_memory().is_none() {
+    if limits.memory_limit.is_some() && memory::taken().is_none() {
         return Err(refused("`--memory-limit` works on Linux only"));
     }
-    let (limits, over) = (limits.clone(), Arc::clone(&watch.over));
+    let mut limits = limits.clone();
+    let is_default = limits.memory_limit.is_none();
+    limits.memory_limit = limits.memory_limit.or_else(memory::default_limit);
+    if limits.time_limit.is_none() && limits.memory_limit.is_none() {
+        return Ok(watch);
+    }
+    let limits = Watched { limits, is_default };
+    let over = Arc::clone(&watch.over);
     let thread = std::thread::Builder::new().name("limits".to_owned());
     match thread.spawn(move || work(limits, &over)) {
         Ok(_) => Ok(watch),
@@ -124,7 +138,8 @@ fn spawn(
 }
 
 /// Waits until a limit is reached; `None` if the watch is over before.
-fn wait(limits: &Limits, started: Instant, over: &AtomicBool) -> Option<String> {
+fn wait(watched: &Watched, started: Instant, over: &AtomicBool) -> Option<String> {
+    let limits = &watched.limits;
     while !over.load(Ordering::Relaxed) {
         if let Some(seconds) = limits.time_limit
             && started.elapsed().as_secs_f64() > seconds
@@ -132,19 +147,30 @@ fn wait(limits: &Limits, started: Instant, over: &AtomicBool) -> Option<String> 
             return Some(format!("the limit of time is reached: {seconds} s"));
         }
         if let Some(mebibytes) = limits.memory_limit
-            && limits.memory_beyond(1)
+            && watched.memory_beyond(1)
         {
-            return Some(format!("the limit of memory is reached: {mebibytes} MiB"));
+            let whose = if watched.is_default { DEFAULT } else { "" };
+            return Some(format!("the limit of memory is reached: {mebibytes} MiB{whose}"));
         }
         std::thread::sleep(INTERVAL);
     }
     None
 }
 
-impl Limits {
-    /// Whether the process takes more memory than a multiple of its limit.
+/// The limits that are watched.
+struct Watched {
+    limits: Limits,
+    /// Whether the limit of memory is a share of what there is, and not one that was asked for.
+    is_default: bool,
+}
+
+impl Watched {
+    /// Whether the process takes more memory than a multiple of its limit. There is no multiple of
+    /// nearly all there is.
     fn memory_beyond(&self, factor: u64) -> bool {
-        self.memory_limit.is_some_and(|limit| taken_memory() > Some(factor * u64::from(limit)))
+        let factor = if self.is_default { 1 } else { factor };
+        let limit = self.limits.memory_limit;
+        limit.is_some_and(|limit| memory::taken() > Some(factor * u64::from(limit)))
     }
 }
 
@@ -153,12 +179,4 @@ fn end_process(message: &str) -> ! {
     terminal::eprint(&format!("error[{}]: {message}\n", LIMIT_REACHED.slug));
     #[allow(clippy::exit, reason = "the thread that works does not listen")]
     std::process::exit(1)
-}
-
-/// Resident memory of this process in MiB.
-fn taken_memory() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmRSS:"))?;
-    let kib: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kib / 1024)
 }

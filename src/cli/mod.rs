@@ -14,6 +14,8 @@ mod lesson;
 mod limits;
 mod live;
 mod lock;
+mod memory;
+mod named;
 mod new;
 mod output;
 mod parsing;

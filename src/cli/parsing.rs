@@ -12,7 +12,7 @@ use super::terminal;
 pub(super) fn parse_only(paths: &[PathBuf]) -> ExitCode {
     let (mut accepted, mut rejected, mut data) = (0, 0, 0);
     for path in scripts(paths) {
-        let bytes = match std::fs::read(&path) {
+        let bytes = match super::named::read(&path) {
             Ok(bytes) => bytes,
             Err(error) => {
                 rejected += 1;

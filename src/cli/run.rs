@@ -5,6 +5,7 @@ use super::output::Output;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, parsing, session};
+use crate::identify::Probe;
 use crate::script::policy::Grant;
 use crate::script::{Echo, Journaling, Options, Session, Strictness, Transcript};
 use crate::source::Span;
@@ -72,9 +73,13 @@ fn options(arguments: &RunArgs) -> Options {
     let seconds = arguments.checkpoint;
     let journaling =
         if arguments.resume { Journaling::Resume(seconds) } else { Journaling::Fresh(seconds) };
-    let no_probe = arguments.no_probe;
+    let probe = match (arguments.no_probe, arguments.profile) {
+        (true, _) => Probe::Off,
+        (false, true) => Probe::Profiles,
+        (false, false) => Probe::LeastSquares,
+    };
     let quiet = arguments.quiet;
-    Options { echo, strictness, quiet, journaling, no_probe, ..arguments.freedom.options() }
+    Options { echo, strictness, quiet, journaling, probe, ..arguments.freedom.options() }
 }
 
 fn write_transcript(

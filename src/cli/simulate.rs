@@ -73,7 +73,7 @@ fn run(
     }
     let filter = arguments.variable_filter.as_deref().map(filter).transpose().map_err(one)?;
     let model = simulation::translate(session, class)?;
-    let mut wishes = wishes(arguments);
+    let mut wishes = Wishes { only: filter, ..wishes(arguments) };
     if let Some(path) = &arguments.from {
         let begin = begin_with(session, &model, path, wishes.start).map_err(one)?;
         wishes.start = Some(begin);
@@ -83,12 +83,9 @@ fn run(
     }
     let settings = simulation::settings(&model.program.experiment(), &wishes).map_err(one)?;
     let span = (settings.start, settings.stop);
-    let mut simulated = with_progress(span, wishes, global, |wishes| {
+    let simulated = with_progress(span, wishes, global, |wishes| {
         simulation::simulate(session, &model, &wishes).map_err(|error| vec![error])
     })?;
-    if let Some(filter) = filter {
-        simulated.table = simulated.table.only(|name| filter.is_match(name));
-    }
     session.print(&summary(class, &simulated));
     if arguments.stats {
         session.print(&statistics(&simulated.statistics));
@@ -98,9 +95,8 @@ fn run(
     }
     match (&arguments.output, format) {
         (Some(path), Some(format)) => {
-            let bytes = format.write(&simulated.table).map_err(one)?;
             session.permit_file(path);
-            session.write_file(path, &bytes).map_err(one)?;
+            session.write_results(path, format.as_ref(), &simulated.table).map_err(one)?;
             session.print(&written(path));
         }
         _ if !arguments.plot.is_empty() => {}

@@ -57,7 +57,7 @@ fn taught(arguments: &TeachArgs, global: &Global) -> Result<(), Trouble> {
 }
 
 fn read(file: &Path) -> Result<Trace, Trouble> {
-    let read = std::fs::read(file).map_err(|error| error.to_string());
+    let read = super::named::read(file).map_err(|error| error.to_string());
     let trace = read.and_then(|bytes| Trace::read(&bytes).map_err(|fault| fault.message));
     trace.map_err(|message| Trouble::Message(format!("`{}`: {message}", file.display())))
 }

@@ -10,7 +10,7 @@ use super::terminal::Terminal;
 use crate::models;
 use crate::script::policy::{Access, Grant};
 use crate::script::view::View;
-use crate::script::world::{Files, Progress, Stamp, World};
+use crate::script::world::{Content, Files, Progress, Stamp, World};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
@@ -138,6 +138,12 @@ impl World for SystemWorld {
         let path = self.at(path);
         self.claim(&path)?;
         self.disk.write(&path, bytes)
+    }
+
+    fn write_with(&mut self, path: &Path, content: Content<'_>) -> io::Result<()> {
+        let path = self.at(path);
+        self.claim(&path)?;
+        self.disk.write_with(&path, content)
     }
 
     fn append(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {

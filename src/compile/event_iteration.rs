@@ -227,10 +227,30 @@ impl System {
         either(outcome, EventOutcome::Continue { y_changed: changed })
     }
 
+    /// Iterates; where that fails, once more with relations kept at their borders as they are.
+    fn iterate(&mut self, t: f64) -> Result<EventOutcome, Failure> {
+        if !self.held.contains(&true) {
+            return self.iterate_rounds(t);
+        }
+        let (registers, changed) = (self.registers.clone(), self.has_changed.clone());
+        let first = self.iterate_rounds(t);
+        let Err(Failure::Newton { .. } | Failure::Singular { .. } | Failure::EventIteration { .. }) =
+            first
+        else {
+            return first;
+        };
+        self.registers.copy_from_slice(&registers);
+        self.has_changed = changed;
+        self.keeps_held = true;
+        let kept = self.iterate_rounds(t);
+        self.keeps_held = false;
+        kept.or(first)
+    }
+
     /// Rounds until `pre(v) = v` and no state is set. Where relations do not come to rest with the
     /// previous values at hand, these follow after every pass: an element that breaks away leaves
     /// the relation behind that made it do so, and only what it was before holds it where it is.
-    fn iterate(&mut self, t: f64) -> Result<EventOutcome, Failure> {
+    fn iterate_rounds(&mut self, t: f64) -> Result<EventOutcome, Failure> {
         let (mut changed, mut terminated) = (false, false);
         let mut is_stepwise = false;
         let mut known = FxHashSet::default();

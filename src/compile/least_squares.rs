@@ -9,6 +9,7 @@
 //!
 //! Reference: [Nocedal & Wright 2006](crate::bibliography#nocedal-wright-2006), chapter 10.
 
+use crate::elementary;
 use crate::sim::{DenseLu, Equations, Failure};
 
 const MAX_ITERATIONS: usize = 200;
@@ -97,7 +98,7 @@ impl LeastSquares {
                 std::mem::swap(&mut self.residual, &mut self.trial_residual);
                 size = after;
                 self.linearize(equations, x, nominal, false)?;
-                mu *= (1.0 - (2.0 * gain - 1.0).powi(3)).max(1.0 / 3.0);
+                mu *= (1.0 - elementary::powi(2.0 * gain - 1.0, 3)).max(1.0 / 3.0);
                 growth = 2.0;
             } else {
                 mu *= growth;

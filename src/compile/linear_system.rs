@@ -14,6 +14,7 @@
 //! §8.6.3).
 
 use super::tape::Register;
+use crate::elementary;
 use crate::sim::DenseLu;
 
 /// Pivots below this part of the largest entry of their column are rounding errors.
@@ -245,8 +246,8 @@ impl LinearSystem {
             return false;
         }
         let zeta = (bb - aa) / (2.0 * ab);
-        let t = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
-        let c = t.hypot(1.0).recip();
+        let t = zeta.signum() / (zeta.abs() + elementary::hypot(zeta, 1.0));
+        let c = elementary::hypot(t, 1.0).recip();
         for columns in [&mut self.w, &mut self.v] {
             let (left, right) = columns.split_at_mut(j * n);
             for (a, b) in left[i * n..(i + 1) * n].iter_mut().zip(&mut right[..n]) {

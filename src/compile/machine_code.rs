@@ -16,7 +16,7 @@ use super::tape::Register;
 use super::translation::translate;
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Linkage, Module, default_libcall_names};
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Mutex, OnceLock};
 
 /// Runs of a tape after which it is translated: a translation takes about as long as a thousand.
@@ -25,6 +25,15 @@ const OFTEN: u32 = 1_000;
 const LONG: usize = 3_000;
 /// Tapes longer than this are not translated: the time that takes is more than linear.
 const LONGEST: usize = 100_000;
+
+/// Whether no tape is translated.
+static INTERPRETED: AtomicBool = AtomicBool::new(false);
+
+/// From now on tapes do not become machine code in this process: for systems that forbid memory
+/// which is made executable, and to see that the results are the same to the bit.
+pub fn interpret() {
+    INTERPRETED.store(true, Ordering::Relaxed);
+}
 
 /// The machine code of a tape, once it has run often.
 #[derive(Default)]
@@ -42,7 +51,8 @@ impl MachineCode {
             return function.is_some_and(|function| function.call(registers, out));
         }
         if self.runs.fetch_add(1, Ordering::Relaxed) == OFTEN {
-            self.function.get_or_init(|| Function::new(code));
+            let interpreted = INTERPRETED.load(Ordering::Relaxed);
+            self.function.get_or_init(|| if interpreted { None } else { Function::new(code) });
         }
         false
     }
@@ -96,15 +106,8 @@ impl Function {
         let builder = JITBuilder::with_flags(&flags, default_libcall_names()).ok()?;
         let mut module = JITModule::new(builder);
         let mut context = module.make_context();
-        let pointer = module.target_config().pointer_type();
         let instructions = without_routines(&code.tape, LONGEST)?;
-        translate(
-            code,
-            &instructions,
-            pointer,
-            module.target_config().default_call_conv,
-            &mut context,
-        )?;
+        translate(code, &instructions, module.target_config(), &mut context)?;
         let signature = &context.func.signature;
         let id = module.declare_function("tape", Linkage::Export, signature).ok()?;
         module.define_function(id, &mut context).ok()?;

@@ -34,6 +34,7 @@ mod tape;
 mod translation;
 mod undetermined;
 
+pub use machine_code::interpret;
 pub use notices::Told;
 pub use program::{Access, ParameterInfo, Program, VariableInfo};
 pub use sensitivity::SensitivityCode;

@@ -5,6 +5,7 @@
 //!     Newton's method
 //!     otherwise Levenberg and Marquardt's method, then Newton's again
 //!     otherwise Newton's method without damping, which leaps over kinks
+//!     otherwise the same from zero, if the guess is outside the domain
 //!     otherwise the global Newton method, where a jump is no error
 //! ```
 //!
@@ -70,6 +71,11 @@ impl LoopSolver {
             for ((x, guess), nominal) in self.x.iter_mut().zip(&self.guess).zip(&*self.nominal) {
                 *x = if *guess == 0.0 { *nominal } else { *guess };
             }
+            outcome = self.attempt(&mut equations, initial).or(outcome);
+        }
+        if may_jump && matches!(outcome, Err(Failure::Domain { .. })) {
+            // The guess may lie a little outside the domain, as -1e-8 for a root.
+            self.x.fill(0.0);
             outcome = self.attempt(&mut equations, initial).or(outcome);
         }
         if outcome.is_err() && may_jump {

@@ -6,7 +6,9 @@
 //!         changes again in that event where a - b passes -ε while it holds, ε while it does not
 //! ```
 //!
-//! A relation that has so been kept once has these bounds in all later steps.
+//! A relation that has so been kept once has these bounds in all later steps, and in a later event if
+//! the variables have no values with what its sides say exactly: the flow between two closed ports
+//! is zero, and only s > 0 with s = 0 determines the pressure between them.
 //!
 //! Where no values of the relations agree with what they decide, those whose sides differ by less
 //! than errors of y as large as the tolerance are excused: ε is as large for them until they change.
@@ -88,7 +90,8 @@ impl System {
         let [a, b] = [sides.outputs[0], sides.outputs[1]];
         let (a, b) = (self.registers[a as usize], self.registers[b as usize]);
         let exact = operator.holds(a, b);
-        if exact == before || !self.has_changed[at] {
+        let may_keep = self.has_changed[at] || (self.keeps_held && self.held[at]);
+        if exact == before || !may_keep {
             return exact;
         }
         if distance(operator, before, (a, b), 0.0) >= 0.0 {

@@ -43,6 +43,8 @@ pub struct System {
     pub(super) restless: Vec<bool>,
     /// Whether relations have been kept at a value that their sides did not quite have.
     pub(super) held: Vec<bool>,
+    /// Whether such relations are kept so from the beginning of the event at hand.
+    pub(super) keeps_held: bool,
     /// What the tolerance makes of the sides of relations, and whether it excuses relations that do
     /// not hold, and by how much it has.
     pub(super) uncertainty: Vec<f64>,
@@ -94,6 +96,7 @@ impl System {
             has_changed: vec![false; program.relations.len()],
             restless: vec![false; program.relations.len()],
             held: vec![false; program.relations.len()],
+            keeps_held: false,
             uncertainty: vec![0.0; program.relations.len()],
             is_lenient: false,
             excused: vec![0.0; program.relations.len()],

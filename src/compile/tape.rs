@@ -3,6 +3,7 @@
 
 use super::linear_system::LinearSolve;
 use super::memory::Memory;
+use crate::elementary;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::FunctionId;
 
@@ -215,7 +216,7 @@ impl Tape {
                 Instruction::Div { d, a, b } => {
                     finite(r, d, r_of(a, b, |x, y| x / y), at)?;
                 }
-                Instruction::Pow { d, a, b } => finite(r, d, r_of(a, b, f64::powf), at)?,
+                Instruction::Pow { d, a, b } => finite(r, d, r_of(a, b, elementary::powf), at)?,
                 Instruction::And { d, a, b } => {
                     let both = r[a as usize] != 0.0 && r[b as usize] != 0.0;
                     r[d as usize] = f64::from(u8::from(both));

@@ -9,15 +9,16 @@ use super::linear_system::{LinearSolve, MOST_SMALL, SMALLEST_DETERMINANT, elimin
 use super::program::Outputs;
 use super::regions::shared_by_branches;
 use super::tape::{Instruction, Register};
+use crate::elementary;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::FunctionId;
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{
-    AbiParam, Block, InstBuilder, MemFlags, SigRef, Signature, StackSlotData, StackSlotKind, Type,
-    Value, types,
+    AbiParam, Block, InstBuilder, MemFlagsData, SigRef, Signature, StackSlotData, StackSlotKind,
+    Type, Value, types,
 };
-use cranelift_codegen::isa::CallConv;
+use cranelift_codegen::isa::TargetFrontendConfig;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext, Variable};
 use rustc_hash::FxHashMap;
 use std::collections::BTreeSet;
@@ -30,10 +31,10 @@ const CHECKS: usize = 4;
 pub(super) fn translate(
     code: &Outputs,
     instructions: &[Instruction],
-    pointer: Type,
-    call_conv: CallConv,
+    target: TargetFrontendConfig,
     context: &mut Context,
 ) -> Option<()> {
+    let pointer = target.pointer_type();
     let signature = &mut context.func.signature;
     signature.params.extend([AbiParam::new(pointer), AbiParam::new(pointer)]);
     signature.returns.push(AbiParam::new(types::F64));
@@ -44,13 +45,13 @@ pub(super) fn translate(
     builder.switch_to_block(start);
     let (memory, out) = (builder.block_params(start)[0], builder.block_params(start)[1]);
     let functions = [1, 2].map(|arity| {
-        let mut signature = Signature::new(call_conv);
+        let mut signature = Signature::new(target.default_call_conv);
         signature.params.push(AbiParam::new(pointer));
         signature.params.extend(std::iter::repeat_n(AbiParam::new(types::F64), arity));
         signature.returns.push(AbiParam::new(types::F64));
         builder.import_signature(signature)
     });
-    let mut signature = Signature::new(call_conv);
+    let mut signature = Signature::new(target.default_call_conv);
     signature.params.extend([AbiParam::new(pointer), AbiParam::new(pointer)]);
     let elimination = builder.import_signature(signature);
     let checks = std::array::from_fn(|_| builder.declare_var(types::F64));
@@ -79,7 +80,7 @@ pub(super) fn translate(
         translation.instruction(*instruction)?;
     }
     translation.enter(instructions.len());
-    translation.finish();
+    translation.finish(target);
     Some(())
 }
 
@@ -189,13 +190,13 @@ impl Translation<'_> {
         if let Some(variable) = self.chosen.get(&register) {
             return self.builder.use_var(*variable);
         }
-        let flags = MemFlags::trusted();
+        let flags = MemFlagsData::trusted();
         self.builder.ins().load(types::F64, flags, self.memory, 8 * register as i32)
     }
 
     fn set(&mut self, d: Register, value: Value) {
         for at in self.places.get(&d).into_iter().flatten() {
-            self.builder.ins().store(MemFlags::trusted(), value, self.out, 8 * *at as i32);
+            self.builder.ins().store(MemFlagsData::trusted(), value, self.out, 8 * *at as i32);
         }
         match self.chosen.get(&d) {
             Some(variable) => self.builder.def_var(*variable, value),
@@ -266,7 +267,7 @@ impl Translation<'_> {
                 let value = self.builder.ins().fdiv(a, b);
                 self.set_checked(d, value);
             }
-            Instruction::Pow { d, a, b } => self.call_binary(d, a, b, f64::powf),
+            Instruction::Pow { d, a, b } => self.call_binary(d, a, b, elementary::powf),
             Instruction::And { d, a, b } => {
                 let (a, b) = (self.is_true(a), self.is_true(b));
                 let holds = self.builder.ins().band(a, b);
@@ -392,7 +393,7 @@ impl Translation<'_> {
         let slot = StackSlotData::new(StackSlotKind::ExplicitSlot, size, 3);
         let slot = self.builder.create_sized_stack_slot(slot);
         for (place, value) in (0..).zip(entries.iter().chain(right)) {
-            self.builder.ins().stack_store(*value, slot, 8 * place);
+            self.builder.ins().stack_store(self.pointer, *value, slot, 8 * place);
         }
         let system = self.builder.ins().stack_addr(self.pointer, slot, 0);
         let n = self.builder.ins().iconst(self.pointer, right.len() as i64);
@@ -400,7 +401,7 @@ impl Translation<'_> {
         self.builder.ins().call_indirect(self.elimination, callee, &[system, n]);
         for (at, register) in (0..right.len()).zip(d..) {
             let place = 8 * (entries.len() + at) as i32;
-            let x = self.builder.ins().stack_load(types::F64, slot, place);
+            let x = self.builder.ins().stack_load(self.pointer, types::F64, slot, place);
             self.set_checked(register, x);
         }
     }
@@ -429,12 +430,17 @@ impl Translation<'_> {
     }
 
     /// Writes the outputs that are not written yet, and returns the check.
-    fn finish(mut self) {
+    fn finish(mut self, target: TargetFrontendConfig) {
         let code = self.code;
         for (place, register) in code.outputs.iter().enumerate() {
             if !self.values.contains_key(register) {
                 let value = self.get(*register);
-                self.builder.ins().store(MemFlags::trusted(), value, self.out, 8 * place as i32);
+                self.builder.ins().store(
+                    MemFlagsData::trusted(),
+                    value,
+                    self.out,
+                    8 * place as i32,
+                );
             }
         }
         let sums = self.checks.map(|check| self.builder.use_var(check));
@@ -444,7 +450,7 @@ impl Translation<'_> {
         }
         self.builder.ins().return_(&[total]);
         self.builder.seal_all_blocks();
-        self.builder.finalize();
+        self.builder.finalize(target);
     }
 }
 

@@ -1,7 +1,9 @@
 //! A flat model becomes a [`Dae`]: every variable a scalar, every equation a pair of scalars.
 
 use super::algorithm::Execution;
-use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, PARAMETER_CYCLE, UNRESOLVED_REFERENCE};
+use super::errors::{
+    ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, PARAMETER_CYCLE, UNRESOLVED_REFERENCE,
+};
 use super::lowering::{Array, Lowered, Lowering, Target, size_fault};
 use super::message::message_parts;
 use super::model::{self, Assertion, Dae, Equation, Instance, Kind, Level, StateSelect, Variable};
@@ -185,7 +187,16 @@ impl<'a> Builder<'a> {
             }
             (Folding::Unvisited, Some(binding)) if fixed && variable.base != BaseType::String => {
                 self.folding[position] = Folding::InProgress;
+                self.functions.take_exhausted();
                 let array = self.sized(binding, &variable.dims)?;
+                if let (Some(words), Variability::Constant) =
+                    (self.functions.take_exhausted(), variable.variability)
+                {
+                    let name = &variable.name;
+                    return Err(fault!(NO_CONSTANT_VALUE, "`{name}` has no value: {words}";
+                        help: "{}", crate::budget::REMEDY)
+                    .at(binding.span));
+                }
                 for (at, element) in array.elements.iter().enumerate() {
                     if let Some(value) = self.dae.pool.as_constant(*element) {
                         let id = self.first[position].0 as usize + at;

@@ -22,6 +22,7 @@ use crate::syntax::ast::{
     Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
     Subscript,
 };
+use std::cell::Cell;
 use std::sync::Arc;
 
 /// Most statements that one call may run where it cannot be compiled.
@@ -534,6 +535,14 @@ impl Target for Call<'_, '_> {
             }
             _ => self.builder.operator(name, arguments, span),
         }
+    }
+
+    fn gives_up(&self) -> bool {
+        self.builder.inlined == 0
+    }
+
+    fn interpreted(&self) -> &Cell<u64> {
+        self.builder.interpreted()
     }
 
     fn resources(&self) -> crate::external::Resources {

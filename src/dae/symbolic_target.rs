@@ -14,6 +14,8 @@ use crate::source::Span;
 use crate::symbolic::function::FunctionId;
 use crate::symbolic::{Expr, RelationOperator, VarId};
 use crate::syntax::ast::{ComponentReference, Expression, ExpressionKind};
+use indexmap::IndexSet;
+use std::cell::Cell;
 use std::sync::Arc;
 
 impl Target for Builder<'_> {
@@ -160,14 +162,28 @@ impl Target for Builder<'_> {
             self.fold(position)?;
         }
         let first = self.first[position].0;
-        let elements = (first..first + variable.len() as u32)
-            .map(|id| match self.dae.variables[id as usize].kind {
-                Kind::Constant(value) => self.dae.pool.constant(value),
-                _ if self.raw > 0 => self.dae.pool.variable(VarId(id)),
-                _ => self.value_now(VarId(id)),
-            })
-            .collect();
+        let elements =
+            (first..first + variable.len() as u32).map(|id| self.scalar_now(id)).collect();
         Ok(Lowered::Array(Array { dims: variable.dims.clone(), elements }))
+    }
+
+    fn interpreted(&self) -> &Cell<u64> {
+        &self.functions.interpreted
+    }
+
+    fn sizes(&self, path: &str) -> Option<Vec<usize>> {
+        let variable = self.flat.variables.get(path)?;
+        (variable.base != BaseType::String).then(|| variable.dims.clone())
+    }
+
+    fn element_of(&mut self, path: &str, position: usize) -> Result<Option<Expr>, Diagnostic> {
+        let Some((number, _, variable)) = self.flat.variables.get_full(path) else {
+            return Ok(None);
+        };
+        if variable.variability <= Variability::Parameter {
+            self.fold(number)?;
+        }
+        Ok(Some(self.scalar_now(self.first[number].0 + position as u32)))
     }
 
     fn function(&self, name: &Name) -> Option<Arc<Function>> {
@@ -391,19 +407,26 @@ impl Builder<'_> {
     }
 
     /// All variables below a path, as a record.
+    /// What a scalar variable stands for in the expression that is made.
+    fn scalar_now(&mut self, id: u32) -> Expr {
+        match self.dae.variables[id as usize].kind {
+            Kind::Constant(value) => self.dae.pool.constant(value),
+            _ if self.raw > 0 => self.dae.pool.variable(VarId(id)),
+            _ => self.value_now(VarId(id)),
+        }
+    }
+
     fn record(&mut self, path: &str) -> Option<Lowered<Expr>> {
         let prefix = format!("{path}.");
         let flat = self.flat;
-        let mut names: Vec<Ident> = Vec::new();
+        let mut names: IndexSet<Ident> = IndexSet::new();
         for name in flat.variables.keys() {
             if let Some(rest) = name.strip_prefix(&prefix) {
                 let field = Name::parse(rest).first()?;
                 if field.as_str().contains('[') {
                     return None;
                 }
-                if !names.contains(&field) {
-                    names.push(field);
-                }
+                names.insert(field);
             }
         }
         if names.is_empty() {

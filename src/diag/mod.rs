@@ -4,11 +4,14 @@
 //! [`Diagnostic`] with [`At::at`]. Nothing here prints: [`render`] makes text.
 
 mod code;
+mod excerpt;
 pub mod render;
+mod shorten;
 pub mod suggest;
 mod visible;
 
 pub use code::Code;
+pub use shorten::shortened;
 pub use visible::{visible, visible_line};
 
 use crate::source::Span;

@@ -1,27 +1,28 @@
 //! Diagnostics as text for terminals.
 
+use super::excerpt::Excerpts;
 use super::{Diagnostic, Severity};
-use crate::source::{SourceMap, Span};
+use crate::source::SourceMap;
 use codespan_reporting::diagnostic as cr;
-use codespan_reporting::files::{Error, Files};
 use codespan_reporting::term;
 use codespan_reporting::term::termcolor::{Buffer, ColorSpec, WriteColor};
 use std::io;
-use std::ops::Range;
 
 /// The diagnostic as the user sees it, with or without colours (ANSI escapes).
 pub fn render(diagnostic: &Diagnostic, sources: &SourceMap, colour: bool) -> String {
-    let shown = convert(diagnostic, sources);
+    let diagnostic = &diagnostic.clone().shortened();
+    let excerpts = Excerpts::of(diagnostic, sources);
+    let shown = convert(diagnostic, sources, &excerpts);
     let config = term::Config::default();
     let mut text = if colour {
         let mut buffer = Shown(Buffer::ansi());
-        match term::emit_to_write_style(&mut buffer, &config, sources, &shown) {
+        match term::emit_to_write_style(&mut buffer, &config, &excerpts, &shown) {
             Ok(()) => String::from_utf8_lossy(buffer.0.as_slice()).into_owned(),
             Err(_) => plain_line(diagnostic),
         }
     } else {
         let mut buffer = String::new();
-        match term::emit_to_string(&mut buffer, &config, sources, &shown) {
+        match term::emit_to_string(&mut buffer, &config, &excerpts, &shown) {
             Ok(()) => super::visible(&buffer).into_owned(),
             Err(_) => plain_line(diagnostic),
         }
@@ -65,7 +66,11 @@ fn plain_line(diagnostic: &Diagnostic) -> String {
     format!("error[{}]: {}\n", diagnostic.code.slug, super::visible(&diagnostic.message))
 }
 
-fn convert(diagnostic: &Diagnostic, sources: &SourceMap) -> cr::Diagnostic<usize> {
+fn convert(
+    diagnostic: &Diagnostic,
+    sources: &SourceMap,
+    excerpts: &Excerpts<'_>,
+) -> cr::Diagnostic<usize> {
     let severity = match diagnostic.severity {
         Severity::Note => cr::Severity::Note,
         Severity::Warning => cr::Severity::Warning,
@@ -78,7 +83,7 @@ fn convert(diagnostic: &Diagnostic, sources: &SourceMap) -> cr::Diagnostic<usize
         .map(|label| {
             let style =
                 if label.primary { cr::LabelStyle::Primary } else { cr::LabelStyle::Secondary };
-            cr::Label::new(style, label.span.source.0 as usize, range(label.span))
+            cr::Label::new(style, label.span.source.0 as usize, excerpts.range(label.span))
                 .with_message(&label.text)
         })
         .collect();
@@ -92,35 +97,4 @@ fn convert(diagnostic: &Diagnostic, sources: &SourceMap) -> cr::Diagnostic<usize
         .with_message(&diagnostic.message)
         .with_labels(labels)
         .with_notes(helps.chain(trace).collect())
-}
-
-fn range(span: Span) -> Range<usize> {
-    span.start as usize..span.end as usize
-}
-
-impl<'a> Files<'a> for SourceMap {
-    type FileId = usize;
-    type Name = &'a str;
-    type Source = &'a str;
-
-    fn name(&'a self, id: usize) -> Result<&'a str, Error> {
-        self.get(crate::source::SourceId(id as u32)).map(|s| &*s.name).ok_or(Error::FileMissing)
-    }
-
-    fn source(&'a self, id: usize) -> Result<&'a str, Error> {
-        self.get(crate::source::SourceId(id as u32)).map(|s| &*s.text).ok_or(Error::FileMissing)
-    }
-
-    fn line_index(&'a self, id: usize, byte_index: usize) -> Result<usize, Error> {
-        let source = self.get(crate::source::SourceId(id as u32)).ok_or(Error::FileMissing)?;
-        Ok(source.line_column(byte_index).line - 1)
-    }
-
-    fn line_range(&'a self, id: usize, line_index: usize) -> Result<Range<usize>, Error> {
-        let source = self.get(crate::source::SourceId(id as u32)).ok_or(Error::FileMissing)?;
-        source.line_range(line_index).ok_or(Error::LineTooLarge {
-            given: line_index,
-            max: source.line_count().saturating_sub(1),
-        })
-    }
 }

@@ -1,14 +1,19 @@
 //! "Did you mean": the nearest name.
 
+/// Longer names are not compared, in bytes.
+const LONGEST: usize = 300;
+
 /// The candidate nearest to `wanted`, if it is near enough to be a slip of the fingers: at most
 /// one edit in three letters, case not counted. For a single letter only the case may differ.
 pub fn nearest<'a>(wanted: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let lower = wanted.to_lowercase();
     let length = wanted.chars().count();
     let limit = (length / 3).max(1);
+    // Nobody writes such a name, and comparing two takes the product of their lengths.
+    let is_short = |name: &str| name.len() <= LONGEST;
     candidates
         .into_iter()
-        .filter(|candidate| *candidate != wanted)
+        .filter(|candidate| *candidate != wanted && is_short(candidate) && is_short(wanted))
         .map(|candidate| (distance(&lower, &candidate.to_lowercase()), candidate))
         .filter(|(edits, _)| *edits <= limit && (*edits == 0 || limit < length))
         .min_by_key(|(edits, _)| *edits)

@@ -240,7 +240,7 @@ impl Evaluator<'_> {
         }
     }
 
-    fn call_builtin(
+    pub(super) fn run_builtin(
         &mut self,
         header: &Arc<Function>,
         mut given: Vec<Option<Value>>,

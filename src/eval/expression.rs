@@ -12,7 +12,7 @@ use crate::syntax::ast::{
     BinaryOperator, Expression, ExpressionKind, NamedArgument, UnaryOperator,
 };
 use crate::value::construct::{self, Range};
-use crate::value::errors::TYPE_MISMATCH;
+use crate::value::errors::{REAL_OVERFLOW, TYPE_MISMATCH};
 use crate::value::{FunctionValue, Value, ops};
 
 impl Evaluator<'_> {
@@ -29,7 +29,7 @@ impl Evaluator<'_> {
     /// The value of an expression; of a call the first output.
     pub(super) fn expression(&mut self, expression: &Expression) -> Result<Value, Diagnostic> {
         match &expression.kind {
-            ExpressionKind::Real(value) => Ok(Value::Real(*value)),
+            ExpressionKind::Real(value) => real(*value).at(expression.span),
             ExpressionKind::Integer(value) => Ok(Value::Integer(*value)),
             ExpressionKind::Boolean(value) => Ok(Value::Boolean(*value)),
             ExpressionKind::String(text) => Ok(Value::String(text.clone())),
@@ -229,6 +229,15 @@ impl Evaluator<'_> {
             return Ok(Value::Function(known));
         }
         Ok(Value::Function(FunctionValue { name: function.clone(), named: given }))
+    }
+}
+
+/// A number as it is written.
+fn real(value: f64) -> Result<Value, Fault> {
+    match value.is_finite() {
+        true => Ok(Value::Real(value)),
+        false => Err(fault!(REAL_OVERFLOW, "the number exceeds the largest Real, 1.8e308";
+            help: "`Modelica.Constants.inf` stands for a limit that is never reached")),
     }
 }
 

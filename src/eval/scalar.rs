@@ -62,7 +62,7 @@ impl Evaluator<'_> {
 
 pub(super) fn scalar(scope: &Scope, expression: &Expression, depth: usize) -> Option<Scalar> {
     match &expression.kind {
-        ExpressionKind::Real(value) => Some(Scalar::Real(*value)),
+        ExpressionKind::Real(value) if value.is_finite() => Some(Scalar::Real(*value)),
         ExpressionKind::Integer(value) => Some(Scalar::Integer(*value)),
         ExpressionKind::Boolean(value) => Some(Scalar::Boolean(*value)),
         ExpressionKind::Reference(reference) => Scalar::of(scope.get(reference.as_ident()?)?),

@@ -21,11 +21,65 @@ impl Evaluator<'_> {
         let Some(outer) = outer_sizes(function, &given).at(span)? else {
             return self.run(function, given, span);
         };
+        self.call_each(function, given, (&outer, span), Evaluator::run)
+    }
+
+    /// The same for a command of the host. Only its scalar inputs take vectors: what else it is given
+    /// it reads in its own ways.
+    pub(super) fn call_builtin(
+        &mut self,
+        header: &Arc<Function>,
+        mut given: Vec<Option<Value>>,
+        span: Span,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        let vectors = given.iter().zip(&header.inputs).filter_map(|(value, input)| {
+            let is_scalar = input.dims.is_empty() && is_vectorized(&input.value_type);
+            value.as_ref().filter(|value| is_scalar && value.rank() == 1).map(Value::dims)
+        });
+        let mut vectors = vectors.collect::<Vec<&[usize]>>();
+        vectors.dedup();
+        let [outer] = vectors.as_slice() else { return self.run_builtin(header, given, span) };
+        let outer = outer.to_vec();
+        // Other arguments are not to be taken apart.
+        let kept: Vec<Option<Value>> = header
+            .inputs
+            .iter()
+            .zip(&mut given)
+            .map(|(input, value)| if input.dims.is_empty() { None } else { value.take() })
+            .collect();
+        let run = |evaluator: &mut Self,
+                   header: &Arc<Function>,
+                   mut given: Vec<Option<Value>>,
+                   span: Span| {
+            for (value, kept) in given.iter_mut().zip(&kept) {
+                if kept.is_some() {
+                    value.clone_from(kept);
+                }
+            }
+            evaluator.run_builtin(header, given, span)
+        };
+        self.call_each(header, given, (&outer, span), run)
+    }
+
+    /// Calls a function for each element of the dimensions `outer` that arguments have beyond those
+    /// of the inputs.
+    fn call_each(
+        &mut self,
+        function: &Arc<Function>,
+        given: Vec<Option<Value>>,
+        (outer, span): (&[usize], Span),
+        run: impl Fn(
+            &mut Self,
+            &Arc<Function>,
+            Vec<Option<Value>>,
+            Span,
+        ) -> Result<Vec<Value>, Diagnostic>,
+    ) -> Result<Vec<Value>, Diagnostic> {
         let mut arguments = Vec::with_capacity(given.len());
         for (value, input) in given.into_iter().zip(&function.inputs) {
             arguments.push(match value {
                 Some(value) if value.rank() > input.dims.len() => {
-                    Argument::Each(construct::split(&outer, value).at(span)?)
+                    Argument::Each(construct::split(outer, value).at(span)?)
                 }
                 other => Argument::Same(other),
             });
@@ -34,12 +88,12 @@ impl Evaluator<'_> {
         let mut outputs: Vec<Vec<Value>> = vec![Vec::with_capacity(count); function.outputs.len()];
         for at in 0..count {
             let given = arguments.iter().map(|argument| argument.get(at)).collect();
-            let results = self.run(function, given, span)?;
+            let results = run(self, function, given, span)?;
             for (output, result) in outputs.iter_mut().zip(results) {
                 output.push(result);
             }
         }
-        outputs.into_iter().map(|values| construct::shaped(&outer, values).at(span)).collect()
+        outputs.into_iter().map(|values| construct::shaped(outer, values).at(span)).collect()
     }
 }
 

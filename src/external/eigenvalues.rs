@@ -9,9 +9,10 @@ use super::Entry;
 use super::call::Call;
 use super::eigenvectors::{Scale, left_eigenvectors, right_eigenvectors, scale};
 use super::matrices::{column, is_transposed, matrix, norm, square, wants, write};
-use super::schur::RealSchur;
+use super::schur::{RealSchur, modulus};
 use super::sylvester::sylvester;
 use crate::diag::Fault;
+use crate::elementary;
 use nalgebra::{Complex, DMatrix};
 
 pub(super) const ENTRIES: &[Entry] = &[
@@ -101,7 +102,7 @@ fn conditions(values: &[Complex<f64>], left: &DMatrix<f64>, right: &DMatrix<f64>
             return left.column(at).dot(&right.column(at)).abs();
         }
         let product = |i: usize, j: usize| left.column(first + i).dot(&right.column(first + j));
-        Complex::new(product(0, 0) + product(1, 1), product(0, 1) - product(1, 0)).norm()
+        modulus(Complex::new(product(0, 0) + product(1, 1), product(0, 1) - product(1, 0)))
     };
     (0..values.len()).map(condition).collect()
 }
@@ -237,7 +238,7 @@ fn dtrsen(call: &mut Call<'_>) -> Result<(), Fault> {
         let second = form.t.view((m, m), (n - m, n - m)).into_owned();
         let coupling = form.t.view((0, m), (m, n - m)).into_owned();
         let x = sylvester(&first, &second, &coupling, -1.0);
-        call.set(11, 1.0 / x.norm().hypot(1.0));
+        call.set(11, 1.0 / elementary::hypot(x.norm(), 1.0));
         call.set(12, 0.0);
     }
     call.set(17, 0.0);

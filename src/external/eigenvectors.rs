@@ -1,6 +1,6 @@
 //! Eigenvectors of upper quasi-triangular matrices, in LAPACK's form.
 
-use super::schur::block_size;
+use super::schur::{block_size, modulus};
 use nalgebra::{Complex, DMatrix, DVector};
 
 type C = Complex<f64>;
@@ -72,14 +72,14 @@ fn eigenvector(t: &DMatrix<f64>, k: usize, size: usize) -> DVector<C> {
             let (b, c) = (t[(row, row + 1)], t[(row + 1, row)]);
             let (r, s) = (rest(row), rest(row + 1));
             let mut determinant = p * q - b * c;
-            if determinant.norm() < least * least {
+            if modulus(determinant) < least * least {
                 determinant = C::from(least * least);
             }
             x[row] = (r * q - s * b) / determinant;
             x[row + 1] = (s * p - r * c) / determinant;
         }
         // Next to a multiple eigenvalue components grow without bound.
-        let size = x[row].norm();
+        let size = modulus(x[row]);
         if size > 1e50 {
             x.unscale_mut(size);
         }
@@ -90,7 +90,7 @@ fn eigenvector(t: &DMatrix<f64>, k: usize, size: usize) -> DVector<C> {
 /// `element − value`, but never zero.
 fn apart(value: C, element: f64, least: f64) -> C {
     let difference = C::from(element) - value;
-    if difference.norm() < least { C::from(least) } else { difference }
+    if modulus(difference) < least { C::from(least) } else { difference }
 }
 
 /// How columns that hold eigenvectors are scaled.
@@ -139,9 +139,9 @@ fn turn(vector: &[C]) -> C {
     let mut greatest = C::new(0.0, 0.0);
     for value in vector {
         // Components that differ by rounding are equal: the first counts.
-        if value.norm() > greatest.norm() * (1.0 + 1e-12) {
+        if modulus(*value) > modulus(greatest) * (1.0 + 1e-12) {
             greatest = *value;
         }
     }
-    if greatest.norm() == 0.0 { C::new(1.0, 0.0) } else { greatest.conj() / greatest.norm() }
+    if modulus(greatest) == 0.0 { C::new(1.0, 0.0) } else { greatest.conj() / modulus(greatest) }
 }

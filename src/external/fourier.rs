@@ -5,7 +5,9 @@
 
 use super::Entry;
 use super::call::Call;
+use super::schur::modulus;
 use crate::diag::Fault;
+use crate::elementary;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
@@ -33,8 +35,8 @@ fn real_transform(call: &mut Call<'_>) -> Result<(), Fault> {
     transformed[0].im = 0.0;
     transformed[n / 2].im = 0.0;
     for (k, x) in transformed[..frequencies].iter().enumerate() {
-        call.array_mut(4)[k] = x.norm() / frequencies as f64;
-        call.array_mut(5)[k] = x.im.atan2(x.re);
+        call.array_mut(4)[k] = modulus(*x) / frequencies as f64;
+        call.array_mut(5)[k] = elementary::atan2(x.im, x.re);
     }
     call.give(0.0)
 }
@@ -52,7 +54,7 @@ fn transform(signal: &[Complex<f64>], stride: usize, out: &mut [Complex<f64>]) {
     }
     let turn = |k: usize| {
         let angle = -TAU * (k % n) as f64 / n as f64;
-        Complex::new(angle.cos(), angle.sin())
+        Complex::new(elementary::cos(angle), elementary::sin(angle))
     };
     let mut parts = vec![Complex::new(0.0, 0.0); p];
     for k in 0..m {

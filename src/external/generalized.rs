@@ -9,7 +9,7 @@ use super::Entry;
 use super::call::Call;
 use super::eigenvectors::{Scale, left_eigenvectors, right_eigenvectors, scale};
 use super::matrices::{column, norm, square, wants, write};
-use super::schur::RealSchur;
+use super::schur::{RealSchur, modulus};
 use crate::diag::Fault;
 use nalgebra::{Complex, DMatrix};
 
@@ -49,15 +49,15 @@ impl Generalized {
             right: &form.q * right_eigenvectors(&form.t),
         };
         for nu in form.eigenvalues() {
-            let nu = if nu.norm() <= least { Complex::new(0.0, 0.0) } else { nu };
+            let nu = if modulus(nu) <= least { Complex::new(0.0, 0.0) } else { nu };
             // The factor makes β real and positive.
-            let factor = match nu.norm() {
+            let factor = match modulus(nu) {
                 0.0 => Complex::new(1.0, 0.0),
                 size => nu.conj() / size,
             };
             // 1/ν has the imaginary part of the other sign.
             all.alpha.push(((nu * shift + 1.0) * factor).conj());
-            all.beta.push(nu.norm());
+            all.beta.push(modulus(nu));
         }
         for at in (0..all.alpha.len()).filter(|at| all.alpha[*at].im < 0.0) {
             all.left.column_mut(at).neg_mut();

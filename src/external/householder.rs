@@ -7,6 +7,7 @@ use super::Entry;
 use super::call::Call;
 use super::matrices::{column, is_transposed, matrix, square, write};
 use crate::diag::Fault;
+use crate::elementary;
 use nalgebra::DMatrix;
 
 pub(super) const ENTRIES: &[Entry] = &[
@@ -22,7 +23,7 @@ pub(super) const ENTRIES: &[Entry] = &[
 /// Makes the elements of a column below `row` zero by a reflection, of which v stays there; its τ.
 fn reflect(a: &mut DMatrix<f64>, row: usize, column: usize) -> f64 {
     let first = a[(row, column)];
-    let below = (row + 1..a.nrows()).map(|i| a[(i, column)].powi(2)).sum::<f64>();
+    let below = (row + 1..a.nrows()).map(|i| elementary::powi(a[(i, column)], 2)).sum::<f64>();
     if below == 0.0 {
         return 0.0;
     }
@@ -64,7 +65,8 @@ fn qr(a: &mut DMatrix<f64>, mut pivots: Option<&mut [usize]>) -> Vec<f64> {
     let mut taus = Vec::new();
     for k in 0..a.nrows().min(a.ncols()) {
         if let Some(pivots) = pivots.as_deref_mut() {
-            let rest = |j: usize| (k..a.nrows()).map(|i| a[(i, j)].powi(2)).sum::<f64>();
+            let rest =
+                |j: usize| (k..a.nrows()).map(|i| elementary::powi(a[(i, j)], 2)).sum::<f64>();
             let mut greatest = k;
             for j in k + 1..a.ncols() {
                 // Norms that differ by rounding are equal: the first comes first.

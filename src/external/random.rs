@@ -9,6 +9,7 @@
 use super::Entry;
 use super::call::Call;
 use crate::diag::Fault;
+use crate::elementary;
 
 pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaRandom_xorshift64star", "aAN", xorshift64_star),
@@ -49,7 +50,7 @@ fn done(call: &mut Call<'_>, words: &[u64], bits: u64) -> Result<(), Fault> {
 
 /// Bits as a number between 0 and 1.
 fn unit(bits: u64) -> f64 {
-    bits as i64 as f64 * 2f64.powi(-64) + 0.5
+    bits as i64 as f64 * elementary::powi(2f64, -64) + 0.5
 }
 
 fn xorshift64_star(call: &mut Call<'_>) -> Result<(), Fault> {

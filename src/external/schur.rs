@@ -4,7 +4,13 @@
 //! Blocks are in LAPACK's standard form: equal diagonal elements, the other two of opposite signs.
 
 use super::sylvester::sylvester;
+use crate::elementary;
 use nalgebra::{Complex, DMatrix, Schur};
+
+/// Absolute value of a complex number.
+pub(super) fn modulus(z: Complex<f64>) -> f64 {
+    elementary::hypot(z.re, z.im)
+}
 
 /// Most sweeps of the iteration.
 const MAX_SWEEPS: usize = 10_000;
@@ -51,8 +57,8 @@ impl RealSchur {
         let is_real = discriminant >= 0.0;
         let angle = match is_real {
             // The first column becomes an eigenvector (half ± root, c).
-            true => c.atan2(half + discriminant.sqrt().copysign(half)),
-            false => -f64::atan2(2.0 * half, b + c) / 2.0,
+            true => elementary::atan2(c, half + discriminant.sqrt().copysign(half)),
+            false => -elementary::atan2(2.0 * half, b + c) / 2.0,
         };
         self.rotate(k, angle);
         if is_real {
@@ -66,7 +72,7 @@ impl RealSchur {
 
     /// A rotation of the coordinates `k` and `k + 1`: the first turns into the given direction.
     fn rotate(&mut self, k: usize, angle: f64) {
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = elementary::sin_cos(angle);
         let turn = |matrix: &mut DMatrix<f64>| {
             for row in 0..matrix.nrows() {
                 let (x, y) = (matrix[(row, k)], matrix[(row, k + 1)]);

@@ -8,6 +8,7 @@ use super::lookup::Type;
 use super::resolve::Local;
 use super::scope::ScopeId;
 use super::{BaseType, Variability};
+use crate::budget;
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::{Callee, Function, Host, Scope, evaluate};
 use crate::fault;
@@ -263,7 +264,7 @@ impl Instantiation<'_> {
         if scope == ScopeId::TOP {
             return Ok(false);
         }
-        Ok(self.elements(scope)?.components.contains_key(&name))
+        Ok(self.elements(scope)?.contains(name))
     }
 
     /// Whether a package's instance has a constant of this name.
@@ -333,9 +334,6 @@ fn check_type(value: &Value, base: &BaseType) -> Result<(), Fault> {
 /// Answers calls of functions while constants are evaluated; variables are values already.
 struct Functions<'i, 'a>(&'i mut Instantiation<'a>);
 
-/// The most turns of loops and statements that may be run to find the values of one model.
-const MAX_STEPS: usize = 4_000_000;
-
 impl Host for Functions<'_, '_> {
     fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
         Ok(self.0.functions.get(name).cloned().flatten().map(Callee::Function))
@@ -353,9 +351,10 @@ impl Host for Functions<'_, '_> {
 
     fn interrupted(&mut self) -> Option<Fault> {
         self.0.steps += 1;
-        (self.0.steps > MAX_STEPS).then(|| {
-            fault!(TOO_LARGE, "the values needed at translation take more than {MAX_STEPS} steps";
-                help: "check the condition that ends the loop")
+        let limit = budget::step_limit();
+        (self.0.steps > limit).then(|| {
+            fault!(TOO_LARGE, "the values needed at translation take more than {} steps",
+                budget::in_millions(limit); help: "{}", budget::REMEDY)
         })
     }
 

@@ -1,6 +1,7 @@
 //! Collects the components of a class, inherited ones included (MLS §5.6.1, §7.1), and finds out
 //! what their types are made of (MLS §4.6).
 
+use super::elements::Elements;
 use super::errors::{
     CYCLIC_CLASS, DUPLICATE_ELEMENT, FINAL_OVERRIDE, NOT_SUPPORTED, TOO_LARGE, TYPE_MISMATCH,
 };
@@ -18,7 +19,6 @@ use crate::syntax::ast::{
     Deselection, Element, EnumerationClass, Extends, Restriction, Subscript, TypeSpecifier,
 };
 use crate::value::EnumerationDefinition;
-use indexmap::IndexMap;
 use std::sync::Arc;
 
 /// How many short classes a type may lead through.
@@ -27,14 +27,6 @@ const MAX_DEPTH: usize = 100;
 /// Enumerations of the language (MLS §4.9.7.1, §8.3.7) and their literals.
 const STATE_SELECT: &[&str] = &["never", "avoid", "default", "prefer", "always"];
 const ASSERTION_LEVEL: &[&str] = &["warning", "error"];
-
-/// The components of a class and the classes that its equations come from.
-#[derive(Debug, Default)]
-pub(super) struct Elements {
-    pub(super) components: IndexMap<Ident, Arc<Declaration>>,
-    /// Bases first, the class itself last.
-    pub(super) lineage: Vec<ScopeId>,
-}
 
 /// What the type of a component is made of.
 pub(super) struct Expanded {
@@ -81,7 +73,7 @@ impl Instantiation<'_> {
                 Element::Class(_) | Element::Import(_) => {}
             }
         }
-        found.lineage.push(id);
+        found.add_base(id);
         Ok(found)
     }
 
@@ -94,9 +86,13 @@ impl Instantiation<'_> {
         found: &mut Elements,
     ) -> Result<(), Diagnostic> {
         let inherited = self.elements(base)?;
-        for (name, declaration) in &inherited.components {
+        if found.is_empty() && !protected && deselected.is_empty() {
+            *found = Elements::sharing(&inherited);
+            return self.check_bases(id, found);
+        }
+        for (name, declaration) in inherited.iter() {
             let is_out =
-                |one: &Deselection| matches!(one, Deselection::Component(out) if out.node == *name);
+                |one: &Deselection| matches!(one, Deselection::Component(out) if out.node == name);
             if deselected.iter().any(is_out) {
                 continue;
             }
@@ -107,8 +103,12 @@ impl Instantiation<'_> {
             };
             self.add_component(id, declaration, found)?;
         }
-        found.lineage.extend(&inherited.lineage);
-        if found.lineage.len() > MAX_BASES {
+        inherited.lineage().for_each(|base| found.add_base(base));
+        self.check_bases(id, found)
+    }
+
+    fn check_bases(&self, id: ScopeId, found: &Elements) -> Result<(), Diagnostic> {
+        if found.bases() > MAX_BASES {
             let text = self.text(id);
             return Err(
                 fault!(TOO_LARGE, "`{}` has too many base classes", text.name).at(text.span())
@@ -126,11 +126,11 @@ impl Instantiation<'_> {
     ) -> Result<(), Diagnostic> {
         for component in &clause.components {
             let name = component.name.node;
-            if !found.components.contains_key(&name) {
+            if !found.contains(name) {
                 // The extends clause may stand behind the redeclaration.
                 let mut inherited = false;
                 for base in self.bases(id)?.iter() {
-                    inherited |= self.elements(*base)?.components.contains_key(&name);
+                    inherited |= self.elements(*base)?.contains(name);
                 }
                 if !inherited {
                     let class = &self.text(id).name;
@@ -185,7 +185,7 @@ impl Instantiation<'_> {
         found: &mut Elements,
     ) -> Result<(), Diagnostic> {
         let name = declaration.name;
-        if let Some(known) = found.components.get(&name) {
+        if let Some(known) = found.get(name) {
             if known.span == declaration.span
                 || (known.scope != declaration.scope && known.is_same(&declaration))
             {
@@ -199,7 +199,7 @@ impl Instantiation<'_> {
             .at(declaration.span)
             .related(known.span, "the other one"));
         }
-        found.components.insert(name, declaration);
+        found.add(declaration);
         Ok(())
     }
 

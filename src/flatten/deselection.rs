@@ -67,8 +67,9 @@ impl Instantiation<'_> {
     /// A component that is left out must exist and be a model, a block or a connector.
     fn check_component(&mut self, base: ScopeId, name: &Spanned<Ident>) -> Result<(), Diagnostic> {
         let elements = self.elements(base)?;
-        let Some(declaration) = elements.components.get(&name.node) else {
-            let known = elements.components.keys().map(|known| known.as_str());
+        let Some(declaration) = elements.get(name.node) else {
+            let known: Vec<Ident> = elements.names().collect();
+            let known = known.iter().map(|known| known.as_str());
             let class = &self.text(base).name;
             return Err(fault!(
                 UNKNOWN_ELEMENT,
@@ -119,7 +120,7 @@ impl Instantiation<'_> {
     ) -> Result<bool, Diagnostic> {
         let mut search =
             Search { wanted: Deselection::Connection(left.clone(), right.clone()), found: false };
-        for context in self.elements(base)?.lineage.iter().copied() {
+        for context in self.elements(base)?.lineage() {
             for section in self.text(context).sections() {
                 if let Section::Equations { initial: false, equations, .. } = section {
                     equations.iter().for_each(|equation| search.equation(equation));

@@ -50,7 +50,7 @@ impl Instantiation<'_> {
         }
         let (equations, algorithms) = (model.equations.len(), model.algorithms.len());
         let initial_equations = model.initial_equations.len();
-        for context in elements.lineage.iter().copied() {
+        for context in elements.lineage() {
             let text = self.text(context).clone();
             for section in text.sections() {
                 if let Err(error) = self.add_section(section, context, model, errors) {

@@ -306,7 +306,7 @@ impl Instantiation<'_> {
             };
             list.push(declared.component);
         }
-        let lineage = self.elements(class)?.lineage.clone();
+        let lineage: Vec<ScopeId> = self.elements(class)?.lineage().collect();
         let text = self.text(class).clone();
         self.check_complete(class, text.span())?;
         let purity = match text.restriction() {
@@ -362,10 +362,11 @@ impl Instantiation<'_> {
     /// The components of a function or record, inherited ones included.
     fn components_of(&mut self, class: ScopeId) -> Result<Vec<Declared>, Diagnostic> {
         let elements = self.elements(class)?;
-        let mut local = Local::default().with(elements.components.keys().copied());
+        let mut local = Local::default().with(elements.names());
         let is_function = !self.is_record(class);
-        let mut components = Vec::with_capacity(elements.components.len());
-        for declared in elements.components.values() {
+        let lineage: Vec<ScopeId> = elements.lineage().collect();
+        let mut components = Vec::new();
+        for (_, declared) in elements.iter() {
             let expanded = self.expand(declared)?;
             let mut dims = Vec::with_capacity(declared.dims.len());
             for (subscript, context) in declared.dims.iter().chain(&expanded.dims) {
@@ -387,7 +388,7 @@ impl Instantiation<'_> {
             let binding = match bound.and_then(|b| b.value.as_ref().map(|value| (value, b.context)))
             {
                 // What a modifier gives from outside does not see the function's own names.
-                Some((value, written)) if !elements.lineage.contains(&written) => {
+                Some((value, written)) if !lineage.contains(&written) => {
                     Some(self.resolve(value, written, &Local::default())?)
                 }
                 Some((value, written)) => Some(self.resolve(value, written, &local)?),

@@ -9,6 +9,7 @@ use super::errors::{
     CYCLIC_CLASS, NOT_CONSTANT, PARTIAL_CLASS, SIZE_MISMATCH, TOO_LARGE, TYPE_MISMATCH,
     UNKNOWN_ELEMENT,
 };
+use super::growth::Growth;
 use super::instance::{
     Composite, Declaration, Inherited, Leaf, Member, MemberState, Node, NodeId, NodeKind, Shape,
 };
@@ -36,7 +37,7 @@ use std::sync::Arc;
 
 /// The most scalar variables, the most components and the deepest nesting that are built.
 const MAX_SCALARS: usize = 2_000_000;
-const MAX_INSTANCES: usize = 1_000_000;
+pub(super) const MAX_INSTANCES: usize = 1_000_000;
 const MAX_DEPTH: usize = 60;
 
 /// The attributes of the predefined types (MLS §4.9).
@@ -84,8 +85,10 @@ pub(super) struct Instantiation<'a> {
     /// How deep expressions are being resolved.
     pub(super) depth: usize,
     /// Statements run so far to find values.
-    pub(super) steps: usize,
+    pub(super) steps: u64,
     scalars: usize,
+    /// The components that are being completed, outermost first.
+    pub(super) growth: Growth,
 }
 
 impl<'a> Instantiation<'a> {
@@ -125,6 +128,7 @@ impl<'a> Instantiation<'a> {
             depth: 0,
             steps: 0,
             scalars: 0,
+            growth: Growth::default(),
         }
     }
 
@@ -243,11 +247,10 @@ impl<'a> Instantiation<'a> {
         let scope = composite.scope;
         let elements = self.elements(scope)?;
         let mut members: IndexMap<Ident, Member> = elements
-            .components
             .iter()
             .map(|(name, declaration)| {
                 let state = MemberState::Pending;
-                (*name, Member { declaration: declaration.clone(), state })
+                (name, Member { declaration: declaration.clone(), state })
             })
             .collect();
         if let Some(binding) = self.scope(scope).modifier.binding.clone() {
@@ -649,12 +652,18 @@ impl<'a> Instantiation<'a> {
                     Vec::new()
                 }
             };
-            for one in nodes {
+            for (number, one) in nodes.iter().copied().enumerate() {
                 // Whatever holds itself or is too large would only be found again and again.
                 if errors.iter().any(is_endless) {
                     break;
                 }
-                if let Err(more) = self.complete(one) {
+                self.growth.enter(node, at - 1, nodes.len() - number - 1, self.nodes.len());
+                let completed = self.complete(one);
+                if let Err(error) = self.check_growth() {
+                    errors.push(error);
+                }
+                self.growth.leave();
+                if let Err(more) = completed {
                     errors.extend(more);
                 }
             }

@@ -1,9 +1,13 @@
 //! All loaded classes, as a tree of packages (MLS ch. 13).
 
+mod bases;
+mod chains;
+mod element_index;
 mod files;
 mod habits;
 mod reading;
 
+pub(super) use bases::Question;
 pub use files::LibraryFiles;
 
 use super::errors::UNKNOWN_CLASS;
@@ -16,15 +20,15 @@ use crate::syntax::ast::{
     ClassDefinition, ClassSpecifier, Constraint, Element, ElementPrefixes, Extends, ImportKind,
     Section, StoredDefinition, Visibility,
 };
+use bases::BaseCache;
+use element_index::ElementIndex;
 use files::{Entry, Folder};
 pub(super) use habits::Habit;
 use habits::Habits;
 use indexmap::{IndexMap, IndexSet};
-use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
-use std::thread::ThreadId;
 
 /// A class of a [`Library`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
@@ -66,14 +70,6 @@ impl Clone for Library {
     }
 }
 
-/// The classes that others extend, as far as they were looked up.
-#[derive(Debug, Default)]
-struct BaseCache {
-    known: FxHashMap<ClassId, Vec<ClassId>>,
-    /// Classes whose bases a thread is looking up: one that needs its own bases for that has none.
-    busy: FxHashSet<(ThreadId, ClassId)>,
-}
-
 /// A class that may not have been read yet.
 #[derive(Debug, Clone)]
 struct Slot {
@@ -109,8 +105,8 @@ pub(super) struct Class {
     pub(super) children: IndexMap<Ident, ClassId>,
     pub(super) imports: Vec<ImportKind>,
     pub(super) extends: Vec<Extends>,
-    /// The number of the element that declares a component, in the order of [`Class::elements`].
-    components: OnceLock<FxHashMap<Ident, usize>>,
+    /// Where its components and nested classes are declared.
+    index: OnceLock<ElementIndex>,
     declared: Declared,
     /// What is wrong with its text.
     problems: Vec<Diagnostic>,
@@ -329,6 +325,12 @@ impl Library {
         self.classes.iter().filter(|(_, slot)| slot.class.get().is_some()).count()
     }
 
+    /// Full names of the classes that were read so far, because something was looked up in them.
+    pub fn read_names(&self) -> BTreeSet<Name> {
+        let read = self.classes.iter().filter(|(_, slot)| slot.class.get().is_some());
+        read.map(|(_, slot)| slot.name.clone()).collect()
+    }
+
     /// Reads a class and all that are in it, and returns what is wrong with their texts.
     pub fn read_all(&self, name: &Name) -> Vec<Diagnostic> {
         self.find(name).map_or(Vec::new(), |id| self.problems_below(id))
@@ -385,29 +387,6 @@ impl Library {
         if found.is_none() {
             locked(&self.missing).insert(name);
         }
-        found
-    }
-
-    /// The classes that a class extends as `find` finds them, each looked up once.
-    pub(super) fn bases_once(
-        &self,
-        class: ClassId,
-        find: impl FnOnce() -> Vec<ClassId>,
-    ) -> Vec<ClassId> {
-        let thread = std::thread::current().id();
-        {
-            let mut cache = locked(&self.bases);
-            if let Some(known) = cache.known.get(&class) {
-                return known.clone();
-            }
-            if !cache.busy.insert((thread, class)) {
-                return Vec::new();
-            }
-        }
-        let found = find();
-        let mut cache = locked(&self.bases);
-        cache.busy.remove(&(thread, class));
-        cache.known.insert(class, found.clone());
         found
     }
 
@@ -495,21 +474,6 @@ impl Class {
             };
             elements.iter().map(move |element| (visibility, element))
         })
-    }
-
-    /// The element that declares the component of a name.
-    pub(super) fn component_element(&self, name: Ident) -> Option<(Visibility, &Element)> {
-        let numbers = self.components.get_or_init(|| {
-            let mut numbers = FxHashMap::default();
-            for (number, (_, element)) in self.elements().enumerate() {
-                let Element::Component(clause) = element else { continue };
-                for declaration in &clause.components {
-                    numbers.entry(declaration.name.node).or_insert(number);
-                }
-            }
-            numbers
-        });
-        self.elements().nth(*numbers.get(&name)?)
     }
 
     /// The sections of a long class; none for a short one.

@@ -2,7 +2,7 @@
 //! redeclarations that reach it and the scope in which it stands. The same text in two
 //! surroundings, such as `Medium` in two tanks, is two scopes.
 
-use super::declarations::Elements;
+use super::elements::Elements;
 use super::errors::{CYCLIC_CLASS, TOO_LARGE, TYPE_MISMATCH, UNKNOWN_ELEMENT};
 use super::instance::NodeId;
 use super::instantiation::Instantiation;
@@ -24,7 +24,7 @@ use std::sync::Arc;
 const MAX_SCOPES: usize = 1_000_000;
 
 /// The most base classes that one class may have, those of its bases included.
-pub(super) const MAX_BASES: usize = 2000;
+pub(super) const MAX_BASES: usize = 10_000;
 
 /// A class in its surroundings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -440,10 +440,11 @@ impl Instantiation<'_> {
         span: Span,
     ) -> Result<(), Diagnostic> {
         let elements = self.elements(id)?;
-        if elements.components.contains_key(&name) || self.find_class(id, name)?.is_some() {
+        if elements.contains(name) || self.find_class(id, name)?.is_some() {
             return Ok(());
         }
-        let known = elements.components.keys().map(|known| known.as_str());
+        let known: Vec<Ident> = elements.names().collect();
+        let known = known.iter().map(|known| known.as_str());
         Err(fault!(UNKNOWN_ELEMENT, "`{}` has no component `{name}` to modify", self.text(id).name)
             .help_if(suggest::did_you_mean(name.as_str(), known))
             .at(span))

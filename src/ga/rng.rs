@@ -16,6 +16,7 @@
 use super::errors::BAD_SEED;
 use crate::bail;
 use crate::diag::Fault;
+use crate::elementary;
 use rand::rand_core::Infallible;
 use rand::{SeedableRng, TryRng};
 
@@ -122,7 +123,7 @@ impl Mrg32k3a {
     /// A number of the standard normal distribution; takes two uniform numbers.
     pub fn normal(&mut self) -> f64 {
         let (radius, angle) = (self.uniform(), self.uniform());
-        (-2.0 * radius.ln()).sqrt() * (std::f64::consts::TAU * angle).cos()
+        (-2.0 * elementary::ln(radius)).sqrt() * elementary::cos(std::f64::consts::TAU * angle)
     }
 
     /// The generator `count` streams further on, 2¹²⁷ numbers each.

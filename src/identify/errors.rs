@@ -24,6 +24,9 @@ codes! {
     /// Measured data that are not finite.
     BAD_DATA = "bad-data":
         "## What it means\n\nThe measured data contain NaN or an infinite value, or hold no points at all.\n\n## Example\n\nA matrix exported with an empty cell.\n\n## What to do\n\nRemove or correct the point that the message names.",
+    /// A measured column in another unit than the variable beside it (a note).
+    UNITS_DIFFER = "units-differ":
+        "## What it means\n\nA script compares a measured column with a variable of the model in another unit. Scripts compute with the numbers of their files as they are, so nothing is converted; a problem file converts.\n\n## Example\n\nA column `V [mV]` beside an output `V` in volts.\n\n## What to do\n\nMultiply the column in the script by the factor that the message names, or change the heading if it names the wrong unit.",
     /// Sizes of measured X and Y differ.
     DATA_SIZES_DIFFER = "data-sizes-differ":
         "## What it means\n\nThe matrices of X and Y values have different numbers of elements, so they are not pairs of one experiment.\n\n## Example\n\n`Exp_Adq_SISO(\"data.mat\", \"t\", \"V\")` where `t` has 100 elements and `V` has 99.\n\n## What to do\n\nCorrect the file or the names of the matrices.",

@@ -3,24 +3,18 @@
 use super::errors::{
     AMBIGUOUS_OUTPUT, BAD_DATA, FIXED_PARAMETER, NO_PARAMETERS, PARAMETER_NOT_FOUND, UNKNOWN_OUTPUT,
 };
-use super::model::{Instance, Model, Parameter};
-use super::points::{Path, time_of};
-use super::pointwise::Pointwise;
-use super::problem::NOISE_OF_FORMULAS;
+use super::model::{Model, Parameter};
+use super::plan::TIME;
+use super::problem::{
+    Experiment, Failed, ModelSimulator, NOISE_OF_FORMULAS, Observation, Simulate,
+};
 use super::{Quantity, Study};
 use crate::diag::{Fault, suggest};
 use crate::ga::Genomes;
 use crate::ga::errors::{BAD_RANGE, SIZE_MISMATCH};
-use crate::sim::{OutputGrid, Settings, Simulator, Trajectory};
 use crate::{bail, fault};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// Slices in which the measured points are looked for on a function of time.
-const SLICES: u32 = 500;
-
-/// X when nothing else is named.
-const TIME: &str = "time";
 
 /// What is varied and what is compared.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -41,9 +35,7 @@ pub struct Evaluator {
     model: Arc<dyn Model>,
     parameters: Vec<Parameter>,
     x: Vec<f64>,
-    plan: Plan,
-    settings: Settings,
-    workers: Vec<Worker>,
+    workers: Vec<ModelSimulator>,
     pool: Option<rayon::ThreadPool>,
 }
 
@@ -86,24 +78,6 @@ impl Simulated {
     }
 }
 
-/// How the measured points are found on a trajectory.
-pub(super) enum Plan {
-    /// X depends on time alone: at these times, in the order of the points. Only Y is observed.
-    AtTimes(Vec<f64>),
-    /// X is simulated along with Y: by interpolation in X.
-    InX,
-    /// X is an input of a model without states: one by one.
-    OneByOne,
-}
-
-/// What one thread needs.
-struct Worker {
-    instance: Box<dyn Instance>,
-    simulator: Simulator,
-    trajectory: Trajectory,
-    pointwise: Pointwise,
-}
-
 /// The answer for one individual.
 struct Answer {
     individual: usize,
@@ -125,21 +99,18 @@ impl Evaluator {
         let model = shared.as_ref();
         check_points(&question.x)?;
         let parameters = identified_parameters(model, &question.parameters)?;
-        let varied: Vec<String> =
-            parameters.iter().map(|parameter| parameter.name.clone()).collect();
         let x = x_quantity(model, &question.x_name)?;
         let y = y_quantity(model, &question.y_name)?;
-        let mut settings = model.settings();
-        let plan = plan(model, &varied, &x.name, &question.x, &mut settings)?;
-        let observed = match &plan {
-            Plan::AtTimes(_) | Plan::OneByOne => vec![y.name.clone()],
-            Plan::InX => vec![y.name.clone(), x.name.clone()],
+        let experiment = Experiment {
+            name: String::new(),
+            settings: model.settings(),
+            model: Arc::clone(&shared),
+            second_attempt: false,
+            x_name: x.name.clone(),
+            observations: vec![Observation { y_name: y.name.clone(), x: question.x.clone() }],
+            parameters: parameters.iter().map(|p| p.name.clone()).enumerate().collect(),
         };
-        let worker = || {
-            let instance = model.instance(&with_driver(model, &varied), &observed)?;
-            let (simulator, trajectory) = (Simulator::new(), Trajectory::default());
-            Ok(Worker { instance, simulator, trajectory, pointwise: Pointwise::default() })
-        };
+        let worker = || ModelSimulator::new(std::slice::from_ref(&experiment));
         let quantity = |p: &Parameter| Quantity { name: p.name.clone(), unit: p.unit.clone() };
         let study = Study {
             model: model.name().to_owned(),
@@ -156,8 +127,6 @@ impl Evaluator {
             model: Arc::clone(&shared),
             parameters,
             x: question.x,
-            plan,
-            settings,
             workers: (0..threads).map(|_| worker()).collect::<Result<_, Fault>>()?,
             pool: pool.filter(|_| threads > 1),
         })
@@ -165,7 +134,7 @@ impl Evaluator {
 
     /// What the simulation is asked for, as a text that is the same where the settings are.
     pub fn settings_text(&self) -> String {
-        let s = &self.settings;
+        let s = self.workers[0].settings();
         format!(
             "{:?}",
             (
@@ -194,8 +163,8 @@ impl Evaluator {
 
     /// Relative error of the simulated values: the solver's, where anything is integrated.
     pub fn noise(&mut self) -> f64 {
-        let states = self.workers[0].instance.system().n_differential();
-        if states == 0 { NOISE_OF_FORMULAS } else { self.settings.tolerance }
+        let simulator = &mut self.workers[0];
+        if simulator.is_static() { NOISE_OF_FORMULAS } else { simulator.settings().tolerance }
     }
 
     /// The measured points.
@@ -211,17 +180,23 @@ impl Evaluator {
     /// a gene lies outside what the model allows for its parameter.
     pub fn evaluate(&mut self, genomes: &Genomes) -> Result<Simulated, Fault> {
         self.check_genomes(genomes)?;
-        let Evaluator { plan, settings, x, workers, pool, study, .. } = self;
+        let Evaluator { x, workers, pool, .. } = self;
         let next = AtomicUsize::new(0);
-        let work = |worker: &mut Worker| {
+        let points = x.len();
+        let work = |worker: &mut ModelSimulator| {
             let mut answers = Vec::new();
             loop {
                 let individual = next.fetch_add(1, Ordering::Relaxed);
                 if individual >= genomes.len() {
                     return answers;
                 }
-                let row =
-                    worker.simulate(genomes.row(individual), plan, settings, x, &study.x.name);
+                let mut row = vec![f64::NAN; points];
+                let run = worker.simulate(genomes.row(individual), &mut row);
+                let failed = |failed: Failed| FailedSimulation {
+                    cause: failed.cause,
+                    time: worker.failed_at(),
+                };
+                let row = run.map(|()| row).map_err(failed);
                 answers.push(Answer { individual, row });
             }
         };
@@ -239,7 +214,7 @@ impl Evaluator {
             }),
             None => work_own(),
         }
-        Ok(collect(answers, genomes.len(), x.len()))
+        Ok(collect(answers, genomes.len(), points))
     }
 
     fn check_genomes(&self, genomes: &Genomes) -> Result<(), Fault> {
@@ -270,66 +245,6 @@ impl Evaluator {
         }
         Ok(())
     }
-}
-
-impl Worker {
-    fn simulate(
-        &mut self,
-        genome: &[f64],
-        plan: &Plan,
-        settings: &Settings,
-        x: &[f64],
-        x_name: &str,
-    ) -> Result<Vec<f64>, FailedSimulation> {
-        let useless = |cause: String| FailedSimulation { cause, time: None };
-        if let Plan::OneByOne = plan {
-            let mut row = vec![f64::NAN; x.len()];
-            let at = (genome, settings.start);
-            self.pointwise
-                .evaluate(self.instance.as_mut(), at, (0, x), &mut row)
-                .map_err(useless)?;
-            return finite(row);
-        }
-        self.instance.set(genome).map_err(|fault| useless(fault.message))?;
-        let run = self.simulator.run(self.instance.system(), settings, &mut self.trajectory);
-        run.map_err(|error| FailedSimulation {
-            cause: self.instance.explain(&error),
-            time: Some(error.time),
-        })?;
-        let y = self.trajectory.column(0);
-        let mut row = vec![f64::NAN; x.len()];
-        match plan {
-            Plan::AtTimes(times) => {
-                for (value, &time) in row.iter_mut().zip(times) {
-                    let found = self.trajectory.at(0, time);
-                    *value =
-                        found.ok_or_else(|| useless("the simulation ended early".to_owned()))?;
-                }
-            }
-            Plan::InX => {
-                let path = Path { times: self.trajectory.time(), x: self.trajectory.column(1) };
-                path.interpolate(x_name, y, x, &mut row).map_err(|fault| useless(fault.message))?;
-            }
-            Plan::OneByOne => {}
-        }
-        finite(row)
-    }
-}
-
-fn finite(row: Vec<f64>) -> Result<Vec<f64>, FailedSimulation> {
-    match row.iter().all(|value| value.is_finite()) {
-        true => Ok(row),
-        false => {
-            let cause = "a simulated value is not finite".to_owned();
-            Err(FailedSimulation { cause, time: None })
-        }
-    }
-}
-
-/// The varied parameters, and behind them that which stands for X where it is an input.
-pub(super) fn with_driver(model: &dyn Model, varied: &[String]) -> Vec<String> {
-    let driver = model.driven().map(|(_, parameter)| parameter.to_owned());
-    varied.iter().cloned().chain(driver).collect()
 }
 
 fn collect(answers: Vec<Vec<Answer>>, individuals: usize, points: usize) -> Simulated {
@@ -422,77 +337,4 @@ fn quantity(model: &dyn Model, name: &str) -> Result<Quantity, Fault> {
                 .help_if(hint))
         }
     }
-}
-
-/// How the points are found; changes `settings` to what that needs.
-pub(super) fn plan(
-    model: &dyn Model,
-    varied: &[String],
-    x_name: &str,
-    points: &[f64],
-    settings: &mut Settings,
-) -> Result<Plan, Fault> {
-    if model.driven().is_some_and(|(driven, _)| driven == x_name) {
-        return Ok(Plan::OneByOne);
-    }
-    let times = if x_name == TIME {
-        if !model.has_stop_time() {
-            settings.stop = points.iter().copied().fold(settings.start, f64::max);
-        }
-        let path = [settings.start, settings.stop];
-        reachable(&Path { times: &path, x: &path }, x_name, points)?;
-        points.to_vec()
-    } else if model.depends_on_time_alone(x_name, varied)
-        && let Some(times) = times_of_points(model, varied, x_name, points, settings)?
-    {
-        times
-    } else {
-        return Ok(Plan::InX);
-    };
-    let mut ascending = times.clone();
-    ascending.sort_by(f64::total_cmp);
-    ascending.dedup();
-    settings.stop = ascending.last().copied().unwrap_or(settings.stop).max(settings.start);
-    settings.output = OutputGrid::At(ascending);
-    Ok(Plan::AtTimes(times))
-}
-
-fn reachable(path: &Path<'_>, name: &str, points: &[f64]) -> Result<(), Fault> {
-    let outside = path.targets_outside(points);
-    if outside.is_empty() { Ok(()) } else { Err(path.outside(name, &outside)) }
-}
-
-/// The times at which X, a function of time alone, takes the measured values; `None` when X cannot
-/// be evaluated with the model's own parameter values, which need not make sense for this
-/// experiment.
-fn times_of_points(
-    model: &dyn Model,
-    varied: &[String],
-    x_name: &str,
-    points: &[f64],
-    settings: &Settings,
-) -> Result<Option<Vec<f64>>, Fault> {
-    let mut instance = model.instance(varied, &[x_name.to_owned()])?;
-    let system = instance.system();
-    let mut y = vec![0.0; system.n_differential() + system.n_algebraic()];
-    if system.initialize(settings.start, &mut y).is_err() {
-        return Ok(None);
-    }
-    // Not initialized at every time: what must hold for the other variables does not matter here.
-    let mut x_at = |time: f64| {
-        let mut value = [f64::NAN];
-        system.observe(time, &y, &mut value).map(|()| value[0])
-    };
-    let length = settings.stop - settings.start;
-    let grid: Vec<f64> =
-        (0..=SLICES).map(|k| settings.start + length * f64::from(k) / f64::from(SLICES)).collect();
-    let Ok(x) = grid.iter().map(|&time| x_at(time)).collect::<Result<Vec<f64>, _>>() else {
-        return Ok(None);
-    };
-    let path = Path { times: &grid, x: &x };
-    reachable(&path, x_name, points)?;
-    let slices: Vec<usize> =
-        points.iter().map(|&point| path.slice_of(x_name, point)).collect::<Result<_, Fault>>()?;
-    let time = |(&point, k): (&f64, usize)| time_of(grid[k], grid[k + 1], point, &mut x_at);
-    Ok(points.iter().zip(slices).map(time).collect::<Result<Vec<f64>, _>>().ok())
 }

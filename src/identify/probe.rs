@@ -6,6 +6,7 @@
 //! go there. The script's own values stay what they are and stand beside those of the minimum.
 
 use super::fitness::FITNESSES;
+use super::problem::inference::ModelPredictions;
 use super::problem::{
     EndingKind, Experiment, Finding, FindingKind, Free, Inference, ModelSimulator, Observation,
     Problem, Run, ScriptResult, Series, Severity, Sigma, Simulate, Solution, SolvedParameter,
@@ -13,7 +14,7 @@ use super::problem::{
 };
 use super::recorder::{Best, Compared, Recorder};
 use super::table::significant;
-use super::{Model, Objective};
+use super::{Model, Objective, Parameter};
 use crate::diag::Fault;
 use crate::fault;
 use crate::ga::optimizer::METHODS;
@@ -25,8 +26,25 @@ use std::sync::Arc;
 const BUDGET: u64 = 200;
 /// Relative reduction of the sum of squares that is worth a number.
 const BETTER: f64 = 1e-6;
+/// Ranges that the script does not name are widened so often at most, by this factor each time.
+const WIDER: usize = 8;
+const WIDENING: f64 = 10.0;
+/// A positive range that is wider than this ratio is widened beyond zero.
+const DECADES: f64 = 1e4;
 /// A seed for scripts that draw no random numbers: least squares need none, but a run has one.
 const NO_SEED: [f64; 6] = [12345.0; 6];
+
+/// What ends an identification by a script, from its best individual.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Probe {
+    /// Nothing: what the script has found is reported as it is.
+    Off,
+    /// Least squares, standard errors, verdicts and prediction bands.
+    #[default]
+    LeastSquares,
+    /// These and profile likelihoods.
+    Profiles,
+}
 
 /// What is known of the experiments when a run ends.
 pub struct Ending<'a> {
@@ -39,8 +57,8 @@ pub struct Ending<'a> {
     pub noise: f64,
     /// Threads to use.
     pub threads: usize,
-    /// Whether least squares are wanted.
-    pub probe: bool,
+    /// What is wanted behind the script's search.
+    pub probe: Probe,
     /// Whether the user interrupted the run.
     pub interrupted: bool,
 }
@@ -49,19 +67,58 @@ impl Ending<'_> {
     /// The solution; `None` when no individual was simulated successfully.
     pub fn solution(&self) -> Option<Solution> {
         let best = self.recorder.best.as_ref()?;
-        let solution = match self.problem(best).and_then(|problem| self.probed(best, problem)) {
+        let solution = match self.reached(best) {
             Ok(solution) => solution,
             Err(why) => self.unprobed(best, &why),
         };
         Some(self.with_search(best, solution))
     }
 
+    /// Least squares from the best individual. Where the script names no ranges, those that its
+    /// individuals span bound nothing: they are widened until the minimum does not lie at their
+    /// ends, and it is none where that does not help.
+    fn reached(&self, best: &Best) -> Result<Solution, String> {
+        let named = self.recorder.ranges.is_some();
+        let mut ranges = self.ranges(best);
+        let limits = self.limits(best);
+        let mut simulations = 0;
+        for ((range, value), limits) in ranges.iter_mut().zip(&best.genome).zip(&limits) {
+            if range[0] == range[1] && !named {
+                widen(range, *value, *limits);
+            }
+        }
+        for _ in 0..WIDER {
+            let problem = self.problem(best, &ranges)?;
+            let mut solution = self.probed(best, problem)?;
+            simulations += solution.script.as_ref().map_or(0, |script| script.probe_simulations);
+            let ends = solution.parameters.iter().zip(&mut ranges).zip(&limits);
+            let widened = ends.filter_map(|((parameter, range), limits)| {
+                (!named && parameter.at_bound && widen(range, parameter.value, *limits))
+                    .then_some(())
+            });
+            if widened.count() == 0 {
+                if let Some(script) = &mut solution.script {
+                    script.probe_simulations = simulations;
+                }
+                return Ok(solution);
+            }
+        }
+        Err(format!(
+            "it leads away from the individuals of the script, beyond {WIDER} times wider ranges; \
+             name search ranges"
+        ))
+    }
+
     /// The problem of least squares; `Err` says why there is none.
-    fn problem(&self, best: &Best) -> Result<(Problem, Vec<Experiment>), String> {
+    fn problem(
+        &self,
+        best: &Best,
+        ranges: &[[f64; 2]],
+    ) -> Result<(Problem, Vec<Experiment>), String> {
         if self.interrupted {
             return Err("the run was interrupted".to_owned());
         }
-        if !self.probe {
+        if self.probe == Probe::Off {
             return Err("it was turned off".to_owned());
         }
         let Some(weights) = best.objective.weights(best.compared.len()) else {
@@ -80,7 +137,7 @@ impl Ending<'_> {
             .enumerate()
             .map(|(k, ((compared, _), model))| experiment(compared, model, name(best, k)))
             .collect();
-        let problem = self.assembled(best, series, &experiments);
+        let problem = self.assembled(best, series, (&experiments, ranges));
         Ok((problem.map_err(|fault| fault.message)?, experiments))
     }
 
@@ -88,12 +145,12 @@ impl Ending<'_> {
         &self,
         best: &Best,
         series: Vec<Series>,
-        experiments: &[Experiment],
+        (experiments, ranges): (&[Experiment], &[[f64; 2]]),
     ) -> Result<Problem, Fault> {
         let experiments = experiments.to_vec();
         let fitness = registry::find("fitness function", FITNESSES, "sum_of_squares")?;
         let method = registry::find("method", METHODS, "levenberg_marquardt")?;
-        let parameters = self.parameters(best)?;
+        let parameters = self.parameters(best, ranges)?;
         Ok(Problem {
             title: self.title(best),
             model: models(best),
@@ -107,7 +164,11 @@ impl Ending<'_> {
             polish: false,
             seed: self.recorder.seed().unwrap_or(NO_SEED),
             noise: self.noise,
-            inference: Inference::default(),
+            inference: Inference {
+                predict: Some(Box::new(ModelPredictions { experiments: experiments.clone() })),
+                bands: true,
+                ..Inference::default()
+            },
             simulator: Box::new(move || {
                 Ok(Box::new(ModelSimulator::new(&experiments)?) as Box<dyn Simulate>)
             }),
@@ -118,17 +179,37 @@ impl Ending<'_> {
         format!("Identified parameters of {}", models(best))
     }
 
-    /// The parameters with the ranges of the script, or those that its individuals span.
-    fn parameters(&self, best: &Best) -> Result<Vec<Free>, Fault> {
+    /// The parameters with these ranges.
+    fn parameters(&self, best: &Best, ranges: &[[f64; 2]]) -> Result<Vec<Free>, Fault> {
         let quantities = &best.compared[0].study.parameters;
         if best.compared.iter().any(|compared| compared.study.parameters != *quantities) {
             return Err(fault!(BAD_OPTION, "its experiments identify different parameters"));
         }
         let one = |(k, quantity): (usize, &super::Quantity)| {
             let value = best.genome[k];
-            Free::new(&quantity.name, &quantity.unit, self.range(k, value), None, Some(value))
+            Free::new(&quantity.name, &quantity.unit, ranges[k], None, Some(value))
         };
         quantities.iter().enumerate().map(one).collect()
+    }
+
+    /// The ranges of the script, or those that its individuals span.
+    fn ranges(&self, best: &Best) -> Vec<[f64; 2]> {
+        let genes = best.genome.iter().enumerate();
+        genes.map(|(k, value)| self.range(k, *value)).collect()
+    }
+
+    /// What the models allow for each parameter.
+    fn limits(&self, best: &Best) -> Vec<[f64; 2]> {
+        let quantities = best.compared[0].study.parameters.iter();
+        let all: Vec<Parameter> =
+            self.models.iter().flatten().flat_map(|model| model.parameters()).collect();
+        let limits = |quantity: &super::Quantity| {
+            let own = all.iter().filter(|known| known.name == quantity.name);
+            own.fold([f64::NEG_INFINITY, f64::INFINITY], |[low, high], known| {
+                [low.max(known.min), high.min(known.max)]
+            })
+        };
+        quantities.map(limits).collect()
     }
 
     /// The range of a parameter, wide enough for its value.
@@ -156,7 +237,7 @@ impl Ending<'_> {
             }
         };
         conclude(&mut run);
-        let solution = Solution::of(&run, &stop, Vec::new()).map_err(|fault| fault.message)?;
+        let solution = self.inferred(&mut run, &stop).map_err(|fault| fault.message)?;
         let at_minimum = solution.ending.kind == EndingKind::Minimum;
         let mut solution = if at_minimum { solution } else { without_verdicts(solution) };
         let generations = self.recorder.history.generations.len();
@@ -170,6 +251,19 @@ impl Ending<'_> {
             probe_simulations: run.simulations,
             ..ScriptResult::default()
         });
+        Ok(solution)
+    }
+
+    /// What the run has found, and what follows from it at a minimum.
+    fn inferred(&self, run: &mut Run, stop: &str) -> Result<Solution, Fault> {
+        let mut solution = Solution::of(run, stop, Vec::new())?;
+        if solution.ending.kind != EndingKind::Minimum {
+            return Ok(solution);
+        }
+        if self.probe == Probe::Profiles {
+            solution = solution.with_profiles(run, |run| Solution::of(run, stop, Vec::new()))?;
+        }
+        solution.add_inference(run)?;
         Ok(solution)
     }
 
@@ -219,8 +313,8 @@ impl Ending<'_> {
         let mut findings = vec![search(script.probe.clone())];
         if recorder.ranges.is_none() {
             findings.push(search(
-                "The script names no search ranges: those in the table are what its individuals \
-                 span.",
+                "The ranges in the table are what the individuals of the script span, widened \
+                 where the minimum lies beyond.",
             ));
         }
         let (method, stop) = match (self.interrupted, script.probed) {
@@ -233,7 +327,7 @@ impl Ending<'_> {
             solution.fitness_name = best.objective.name().to_owned();
         }
         let failed = [("simulation".to_owned(), recorder.failures)];
-        let free = self.parameters(best);
+        let free = self.parameters(best, &self.ranges(best));
         Solution {
             findings,
             method: method.to_owned(),
@@ -252,6 +346,26 @@ impl Ending<'_> {
             ..solution
         }
     }
+}
+
+/// Widens a range at the end that a value stands at, as far as the model allows; whether it could.
+fn widen([low, high]: &mut [f64; 2], value: f64, limits: [f64; 2]) -> bool {
+    let before = [*low, *high];
+    let width = match *high - *low {
+        0.0 => value.abs().max(f64::MIN_POSITIVE.sqrt()),
+        width => width,
+    };
+    if *high - value > value - *low {
+        // Of a positive parameter the ratio counts, as long as it has not lost its meaning.
+        let wider = match *low > *high / DECADES {
+            true if *low > 0.0 => *low / WIDENING,
+            _ => *low - WIDENING * width,
+        };
+        *low = wider.max(limits[0]);
+    } else {
+        *high = (*high + WIDENING * width).min(limits[1]);
+    }
+    before != [*low, *high]
 }
 
 /// A finding about the search, which comes first.
@@ -298,6 +412,7 @@ fn experiment(compared: &Compared, model: &Arc<dyn Model>, name: String) -> Expe
     let study = &compared.study;
     let parameters = study.parameters.iter().map(|quantity| quantity.name.clone());
     Experiment {
+        second_attempt: true,
         name,
         settings: model.settings(),
         model: Arc::clone(model),

@@ -8,6 +8,7 @@
 //!
 //! Reference: [Walter and Pronzato 1997](crate::bibliography#walter-pronzato-1997), chapter 4.
 
+use crate::elementary;
 use crate::singular_values::SingularValues;
 use nalgebra::DMatrix;
 
@@ -109,7 +110,7 @@ pub fn error_of_combination(
         used.iter().enumerate().map(|(k, &own)| found.v_t[(d, k)] * weights[own] / norms[own]).sum()
     };
     let directions = (0..found.s.len()).filter(|&d| found.s[d] > tolerance * found.largest());
-    let square: f64 = directions.map(|d| (along(d) / found.s[d]).powi(2)).sum();
+    let square: f64 = directions.map(|d| elementary::powi(along(d) / found.s[d], 2)).sum();
     Some((variance * square).sqrt()).filter(|error| error.is_finite())
 }
 

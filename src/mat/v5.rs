@@ -172,7 +172,7 @@ impl File {
                     "matrix `{name}` is {rows} by {columns}, its data are {bytes} bytes of type {kind}"
                 )
             })?;
-        let rounded = values.iter().any(|value| value.abs() >= 2f64.powi(53));
+        let rounded = values.iter().any(|value| value.abs() >= (1_u64 << 53) as f64);
         if rounded && matches!(storage(element.kind), Some(Storage::I64 | Storage::U64)) {
             self.found.warnings.push(format!("integers of `{name}` beyond 2^53 are rounded"));
         }

@@ -149,7 +149,7 @@ impl Reader {
             }
         };
         if matches!(kind, DType::I64 | DType::U64)
-            && values.iter().any(|v| v.abs() >= 2f64.powi(53))
+            && values.iter().any(|v| v.abs() >= (1_u64 << 53) as f64)
         {
             self.found.warnings.push(format!("integers of `{name}` beyond 2^53 are rounded"));
         }

@@ -1,6 +1,7 @@
 //! Figures as text, for terminals: each character holds two by four dots, with braille patterns.
 
 use super::{Figure, Panel, Scale, Series};
+use crate::elementary;
 
 /// Dots of a character, columns of four from the left.
 const DOTS: [[u32; 4]; 2] = [[0x01, 0x02, 0x04, 0x40], [0x08, 0x10, 0x20, 0x80]];
@@ -41,7 +42,9 @@ fn chart(panel: &Panel, width: usize, height: usize) -> String {
     for series in &panel.series {
         draw(&mut canvas, series, (x, panel.x.scale), (y, panel.y.scale));
     }
-    let shown = |value: f64, scale| if scale == Scale::Logarithmic { value.exp() } else { value };
+    let shown = |value: f64, scale| {
+        if scale == Scale::Logarithmic { elementary::exp(value) } else { value }
+    };
     let label = |value: f64| format!("{:>11}", format!("{value:.4e}"));
     for row in 0..height {
         let margin = match row {
@@ -72,7 +75,7 @@ fn range<'a>(values: impl Iterator<Item = &'a f64>, scale: Scale) -> Option<(f64
 fn scaled(value: f64, scale: Scale) -> f64 {
     match scale {
         Scale::Linear => value,
-        Scale::Logarithmic => value.ln(),
+        Scale::Logarithmic => elementary::ln(value),
     }
 }
 

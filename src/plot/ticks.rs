@@ -1,6 +1,7 @@
 //! Ranges of axes, their ticks and labels.
 
 use super::figure::Scale;
+use crate::elementary;
 
 /// An axis with its range decided.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +42,8 @@ impl Ticks {
         Some(match self.scale {
             Scale::Linear => (value - self.low) / (self.high - self.low),
             Scale::Logarithmic => {
-                (value.log10() - self.low.log10()) / (self.high.log10() - self.low.log10())
+                (elementary::log10(value) - elementary::log10(self.low))
+                    / (elementary::log10(self.high) - elementary::log10(self.low))
             }
         })
     }
@@ -63,13 +65,13 @@ fn linear((low, high): (f64, f64), count: usize) -> Ticks {
     let half = width * (0.5 + MARGIN);
     let (low, high) = (middle - half, middle + half);
     let (mantissa, power) = nice_step((high - low) / count as f64);
-    let step = f64::from(mantissa) * 10f64.powi(power);
+    let step = f64::from(mantissa) * elementary::powi(10f64, power);
     let exponent = label_exponent(low.abs().max(high.abs()));
     let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
     let decimals = (exponent - power).clamp(0, 17) as usize;
     let major = (first..=last)
         .map(|k| {
-            let scaled = k as f64 * f64::from(mantissa) * 10f64.powi(power - exponent);
+            let scaled = k as f64 * f64::from(mantissa) * elementary::powi(10f64, power - exponent);
             (k as f64 * step, signed(&format!("{scaled:.decimals$}")))
         })
         .collect();
@@ -78,8 +80,8 @@ fn linear((low, high): (f64, f64), count: usize) -> Ticks {
 
 /// 1, 2 or 5 and a power of ten: the smallest such step that is no less than `rough`.
 fn nice_step(rough: f64) -> (i32, i32) {
-    let power = rough.log10().floor() as i32;
-    let mantissa = rough / 10f64.powi(power);
+    let power = elementary::log10(rough).floor() as i32;
+    let mantissa = rough / elementary::powi(10f64, power);
     match [1, 2, 5].into_iter().find(|nice| f64::from(*nice) >= mantissa * (1.0 - 1e-9)) {
         Some(nice) => (nice, power),
         None => (1, power + 1),
@@ -91,7 +93,7 @@ fn label_exponent(largest: f64) -> i32 {
     if (0.05..1e5).contains(&largest) {
         return 0;
     }
-    3 * (largest.log10() / 3.0).floor() as i32
+    3 * (elementary::log10(largest) / 3.0).floor() as i32
 }
 
 fn signed(text: &str) -> String {
@@ -99,9 +101,10 @@ fn signed(text: &str) -> String {
 }
 
 fn logarithmic((low, high): (f64, f64), count: usize) -> Ticks {
-    let margin = (0.04 * (high / low).log10()).max(0.02);
-    let (low, high) = (low * 10f64.powf(-margin), high * 10f64.powf(margin));
-    let decades = |value: f64| value.log10();
+    let margin = (0.04 * elementary::log10(high / low)).max(0.02);
+    let (low, high) =
+        (low * elementary::powf(10f64, -margin), high * elementary::powf(10f64, margin));
+    let decades = |value: f64| elementary::log10(value);
     let (first, last) = (decades(low).ceil() as i32, decades(high).floor() as i32);
     if last - first < 1 {
         let narrow = linear_within(low, high, count);
@@ -110,13 +113,13 @@ fn logarithmic((low, high): (f64, f64), count: usize) -> Ticks {
     let every = (last - first) as usize / (count + 1) + 1;
     let major = (first..=last)
         .filter(|decade| decade.rem_euclid(every as i32) == 0)
-        .map(|decade| (10f64.powi(decade), power_of_ten(decade)))
+        .map(|decade| (elementary::powi(10f64, decade), power_of_ten(decade)))
         .collect();
     let minor = if every > 1 {
-        (first..=last).map(|decade| 10f64.powi(decade)).collect()
+        (first..=last).map(|decade| elementary::powi(10f64, decade)).collect()
     } else {
         (first - 1..=last)
-            .flat_map(|decade| (2..10).map(move |k| f64::from(k) * 10f64.powi(decade)))
+            .flat_map(|decade| (2..10).map(move |k| f64::from(k) * elementary::powi(10f64, decade)))
             .filter(|value| (low..=high).contains(value))
             .collect()
     };

@@ -8,6 +8,7 @@ use crate::diag::Fault;
 use crate::mat;
 use crate::registry::Entry;
 use std::fmt::Write;
+use std::io;
 
 pub(super) const ENTRY: Entry<dyn Format> = Entry {
     name: "csv",
@@ -26,19 +27,27 @@ impl Format for Csv {
 
     fn write(&self, table: &ResultTable) -> Result<Vec<u8>, Fault> {
         table.check()?;
+        let mut bytes = Vec::new();
+        self.write_to(table, &mut bytes).expect("writing into memory does not fail");
+        Ok(bytes)
+    }
+
+    fn write_to(&self, table: &ResultTable, to: &mut dyn io::Write) -> io::Result<()> {
         let names: Vec<String> = table.names().map(quoted).collect();
-        let columns: Vec<Vec<f64>> = (0..table.series.len()).map(|i| table.expand(i)).collect();
-        let mut text = names.join(",");
+        to.write_all(names.join(",").as_bytes())?;
+        let columns: Vec<Column> = (0..table.series.len()).map(|i| Column::of(table, i)).collect();
+        let mut line = String::new();
         for (row, time) in table.time.iter().enumerate() {
-            text.push('\n');
-            push_number(&mut text, *time);
+            line.push('\n');
+            push_number(&mut line, *time);
             for column in &columns {
-                text.push(',');
-                push_number(&mut text, column[row]);
+                line.push(',');
+                push_number(&mut line, column.value(row));
             }
+            to.write_all(line.as_bytes())?;
+            line.clear();
         }
-        text.push('\n');
-        Ok(text.into_bytes())
+        to.write_all(b"\n")
     }
 
     fn read(&self, bytes: &[u8]) -> Result<ResultTable, Fault> {
@@ -53,6 +62,27 @@ impl Format for Csv {
         let table = ResultTable { time_name, time: time.values, series };
         table.check()?;
         Ok(table)
+    }
+}
+
+/// The values of a variable where they stand in the table.
+struct Column<'a> {
+    values: &'a Values,
+    sign: f64,
+}
+
+impl Column<'_> {
+    fn of(table: &ResultTable, index: usize) -> Column<'_> {
+        let (target, sign) = table.resolve(index);
+        Column { values: &table.series[target].values, sign }
+    }
+
+    fn value(&self, row: usize) -> f64 {
+        match self.values {
+            Values::Constant(value) => self.sign * value,
+            Values::Trajectory(values) => self.sign * values[row],
+            Values::Alias { .. } => unreachable!("`resolve` ends at a series that is no alias"),
+        }
     }
 }
 

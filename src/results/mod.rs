@@ -19,6 +19,7 @@ pub use tube::{Deviation, TUBE_TOLERANCE, Tube};
 
 use crate::diag::Fault;
 use crate::registry::{self, Entry, Options};
+use std::io;
 
 /// A way to write results into a file and to read them.
 pub trait Format {
@@ -26,6 +27,14 @@ pub trait Format {
     fn extension(&self) -> &'static str;
     /// The file.
     fn write(&self, table: &ResultTable) -> Result<Vec<u8>, Fault>;
+    /// The same, without all of it in memory where the format allows that. The table is one that
+    /// [`ResultTable::check`] accepts.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    fn write_to(&self, table: &ResultTable, to: &mut dyn io::Write) -> io::Result<()> {
+        to.write_all(&self.write(table).map_err(|fault| io::Error::other(fault.message))?)
+    }
     /// The results in a file.
     fn read(&self, bytes: &[u8]) -> Result<ResultTable, Fault>;
 }

@@ -47,6 +47,19 @@ pub enum Values {
     },
 }
 
+impl Values {
+    /// The same with the other sign if `negated`; aliases of other series stay as they are.
+    pub(crate) fn with_sign(mut self, negated: bool) -> Values {
+        match &mut self {
+            _ if !negated => {}
+            Values::Constant(value) => *value = -*value,
+            Values::Trajectory(values) => values.iter_mut().for_each(|value| *value = -*value),
+            Values::Alias { .. } => {}
+        }
+        self
+    }
+}
+
 impl Series {
     /// A variable without unit and description.
     pub fn new(name: impl Into<String>, values: Values) -> Series {

@@ -4,6 +4,7 @@ use super::Session;
 use super::errors::{FILE_ERROR, REFUSED};
 use super::policy::{Access, Refusal, refusal_of};
 use crate::diag::Fault;
+use crate::results::{Format, ResultTable};
 use crate::syntax;
 use crate::value::Value;
 use std::io;
@@ -38,6 +39,21 @@ impl Session {
         self.may(Access::Write, path)?;
         self.make_parents(path)?;
         self.world.write(path, bytes).map_err(|error| cannot("write", path, &error))
+    }
+
+    /// Writes results into a file anew, with the directories it lies in.
+    pub fn write_results(
+        &mut self,
+        path: &Path,
+        format: &dyn Format,
+        table: &ResultTable,
+    ) -> Result<(), Fault> {
+        table.check()?;
+        self.may(Access::Write, path)?;
+        self.make_parents(path)?;
+        let mut content = |to: &mut dyn io::Write| format.write_to(table, to);
+        let written = self.world.write_with(path, &mut content);
+        written.map_err(|error| cannot("write", path, &error))
     }
 
     /// Writes behind the end of a file.

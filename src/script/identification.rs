@@ -74,6 +74,7 @@ impl Session {
         let [x, y] = [content.column(&names[0])?, content.column(&names[1])?];
         let notes = [&x, &y].into_iter().flat_map(crate::mat::Column::notes);
         let notes: Vec<String> = notes.collect();
+        let units = [x.about.unit, y.about.unit];
         let [x, y] = [x.values, y.values];
         if x.len() != y.len() {
             bail!(
@@ -92,6 +93,9 @@ impl Session {
             bail!(BAD_DATA, "`{}` of `{file}` has no elements", names[0]);
         }
         self.note_data(&content, notes);
+        for ((name, unit), values) in names.iter().zip(&units).zip([&x, &y]) {
+            self.column_measured((file, name), unit.as_deref(), values);
+        }
         Ok(Measurement { file: file.to_owned(), x, y })
     }
 
@@ -150,6 +154,7 @@ impl Session {
         identification.recorder.evaluated(evaluator.study(), evaluator.x(), genomes, &simulated);
         let (study, x) = (evaluator.study().clone(), evaluator.x().to_vec());
         identification.prepared.push(Prepared { request, revision, evaluator });
+        self.population_simulated(&study, &x, &simulated);
         self.trace_simulation((&study, &x), genomes, &simulated)?;
         self.show_run(&study, genomes);
         Ok(simulated)
@@ -264,11 +269,16 @@ fn report(session: &mut Session) -> Result<(), Diagnostic> {
 /// individual was simulated successfully.
 fn report_run(session: &mut Session) -> Result<(), Fault> {
     let interrupted = session.is_interrupted();
-    let (threads, probe) = (session.world.threads(), !session.options.no_probe);
+    let (threads, probe) = (session.world.threads(), session.options.probe);
     let identification = session.extension::<Identification>();
     let started = identification.started.take();
     let recorder = identification.recorder.begin_next();
     let Some(best) = &recorder.best else { return Ok(()) };
+    let compared: Vec<_> = best
+        .compared
+        .iter()
+        .filter_map(|one| Some((one.measured.clone()?, one.study.clone())))
+        .collect();
     let mut noise = NOISE_OF_FORMULAS;
     let mut models = Vec::new();
     for compared in &best.compared {
@@ -284,6 +294,9 @@ fn report_run(session: &mut Session) -> Result<(), Fault> {
     let ending = Ending { recorder: &recorder, models, noise, threads, probe, interrupted };
     let Some(solution) = ending.solution() else { return Ok(()) };
     session.world.end_view();
+    for (measured, study) in compared {
+        session.compared(&measured, &study.model, &study.y);
+    }
     session.print(&solution.text());
     let now = session.world.monotonic_seconds();
     let seconds = now - started.unwrap_or(now);

@@ -5,6 +5,7 @@ use super::builtins::Failure;
 use super::identification::Request;
 use super::{Session, simulation};
 use crate::diag::Fault;
+use crate::elementary;
 use crate::fault;
 use crate::ga::errors::BAD_POPULATION;
 use crate::ga::optimizer::{Answers, METHODS, Optimizer, Setup, Wants};
@@ -114,7 +115,7 @@ impl Session {
         done: &mut Simulations,
     ) -> Result<Vec<f64>, Failure> {
         let (n, m) = (question.n_genes(), refinement.measured.len());
-        let step = noise.cbrt().clamp(1e-6, 1e-2);
+        let step = elementary::cbrt(noise).clamp(1e-6, 1e-2);
         let mut ends = Genomes::with_capacity(n, 2 * n * question.len());
         for point in question.rows() {
             for (j, side) in (0..n).flat_map(|j| [(j, -step), (j, step)]) {

@@ -11,6 +11,7 @@ use super::{Messages, Permissions, Transcript};
 use crate::diag::{Code, Diagnostic, Fault, render};
 use crate::eval::Scope;
 use crate::external::Random;
+use crate::identify::Probe;
 use crate::name::{Ident, Name};
 use crate::source::{SourceMap, Span};
 use crate::value::Value;
@@ -81,8 +82,8 @@ pub struct Options {
     pub permissions: Permissions,
     /// Whether what the simulations answer is kept on the way.
     pub journaling: Journaling,
-    /// Leave out the least squares that end an identification, from its best individual.
-    pub no_probe: bool,
+    /// What ends an identification behind the script's own search.
+    pub probe: Probe,
 }
 
 /// Whether a run of scripts keeps a journal of its simulations in the output folder, from which it
@@ -309,6 +310,7 @@ impl Session {
     /// The one place where a diagnostic is told to the user without ending a statement: it goes to
     /// standard error, to the transcript, and to the messages that the script can ask for.
     pub fn report(&mut self, diagnostic: Diagnostic) {
+        let diagnostic = diagnostic.shortened();
         let told = self.told.as_mut().filter(|_| !diagnostic.is_error());
         if told.is_some_and(|told| !told.insert((diagnostic.span(), diagnostic.message.clone()))) {
             return;

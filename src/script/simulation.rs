@@ -15,6 +15,7 @@ use crate::source::Span;
 use crate::value::Value;
 use crate::{bail, dae, fault, syntax};
 use indexmap::IndexMap;
+use regex::Regex;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
@@ -87,6 +88,8 @@ pub struct Wishes {
     pub fixed_step: Option<f64>,
     /// Whether a simulation stops where events would follow each other without end.
     pub stops_at_chattering: bool,
+    /// Which variables the results hold, by their names; all where nothing is said.
+    pub only: Option<Regex>,
     /// Where the time reached is told, as the bits of an `f64`.
     pub reached: Option<Arc<AtomicU64>>,
 }
@@ -121,11 +124,16 @@ impl Models {
 /// Everything that is wrong with it.
 pub fn translate(session: &mut Session, problem: &str) -> Result<Arc<Translated>, Vec<Diagnostic>> {
     let model = translated(session, problem)?;
-    let is_last = session.models.last().is_some_and(|last| Arc::ptr_eq(last, &model));
+    look_at(session, &model);
+    Ok(model)
+}
+
+/// Makes a translated model the one that dotted names of scripts refer to.
+pub(super) fn look_at(session: &mut Session, model: &Arc<Translated>) {
+    let is_last = session.models.last().is_some_and(|last| Arc::ptr_eq(last, model));
     if !is_last {
         session.models.last = Some(Current::of(model.clone()));
     }
-    Ok(model)
 }
 
 /// As [`translate`]; the parameters have the values that the model gives them, whatever scripts set
@@ -304,7 +312,10 @@ pub fn simulate(
     settings.reached = wishes.reached.clone();
     let (changed, mut system) = prepared(session, model)?;
     let model = changed.as_deref().unwrap_or(model);
-    let mut trajectory = Trajectory::default();
+    let mut trajectory = match &wishes.only {
+        Some(only) => Trajectory::keeping(wanted_columns(model, only)),
+        None => Trajectory::default(),
+    };
     system.system.listen();
     let run = Simulator::new().run(&mut system, &settings, &mut trajectory);
     tell(session, &system.system);
@@ -314,8 +325,8 @@ pub fn simulate(
     match run {
         Ok(statistics) => {
             written?;
-            let table = result_table(model, &system.system, &trajectory);
-            session.models.end = Some(end(model, &settings, &table));
+            session.models.end = Some(end(model, &settings, &trajectory));
+            let table = result_table(model, &system.system, trajectory, wishes.only.as_ref());
             Ok(Simulated { table, statistics })
         }
         Err(_) if session.world.interrupted() => {
@@ -463,20 +474,48 @@ pub(super) fn state_names(model: &Translated) -> impl Iterator<Item = &Arc<str>>
     sorted.states.iter().map(|state| &sorted.dae.variable(*state).name)
 }
 
-fn end(model: &Translated, settings: &Settings, table: &ResultTable) -> End {
+fn end(model: &Translated, settings: &Settings, trajectory: &Trajectory) -> End {
+    let variables = model.program.variables();
+    let names = variables.iter().enumerate().map(|(at, variable)| (&*variable.name, at));
+    let numbers: FxHashMap<&str, usize> = names.collect();
     let last = |name: &Arc<str>| {
-        let column = table.column(name).ok()?;
-        Some((name.clone(), *column.last()?))
+        let Access::Observed { column, negated } = variables[*numbers.get(&**name)?].access else {
+            return None;
+        };
+        let sign = if negated { -1.0 } else { 1.0 };
+        Some((name.clone(), sign * trajectory.column(column).last()?))
     };
-    let stop = table.time.last().copied().unwrap_or(settings.stop);
+    let stop = trajectory.time().last().copied().unwrap_or(settings.stop);
     End { span: (settings.start, stop), states: state_names(model).filter_map(last).collect() }
 }
 
-/// All variables of a simulation.
-fn result_table(model: &Translated, system: &System, trajectory: &Trajectory) -> ResultTable {
+/// Which columns hold a variable that is wanted.
+fn wanted_columns(model: &Translated, only: &Regex) -> Vec<bool> {
+    let mut wanted = Vec::new();
+    for variable in model.program.variables() {
+        if let Access::Observed { column, .. } = variable.access {
+            if wanted.len() <= column {
+                wanted.resize(column + 1, false);
+            }
+            wanted[column] |= only.is_match(&variable.name);
+        }
+    }
+    wanted
+}
+
+/// The variables of a simulation that are wanted. Aliases have their own values where not all are.
+fn result_table(
+    model: &Translated,
+    system: &System,
+    mut trajectory: Trajectory,
+    only: Option<&Regex>,
+) -> ResultTable {
     let mut table = ResultTable::new(trajectory.time().to_vec());
     let mut series_of_column: FxHashMap<usize, (usize, bool)> = FxHashMap::default();
     for (index, variable) in model.program.variables().iter().enumerate() {
+        if only.is_some_and(|only| !only.is_match(&variable.name)) {
+            continue;
+        }
         let values = match variable.access {
             Access::Time => continue,
             Access::Constant(value) => Values::Constant(value),
@@ -485,12 +524,13 @@ fn result_table(model: &Translated, system: &System, trajectory: &Trajectory) ->
                 None => continue,
             },
             Access::Observed { column, negated } => match series_of_column.get(&column) {
-                Some((of, sign)) => Values::Alias { of: *of, negated: *sign != negated },
+                Some((of, sign)) if only.is_none() => {
+                    Values::Alias { of: *of, negated: *sign != negated }
+                }
+                Some((of, sign)) => table.series[*of].values.clone().with_sign(*sign != negated),
                 None => {
                     series_of_column.insert(column, (table.series.len(), negated));
-                    let sign = if negated { -1.0 } else { 1.0 };
-                    let values = trajectory.column(column).iter();
-                    Values::Trajectory(values.map(|value| sign * value).collect())
+                    Values::Trajectory(trajectory.take_column(column)).with_sign(negated)
                 }
             },
         };

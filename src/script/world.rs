@@ -44,6 +44,9 @@ pub trait Files: fmt::Debug + Send + Sync {
     fn is_file(&self, path: &Path) -> bool;
 }
 
+/// Writes the content of a file.
+pub type Content<'a> = &'a mut dyn FnMut(&mut dyn io::Write) -> io::Result<()>;
+
 /// Everything that a script can do to the world and learn from it. Paths may be relative to
 /// [`World::current_dir`].
 pub trait World {
@@ -58,6 +61,12 @@ pub trait World {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
     /// Writes a file anew.
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()>;
+    /// Writes a file anew as `content` writes it: whoever has a disk keeps none of it in memory.
+    fn write_with(&mut self, path: &Path, content: Content<'_>) -> io::Result<()> {
+        let mut bytes = Vec::new();
+        content(&mut bytes)?;
+        self.write(path, &bytes)
+    }
     /// Writes behind the end of a file, which is made if there is none.
     fn append(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()>;
     /// Makes what a file holds safe against a power cut.

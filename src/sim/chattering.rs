@@ -22,8 +22,11 @@ use super::{DaeSystem, DenseLu, Side, SimErrorKind, Treatment};
 /// Length of a row that is chattering. A relation that is reached and left again at once, such as
 /// the limit of a two-point controller, switches twice.
 pub(super) const ROW: u32 = 4;
-/// A row that goes on so long whatever is done.
-const LONGEST_ROW: u32 = 200;
+/// Events of a row whose density tells whether the simulation gets on.
+const LONG_ROW: u32 = 200;
+/// The most events of a row in a whole simulation. Switching that noise causes stays far below it, and
+/// a relay that remembers its side, which switches at both margins of its crossing, far above.
+const MOST_EVENTS: f64 = 1e6;
 /// Steps without a switch after which a relation is not followed any more.
 const QUIET: u32 = 20;
 /// Width of a layer relative to z where the tolerance is tighter: what rounding makes of z must be
@@ -38,11 +41,47 @@ const ROUNDING: f64 = 1e-13;
 /// Iterations for the shares; where one surface is concerned or the effects add up, one is enough.
 const MAX_ITERATIONS: usize = 50;
 
+/// The switches of a crossing function one after the other, between which it stayed small.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Row {
+    pub(super) length: u32,
+    /// When the first switch happened, and every further [`LONG_ROW`]th.
+    mark: f64,
+    /// The time that the last [`LONG_ROW`] switches took.
+    duration: Option<f64>,
+}
+
+impl Row {
+    pub(super) fn end(&mut self) {
+        *self = Row::default();
+    }
+
+    fn lengthen(&mut self, t: f64) {
+        if self.length > 0 && self.length.is_multiple_of(LONG_ROW) {
+            self.duration = Some(t - self.mark);
+        }
+        if self.length.is_multiple_of(LONG_ROW) {
+            self.mark = t;
+        }
+        self.length += 1;
+    }
+
+    /// Whether it would need too many switches for a time as long as `span`.
+    fn is_endless(&self, span: f64) -> bool {
+        let switches = |duration: f64| f64::from(LONG_ROW) * span / duration;
+        self.duration.is_some_and(|duration| switches(duration) > MOST_EVENTS)
+    }
+
+    fn is_due(&self) -> bool {
+        self.length >= ROW && self.length.is_multiple_of(ROW)
+    }
+}
+
 /// What is known of the switches of crossing functions.
 #[derive(Debug, Default)]
 pub(super) struct Watch {
-    /// For every crossing function the length of its row.
-    pub(super) rows: Vec<u32>,
+    /// For every crossing function its row.
+    pub(super) rows: Vec<Row>,
     pub(super) switches: Vec<Switches>,
     /// Steps since a function that is followed has changed its sign.
     quiet: Vec<u32>,
@@ -57,10 +96,10 @@ pub(super) struct Watch {
 
 impl Watch {
     pub(super) fn resize(&mut self, n_crossings: usize) {
-        for counts in [&mut self.rows, &mut self.quiet] {
-            counts.clear();
-            counts.resize(n_crossings, 0);
-        }
+        self.rows.clear();
+        self.rows.resize(n_crossings, Row::default());
+        self.quiet.clear();
+        self.quiet.resize(n_crossings, 0);
         self.switches.clear();
         self.switches.resize(n_crossings, Switches::default());
         self.is_alert = false;
@@ -85,7 +124,7 @@ impl Run<'_> {
             crossings.map_err(SimErrorKind::Evaluation)?;
             for (at, z) in self.watch.z.iter().enumerate() {
                 if z.abs() > self.crossings.uncertainty[at] {
-                    self.watch.rows[at] = 0;
+                    self.watch.rows[at].end();
                 }
             }
         }
@@ -94,7 +133,7 @@ impl Run<'_> {
         self.watch.before.extend_from_slice(&self.y[..n]);
         for (at, z) in self.crossings.at_event().iter().enumerate() {
             if self.crossings.switched.contains(&at) {
-                self.watch.rows[at] += 1;
+                self.watch.rows[at].lengthen(event);
                 self.watch.is_alert = true;
                 let was_above = match self.crossings.signs[at] {
                     0 => *z < 0.0,
@@ -102,7 +141,7 @@ impl Run<'_> {
                 };
                 self.watch.switches[at].note(event, was_above);
             } else if z.abs() > self.crossings.uncertainty[at] {
-                self.watch.rows[at] = 0;
+                self.watch.rows[at].end();
             }
         }
         Ok(())
@@ -118,7 +157,7 @@ impl Run<'_> {
         watch.sides.clear();
         for (at, z) in search.left.iter().enumerate() {
             if z.abs() > search.uncertainty[at] {
-                watch.rows[at] = 0;
+                watch.rows[at].end();
             }
             if search.followed[at] {
                 let side = sign(*z);
@@ -130,11 +169,12 @@ impl Run<'_> {
                 }
                 search.followed[at] = watch.quiet[at] < QUIET || side != search.signs[at];
             }
-            watch.is_alert |= watch.rows[at] > 0 || search.followed[at];
+            watch.is_alert |= watch.rows[at].length > 0 || search.followed[at];
         }
         if watch.sides.is_empty() {
             return Ok(());
         }
+        self.integrator.branches_changed();
         let followed = self.problem.system.follow(self.t, self.y, &watch.sides);
         followed.map_err(SimErrorKind::Evaluation)
     }
@@ -142,9 +182,11 @@ impl Run<'_> {
     /// Does something about the rows that have become long at the event just handled; whether the
     /// integrator was restarted for it.
     pub(super) fn treat_chattering(&mut self) -> Result<bool, SimErrorKind> {
-        if !self.problem.settings.treats_chattering {
-            return match self.crossings.switched.iter().any(|at| self.watch.rows[*at] > LONGEST_ROW)
-            {
+        let settings = self.problem.settings;
+        let span = settings.stop - settings.start;
+        if !settings.treats_chattering {
+            let is_endless = |at: &usize| self.watch.rows[*at].is_endless(span);
+            return match self.crossings.switched.iter().any(is_endless) {
                 true => Err(SimErrorKind::Chattering),
                 false => Ok(false),
             };
@@ -152,18 +194,16 @@ impl Run<'_> {
         if self.rest_after_impact()? {
             return Ok(true);
         }
-        let rows = &self.watch.rows;
-        let switched = self.crossings.switched.iter();
-        let is_due = |at: &&usize| rows[**at] >= ROW && rows[**at].is_multiple_of(ROW);
-        if !switched.clone().any(|at| is_due(&at)) {
+        let (rows, switched) = (&self.watch.rows, &self.crossings.switched);
+        if !switched.iter().any(|at| rows[*at].is_due()) {
             return Ok(false);
         }
         let system = &self.problem.system;
-        let is_endless = |at: &usize| rows[*at] > LONGEST_ROW && !system.can_follow(*at);
-        if switched.clone().any(is_endless) {
+        let is_endless = |at: &usize| rows[*at].is_endless(span) && !system.can_follow(*at);
+        if switched.iter().any(is_endless) {
             return Err(SimErrorKind::Chattering);
         }
-        let is_chattering = |at: &usize| rows[*at] + 1 >= ROW && system.can_follow(*at);
+        let is_chattering = |at: &usize| rows[*at].length + 1 >= ROW && system.can_follow(*at);
         let chattering: Vec<usize> = (0..rows.len()).filter(is_chattering).collect();
         if chattering.is_empty() {
             self.watch_for_accumulation()?;
@@ -318,7 +358,7 @@ impl Run<'_> {
             std::mem::swap(&mut self.integrator, &mut self.implicit);
         }
         for at in crossings {
-            self.watch.rows[*at] = 0;
+            self.watch.rows[*at].end();
             self.problem.system.note_treatment(self.t, *at, Treatment::Slides);
         }
         self.record()?;

@@ -21,6 +21,10 @@ const MAX_TRIALS: usize = 120;
 /// are a thousandth of the tolerance where a step is short, as those behind events are; with 1e-2
 /// the first impacts of a ball at tolerance 1e-4 come late by more than what tests allow.
 const MARGIN: f64 = 1e-3;
+/// Tolerance of the uncertainty that excuses relations which contradict what they decide, where the
+/// one asked for is tighter: the contradiction of the flows that start at zero in FuelCellLib 1.0
+/// does not become smaller with the tolerance.
+const COARSEST: f64 = 1e-6;
 /// The golden ratio: its multiples modulo 1 are spread evenly, so that no sum of perturbations
 /// cancels by chance.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -125,7 +129,11 @@ impl CrossingSearch {
             *is_rising = *change > 0.0;
             *change = change.abs();
         }
-        problem.system.set_uncertainty(&self.uncertainty);
+        let widen = (COARSEST / problem.settings.tolerance).max(1.0);
+        for (wide, uncertainty) in self.trial.iter_mut().zip(&self.uncertainty) {
+            *wide = widen * uncertainty;
+        }
+        problem.system.set_uncertainty(&self.trial);
     }
 
     /// The end of the bracket of the first event in (`a`, `b`], with y there; `None` if no sign
@@ -200,9 +208,19 @@ impl CrossingSearch {
         (a, b): (f64, f64),
         y: &mut [f64],
     ) -> Result<Option<f64>, Failure> {
-        let Some(vertex) = self.earliest_vertex(a, b) else { return Ok(None) };
         self.kept.clear();
         self.kept.extend_from_slice(y);
+        if self.earlier_time.is_none() && (0..self.signs.len()).any(|at| self.is_at_zero(at)) {
+            // Behind an event: a function that has left zero may be back beyond it.
+            let middle = 0.5 * (a + b);
+            integrator.interpolate(middle, y);
+            problem.system.crossings(middle, y, &mut self.earlier)?;
+            self.earlier_time = Some(middle);
+        }
+        let Some(vertex) = self.earliest_vertex(a, b) else {
+            y.copy_from_slice(&self.kept);
+            return Ok(None);
+        };
         integrator.interpolate(vertex, y);
         problem.system.crossings(vertex, y, &mut self.trial)?;
         if self.changed(&self.trial) {
@@ -213,15 +231,24 @@ impl CrossingSearch {
         Ok(None)
     }
 
+    /// Whether a function is within its margin where the search begins.
+    fn is_at_zero(&self, at: usize) -> bool {
+        self.uncertainty[at] > 0.0 && self.left[at].abs() <= self.margin(at)
+    }
+
     /// Where the first of the functions turns at zero or beyond, as far as parabolas tell.
     fn earliest_vertex(&self, a: f64, b: f64) -> Option<f64> {
-        let earlier = self.earlier_time.filter(|earlier| *earlier < a)?;
+        let earlier = self.earlier_time?;
         let vertices = (0..self.signs.len()).filter_map(|at| {
             let values = [self.earlier[at], self.left[at], self.right[at]];
             let (t, z) = vertex([earlier, a, b], values)?;
             let nearest = values[1].abs().min(values[2].abs());
             let sign_of = f64::from(self.signs[at]);
-            (z * sign_of < NEAR_ZERO * nearest).then_some(t)
+            let touches = match earlier < a {
+                true => z * sign_of < NEAR_ZERO * nearest,
+                false => self.is_at_zero(at) && z * sign_of < 0.0,
+            };
+            touches.then_some(t)
         });
         vertices.min_by(f64::total_cmp)
     }

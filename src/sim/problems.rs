@@ -1,6 +1,7 @@
 //! Systems with known solutions.
 
 use super::{DaeSystem, EventOutcome, Failure, Pattern};
+use crate::elementary;
 
 /// A system given by closures over (t, y), all of y observed; Jacobian by differences.
 pub(super) struct TestProblem {
@@ -168,7 +169,9 @@ pub(super) fn oscillator() -> TestProblem {
 
 /// x' = −1e4 (x − cos t) − sin t, x(0) = 1: x = cos t (Prothero & Robinson).
 pub(super) fn stiff_linear() -> TestProblem {
-    TestProblem::new(&[1.0], 1, |t, y, _, out| out[0] = -1e4 * (y[0] - t.cos()) - t.sin())
+    TestProblem::new(&[1.0], 1, |t, y, _, out| {
+        out[0] = -1e4 * (y[0] - elementary::cos(t)) - elementary::sin(t)
+    })
 }
 
 /// Robertson's reaction with the sum of concentrations as algebraic equation. At t = 40:
@@ -239,8 +242,8 @@ pub(super) const OREGONATOR_END: [f64; 3] =
 /// A source x = sin t behind 100 Ω and a diode: 0 = (10 x − v)/100 − 1e-9 (exp(v/0.025) − 1).
 pub(super) fn diode() -> TestProblem {
     TestProblem::new(&[0.0, 0.0], 1, |t, y, _, out| {
-        out[0] = t.cos();
-        out[1] = (10.0 * y[0] - y[1]) / 100.0 - 1e-9 * ((y[1] / 0.025).exp() - 1.0);
+        out[0] = elementary::cos(t);
+        out[1] = (10.0 * y[0] - y[1]) / 100.0 - 1e-9 * (elementary::exp(y[1] / 0.025) - 1.0);
     })
 }
 
@@ -251,8 +254,8 @@ pub(super) fn pendulum() -> TestProblem {
         let &[angle, speed, px, py, force] = y else { panic!("five unknowns") };
         out[0] = speed;
         out[1] = -9.81 * px;
-        out[2] = px - angle.sin();
-        out[3] = py + angle.cos();
+        out[2] = px - elementary::sin(angle);
+        out[3] = py + elementary::cos(angle);
         out[4] = force - speed * speed + 9.81 * py;
     })
 }
@@ -261,14 +264,14 @@ pub(super) fn pendulum() -> TestProblem {
 pub(super) fn algebraic() -> TestProblem {
     TestProblem::new(&[0.0, 2.0], 1, |t, y, _, out| {
         out[0] = y[1];
-        out[1] = y[1] + y[0] - 2.0 * (-t).exp();
+        out[1] = y[1] + y[0] - 2.0 * elementary::exp(-t);
     })
 }
 
 /// x' = 2 t x (1 − x) + (w − exp(−t)), w' = −w, x(0) = 1/2: x = 1/(1 + exp(−t²)), w = exp(−t).
 pub(super) fn driven_logistic() -> TestProblem {
     TestProblem::new(&[0.5, 1.0], 2, |t, y, _, out| {
-        out[0] = 2.0 * t * y[0] * (1.0 - y[0]) + (y[1] - (-t).exp());
+        out[0] = 2.0 * t * y[0] * (1.0 - y[0]) + (y[1] - elementary::exp(-t));
         out[1] = -y[1];
     })
 }
@@ -352,15 +355,15 @@ impl HeatRod {
     }
 
     fn conductance(&self) -> f64 {
-        0.1 * (self.n as f64 + 1.0).powi(2)
+        0.1 * elementary::powi(self.n as f64 + 1.0, 2)
     }
 
     pub(super) fn rate(&self) -> f64 {
-        self.conductance() * (2.0 - 2.0 * self.angle().cos())
+        self.conductance() * (2.0 - 2.0 * elementary::cos(self.angle()))
     }
 
     pub(super) fn start(&self, i: usize) -> f64 {
-        ((i as f64 + 1.0) * self.angle()).sin()
+        elementary::sin((i as f64 + 1.0) * self.angle())
     }
 }
 

@@ -143,6 +143,7 @@ impl Simulator {
             has_unknowns: n > 0,
             last_event: f64::NEG_INFINITY,
             last_jump: f64::NEG_INFINITY,
+            last_solved: f64::NEG_INFINITY,
             events_at_once: 0,
         };
         let ended = run.run();
@@ -230,6 +231,8 @@ pub(super) struct Run<'a> {
     has_unknowns: bool,
     last_event: f64,
     last_jump: f64,
+    /// When algebraic unknowns were solved for because no step could be made.
+    last_solved: f64,
     events_at_once: u32,
 }
 
@@ -293,30 +296,61 @@ impl Run<'_> {
         Ok(next.is_none_or(|next| next > event))
     }
 
-    /// Where no step can be made because the solution of the algebraic equations ends, they may have
-    /// another one just behind: an event leads to it. Fails with `kind` if nothing jumps there.
+    /// Where no step can be made: the solution of the algebraic equations may go on elsewhere, or on
+    /// another branch. Fails with `kind` if it does not.
     fn jump(&mut self, kind: SimErrorKind) -> Result<After, SimErrorKind> {
-        let settings = self.problem.settings;
-        let span = settings.stop - settings.start;
-        let is_near = self.t - self.last_jump <= FARTHER * BEHIND[0] * span;
+        let system = &*self.problem.system;
         // Derivatives do not follow a solution that jumps for no reason of its own.
-        let is_algebraic =
-            self.problem.system.n_algebraic() > 0 && self.problem.system.n_directions() == 0;
-        let is_sliding = self.problem.system.is_constrained();
-        if kind != SimErrorKind::StepSize || !is_algebraic || is_near || is_sliding {
+        if system.n_directions() > 0 || system.is_constrained() {
+            return Err(kind);
+        }
+        let ends = kind == SimErrorKind::StepSize && system.n_algebraic() > 0;
+        let is_domain = matches!(kind, SimErrorKind::Evaluation(Failure::Domain { .. }));
+        if !ends && !is_domain {
+            return Err(kind);
+        }
+        if let Some(after) = self.solve_again() {
+            return Ok(after);
+        }
+        if ends { self.jump_behind_end(kind) } else { self.leave_branch(kind) }
+    }
+
+    /// The integrator leaves errors in algebraic unknowns that may be too large for any further step,
+    /// as near the zero of a root: an event here solves for them. `None` if that was not the reason.
+    fn solve_again(&mut self) -> Option<After> {
+        let span = self.problem.settings.stop - self.problem.settings.start;
+        if self.problem.system.n_algebraic() == 0 || self.t - self.last_solved <= BEHIND[0] * span {
+            return None;
+        }
+        self.last_solved = self.t;
+        let before = self.y.to_vec();
+        self.problem.system.crossed(None, span);
+        let outcome = self.whole_event(self.t);
+        let after = match outcome {
+            Ok(EventOutcome::Terminate) => Some(After::Terminated),
+            Ok(_) if *self.y != before && self.restart().is_ok() => Some(After::Restarted),
+            _ => None,
+        };
+        if after.is_none() {
+            self.y.copy_from_slice(&before);
+        }
+        after
+    }
+
+    /// The solution of the algebraic equations ends, and they may have another one just behind: an
+    /// event leads to it.
+    fn jump_behind_end(&mut self, kind: SimErrorKind) -> Result<After, SimErrorKind> {
+        let span = self.problem.settings.stop - self.problem.settings.start;
+        if self.t - self.last_jump <= FARTHER * BEHIND[0] * span {
             return Err(kind);
         }
         let (begin, before) = (self.t, self.y.to_vec());
-        let mut slopes = vec![0.0; self.y.len()];
-        self.problem.system.rhs(self.t, self.y, &mut slopes).map_err(SimErrorKind::Evaluation)?;
-        slopes[self.problem.system.n_differential()..].fill(0.0);
+        let derivatives = self.derivatives().map_err(SimErrorKind::Evaluation)?;
         for ahead in BEHIND.map(|behind| begin + behind * span) {
-            if ahead > settings.stop {
+            if ahead > self.problem.settings.stop {
                 break;
             }
-            for ((y, before), slope) in self.y.iter_mut().zip(&before).zip(&slopes) {
-                *y = before + (ahead - begin) * slope;
-            }
+            self.move_along(&before, &derivatives, ahead - begin);
             self.last_jump = ahead;
             self.problem.statistics.state_events += 1;
             let after = self.handle_event(ahead, false).map_err(|_| kind)?;
@@ -329,6 +363,60 @@ impl Run<'_> {
         }
         self.t = begin;
         Err(kind)
+    }
+
+    /// A function has no value beyond, as sqrt(x) behind x = 0, within less than the margin of the
+    /// relation x >= 0 that chooses another branch there: an event here, or just behind, changes the
+    /// relation. Or there is no value for the algebraic unknowns between here and just behind, where
+    /// stages of a step would be, as in s + s² = abs(x) with s = sqrt(y) at x = 0.
+    fn leave_branch(&mut self, kind: SimErrorKind) -> Result<After, SimErrorKind> {
+        let settings = self.problem.settings;
+        let span = settings.stop - settings.start;
+        let distance = self.t - self.last_jump;
+        if distance <= 0.0 {
+            return Err(kind);
+        }
+        let may_leap =
+            self.problem.system.n_algebraic() > 0 && distance > FARTHER * BEHIND[0] * span;
+        let (begin, before) = (self.t, self.y.to_vec());
+        let signs = self.crossings.signs.clone();
+        let derivatives = self.derivatives().unwrap_or_else(|_| vec![0.0; before.len()]);
+        for ahead in [0.0].into_iter().chain(BEHIND.map(|behind| behind * span)) {
+            self.t = begin + ahead;
+            if self.t > settings.stop {
+                break;
+            }
+            self.last_jump = self.t;
+            self.move_along(&before, &derivatives, ahead);
+            self.problem.system.crossed(None, span);
+            let Ok(outcome) = self.whole_event(self.t) else { continue };
+            if outcome == EventOutcome::Terminate {
+                return Ok(After::Terminated);
+            }
+            let has_switched = self.start_crossings().is_ok() && signs != self.crossings.signs;
+            let leaps = may_leap && ahead > 0.0;
+            if (has_switched || leaps) && self.restart().is_ok() {
+                self.problem.statistics.state_events += 1;
+                return Ok(After::Restarted);
+            }
+        }
+        self.t = begin;
+        self.y.copy_from_slice(&before);
+        Err(kind)
+    }
+
+    /// The derivatives of the states here; zero for algebraic unknowns.
+    fn derivatives(&mut self) -> Result<Vec<f64>, Failure> {
+        let mut derivatives = vec![0.0; self.y.len()];
+        self.problem.system.rhs(self.t, self.y, &mut derivatives)?;
+        derivatives[self.problem.system.n_differential()..].fill(0.0);
+        Ok(derivatives)
+    }
+
+    fn move_along(&mut self, before: &[f64], derivatives: &[f64], duration: f64) {
+        for ((y, before), derivative) in self.y.iter_mut().zip(before).zip(derivatives) {
+            *y = before + duration * derivative;
+        }
     }
 
     /// Whether algebraic unknowns are elsewhere than before.
@@ -463,19 +551,17 @@ impl Run<'_> {
     fn handle_event(&mut self, t: f64, told_by_sign: bool) -> Result<After, SimErrorKind> {
         self.t = t;
         self.watch_for_chattering()?;
-        self.record()?;
+        match self.record() {
+            // Located behind the zero of a root, where the branch before the event has no value.
+            Err(SimErrorKind::Evaluation(Failure::Domain { .. })) if told_by_sign => {}
+            recorded => recorded?,
+        }
         let was_constrained = self.problem.system.is_constrained();
         let (surfaces, contacts) = self.end_slide();
         let crossing = if told_by_sign { self.crossings.last() } else { None };
         let span = self.problem.settings.stop - self.problem.settings.start;
         self.problem.system.crossed(crossing, span);
-        let mut outcome = self.event(t)?;
-        while outcome == EventOutcome::Again {
-            outcome = match self.event(t)? {
-                EventOutcome::Continue { .. } => EventOutcome::Continue { y_changed: true },
-                other => other,
-            };
-        }
+        let outcome = self.whole_event(t)?;
         while self.next_output.is_some_and(|point| point <= t) {
             self.advance_output();
         }
@@ -492,6 +578,18 @@ impl Run<'_> {
             }
         }
         Ok(After::Restarted)
+    }
+
+    /// Lets the system handle an event and those that follow it at the same time.
+    fn whole_event(&mut self, t: f64) -> Result<EventOutcome, SimErrorKind> {
+        let mut outcome = self.event(t)?;
+        while outcome == EventOutcome::Again {
+            outcome = match self.event(t)? {
+                EventOutcome::Continue { .. } => EventOutcome::Continue { y_changed: true },
+                other => other,
+            };
+        }
+        Ok(outcome)
     }
 
     /// Lets the system handle an event and records what comes behind it.
@@ -528,12 +626,13 @@ impl Run<'_> {
         if let Some(at) = self.y.iter().position(|y| !y.is_finite()) {
             return Some(at).filter(|at| *at < n);
         }
-        let mut slopes = vec![0.0; n];
-        self.problem.system.rhs(self.t, self.y, &mut slopes).ok()?;
-        if let Some(at) = slopes.iter().position(|slope| !slope.is_finite()) {
+        let mut derivatives = vec![0.0; n];
+        self.problem.system.rhs(self.t, self.y, &mut derivatives).ok()?;
+        if let Some(at) = derivatives.iter().position(|derivative| !derivative.is_finite()) {
             return Some(at);
         }
-        let speed = |at: usize| slopes[at].abs() / self.y[at].abs().max(self.problem.nominal[at]);
+        let speed =
+            |at: usize| derivatives[at].abs() / self.y[at].abs().max(self.problem.nominal[at]);
         (0..self.problem.system.n_differential()).max_by(|a, b| speed(*a).total_cmp(&speed(*b)))
     }
 

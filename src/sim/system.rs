@@ -100,7 +100,8 @@ pub trait DaeSystem {
     fn check(&mut self, _t: f64, _y: &[f64]) -> Result<(), Failure> {
         Ok(())
     }
-    /// Is told what errors of y as large as the tolerance make of the crossing functions.
+    /// Notes what errors of y as large as the tolerance, at least 1e-6, make of the crossing
+    /// functions.
     fn set_uncertainty(&mut self, _crossings: &[f64]) {}
     /// Prepares to be evaluated on either side of surfaces, in all combinations;
     /// whether it can: not where values of events remember on which side they were before.

@@ -6,12 +6,14 @@
 pub struct Trajectory {
     time: Vec<f64>,
     columns: Vec<Vec<f64>>,
+    /// Which columns are kept; of the others only the last value is. All where there is nothing.
+    kept: Vec<bool>,
 }
 
 impl Trajectory {
     /// An empty trajectory with so many columns beside time.
     pub fn new(n_columns: usize) -> Trajectory {
-        Trajectory { time: Vec::new(), columns: vec![Vec::new(); n_columns] }
+        Trajectory { columns: vec![Vec::new(); n_columns], ..Trajectory::default() }
     }
 
     /// Removes all rows and keeps the memory.
@@ -28,9 +30,22 @@ impl Trajectory {
     pub fn push(&mut self, time: f64, values: &[f64]) {
         assert_eq!(values.len(), self.columns.len(), "a row has one value for each column");
         self.time.push(time);
-        for (column, value) in self.columns.iter_mut().zip(values) {
+        for (at, (column, value)) in self.columns.iter_mut().zip(values).enumerate() {
+            if self.kept.get(at) == Some(&false) {
+                column.clear();
+            }
             column.push(*value);
         }
+    }
+
+    /// An empty trajectory that keeps all values of these columns, and of others the last one.
+    pub fn keeping(kept: Vec<bool>) -> Trajectory {
+        Trajectory { kept, ..Trajectory::default() }
+    }
+
+    /// Takes the values of a column out.
+    pub fn take_column(&mut self, column: usize) -> Vec<f64> {
+        std::mem::take(&mut self.columns[column])
     }
 
     /// Number of rows.

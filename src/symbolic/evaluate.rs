@@ -2,6 +2,7 @@
 
 use super::node::{Expr, Node, VarId};
 use super::pool::Pool;
+use crate::elementary;
 use rustc_hash::FxHashMap;
 
 /// Gives values to variables and calls.
@@ -65,7 +66,7 @@ fn node_value<E: Environment + ?Sized>(
         Node::Sub(a, b) => get(*a) - get(*b),
         Node::Mul(a, b) => get(*a) * get(*b),
         Node::Div(a, b) => get(*a) / get(*b),
-        Node::Pow(a, b) => get(*a).powf(get(*b)),
+        Node::Pow(a, b) => elementary::powf(get(*a), get(*b)),
         Node::Apply(id, arguments) => match arguments.second() {
             None => id.get().value.of(&[get(arguments.first())]),
             Some(second) => id.get().value.of(&[get(arguments.first()), get(second)]),

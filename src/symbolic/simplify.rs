@@ -7,6 +7,7 @@
 use super::function::{self, FunctionId};
 use super::node::{Arguments, Expr, Node, RelationOperator};
 use super::pool::Pool;
+use crate::elementary;
 
 impl Pool {
     /// `-a`
@@ -116,7 +117,7 @@ impl Pool {
 
     /// `a ^ b`
     pub fn pow(&mut self, a: Expr, b: Expr) -> Expr {
-        if let Some(folded) = self.fold(a, b, f64::powf) {
+        if let Some(folded) = self.fold(a, b, elementary::powf) {
             return folded;
         }
         match (self.node(a), self.node(b)) {

@@ -27,7 +27,7 @@ pub use outline::{Outline, OutlinedClass};
 
 use crate::diag::Diagnostic;
 use crate::name::Name;
-use crate::source::SourceId;
+use crate::source::{SourceId, Span};
 use ast::{Argument, Expression, Script, StoredDefinition};
 use parser::Rule;
 use place::Place;
@@ -120,7 +120,11 @@ pub fn parse_all_of_stored_definition(
 /// # Ok::<(), gapilib::diag::Diagnostic>(())
 /// ```
 pub fn parse_script(source: SourceId, text: &str) -> Result<Script, Diagnostic> {
-    parser::parse(&Place::in_source(source), text, Rule::script, Dialect::Script, lower::script)
+    let parts =
+        parser::parse_in_pieces(source, text, Rule::script, Dialect::Script, lower::script)?;
+    let mut statements = Vec::with_capacity(parts.iter().map(|part| part.statements.len()).sum());
+    parts.into_iter().for_each(|part| statements.extend(part.statements));
+    Ok(Script { statements, span: Span::new(source, 0, text.len()) })
 }
 
 /// Reads an expression.

@@ -2,11 +2,13 @@
 
 use super::failure;
 use super::place::Place;
-use super::scan::{self, Dialect};
+use super::scan::{self, Dialect, Scanned};
 use crate::diag::Diagnostic;
-use crate::source::Span;
+use crate::source::{SourceId, Span};
 use pest::Parser as _;
 use pest::iterators::{Pair, Pairs};
+use rayon::prelude::*;
+use std::ops::Range;
 
 #[derive(pest_derive::Parser)]
 #[grammar = "grammar/lexical.pest"]
@@ -26,6 +28,15 @@ pub(super) fn parse<T>(
     lower: impl FnOnce(Nodes<'_>) -> Result<T, Diagnostic>,
 ) -> Result<T, Diagnostic> {
     let scanned = scan::scan(place.source(), text, dialect).map_err(|e| place.relocated(e))?;
+    parse_scanned(place, scanned, rule, lower)
+}
+
+fn parse_scanned<T>(
+    place: &Place,
+    scanned: Scanned,
+    rule: Rule,
+    lower: impl FnOnce(Nodes<'_>) -> Result<T, Diagnostic>,
+) -> Result<T, Diagnostic> {
     let pairs = match read(rule, &scanned.text) {
         Ok(pairs) => pairs,
         Err(error) => {
@@ -35,8 +46,41 @@ pub(super) fn parse<T>(
     if let Some(problem) = scanned.problem {
         return Err(place.relocated(problem.diagnostic));
     }
-    let whole = place.span(0, text.len());
+    let whole = place.span(0, scanned.text.len());
     lower(Nodes { place, pairs, whole })
+}
+
+/// The same for a text that may be long, piece by piece, on all processors: what the grammar
+/// answers takes far more memory than the text and the tree.
+pub(super) fn parse_in_pieces<T: Send>(
+    source: SourceId,
+    text: &str,
+    rule: Rule,
+    dialect: Dialect,
+    lower: impl Fn(Nodes<'_>) -> Result<T, Diagnostic> + Sync,
+) -> Result<Vec<T>, Diagnostic> {
+    let scanned = scan::scan(source, text, dialect)?;
+    let pieces = scanned.pieces();
+    if let [_] = pieces.as_slice() {
+        let place = Place::in_source(source);
+        return Ok(vec![parse_scanned(&place, scanned, rule, lower)?]);
+    }
+    let lowered = |piece: &Range<usize>| {
+        let place = Place::part(source, piece.start);
+        let part = &scanned.text[piece.clone()];
+        let pairs = read(rule, part).ok()?;
+        Some(lower(Nodes { place: &place, pairs, whole: place.span(0, part.len()) }))
+    };
+    let read: Vec<_> = pieces.par_iter().map(lowered).collect();
+    let each = read.into_iter().zip(pieces).map(|(read, piece)| match read {
+        Some(read) => read,
+        // This thread has more stack, and the time to say what is wrong.
+        None => {
+            let place = Place::part(source, piece.start);
+            parse_scanned(&place, Scanned::part(scanned.text[piece].to_owned()), rule, &lower)
+        }
+    });
+    each.collect()
 }
 
 /// Reads a scanned text; the nodes are those inside `rule`.

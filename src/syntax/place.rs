@@ -31,6 +31,11 @@ impl Place {
         Place { source, pieces: Vec::new(), unread: None }
     }
 
+    /// A part of a source that begins at `start`.
+    pub(super) fn part(source: SourceId, start: usize) -> Place {
+        Place { source, pieces: vec![(0, start)], unread: None }
+    }
+
     /// The bytes `start..end` of the text as a place in the original.
     pub(super) fn span(&self, start: usize, end: usize) -> Span {
         if self.pieces.is_empty() {

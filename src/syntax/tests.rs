@@ -32,6 +32,40 @@ fn shape(text: &str) -> String {
         .collect()
 }
 
+/// A script of many pieces, each of which is read by itself.
+fn long_script(last: &str) -> String {
+    let one = "x = 1; // a remark\nif x > 0 then\n  y = {1, 2};\nend if\nf(x)\n";
+    one.repeat(4000) + last
+}
+
+#[test]
+fn a_long_script_is_read_piece_by_piece_with_the_same_places() {
+    let text = long_script("z = 2\n");
+    let script = parse_script(SourceId::NONE, &text).expect("a script");
+    assert_eq!(script.statements.len(), 4000 * 3 + 1);
+    for statement in &script.statements {
+        let written = &text[statement.span.start as usize..statement.span.end as usize];
+        assert!(
+            matches!(written, "x = 1" | "f(x)" | "z = 2") || written.starts_with("if x > 0"),
+            "{written:?}"
+        );
+    }
+}
+
+#[test]
+fn an_error_late_in_a_long_script_has_its_place() {
+    for (last, code) in [
+        ("z = 2 +;\n", "syntax-error"),
+        ("z = (2\n", "unclosed-bracket"),
+        ("end for\n", "mismatched-end"),
+    ] {
+        let text = long_script(last);
+        let error = parse_script(SourceId::NONE, &text).expect_err("an error");
+        assert_eq!(error.code.slug, code);
+        assert!(error.span().start as usize >= text.len() - last.len(), "{last:?} {error:?}");
+    }
+}
+
 #[test]
 fn line_ends_close_statements() {
     assert_eq!(shape("x = 1\ny := 2; z = x\n+ y\nf(x,\n y)\n"), "aa;ae");

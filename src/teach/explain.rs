@@ -4,6 +4,7 @@
 use super::generation::{Generation, mate};
 use super::step::Step;
 use super::walk::Walk;
+use crate::elementary;
 use crate::ga::has_failed;
 
 /// What happens in the step that `walk` stands at, and why.
@@ -31,7 +32,7 @@ pub fn short(value: f64) -> String {
         _ if !value.is_finite() => format!("{value}"),
         _ if !(1e-3..1e5).contains(&magnitude) => format!("{value:.3e}"),
         _ => {
-            let digits = (3 - magnitude.log10().floor() as i32).clamp(0, 6) as usize;
+            let digits = (3 - elementary::log10(magnitude).floor() as i32).clamp(0, 6) as usize;
             format!("{value:.digits$}")
         }
     }

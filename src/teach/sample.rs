@@ -3,6 +3,7 @@
 use super::event::Place;
 use super::tracer::{MutationCall, Tracer};
 use super::{Subject, Trace, Walk};
+use crate::elementary;
 use crate::ga::{Gene, Genomes, Mrg32k3a, crossover, mutation, survival};
 use std::path::Path;
 
@@ -103,7 +104,7 @@ fn simulate(
         |genes: &[f64]| X.map(|x| if fails(genes) { f64::NAN } else { genes[0] + genes[1] * x });
     let rows: Vec<f64> = population.rows().flat_map(row).collect();
     let fitness = |row: &[f64]| {
-        let sum: f64 = row.iter().zip(&Y).map(|(s, m)| (s - m).powi(2)).sum();
+        let sum: f64 = row.iter().zip(&Y).map(|(s, m)| elementary::powi(s - m, 2)).sum();
         if sum.is_nan() { 1e60 } else { sum }
     };
     let fitness = rows.chunks_exact(3).map(fitness).collect();

@@ -5,6 +5,7 @@ mod dimension;
 mod parse;
 mod written;
 
+use crate::elementary;
 pub use dimension::Dimension;
 pub use parse::{dimension, unit};
 pub use written::{in_words, normalized, written};
@@ -53,7 +54,7 @@ impl Unit {
     fn power(self, exponent: f64) -> Option<Unit> {
         let dimension = self.dimension.power(exponent)?;
         // Powers of whole numbers by `powi` keep 1e-2^2 at 1e-4.
-        let factor = self.factor.powi(exponent as i32);
+        let factor = elementary::powi(self.factor, exponent as i32);
         Some(Unit { dimension, factor, offset: 0.0 })
     }
 

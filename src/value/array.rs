@@ -1,6 +1,6 @@
 //! Arrays (MLS ch. 10): row-major, of one element type, stored unboxed.
 
-use super::errors::{ARRAY_TOO_LARGE, TYPE_MISMATCH};
+use super::errors::{ARRAY_TOO_LARGE, STRING_TOO_LONG, TYPE_MISMATCH};
 use super::{EnumerationValue, RecordValue, Value};
 use crate::diag::Fault;
 use crate::{bail, fault};
@@ -101,6 +101,19 @@ fn picked<T: Clone>(values: &[T], offsets: impl Iterator<Item = usize>) -> Vec<T
 pub fn sizes(dims: &[usize]) -> String {
     let sizes: Vec<String> = dims.iter().map(usize::to_string).collect();
     format!("[{}]", sizes.join(", "))
+}
+
+/// The most bytes that a string may have.
+pub(super) const MAX_BYTES: usize = 1 << 28;
+
+/// A fault if a string of so many bytes is longer than 2^28 bytes, which no string of a script or model may be.
+pub fn check_length(bytes: usize) -> Result<(), Fault> {
+    match bytes {
+        0..=MAX_BYTES => Ok(()),
+        _ => {
+            bail!(STRING_TOO_LONG, "a string of {bytes} bytes is too long; {MAX_BYTES} is the most")
+        }
+    }
 }
 
 /// The number of elements of an array of these sizes; a fault if that is more than

@@ -15,12 +15,18 @@ codes! {
     /// An Integer result outside 64 bits.
     INTEGER_OVERFLOW = "integer-overflow":
         "## What it means\n\nThe exact result of an Integer operation does not fit in 64 bits. It is never wrapped around or rounded.\n\n## Example\n\n`9223372036854775807 + 1`\n\n## What to do\n\nCompute with Reals (write `1.0` for `1`) where the magnitude matters more than the last digit.",
+    /// A Real result beyond the largest number.
+    REAL_OVERFLOW = "real-overflow":
+        "## What it means\n\nA number is larger than the largest Real, about 1.8e308. The result is not replaced by infinity, which would go on into every number computed from it.\n\n## Example\n\n`exp(1000)`\n\n## What to do\n\nScale the quantities, or compute with logarithms. `Modelica.Constants.inf`, which is 1e60, stands for a limit that is never reached.",
     /// A zero divisor.
     DIVISION_BY_ZERO = "division-by-zero":
         "## What it means\n\nThe divisor of `/`, `./`, `div`, `mod` or `rem` is zero, or zero is raised to a negative power. The result is not replaced by infinity.\n\n## Example\n\n`1 / (x - x)`\n\n## What to do\n\nGuard the division: `if abs(d) > eps then n / d else …`.",
     /// An argument outside the domain of a function.
     DOMAIN_ERROR = "domain-error":
         "## What it means\n\nA function has no real value for its argument, such as the logarithm of a negative number.\n\n## Example\n\n`sqrt(-1)`\n\n## What to do\n\nCheck the argument, or limit it: `log(max(x, 1e-9))`.",
+    /// A string that would not fit in memory.
+    STRING_TOO_LONG = "string-too-long":
+        "## What it means\n\nA string of more than 268 435 456 (2^28) bytes was to be made.\n\n## Example\n\n`for i in 1:100 loop s = s + s; end for`\n\n## What to do\n\nCheck the loop that makes the string longer; write long texts to a file piece by piece, with `print(text, file)`.",
     /// An array that would not fit in memory.
     ARRAY_TOO_LARGE = "array-too-large":
         "## What it means\n\nAn array with more than 16 777 216 (2^24) elements was asked for.\n\n## Example\n\n`zeros(100000, 100000)`\n\n## What to do\n\nCheck the sizes; a `for` loop over a long range does not build an array.",

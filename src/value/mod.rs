@@ -16,7 +16,7 @@ pub mod show;
 #[cfg(test)]
 mod tests;
 
-pub use array::{ArrayValue, Elements, MAX_ELEMENTS, element_count, sizes};
+pub use array::{ArrayValue, Elements, MAX_ELEMENTS, check_length, element_count, sizes};
 pub use cast::{FromValue, IntoValue, RealMatrix};
 pub use external_object::ExternalObject;
 pub use index::Index;

@@ -2,6 +2,7 @@
 //! NIST. `cargo bench --bench nist`; behind `--` the name of a method (`genetic`, `multistart`, `lm`),
 //! a number of seeds, or a part of the names of the problems.
 
+#![allow(clippy::disallowed_methods, reason = "figures need not have every digit")]
 #![allow(clippy::print_stdout, reason = "it prints a table")]
 
 #[path = "../nist/mod.rs"]

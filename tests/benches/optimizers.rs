@@ -4,6 +4,7 @@
 
 #![allow(clippy::print_stdout, reason = "it prints a table")]
 
+use gapilib::elementary;
 use gapilib::ga::optimizer::{Answers, METHODS, Method, Polished, Setup, Wants, survivors};
 use gapilib::ga::{FAILED_FITNESS, Gene, Genomes, Mrg32k3a, hypervolume};
 use gapilib::registry::{self, Options};

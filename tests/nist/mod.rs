@@ -203,6 +203,7 @@ impl Dataset {
         let flat = flatten(&library, &Name::parse(self.name), &[]).expect("a model").model;
         let program = Program::compile(sort(&flat).expect("it is sorted")).expect("it compiles");
         Experiment {
+            second_attempt: true,
             name: format!("z = {z}"),
             model: Arc::new(CompiledModel::new(self.name, program).driven_by("x", "at")),
             settings: Settings::default(),

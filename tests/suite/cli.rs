@@ -471,3 +471,27 @@ fn a_result_file_that_is_written_again_is_read_again() {
     let expected: String = (1..=40).map(|k| format!("{k} -{k}\n")).collect();
     assert_eq!(out, expected);
 }
+
+/// Two problems of the same data: the table, and the same as a file beside their folders.
+#[test]
+fn a_comparison_of_models_is_written() {
+    let problem = "model = \"Decay\"\nfiles = [\"Decay.mo\"]\n[parameters]\nrate = { min = 0.1, max = 5 }\n\
+                   [[experiment]]\ndata = \"d.csv\"\noutputs = { x = { column = \"x\", sigma = 0.02 } }\n";
+    let data = "time,x\n0,1.01\n0.2,0.83\n0.4,0.66\n0.6,0.56\n0.8,0.44\n1,0.38\n";
+    let other = problem.replace("max = 5", "max = 4");
+    let files = [("Decay.mo", DECAY), ("d.csv", data), ("a.toml", problem), ("b.toml", &other)];
+    let here = folder(&files);
+    let (code, out, errors) = gapi(&here, &["identify", "a.toml", "a.toml"]);
+    assert_eq!(code, 2, "{out}{errors}");
+    let (code, out, errors) = gapi(&here, &["identify", "a.toml", "b.toml", "--out", "o"]);
+    assert_eq!(code, 0, "{out}{errors}");
+    let written = fs::read(here.path().join("o/comparison-a-b.json")).unwrap();
+    let found: serde_json::Value = serde_json::from_slice(&written).unwrap();
+    for (k, name) in ["a", "b"].iter().enumerate() {
+        assert_eq!(found["models"][k]["name"], *name);
+        // The same model twice: neither weighs more.
+        assert!((found["models"][k]["weight"].as_f64().unwrap() - 0.5).abs() < 1e-6, "{found}");
+    }
+    assert!(out.contains("comparison-a-b.json"), "{out}");
+    assert_eq!(found["sentence"].as_str().map(|s| out.contains(s)), Some(true), "{out}");
+}

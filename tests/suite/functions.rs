@@ -308,7 +308,8 @@ fn failures_inside_functions_say_why() {
         ),
         (
             "function f {h} algorithm y := u; while y > 0 loop y := y + 1; end while; end f;",
-            "domain-error: a loop does not end in the function `P.f` (at t = 0)",
+            "domain-error: more than 20 million instructions in the function `P.f` \
+             (`--instruction-limit` allows more) (at t = 0)",
         ),
     ];
     for (functions, expected) in cases {

@@ -113,7 +113,8 @@ fn least_squares_from_the_script_s_best_individual_reach_the_minimum() {
     }
     let text = "RunScript(\"GAPILib_INI.mos\")\nN_Cycle = 50\nRunScript(\"GAPILib_CYCLE.mos\")\n";
     let world = shipped::world().with_file("scripts/test.mos", text);
-    let options = gapilib::script::Options { no_probe: true, ..Default::default() };
+    let options =
+        gapilib::script::Options { probe: gapilib::identify::Probe::Off, ..Default::default() };
     let mut without = Session::new(Box::new(world)).with_options(options);
     without.run_file(Path::new("scripts/test.mos"));
     assert_eq!(written(&with, "history.csv"), written(&without, "history.csv"));
@@ -124,6 +125,92 @@ fn least_squares_from_the_script_s_best_individual_reach_the_minimum() {
         assert!(own["deviation"].is_null() && own["determined"].is_null(), "{own}");
         assert!(own["interval"].is_null(), "{own}");
     }
+}
+
+/// A straight line by a script: bands and profiles have a closed form (Bates and Watts 1988, §1.2),
+/// `t s sqrt(1/n + (x - x̄)²/Sxx)` for the curve and `t s sqrt(1 + 1/n + ...)` for new points.
+#[test]
+fn a_script_s_minimum_has_bands_and_profiles() {
+    let model = "model Line\n  parameter Real a = 0;\n  parameter Real b = 1;\n  \
+                 output Real y = a + b*time;\n  annotation(experiment(StopTime = 4));\nend Line;\n";
+    let script = "X := {0.0, 1.0, 2.0, 3.0, 4.0};\nY := {1.1, 2.9, 5.2, 6.8, 9.0};\n\
+                  D := Eval(\"Line.mo\", \"Line\", X, {{1.5, 1.5}, {0.5, 2.5}}, {\"a\", \"b\"}, \"time\", \"y\");\n\
+                  F := Fit(D, Y);\n";
+    let run_with = |probe| {
+        let world = shipped::world().with_file("Line.mo", model).with_file("test.mos", script);
+        let options = gapilib::script::Options { probe, ..Default::default() };
+        let mut session = Session::new(Box::new(world)).with_options(options);
+        session.run_file(Path::new("test.mos"));
+        session
+    };
+    let session = run_with(gapilib::identify::Probe::Profiles);
+    let found = result(&session);
+    // Sums by hand: x̄ = 2, Sxx = 10, ȳ = 5, Sxy = 19.7.
+    let (b, a) = (1.97, 5.0 - 1.97 * 2.0);
+    let measured = [1.1, 2.9, 5.2, 6.8, 9.0];
+    let squares = measured.iter().zip(0..).map(|(y, x)| (y - a - b * f64::from(x)).powi(2));
+    let s = (squares.sum::<f64>() / 3.0).sqrt();
+    let t = 3.182_446_305_284_263; // 97.5 % of Student's distribution, 3 degrees of freedom
+    let half = |x: f64| t * s * (0.2 + (x - 2.0).powi(2) / 10.0).sqrt();
+    let bands = written(&session, "bands.csv");
+    let rows: Vec<Vec<f64>> = bands
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').skip(2).map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    assert!(rows.len() > 50, "{bands}");
+    for row in &rows {
+        let [x, y, confidence, prediction] = row[..] else { panic!("{row:?}") };
+        assert!((y - a - b * x).abs() < 1e-6, "{row:?}");
+        assert!((confidence - half(x)).abs() < 1e-4 * half(x), "{row:?} {}", half(x));
+        let new = half(x).hypot(t * s);
+        assert!((prediction - new).abs() < 1e-4 * new, "{row:?} {new}");
+    }
+    let profiles = &found["profiles"]["profiles"];
+    for (k, value, width) in [(0, a, half(0.0)), (1, b, t * s / 10.0_f64.sqrt())] {
+        let ends = &profiles[k]["interval"];
+        let [low, high] = [0, 1].map(|end| ends[end].as_f64().unwrap());
+        assert!((low - value + width).abs() < 2e-3 * width, "{ends} {value} {width}");
+        assert!((high - value - width).abs() < 2e-3 * width, "{ends} {value} {width}");
+    }
+    assert!(!written(&session, "profiles.csv").is_empty());
+    let plain = run_with(gapilib::identify::Probe::LeastSquares);
+    assert_eq!(written(&plain, "bands.csv"), bands);
+    assert!(result(&plain)["profiles"].is_null());
+}
+
+/// A script that names no ranges, and whose individuals span a box beside the minimum: the box is
+/// none of the user's bounds.
+#[test]
+fn ranges_that_no_one_named_bound_nothing() {
+    let model = "model Line\n  parameter Real a = 0;\n  parameter Real b(min = 0) = 1;\n  \
+                 output Real y = a + b*time;\n  annotation(experiment(StopTime = 4));\nend Line;\n";
+    let script = "X := {0.0, 1.0, 2.0, 3.0, 4.0};\nY := {-1.1, 0.9, 3.2, 4.8, 7.0};\n\
+                  D := Eval(\"Line.mo\", \"Line\", X, {{3.0, 5.0}, {4.0, 6.0}}, {\"a\", \"b\"}, \"time\", \"y\");\n\
+                  F := Fit(D, Y);\n";
+    let solved = |script: &str| {
+        let world = shipped::world().with_file("Line.mo", model).with_file("test.mos", script);
+        result(&shipped::run_in(world, "test.mos").session)
+    };
+    let close = |found: &serde_json::Value, k: usize, value: f64| {
+        let at = found["parameters"][k]["value"].as_f64().unwrap();
+        assert!((at - value).abs() < 1e-6, "{k}: {at} {value}");
+    };
+    let found = solved(script);
+    assert_eq!(found["ending"]["kind"], "minimum", "{}", found["ending"]);
+    close(&found, 0, 2.96 - 2.01 * 2.0);
+    close(&found, 1, 2.01);
+    assert_eq!(found["parameters"][0]["at_bound"], false);
+    // The model's own limit is one: b would be negative.
+    let falling = script.replace("{-1.1, 0.9, 3.2, 4.8, 7.0}", "{7.0, 4.8, 3.2, 0.9, -1.1}");
+    let found = solved(&falling);
+    close(&found, 0, 2.96);
+    close(&found, 1, 0.0);
+    assert_eq!(found["parameters"][1]["at_bound"], true);
+    // One individual spans nothing at all.
+    let found = solved(&script.replace(", {4.0, 6.0}", ""));
+    close(&found, 0, 2.96 - 2.01 * 2.0);
+    close(&found, 1, 2.01);
 }
 
 #[test]
@@ -419,6 +506,7 @@ fn one_thread_and_two_write_the_same_bytes() {
     let names: Vec<&str> = one.iter().map(|(name, _)| name.as_str()).collect();
     let expected = [
         "Calibrated.mo",
+        "bands.csv",
         "calibrated.mos",
         "convergence.svg",
         "fit.csv",

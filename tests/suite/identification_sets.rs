@@ -25,7 +25,7 @@ fn printed(transcript: &str, key: &str) -> Option<f64> {
 
 /// What is wrong with the run of a set; nothing if all is as expected.
 fn problems(folder: &Path) -> Vec<String> {
-    let options = Options { no_probe: true, ..Options::default() };
+    let options = Options { probe: gapilib::identify::Probe::Off, ..Options::default() };
     let mut session = Session::new(Box::new(world_of(folder))).with_options(options);
     session.transcript = Some(Transcript::default());
     let status = session.run_file(Path::new("run.mos"));

@@ -332,6 +332,77 @@ fn a_drafted_problem_runs_as_it_is() {
     assert!(code != 0 && text.contains("nothing.csv"), "{text}");
 }
 
+/// A curve over an input: bands by the closed form of the straight line, beyond the points, too, and
+/// where to measure next.
+#[test]
+fn a_static_curve_has_bands_and_a_next_measurement() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let model = "model Cell input Real i; output Real V; parameter Real V0 = 1; \
+                 parameter Real R = 0.1; equation V = V0 - R*i; end Cell;";
+    fs::write(folder.join("cell.mo"), model).unwrap();
+    let measured = [0.91, 0.84, 0.82, 0.76, 0.69];
+    let rows: String = (0..5).map(|k| format!("{k},{}\n", measured[k])).collect();
+    fs::write(folder.join("d.csv"), format!("i,V\n{rows}")).unwrap();
+    let problem = "model = \"Cell\"\nfiles = [\"cell.mo\"]\n[parameters]\n\
+                   V0 = { min = 0.1, max = 5 }\nR = { min = 0, max = 1 }\n[[experiment]]\n\
+                   data = \"d.csv\"\nx = \"i\"\noutputs = { V = \"V\" }\n";
+    fs::write(folder.join("p.toml"), problem).unwrap();
+    let (code, text) = run(folder, &["p.toml", "--design", "--out", "o"]);
+    assert_eq!(code, 0, "{text}");
+    assert!(text.contains("The next measurement"), "{text}");
+    assert!(!text.contains("i = -"), "a current that no one can set: {text}");
+    let mean = measured.iter().sum::<f64>() / 5.0;
+    let slope = measured.iter().zip(0..).map(|(y, x)| y * (f64::from(x) - 2.0)).sum::<f64>() / 10.0;
+    let line = |x: f64| mean + slope * (x - 2.0);
+    let squares = measured.iter().zip(0..).map(|(y, x)| (y - line(f64::from(x))).powi(2));
+    // The 97.5 % quantile of Student's distribution with 3 degrees of freedom.
+    let ts = 3.182_446_305_284_263 * (squares.sum::<f64>() / 3.0).sqrt();
+    let bands = fs::read_to_string(folder.join("o/bands.csv")).unwrap();
+    let mut last = 0.0;
+    for row in bands.lines().skip(1) {
+        let cells: Vec<f64> = row.split(',').skip(2).map(|cell| cell.parse().unwrap()).collect();
+        let half = ts * (0.2 + (cells[0] - 2.0).powi(2) / 10.0).sqrt();
+        assert!((cells[1] - line(cells[0])).abs() < 1e-6, "{row}");
+        assert!((cells[2] - half).abs() < 1e-4 * half, "{row} {half}");
+        last = cells[0];
+    }
+    assert!(last > 4.3, "{last}");
+}
+
+/// Two exponentials from equal starts: by symmetry the descent ends at a saddle, where the rates
+/// could not be told apart. The minimum is that of the data, 2 and 0.5, without noise.
+#[test]
+fn a_saddle_is_no_minimum() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let model = "model Two parameter Real a1 = 1; parameter Real a2 = 1; parameter Real k1 = 1; \
+                 parameter Real k2 = 1; output Real y; \
+                 equation y = a1*exp(-k1*time) + a2*exp(-k2*time); end Two;";
+    fs::write(folder.join("Two.mo"), model).unwrap();
+    let row = |k: u32| {
+        let t = 0.25 * f64::from(k);
+        format!("{t},{:.12}\n", 3.0 * (-2.0 * t).exp() + (-0.5 * t).exp())
+    };
+    let rows: String = (0..24).map(row).collect();
+    fs::write(folder.join("d.csv"), format!("t,y\n{rows}")).unwrap();
+    let range = "{ min = 0.1, max = 10 }";
+    let problem = format!(
+        "model = \"Two\"\nfiles = [\"Two.mo\"]\n[parameters]\na1 = {range}\na2 = {range}\n\
+         k1 = {range}\nk2 = {range}\n[[experiment]]\ndata = \"d.csv\"\n\
+         x = {{ variable = \"time\", column = \"t\" }}\noutputs = {{ y = \"y\" }}\n\
+         [method]\nname = \"levenberg_marquardt\"\n"
+    );
+    fs::write(folder.join("p.toml"), problem).unwrap();
+    let (code, text) = run(folder, &["p.toml", "--out", "o"]);
+    assert_eq!(code, 0, "{text}");
+    let found = result(folder, "o");
+    let mut rates = [value(&found, "k1"), value(&found, "k2")];
+    rates.sort_by(f64::total_cmp);
+    assert!((rates[0] - 0.5).abs() < 1e-4 && (rates[1] - 2.0).abs() < 1e-4, "{text}");
+    assert!(text.contains("saddle"), "{text}");
+}
+
 /// Only a + b acts; and where the solver is coarse, its errors must not be told for a lack of a
 /// minimum.
 #[test]

@@ -258,7 +258,7 @@ fn eigenvectors_fit(a: &Matrix, b: &Matrix, vectors: &Matrix, values: [&Matrix; 
         assert!(x.norm() > 0.5 && x.norm() < 4.0, "{vectors}");
         let alpha = Complex::new(re[at], im[at]);
         let rest = &a * &x * Complex::new(beta[at], 0.0) - &b * &x * alpha;
-        assert!(rest.norm() < 1e-9 * (1.0 + a.norm() + alpha.norm()), "{rest}");
+        assert!(rest.norm() < 1e-9 * (1.0 + a.norm() + alpha.re.hypot(alpha.im)), "{rest}");
     }
 }
 

@@ -115,6 +115,18 @@ fn a_script_is_stopped_at_its_limits() {
     }
 }
 
+/// A message about a name of a megabyte is still one that somebody reads.
+#[test]
+fn a_very_long_name_is_shortened_in_messages() {
+    let text = format!("y = 1 + {}\n", "a".repeat(1_200_000));
+    let here = folder(&[("name.mos", &text)]);
+    let (code, _, errors) = gapi(&here, &["run", "name.mos"]);
+    assert_eq!(code, 1);
+    assert!(errors.len() < 2000, "{} bytes", errors.len());
+    assert!(errors.contains("there is no variable `aaa") && errors.contains('…'), "{errors}");
+    assert!(errors.contains("name.mos:1:9"), "{errors}");
+}
+
 #[test]
 fn help_prints_declarations_and_the_ledger() {
     let here = folder(&[]);

@@ -36,6 +36,7 @@ fn experiment(
     let observation = |name: &&str| Observation { y_name: (*name).to_owned(), x: x.to_vec() };
     let stop = if x_name == "time" { x.last().copied().unwrap_or(1.0) } else { 1.0 };
     let experiment = Experiment {
+        second_attempt: true,
         name: "test".to_owned(),
         model: Arc::new(CompiledModel::new("test", program)),
         settings: Settings { stop, tolerance, ..Settings::default() },
@@ -327,6 +328,7 @@ fn other_methods_integrate_no_sensitivities_but_static_curves_need_none() {
     let of = |text: &str| {
         let program = Program::compile(sort(&flat(text)).unwrap()).unwrap();
         let experiment = Experiment {
+            second_attempt: true,
             name: "test".to_owned(),
             model: Arc::new(CompiledModel::new("test", program)),
             settings: Settings { method: find_integrator("radau").unwrap(), ..Settings::default() },
@@ -357,6 +359,7 @@ fn static_curves_are_differentiated_point_by_point() {
     let x = vec![0.5, 2.0];
     let observed = |name: &str| Observation { y_name: name.to_owned(), x: x.clone() };
     let experiment = Experiment {
+        second_attempt: true,
         name: "test".to_owned(),
         model: Arc::new(CompiledModel::new("test", program).driven_by("x", "at")),
         settings: Settings::default(),

@@ -12,7 +12,7 @@ mod record;
 
 use crate::models;
 use crate::script::policy::{Access, Grant, Policy, RECORD, Refusal};
-use crate::script::world::Files;
+use crate::script::world::{Content, Files};
 use place::Place;
 use record::{Lines, Record};
 use std::collections::BTreeSet;
@@ -126,11 +126,16 @@ impl Disk {
 
     /// Writes a file anew, all of it or nothing.
     pub(super) fn write(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
+        self.write_with(path, &mut |file| file.write_all(bytes))
+    }
+
+    /// The same, as `content` writes it.
+    pub(super) fn write_with(&self, path: &Path, content: Content<'_>) -> io::Result<()> {
         if self.is_named_device(Access::Write, path) {
-            return fs::write(path, bytes);
+            return filled(&fs::OpenOptions::new().write(true).open(path)?, content);
         }
         let place = self.to_write(path, true)?;
-        place.write(bytes, |file| self.note_made(&place.real, file))
+        place.write(content, |file| self.note_made(&place.real, file))
     }
 
     /// Opens a file to write behind its end.
@@ -178,7 +183,7 @@ fn written_down(own: &Path, lines: Lines) -> io::Result<()> {
     let place = Place::of(&own.join(RECORD), false)?;
     match lines {
         Lines::Further(line) => place.open_to_append(false)?.write_all(line.as_bytes()),
-        Lines::All(lines) => place.write(lines.as_bytes(), |_| Ok(())),
+        Lines::All(lines) => place.write(&mut |file| file.write_all(lines.as_bytes()), |_| Ok(())),
     }
 }
 
@@ -188,7 +193,7 @@ impl Files for Disk {
             return Ok(bytes.to_vec());
         }
         match self.is_named_device(Access::Read, path) {
-            true => fs::read(path),
+            true => super::named::read(path),
             false => self.to_read(path)?.read(),
         }
     }
@@ -208,7 +213,7 @@ impl Files for Disk {
 /// Writes a file of the program itself, all of it or nothing.
 pub(super) fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let path = std::path::absolute(path)?;
-    Place::of(&path, true)?.write(bytes, |_| Ok(()))
+    Place::of(&path, true)?.write(&mut |file| file.write_all(bytes), |_| Ok(()))
 }
 
 /// Removes the files in a folder that writing has left behind which did not come to its end.
@@ -229,3 +234,10 @@ pub(super) fn remove_temporary_files(folder: &Path) {
 
 #[cfg(test)]
 mod tests;
+
+/// Writes the content of a file, in pieces.
+fn filled(file: &fs::File, content: Content<'_>) -> io::Result<()> {
+    let mut buffer = io::BufWriter::with_capacity(1 << 16, file);
+    content(&mut buffer)?;
+    buffer.flush()
+}

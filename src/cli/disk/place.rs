@@ -5,13 +5,14 @@
 //! (`openat`, `fstatat`, `readlinkat`); the real path is known as a by-product.
 
 use crate::script::policy::Refusal;
+use crate::script::world::Content;
 use rustix::fs::{self, AtFlags, FileType, Mode, OFlags};
 use rustix::io::Errno;
 use std::collections::VecDeque;
 use std::ffi::{OsStr, OsString};
 use std::fs::File;
 use std::hash::{BuildHasher, RandomState};
-use std::io::{self, Read as _, Write as _};
+use std::io::{self, Read as _};
 use std::os::fd::OwnedFd;
 use std::os::unix::ffi::OsStringExt as _;
 use std::path::{Component, Path, PathBuf};
@@ -189,7 +190,7 @@ impl Place {
     /// `note` is told of the new file before it takes the name.
     pub(super) fn write(
         &self,
-        bytes: &[u8],
+        content: Content<'_>,
         note: impl FnOnce(&File) -> io::Result<()>,
     ) -> io::Result<()> {
         if self.is_folder() {
@@ -202,9 +203,9 @@ impl Place {
             return Err(Refusal::System.into());
         }
         let temporary = temporary_name(&self.name);
-        let mut file = self.create(&temporary)?;
+        let file = self.create(&temporary)?;
         let written = self
-            .fill(&mut file, bytes)
+            .fill(&file, content)
             .and_then(|()| note(&file))
             .and_then(|()| Ok(fs::renameat(&self.folder, &temporary, &self.folder, &self.name)?));
         if written.is_err() {
@@ -221,11 +222,11 @@ impl Place {
         Ok(fs::openat(&self.folder, name, flags, Mode::from_raw_mode(0o666))?.into())
     }
 
-    fn fill(&self, file: &mut File, bytes: &[u8]) -> io::Result<()> {
+    fn fill(&self, file: &File, content: Content<'_>) -> io::Result<()> {
         if self.exists() {
-            fs::fchmod(&*file, Mode::from_raw_mode(self.mode as _))?;
+            fs::fchmod(file, Mode::from_raw_mode(self.mode as _))?;
         }
-        file.write_all(bytes)?;
+        super::filled(file, content)?;
         // After a power cut the name must not lead to a file without its content.
         file.sync_data()
     }

@@ -2,6 +2,7 @@
 //! in its real form, and the entry in it is judged and opened by that path.
 
 use crate::script::policy::Refusal;
+use crate::script::world::Content;
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions};
 use std::hash::{BuildHasher, RandomState};
@@ -69,7 +70,7 @@ impl Place {
 
     pub(super) fn write(
         &self,
-        bytes: &[u8],
+        content: Content<'_>,
         note: impl FnOnce(&File) -> io::Result<()>,
     ) -> io::Result<()> {
         if self.is_device() {
@@ -77,8 +78,8 @@ impl Place {
         }
         let name = self.real.file_name().unwrap_or_default();
         let temporary = self.real.with_file_name(temporary_name(name));
-        let mut file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
-        let written = file.write_all(bytes).and_then(|()| file.sync_data());
+        let file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
+        let written = super::filled(&file, content).and_then(|()| file.sync_data());
         let written = written.and_then(|()| note(&file));
         drop(file);
         let written = written.and_then(|()| fs::rename(&temporary, &self.real));

@@ -1,5 +1,6 @@
 //! The frame: heading, fit, convergence, spread of the genes, and the line of keys.
 
+use crate::elementary;
 use crate::script::view::{Fitted, Spread, View};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -58,7 +59,7 @@ fn progress(view: &View, frame: &mut Frame, area: Rect) {
 
 fn convergence(best: &[f64], frame: &mut Frame, area: Rect) {
     let positive = best.iter().all(|value| *value > 0.0);
-    let scaled = |value: f64| if positive { value.log10() } else { value };
+    let scaled = |value: f64| if positive { elementary::log10(value) } else { value };
     let points: Vec<(f64, f64)> = best
         .iter()
         .enumerate()

@@ -173,7 +173,8 @@ impl Validator for Assistance {
     }
 }
 
-/// Whether brackets, strings, comments and blocks are closed. An empty last line ends any input.
+/// Whether brackets, strings, comments and blocks are closed. Two empty lines end any input: one may
+/// stand within a block.
 fn is_complete(input: &str) -> bool {
     if input.trim_start().starts_with(':') || input.ends_with("\n\n") {
         return true;

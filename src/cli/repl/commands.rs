@@ -6,7 +6,8 @@ use std::path::Path;
 use std::time::Instant;
 
 const HELP: &str = "\
-Statements are executed and answered; an open bracket or a `for` goes on in the next line.
+Statements are executed and answered; an open bracket or a `for` goes on in the next line, and
+two empty lines end it.
   :help [NAME]   this text, or the declaration of a command or a function
   :vars          the variables
   :type EXPR     the type of an expression's value

@@ -77,7 +77,7 @@ fn recorded(path: &Path) -> PathBuf {
 }
 
 fn examined(path: &Path, arguments: &TestArgs, global: &Global) -> io::Result<Verdict> {
-    let bytes = std::fs::read(path)?;
+    let bytes = super::named::read(path)?;
     let (script, _) = crate::script::parsing::text(&bytes);
     let snap = recorded(path);
     let expected = std::fs::read_to_string(&snap).ok();

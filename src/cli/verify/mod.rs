@@ -113,7 +113,7 @@ type Judged = Result<Result<(bool, Vec<Compared>), Stuck>, Fault>;
 fn reference(case: &Case) -> Result<Option<(results::ResultTable, Vec<String>)>, Fault> {
     let Some(path) = &case.reference else { return Ok(None) };
     let read = |path: &Path| {
-        std::fs::read(path).map_err(|error| {
+        super::named::read(path).map_err(|error| {
             let text = format!("`{}` cannot be read: {error}", path.display());
             Fault::new(crate::script::errors::FILE_ERROR, text)
         })

@@ -1,7 +1,8 @@
 //! Functions compiled for certain arguments, each combination once.
 
 use super::statements::Body;
-use crate::bytecode::{Code, ExternalCall, Functions, Instruction, Machine};
+use crate::budget::instruction_limit;
+use crate::bytecode::{Code, ExternalCall, Failure, Functions, Instruction, Machine, Reason};
 use crate::dae::build::UNKNOWN_TEXT;
 use crate::dae::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use crate::dae::lowering::Lowered;
@@ -15,6 +16,7 @@ use crate::name::Name;
 use crate::source::Span;
 use indexmap::IndexMap;
 use rustc_hash::FxHashSet;
+use std::cell::Cell;
 use std::sync::Arc;
 
 /// Deepest nesting of functions being compiled.
@@ -23,6 +25,10 @@ const MAX_DEPTH: usize = 40;
 const MAX_INSTANCES: usize = 5_000;
 /// Most instructions of all functions.
 pub(super) const MAX_INSTRUCTIONS: usize = 5_000_000;
+
+/// Calls of numbers are left to the simulation after so many that took all the instructions that one
+/// may take.
+const MAX_FOLDED: u64 = 5;
 
 /// What a function is compiled for.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -68,6 +74,12 @@ pub(crate) struct Instances {
     known: IndexMap<Signature, Instance>,
     failed: IndexMap<Signature, Diagnostic>,
     depth: usize,
+    /// How many statements the interpreter has run.
+    pub(in crate::dae) interpreted: Cell<u64>,
+    /// How many instructions calls of numbers took.
+    folded: u64,
+    /// The last call of numbers that took too many.
+    exhausted: Option<Failure>,
     instructions: usize,
     /// Whether a statement is at hand that may write.
     pub(crate) may_write: bool,
@@ -207,9 +219,22 @@ impl Instances {
         if !self.is_finished(instance.code) {
             return None;
         }
+        if self.folded > MAX_FOLDED * instruction_limit() {
+            return None;
+        }
         let mut machine = Machine::default();
         let results = machine.call(&self.functions, instance.code, arguments.iter().copied());
-        results.ok().filter(|results| !results.iter().any(|x| x.is_nan())).map(<[f64]>::to_vec)
+        let is_exhausted = |failure: &Failure| failure.reason == Reason::Budget;
+        self.exhausted = results.as_ref().err().copied().filter(is_exhausted).or(self.exhausted);
+        let results = results.map(<[f64]>::to_vec);
+        self.folded += machine.spent();
+        results.ok().filter(|results| !results.iter().any(|x| x.is_nan()))
+    }
+
+    /// What the last call of numbers said that took too many instructions, once.
+    pub(in crate::dae) fn take_exhausted(&mut self) -> Option<String> {
+        let failure = self.exhausted.take()?;
+        Some(self.functions.explain(&failure).0)
     }
 
     /// Whether a function writes, itself or by what it calls.

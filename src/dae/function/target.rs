@@ -6,6 +6,7 @@ use crate::bytecode::{Elementary, Instruction};
 use crate::dae::errors::NOT_SUPPORTED;
 use crate::dae::lowering::{Array, Binary, Branch, Choice, Lowered, Operator, Target, Unary};
 use crate::diag::Diagnostic;
+use crate::elementary;
 use crate::eval::{Function, ValueType};
 use crate::fault;
 use crate::name::{Ident, Name};
@@ -13,6 +14,7 @@ use crate::source::Span;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::{FunctionId, Value};
 use crate::syntax::ast::{ComponentReference, Expression};
+use std::cell::Cell;
 use std::sync::Arc;
 
 impl Body<'_, '_> {
@@ -269,6 +271,10 @@ impl Target for Body<'_, '_> {
         })
     }
 
+    fn interpreted(&self) -> &Cell<u64> {
+        &self.instances.interpreted
+    }
+
     fn resources(&self) -> crate::external::Resources {
         self.flat.resources.clone()
     }
@@ -289,7 +295,7 @@ fn folded(operation: Binary, a: f64, b: f64) -> Option<f64> {
         Binary::Sub => a - b,
         Binary::Mul => a * b,
         Binary::Div => a / b,
-        Binary::Pow => a.powf(b),
+        Binary::Pow => elementary::powf(a, b),
         Binary::And => truth(a != 0.0 && b != 0.0),
         Binary::Or => truth(a != 0.0 || b != 0.0),
     };

@@ -1,11 +1,11 @@
 //! Subscripts and matrix construction (MLS §10.4, §10.5).
 
-use super::{Array, Binary, Lowering, Target, size_fault};
+use super::{Array, Binary, Lowered, Lowering, Target, size_fault};
 use crate::dae::errors::ARRAY_MISMATCH;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::source::Span;
-use crate::syntax::ast::{Expression, Subscript};
+use crate::syntax::ast::{ComponentReference, Expression, Subscript};
 
 /// The positions that a subscript chooses from one dimension.
 pub(crate) enum Choice<S> {
@@ -24,6 +24,15 @@ impl<T: Target> Lowering<'_, T> {
         span: Span,
     ) -> Result<Array<T::Scalar>, Diagnostic> {
         let choices = self.choices(&a.dims, subscripts, span)?;
+        self.chosen_by(a, choices, span)
+    }
+
+    fn chosen_by(
+        &mut self,
+        a: Array<T::Scalar>,
+        choices: Vec<Choice<T::Scalar>>,
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
         if self.target.chooses() && choices.iter().any(|c| matches!(c, Choice::Computed(_))) {
             return self.target.subscripted(&a, choices, span);
         }
@@ -33,6 +42,30 @@ impl<T: Target> Lowering<'_, T> {
             current = self.chosen(current, dimension, choice, span)?;
         }
         Ok(current)
+    }
+
+    /// `x[i]` of a variable; of known subscripts without the other elements of `x`: a loop over a
+    /// large array would take the square of its size. `None` if it is not an array of numbers.
+    pub(super) fn element_of_variable(
+        &mut self,
+        path: &str,
+        reference: &ComponentReference,
+    ) -> Result<Option<Lowered<T::Scalar>>, Diagnostic> {
+        let subscripts = &reference.parts[reference.parts.len() - 1].subscripts;
+        if subscripts.is_empty() {
+            return Ok(None);
+        }
+        let Some(dims) = self.target.sizes(path) else { return Ok(None) };
+        let choices = self.choices(&dims, subscripts, reference.span)?;
+        if let Some(position) = position(&dims, &choices)
+            && let Some(element) = self.target.element_of(path, position)?
+        {
+            return Ok(Some(Lowered::scalar(element)));
+        }
+        let Lowered::Array(whole) = self.target.reference(path, reference)? else {
+            return Ok(None);
+        };
+        self.chosen_by(whole, choices, reference.span).map(|chosen| Some(Lowered::Array(chosen)))
     }
 
     /// What every subscript chooses; subscripts left away choose everything.
@@ -155,6 +188,17 @@ impl<T: Target> Lowering<'_, T> {
         }
         concatenate(0, lines, span)
     }
+}
+
+/// Where the only element that known subscripts choose stands, the last dimension fastest.
+fn position<S>(dims: &[usize], choices: &[Choice<S>]) -> Option<usize> {
+    if dims.len() != choices.len() {
+        return None;
+    }
+    choices.iter().zip(dims).try_fold(0, |position, (choice, size)| match choice {
+        Choice::Known { positions, keeps: false } => Some(position * size + positions.first()?),
+        _ => None,
+    })
 }
 
 /// A scalar or vector as a matrix of one column.

@@ -121,7 +121,10 @@ impl<T: Target> Lowering<'_, T> {
             return Ok(outputs);
         }
         match self.target.call(user, values.clone(), span) {
-            Err(error) if [NOT_SUPPORTED, NO_CONSTANT_VALUE].contains(&error.code) => {
+            Err(error)
+                if [NOT_SUPPORTED, NO_CONSTANT_VALUE].contains(&error.code)
+                    && !self.target.gives_up() =>
+            {
                 self.settled_call(user, &values, span).ok_or(error)
             }
             outputs => outputs,

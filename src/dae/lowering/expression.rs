@@ -113,6 +113,9 @@ impl<T: Target> Lowering<'_, T> {
             return Ok(value);
         }
         let path = self.path(reference)?;
+        if let Some(chosen) = self.element_of_variable(&path, reference)? {
+            return Ok(chosen);
+        }
         let value = self.target.reference(&path, reference)?;
         let subscripts = &reference.parts[reference.parts.len() - 1].subscripts;
         self.elements_of(value, subscripts, reference.span)

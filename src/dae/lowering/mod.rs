@@ -28,6 +28,7 @@ use crate::source::Span;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::FunctionId;
 use crate::syntax::ast::{ComponentReference, Expression};
+use std::cell::Cell;
 use std::sync::Arc;
 
 /// Largest number of scalars of one array.
@@ -117,6 +118,22 @@ pub(crate) trait Target {
         path: &str,
         reference: &ComponentReference,
     ) -> Result<Lowered<Self::Scalar>, Diagnostic>;
+    /// The sizes of an array of numbers of which [`Target::element_of`] gives single elements, without
+    /// the others; `None` where there are none.
+    fn sizes(&self, path: &str) -> Option<Vec<usize>> {
+        let _ = path;
+        None
+    }
+    /// The element at a position (from 0, the last dimension fastest) of an array that has
+    /// [`Target::sizes`]; `None` where it is not to be had alone.
+    fn element_of(
+        &mut self,
+        path: &str,
+        position: usize,
+    ) -> Result<Option<Self::Scalar>, Diagnostic> {
+        let _ = (path, position);
+        Ok(None)
+    }
     /// A variable of the function being compiled; `None` where no function is.
     fn own_variable(&self, name: Ident) -> Option<&Lowered<Self::Scalar>> {
         let _ = name;
@@ -128,6 +145,12 @@ pub(crate) trait Target {
     fn value_type(&self, path: &str) -> Option<crate::eval::ValueType>;
     /// The files that the model may use.
     fn resources(&self) -> Resources;
+    /// Whether the call that is being carried out will be given up: what it needs is not computed.
+    fn gives_up(&self) -> bool {
+        false
+    }
+    /// How many statements the interpreter has run while the model is compiled.
+    fn interpreted(&self) -> &Cell<u64>;
     /// Calls a user function with all its arguments.
     fn call(
         &mut self,

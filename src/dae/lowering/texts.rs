@@ -1,9 +1,10 @@
 //! Functions of texts: called while the model is compiled, by the interpreter.
 
 use super::{Array, Lowered, Lowering, Target};
+use crate::budget;
 use crate::dae::build::UNKNOWN_TEXT;
 use crate::dae::errors::NOT_SUPPORTED;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Fault};
 use crate::eval::{self, Callee, Function, Host, Scope, ValueType};
 use crate::external::{Outside, Resources};
 use crate::fault;
@@ -11,6 +12,7 @@ use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
 use crate::value::{ArrayValue, Elements, EnumerationValue, Value};
+use std::cell::Cell;
 use std::sync::Arc;
 
 /// Functions that find files: whoever compiles the model knows where they are (MLS §13.5).
@@ -211,6 +213,10 @@ impl<T: Target> Host for Compiling<'_, T> {
     fn outside(&mut self) -> Option<&mut dyn Outside> {
         Some(&mut self.resources)
     }
+
+    fn interrupted(&mut self) -> Option<Fault> {
+        exhausted(self.target.interpreted())
+    }
 }
 
 /// Answers the interpreter with what is known of variables while a model is compiled.
@@ -235,6 +241,20 @@ impl<T: Target> Host for Reading<'_, '_, T> {
     fn variable(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
         Ok(self.lowering.known_reference(reference))
     }
+
+    fn interrupted(&mut self) -> Option<Fault> {
+        exhausted(self.lowering.target.interpreted())
+    }
+}
+
+/// Counts a statement or an iteration of a loop, and says when there were too many.
+fn exhausted(steps: &Cell<u64>) -> Option<Fault> {
+    steps.set(steps.get() + 1);
+    let limit = budget::step_limit() / 2;
+    (steps.get() > limit).then(|| {
+        fault!(NOT_SUPPORTED, "the functions called at translation take more than {} steps",
+            budget::in_millions(limit); help: "{}", budget::REMEDY)
+    })
 }
 
 /// Scalars of one type as an array.

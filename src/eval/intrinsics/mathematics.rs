@@ -4,7 +4,7 @@ use super::Entry;
 use crate::diag::Fault;
 use crate::symbolic::function::{Function, FunctionId, ResultType};
 use crate::value::errors::{
-    DIVISION_BY_ZERO, DOMAIN_ERROR, INTEGER_OVERFLOW, SIZE_MISMATCH, TYPE_MISMATCH,
+    DIVISION_BY_ZERO, DOMAIN_ERROR, INTEGER_OVERFLOW, REAL_OVERFLOW, SIZE_MISMATCH, TYPE_MISMATCH,
 };
 use crate::value::{ArrayValue, Elements, Value, construct, ops, sizes};
 use crate::{bail, fault};
@@ -48,14 +48,27 @@ fn real(function: &Function, arguments: &[f64]) -> Result<f64, Fault> {
     let is_nan = arguments.iter().any(|argument| argument.is_nan());
     if !is_nan && !function.accepts(arguments) {
         let words = function.domain.map_or("", |domain| domain.words);
-        let shown: Vec<String> = arguments.iter().map(|x| crate::value::show::real(*x)).collect();
         let code = match function.name {
             "div" | "mod" | "rem" => DIVISION_BY_ZERO,
             _ => DOMAIN_ERROR,
         };
-        bail!(code, "`{}({})`: {words}", function.name, shown.join(", "));
+        bail!(code, "`{}({})`: {words}", function.name, shown(arguments));
     }
-    Ok(function.value.of(arguments))
+    let value = function.value.of(arguments);
+    if value.is_infinite() && arguments.iter().all(|argument| argument.is_finite()) {
+        bail!(
+            REAL_OVERFLOW,
+            "`{}({})` exceeds the largest Real, 1.8e308",
+            function.name,
+            shown(arguments)
+        );
+    }
+    Ok(value)
+}
+
+fn shown(arguments: &[f64]) -> String {
+    let shown: Vec<String> = arguments.iter().map(|x| crate::value::show::real(*x)).collect();
+    shown.join(", ")
 }
 
 fn typed(function: &Function, arguments: &[Value], value: f64) -> Result<Value, Fault> {

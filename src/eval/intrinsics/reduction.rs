@@ -4,7 +4,7 @@
 use super::Entry;
 use crate::diag::Fault;
 use crate::fault;
-use crate::value::errors::{DOMAIN_ERROR, INTEGER_OVERFLOW, TYPE_MISMATCH};
+use crate::value::errors::{DOMAIN_ERROR, INTEGER_OVERFLOW, REAL_OVERFLOW, TYPE_MISMATCH};
 use crate::value::{ArrayValue, Elements, Value, ops};
 use std::cmp::Ordering;
 
@@ -55,7 +55,7 @@ fn chosen(name: &str, best: Value, next: Value, better: Ordering) -> Result<Valu
 fn sum(arguments: &[Value]) -> Result<Value, Fault> {
     match &arguments[0] {
         Value::Array(ArrayValue { elements: Elements::Real(values), .. }) => {
-            Ok(Value::Real(values.iter().sum()))
+            representable("sum", values, values.iter().sum())
         }
         Value::Array(ArrayValue { elements: Elements::Integer(values), .. }) => {
             let total = values.iter().try_fold(0i64, |sum, value| sum.checked_add(*value));
@@ -68,7 +68,7 @@ fn sum(arguments: &[Value]) -> Result<Value, Fault> {
 fn product(arguments: &[Value]) -> Result<Value, Fault> {
     match &arguments[0] {
         Value::Array(ArrayValue { elements: Elements::Real(values), .. }) => {
-            Ok(Value::Real(values.iter().product()))
+            representable("product", values, values.iter().product())
         }
         Value::Array(ArrayValue { elements: Elements::Integer(values), .. }) => {
             let total = values.iter().try_fold(1i64, |product, value| product.checked_mul(*value));
@@ -76,6 +76,14 @@ fn product(arguments: &[Value]) -> Result<Value, Fault> {
         }
         other => Err(unsuitable("product", other)),
     }
+}
+
+/// The total, a fault if it is not finite although all elements are.
+fn representable(name: &str, values: &[f64], total: f64) -> Result<Value, Fault> {
+    if !total.is_finite() && values.iter().all(|value| value.is_finite()) {
+        return Err(fault!(REAL_OVERFLOW, "the {name} exceeds the largest Real, 1.8e308"));
+    }
+    Ok(Value::Real(total))
 }
 
 fn overflow(name: &str) -> Fault {

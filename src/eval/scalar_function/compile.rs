@@ -144,7 +144,9 @@ impl Compiler<'_> {
     fn expression(&mut self, expression: &Expression, depth: usize) -> Option<Operation> {
         let depth = depth.checked_sub(1)?;
         Some(match &expression.kind {
-            ExpressionKind::Real(value) => Operation::Constant(Scalar::Real(*value)),
+            ExpressionKind::Real(value) if value.is_finite() => {
+                Operation::Constant(Scalar::Real(*value))
+            }
             ExpressionKind::Integer(value) => Operation::Constant(Scalar::Integer(*value)),
             ExpressionKind::Boolean(value) => Operation::Constant(Scalar::Boolean(*value)),
             ExpressionKind::Reference(reference) => Operation::Slot(self.find(reference)?),

@@ -3,6 +3,7 @@
 use super::curve::{Curve, Extrapolation, Place, Smoothness, place};
 use super::source::{Matrix, Source};
 use crate::diag::Fault;
+use crate::elementary;
 use crate::external::call::Call;
 
 /// Columns of a table over its first column.
@@ -129,7 +130,7 @@ pub(super) fn derivative(call: &mut Call<'_>) -> Result<(), Fault> {
 /// `f″(u) u′² + f′(u) u″`
 pub(super) fn second(call: &mut Call<'_>) -> Result<(), Fault> {
     let [_, slope, curvature] = evaluated(call)?;
-    call.give(curvature * call.number(3).powi(2) + slope * call.number(4))
+    call.give(curvature * elementary::powi(call.number(3), 2) + slope * call.number(4))
 }
 
 /// The first abscissa.

@@ -7,6 +7,7 @@ use super::curve::{Extrapolation, Smoothness};
 use super::one::Table1D;
 use super::source::Source;
 use crate::diag::Fault;
+use crate::elementary;
 use crate::external::call::Call;
 
 /// A table over time.
@@ -119,7 +120,7 @@ pub(super) fn derivative(call: &mut Call<'_>) -> Result<(), Fault> {
 /// `f″(t) t′² + f′(t) t″`
 pub(super) fn second(call: &mut Call<'_>) -> Result<(), Fault> {
     let [_, slope, curvature] = evaluated(call)?;
-    call.give(curvature * call.number(5).powi(2) + slope * call.number(6))
+    call.give(curvature * elementary::powi(call.number(5), 2) + slope * call.number(6))
 }
 
 /// The first abscissa.

@@ -5,6 +5,7 @@ use super::{imports, names};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::{ILLEGAL_ACCESS, ILLEGAL_IMPORT, PROTECTED_ACCESS};
+use crate::flatten::library::Question;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{Restriction, VariabilityPrefix, Visibility};
@@ -116,15 +117,16 @@ impl Found {
 
 /// The element of a class, its own or inherited, among those written in its file.
 pub(super) fn element(class: Scope<'_>, name: Ident) -> Option<Found> {
-    class.lineage().into_iter().find_map(|class| {
-        let nested = class.class_elements().find(|(_, one)| one.class.name.node == name);
-        if let Some((visibility, nested)) = nested {
-            let encapsulated = nested.class.encapsulated;
-            return Some(Found { visibility, encapsulated });
-        }
-        let component = class.own_component(name)?;
-        Some(Found { visibility: component.visibility, encapsulated: false })
-    })
+    let declaring = class.library.declaring(class.class, name, true)?;
+    own_element(class.of(declaring), name)
+}
+
+fn own_element(class: Scope<'_>, name: Ident) -> Option<Found> {
+    if let Some((visibility, nested)) = class.class_element(name) {
+        return Some(Found { visibility, encapsulated: nested.class.encapsulated });
+    }
+    let component = class.own_component(name)?;
+    Some(Found { visibility: component.visibility, encapsulated: false })
 }
 
 /// Whether a class contains only what a package may contain.
@@ -132,10 +134,11 @@ fn is_package_like(class: Scope<'_>) -> bool {
     if class.restriction() == Restriction::Package {
         return true;
     }
-    class.lineage().into_iter().all(|class| {
+    let has_more = |class: Scope<'_>| {
         let only_constants = class.components().all(|component| {
             component.clause.type_prefixes.variability == Some(VariabilityPrefix::Constant)
         });
-        only_constants && !class.sections().iter().any(super::restrictions::is_behaviour)
-    })
+        !only_constants || class.sections().iter().any(super::restrictions::is_behaviour)
+    };
+    class.first(Question::NoPackage, has_more).is_none()
 }

@@ -3,26 +3,30 @@
 
 use super::lookup::Type;
 use super::scope::{Component, Scope};
+use crate::flatten::library::ClassId;
 use crate::name::Ident;
 use crate::syntax::ast::{ClassSpecifier, Restriction, Visibility};
-
-/// The deepest nesting of components that is compared.
-const MAX_DEPTH: usize = 20;
+use rustc_hash::FxHashSet;
 
 /// What a class lacks to be compatible with another.
 pub(super) struct Lack(pub(super) String);
 
 /// What a class lacks to stand where `expected` is expected.
 pub(super) fn lack(candidate: Scope<'_>, expected: Scope<'_>) -> Option<Lack> {
-    lack_within(candidate, expected, 0)
+    lack_within(candidate, expected, &mut Compared::default())
 }
 
-fn lack_within(candidate: Scope<'_>, expected: Scope<'_>, depth: usize) -> Option<Lack> {
+/// Pairs of classes of which the first was compared with the second: the first lack ends all.
+type Compared = FxHashSet<(ClassId, ClassId)>;
+
+fn lack_within(candidate: Scope<'_>, expected: Scope<'_>, compared: &mut Compared) -> Option<Lack> {
+    if !compared.insert((candidate.class, expected.class)) {
+        return None;
+    }
     let is_function =
         |class: Scope<'_>| matches!(class.restriction(), Restriction::Function { .. });
-    let lineage = candidate.lineage();
-    let derives = lineage.iter().any(|class| class.class == expected.class);
-    if depth > MAX_DEPTH || derives || is_function(expected) || is_function(candidate) {
+    let derives = candidate.lineage().any(|class| class.class == expected.class);
+    if derives || is_function(expected) || is_function(candidate) {
         return None;
     }
     if !is_known(candidate) || !is_known(expected) {
@@ -32,10 +36,10 @@ fn lack_within(candidate: Scope<'_>, expected: Scope<'_>, depth: usize) -> Optio
         let same = candidate.predefined() == Some(kind);
         return (!same).then(|| Lack(format!("`{}` is of another type", candidate.name())));
     }
-    for wanted in expected.lineage().into_iter().flat_map(Scope::components) {
+    for wanted in expected.lineage().flat_map(Scope::components) {
         if wanted.visibility == Visibility::Public {
             let found = candidate.component(wanted.name());
-            if let Some(lack) = component_lack(candidate, found, &wanted, depth) {
+            if let Some(lack) = component_lack(candidate, found, &wanted, compared) {
                 return Some(lack);
             }
         }
@@ -47,7 +51,7 @@ fn component_lack(
     candidate: Scope<'_>,
     found: Option<Component<'_>>,
     wanted: &Component<'_>,
-    depth: usize,
+    compared: &mut Compared,
 ) -> Option<Lack> {
     let name = wanted.name();
     let Some(found) = found.filter(|found| found.visibility == Visibility::Public) else {
@@ -56,7 +60,7 @@ fn component_lack(
     match (found.meaning()?, wanted.meaning()?) {
         (Type::Predefined(a), Type::Predefined(b)) => (a != b).then(|| other_type(candidate, name)),
         (Type::Class(a), Type::Class(b)) => {
-            lack_within(found.owner.of(a), wanted.owner.of(b), depth + 1)
+            lack_within(found.owner.of(a), wanted.owner.of(b), compared)
         }
         (Type::Class(class), Type::Predefined(kind))
         | (Type::Predefined(kind), Type::Class(class)) => {
@@ -73,7 +77,7 @@ fn other_type(class: Scope<'_>, name: Ident) -> Lack {
 
 /// Whether a class and all that it extends are found, and none is replaceable.
 fn is_known(class: Scope<'_>) -> bool {
-    class.lineage().into_iter().all(|class| {
+    class.lineage().all(|class| {
         let bases = class.library.declared_bases(class.class).len();
         let written = match &class.definition().specifier {
             ClassSpecifier::Short(_) => 1,
@@ -86,10 +90,9 @@ fn is_known(class: Scope<'_>) -> bool {
 
 /// The number of dimensions that a type itself has, through short classes.
 pub(super) fn dimensions(class: Scope<'_>) -> usize {
-    let short =
-        class.lineage().into_iter().filter_map(|class| match &class.definition().specifier {
-            ClassSpecifier::Short(short) => Some(short.subscripts.len()),
-            _ => None,
-        });
+    let short = class.lineage().filter_map(|class| match &class.definition().specifier {
+        ClassSpecifier::Short(short) => Some(short.subscripts.len()),
+        _ => None,
+    });
     short.sum()
 }

@@ -75,7 +75,7 @@ impl Walk<'_, '_> {
         if a.class == b.class || !is_plain(a) || !is_plain(b) {
             return None;
         }
-        a.lineage().into_iter().flat_map(Scope::components).find_map(|one| {
+        a.lineage().flat_map(Scope::components).find_map(|one| {
             let other = b.component(one.name())?;
             let reason = if fixed(&one) != fixed(&other) {
                 "one of them is fixed otherwise than the other"

@@ -13,12 +13,17 @@ use crate::syntax::ast::{
 /// The deepest nesting of records and connectors that is counted.
 const MAX_DEPTH: usize = 20;
 
+/// The most components that are counted: records of records may have any number.
+const MAX_COMPONENTS: usize = 10_000;
+
 /// Scalar variables of a connector by what they do in a connection.
 #[derive(Default)]
 struct Count {
     potential: usize,
     flow: usize,
     stream: usize,
+    /// How many components were counted.
+    components: usize,
 }
 
 /// Checks a connector class: as many flow variables as potential variables, and one scalar flow
@@ -87,6 +92,10 @@ fn add_component(
     depth: usize,
     count: &mut Count,
 ) -> Option<()> {
+    count.components += 1;
+    if count.components > MAX_COMPONENTS {
+        return None;
+    }
     let prefixes = component.clause.type_prefixes;
     let is_open =
         component.clause.prefixes.replaceable || component.declaration.condition.is_some();
@@ -144,7 +153,7 @@ impl Count {
 /// The function of an overdetermined type, which counts less than its variables (MLS §9.4).
 fn equality_constraint(class: Scope<'_>) -> Option<Scope<'_>> {
     let name = Ident::new("equalityConstraint");
-    class.lineage().into_iter().find_map(|class| class.own_class(name))
+    class.lineage().find_map(|class| class.own_class(name))
 }
 
 /// How many equations the function stands for: the size of its output.

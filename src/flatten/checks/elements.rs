@@ -5,6 +5,7 @@ use super::scope::Scope;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::{DUPLICATE_ELEMENT, ILLEGAL_EXTENDS, RESERVED_NAME};
+use crate::flatten::library::Question;
 use crate::name::Ident;
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
@@ -110,8 +111,7 @@ fn extends(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
 fn replaceable_base(class: Scope<'_>, extends: &Extends) -> Option<Diagnostic> {
     let name = &extends.base.name;
     let first = name.first().filter(|_| name.is_simple())?;
-    let declared = class.class_elements().find(|(_, nested)| nested.class.name.node == first);
-    let (_, nested) = declared?;
+    let (_, nested) = class.class_element(first)?;
     nested.prefixes.replaceable.then(|| {
         fault!(ILLEGAL_EXTENDS, "`{}` extends `{name}`, which is replaceable", class.name();
             help: "extend a class that is not replaceable")
@@ -182,18 +182,17 @@ fn base_that_stands_alone(
 
 /// What kind of class it is that cannot be extended together with anything else.
 fn alone(base: Scope<'_>) -> Option<&'static str> {
-    for class in base.lineage() {
-        if let ClassSpecifier::Short(short) = &class.definition().specifier {
-            if !short.subscripts.is_empty() {
-                return Some("an array class");
-            }
-            if has_prefix(short) {
-                return Some("a class with a prefix");
-            }
-        }
+    let array_or_prefix = base.first(Question::Alone, |class| special(class).is_some());
+    let is_type = || base.predefined().is_some() || base.is_enumeration();
+    array_or_prefix.and_then(special).or_else(|| is_type().then_some("a predefined type"))
+}
+
+fn special(class: Scope<'_>) -> Option<&'static str> {
+    match &class.definition().specifier {
+        ClassSpecifier::Short(short) if !short.subscripts.is_empty() => Some("an array class"),
+        ClassSpecifier::Short(short) if has_prefix(short) => Some("a class with a prefix"),
+        _ => None,
     }
-    let is_type = base.predefined().is_some() || base.is_enumeration();
-    is_type.then_some("a predefined type")
 }
 
 fn has_prefix(short: &ShortClass) -> bool {
@@ -202,8 +201,9 @@ fn has_prefix(short: &ShortClass) -> bool {
 }
 
 fn is_empty(class: Scope<'_>) -> bool {
-    class.lineage().into_iter().all(|class| {
+    let has_content = |class: Scope<'_>| {
         let behaves = class.sections().iter().any(super::restrictions::is_behaviour);
-        class.components().next().is_none() && !behaves
-    })
+        class.components().next().is_some() || behaves
+    };
+    class.first(Question::Content, has_content).is_none()
 }

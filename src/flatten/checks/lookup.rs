@@ -7,6 +7,7 @@ use crate::flatten::lookup::Predefined;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{ClassSpecifier, ImportKind};
 use rustc_hash::FxHashSet;
+use std::sync::Arc;
 
 /// What the name of a type means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +22,7 @@ pub(super) enum Type {
 type Visited = FxHashSet<ClassId>;
 
 /// The most base classes in which a name is searched.
-const MAX_BASES: usize = 1000;
+const MAX_BASES: usize = 10_000;
 
 impl Library {
     /// What a name means in the text of a class.
@@ -70,6 +71,7 @@ impl Library {
 
     /// A class that another declares or inherits.
     fn member(&self, class: ClassId, name: Ident, visited: &mut Visited) -> Option<ClassId> {
+        let class = self.fork(class);
         if let Some(own) = self.class(class).child(name) {
             return Some(own);
         }
@@ -80,7 +82,7 @@ impl Library {
     }
 
     /// The classes that a class extends, or that it is short for; unknown ones left out.
-    pub(super) fn declared_bases(&self, class: ClassId) -> Vec<ClassId> {
+    pub(in crate::flatten) fn declared_bases(&self, class: ClassId) -> Arc<[ClassId]> {
         self.bases_once(class, || self.find_bases(class))
     }
 

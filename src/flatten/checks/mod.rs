@@ -11,6 +11,7 @@ mod connections;
 mod connectors;
 mod elements;
 mod imports;
+mod lineage;
 mod lookup;
 mod modifications;
 mod names;

@@ -51,7 +51,7 @@ pub(super) fn is_component(class: Scope<'_>, name: Ident) -> bool {
         if scope.component(name).is_some() {
             return true;
         }
-        if scope.class_elements().any(|(_, nested)| nested.class.name.node == name) {
+        if scope.class_element(name).is_some() {
             return false;
         }
     }

@@ -180,7 +180,7 @@ fn prefixed_element(
         if let Some(prefix) = prefixes.into_iter().find(|prefix| clashes(*prefix)) {
             return Some((class.name().to_string(), flow_or_direction(prefix)?));
         }
-        for component in class.lineage().into_iter().flat_map(Scope::components) {
+        for component in class.lineage().flat_map(Scope::components) {
             let prefixes = component.clause.type_prefixes;
             if clashes(prefixes) {
                 return Some((component.name().to_string(), flow_or_direction(prefixes)?));

@@ -151,7 +151,7 @@ fn has_acausal_variable(connector: Scope<'_>) -> bool {
         return false;
     }
     let Some(target) = target else { return connector.predefined().is_some() };
-    target.lineage().into_iter().flat_map(Scope::components).any(|component| {
+    target.lineage().flat_map(Scope::components).any(|component| {
         !component.is_fixed() && !component.has_direction() && is_predefined(&component)
     })
 }

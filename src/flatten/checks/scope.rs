@@ -1,17 +1,14 @@
 //! What the checks ask about a class: its elements, those it inherits, and what names mean in it.
 
+use super::lineage::Lineage;
 use super::lookup::Type;
-use crate::flatten::library::{ClassId, Library};
+use crate::flatten::library::{ClassId, Library, Question};
 use crate::flatten::lookup::Predefined;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
     ClassDefinition, ClassElement, ClassSpecifier, ComponentClause, ComponentDeclaration,
     ComponentReference, Element, Restriction, Section, TypePrefixes, VariabilityPrefix, Visibility,
 };
-use rustc_hash::FxHashSet;
-
-/// The most base classes that a class is followed to.
-const MAX_BASES: usize = 1000;
 
 /// The most short classes in a row that are followed.
 const MAX_CHAIN: usize = 100;
@@ -105,29 +102,37 @@ impl<'a> Scope<'a> {
     }
 
     /// Itself and all classes that it extends or is short for.
-    pub(super) fn lineage(self) -> Vec<Scope<'a>> {
-        let mut seen = FxHashSet::default();
-        let mut found = Vec::new();
-        let mut pending = vec![self.class];
-        while let Some(class) = pending.pop() {
-            if found.len() >= MAX_BASES || !seen.insert(class) {
-                continue;
-            }
-            found.push(self.of(class));
-            pending.extend(self.library.declared_bases(class).iter().rev());
-        }
-        found
+    pub(super) fn lineage(self) -> impl Iterator<Item = Scope<'a>> {
+        Lineage::of(self.library, self.class).map(move |(class, _)| self.of(class))
+    }
+
+    /// The first of its lineage that answers a question; each is asked once.
+    pub(super) fn first(
+        self,
+        question: Question,
+        answers: impl Fn(Scope<'a>) -> bool,
+    ) -> Option<Scope<'a>> {
+        let lineage = Lineage::of(self.library, self.class);
+        let found = self.library.first_answer(question, lineage, |class| answers(self.of(class)));
+        found.map(|class| self.of(class))
     }
 
     /// Its component of a name, its own or inherited.
     pub(super) fn component(self, name: Ident) -> Option<Component<'a>> {
-        self.lineage().into_iter().find_map(|class| class.own_component(name))
+        let declaring = self.library.declaring(self.class, name, false)?;
+        self.of(declaring).own_component(name)
     }
 
     /// The component of a name that it declares itself.
     pub(super) fn own_component(self, name: Ident) -> Option<Component<'a>> {
-        let element = self.library.class(self.class).component_element(name)?;
-        self.components_of(element).find(|component| component.declaration.name.node == name)
+        let (visibility, clause, declaration) =
+            self.library.class(self.class).component_element(name)?;
+        Some(Component { owner: self, visibility, clause, declaration })
+    }
+
+    /// The class of a name that it declares itself, in its file, with its visibility.
+    pub(super) fn class_element(self, name: Ident) -> Option<(Visibility, &'a ClassElement)> {
+        self.library.class(self.class).class_element(name)
     }
 
     /// The components that the parts of a reference name, followed through their classes as they
@@ -190,25 +195,29 @@ impl<'a> Scope<'a> {
 
     /// The predefined type that it is made of, through short classes and extends clauses.
     pub(super) fn predefined(self) -> Option<Predefined> {
-        self.lineage().into_iter().find_map(|class| match &class.definition().specifier {
+        let is_one = |class: Scope<'a>| class.own_predefined().is_some();
+        self.first(Question::Predefined, is_one)?.own_predefined()
+    }
+
+    fn own_predefined(self) -> Option<Predefined> {
+        match &self.definition().specifier {
             ClassSpecifier::Short(short) => {
-                let scope = class.parent().unwrap_or(class);
+                let scope = self.parent().unwrap_or(self);
                 predefined(scope.meaning(&short.target.name))
             }
             ClassSpecifier::Long(_) => {
-                let extends = &self.library.class(class.class).extends;
-                extends.iter().find_map(|one| predefined(class.meaning(&one.base.name)))
+                let extends = &self.library.class(self.class).extends;
+                extends.iter().find_map(|one| predefined(self.meaning(&one.base.name)))
             }
             _ => None,
-        })
+        }
     }
 
     /// The enumeration that it is, by itself or through others.
     pub(super) fn enumeration(self) -> Option<Scope<'a>> {
-        let is_enumeration = |class: &Scope<'a>| {
+        self.first(Question::Enumeration, |class| {
             matches!(class.definition().specifier, ClassSpecifier::Enumeration(_))
-        };
-        self.lineage().into_iter().find(is_enumeration)
+        })
     }
 
     /// Whether it is an enumeration, by itself or through others.

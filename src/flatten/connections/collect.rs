@@ -74,7 +74,7 @@ impl Instantiation<'_> {
                 self.collect_connections(one, connections, connects, errors);
             }
         }
-        for context in elements.lineage.iter().copied() {
+        for context in elements.lineage() {
             let text = self.text(context).clone();
             for section in text.sections() {
                 let Section::Equations { initial: false, equations, .. } = section else {

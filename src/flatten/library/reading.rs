@@ -45,7 +45,7 @@ impl Library {
             children: IndexMap::new(),
             imports: Vec::new(),
             extends: Vec::new(),
-            components: OnceLock::new(),
+            index: OnceLock::new(),
             declared: slot.declared.clone(),
             problems: problem.into_iter().collect(),
         };

@@ -4,6 +4,7 @@
 //!
 //! Reference: [Deb & Agrawal 1995](crate::bibliography#deb-agrawal-1995), §3.
 
+use crate::elementary;
 use crate::ga::Mrg32k3a;
 
 /// Parents closer than this have children like themselves.
@@ -18,9 +19,9 @@ pub fn sbx(first: &mut [f64], second: &mut [f64], eta: f64, rng: &mut Mrg32k3a) 
         let (low, high) = (a.min(*b), a.max(*b));
         let (u, distance) = (rng.uniform(), high - low);
         let spread = |room: f64| {
-            let alpha = 2.0 - (1.0 + 2.0 * room / distance).powf(-(eta + 1.0));
+            let alpha = 2.0 - elementary::powf(1.0 + 2.0 * room / distance, -(eta + 1.0));
             let base = if u <= 1.0 / alpha { u * alpha } else { 1.0 / (2.0 - u * alpha) };
-            base.powf(1.0 / (eta + 1.0))
+            elementary::powf(base, 1.0 / (eta + 1.0))
         };
         let lower = (0.5 * (low + high - spread(low) * distance)).clamp(0.0, 1.0);
         let upper = (0.5 * (low + high + spread(1.0 - high) * distance)).clamp(0.0, 1.0);

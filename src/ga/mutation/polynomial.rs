@@ -3,6 +3,7 @@
 //!
 //! Reference: [Deb & Agrawal 1999](crate::bibliography#deb-agrawal-1999).
 
+use crate::elementary;
 use crate::ga::Mrg32k3a;
 
 /// Changes each gene with the given probability.
@@ -14,9 +15,15 @@ pub fn polynomial(genome: &mut [f64], probability: f64, eta: f64, rng: &mut Mrg3
         }
         let u = rng.uniform();
         let change = if u <= 0.5 {
-            (2.0 * u + (1.0 - 2.0 * u) * (1.0 - *value).powf(eta + 1.0)).powf(power) - 1.0
+            elementary::powf(
+                2.0 * u + (1.0 - 2.0 * u) * elementary::powf(1.0 - *value, eta + 1.0),
+                power,
+            ) - 1.0
         } else {
-            1.0 - (2.0 * (1.0 - u) + (2.0 * u - 1.0) * value.powf(eta + 1.0)).powf(power)
+            1.0 - elementary::powf(
+                2.0 * (1.0 - u) + (2.0 * u - 1.0) * elementary::powf(*value, eta + 1.0),
+                power,
+            )
         };
         *value = (*value + change).clamp(0.0, 1.0);
     }

@@ -6,6 +6,7 @@
 
 use super::{Answers, Method, Optimizer, Setup, has_failed, whole};
 use crate::diag::Fault;
+use crate::elementary;
 use crate::ga::{Genomes, Mrg32k3a, order};
 use crate::registry::Entry;
 use nalgebra::{DMatrix, DVector};
@@ -43,7 +44,7 @@ impl Method for CmaEs {
     fn start(&self, setup: Setup) -> Result<Box<dyn Optimizer>, Fault> {
         let n = setup.genes.len();
         let size = if self.population == 0 {
-            4 + (3.0 * (n as f64).ln()) as usize
+            4 + (3.0 * elementary::ln(n as f64)) as usize
         } else {
             self.population
         };
@@ -102,15 +103,18 @@ struct Distribution {
 impl Distribution {
     fn new(mean: &[f64], sigma: f64, size: usize) -> Distribution {
         let n = mean.len() as f64;
-        let raw: Vec<f64> =
-            (0..size).map(|k| ((size as f64 + 1.0) / 2.0).ln() - (k as f64 + 1.0).ln()).collect();
+        let raw: Vec<f64> = (0..size)
+            .map(|k| elementary::ln((size as f64 + 1.0) / 2.0) - elementary::ln(k as f64 + 1.0))
+            .collect();
         let (above, below) = raw.split_at(size / 2);
-        let effective =
-            |raw: &[f64]| raw.iter().sum::<f64>().powi(2) / raw.iter().map(|w| w * w).sum::<f64>();
+        let effective = |raw: &[f64]| {
+            elementary::powi(raw.iter().sum::<f64>(), 2) / raw.iter().map(|w| w * w).sum::<f64>()
+        };
         let (mu_eff, mu_below) = (effective(above), effective(below));
         let cs = (mu_eff + 2.0) / (n + mu_eff + 5.0);
-        let c1 = 2.0 / ((n + 1.3).powi(2) + mu_eff);
-        let cmu = (2.0 * (0.25 + mu_eff + 1.0 / mu_eff - 2.0) / ((n + 2.0).powi(2) + mu_eff))
+        let c1 = 2.0 / (elementary::powi(n + 1.3, 2) + mu_eff);
+        let cmu = (2.0 * (0.25 + mu_eff + 1.0 / mu_eff - 2.0)
+            / (elementary::powi(n + 2.0, 2) + mu_eff))
             .min(1.0 - c1);
         let sum = |raw: &[f64]| raw.iter().map(|w| w.abs()).sum::<f64>();
         // The covariance stays positive definite however bad the worst are.
@@ -162,7 +166,7 @@ impl Distribution {
         self.ps = &self.ps * (1.0 - self.cs) + (&self.b * white) * factor;
         self.generation += 1;
         let n = self.mean.len() as f64;
-        let faded = 1.0 - (1.0 - self.cs).powi(2 * self.generation.min(1 << 20) as i32);
+        let faded = 1.0 - elementary::powi(1.0 - self.cs, 2 * self.generation.min(1 << 20) as i32);
         let stalled = self.ps.norm() / faded.sqrt() / self.chi_n >= 1.4 + 2.0 / (n + 1.0);
         let h = if stalled { 0.0 } else { 1.0 };
         let factor = h * (self.cc * (2.0 - self.cc) * self.mu_eff).sqrt();
@@ -183,7 +187,7 @@ impl Distribution {
             self.c.ger(self.cmu * w * length, &step, &step, 1.0);
         }
         self.sigma *=
-            ((self.cs / self.damps) * (self.ps.norm() / self.chi_n - 1.0)).exp().min(10.0);
+            elementary::exp((self.cs / self.damps) * (self.ps.norm() / self.chi_n - 1.0)).min(10.0);
         self.best.push(best);
         let lazy = (1.0 / (self.c1 + self.cmu) / n / 10.0) as u64;
         if self.generation - self.decomposed > lazy {
@@ -203,7 +207,7 @@ impl Distribution {
         let n = self.mean.len();
         let spread =
             (0..n).map(|j| self.c[(j, j)].abs().sqrt().max(self.pc[j].abs())).fold(0.0, f64::max);
-        let condition = (self.d.max() / self.d.min()).powi(2);
+        let condition = elementary::powi(self.d.max() / self.d.min(), 2);
         let window = 10 + 30 * n / self.size;
         let flat = self.best.len() > window && {
             let recent = &self.best[self.best.len() - window..];

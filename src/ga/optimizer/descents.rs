@@ -6,6 +6,7 @@
 
 use super::levenberg_marquardt::{Accuracy, COARSE, Descent, FINE};
 use super::{Answers, Wants};
+use crate::elementary;
 use crate::ga::Genomes;
 use serde::{Deserialize, Serialize};
 
@@ -220,7 +221,7 @@ impl Pool {
     /// How many descents must agree on the best minimum.
     fn agreeing(&self) -> usize {
         let Some(best) = self.best().map(|best| &self.descents[best]) else { return AGREEING };
-        if best.sum() > BAD * self.accuracy.size.powi(2) {
+        if best.sum() > BAD * elementary::powi(self.accuracy.size, 2) {
             AGREEING_IF_BAD
         } else if best.is_held() {
             AGREEING_AT_BOUND

@@ -2,6 +2,7 @@
 //! the terms in another order, which changes many genes at once and is seldom found by chance. Where
 //! one gene of a term has the value of the other term's, the descent does the rest.
 
+use crate::elementary;
 use std::cmp::Ordering;
 
 /// What the fractions of a gene mean.
@@ -20,7 +21,7 @@ pub struct Scale {
 impl Scale {
     fn value(&self, fraction: f64) -> f64 {
         match self.logarithmic {
-            true => self.min * (self.max / self.min).powf(fraction),
+            true => self.min * elementary::powf(self.max / self.min, fraction),
             false => self.min + fraction * (self.max - self.min),
         }
     }
@@ -28,7 +29,7 @@ impl Scale {
     /// `None` where the value lies outside.
     fn fraction(&self, value: f64) -> Option<f64> {
         let fraction = match self.logarithmic {
-            true => (value / self.min).ln() / (self.max / self.min).ln(),
+            true => elementary::ln(value / self.min) / elementary::ln(self.max / self.min),
             false => (value - self.min) / (self.max - self.min),
         };
         (0.0..=1.0).contains(&fraction).then_some(fraction)
@@ -40,7 +41,10 @@ impl Scale {
             return None;
         }
         let distance = match self.logarithmic {
-            true => (self.min / other.min).ln().abs() + (self.max / other.max).ln().abs(),
+            true => {
+                elementary::ln(self.min / other.min).abs()
+                    + elementary::ln(self.max / other.max).abs()
+            }
             false => {
                 let widest = (self.max - self.min).max(other.max - other.min);
                 ((self.min - other.min).abs() + (self.max - other.max).abs()) / widest

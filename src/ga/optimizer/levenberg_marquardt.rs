@@ -11,6 +11,7 @@
 use super::linear_model::{LinearModel, Offset, Step};
 use super::{Answers, DescentEnd, DescentReport, Method, Optimizer, Setup, Wants, whole};
 use crate::diag::Fault;
+use crate::elementary;
 use crate::ga::Genomes;
 use crate::registry::Entry;
 use nalgebra::DVector;
@@ -94,7 +95,7 @@ impl Accuracy {
 
     /// Singular values below this are those of errors of the derivatives.
     pub(super) fn rank_tolerance(self) -> f64 {
-        self.noise.powf(2.0 / 3.0).clamp(1e-9, 1e-4)
+        elementary::powf(self.noise, 2.0 / 3.0).clamp(1e-9, 1e-4)
     }
 }
 
@@ -311,7 +312,8 @@ impl Descent {
             }
         }
         let a = self.model.as_ref()?.acceleration(step, &self.scales, &gradient)?;
-        let length = a.iter().zip(&self.scales).map(|(a, d)| (a * d).powi(2)).sum::<f64>().sqrt();
+        let length =
+            a.iter().zip(&self.scales).map(|(a, d)| elementary::powi(a * d, 2)).sum::<f64>().sqrt();
         // Not finite where the probe failed.
         let trusted = 2.0 * length <= TRUSTED * step.length;
         trusted.then(|| step.by.iter().zip(&a).map(|(p, a)| p + 0.5 * a).collect())

@@ -7,6 +7,7 @@
 //! References: [Moré 1978](crate::bibliography#more-1978) (scaling, the parameter by the secular
 //! equation); [Bates & Watts 1981](crate::bibliography#bates-watts-1981) (relative offset).
 
+use crate::elementary;
 use crate::singular_values::SingularValues;
 use nalgebra::{DMatrix, DVector};
 
@@ -141,7 +142,7 @@ impl LinearModel {
         while !free.is_empty() {
             let decomposition = self.decompose(&free, scales)?;
             let right = -(&self.right + &self.factor * &by);
-            let used: f64 = by.iter().zip(scales).map(|(p, d)| (p * d).powi(2)).sum();
+            let used: f64 = by.iter().zip(scales).map(|(p, d)| elementary::powi(p * d, 2)).sum();
             let left = (radius * radius - used).max(0.01 * radius * radius).sqrt();
             let (own, parameter) = damped(&decomposition, &right, left, self.rank_tolerance);
             damping = parameter;
@@ -191,7 +192,8 @@ impl LinearModel {
     fn step_by(&self, by: &DVector<f64>, scales: &[f64], damping: f64, free: Vec<usize>) -> Step {
         let linear = &self.factor * by;
         let reduction = -(2.0 * self.gradient.dot(by) + linear.norm_squared());
-        let length = by.iter().zip(scales).map(|(p, d)| (p * d).powi(2)).sum::<f64>().sqrt();
+        let length =
+            by.iter().zip(scales).map(|(p, d)| elementary::powi(p * d, 2)).sum::<f64>().sqrt();
         Step { by: by.as_slice().to_vec(), length, reduction, damping, free }
     }
 

@@ -5,6 +5,7 @@
 
 use super::{Answers, Method, Optimizer, Setup, key, whole};
 use crate::diag::Fault;
+use crate::elementary;
 use crate::ga::sampling::latin_hypercube;
 use crate::ga::{Genomes, Mrg32k3a, order};
 use crate::registry::Entry;
@@ -233,7 +234,7 @@ impl Search {
         };
         loop {
             let turn = std::f64::consts::PI * (self.rng.uniform() - 0.5);
-            let step = self.steps[slot] + 0.1 * turn.tan();
+            let step = self.steps[slot] + 0.1 * elementary::tan(turn);
             if step > 0.0 {
                 return (step.min(1.0), rate);
             }

@@ -3,6 +3,7 @@
 // What includes this file, a test or a benchmark, names these in its own way.
 use super::{Answers, FAILED_FITNESS, Gene, Genomes, Method, Mrg32k3a, Polished, Setup, Wants};
 use super::{hypervolume, survivors};
+use crate::elementary;
 
 /// Residuals at a point of the unit cube; `None` where it fails. The first objective is their sum
 /// of squares.
@@ -89,10 +90,12 @@ fn differences(genome: &[f64], m: usize, residuals: &Residuals) -> Vec<f64> {
 pub(crate) fn polarization(genome: &[f64]) -> Option<Vec<f64>> {
     const TRUTH: [f64; 6] = [0.0390, 1.4e-3, 1.5856e-6, 0.0918, 0.7286, 0.2265];
     const OFF_CENTRE: [f64; 6] = [0.3, 0.6, 0.4, 0.7, 0.35, 0.15];
-    let p: Vec<f64> = (0..6).map(|j| TRUTH[j] * 10f64.powf(genome[j] - OFF_CENTRE[j])).collect();
+    let p: Vec<f64> =
+        (0..6).map(|j| TRUTH[j] * elementary::powf(10f64, genome[j] - OFF_CENTRE[j])).collect();
     let voltage = |p: &[f64], i: f64| {
         let all = i + p[1];
-        1.2 - p[4] * all - p[0] * (all / p[2]).ln() + p[3] * (1.0 - all / p[5]).ln()
+        1.2 - p[4] * all - p[0] * elementary::ln(all / p[2])
+            + p[3] * elementary::ln(1.0 - all / p[5])
     };
     let current = |k: usize| 0.002 + (0.22 - 0.002) * k as f64 / 29.0;
     let residuals: Vec<f64> =
@@ -110,7 +113,7 @@ pub(crate) fn rosenbrock(genome: &[f64]) -> Option<Vec<f64>> {
 pub(crate) fn rastrigin(genome: &[f64]) -> Option<Vec<f64>> {
     let term = |(j, u): (usize, &f64)| {
         let x = -5.12 + 10.24 * u - (0.3 + 0.01 * j as f64);
-        (x * x + 10.0 * (1.0 - (std::f64::consts::TAU * x).cos())).max(0.0).sqrt()
+        (x * x + 10.0 * (1.0 - elementary::cos(std::f64::consts::TAU * x))).max(0.0).sqrt()
     };
     Some(genome.iter().enumerate().map(term).collect())
 }
@@ -124,8 +127,10 @@ pub(crate) fn ackley(genome: &[f64]) -> Option<Vec<f64>> {
         .map(|(j, u)| -32.0 + 64.0 * u - (0.3 + 0.01 * j as f64))
         .collect();
     let square = x.iter().map(|x| x * x).sum::<f64>() / n;
-    let cosine = x.iter().map(|x| (std::f64::consts::TAU * x).cos()).sum::<f64>() / n;
-    let value = -20.0 * (-0.2 * square.sqrt()).exp() - cosine.exp() + 20.0 + std::f64::consts::E;
+    let cosine = x.iter().map(|x| elementary::cos(std::f64::consts::TAU * x)).sum::<f64>() / n;
+    let value = -20.0 * elementary::exp(-0.2 * square.sqrt()) - elementary::exp(cosine)
+        + 20.0
+        + std::f64::consts::E;
     Some(vec![value.max(0.0).sqrt()])
 }
 
@@ -188,18 +193,24 @@ pub(crate) fn zdt1(genome: &[f64]) -> Vec<f64> {
 
 /// Front that is not convex.
 pub(crate) fn zdt2(genome: &[f64]) -> Vec<f64> {
-    zdt(genome, |f, g| 1.0 - (f / g).powi(2))
+    zdt(genome, |f, g| 1.0 - elementary::powi(f / g, 2))
 }
 
 /// Front in five pieces.
 pub(crate) fn zdt3(genome: &[f64]) -> Vec<f64> {
-    zdt(genome, |f, g| 1.0 - (f / g).sqrt() - f / g * (10.0 * std::f64::consts::PI * f).sin())
+    zdt(genome, |f, g| {
+        1.0 - (f / g).sqrt() - f / g * elementary::sin(10.0 * std::f64::consts::PI * f)
+    })
 }
 
 /// A part of a sphere, three objectives.
 pub(crate) fn dtlz2(genome: &[f64]) -> Vec<f64> {
-    let g: f64 = genome[2..].iter().map(|u| (u - 0.5).powi(2)).sum();
+    let g: f64 = genome[2..].iter().map(|u| elementary::powi(u - 0.5, 2)).sum();
     let [a, b] = [genome[0], genome[1]].map(|u| u * std::f64::consts::FRAC_PI_2);
     let size = 1.0 + g;
-    vec![size * a.cos() * b.cos(), size * a.cos() * b.sin(), size * a.sin()]
+    vec![
+        size * elementary::cos(a) * elementary::cos(b),
+        size * elementary::cos(a) * elementary::sin(b),
+        size * elementary::sin(a),
+    ]
 }

@@ -15,6 +15,7 @@
 //! Reference: [Seber & Wild 1989](crate::bibliography#seber-wild-1989), section 2.2 and chapter 11.
 
 use super::{Fitness, checked};
+use crate::elementary;
 
 /// A group whose points are given their deviations.
 const GIVEN: usize = usize::MAX;
@@ -60,7 +61,7 @@ impl Concentrated {
     /// Twice the part of -log L that depends on the parameters, but for a constant.
     fn exponent(&self, scales: &Scales) -> f64 {
         let groups = scales.variance.iter().zip(&self.count);
-        scales.given + groups.map(|(variance, n)| n * variance.ln()).sum::<f64>()
+        scales.given + groups.map(|(variance, n)| n * elementary::ln(*variance)).sum::<f64>()
     }
 }
 
@@ -68,8 +69,9 @@ impl Fitness for Concentrated {
     fn fitness(&self, simulated: &[f64], measured: &[f64], weights: &[f64]) -> f64 {
         let scales = self.scales(simulated, measured, weights);
         let n = measured.len() as f64;
-        let constant: f64 = self.count.iter().sum::<f64>() + n * std::f64::consts::TAU.ln()
-            - 2.0 * weights.iter().map(|w| w.ln()).sum::<f64>();
+        let constant: f64 = self.count.iter().sum::<f64>()
+            + n * elementary::ln(std::f64::consts::TAU)
+            - 2.0 * weights.iter().map(|w| elementary::ln(*w)).sum::<f64>();
         checked(0.5 * (self.exponent(&scales) + constant))
     }
 
@@ -87,7 +89,7 @@ impl Fitness for Concentrated {
     ) -> bool {
         let scales = self.scales(simulated, measured, weights);
         let n = measured.len() as f64;
-        let root = (0.5 * self.exponent(&scales) / n).exp();
+        let root = elementary::exp(0.5 * self.exponent(&scales) / n);
         let kappa = (n / (scales.given + self.count.iter().sum::<f64>())).sqrt();
         for (k, &g) in self.group.iter().enumerate() {
             let own = if g == GIVEN { 1.0 } else { scales.variance[g].sqrt() };

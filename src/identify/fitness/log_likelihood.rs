@@ -4,6 +4,7 @@
 //! Reference: [walter-pronzato-1997](crate::bibliography#walter-pronzato-1997).
 
 use super::{Fitness, checked, differences};
+use crate::elementary;
 use crate::registry::Entry;
 
 /// The table entry.
@@ -23,7 +24,7 @@ impl Fitness for LogLikelihood {
         let sum: f64 = differences(simulated, measured, weights).map(|d| d * d).sum();
         // An exact fit would be infinitely likely.
         let variance = (sum / n).max(f64::MIN_POSITIVE);
-        let value = 0.5 * n * ((std::f64::consts::TAU * variance).ln() + 1.0);
+        let value = 0.5 * n * (elementary::ln(std::f64::consts::TAU * variance) + 1.0);
         if sum.is_nan() { checked(sum) } else { checked(value) }
     }
 

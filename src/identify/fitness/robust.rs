@@ -16,8 +16,9 @@
 //! Reference: [Huber & Ronchetti 2009](crate::bibliography#huber-ronchetti-2009), chapters 6, 7.
 
 use super::{Fitness, Robustness, checked, differences};
+use crate::elementary;
+use crate::identify::problem::distributions::{normal_density, normal_two_sided};
 use crate::registry::Entry;
-use statrs::distribution::{Continuous, ContinuousCDF, Normal};
 
 /// 95 % efficient for normal errors.
 const HUBER: f64 = 1.345;
@@ -91,8 +92,8 @@ impl Robust {
             Loss::Huber | Loss::Absolute => [delta * (size - 0.5 * delta), delta.copysign(u), 0.0],
             Loss::Tukey if size >= delta => [delta * delta / 6.0, 0.0, 0.0],
             Loss::Tukey => {
-                let q = 1.0 - (u / delta).powi(2);
-                let rho = delta * delta / 6.0 * (1.0 - q.powi(3));
+                let q = 1.0 - elementary::powi(u / delta, 2);
+                let rho = delta * delta / 6.0 * (1.0 - elementary::powi(q, 3));
                 [rho, u * q * q, q * (5.0 * q - 4.0)]
             }
         }
@@ -110,9 +111,8 @@ impl Robust {
     /// Huber's proposal 2: the scale of the differences, and F.
     fn proposal(&self, differences: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
         let delta = self.search_delta();
-        let normal = Normal::standard();
-        let outside = 2.0 * normal.sf(delta);
-        let b = 1.0 - outside - 2.0 * delta * normal.pdf(delta) + delta * delta * outside;
+        let outside = normal_two_sided(delta);
+        let b = 1.0 - outside - 2.0 * delta * normal_density(delta) + delta * delta * outside;
         let (n, square) =
             differences.clone().fold((0.0, 0.0), |(n, sum), r| (n + 1.0, sum + r * r));
         // Σ min(r², δ² v) - n b v is concave in v = σ²: from above, Newton's steps fall to its root.
@@ -218,7 +218,7 @@ impl Fitness for Robust {
             });
         }
         let mean = parts.iter().map(|part| part[2]).sum::<f64>() / n;
-        let spread = parts.iter().map(|part| (part[2] - mean).powi(2)).sum::<f64>() / n;
+        let spread = parts.iter().map(|part| elementary::powi(part[2] - mean, 2)).sum::<f64>() / n;
         // Huber's correction for small samples.
         let k = 1.0 + (n - freedom) / n * spread / (mean * mean);
         let variance = scale * scale * k * k * square / (mean * mean);
@@ -229,7 +229,7 @@ impl Fitness for Robust {
 /// The density of the residuals at 0: the share within ±h, h by the normal rule from the MAD.
 fn density_at_zero(residuals: &[f64]) -> f64 {
     let n = residuals.len() as f64;
-    let h = 1.06 * super::median_deviation(residuals) * n.powf(-0.2);
+    let h = 1.06 * super::median_deviation(residuals) * elementary::powf(n, -0.2);
     let inside = residuals.iter().filter(|r| r.abs() <= h).count() as f64;
     inside / (2.0 * n * h)
 }
@@ -237,6 +237,7 @@ fn density_at_zero(residuals: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::identify::problem::distributions::normal_quantile;
     use crate::registry::Options;
 
     fn make(entry: &Entry<dyn Fitness>, scale: f64) -> Box<dyn Fitness> {
@@ -277,7 +278,7 @@ mod tests {
     /// Ten normal quantiles and one outlier: the scale is about 1, not that of the outlier.
     #[test]
     fn the_scale_does_not_follow_an_outlier() {
-        let quantile = |k: u32| Normal::standard().inverse_cdf(f64::from(k) / 41.0);
+        let quantile = |k: u32| normal_quantile(f64::from(k) / 41.0);
         let mut r: Vec<f64> = (1..41).map(quantile).collect();
         let own = Robust { loss: Loss::Huber, delta: HUBER, scale: 0.0 };
         let clean = own.proposal(r.iter().copied()).0;

@@ -8,11 +8,12 @@
 use super::statistics::distributions::{
     chi_square_tails, f_upper, signs_two_sided, student_two_sided,
 };
-use super::statistics::outliers::outliers;
+use super::statistics::outliers::{outliers, rest_of};
 use super::statistics::residuals::{deviation, mean, noise_beneath, normality, spearman};
 use super::{
     ErrorModel, Finding, FindingKind, Problem, ResidualTest, Severity, Statistics, residual_test,
 };
+use crate::elementary;
 use crate::identify::table::significant;
 
 /// Probability of any false alarm among the residual tests of a solution.
@@ -25,6 +26,9 @@ const FEW: usize = 8;
 const FROM_THE_SOLVER: f64 = 100.0;
 /// Standard deviations of series that differ by less than this are not worth a word.
 const UNLIKE: f64 = 3.0;
+/// At a minimum the residuals are orthogonal to the derivatives by every parameter that is free to
+/// follow them: the limit of the test of a minimum, with room for the error of the simulation.
+const FOLLOWED: f64 = 0.01;
 /// So many outliers are a distribution.
 const MANY: usize = 3;
 
@@ -62,7 +66,7 @@ pub(super) fn residual_findings(
     let repeated = |k: usize| statistics.repeated.iter().any(|pair| pair.0 == k);
     let all = series(problem, statistics);
     let alpha = FAMILY / (TESTS * all.len() + 1) as f64;
-    let mut suspects = suspected_outliers(statistics, &all, alpha);
+    let (mut suspects, rest) = suspected_outliers(statistics, &all, alpha);
     for (k, own) in all.iter().enumerate().filter(|(k, _)| !repeated(*k)) {
         let size = rms(&own.points.iter().map(|&j| simulated[j]).collect::<Vec<f64>>());
         let raw: Vec<f64> = own
@@ -77,7 +81,7 @@ pub(super) fn residual_findings(
             continue;
         }
         findings.extend(poor_fit(problem, k, own, &raw));
-        findings.extend(of_series(own, simulated, alpha, &mut suspects));
+        findings.extend(of_series(own, (simulated, &rest), alpha, &mut suspects));
     }
     findings.extend(chi_square(problem, statistics, &suspects, alpha));
     findings.extend(unlike_series(problem, statistics, &all, alpha));
@@ -107,8 +111,13 @@ pub(super) fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Outliers of the linearised problem, each series in units of its own residuals.
-fn suspected_outliers(statistics: &Statistics, all: &[Own<'_>], alpha: f64) -> Vec<usize> {
+/// Outliers of the linearised problem, each series in units of its own residuals, and the residuals
+/// of all other points when the parameters no longer follow the outliers.
+fn suspected_outliers(
+    statistics: &Statistics,
+    all: &[Own<'_>],
+    alpha: f64,
+) -> (Vec<usize>, Vec<f64>) {
     let mut units = vec![0.0; statistics.residuals.len()];
     for own in all {
         let size = rms(&own.residuals);
@@ -121,10 +130,30 @@ fn suspected_outliers(statistics: &Statistics, all: &[Own<'_>], alpha: f64) -> V
         parts.map(|((d, w), u)| d * w * u).collect::<Vec<f64>>()
     };
     let jacobian: Vec<Vec<f64>> = statistics.jacobian.iter().map(column).collect();
+    let mut rest = statistics.residuals.clone();
     if jacobian.iter().flatten().any(|value| !value.is_finite()) {
-        return Vec::new();
+        return (Vec::new(), rest);
     }
-    outliers(&jacobian, &scaled, alpha).iter().map(|outlier| outlier.point).collect()
+    let found = outliers(&jacobian, &scaled, alpha);
+    let points: Vec<usize> = found.iter().map(|outlier| outlier.point).collect();
+    if !points.is_empty() {
+        let kept: Vec<usize> = (0..scaled.len()).filter(|j| !points.contains(j)).collect();
+        // Parameters held by a bound, and those of a robust fit, do not follow outliers.
+        let follows = |column: &Vec<f64>| cosine(column, &scaled).abs() < FOLLOWED;
+        let followed: Vec<Vec<f64>> = jacobian.iter().filter(|c| follows(c)).cloned().collect();
+        let left = rest_of(&followed, &scaled, &kept);
+        for (&j, left) in kept.iter().zip(&left).filter(|(j, _)| units[**j] > 0.0) {
+            rest[j] = left / units[j];
+        }
+    }
+    (points, rest)
+}
+
+/// The cosine of the angle between two vectors; 0 where one of them vanishes.
+fn cosine(a: &[f64], b: &[f64]) -> f64 {
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let size = (product(a, a) * product(b, b)).sqrt();
+    if size > 0.0 { product(a, b) / size } else { 0.0 }
 }
 
 fn no_noise(own: &Own<'_>) -> Finding {
@@ -142,7 +171,7 @@ fn no_noise(own: &Own<'_>) -> Finding {
 fn poor_fit(problem: &Problem, k: usize, own: &Own<'_>, raw: &[f64]) -> Option<Finding> {
     let y = &problem.series[k].y;
     let mean = mean(y);
-    let total: f64 = y.iter().map(|y| (y - mean).powi(2)).sum();
+    let total: f64 = y.iter().map(|y| elementary::powi(y - mean, 2)).sum();
     let r_squared = 1.0 - raw.iter().map(|r| r * r).sum::<f64>() / total;
     let n = y.len() as f64;
     let by_chance = f_upper(1.0 - r_squared, [n, n - 1.0]) >= FAMILY;
@@ -165,17 +194,18 @@ fn poor_fit(problem: &Problem, k: usize, own: &Own<'_>, raw: &[f64]) -> Option<F
     })
 }
 
-/// Patterns, spread and distribution of one series; `suspects` keeps those outliers that are.
+/// Patterns, spread and distribution of one series; `suspects` keeps those outliers that are. `rest`:
+/// the residuals without the influence of the outliers, which would look like a pattern.
 fn of_series(
     own: &Own<'_>,
-    simulated: &[f64],
+    (simulated, rest): (&[f64], &[f64]),
     alpha: f64,
     suspects: &mut Vec<usize>,
 ) -> Vec<Finding> {
     let mut findings = Vec::new();
     let kept: Vec<usize> =
         (0..own.points.len()).filter(|&j| !suspects.contains(&own.points[j])).collect();
-    let residuals: Vec<f64> = kept.iter().map(|&j| own.residuals[j]).collect();
+    let residuals: Vec<f64> = kept.iter().map(|&j| rest[own.points[j]]).collect();
     if residuals.len() < FEW {
         findings.extend(bias(own, &residuals, None, alpha));
         findings.extend(outlier(own, suspects));
@@ -249,7 +279,9 @@ fn bias(
     let t = mean * count.sqrt() / size;
     let mut p = student_two_sided(t, freedom.min(1e6));
     let positive = residuals.iter().filter(|r| **r > 0.0).count();
-    if pattern.is_none() {
+    // Residuals of one sign alone are no wave about zero.
+    let one_sided = positive == 0 || positive == residuals.len();
+    if pattern.is_none() || one_sided {
         p = p.min(signs_two_sided(positive as u64, residuals.len() as u64));
     }
     (p < alpha).then(|| {
@@ -396,7 +428,7 @@ fn chi_square(
         return None;
     }
     let kept = (0..statistics.residuals.len()).filter(|j| !outliers.contains(j));
-    let value: f64 = kept.map(|j| statistics.residuals[j].powi(2)).sum();
+    let value: f64 = kept.map(|j| elementary::powi(statistics.residuals[j], 2)).sum();
     let freedom = statistics.freedom - outliers.len() as f64;
     let [lower, upper] = chi_square_tails(value, freedom);
     let p = 2.0 * lower.min(upper);

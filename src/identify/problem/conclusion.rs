@@ -5,9 +5,11 @@
 use super::checks::rms;
 use super::ending::{Cause, is_at_minimum};
 use super::refit::Refit;
+use super::saddle;
 use super::statistics::Statistics;
 use super::{Best, ErrorModel, Finding, FindingKind, Problem, Run, Series, Severity, Sigma};
 use crate::diag::Fault;
+use crate::elementary;
 use crate::identify::fitness::{Fitness, median_deviation};
 use crate::identify::table::significant;
 
@@ -43,7 +45,10 @@ pub struct Conclusion {
 pub fn conclude(run: &mut Run) {
     // Another driver may conclude a run that goes on.
     run.conclusion = Conclusion::default();
-    let done = reweigh(run).and_then(|()| rescale(run)).and_then(|()| tolerance(run));
+    let done = saddle::leave(run)
+        .and_then(|()| reweigh(run))
+        .and_then(|()| rescale(run))
+        .and_then(|()| tolerance(run));
     if let Err(fault) = done {
         let sentence = format!("The fit could not be repeated: {}.", fault.message);
         run.conclusion.findings.push(Finding::new(FindingKind::Missing, sentence));
@@ -128,7 +133,7 @@ fn weights_at(problem: &Problem, simulated: &[f64]) -> Vec<f64> {
 /// # Errors
 ///
 /// Those of the method's maker.
-pub fn continue_from(run: &mut Run, values: &[f64]) -> Result<bool, Fault> {
+pub(super) fn continue_from(run: &mut Run, values: &[f64]) -> Result<bool, Fault> {
     let is_better = run.go_to(values);
     if is_better {
         refit(run)?;
@@ -137,9 +142,14 @@ pub fn continue_from(run: &mut Run, values: &[f64]) -> Result<bool, Fault> {
 }
 
 /// Least squares from the best point, which it replaces; without least squares only the objective
-/// is computed anew.
-fn refit(run: &mut Run) -> Result<(), Fault> {
-    let Some(best) = &run.best else { return Ok(()) };
+/// is computed anew. Returns whether that is smaller.
+///
+/// # Errors
+///
+/// Those of the method's maker.
+pub(super) fn refit(run: &mut Run) -> Result<bool, Fault> {
+    let Some(best) = &run.best else { return Ok(false) };
+    let before = best.fitness;
     let found = match Refit::new(&run.problem, &run.evaluation) {
         Some(mut refit) => {
             let found = refit.from(&best.values, None)?;
@@ -148,11 +158,10 @@ fn refit(run: &mut Run) -> Result<(), Fault> {
         }
         None => best.values.clone(),
     };
-    if let Ok(simulated) = run.evaluation.simulate(&found) {
-        let fitness = run.evaluation.objective(&run.problem, &simulated);
-        run.best = Some(Best { values: found, fitness });
-    }
-    Ok(())
+    let Ok(simulated) = run.evaluation.simulate(&found) else { return Ok(false) };
+    let fitness = run.evaluation.objective(&run.problem, &simulated);
+    run.best = Some(Best { values: found, fitness });
+    Ok(fitness < before)
 }
 
 /// Residuals smaller than this part of the data are not noise of measurements, for which a finer
@@ -244,7 +253,9 @@ fn shift(coarse: &[f64], fine: &[f64], errors: &[f64], run: &Run) -> f64 {
     let (mut first, mut most) = (0, 0.0f64);
     for series in &run.problem.series {
         let n = series.y.len();
-        let part = |j: usize| ((coarse[j] - fine[j]) / errors[j].max(f64::MIN_POSITIVE)).powi(2);
+        let part = |j: usize| {
+            elementary::powi((coarse[j] - fine[j]) / errors[j].max(f64::MIN_POSITIVE), 2)
+        };
         most = most.max(((first..first + n).map(part).sum::<f64>() / n as f64).sqrt());
         first += n;
     }
@@ -296,7 +307,7 @@ fn coarse_solver(run: &Run, first: &Best, [before, after]: [f64; 2], moved: f64)
 pub(super) fn limit(statistics: &Statistics) -> f64 {
     let square: f64 = statistics.residuals.iter().map(|r| r * r).sum();
     match statistics.believed {
-        true => square + statistics.factor.powi(2),
-        false => square * (1.0 + statistics.factor.powi(2) / statistics.freedom),
+        true => square + elementary::powi(statistics.factor, 2),
+        false => square * (1.0 + elementary::powi(statistics.factor, 2) / statistics.freedom),
     }
 }

@@ -5,6 +5,7 @@
 
 use super::conclusion::limit;
 use super::{Evaluation, Problem, Statistics};
+use crate::elementary;
 
 /// Fractions of the range that are tried on each side: from this on, each larger by the factor.
 const FIRST: f64 = 1e-3;
@@ -93,7 +94,7 @@ impl Walk<'_> {
         let measured = self.problem.series.iter().flat_map(|series| &series.y);
         simulated.is_some_and(|simulated| {
             let points = measured.zip(simulated).zip(&self.statistics.weights);
-            let square: f64 = points.map(|((m, s), w)| (w * (m - s)).powi(2)).sum();
+            let square: f64 = points.map(|((m, s), w)| elementary::powi(w * (m - s), 2)).sum();
             square <= limit(self.statistics)
         })
     }

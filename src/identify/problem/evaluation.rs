@@ -3,6 +3,7 @@
 
 use super::{Failed, Linearization, Problem, Simulate};
 use crate::diag::Fault;
+use crate::elementary;
 use crate::fault;
 use crate::ga::optimizer::Wants;
 use crate::ga::{Genomes, has_failed};
@@ -101,7 +102,12 @@ impl Evaluation {
     /// Root of the sum of squares of the measured values, scaled as residuals are.
     pub(super) fn size(&self) -> f64 {
         let scales = self.scales.as_deref().unwrap_or(&self.weights);
-        self.measured.iter().zip(scales).map(|(y, s)| (y * s).powi(2)).sum::<f64>().sqrt()
+        self.measured
+            .iter()
+            .zip(scales)
+            .map(|(y, s)| elementary::powi(y * s, 2))
+            .sum::<f64>()
+            .sqrt()
     }
 
     /// What differences of the points count.
@@ -112,7 +118,7 @@ impl Evaluation {
     /// How far two simulations are apart: root mean square of the weighted differences.
     pub(super) fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
         let pairs = a.iter().zip(b).zip(&self.weights);
-        let square: f64 = pairs.map(|((a, b), weight)| (weight * (a - b)).powi(2)).sum();
+        let square: f64 = pairs.map(|((a, b), weight)| elementary::powi(weight * (a - b), 2)).sum();
         (square / a.len() as f64).sqrt()
     }
 

@@ -3,7 +3,7 @@
 
 use super::{Failed, FailureKind, Simulate};
 use crate::diag::Fault;
-use crate::identify::evaluation::{Plan, plan, with_driver};
+use crate::identify::plan::{Plan, plan, with_driver};
 use crate::identify::pointwise::Pointwise;
 use crate::identify::{Instance, Model, Path};
 use crate::sim::{
@@ -28,6 +28,9 @@ pub struct Experiment {
     pub model: Arc<dyn Model>,
     /// How it is simulated.
     pub settings: Settings,
+    /// Whether a simulation that the solver did not get through is tried once more, with another
+    /// method and a smaller tolerance. Not in the algorithm of the paper, where it has failed.
+    pub second_attempt: bool,
     /// The variable that X holds values of; `time` if nothing else.
     pub x_name: String,
     /// What is compared.
@@ -52,6 +55,8 @@ pub struct ModelSimulator {
     simulator: Simulator,
     trajectory: Trajectory,
     refusal: Option<String>,
+    /// When the last simulation failed, in simulated time.
+    failed_at: Option<f64>,
 }
 
 /// One experiment, ready to run.
@@ -71,6 +76,8 @@ struct Stage {
     in_x: bool,
     /// For static curves.
     pointwise: Option<Pointwise>,
+    /// When the first attempt failed, in simulated time.
+    failed_at: Option<f64>,
 }
 
 impl ModelSimulator {
@@ -86,7 +93,24 @@ impl ModelSimulator {
             simulator: Simulator::new(),
             trajectory: Trajectory::default(),
             refusal: None,
+            failed_at: None,
         })
+    }
+
+    /// The settings of the first experiment, with its times of output.
+    pub fn settings(&self) -> &Settings {
+        &self.stages[0].settings
+    }
+
+    /// Whether the first experiment has no states, so that nothing is integrated.
+    pub fn is_static(&mut self) -> bool {
+        self.stages[0].instance.system().n_differential() == 0
+    }
+
+    /// When the last simulation failed, in simulated time; `None` where it did not, or where the
+    /// whole simulation is of no use.
+    pub fn failed_at(&self) -> Option<f64> {
+        self.failed_at
     }
 }
 
@@ -98,7 +122,9 @@ impl Simulate for ModelSimulator {
             let length: usize = stage.points.iter().map(Vec::len).sum();
             let out = &mut out[first..first + length];
             first += length;
+            stage.failed_at = None;
             let run = stage.run(parameters, &mut self.simulator, &mut self.trajectory, out);
+            self.failed_at = stage.failed_at;
             run.map_err(|failed| located(failed, (number, count), &stage.name))?;
         }
         Ok(())
@@ -172,7 +198,7 @@ impl Stage {
             experiment.parameters.iter().map(|(_, name)| name.clone()).collect();
         let mut all: Vec<f64> = observations.iter().flat_map(|o| o.x.clone()).collect();
         all.sort_by(f64::total_cmp);
-        all.dedup();
+        all.dedup_by(|a, b| a.total_cmp(b).is_eq());
         let mut settings = experiment.settings.clone();
         let plan = plan(model.as_ref(), &varied, x_name, &all, &mut settings)?;
         let mut observed: Vec<String> = observations.iter().map(|o| o.y_name.clone()).collect();
@@ -190,6 +216,7 @@ impl Stage {
                 (observations.iter().map(|o| o.x.clone()).collect(), true)
             }
         };
+        let retry = retry(&settings).filter(|_| experiment.second_attempt);
         Ok(Stage {
             name: name.clone(),
             instance: model.instance(&with_driver(model.as_ref(), &varied), &observed)?,
@@ -197,14 +224,15 @@ impl Stage {
             values: Vec::with_capacity(varied.len()),
             tolerances: [
                 settings.tolerance,
-                retry(&settings).map_or(settings.tolerance, |retry| retry.tolerance),
+                retry.as_ref().map_or(settings.tolerance, |retry| retry.tolerance),
             ],
-            retry: retry(&settings),
+            retry,
             settings,
             x_name: x_name.clone(),
             points,
             in_x,
             pointwise,
+            failed_at: None,
         })
     }
 
@@ -400,6 +428,7 @@ impl Stage {
         let settings = self.retry.as_ref().filter(|_| again).unwrap_or(&self.settings);
         let run = simulator.run(self.instance.system(), settings, trajectory);
         run.map(|_| ()).map_err(|error| {
+            self.failed_at = self.failed_at.or(Some(error.time));
             let length = (settings.stop - settings.start).max(f64::MIN_POSITIVE);
             Failed {
                 kind: kind(&error),

@@ -2,6 +2,7 @@
 //! failures best from successes.
 
 use super::Free;
+use crate::elementary;
 use crate::ga::has_failed;
 use serde::{Deserialize, Serialize};
 
@@ -128,7 +129,7 @@ impl Tally {
 
 /// Uncertainty about an event of this probability, in nats.
 fn entropy(p: f64) -> f64 {
-    let term = |p: f64| if p > 0.0 { -p * p.ln() } else { 0.0 };
+    let term = |p: f64| if p > 0.0 { -p * elementary::ln(p) } else { 0.0 };
     term(p) + term(1.0 - p)
 }
 

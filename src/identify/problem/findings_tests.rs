@@ -153,6 +153,19 @@ fn outliers_are_named_by_their_rows() {
     assert_eq!((finding.kind, &finding.rows[..]), (FindingKind::Outlier, &[7, 19][..]));
 }
 
+/// Gross errors pull the fit away from the other points, whose residuals are a pattern then; the
+/// noise is white.
+#[test]
+fn gross_outliers_are_not_taken_for_a_pattern() {
+    let mut noise = Noise::new(1).white(40, 0.05);
+    noise[8] -= 8.0;
+    noise[25] += 12.0;
+    let solution = one(decay, noise, Sigma::Unknown);
+    let found = solution.findings.iter().find(|f| f.kind == FindingKind::Outlier);
+    assert_eq!(found.unwrap().rows, [9, 26], "{:?}", solution.findings);
+    assert!(!has(&solution, FindingKind::Autocorrelation), "{:?}", solution.findings);
+}
+
 #[test]
 fn serial_correlation_of_either_sign_is_found() {
     for (rho, sign) in [(0.8, "pattern"), (-0.7, "alternate")] {
@@ -174,6 +187,16 @@ fn a_model_beside_the_data_everywhere_does_not_pass() {
     let (_, solution) = solved(fixed);
     assert!(has(&solution, FindingKind::Bias), "{:?}", solution.findings);
     assert!(has(&solution, FindingKind::Sigma));
+}
+
+/// All residuals of one sign, in a slow wave whose points count little each.
+#[test]
+fn a_wave_on_one_side_of_the_data_is_a_bias() {
+    let wave = (0..30).map(|k| 0.9 + 0.3 * (f64::from(k) / 4.0).sin()).collect();
+    let fixed = problem(&[(rise, wave, Sigma::Unknown)], &[1.0, 1.0], [0.99, 1.1], None);
+    let (_, solution) = solved(fixed);
+    assert!(has(&solution, FindingKind::Autocorrelation), "{:?}", solution.findings);
+    assert!(has(&solution, FindingKind::Bias), "{:?}", solution.findings);
 }
 
 #[test]

@@ -10,6 +10,7 @@
 //! Reference: [Nocedal & Wright 2006](crate::bibliography#nocedal-wright-2006), §8.1.
 
 use super::{Evaluation, Failed, Free, NOISE_OF_FORMULAS, Problem};
+use crate::elementary;
 
 /// The tolerance of the solver counts times this while differences are taken. Chosen, not
 /// measured.
@@ -189,7 +190,7 @@ fn tightening(problem: &Problem) -> f64 {
 
 /// The step in the coordinate that is searched.
 fn step(problem: &Problem, free: &Free, at: f64) -> f64 {
-    let relative = (problem.noise * tightening(problem)).cbrt().clamp(STEPS[0], STEPS[1]);
+    let relative = elementary::cbrt(problem.noise * tightening(problem)).clamp(STEPS[0], STEPS[1]);
     match free.logarithmic {
         true => relative,
         false => relative * at.abs().max(SMALLEST * (free.max - free.min)),

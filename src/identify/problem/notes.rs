@@ -6,6 +6,7 @@ use super::{
     ErrorModel, FailureRegion, Finding, FindingKind, Form, Inseparable, Profiles, Run, Severity,
     Solution, SolvedParameter, SolvedSeries, Statistics, Verdict,
 };
+use crate::elementary;
 use crate::identify::table::significant;
 use crate::identify::uncertainty_given;
 
@@ -410,11 +411,12 @@ fn determined(group: &Inseparable, solution: &Solution, statistics: &Statistics)
         let mut value = if is_product { 1.0 } else { 0.0 };
         for ((&k, own), part) in group.parameters.iter().zip(values).zip(combination) {
             weights[k] = if is_product { part / own } else { *part };
-            value = if is_product { value * own.powf(*part) } else { value + part * own };
+            value =
+                if is_product { value * elementary::powf(own, *part) } else { value + part * own };
         }
         let reach = statistics.factor * statistics.error_of(&weights)?;
         let [low, high] = match is_product {
-            true => [-reach, reach].map(|reach| value * reach.exp()),
+            true => [-reach, reach].map(|reach| value * elementary::exp(reach)),
             false => [value - reach, value + reach],
         };
         let text = if is_product { product(parts) } else { sum(parts) };
@@ -510,18 +512,6 @@ pub(super) fn profile_findings(solution: &Solution, found: &Profiles) -> Vec<Fin
         findings.push(finding.severity(Severity::Serious));
     }
     findings
-}
-
-/// That the run went to a better fit which its profiles came upon; `searched`: the objective at the end of
-/// the search.
-pub fn better_by_profile(searched: f64, solution: &Solution) -> Finding {
-    let sentence = format!(
-        "The profiles came upon a better fit than the search ({} instead of {}): everything here \
-         belongs to that one.",
-        significant(solution.fitness, 7),
-        significant(searched, 7)
-    );
-    Finding::new(FindingKind::Search, sentence)
 }
 
 fn about_failures(region: &FailureRegion) -> Finding {

@@ -12,6 +12,7 @@ use super::refit::Refit;
 use super::statistics::distributions::{chi_square_quantile, student_quantile};
 use super::{ErrorModel, Evaluation, Free, Problem};
 use crate::diag::Fault;
+use crate::elementary;
 use serde::{Deserialize, Serialize};
 
 /// Values on each side of the best before the crossing is looked for.
@@ -101,12 +102,14 @@ fn limit(problem: &Problem, smallest: f64, freedom: f64, residuals: Option<&[f64
     let robust = fitness.zip(residuals).and_then(|(own, r)| own.robustness(r, freedom));
     if let Some(robust) = robust {
         return smallest
-            + robust.scale.powi(2) * robust.rise * student_quantile(0.975, freedom).powi(2);
+            + elementary::powi(robust.scale, 2)
+                * robust.rise
+                * elementary::powi(student_quantile(0.975, freedom), 2);
     }
     match ErrorModel::of(problem) {
         ErrorModel::Known => smallest + chi_square_quantile(0.95, 1.0),
         ErrorModel::OneVariance | ErrorModel::Estimated => {
-            smallest * (1.0 + student_quantile(0.975, freedom).powi(2) / freedom)
+            smallest * (1.0 + elementary::powi(student_quantile(0.975, freedom), 2) / freedom)
         }
     }
 }

@@ -5,6 +5,7 @@ use super::evaluation::{Answered, Evaluation};
 use super::{FailureKind, Fingerprint, Problem, Record, Stop};
 use crate::bail;
 use crate::diag::Fault;
+use crate::elementary;
 use crate::fault;
 use crate::ga::optimizer::{
     Answers, DescentReport, Optimizer, Polished, Scale, Setup, Wants, non_dominated,
@@ -227,7 +228,7 @@ impl Run {
         let new = super::Free::new(&old.name, &old.unit, range, Some(old.logarithmic), None)?;
         // Both scales are linear in the fractions, so the map is found from two points.
         let fraction = |value: f64| match new.logarithmic {
-            true => (value / new.min).ln() / (new.max / new.min).ln(),
+            true => elementary::ln(value / new.min) / elementary::ln(new.max / new.min),
             false => (value - new.min) / (new.max - new.min),
         };
         let (offset, end) = (fraction(old.min), fraction(old.max));

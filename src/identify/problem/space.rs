@@ -2,6 +2,7 @@
 
 use crate::bail;
 use crate::diag::Fault;
+use crate::elementary;
 use crate::ga::Gene;
 use crate::ga::errors::BAD_RANGE;
 
@@ -63,8 +64,8 @@ impl Free {
     pub fn value(&self, u: f64) -> f64 {
         let value = match self.logarithmic {
             true => {
-                let [low, high] = [self.min, self.max].map(|end| end.abs().ln());
-                (low + (high - low) * u).exp().copysign(self.min)
+                let [low, high] = [self.min, self.max].map(|end| elementary::ln(end.abs()));
+                elementary::exp(low + (high - low) * u).copysign(self.min)
             }
             false => self.min + (self.max - self.min) * u,
         };
@@ -75,7 +76,7 @@ impl Free {
     pub fn fraction(&self, value: f64) -> f64 {
         let value = value.clamp(self.min, self.max);
         let fraction = match self.logarithmic {
-            true => (value / self.min).ln() / (self.max / self.min).ln(),
+            true => elementary::ln(value / self.min) / elementary::ln(self.max / self.min),
             false => (value - self.min) / (self.max - self.min),
         };
         fraction.clamp(0.0, 1.0)
@@ -84,13 +85,13 @@ impl Free {
     /// What is searched in place of the value, growing with it: the value itself or its natural
     /// logarithm, of a negative value less the logarithm of its size.
     pub(super) fn coordinate(&self, value: f64) -> f64 {
-        if self.logarithmic { value.abs().ln() * self.min.signum() } else { value }
+        if self.logarithmic { elementary::ln(value.abs()) * self.min.signum() } else { value }
     }
 
     /// The value that belongs to a [`coordinate`](Self::coordinate).
     pub(super) fn value_at_coordinate(&self, coordinate: f64) -> f64 {
         let sign = self.min.signum();
-        if self.logarithmic { sign * (sign * coordinate).exp() } else { coordinate }
+        if self.logarithmic { sign * elementary::exp(sign * coordinate) } else { coordinate }
     }
 
     /// The derivative of the coordinate by the value.
@@ -101,7 +102,7 @@ impl Free {
     /// The derivative of the value by the fraction, at a value.
     pub fn slope(&self, value: f64) -> f64 {
         match self.logarithmic {
-            true => value * (self.max / self.min).ln(),
+            true => value * elementary::ln(self.max / self.min),
             false => self.max - self.min,
         }
     }

@@ -5,9 +5,10 @@ use super::ending::{self, Ending, EndingKind, OtherMinimum, SolvedDescent};
 use super::statistics::distributions::chi_square_tails;
 use super::{
     ErrorModel, FailureKind, FailureRegion, Finding, FindingKind, Form, Importance, Inferred,
-    Profiles, Run, Severity, Sigma, Statistics, profiles, residual_test,
+    Profiles, Run, Severity, Sigma, Statistics, residual_test,
 };
 use crate::diag::Fault;
+use crate::elementary;
 use crate::fault;
 use crate::ga::Generation;
 use crate::registry::BAD_OPTION;
@@ -233,9 +234,9 @@ impl SolvedSeries {
         let n = series.y.len() as f64;
         let points: Vec<[f64; 3]> =
             series.x.iter().zip(&series.y).zip(simulated).map(|((x, y), s)| [*x, *y, *s]).collect();
-        let square: f64 = points.iter().map(|p| (p[1] - p[2]).powi(2)).sum();
+        let square: f64 = points.iter().map(|p| elementary::powi(p[1] - p[2], 2)).sum();
         let mean = series.y.iter().sum::<f64>() / n;
-        let total: f64 = series.y.iter().map(|y| (y - mean).powi(2)).sum();
+        let total: f64 = series.y.iter().map(|y| elementary::powi(y - mean, 2)).sum();
         let mut ordered = points.clone();
         ordered.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let residuals: Vec<f64> = ordered.iter().map(|p| p[1] - p[2]).collect();
@@ -369,36 +370,6 @@ impl Solution {
         self.findings.insert(0, finding);
     }
 
-    /// Adds the profiles of all parameters and what they say; where there are none, a finding says
-    /// why, and the solution stays as it is.
-    pub fn add_profiles(&mut self, run: &Run) {
-        match self.profiled(run) {
-            Ok(Some(found)) => {
-                self.findings.extend(super::notes::profile_findings(self, &found));
-                self.profiles = Some(found);
-            }
-            Ok(None) => {}
-            Err(fault) => self.findings.push(
-                Finding::new(FindingKind::Missing, format!("{}.", fault.message))
-                    .severity(Severity::Information),
-            ),
-        }
-    }
-
-    fn profiled(&self, run: &Run) -> Result<Option<Profiles>, Fault> {
-        let Some(best) = &run.best else { return Ok(None) };
-        let half = |p: &SolvedParameter| p.interval.map(|[low, high]| 0.5 * (high - low));
-        let reach: Vec<Option<f64>> = self.parameters.iter().map(half).collect();
-        let found = profiles(&run.problem, &run.evaluation, &best.values, &reach)?;
-        let found = found.ok_or_else(|| {
-            fault!(
-                BAD_OPTION,
-                "There are no profiles of `{}` with {} points: they need a sum of squares of more points than parameters", self.fitness_name, run.problem.n_points()
-            )
-        })?;
-        Ok(Some(found))
-    }
-
     /// Pairs of parameters that the data can hardly tell apart.
     pub fn strongly_correlated(&self) -> Vec<(usize, usize, f64)> {
         let Some(rows) = &self.correlations else { return Vec::new() };
@@ -433,8 +404,10 @@ fn solved_series(
         let places = first..first + measured.x.len();
         first = places.end;
         let mut solved = SolvedSeries::new(measured, &simulated[places.clone()]);
-        let square: f64 =
-            statistics.weights[places].iter().map(|w| (measured.weight / w).powi(2)).sum();
+        let square: f64 = statistics.weights[places]
+            .iter()
+            .map(|w| elementary::powi(measured.weight / w, 2))
+            .sum();
         solved.sigma = (measured.sigma != Sigma::Unknown)
             .then(|| (square / measured.x.len() as f64).sqrt())
             .filter(|sigma| sigma.is_finite());
@@ -479,12 +452,12 @@ fn negative_log_likelihood(run: &Run, statistics: &Statistics) -> Option<f64> {
     }
     let n = statistics.residuals.len() as f64;
     let square: f64 = statistics.residuals.iter().map(|r| r * r).sum();
-    let of_weights: f64 = statistics.weights.iter().map(|w| w.ln()).sum();
+    let of_weights: f64 = statistics.weights.iter().map(|w| elementary::ln(*w)).sum();
     let of_residuals = match ErrorModel::of(&run.problem) {
-        ErrorModel::OneVariance => 0.5 * n * ((square / n).ln() + 1.0),
+        ErrorModel::OneVariance => 0.5 * n * (elementary::ln(square / n) + 1.0),
         _ => 0.5 * square,
     };
-    let value = of_residuals - of_weights + 0.5 * n * std::f64::consts::TAU.ln();
+    let value = of_residuals - of_weights + 0.5 * n * elementary::ln(std::f64::consts::TAU);
     value.is_finite().then_some(value)
 }
 
@@ -502,7 +475,7 @@ fn parameters(
         let interval =
             reach.filter(|reach| reach.is_finite()).map(|reach| match free.logarithmic {
                 true => {
-                    let ends = [-reach, reach].map(|reach| value * (reach / value).exp());
+                    let ends = [-reach, reach].map(|reach| value * elementary::exp(reach / value));
                     [ends[0].min(ends[1]), ends[0].max(ends[1])]
                 }
                 false => [value - reach, value + reach],

@@ -35,6 +35,6 @@ pub(super) fn section(view: &View) -> Option<Section> {
             }
         }
     };
-    let content = html! { (scrolling("Other minima", &table)) (explained(&MINIMA)) };
+    let content = html! { (scrolling("Table of other minima", &table)) (explained(&MINIMA)) };
     Some(Section { id: "minima", heading: "Other minima", content, wide: true })
 }

@@ -5,6 +5,7 @@ use super::Section;
 use super::explanations::{CONDITION, CORRELATION, ELLIPSE};
 use super::parts::{axis, explained, number, one_panel, scrolling, series, small_figure};
 use super::view::{Pair, View, is_logarithmic};
+use crate::elementary;
 use crate::ga::has_failed;
 use crate::identify::problem::SolvedParameter;
 use crate::plot::{Figure, Mark};
@@ -136,11 +137,11 @@ fn ellipse(
     let (a, b) = (across.deviation?, up.deviation?);
     let rest = (1.0 - correlation * correlation).max(0.0).sqrt();
     let moved = |parameter: &SolvedParameter, error: f64, by: f64| match parameter.logarithmic {
-        true => parameter.value * (by * error / parameter.value).exp(),
+        true => parameter.value * elementary::exp(by * error / parameter.value),
         false => by.mul_add(error, parameter.value),
     };
     let corner = |k: usize| {
-        let (sine, cosine) = (std::f64::consts::TAU * k as f64 / CORNERS as f64).sin_cos();
+        let (sine, cosine) = elementary::sin_cos(std::f64::consts::TAU * k as f64 / CORNERS as f64);
         let x = moved(across, a, radius * cosine);
         (x, moved(up, b, radius * (correlation * cosine + rest * sine)))
     };
@@ -152,7 +153,7 @@ fn ellipse(
 /// A quarter more on both sides, in the scale that is drawn.
 fn widened(parameter: &SolvedParameter, low: f64, high: f64) -> [f64; 2] {
     if is_logarithmic(parameter, low, high) {
-        let more = (high / low).powf(0.25);
+        let more = elementary::powf(high / low, 0.25);
         return [low / more, high * more];
     }
     let more = 0.25 * (high - low);

@@ -5,6 +5,7 @@ use super::Section;
 use super::explanations::PROFILE;
 use super::parts::{axis, explained, number, one_panel, series, small_figure};
 use super::view::{View, is_logarithmic};
+use crate::elementary;
 use crate::identify::problem::{Profile, SolvedParameter};
 use crate::plot::{Axis, Figure, Mark};
 use maud::{Markup, html};
@@ -70,7 +71,7 @@ fn parabola(
 ) -> Vec<(f64, f64)> {
     let Some([low, high]) = parameter.interval else { return Vec::new() };
     let logarithmic = parameter.logarithmic && low > 0.0 && least.0 > 0.0 && from > 0.0;
-    let scale = |value: f64| if logarithmic { value.ln() } else { value };
+    let scale = |value: f64| if logarithmic { elementary::ln(value) } else { value };
     let half = 0.5 * (scale(high) - scale(low));
     let point = |k: usize| {
         let x = from + (to - from) * k as f64 / PARABOLA as f64;

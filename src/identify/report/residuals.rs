@@ -14,7 +14,7 @@ pub(super) fn section(view: &View) -> Option<Section> {
     }
     let tested = solution.series.iter().any(|series| series.residual_test.is_some());
     let content = html! {
-        (scrolling("Statistics of the residuals", &table(view)))
+        (scrolling("Table of the residuals", &table(view)))
         (explained(&RMSE))
         (explained(&R_SQUARED))
         @if tested { (explained(&RUNS)) (explained(&AUTOCORRELATION)) }

@@ -1,5 +1,6 @@
 //! What the page shows: the solution, and what is derived from it for drawing.
 
+use crate::elementary;
 use crate::ga::optimizer::DescentEnd;
 use crate::identify::problem::{
     Band, BandPoint, EndingKind, Finding, Severity, Solution, SolvedDescent, SolvedParameter,
@@ -118,7 +119,7 @@ impl View<'_> {
             _ if self.solution.chi_square.is_some() => CHI_SQUARE,
             freedom => {
                 let freedom = freedom as f64;
-                freedom * (0.05f64.powf(-2.0 / freedom) - 1.0)
+                freedom * (elementary::powf(0.05f64, -2.0 / freedom) - 1.0)
             }
         }
     }
@@ -203,7 +204,7 @@ pub(super) fn is_logarithmic(parameter: &SolvedParameter, low: f64, high: f64) -
 pub(super) fn fraction(parameter: &SolvedParameter, value: f64) -> f64 {
     let [min, max] = parameter.range;
     let fraction = match parameter.logarithmic {
-        true => (value / min).ln() / (max / min).ln(),
+        true => elementary::ln(value / min) / elementary::ln(max / min),
         false => (value - min) / (max - min),
     };
     // A value on the other side of zero has no logarithm: it lies below the range.

@@ -232,10 +232,11 @@ pub(super) fn seconds(
     hint: &str,
 ) -> Result<Seconds, Fault> {
     let day_first = order(dates.unwrap_or(moments))?;
-    let mut found: Vec<Option<i64>> = Vec::with_capacity(moments.len());
+    // Nanoseconds since the year 0: dates behind the year 2262 exceed 64 bits.
+    let mut found: Vec<Option<i128>> = Vec::with_capacity(moments.len());
     let mut passes_midnight = false;
     let mut is_dated = false;
-    let (mut added, mut before) = (0, None);
+    let (mut added, mut before) = (0_i128, None);
     for (row, moment) in moments.iter().enumerate() {
         let Some(moment) = moment else {
             found.push(None);
@@ -254,22 +255,23 @@ pub(super) fn seconds(
         };
         if let Some(date) = date {
             is_dated = true;
-            found.push(Some(days(resolved(date, day_first)) * DAY + clock));
+            let days = i128::from(days(resolved(date, day_first)));
+            found.push(Some(days * i128::from(DAY) + i128::from(clock)));
             continue;
         }
         // From late in the evening to early in the morning: the next day.
         if before.is_some_and(|before: i64| before - clock > DAY / 2) && clock < DAY {
-            added += DAY;
+            added += i128::from(DAY);
             passes_midnight = true;
         }
         before = Some(clock);
-        found.push(Some(clock + added));
+        found.push(Some(i128::from(clock) + added));
     }
     let first = found.iter().flatten().next().copied().unwrap_or(0);
     let last = found.iter().flatten().next_back().copied().unwrap_or(0);
     // A log that begins later than it lasts shows the time of day.
     let since_first =
-        is_dated || passes_midnight || (first >= 3600 * SECOND && last - first < first);
+        is_dated || passes_midnight || (first >= i128::from(3600 * SECOND) && last - first < first);
     let origin = if since_first { first } else { 0 };
     let values = found.iter().map(|n| n.map_or(f64::NAN, |n| (n - origin) as f64 / 1e9)).collect();
     let what = match (is_dated, since_first) {

@@ -5,15 +5,15 @@ use super::openmodelica;
 use super::simflags::SimulationFlags;
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{At, Diagnostic, Fault};
-use crate::name::Name;
 use crate::script::errors::BAD_ARGUMENT;
-use crate::script::simulation::Wishes;
+use crate::script::simulation::{Translated, Wishes};
 use crate::script::{Dialect, Session};
 use crate::value::Value;
 use crate::{bail, fault};
 use regex::Regex;
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 /// The commands of this file.
 pub(super) const FAMILY: Family = Family {
@@ -28,8 +28,8 @@ const FAILED: i32 = 255;
 /// A model as it was built.
 #[derive(Clone)]
 pub(super) struct Executable {
-    /// The model.
-    pub(super) class: Name,
+    /// The model, whatever becomes of its class afterwards.
+    pub(super) model: Arc<Translated>,
     /// The settings of the simulation.
     pub(super) wishes: Wishes,
     /// The ending of its result file.
@@ -102,7 +102,7 @@ fn run(
     flags.init_file.get_or_insert_with(|| init_file(name));
     let file = format!("{name}_res.{}", program.format);
     let wanted = (file.as_str(), &program.filter);
-    openmodelica::run(session, &program.class, &program.wishes, flags, wanted).map(|_| ())
+    openmodelica::run(session, &program.model, &program.wishes, flags, wanted).map(|_| ())
 }
 
 /// The words of a command line and the file that its output goes to; `None` if it is more than one

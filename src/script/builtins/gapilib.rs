@@ -218,6 +218,7 @@ fn fit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     }
     let rows = (0..simulated.rows).map(|k| simulated.row(k));
     let fitness: Vec<f64> = rows.map(|row| sum_of_squares(row, &measured)).collect();
+    session.fitted(simulated.row(0), &measured);
     session.identification().recorder.rated(&simulated.elements, &measured);
     session
         .traced(|tracer, place| tracer.rated(place, &fitness, &simulated.elements, &measured))?;

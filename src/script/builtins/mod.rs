@@ -37,6 +37,7 @@ mod streams;
 mod strings;
 mod styles;
 mod system;
+mod total_model;
 mod upgrade;
 mod windows;
 
@@ -144,6 +145,7 @@ pub static FAMILIES: &[&Family] = &[
     &streams::FAMILY,
     &streams::BARE_PRINT,
     &system::FAMILY,
+    &total_model::FAMILY,
     &system::DYMOLA,
     &system::OPENMODELICA,
     &upgrade::FAMILY,

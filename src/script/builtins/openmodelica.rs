@@ -9,14 +9,15 @@ use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
 use crate::flatten::Experiment;
 use crate::name::{Ident, Name};
-use crate::results::ResultTable;
+use crate::results::{ResultTable, Values};
 use crate::script::errors::BAD_ARGUMENT;
 use crate::script::flat_text::{flat_text, trivial_equations};
-use crate::script::simulation::{self, Wishes};
+use crate::script::simulation::{self, Translated, Wishes};
 use crate::script::{Dialect, Session};
-use crate::value::{FromValue, RecordValue, Value};
+use crate::value::{FromValue, RecordValue, Value, check_length};
 use indexmap::IndexMap;
 use regex::{Regex, RegexBuilder};
+use std::sync::Arc;
 
 /// The commands of this file.
 pub(super) const FAMILY: Family = Family {
@@ -72,8 +73,10 @@ fn simulate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let filter = filter(&given)?;
     let prefix = if prefix.is_empty() { class.to_string() } else { prefix };
     let file = format!("{prefix}_res.{format}");
-    let done = flags_of(session, &flags)
-        .and_then(|flags| run(session, &class, &wishes, flags, (&file, &filter)));
+    let done = flags_of(session, &flags).and_then(|flags| {
+        let model = simulation::translate(session, &class.to_string())?;
+        run(session, &model, &wishes, flags, (&file, &filter))
+    });
     let messages = match &done {
         Ok(_) => String::new(),
         Err(_) => format!("Failed to build model: {class}"),
@@ -126,17 +129,14 @@ fn build_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
     let class: Name = args.take("className")?;
     let prefix: String = args.take("fileNamePrefix")?;
     let prefix = if prefix.is_empty() { class.to_string() } else { prefix };
-    let program = Executable {
-        wishes: wishes(&mut args)?,
-        format: args.take("outputFormat")?,
-        filter: filter(&args.take::<String>("variableFilter")?)?,
-        flags: args.take("simflags")?,
-        class,
-    };
-    let done = simulation::translate(session, &program.class.to_string());
-    if session.or_report_all(done).is_none() {
+    let (wanted, format) = (wishes(&mut args)?, args.take("outputFormat")?);
+    let filter = filter(&args.take::<String>("variableFilter")?)?;
+    let flags = args.take("simflags")?;
+    let done = simulation::translate_anew(session, &class.to_string());
+    let Some(model) = session.or_report_all(done) else {
         return Ok(vec![String::new(), String::new()].into());
-    }
+    };
+    let program = Executable { model, wishes: wanted, format, filter, flags };
     let init_file = executable::keep(session, &prefix, program);
     Ok(vec![prefix, init_file].into())
 }
@@ -180,7 +180,7 @@ fn flags_of(session: &Session, flags: &str) -> Result<SimulationFlags, Vec<Diagn
 /// Simulates and writes the results; the settings used, and the file.
 pub(super) fn run(
     session: &mut Session,
-    class: &Name,
+    model: &Arc<Translated>,
     wishes: &Wishes,
     mut flags: SimulationFlags,
     (file, filter): (&str, &Regex),
@@ -188,20 +188,33 @@ pub(super) fn run(
     let at = session.call_site();
     let one = |error: Diagnostic| vec![error];
     executable::preset(session, &mut flags).at(at).map_err(one)?;
-    let model = simulation::translate(session, &class.to_string())?;
+    simulation::look_at(session, model);
     let wishes = completed(wishes, &model.program.experiment());
     let file = flags.result.as_deref().unwrap_or(file);
     let before = session.current_values();
     let set = flags.apply(session).at(at);
     let applied = with_method_of_ours(session, flags.applied_to(wishes.clone()));
-    let done = set.and_then(|()| simulation::simulate(session, &model, &applied));
+    let done = set.and_then(|()| simulation::simulate(session, model, &applied));
     session.restore_values(before);
     let mut done = done.map_err(one)?;
     if filter.as_str() != "^(?:.*)$" {
         done.table = done.table.only(|name| filter.is_match(name));
     }
+    if done.table.time.len() == 1 {
+        begun_and_ended(&mut done.table);
+    }
     write_results(session, &done.table, file).at(at).map_err(one)?;
     Ok((wishes, file.to_owned()))
+}
+
+/// A simulation that ends where it begins has two rows, the beginning and the end.
+fn begun_and_ended(table: &mut ResultTable) {
+    table.time.push(table.time[0]);
+    for series in &mut table.series {
+        if let Values::Trajectory(values) = &mut series.values {
+            values.extend(values.last().copied());
+        }
+    }
 }
 
 /// Writes the results of a simulation, which `val` and `plot` look at from now on.
@@ -359,6 +372,8 @@ fn string_replace(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
     if source.is_empty() {
         return Ok(text.into());
     }
+    let grown = text.matches(&source).count().saturating_mul(target.len());
+    check_length(text.len().saturating_add(grown))?;
     Ok(text.replace(&source, &target).into())
 }
 

@@ -125,7 +125,6 @@ pub(super) const FAMILY: Family = Family {
         "restoreAST": "the state of loaded classes is not stored",
         "reverseLookup": "uses of a class are not searched",
         "save": "files of models are not overwritten: saveModel writes to a file of its own",
-        "saveTotalModel": "one file with all that a model uses is not written: save the model with saveModel and load the libraries",
         "saveTotalSCode": "one file with all that a model uses is not written",
         "setAnnotationVersion": "loaded classes are edited by setParameterValue and setElementModifierValue, or in the file",
         "setClassComment": "loaded classes are edited by setParameterValue and setElementModifierValue, or in the file",

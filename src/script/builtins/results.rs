@@ -197,8 +197,8 @@ fn write_trajectory(session: &mut Session, mut args: Args) -> Result<Value, Fail
     }
     table.check().map_err(|fault| Fault::new(BAD_ARGUMENT, fault.message))?;
     let file = if file.contains('.') { file } else { format!("{file}.mat") };
-    let bytes = results::format_of_file(&file)?.write(&table)?;
-    let written = session.write_file(Path::new(&file), &bytes);
+    let format = results::format_of_file(&file)?;
+    let written = session.write_results(Path::new(&file), format.as_ref(), &table);
     Ok(session.succeeded(written))
 }
 

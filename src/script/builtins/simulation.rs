@@ -246,8 +246,7 @@ fn write(session: &mut Session, mut table: ResultTable, file: &str) -> Result<()
     let format = results::format_of_file(&path.to_string_lossy())?;
     // The name that Dymola's result files have.
     table.time_name = "Time".to_owned();
-    let bytes = format.write(&table)?;
-    session.write_file(&path, &bytes)?;
+    session.write_results(&path, format.as_ref(), &table)?;
     super::plotting::note_results(session, &path.to_string_lossy());
     Ok(())
 }

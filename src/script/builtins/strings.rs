@@ -6,7 +6,9 @@ use crate::diag::Fault;
 use crate::name::{Ident, Name};
 use crate::script::Session;
 use crate::script::errors::{BAD_ARGUMENT, SCRIPT_ERROR};
-use crate::value::{ArrayValue, Elements, EnumerationDefinition, EnumerationValue, Value};
+use crate::value::{
+    ArrayValue, Elements, EnumerationDefinition, EnumerationValue, Value, check_length,
+};
 use std::sync::{Arc, LazyLock};
 
 /// The commands of this file.
@@ -76,8 +78,11 @@ fn repeat(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let (n, string): (i64, String) = (args.take("n")?, args.take("string")?);
     let size = usize::try_from(n).ok().and_then(|n| n.checked_mul(string.len().max(1)));
     match size {
-        Some(size) if size <= 1 << 28 => Ok(text(string.repeat(n as usize))),
-        _ => bail!(BAD_ARGUMENT, "`n` of `repeat` is {n}: negative or too large"),
+        Some(size) => {
+            check_length(size)?;
+            Ok(text(string.repeat(n as usize)))
+        }
+        None => bail!(BAD_ARGUMENT, "`n` of `repeat` is {n}: negative or too large"),
     }
 }
 
@@ -250,6 +255,7 @@ fn replace(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let mut from = search.start;
     while let Some(at) = search.next_from(from) {
         result.extend(&search.string[from..at]);
+        check_length(result.len().saturating_add(by.len()))?;
         result.push_str(&by);
         from = at + search.wanted.len();
         if !all {

@@ -435,7 +435,16 @@ fn experiment(
     if observations.is_empty() {
         return Err(one(fault!(BAD_OPTION, "{name} has no outputs to compare")));
     }
-    Ok((Experiment { name, model, settings, x_name, observations, parameters }, series, has_states))
+    let experiment = Experiment {
+        name,
+        model,
+        settings,
+        second_attempt: true,
+        x_name,
+        observations,
+        parameters,
+    };
+    Ok((experiment, series, has_states))
 }
 
 /// What a simulation may cost.

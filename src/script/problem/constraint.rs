@@ -3,6 +3,7 @@
 
 use crate::bail;
 use crate::diag::{Fault, suggest};
+use crate::elementary;
 use crate::fault;
 use crate::identify::problem::inference::Constraint;
 use crate::registry::BAD_OPTION;
@@ -28,9 +29,9 @@ type Elementary = fn(f64) -> f64;
 /// Functions of one argument.
 const FUNCTIONS: &[(&str, Elementary)] = &[
     ("abs", f64::abs),
-    ("exp", f64::exp),
-    ("log", f64::ln),
-    ("log10", f64::log10),
+    ("exp", crate::elementary::exp),
+    ("log", crate::elementary::ln),
+    ("log10", crate::elementary::log10),
     ("sqrt", f64::sqrt),
 ];
 
@@ -146,7 +147,7 @@ impl Term {
                     BinaryOperator::Subtract => a - b,
                     BinaryOperator::Multiply => a * b,
                     BinaryOperator::Divide => a / b,
-                    _ => a.powf(b),
+                    _ => elementary::powf(a, b),
                 }
             }
         }

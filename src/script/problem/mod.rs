@@ -45,8 +45,6 @@ const OPTIONAL: [&str; 4] = ["bands.csv", "bootstrap.csv", "posterior.csv", "pro
 const JOURNAL: &str = "run.journal";
 /// Seconds between two looks at the watched settings.
 const LOOK: f64 = 0.2;
-/// So often a better fit that the profiles come upon is gone to.
-const BETTER_FITS: usize = 4;
 
 /// How a problem is run.
 #[derive(Debug, Clone, Default)]
@@ -199,11 +197,11 @@ fn solve_built(
     if !interrupted {
         solving::conclude(&mut run);
     }
-    let validated = validated(&run, &validation)?;
-    let mut solution = Solution::of(&run, &stop, validated)?;
+    let solved = |run: &Run| Solution::of(run, &stop, validated(run, &validation)?);
+    let mut solution = solved(&run)?;
     solution.importance = importance;
     if options.profile && !interrupted {
-        solution = profiled(&mut run, (&stop, &validation), solution)?;
+        solution = solution.with_profiles(&mut run, solved)?;
     }
     let finding = |note| Finding::new(FindingKind::Data, note).severity(Severity::Information);
     solution.findings.extend(notes.into_iter().map(finding));
@@ -225,36 +223,6 @@ fn solve_built(
     } else if session.world.exists(checkpoint.path()) {
         // What cannot be removed does no harm.
         let _ = session.world.remove(checkpoint.path());
-    }
-    Ok(solution)
-}
-
-/// Adds profiles. Where they come upon a better fit the run goes there, and the statistics and the
-/// profiles are made anew.
-fn profiled(
-    run: &mut Run,
-    (stop, validation): (&str, &[(solving::Experiment, Vec<solving::Series>)]),
-    mut solution: Solution,
-) -> Result<Solution, Fault> {
-    let (importance, searched) = (solution.importance.take(), solution.fitness);
-    for _ in 0..BETTER_FITS {
-        solution.add_profiles(run);
-        let better = solution.profiles.as_ref().and_then(|found| found.better.clone());
-        let Some((values, _)) = better else { break };
-        if !solving::continue_from(run, &values)? {
-            break;
-        }
-        let simulations = solution.profiles.as_ref().map_or(0, |found| found.simulations);
-        let simulations = simulations + solution.simulations_for_statistics;
-        solution = Solution::of(run, stop, validated(run, validation)?)?;
-        solution.simulations_for_statistics += simulations;
-    }
-    if solution.profiles.is_none() {
-        solution.add_profiles(run);
-    }
-    solution.importance = importance;
-    if solution.fitness < searched {
-        solution.findings.insert(0, solving::better_by_profile(searched, &solution));
     }
     Ok(solution)
 }

@@ -4,6 +4,7 @@
 use super::file::SigmaEntry;
 use crate::bail;
 use crate::diag::Fault;
+use crate::elementary;
 use crate::fault;
 use crate::identify::problem::{Sigma, SigmaFormula};
 use crate::mat::MatFile;
@@ -92,7 +93,7 @@ fn value(tree: &Expression, name: &str, y: f64) -> Option<f64> {
                 BinaryOperator::Subtract => Some(a - b),
                 BinaryOperator::Multiply => Some(a * b),
                 BinaryOperator::Divide => Some(a / b),
-                BinaryOperator::Power => Some(a.powf(b)),
+                BinaryOperator::Power => Some(elementary::powf(a, b)),
                 _ => None,
             }
         }
@@ -113,8 +114,8 @@ fn call(function: &str, arguments: &[f64]) -> Option<f64> {
     match (function, arguments) {
         ("abs", [a]) => Some(a.abs()),
         ("sqrt", [a]) => Some(a.sqrt()),
-        ("exp", [a]) => Some(a.exp()),
-        ("log", [a]) => Some(a.ln()),
+        ("exp", [a]) => Some(elementary::exp(*a)),
+        ("log", [a]) => Some(elementary::ln(*a)),
         ("min", [a, b]) => Some(a.min(*b)),
         ("max", [a, b]) => Some(a.max(*b)),
         _ => None,

@@ -41,8 +41,12 @@ fn table(header: &str, row: impl Fn(f64) -> String) -> String {
 }
 
 fn solved(files: &[(&str, String)]) -> Solution {
+    solved_with(files, &RunOptions::default())
+}
+
+fn solved_with(files: &[(&str, String)], options: &RunOptions) -> Solution {
     let mut session = Session::new(Box::new(world(files)));
-    match solve(&mut session, Path::new("p.toml"), &RunOptions::default()) {
+    match solve(&mut session, Path::new("p.toml"), options) {
         Ok(solution) => solution,
         Err(errors) => panic!("{}", errors[0].message),
     }

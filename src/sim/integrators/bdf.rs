@@ -24,6 +24,7 @@
 mod sensitivities;
 
 use super::{Integrator, Problem};
+use crate::elementary;
 use crate::registry::Entry;
 use crate::sim::linear::Factorization;
 use crate::sim::norm::{set_weights, weighted_rms};
@@ -227,7 +228,7 @@ impl Bdf {
             return;
         }
         let order = self.order;
-        let gain = |error: f64, order: usize| error.powf(-1.0 / (order as f64 + 1.0));
+        let gain = |error: f64, order: usize| elementary::powf(error, -1.0 / (order as f64 + 1.0));
         let norm = |difference: usize| self.norm(&self.differences[difference], self.weights.len());
         let mut best = (gain(self.error, order), order);
         if order > 1 {
@@ -510,7 +511,7 @@ impl Integrator for Bdf {
                         return Ok(());
                     }
                     problem.statistics.error_failures += 1;
-                    let gain = self.error.powf(-1.0 / (self.order as f64 + 1.0));
+                    let gain = elementary::powf(self.error, -1.0 / (self.order as f64 + 1.0));
                     (SimErrorKind::StepSize, (self.safety * gain).max(0.2))
                 }
                 Err(failure) => {

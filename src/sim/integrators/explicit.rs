@@ -8,6 +8,7 @@
 //! For systems without algebraic unknowns.
 
 use super::{Integrator, Problem};
+use crate::elementary;
 use crate::sim::SimErrorKind;
 use crate::sim::norm::{set_weights, weighted_rms};
 
@@ -48,6 +49,8 @@ pub(super) struct ExplicitRungeKutta {
     slopes: Vec<Vec<f64>>,
     /// Slope at the end of the step.
     slope_end: Vec<f64>,
+    /// Whether the slope at the end is another one since.
+    is_outdated: bool,
     /// Error estimate, then term of order 4 of the interpolation.
     combined: Vec<f64>,
 }
@@ -65,6 +68,7 @@ impl ExplicitRungeKutta {
             weights: Vec::new(),
             slopes: vec![Vec::new(); tableau.nodes.len()],
             slope_end: Vec::new(),
+            is_outdated: false,
             combined: Vec::new(),
         }
     }
@@ -145,6 +149,7 @@ impl Integrator for ExplicitRungeKutta {
         self.y.copy_from_slice(y);
         (self.t, self.t_old) = (t, t);
         problem.rhs(t, &self.y, &mut self.slope_end)?;
+        self.is_outdated = false;
         self.h = match self.tableau.embedded {
             None => problem.settings.fixed_step(),
             Some(_) => problem.first_step(t, &self.y, &self.slope_end),
@@ -155,6 +160,9 @@ impl Integrator for ExplicitRungeKutta {
     fn step(&mut self, problem: &mut Problem, limit: f64) -> Result<(), SimErrorKind> {
         self.t_old = self.t;
         self.y_old.copy_from_slice(&self.y);
+        if std::mem::take(&mut self.is_outdated) {
+            problem.rhs(self.t, &self.y, &mut self.slope_end)?;
+        }
         self.slopes[0].copy_from_slice(&self.slope_end);
         let (smallest, fixed) = (problem.smallest_step(self.t), self.tableau.embedded.is_none());
         loop {
@@ -171,7 +179,7 @@ impl Integrator for ExplicitRungeKutta {
                         };
                     }
                     Some((error, exponent)) if error <= 1.0 => {
-                        let factor = (0.9 * error.powf(exponent)).clamp(0.2, 5.0);
+                        let factor = (0.9 * elementary::powf(error, exponent)).clamp(0.2, 5.0);
                         if !truncated || factor < 1.0 {
                             self.h = (h * factor).min(problem.settings.max_step);
                         }
@@ -180,7 +188,7 @@ impl Integrator for ExplicitRungeKutta {
                     }
                     Some((error, exponent)) => {
                         problem.statistics.error_failures += 1;
-                        self.h = h * (0.9 * error.powf(exponent)).max(0.2);
+                        self.h = h * (0.9 * elementary::powf(error, exponent)).max(0.2);
                         SimErrorKind::StepSize
                     }
                 },
@@ -194,6 +202,10 @@ impl Integrator for ExplicitRungeKutta {
                 return Err(failure);
             }
         }
+    }
+
+    fn branches_changed(&mut self) {
+        self.is_outdated = true;
     }
 
     fn time(&self) -> f64 {

@@ -57,6 +57,10 @@ pub trait Integrator: Send {
     /// The end of the last step.
     fn time(&self) -> f64;
 
+    /// Notes that the right-hand side at the end of the last step is another one since, although
+    /// there was no event: what is known of it there does not hold any more.
+    fn branches_changed(&mut self) {}
+
     /// y at the end of the last step.
     fn state(&self) -> &[f64];
 

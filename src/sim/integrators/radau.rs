@@ -9,12 +9,15 @@
 //! ```
 //!
 //! The stages are found by Newton's method with one Jacobian for all, starting from the polynomial
-//! of the last step. Between steps the collocation polynomial, of degree 3, gives y.
+//! of the last step. Between steps the collocation polynomial, of degree 3, gives y. F at the end of
+//! a step is evaluated before the step is accepted: where F has no value there, as behind the zero of
+//! a root, the step was too long.
 //!
 //! Reference: [Hairer & Wanner 1996](crate::bibliography#hairer-wanner-1996), section IV.8.
 
 use super::mass_matrix::ShiftedMatrix;
 use super::{Integrator, Problem};
+use crate::elementary;
 use crate::registry::Entry;
 use crate::sim::linear::Factorization;
 use crate::sim::norm::{set_weights, weighted_rms};
@@ -64,7 +67,11 @@ struct Radau {
     delta: Vec<f64>,
     point: Vec<f64>,
     rhs: Vec<f64>,
+    /// F at the start of the step, and whether it is known.
     first: Vec<f64>,
+    knows_first: bool,
+    /// F at the end of an attempt that meets the tolerance.
+    end: Vec<f64>,
     error: Vec<f64>,
     weights: Vec<f64>,
     /// Whether the Jacobian is that of this step, and whether it need not be evaluated again.
@@ -173,6 +180,7 @@ impl Radau {
             &mut self.point,
             &mut self.rhs,
             &mut self.first,
+            &mut self.end,
             &mut self.error,
         ];
         single.into_iter().for_each(|vector| vector.resize(n, 0.0));
@@ -214,7 +222,10 @@ impl Radau {
                 }
             }
             self.stages.solve(problem.nominal, &mut self.delta);
-            let norms = self.delta.chunks_exact(n).map(|d| weighted_rms(d, &self.weights).powi(2));
+            let norms = self
+                .delta
+                .chunks_exact(n)
+                .map(|d| elementary::powi(weighted_rms(d, &self.weights), 2));
             let norm = (norms.sum::<f64>() / STAGES as f64).sqrt();
             if !norm.is_finite() || norm > 2.0 * last {
                 return Err(SimErrorKind::StepSize);
@@ -222,7 +233,7 @@ impl Radau {
             if iteration > 1 {
                 rate = (norm / last).max(0.1 * rate);
                 let left = (MAX_ITERATIONS - iteration) as i32;
-                let hopeless = rate >= 1.0 || rate.powi(left) * norm > (1.0 - rate);
+                let hopeless = rate >= 1.0 || elementary::powi(rate, left) * norm > (1.0 - rate);
                 if hopeless && norm > NEWTON_TOLERANCE {
                     return Err(SimErrorKind::StepSize);
                 }
@@ -278,13 +289,36 @@ impl Radau {
     ) -> Result<(f64, usize), SimErrorKind> {
         self.stages.factorize(problem, &self.matrix, h, self.n_differential)?;
         self.predict(h);
-        let iterations = self.iterate(problem, h)?;
-        Ok((self.estimate(problem, h, again)?, iterations))
+        let iterations = match self.iterate(problem, h) {
+            // A polynomial continued may leave the domain of F where y itself does not.
+            Err(SimErrorKind::Evaluation(_) | SimErrorKind::NotFinite) if self.has_past => {
+                self.z.fill(0.0);
+                self.iterate(problem, h)?
+            }
+            iterated => iterated?,
+        };
+        let error = self.estimate(problem, h, again)?;
+        if error <= 1.0 {
+            self.evaluate_end(problem, self.t + h)?;
+        }
+        Ok((error, iterations))
+    }
+
+    fn evaluate_end(&mut self, problem: &mut Problem, t: f64) -> Result<(), SimErrorKind> {
+        let last = &self.z[2 * self.n..];
+        for ((point, y), z) in self.point.iter_mut().zip(&self.y).zip(last) {
+            *point = y + z;
+        }
+        problem.rhs(t, &self.point, &mut self.end)?;
+        // What a delay gives at the end is known only behind it.
+        self.knows_first = !problem.system.remembers();
+        Ok(())
     }
 
     fn accept(&mut self, t_new: f64) {
         let n = self.n;
         self.y_old.copy_from_slice(&self.y);
+        std::mem::swap(&mut self.first, &mut self.end);
         for (y, z) in self.y.iter_mut().zip(&self.z[2 * n..]) {
             *y += z;
         }
@@ -322,6 +356,7 @@ impl Integrator for Radau {
         self.has_past = false;
         (self.is_current, self.is_good) = (false, false);
         problem.rhs(t, y, &mut self.first)?;
+        self.knows_first = true;
         let first = problem.first_step(t, y, &self.first);
         // Behind an event the step that was good before it is at most ten times too long.
         self.h = if is_first { first } else { first.max(0.1 * self.h) };
@@ -331,7 +366,9 @@ impl Integrator for Radau {
     fn step(&mut self, problem: &mut Problem, limit: f64) -> Result<(), SimErrorKind> {
         let smallest = problem.smallest_step(self.t);
         set_weights(problem.settings.tolerance, &self.y, problem.nominal, &mut self.weights);
-        problem.rhs(self.t, &self.y, &mut self.first)?;
+        if !std::mem::take(&mut self.knows_first) {
+            problem.rhs(self.t, &self.y, &mut self.first)?;
+        }
         let mut again = !self.has_past;
         loop {
             problem.may_continue()?;
@@ -351,7 +388,7 @@ impl Integrator for Radau {
                 Ok((error, iterations)) => {
                     let budget = 2.0 * MAX_ITERATIONS as f64 + 1.0;
                     let safety = 0.9 * budget / (budget - 1.0 + iterations as f64);
-                    let factor = (safety * error.powf(-0.25)).clamp(0.2, 8.0);
+                    let factor = (safety * elementary::powf(error, -0.25)).clamp(0.2, 8.0);
                     if error <= 1.0 {
                         self.accept(if reaches_limit { limit } else { self.t + h });
                         problem.statistics.steps += 1;
@@ -386,6 +423,10 @@ impl Integrator for Radau {
                 return Err(failure);
             }
         }
+    }
+
+    fn branches_changed(&mut self) {
+        self.knows_first = false;
     }
 
     fn time(&self) -> f64 {

@@ -9,12 +9,15 @@
 //! ```
 //!
 //! Nothing is iterated and nothing kept from one step to the next, so events cost no more than a
-//! step. ∂F/∂t is a difference. Between steps a polynomial of order 3 gives y.
+//! step. ∂F/∂t is a difference. Between steps a polynomial of order 3 gives y. F at the end of a step
+//! is evaluated before the step is accepted: where F has no value there, as behind the zero of a
+//! root, the step was too long.
 //!
 //! Reference: [Hairer & Wanner 1996](crate::bibliography#hairer-wanner-1996), sections IV.7 and VI.4.
 
 use super::mass_matrix::ShiftedMatrix;
 use super::{Integrator, Problem};
+use crate::elementary;
 use crate::registry::Entry;
 use crate::sim::norm::{set_weights, weighted_rms};
 use crate::sim::{DaeSystem, SimErrorKind};
@@ -86,8 +89,9 @@ struct Rodas {
     y_old: Vec<f64>,
     trial: Vec<f64>,
     rhs: Vec<f64>,
-    /// F at the start of the step, and its slope in time.
+    /// F at the start of the step, whether it is known, and its slope in time.
     first: Vec<f64>,
+    knows_first: bool,
     time_slope: Vec<f64>,
     stages: [Vec<f64>; STAGES],
     dense: [Vec<f64>; 2],
@@ -113,9 +117,15 @@ impl Rodas {
 
     /// F, ∂F/∂t and J at the start of a step.
     fn linearize(&mut self, problem: &mut Problem) -> Result<(), SimErrorKind> {
-        problem.rhs(self.t, &self.y, &mut self.first)?;
-        let delta = (f64::EPSILON * self.t.abs().max(1e-5)).sqrt().min(self.h);
-        problem.rhs(self.t + delta, &self.y, &mut self.time_slope)?;
+        if !std::mem::take(&mut self.knows_first) {
+            problem.rhs(self.t, &self.y, &mut self.first)?;
+        }
+        let mut delta = (f64::EPSILON * self.t.abs().max(1e-5)).sqrt().min(self.h);
+        if problem.rhs(self.t + delta, &self.y, &mut self.time_slope).is_err() {
+            // The domain of F may end here, as that of sqrt(1 - t) at t = 1.
+            delta = -delta;
+            problem.rhs(self.t + delta, &self.y, &mut self.time_slope)?;
+        }
         for (slope, first) in self.time_slope.iter_mut().zip(&self.first) {
             *slope = (*slope - first) / delta;
         }
@@ -167,7 +177,20 @@ impl Rodas {
         weighted_rms(&self.stages[5], &self.weights)
     }
 
+    /// Tries a step to `t_new`; the error relative to the tolerance.
+    fn try_step(&mut self, problem: &mut Problem, t_new: f64, h: f64) -> Result<f64, SimErrorKind> {
+        self.attempt(problem, h)?;
+        let error = self.error(problem.settings.tolerance, problem.nominal).max(1e-10);
+        if error <= 1.0 {
+            problem.rhs(t_new, &self.trial, &mut self.rhs)?;
+            // What a delay gives at the end is known only behind it.
+            self.knows_first = !problem.system.remembers();
+        }
+        Ok(error)
+    }
+
     fn accept(&mut self, t_new: f64) {
+        std::mem::swap(&mut self.first, &mut self.rhs);
         std::mem::swap(&mut self.y_old, &mut self.y);
         self.y.copy_from_slice(&self.trial);
         for (dense, row) in self.dense.iter_mut().zip(&DENSE) {
@@ -195,6 +218,7 @@ impl Integrator for Rodas {
         self.y_old.copy_from_slice(y);
         self.dense.iter_mut().for_each(|dense| dense.fill(0.0));
         problem.rhs(t, y, &mut self.first)?;
+        self.knows_first = true;
         let first = problem.first_step(t, y, &self.first);
         // Behind an event the step that was good before it is at most ten times too long.
         self.h = if is_first { first } else { first.max(0.1 * self.h) };
@@ -203,7 +227,6 @@ impl Integrator for Rodas {
 
     fn step(&mut self, problem: &mut Problem, limit: f64) -> Result<(), SimErrorKind> {
         let smallest = problem.smallest_step(self.t);
-        let tolerance = problem.settings.tolerance;
         self.linearize(problem)?;
         let mut was_rejected = false;
         loop {
@@ -215,12 +238,12 @@ impl Integrator for Rodas {
                 false if 2.0 * self.h > remaining * (1.0 + 1e-9) => 0.5 * remaining,
                 false => self.h,
             };
-            let (failure, factor) = match self.attempt(problem, h) {
-                Ok(()) => {
-                    let error = self.error(tolerance, problem.nominal).max(1e-10);
-                    let factor = (0.9 * error.powf(-0.25)).clamp(0.2, 6.0);
+            let t_new = if reaches_limit { limit } else { self.t + h };
+            let (failure, factor) = match self.try_step(problem, t_new, h) {
+                Ok(error) => {
+                    let factor = (0.9 * elementary::powf(error, -0.25)).clamp(0.2, 6.0);
                     if error <= 1.0 {
-                        self.accept(if reaches_limit { limit } else { self.t + h });
+                        self.accept(t_new);
                         problem.statistics.steps += 1;
                         let factor = if was_rejected { factor.min(1.0) } else { factor };
                         // A step cut short at the limit says little about longer ones.
@@ -243,6 +266,10 @@ impl Integrator for Rodas {
                 return Err(failure);
             }
         }
+    }
+
+    fn branches_changed(&mut self) {
+        self.knows_first = false;
     }
 
     fn time(&self) -> f64 {

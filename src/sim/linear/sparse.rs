@@ -19,6 +19,7 @@
 //! [`SparseLu::forget`].
 
 use super::{DenseLu, SingularMatrix};
+use crate::elementary;
 use crate::sim::Pattern;
 use std::collections::BTreeSet;
 
@@ -130,7 +131,7 @@ fn large_diagonal(pattern: &Pattern) -> Vec<f64> {
     let of_column = |j: usize| pattern.rows[pattern.column(j)].iter().map(move |i| (*i, j));
     let entries = (0..pattern.n).flat_map(of_column);
     // Slightly different numbers, so that nothing cancels by chance.
-    let off_diagonal = |at: usize| OFF_DIAGONAL * (1.0 + (at as f64).sin() * 0.25);
+    let off_diagonal = |at: usize| OFF_DIAGONAL * (1.0 + elementary::sin(at as f64) * 0.25);
     entries.enumerate().map(|(at, (i, j))| if i == j { 1.0 } else { off_diagonal(at) }).collect()
 }
 

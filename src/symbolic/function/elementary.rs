@@ -28,18 +28,18 @@ pub(super) const FUNCTIONS: &[Function] = &[
             pool.div(half, root)
         })
     },
-    real("exp", Value::Unary(f64::exp), |pool, x, _| pool.function("exp", &[x[0]])),
+    real("exp", Value::Unary(crate::elementary::exp), |pool, x, _| pool.function("exp", &[x[0]])),
     Function {
         aliases: &["ln"],
         domain: POSITIVE,
-        ..real("log", Value::Unary(f64::ln), |pool, x, _| {
+        ..real("log", Value::Unary(crate::elementary::ln), |pool, x, _| {
             let one = pool.constant(1.0);
             pool.div(one, x[0])
         })
     },
     Function {
         domain: POSITIVE,
-        ..real("log10", Value::Unary(f64::log10), |pool, x, _| {
+        ..real("log10", Value::Unary(crate::elementary::log10), |pool, x, _| {
             let slope = pool.constant(std::f64::consts::LOG10_E);
             pool.div(slope, x[0])
         })

@@ -10,12 +10,12 @@ const UNIT_INTERVAL: Option<Domain> = Some(Domain {
 });
 
 pub(super) const FUNCTIONS: &[Function] = &[
-    real("sin", Value::Unary(f64::sin), |pool, x, _| pool.function("cos", &[x[0]])),
-    real("cos", Value::Unary(f64::cos), |pool, x, _| {
+    real("sin", Value::Unary(crate::elementary::sin), |pool, x, _| pool.function("cos", &[x[0]])),
+    real("cos", Value::Unary(crate::elementary::cos), |pool, x, _| {
         let sine = pool.function("sin", &[x[0]]);
         pool.neg(sine)
     }),
-    real("tan", Value::Unary(f64::tan), |pool, x, _| {
+    real("tan", Value::Unary(crate::elementary::tan), |pool, x, _| {
         let (one, two) = (pool.constant(1.0), pool.constant(2.0));
         let tangent = pool.function("tan", &[x[0]]);
         let square = pool.pow(tangent, two);
@@ -23,7 +23,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     }),
     Function {
         domain: UNIT_INTERVAL,
-        ..real("asin", Value::Unary(f64::asin), |pool, x, _| {
+        ..real("asin", Value::Unary(crate::elementary::asin), |pool, x, _| {
             let one = pool.constant(1.0);
             let root = root_of_one_minus_square(pool, x[0]);
             pool.div(one, root)
@@ -31,13 +31,13 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
     Function {
         domain: UNIT_INTERVAL,
-        ..real("acos", Value::Unary(f64::acos), |pool, x, _| {
+        ..real("acos", Value::Unary(crate::elementary::acos), |pool, x, _| {
             let minus_one = pool.constant(-1.0);
             let root = root_of_one_minus_square(pool, x[0]);
             pool.div(minus_one, root)
         })
     },
-    real("atan", Value::Unary(f64::atan), |pool, x, _| {
+    real("atan", Value::Unary(crate::elementary::atan), |pool, x, _| {
         let (one, two) = (pool.constant(1.0), pool.constant(2.0));
         let square = pool.pow(x[0], two);
         let divisor = pool.add(one, square);
@@ -48,7 +48,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             contains: |x| x[0] != 0.0 || x[1] != 0.0,
             words: "the arguments must not both be zero",
         }),
-        ..real("atan2", Value::Binary(f64::atan2), |pool, x, which| {
+        ..real("atan2", Value::Binary(crate::elementary::atan2), |pool, x, which| {
             let two = pool.constant(2.0);
             let (a, b) = (pool.pow(x[0], two), pool.pow(x[1], two));
             let divisor = pool.add(a, b);

@@ -32,11 +32,11 @@ pub enum InteractiveKind {
     /// An expression whose value is shown. A lone call is a [`InteractiveKind::Expression`] too.
     Expression(Expression),
     /// `Real x = 1;`, `parameter Real p = 2;`
-    Declaration(ComponentClause),
+    Declaration(Box<ComponentClause>),
     /// A class or function definition.
     Class(Arc<ClassDefinition>),
     /// `import …`
-    Import(Import),
+    Import(Box<Import>),
     /// A bare command: `clear`, `cd ..`, `exit`, `clearlog`.
     Command {
         /// Its name.

@@ -202,7 +202,8 @@ fn number(text: &str) -> ExpressionKind {
     let whole = text.bytes().all(|byte| byte.is_ascii_digit());
     match text.parse::<i64>() {
         Ok(integer) if whole => ExpressionKind::Integer(integer),
-        // The grammar's numbers are a subset of Rust's; an overflow reads as infinity.
+        // The grammar's numbers are a subset of Rust's; an overflow reads as infinity, which is
+        // refused when the number is used.
         _ => ExpressionKind::Real(text.parse().unwrap_or(f64::NAN)),
     }
 }
@@ -336,7 +337,8 @@ pub(super) fn reference(nodes: &mut Nodes<'_>) -> Lowered<ComponentReference> {
 
 fn component_reference(mut inside: Nodes<'_>) -> Lowered<ComponentReference> {
     let global = inside.skip(Rule::global_dot);
-    let mut parts = Vec::new();
+    // Most have one part: a script of a million statements has millions of them.
+    let mut parts = Vec::with_capacity(1);
     while let Some(name) = inside.take(Rule::IDENT) {
         let subscripts = optional_subscripts(&mut inside)?;
         parts.push(ReferencePart { name: Ident::new(name.as_str()), subscripts });

@@ -27,9 +27,11 @@ fn kind(mut nodes: Nodes<'_>) -> Lowered<InteractiveKind> {
     match rule {
         Rule::command => Ok(command(inside)),
         Rule::class_definition => class::definition(inside, false).map(InteractiveKind::Class),
-        Rule::import_clause => class::import(inside).map(InteractiveKind::Import),
+        Rule::import_clause => {
+            class::import(inside).map(|import| InteractiveKind::Import(Box::new(import)))
+        }
         Rule::script_declaration => component::clause(&mut inside, ElementPrefixes::default())
-            .map(InteractiveKind::Declaration),
+            .map(|clause| InteractiveKind::Declaration(Box::new(clause))),
         _ => statement_or_expression(inside),
     }
 }

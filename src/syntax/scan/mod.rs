@@ -16,6 +16,7 @@ use crate::source::{SourceId, Span};
 use crate::syntax::errors::{NESTING_TOO_DEEP, NOT_A_SCRIPT, TEXT_TOO_LARGE, UNCLOSED_BRACKET};
 use blocks::Blocks;
 use depth::Depth;
+use std::ops::Range;
 use tokens::{CommandPlace, Token, TokenKind, Tokens};
 
 /// Stands for a line end that closes a statement of a script.
@@ -35,6 +36,10 @@ pub(super) enum Dialect {
     Fragment,
 }
 
+/// Bytes of a piece of a script that is read by itself. The grammar's answer takes a hundred times
+/// as much; pieces of this size stay in the processor's cache.
+const PIECE: usize = 1 << 16;
+
 /// A text made ready for the grammar.
 #[derive(Debug)]
 pub(super) struct Scanned {
@@ -42,6 +47,23 @@ pub(super) struct Scanned {
     pub(super) text: String,
     /// A bracket or `end` without its partner: an error wherever the grammar stops.
     pub(super) problem: Option<Problem>,
+    /// Where statements of a script end, outside everything, at least [`PIECE`] bytes apart.
+    ends: Vec<usize>,
+}
+
+impl Scanned {
+    /// A part of a scanned text.
+    pub(super) fn part(text: String) -> Scanned {
+        Scanned { text, problem: None, ends: Vec::new() }
+    }
+
+    /// The parts of the text that can be read one by one; the whole of one with a problem.
+    pub(super) fn pieces(&self) -> Vec<Range<usize>> {
+        let ends = if self.problem.is_some() { &[][..] } else { &self.ends };
+        let starts = std::iter::once(0).chain(ends.iter().copied());
+        let ends = ends.iter().copied().chain([self.text.len()]);
+        starts.zip(ends).map(|(start, end)| start..end).collect()
+    }
 }
 
 /// A structural error. If the grammar stops before `from`, that is another error, and the first.
@@ -106,6 +128,7 @@ struct Scanner<'t> {
     awaiting_then: usize,
     previous: Option<Token<'t>>,
     problem: Option<Problem>,
+    ends: Vec<usize>,
 }
 
 impl<'t> Scanner<'t> {
@@ -122,6 +145,7 @@ impl<'t> Scanner<'t> {
             awaiting_then: 0,
             previous: None,
             problem: None,
+            ends: Vec::new(),
         }
     }
 
@@ -132,7 +156,7 @@ impl<'t> Scanner<'t> {
         self.finish();
         let text = String::from_utf8(self.out)
             .unwrap_or_else(|_| unreachable!("only whole characters are replaced, by ASCII"));
-        Ok(Scanned { text, problem: self.problem })
+        Ok(Scanned { text, problem: self.problem, ends: self.ends })
     }
 
     fn next_token(&mut self) -> Result<Option<Token<'t>>, Diagnostic> {
@@ -156,8 +180,10 @@ impl<'t> Scanner<'t> {
         if self.brackets.is_empty() {
             self.blocks.name_class(&token);
             if self.ends_line(&token) {
-                self.out[token.line_end.unwrap_or(token.start)] = LINE_END;
+                let end = token.line_end.unwrap_or(token.start);
+                self.out[end] = LINE_END;
                 self.end_statement();
+                self.end_piece(end + 1);
             }
         }
         match token.kind {
@@ -288,7 +314,17 @@ impl<'t> Scanner<'t> {
                 self.brackets.clear();
                 self.end_statement();
             }
-            None => self.end_statement(),
+            None => {
+                self.end_statement();
+                self.end_piece(token.end);
+            }
+        }
+    }
+
+    fn end_piece(&mut self, at: usize) {
+        let before = self.ends.last().copied().unwrap_or(0);
+        if at >= before + PIECE && self.dialect == Dialect::Script && self.blocks.is_empty() {
+            self.ends.push(at);
         }
     }
 

@@ -2,6 +2,7 @@
 //! that they are told apart without colours too.
 
 use super::Screen;
+use crate::elementary;
 use crate::teach::explain::short;
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -17,7 +18,7 @@ pub(super) fn draw(screen: &Screen, frame: &mut Frame, area: Rect) {
     let [original, changed] = branches.curves();
     let logarithm = |curve: &[(f64, f64)]| -> Vec<(f64, f64)> {
         let positive = curve.iter().filter(|(_, fitness)| *fitness > 0.0);
-        positive.map(|(generation, fitness)| (*generation, fitness.log10())).collect()
+        positive.map(|(generation, fitness)| (*generation, elementary::log10(*fitness))).collect()
     };
     let (original, changed) = (logarithm(&original), logarithm(&changed));
     let sets = vec![
@@ -39,7 +40,7 @@ pub(super) fn draw(screen: &Screen, frame: &mut Frame, area: Rect) {
     let chart = Chart::new(sets)
         .block(Block::new().borders(Borders::ALL).title(title))
         .x_axis(axis("generation", x, |value| format!("{value:.0}")))
-        .y_axis(axis("best fitness", y, |value| short(10f64.powf(value))));
+        .y_axis(axis("best fitness", y, |value| short(elementary::powf(10f64, value))));
     frame.render_widget(chart, above);
     let legend = "Line: as the script has it, o: changed.";
     frame.render_widget(Paragraph::new(format!("{legend}\n{}", branches.verdict())), below);

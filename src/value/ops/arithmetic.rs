@@ -4,19 +4,22 @@ use super::elementwise::{added, divided, multiplied, subtracted};
 use super::matrix;
 use super::unsuitable;
 use crate::diag::Fault;
-use crate::value::errors::{DIVISION_BY_ZERO, DOMAIN_ERROR, INTEGER_OVERFLOW, TYPE_MISMATCH};
+use crate::elementary;
+use crate::value::errors::{
+    DIVISION_BY_ZERO, DOMAIN_ERROR, INTEGER_OVERFLOW, REAL_OVERFLOW, TYPE_MISMATCH,
+};
 use crate::value::{ArrayValue, Elements, Value};
 use crate::{bail, fault};
 
 /// `a + b` (MLS §10.6.2): numbers, arrays of equal sizes, Strings.
 pub fn add(left: &Value, right: &Value) -> Result<Value, Fault> {
     match (left, right) {
-        (Value::Real(a), Value::Real(b)) => Ok(Value::Real(a + b)),
+        (Value::Real(a), Value::Real(b)) => real_add(*a, *b).map(Value::Real),
         (Value::Integer(a), Value::Integer(b)) => {
             a.checked_add(*b).map(Value::Integer).ok_or_else(|| overflow("+", *a, *b))
         }
         _ => match scalars(left, right) {
-            Some((a, b)) => Ok(Value::Real(a + b)),
+            Some((a, b)) => real_add(a, b).map(Value::Real),
             None => {
                 same_rank("+", left, right)?;
                 added("+", left, right)
@@ -28,12 +31,12 @@ pub fn add(left: &Value, right: &Value) -> Result<Value, Fault> {
 /// `a - b` (MLS §10.6.2)
 pub fn subtract(left: &Value, right: &Value) -> Result<Value, Fault> {
     match (left, right) {
-        (Value::Real(a), Value::Real(b)) => Ok(Value::Real(a - b)),
+        (Value::Real(a), Value::Real(b)) => real_subtract(*a, *b).map(Value::Real),
         (Value::Integer(a), Value::Integer(b)) => {
             a.checked_sub(*b).map(Value::Integer).ok_or_else(|| overflow("-", *a, *b))
         }
         _ => match scalars(left, right) {
-            Some((a, b)) => Ok(Value::Real(a - b)),
+            Some((a, b)) => real_subtract(a, b).map(Value::Real),
             None => {
                 same_rank("-", left, right)?;
                 subtracted("-", left, right)
@@ -46,13 +49,13 @@ pub fn subtract(left: &Value, right: &Value) -> Result<Value, Fault> {
 /// products of vectors and matrices.
 pub fn multiply(left: &Value, right: &Value) -> Result<Value, Fault> {
     match (left, right) {
-        (Value::Real(a), Value::Real(b)) => Ok(Value::Real(a * b)),
+        (Value::Real(a), Value::Real(b)) => real_multiply(*a, *b).map(Value::Real),
         (Value::Integer(a), Value::Integer(b)) => {
             a.checked_mul(*b).map(Value::Integer).ok_or_else(|| overflow("*", *a, *b))
         }
         (Value::Array(a), Value::Array(b)) => matrix::product(a, b),
         _ => match scalars(left, right) {
-            Some((a, b)) => Ok(Value::Real(a * b)),
+            Some((a, b)) => real_multiply(a, b).map(Value::Real),
             None => multiplied("*", left, right),
         },
     }
@@ -112,12 +115,32 @@ pub fn plus(value: Value) -> Result<Value, Fault> {
     if value.is_numeric() { Ok(value) } else { Err(not_a_number("+", &value)) }
 }
 
-/// `a / b` of two Reals; a fault if `b` is zero.
+pub(super) fn real_add(a: f64, b: f64) -> Result<f64, Fault> {
+    representable("+", a, b, a + b)
+}
+
+pub(super) fn real_subtract(a: f64, b: f64) -> Result<f64, Fault> {
+    representable("-", a, b, a - b)
+}
+
+pub(super) fn real_multiply(a: f64, b: f64) -> Result<f64, Fault> {
+    representable("*", a, b, a * b)
+}
+
+/// `a / b` of two Reals; a fault if `b` is zero or the quotient exceeds the largest Real.
 pub fn real_divide(a: f64, b: f64) -> Result<f64, Fault> {
     if b == 0.0 {
         bail!(DIVISION_BY_ZERO, "division of {a:?} by zero");
     }
-    Ok(a / b)
+    representable("/", a, b, a / b)
+}
+
+/// The result of an operator, a fault if it is infinite and neither operand is.
+fn representable(symbol: &str, a: f64, b: f64, result: f64) -> Result<f64, Fault> {
+    if result.is_infinite() && a.is_finite() && b.is_finite() {
+        bail!(REAL_OVERFLOW, "{a:?} {symbol} {b:?} exceeds the largest Real, 1.8e308");
+    }
+    Ok(result)
 }
 
 /// `a ^ b` of two Reals; a fault where that is not a real number.
@@ -128,7 +151,7 @@ pub fn real_power(a: f64, b: f64) -> Result<f64, Fault> {
     if a < 0.0 && b.is_finite() && b.fract() != 0.0 {
         bail!(DOMAIN_ERROR, "the negative number {a:?} to the power {b:?} is not real");
     }
-    Ok(a.powf(b))
+    representable("^", a, b, elementary::powf(a, b))
 }
 
 fn scalars(left: &Value, right: &Value) -> Option<(f64, f64)> {

@@ -2,13 +2,17 @@
 //! the others: an operation of two scalars applied to arrays of equal sizes, or to a scalar and an
 //! array.
 
-use super::arithmetic::{overflow, real_divide, real_power};
+use super::arithmetic::{
+    overflow, real_add, real_divide, real_multiply, real_power, real_subtract,
+};
 use super::unsuitable;
 use crate::diag::Fault;
 use crate::fault;
 use crate::value::array::sizes;
+use crate::value::check_length;
 use crate::value::errors::SIZE_MISMATCH;
 use crate::value::{ArrayValue, Elements, Value};
+use std::cell::Cell;
 use std::sync::Arc;
 
 /// `a .+ b`; also joins Strings.
@@ -20,13 +24,9 @@ pub(super) fn added(symbol: &str, left: &Value, right: &Value) -> Result<Value, 
     if left.is_text() && right.is_text() {
         return join(left, right);
     }
-    numeric(
-        symbol,
-        left,
-        right,
-        |a, b| Ok(a + b),
-        |a, b| a.checked_add(b).ok_or_else(|| overflow("+", a, b)),
-    )
+    numeric(symbol, left, right, real_add, |a, b| {
+        a.checked_add(b).ok_or_else(|| overflow("+", a, b))
+    })
 }
 
 /// `a .- b`
@@ -35,13 +35,9 @@ pub fn elementwise_subtract(left: &Value, right: &Value) -> Result<Value, Fault>
 }
 
 pub(super) fn subtracted(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
-    numeric(
-        symbol,
-        left,
-        right,
-        |a, b| Ok(a - b),
-        |a, b| a.checked_sub(b).ok_or_else(|| overflow("-", a, b)),
-    )
+    numeric(symbol, left, right, real_subtract, |a, b| {
+        a.checked_sub(b).ok_or_else(|| overflow("-", a, b))
+    })
 }
 
 /// `a .* b`
@@ -50,13 +46,9 @@ pub fn elementwise_multiply(left: &Value, right: &Value) -> Result<Value, Fault>
 }
 
 pub(super) fn multiplied(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
-    numeric(
-        symbol,
-        left,
-        right,
-        |a, b| Ok(a * b),
-        |a, b| a.checked_mul(b).ok_or_else(|| overflow("*", a, b)),
-    )
+    numeric(symbol, left, right, real_multiply, |a, b| {
+        a.checked_mul(b).ok_or_else(|| overflow("*", a, b))
+    })
 }
 
 /// `a ./ b`, always Real.
@@ -114,8 +106,12 @@ fn real(
 
 fn join(left: &Value, right: &Value) -> Result<Value, Fault> {
     let (a, b) = (texts(left), texts(right));
-    let concatenated =
-        |a: Arc<str>, b: Arc<str>| -> Result<Arc<str>, Fault> { Ok([&*a, &*b].concat().into()) };
+    let all = Cell::new(0usize);
+    let concatenated = |a: Arc<str>, b: Arc<str>| -> Result<Arc<str>, Fault> {
+        all.set(all.get().saturating_add(a.len()).saturating_add(b.len()));
+        check_length(all.get())?;
+        Ok([&*a, &*b].concat().into())
+    };
     let (dims, mut values) = zip("+", left, right, &a, &b, concatenated)?;
     Ok(match dims {
         None => Value::String(values.remove(0)),

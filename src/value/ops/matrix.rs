@@ -3,7 +3,9 @@
 use super::arithmetic::overflow;
 use crate::diag::Fault;
 use crate::value::array::{element_count, sizes};
-use crate::value::errors::{DOMAIN_ERROR, INTEGER_OVERFLOW, SIZE_MISMATCH, TYPE_MISMATCH};
+use crate::value::errors::{
+    DOMAIN_ERROR, INTEGER_OVERFLOW, REAL_OVERFLOW, SIZE_MISMATCH, TYPE_MISMATCH,
+};
 use crate::value::{ArrayValue, Elements, Value};
 use crate::{bail, fault};
 use nalgebra::DMatrixView;
@@ -31,7 +33,10 @@ pub(super) fn product(a: &ArrayValue, b: &ArrayValue) -> Result<Value, Fault> {
             Elements::Integer(integer_product(a, b, rows, inner, columns)?)
         }
         _ => match (a.elements.as_reals(), b.elements.as_reals()) {
-            (Some(a), Some(b)) => Elements::Real(real_product(&a, &b, rows, inner, columns)),
+            (Some(a), Some(b)) => {
+                let product = real_product(&a, &b, rows, inner, columns);
+                Elements::Real(representable(product, &a, &b)?)
+            }
             _ => bail!(
                 TYPE_MISMATCH,
                 "`*` is not defined for {} and {}",
@@ -71,6 +76,15 @@ pub(super) fn power(base: &ArrayValue, exponent: i64) -> Result<Value, Fault> {
         }
     }
     Ok(Value::Array(result))
+}
+
+/// The product, a fault if an element is not finite although all factors are.
+fn representable(product: Vec<f64>, a: &[f64], b: &[f64]) -> Result<Vec<f64>, Fault> {
+    let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
+    if !finite(&product) && finite(a) && finite(b) {
+        bail!(REAL_OVERFLOW, "a sum of products exceeds the largest Real, 1.8e308");
+    }
+    Ok(product)
 }
 
 fn matrix_product(a: &ArrayValue, b: &ArrayValue) -> Result<ArrayValue, Fault> {

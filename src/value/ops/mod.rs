@@ -1,6 +1,6 @@
 //! Operators (MLS §3.4–3.6, §10.6). Integer operands give Integer results where the operator
-//! allows it, `/` and `^` always give Reals, and nothing wraps around or becomes infinite by a
-//! zero divisor: that is a [`Fault`].
+//! allows it, `/` and `^` always give Reals, and nothing wraps around or becomes infinite
+//! where the operands are finite: that is a [`Fault`].
 
 mod arithmetic;
 mod elementwise;

@@ -1,11 +1,8 @@
-//! No bytes make the reader of `.mo` files panic. Seeds: `tests/grammar/{valid,invalid}`.
+//! The reader of `.mo` files. Seeds: `tests/grammar/{valid,invalid}`.
 #![no_main]
 
-use gapilib::source::SourceId;
-use gapilib::syntax::{decode, parse_stored_definition};
-use libfuzzer_sys::fuzz_target;
+#[path = "../targets.rs"]
+#[allow(dead_code)]
+mod targets;
 
-fuzz_target!(|bytes: &[u8]| {
-    let (text, _) = decode(bytes);
-    let _ = parse_stored_definition(SourceId::NONE, &text);
-});
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| targets::parse_model(bytes));

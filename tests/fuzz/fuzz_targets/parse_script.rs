@@ -1,11 +1,8 @@
-//! No bytes make the reader of `.mos` files panic. Seeds: `tests/grammar/{valid,invalid}`.
+//! The reader of `.mos` files. Seeds: `tests/grammar/{valid,invalid}`.
 #![no_main]
 
-use gapilib::source::SourceId;
-use gapilib::syntax::{decode, parse_script};
-use libfuzzer_sys::fuzz_target;
+#[path = "../targets.rs"]
+#[allow(dead_code)]
+mod targets;
 
-fuzz_target!(|bytes: &[u8]| {
-    let (text, _) = decode(bytes);
-    let _ = parse_script(SourceId::NONE, &text);
-});
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| targets::run_parser_of_scripts(bytes));

@@ -1,11 +1,8 @@
-//! No script makes a session in a world in memory panic or hang.
+//! Scripts in a world in memory. Seeds: `tests/fuzz/corpus/scripts`.
 #![no_main]
 
-use gapilib::script::Session;
-use gapilib::script::world::MemoryWorld;
-use libfuzzer_sys::fuzz_target;
+#[path = "../targets.rs"]
+#[allow(dead_code)]
+mod targets;
 
-fuzz_target!(|text: &str| {
-    let world = MemoryWorld::new().interrupted_after(3000);
-    Session::new(Box::new(world)).run_text("fuzz.mos", text);
-});
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| targets::run_script(bytes));

@@ -7,6 +7,7 @@ mod sobol;
 
 use super::{Evaluation, Problem};
 use crate::diag::Fault;
+use crate::elementary;
 use crate::identify::table::significant;
 use crate::registry::{Entry, Options};
 use serde::{Deserialize, Serialize};
@@ -140,7 +141,7 @@ fn mean(values: &[f64]) -> Option<(f64, f64)> {
         return None;
     }
     let mean = values.iter().sum::<f64>() / count;
-    let square: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+    let square: f64 = values.iter().map(|v| elementary::powi(v - mean, 2)).sum();
     Some((mean, (square / (count - 1.0) / count).sqrt()))
 }
 

@@ -14,6 +14,7 @@
 
 use super::{Analysis, Importance, ParameterImportance, mean, values};
 use crate::diag::Fault;
+use crate::elementary;
 use crate::ga::sampling::sobol;
 use crate::ga::{Genomes, Mrg32k3a};
 use crate::identify::problem::{Evaluation, Failed, Problem};
@@ -117,7 +118,7 @@ impl Sums {
         for (row, distances) in mixed.iter().zip(&mut self.distances) {
             for (end, distances) in [1, 0].into_iter().zip(distances) {
                 if let (Ok(row), Ok(end)) = (row, &ends[end]) {
-                    distances.push(evaluation.distance(row, end).powi(2));
+                    distances.push(elementary::powi(evaluation.distance(row, end), 2));
                 }
             }
         }

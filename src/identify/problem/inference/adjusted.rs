@@ -8,6 +8,7 @@
 use super::Constraint;
 use crate::bail;
 use crate::diag::Fault;
+use crate::elementary;
 use crate::fault;
 use crate::identify::problem::{ErrorModel, Failed, FailureKind, Problem, Series, Sigma, Simulate};
 use crate::registry::BAD_OPTION;
@@ -66,7 +67,9 @@ impl Prior {
     pub fn point(&self) -> Option<(f64, f64, bool)> {
         match self.distribution {
             Distribution::Normal { mean, sd } => Some((mean, sd, false)),
-            Distribution::LogNormal { median, factor } => Some((median.ln(), factor.ln(), true)),
+            Distribution::LogNormal { median, factor } => {
+                Some((elementary::ln(median), elementary::ln(factor), true))
+            }
             Distribution::Uniform => None,
         }
     }
@@ -133,7 +136,7 @@ fn logarithms(problem: &mut Problem, series: &[usize]) -> Result<Vec<Range<usize
         if matches!(own.sigma, Sigma::Formula(_)) {
             bail!(BAD_OPTION, "`{}` is log-normal, and its sigma is a formula", own.y_name; help: "give the standard deviation of the logarithm as a number");
         }
-        own.y.iter_mut().for_each(|y| *y = y.ln());
+        own.y.iter_mut().for_each(|y| *y = elementary::ln(*y));
         own.y_name = format!("ln({})", own.y_name);
         own.y_unit = String::new();
         ranges.push(range);
@@ -209,13 +212,13 @@ impl Shared {
                         progress: 1.0,
                     });
                 }
-                *value = value.ln();
+                *value = elementary::ln(*value);
             }
         }
         for (value, prior) in out[self.points..].iter_mut().zip(&self.priors) {
             let own = parameters[prior.parameter];
             *value = if matches!(prior.distribution, Distribution::LogNormal { .. }) {
-                own.ln()
+                elementary::ln(own)
             } else {
                 own
             };

@@ -13,11 +13,12 @@
 use super::least_squares::Data;
 use super::{Inferred, Local, PRIOR};
 use crate::diag::Fault;
+use crate::elementary;
 use crate::ga::Mrg32k3a;
+use crate::identify::problem::distributions::{normal_below, normal_quantile};
 use crate::identify::problem::{Problem, Run};
 use crate::identify::table::significant;
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{ContinuousCDF, Normal};
 
 /// The stream of random numbers, far from those of the search.
 const STREAM: u64 = 1_000_003;
@@ -126,7 +127,7 @@ pub(super) fn add(
     let one = |k: usize| {
         let mut values: Vec<f64> = estimates.iter().map(|values| values[k]).collect();
         let mean = values.iter().sum::<f64>() / values.len() as f64;
-        let square: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+        let square: f64 = values.iter().map(|value| elementary::powi(value - mean, 2)).sum();
         values.sort_by(f64::total_cmp);
         Bootstrapped {
             name: problem.parameters[k].name.clone(),
@@ -203,7 +204,7 @@ fn acceleration(local: &Local, k: usize) -> f64 {
     let all: Vec<f64> = local.residuals.iter().enumerate().map(influence).collect();
     let square: f64 = all.iter().map(|u| u * u).sum();
     let cube: f64 = all.iter().map(|u| u * u * u).sum();
-    if square > 0.0 { cube / (6.0 * square.powf(1.5)) } else { 0.0 }
+    if square > 0.0 { cube / (6.0 * elementary::powf(square, 1.5)) } else { 0.0 }
 }
 
 /// The 95 % interval of ordered replicates.
@@ -216,13 +217,12 @@ fn interval(kind: IntervalKind, ordered: &[f64], estimate: f64, acceleration: f6
             [2.0 * estimate - high, 2.0 * estimate - low]
         }
         IntervalKind::Bca => {
-            let normal = Normal::standard();
             let n = ordered.len() as f64;
             let below = ordered.iter().filter(|value| **value < estimate).count() as f64;
-            let bias = normal.inverse_cdf((below / n).clamp(0.5 / n, 1.0 - 0.5 / n));
+            let bias = normal_quantile((below / n).clamp(0.5 / n, 1.0 - 0.5 / n));
             ends.map(|p| {
-                let z = bias + normal.inverse_cdf(p);
-                quantile(ordered, normal.cdf(bias + z / (1.0 - acceleration * z)))
+                let z = bias + normal_quantile(p);
+                quantile(ordered, normal_below(bias + z / (1.0 - acceleration * z)))
             })
         }
     }

@@ -10,12 +10,13 @@
 use super::PRIOR;
 use crate::bail;
 use crate::diag::Fault;
+use crate::elementary;
 use crate::fault;
-use crate::identify::problem::{ErrorModel, Run, Solution};
+use crate::identify::problem::distributions::chi_square_tails;
+use crate::identify::problem::{EndingKind, ErrorModel, Run, Solution};
 use crate::identify::table::significant;
 use crate::registry::BAD_OPTION;
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
@@ -61,8 +62,11 @@ pub struct Compared {
     pub aicc: Option<f64>,
     /// Schwarz' criterion.
     pub bic: f64,
-    /// Akaike weight; `None` with too few points.
+    /// Akaike weight; `None` with too few points, or where a model has not ended at a minimum.
     pub weight: Option<f64>,
+    /// Why there is no minimum, so that the likelihood is not the largest one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub no_minimum: Option<String>,
 }
 
 /// A pair of nested models.
@@ -77,7 +81,7 @@ pub struct Nested {
     /// Additional estimated quantities.
     pub freedom: usize,
     /// Probability of such a difference if the special case is right; `None` where the larger
-    /// model fits worse, so that its minimum was not reached.
+    /// model fits worse, so that its minimum was not reached, or one of both is not at a minimum.
     pub probability: Option<f64>,
 }
 
@@ -91,8 +95,9 @@ pub(super) fn likelihood(run: &Run, values: &[f64]) -> Option<Likelihood> {
     let measured: Vec<f64> = data().flat_map(|series| series.y.iter().copied()).collect();
     let n = measured.len() as f64;
     let points = measured.iter().zip(&simulated).zip(&weights);
-    let square: f64 = points.map(|((m, s), w)| (w * (m - s)).powi(2)).sum();
-    let of_weights: f64 = weights[..measured.len()].iter().map(|weight| weight.ln()).sum();
+    let square: f64 = points.map(|((m, s), w)| elementary::powi(w * (m - s), 2)).sum();
+    let of_weights: f64 =
+        weights[..measured.len()].iter().map(|weight| elementary::ln(*weight)).sum();
     let error_model = ErrorModel::of(problem);
     let mut names: Vec<&str> = data()
         .filter(|series| series.sigma.is_estimated())
@@ -101,11 +106,11 @@ pub(super) fn likelihood(run: &Run, values: &[f64]) -> Option<Likelihood> {
     names.sort_unstable();
     names.dedup();
     let (of_residuals, deviations) = match error_model {
-        ErrorModel::OneVariance => (0.5 * n * ((square / n).ln() + 1.0), 1),
+        ErrorModel::OneVariance => (0.5 * n * (elementary::ln(square / n) + 1.0), 1),
         ErrorModel::Known => (0.5 * square, 0),
         ErrorModel::Estimated => (0.5 * square, names.len()),
     };
-    let log = of_weights - of_residuals - 0.5 * n * TAU.ln();
+    let log = of_weights - of_residuals - 0.5 * n * elementary::ln(TAU);
     let estimated = values.len() + deviations;
     let known_sigma = error_model == ErrorModel::Known;
     let found = Likelihood { log, points: measured.len(), estimated, known_sigma };
@@ -135,7 +140,10 @@ pub fn compare(solutions: &[(String, &Solution)]) -> Result<Comparison, Fault> {
         let likelihood = solution.inferred.likelihood.ok_or_else(|| {
             fault!(BAD_OPTION, "`{name}` minimises `{}`, which is not the likelihood of normal errors", solution.fitness_name; help: "minimise `sum_of_squares`")
         })?;
-        models.push(compared(name, likelihood));
+        let ending = &solution.ending;
+        let no_minimum =
+            (ending.kind != EndingKind::Minimum).then(|| ending.words.trim_end_matches('.').into());
+        models.push(Compared { no_minimum, ..compared(name, likelihood) });
     }
     if models.iter().any(|m| m.likelihood.known_sigma != models[0].likelihood.known_sigma) {
         bail!(
@@ -144,7 +152,9 @@ pub fn compare(solutions: &[(String, &Solution)]) -> Result<Comparison, Fault> {
             help: "give every output the same `sigma` in all problems, or leave it out in all"
         );
     }
-    weigh(&mut models);
+    if models.iter().all(|model| model.no_minimum.is_none()) {
+        weigh(&mut models);
+    }
     let pairs = (0..models.len()).flat_map(|a| (0..models.len()).map(move |b| (a, b)));
     let nested: Vec<Nested> = pairs
         .filter(|&(a, b)| a != b && is_special_case(solutions[a].1, solutions[b].1))
@@ -173,8 +183,9 @@ fn compared(name: &str, likelihood: Likelihood) -> Compared {
         name: name.to_owned(),
         likelihood,
         aicc: enough.then_some(aicc),
-        bic: k * n.ln() - 2.0 * likelihood.log,
+        bic: k * elementary::ln(n) - 2.0 * likelihood.log,
         weight: None,
+        no_minimum: None,
     }
 }
 
@@ -183,7 +194,7 @@ fn weigh(models: &mut [Compared]) {
     let all: Option<Vec<f64>> = models.iter().map(|model| model.aicc).collect();
     let Some(all) = all else { return };
     let least = all.iter().copied().fold(f64::INFINITY, f64::min);
-    let shares: Vec<f64> = all.iter().map(|aicc| (-0.5 * (aicc - least)).exp()).collect();
+    let shares: Vec<f64> = all.iter().map(|aicc| elementary::exp(-0.5 * (aicc - least))).collect();
     let sum: f64 = shares.iter().sum();
     models.iter_mut().zip(shares).for_each(|(model, share)| model.weight = Some(share / sum));
 }
@@ -228,13 +239,22 @@ fn ratio(models: &[Compared], smaller: usize, larger: usize) -> Nested {
     let (a, b) = (models[smaller].likelihood, models[larger].likelihood);
     let statistic = 2.0 * (b.log - a.log);
     let freedom = b.estimated - a.estimated;
-    let distribution = ChiSquared::new(freedom as f64).ok();
-    let probability = distribution.map(|own| 1.0 - own.cdf(statistic.max(0.0)));
-    let probability = probability.filter(|_| statistic > -NOT_REACHED);
+    let [_, larger_by_chance] = chi_square_tails(statistic.max(0.0), freedom as f64);
+    let at_minima = [smaller, larger].iter().all(|k| models[*k].no_minimum.is_none());
+    let holds = |p: &f64| !p.is_nan() && statistic > -NOT_REACHED && at_minima;
+    let probability = Some(larger_by_chance).filter(holds);
     Nested { smaller, larger, statistic, freedom, probability }
 }
 
 fn sentence(models: &[Compared], nested: &[Nested]) -> String {
+    let short = |model: &Compared| {
+        let why = model.no_minimum.as_ref()?;
+        Some(format!("the fit of {} has not ended at a minimum ({why})", model.name))
+    };
+    let short: Vec<String> = models.iter().filter_map(short).collect();
+    if !short.is_empty() {
+        return format!("The models cannot be judged: {}.", short.join("; "));
+    }
     let mut text = judgement(models);
     for pair in nested {
         let (small, large) = (&models[pair.smaller].name, &models[pair.larger].name);

@@ -16,6 +16,7 @@ use super::local::{Information, quantile};
 use super::predictions::{Linear, linear};
 use super::{Curve, Inferred, Local, PRIOR, Reach, Wanted};
 use crate::diag::Fault;
+use crate::elementary;
 use crate::fault;
 use crate::identify::problem::Problem;
 use crate::identify::table::significant;
@@ -232,7 +233,7 @@ impl<'a> Search<'a> {
     ) -> Proposal {
         let (now, then) = (self.information(&self.present), self.information(matrix));
         let added = plans.iter().map(|plan| plan.points).sum();
-        let ratio = (0.5 * (now.log_determinant() - then.log_determinant())).exp();
+        let ratio = elementary::exp(0.5 * (now.log_determinant() - then.log_determinant()));
         Proposal {
             criterion: criterion.to_owned(),
             parameter,

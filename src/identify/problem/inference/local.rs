@@ -9,6 +9,7 @@
 
 use super::super::statistics::distributions::{normal_quantile, student_quantile};
 use super::super::{Evaluation, Problem, Statistics};
+use crate::elementary;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
 /// Singular values of the Jacobian below this fraction of the largest count as zero, however exact
@@ -95,8 +96,9 @@ impl Local {
             return Err("the simulation fails beside the best point");
         }
         let square = residuals.iter().map(|residual| residual * residual).sum::<f64>();
-        let size = scales.iter().zip(&simulated).map(|(w, s)| (w * s).powi(2)).sum::<f64>();
-        let floor = (FROM_THE_SOLVER * problem.noise).powi(2) * size;
+        let size =
+            scales.iter().zip(&simulated).map(|(w, s)| elementary::powi(w * s, 2)).sum::<f64>();
+        let floor = elementary::powi(FROM_THE_SOLVER * problem.noise, 2) * size;
         if !believed && square <= floor {
             return Err(
                 "the residuals are as small as the errors of the simulation, so that nothing is known of the noise",
@@ -131,7 +133,7 @@ impl Local {
     /// Singular values of a Jacobian below this fraction of the largest are those of its errors.
     /// `noise`: relative error of the simulation.
     pub fn tolerance(noise: f64) -> f64 {
-        noise.powf(2.0 / 3.0).clamp(RANK[0], RANK[1])
+        elementary::powf(noise, 2.0 / 3.0).clamp(RANK[0], RANK[1])
     }
 
     /// The standard deviation of a measurement of series `series` at `x`: that of the measured
@@ -211,15 +213,17 @@ impl Information {
     pub fn log_determinant(&self) -> f64 {
         let values = self.eigen.eigenvalues.iter();
         let logs =
-            values.map(|value| if *value > self.zero { value.ln() } else { f64::NEG_INFINITY });
-        logs.sum::<f64>() + 2.0 * self.sizes.iter().map(|size| size.ln()).sum::<f64>()
+            values.map(
+                |value| if *value > self.zero { elementary::ln(*value) } else { f64::NEG_INFINITY },
+            );
+        logs.sum::<f64>() + 2.0 * self.sizes.iter().map(|size| elementary::ln(*size)).sum::<f64>()
     }
 
     /// ln det F with open directions counted as the smallest information that counts, so that
     /// matrices with open directions can be compared.
     pub fn floored_log_determinant(&self) -> f64 {
-        let logs = self.eigen.eigenvalues.iter().map(|value| value.max(self.zero).ln());
-        logs.sum::<f64>() + 2.0 * self.sizes.iter().map(|size| size.ln()).sum::<f64>()
+        let logs = self.eigen.eigenvalues.iter().map(|value| elementary::ln(value.max(self.zero)));
+        logs.sum::<f64>() + 2.0 * self.sizes.iter().map(|size| elementary::ln(*size)).sum::<f64>()
     }
 
     /// The sum of the variances, open directions counted in the same way.
@@ -227,7 +231,8 @@ impl Information {
         let vectors = &self.eigen.eigenvectors;
         let entry = |(k, size): (usize, &f64)| {
             let values = self.eigen.eigenvalues.iter().enumerate();
-            let parts = values.map(|(d, value)| vectors[(k, d)].powi(2) / value.max(self.zero));
+            let parts = values
+                .map(|(d, value)| elementary::powi(vectors[(k, d)], 2) / value.max(self.zero));
             parts.sum::<f64>() / (size * size)
         };
         self.sizes.iter().enumerate().map(entry).sum()

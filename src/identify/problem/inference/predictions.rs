@@ -2,6 +2,7 @@
 
 use super::super::{Experiment, Failed, Free, ModelSimulator, Observation, Problem, Simulate};
 use crate::diag::Fault;
+use crate::elementary;
 
 /// How far bands go beyond the measured points, as a fraction of their width: as far as the eye
 /// goes on along a curve.
@@ -112,7 +113,7 @@ fn as_series(problem: &Problem, curves: &mut [Curve], linear: &mut Linear) {
         for place in own {
             let value = linear.values[place];
             linear.gradients[place].iter_mut().for_each(|gradient| *gradient /= value);
-            linear.values[place] = value.ln();
+            linear.values[place] = elementary::ln(value);
         }
     }
 }
@@ -120,7 +121,7 @@ fn as_series(problem: &Problem, curves: &mut [Curve], linear: &mut Linear) {
 /// Below and above every parameter, within the ranges: the step that balances the error of a
 /// central difference against that of the simulation.
 fn ends(parameters: &[Free], values: &[f64], noise: f64) -> Vec<Vec<f64>> {
-    let step = noise.cbrt().clamp(1e-5, 1e-2);
+    let step = elementary::cbrt(noise).clamp(1e-5, 1e-2);
     let mut ends = Vec::with_capacity(2 * values.len());
     for (k, free) in parameters.iter().enumerate() {
         let width = free.max - free.min;
@@ -179,8 +180,10 @@ impl Predict for ModelPredictions {
                     curves.extend(described(experiment, &dense, series));
                     kept.push(dense);
                 }
-                Err(why) => refusals
-                    .push(format!("There are no predictions of {}: {why}.", experiment.name)),
+                Err(why) => refusals.push(match experiment.name.as_str() {
+                    "" => format!("There are no predictions: {why}."),
+                    name => format!("There are no predictions of {name}: {why}."),
+                }),
             }
         }
         Ok(Curves { curves, simulator: Box::new(ModelSimulator::new(&kept)?), refusals })
@@ -197,22 +200,54 @@ fn dense(
     if let (Reach::Range([_, end]), "time") = (wanted.reach, experiment.x_name.as_str()) {
         settings.stop = settings.stop.max(end);
     }
-    let mut dense = Experiment { settings, ..experiment.clone() };
+    let dense = Experiment { settings, ..experiment.clone() };
+    if experiment.model.driven().is_some_and(|(driven, _)| driven == experiment.x_name) {
+        return over_input(&dense, around, wanted);
+    }
     let simulated = match simulated_range(&dense, around)? {
         Ok(range) => range,
         Err(failed) => return Ok(Err(failed.cause)),
     };
     let range = match wanted.reach {
         Reach::Simulated => simulated,
-        Reach::Measured => cut(measured_range(experiment), simulated),
+        Reach::Measured => cut(measured_range(experiment, BEYOND), simulated),
         Reach::Range(range) => cut(range, simulated),
     };
+    on_grid(dense, around, wanted, range)
+}
+
+/// The grid over an input, which may take any value: beyond the measured points as far as wanted
+/// where the model has a solution, else over these alone.
+fn over_input(
+    experiment: &Experiment,
+    around: &[Vec<f64>],
+    wanted: &Wanted<'_>,
+) -> Result<Result<Experiment, String>, Fault> {
+    if let Reach::Range(range) = wanted.reach {
+        return on_grid(experiment.clone(), around, wanted, range);
+    }
+    // A next measurement is proposed where some have been possible.
+    let beyond = if wanted.reach == Reach::Measured { BEYOND } else { 0.0 };
+    let beyond = measured_range(experiment, beyond);
+    match on_grid(experiment.clone(), around, wanted, beyond)? {
+        Ok(dense) => Ok(Ok(dense)),
+        Err(_) => on_grid(experiment.clone(), around, wanted, measured_range(experiment, 0.0)),
+    }
+}
+
+/// The experiment with points evenly over a range; why there is none.
+fn on_grid(
+    mut dense: Experiment,
+    around: &[Vec<f64>],
+    wanted: &Wanted<'_>,
+    range: [f64; 2],
+) -> Result<Result<Experiment, String>, Fault> {
     let Some([low, high]) = range.filter_increasing() else {
-        return Ok(Err(format!("`{}` does not vary there", experiment.x_name)));
+        return Ok(Err(format!("`{}` does not vary there", dense.x_name)));
     };
     let last = (wanted.points.max(2) - 1) as f64;
     let x: Vec<f64> = (0..=last as usize).map(|k| low + (high - low) * (k as f64 / last)).collect();
-    let own = experiment.observations.iter().map(|observation| observation.y_name.clone());
+    let own = dense.observations.iter().map(|observation| observation.y_name.clone());
     let mut names: Vec<String> = own.collect();
     for variable in
         wanted.variables.iter().filter(|name| !names.contains(name)).cloned().collect::<Vec<_>>()
@@ -246,11 +281,12 @@ fn cut(range: [f64; 2], within: [f64; 2]) -> [f64; 2] {
     [range[0].max(within[0]), range[1].min(within[1])]
 }
 
-fn measured_range(experiment: &Experiment) -> [f64; 2] {
+/// The range of the measured points and this part of its width beyond.
+fn measured_range(experiment: &Experiment, beyond: f64) -> [f64; 2] {
     let all = experiment.observations.iter().flat_map(|observation| &observation.x);
     let (low, high) =
         all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
-    let beyond = BEYOND * (high - low);
+    let beyond = beyond * (high - low);
     [low - beyond, high + beyond]
 }
 

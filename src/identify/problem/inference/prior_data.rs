@@ -1,6 +1,7 @@
 //! What priors and constraints did to the estimates, in words.
 
 use super::Local;
+use crate::elementary;
 use crate::identify::problem::{Finding, FindingKind, Problem};
 use crate::identify::table::significant;
 
@@ -24,7 +25,7 @@ pub(super) fn compared(problem: &Problem, local: &Local) -> Vec<Finding> {
         let Some((mean, sd, logarithm)) = prior.point() else { continue };
         let name = &problem.parameters[prior.parameter].name;
         let value = local.values[prior.parameter];
-        let own = if logarithm { value.ln() } else { value };
+        let own = if logarithm { elementary::ln(value) } else { value };
         let unit = if logarithm { value } else { 1.0 };
         let what = if logarithm { format!("ln({name})") } else { name.clone() };
         if let Some(variance) = variances[prior.parameter] {

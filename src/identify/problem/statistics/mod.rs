@@ -13,7 +13,9 @@
 pub mod distributions;
 pub(super) mod outliers;
 pub(super) mod residuals;
+mod special_functions;
 
+use crate::elementary;
 pub use residuals::{ResidualTest, residual_test};
 
 use super::inseparable::{self, Form, Inseparable, Sensitivities};
@@ -115,7 +117,7 @@ impl Statistics {
             None
         };
         let best = Sensitivities { values: values.to_vec(), columns };
-        let tolerance = problem.noise.powf(2.0 / 3.0).clamp(RANK[0], RANK[1]);
+        let tolerance = elementary::powf(problem.noise, 2.0 / 3.0).clamp(RANK[0], RANK[1]);
         let mut rank = inseparable::rank(&best, &[], tolerance);
         if !rank.inseparable.is_empty() {
             let elsewhere = elsewhere(problem, evaluation, others, &scales, &mut simulations);
@@ -214,7 +216,7 @@ fn largest_effect(columns: &[Vec<f64>], values: &[f64]) -> f64 {
 }
 
 fn size(simulated: &[f64], scales: &[f64]) -> f64 {
-    simulated.iter().zip(scales).map(|(y, s)| (y * s).powi(2)).sum::<f64>().sqrt()
+    simulated.iter().zip(scales).map(|(y, s)| elementary::powi(y * s, 2)).sum::<f64>().sqrt()
 }
 
 /// Derivatives of the simulated points, column by column, and the simulations that they took.

@@ -54,9 +54,7 @@ fn largest(jacobian: &[Vec<f64>], residuals: &[f64], kept: &[usize]) -> Option<O
     let basis = basis(jacobian, kept);
     let rank = basis.ncols();
     let freedom = kept.len().checked_sub(rank + 1).filter(|freedom| *freedom >= 2)? as f64;
-    let own = DVector::from_iterator(kept.len(), kept.iter().map(|&k| residuals[k]));
-    // What is left of the residuals when the parameters follow the change.
-    let rest = &own - &basis * basis.tr_mul(&own);
+    let rest = beside(&basis, residuals, kept);
     let square = rest.norm_squared();
     let studentised = |j: usize| {
         let free = 1.0 - basis.row(j).norm_squared();
@@ -70,6 +68,21 @@ fn largest(jacobian: &[Vec<f64>], residuals: &[f64], kept: &[usize]) -> Option<O
     let worst = (0..all.len()).max_by(|a, b| all[*a].abs().total_cmp(&all[*b].abs()))?;
     let probability = (kept.len() as f64 * student_two_sided(all[worst], freedom)).min(1.0);
     Some(Outlier { point: kept[worst], studentised: all[worst], probability })
+}
+
+/// The residuals of the points in `kept` when the parameters are fitted to these alone.
+pub(in super::super) fn rest_of(
+    jacobian: &[Vec<f64>],
+    residuals: &[f64],
+    kept: &[usize],
+) -> Vec<f64> {
+    beside(&basis(jacobian, kept), residuals, kept).as_slice().to_vec()
+}
+
+/// The part of the residuals in `kept` that is orthogonal to the basis.
+fn beside(basis: &DMatrix<f64>, residuals: &[f64], kept: &[usize]) -> DVector<f64> {
+    let own = DVector::from_iterator(kept.len(), kept.iter().map(|&k| residuals[k]));
+    &own - basis * basis.tr_mul(&own)
 }
 
 /// An orthonormal basis of the columns, dependent ones left out.

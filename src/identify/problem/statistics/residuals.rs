@@ -5,7 +5,8 @@
 //! [Anderson & Darling 1952](crate::bibliography#anderson-darling-1952), p-values of D'Agostino and
 //! Stephens 1986, table 4.9, for mean and variance estimated (normality).
 
-use super::distributions::{normal_two_sided, runs_two_sided, student_two_sided};
+use super::distributions::{normal_below, normal_two_sided, runs_two_sided, student_two_sided};
+use crate::elementary;
 
 /// Whether residuals in the order of X look like noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,7 +35,7 @@ pub fn residual_test(residuals: &[f64]) -> Option<ResidualTest> {
     let below = n - above;
     let count = n as f64;
     let mean = mean(residuals);
-    let square: f64 = residuals.iter().map(|r| (r - mean).powi(2)).sum();
+    let square: f64 = residuals.iter().map(|r| elementary::powi(r - mean, 2)).sum();
     let neighbours: f64 =
         residuals.windows(2).map(|pair| (pair[0] - mean) * (pair[1] - mean)).sum();
     let autocorrelation = if square > 0.0 { neighbours / square } else { 0.0 };
@@ -56,14 +57,14 @@ pub(in super::super) fn mean(values: &[f64]) -> f64 {
 /// Standard deviation about the mean; NaN for one value.
 pub(in super::super) fn deviation(values: &[f64]) -> f64 {
     let mean = mean(values);
-    let square: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+    let square: f64 = values.iter().map(|v| elementary::powi(v - mean, 2)).sum();
     (square / (values.len() as f64 - 1.0)).sqrt()
 }
 
 /// Standard deviation of independent noise beneath a slow pattern, from successive differences
 /// (von Neumann 1941).
 pub(in super::super) fn noise_beneath(values: &[f64]) -> f64 {
-    let square: f64 = values.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum();
+    let square: f64 = values.windows(2).map(|pair| elementary::powi(pair[1] - pair[0], 2)).sum();
     (0.5 * square / (values.len() as f64 - 1.0)).sqrt()
 }
 
@@ -72,7 +73,7 @@ pub(in super::super) fn spearman(a: &[f64], b: &[f64]) -> (f64, f64) {
     let (a, b) = (ranks(a), ranks(b));
     let (ma, mb) = (mean(&a), mean(&b));
     let product: f64 = a.iter().zip(&b).map(|(a, b)| (a - ma) * (b - mb)).sum();
-    let square = |v: &[f64], m: f64| v.iter().map(|v| (v - m).powi(2)).sum::<f64>();
+    let square = |v: &[f64], m: f64| v.iter().map(|v| elementary::powi(v - m, 2)).sum::<f64>();
     let size = (square(&a, ma) * square(&b, mb)).sqrt();
     if size == 0.0 {
         return (0.0, 1.0);
@@ -102,7 +103,6 @@ fn ranks(values: &[f64]) -> Vec<f64> {
 /// Probability of values that are as far from normal ones, mean and variance estimated: the test of
 /// Anderson and Darling, which weighs the tails. NaN for fewer than eight values.
 pub(in super::super) fn normality(values: &[f64]) -> f64 {
-    use statrs::distribution::{ContinuousCDF, Normal};
     let n = values.len() as f64;
     let (mean, size) = (mean(values), deviation(values));
     if n < 8.0 || size.is_nan() || size <= 0.0 {
@@ -110,18 +110,17 @@ pub(in super::super) fn normality(values: &[f64]) -> f64 {
     }
     let mut z: Vec<f64> = values.iter().map(|v| (v - mean) / size).collect();
     z.sort_by(f64::total_cmp);
-    let normal = Normal::standard();
     let part = |k: usize| {
-        let ln = |p: f64| p.max(f64::MIN_POSITIVE).ln();
-        (2 * k + 1) as f64 * (ln(normal.cdf(z[k])) + ln(normal.sf(z[z.len() - 1 - k])))
+        let ln = |p: f64| elementary::ln(p.max(f64::MIN_POSITIVE));
+        (2 * k + 1) as f64 * (ln(normal_below(z[k])) + ln(normal_below(-z[z.len() - 1 - k])))
     };
     let a = -n - (0..z.len()).map(part).sum::<f64>() / n;
     let a = a * (1.0 + 0.75 / n + 2.25 / (n * n));
     let p = match a {
-        a if a >= 0.6 => (1.2937 - 5.709 * a + 0.0186 * a * a).exp(),
-        a if a > 0.34 => (0.9177 - 4.279 * a - 1.38 * a * a).exp(),
-        a if a > 0.2 => 1.0 - (-8.318 + 42.796 * a - 59.938 * a * a).exp(),
-        a => 1.0 - (-13.436 + 101.14 * a - 223.73 * a * a).exp(),
+        a if a >= 0.6 => elementary::exp(1.2937 - 5.709 * a + 0.0186 * a * a),
+        a if a > 0.34 => elementary::exp(0.9177 - 4.279 * a - 1.38 * a * a),
+        a if a > 0.2 => 1.0 - elementary::exp(-8.318 + 42.796 * a - 59.938 * a * a),
+        a => 1.0 - elementary::exp(-13.436 + 101.14 * a - 223.73 * a * a),
     };
     // Beyond 13 the formula, a parabola, would rise again.
     if a > 13.0 { 0.0 } else { p.clamp(0.0, 1.0) }

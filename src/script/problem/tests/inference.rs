@@ -1,6 +1,7 @@
 //! Problems that ask for more than estimates.
 
 use super::*;
+use crate::identify::problem::EndingKind;
 use crate::identify::problem::inference::compare;
 
 const EMPTIES: &str = "
@@ -149,6 +150,42 @@ fn nested_models_are_compared() {
         solved(&[("p.toml", EMPTIES.to_owned()), ("d.csv", data().replace("0.5,", "0.51,"))]);
     let message = compare(&[(named("a"), &both), (named("b"), &other)]).unwrap_err().message;
     assert!(message.contains("different data"), "{message}");
+}
+
+/// A search that ends far from the minimum: its weight says nothing of the model.
+#[test]
+fn models_that_are_not_at_a_minimum_are_not_judged() {
+    let short = |text: &str| {
+        let text = text.replace("evaluations = 600", "evaluations = 60");
+        solved(&[
+            ("p.toml", text + "[method]\nname = \"gapilib2006\"\npolish = false\n"),
+            ("d.csv", data()),
+        ])
+    };
+    let smaller = EMPTIES.replace("area = { min = 0.1, max = 10 }", "area = { fixed = 2 }");
+    let (small, large) = (short(&smaller), short(EMPTIES));
+    let found = compare(&[("small".to_owned(), &small), ("large".to_owned(), &large)]).unwrap();
+    assert!(found.sentence.starts_with("The models cannot be judged"), "{}", found.sentence);
+    assert!(found.models.iter().all(|model| model.weight.is_none()), "{:?}", found.models);
+    assert!(found.nested.iter().all(|pair| pair.probability.is_none()), "{:?}", found.nested);
+}
+
+/// The same search with profiles, which least squares lead to the minimum first: the exact values
+/// of the tank within the profiles' intervals, and the interval holds the value of the table.
+#[test]
+fn profiles_belong_to_a_minimum() {
+    let text = EMPTIES.replace("evaluations = 600", "evaluations = 60");
+    let text = text + "[method]\nname = \"gapilib2006\"\npolish = false\n";
+    let options = RunOptions { profile: true, ..RunOptions::default() };
+    let solution = solved_with(&[("p.toml", text), ("d.csv", data())], &options);
+    assert_eq!(solution.ending.kind, EndingKind::Minimum, "{}", solution.ending.words);
+    let profiles = solution.profiles.as_ref().unwrap();
+    for (parameter, profile) in solution.parameters.iter().zip(&profiles.profiles) {
+        let [Some(low), Some(high)] = profile.interval else { panic!("{profile:?}") };
+        assert!((low..=high).contains(&parameter.value), "{parameter:?} {profile:?}");
+    }
+    let said = &solution.findings[0].sentence;
+    assert!(said.contains("behind the search came upon a better fit"), "{said}");
 }
 
 #[test]

@@ -3,7 +3,8 @@
 //! Reference: [Vehtari et al. 2021](crate::bibliography#vehtari-2021); the sums of correlations end
 //! by Geyer's initial monotone sequence.
 
-use statrs::distribution::{ContinuousCDF, Normal};
+use crate::elementary;
+use crate::identify::problem::distributions::normal_quantile;
 
 /// The larger of rank-normalized split R-hat and that of the folded draws; 1 where the chains
 /// cannot be distinguished. NaN for chains that never moved or of fewer than 4 draws.
@@ -58,13 +59,12 @@ fn rank_normalized(chains: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let all: Vec<f64> = chains.concat();
     let mut order: Vec<usize> = (0..all.len()).collect();
     order.sort_by(|a, b| all[*a].total_cmp(&all[*b]));
-    let normal = Normal::standard();
     let mut scores = vec![0.0; all.len()];
     let mut first = 0;
     for group in order.chunk_by(|a, b| all[*a] == all[*b]) {
         let rank = first as f64 + (group.len() as f64 + 1.0) / 2.0;
         first += group.len();
-        let score = normal.inverse_cdf((rank - 0.375) / (all.len() as f64 + 0.25));
+        let score = normal_quantile((rank - 0.375) / (all.len() as f64 + 0.25));
         group.iter().for_each(|&place| scores[place] = score);
     }
     let mut rest = scores.as_slice();
@@ -82,7 +82,8 @@ fn mean(values: &[f64]) -> f64 {
 
 fn variance(values: &[f64]) -> f64 {
     let mean = mean(values);
-    values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (values.len() as f64 - 1.0)
+    values.iter().map(|value| elementary::powi(value - mean, 2)).sum::<f64>()
+        / (values.len() as f64 - 1.0)
 }
 
 fn basic_r_hat(chains: &[Vec<f64>]) -> f64 {
@@ -141,7 +142,7 @@ fn effective(chains: &[Vec<f64>]) -> f64 {
     // The last even term stabilizes antithetic chains.
     time += even.max(0.0);
     let count = (m * n) as f64;
-    count / time.max(1.0 / count.log10())
+    count / time.max(1.0 / elementary::log10(count))
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ mod sampler;
 
 use super::{Distribution, Inferred, Local};
 use crate::diag::Fault;
+use crate::elementary;
 use crate::ga::Mrg32k3a;
 use crate::identify::problem::{ErrorModel, Evaluation, Problem, Run, Simulate};
 use crate::identify::table::significant;
@@ -146,7 +147,8 @@ fn start_covariance(problem: &Problem, local: &Local) -> DMatrix<f64> {
         }
     }
     let own = local.information.variances();
-    let entry = |k: usize| own[k].map_or(widest, |v| (v / unit[k].powi(2)).min(widest));
+    let entry =
+        |k: usize| own[k].map_or(widest, |v| (v / elementary::powi(unit[k], 2)).min(widest));
     DMatrix::from_fn(n, n, |k, l| if k == l { entry(k) } else { 0.0 })
 }
 
@@ -187,7 +189,9 @@ impl<'a> Density<'a> {
             // Concentrated: the objective is the negative logarithm itself.
             ErrorModel::Estimated => -self.evaluation.objective(self.problem, &row),
             ErrorModel::Known => -0.5 * self.square(&row),
-            ErrorModel::OneVariance => -0.5 * self.measured.len() as f64 * self.square(&row).ln(),
+            ErrorModel::OneVariance => {
+                -0.5 * self.measured.len() as f64 * elementary::ln(self.square(&row))
+            }
         };
         let density = likelihood + self.measure(&values);
         if density.is_nan() { f64::NEG_INFINITY } else { density }
@@ -195,13 +199,13 @@ impl<'a> Density<'a> {
 
     fn square(&self, row: &[f64]) -> f64 {
         let points = row.iter().zip(&self.measured).zip(&self.local.scales);
-        points.map(|((s, m), w)| (w * (s - m)).powi(2)).sum()
+        points.map(|((s, m), w)| elementary::powi(w * (s - m), 2)).sum()
     }
 
     /// Between the density of the prior and that in the unit cube.
     fn measure(&self, values: &[f64]) -> f64 {
         let one = |prior: &super::Prior| {
-            let logarithm = values[prior.parameter].ln();
+            let logarithm = elementary::ln(values[prior.parameter]);
             match (prior.distribution, self.problem.parameters[prior.parameter].logarithmic) {
                 (Distribution::LogNormal { .. }, false) => -logarithm,
                 (Distribution::Normal { .. } | Distribution::Uniform, true) => logarithm,
@@ -248,7 +252,7 @@ fn sampled(name: &str, chains: &[Vec<f64>]) -> Sampled {
     let mut all: Vec<f64> = chains.concat();
     all.sort_by(f64::total_cmp);
     let mean = all.iter().sum::<f64>() / all.len() as f64;
-    let square: f64 = all.iter().map(|value| (value - mean).powi(2)).sum();
+    let square: f64 = all.iter().map(|value| elementary::powi(value - mean, 2)).sum();
     let finite = |value: f64| Some(value).filter(|value| value.is_finite());
     Sampled {
         name: name.to_owned(),

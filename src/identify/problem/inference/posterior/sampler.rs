@@ -8,6 +8,7 @@
 //! References: [Haario et al. 2006](crate::bibliography#haario-2006);
 //! [Gelman, Roberts & Gilks 1996](crate::bibliography#gelman-1996) (the scale).
 
+use crate::elementary;
 use crate::ga::Mrg32k3a;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
@@ -77,7 +78,7 @@ impl Chain {
     }
 
     fn scaled(covariance: &DMatrix<f64>) -> Option<Cholesky<f64, Dyn>> {
-        let scale = 2.4_f64.powi(2) / covariance.nrows() as f64;
+        let scale = elementary::powi(2.4_f64, 2) / covariance.nrows() as f64;
         Cholesky::new(covariance * scale)
     }
 
@@ -116,7 +117,7 @@ impl Chain {
         self.tried += 1;
         let first = &self.point + self.root.l() * normals(&mut self.rng, self.point.len());
         let of_first = target(first.as_slice());
-        if self.rng.uniform().ln() < of_first - self.density {
+        if elementary::ln(self.rng.uniform()) < of_first - self.density {
             (self.point, self.density) = (first, of_first);
             self.accepted += 1;
             return;
@@ -124,7 +125,9 @@ impl Chain {
         let second =
             &self.point + self.root.l() * normals(&mut self.rng, self.point.len()) * SECOND;
         let of_second = target(second.as_slice());
-        if self.rng.uniform().ln() < self.second_ratio(&first, of_first, &second, of_second) {
+        if elementary::ln(self.rng.uniform())
+            < self.second_ratio(&first, of_first, &second, of_second)
+        {
             (self.point, self.density) = (second, of_second);
             self.accepted += 1;
         }
@@ -141,7 +144,7 @@ impl Chain {
         if of_second == f64::NEG_INFINITY {
             return f64::NEG_INFINITY;
         }
-        let rejected = |from: f64| 1.0 - (of_first - from).min(0.0).exp();
+        let rejected = |from: f64| 1.0 - elementary::exp((of_first - from).min(0.0));
         let (back, forth) = (rejected(of_second), rejected(self.density));
         if back <= 0.0 {
             return f64::NEG_INFINITY;
@@ -151,7 +154,7 @@ impl Chain {
             step.dot(&self.root.solve(&step))
         };
         let proposals = -0.5 * (distance(second) - distance(&self.point));
-        of_second - self.density + proposals + back.ln() - forth.ln()
+        of_second - self.density + proposals + elementary::ln(back) - elementary::ln(forth)
     }
 
     /// The covariance of the later half of the past.

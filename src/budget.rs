@@ -1,0 +1,46 @@
+//! How much work functions may take: recursion whose cost is exponential, and loops without end, end
+//! by this limit wherever they are run.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Most instructions of one call from outside, unless [`limit_instructions`] says otherwise: some
+/// tenths of a second.
+pub const DEFAULT_INSTRUCTIONS: u64 = 20_000_000;
+
+static LIMIT: AtomicU64 = AtomicU64::new(DEFAULT_INSTRUCTIONS);
+
+/// Says how many instructions one call of a function may take, in the whole process: the person who
+/// starts the program knows whether a function that takes longer is worth it.
+pub fn limit_instructions(limit: u64) {
+    LIMIT.store(limit, Ordering::Relaxed);
+}
+
+/// The most instructions of one call of a function.
+pub fn instruction_limit() -> u64 {
+    LIMIT.load(Ordering::Relaxed)
+}
+
+/// The most statements and iterations of loops that the interpreter runs to find the values that one model
+/// needs at translation: one takes as long as some instructions of compiled functions.
+pub(crate) fn step_limit() -> u64 {
+    instruction_limit() / 5
+}
+
+/// What a function says that exceeds the limit.
+pub(crate) fn exceeded() -> String {
+    format!("more than {} instructions", in_millions(instruction_limit()))
+}
+
+/// What can be done about it.
+pub(crate) const REMEDY: &str =
+    "check what ends its loops and its recursion, or allow more with `--instruction-limit`";
+
+/// A number in words where it is a whole number of millions.
+pub(crate) fn in_millions(number: u64) -> String {
+    match number {
+        1_000_000.. if number.is_multiple_of(1_000_000) => {
+            format!("{} million", number / 1_000_000)
+        }
+        _ => number.to_string(),
+    }
+}

@@ -1,0 +1,119 @@
+//! The blended right-hand side and its observed variables.
+
+use super::slide::{Contact, Slide, weight};
+use super::{Evaluated, Sliding};
+use crate::sim::Failure;
+
+impl Sliding<'_> {
+    /// Without surfaces there is but one mode, the one at hand.
+    pub(super) fn enter(&mut self, slide: &Slide, mode: usize) {
+        if !slide.surfaces.is_empty() {
+            self.inner.enter_mode(mode);
+        }
+    }
+
+    pub(super) fn blended_rhs(
+        &mut self,
+        slide: &Slide,
+        t: f64,
+        y: &[f64],
+        out: &mut [f64],
+    ) -> Evaluated {
+        self.blend_fields(slide, t, y, out)?;
+        self.add_layers(slide, t, y, out)?;
+        self.add_contacts(slide, t, y, out);
+        Ok(())
+    }
+
+    /// Σ_c w_c F_c
+    fn blend_fields(&mut self, slide: &Slide, t: f64, y: &[f64], out: &mut [f64]) -> Evaluated {
+        let (at, k, shares) = (slide.at, slide.k(), slide.shares(y));
+        out.fill(0.0);
+        for mode in 0..slide.n_modes() {
+            self.enter(slide, mode);
+            self.inner.rhs(t, &self.y, &mut self.out)?;
+            let weight = weight(mode, shares);
+            let outer = (0..at).chain(at + k..y.len());
+            for (row, value) in outer.zip(&self.out) {
+                out[row] += weight * value;
+            }
+        }
+        Ok(())
+    }
+
+    /// The equations of the shares.
+    fn add_layers(&mut self, slide: &Slide, t: f64, y: &[f64], out: &mut [f64]) -> Evaluated {
+        self.enter(slide, slide.nearest_mode(y));
+        self.inner.crossings(t, &self.y, &mut self.z)?;
+        let layers = slide.surfaces.iter().zip(slide.shares(y));
+        for (residual, (surface, share)) in out[slide.at..].iter_mut().zip(layers) {
+            let z = self.z[surface.crossing];
+            *residual = (z - surface.value) / surface.width - (share - surface.share);
+        }
+        Ok(())
+    }
+
+    /// The forces and their equations.
+    fn add_contacts(&mut self, slide: &Slide, t: f64, y: &[f64], out: &mut [f64]) {
+        let inner = std::mem::take(&mut self.y);
+        let first = slide.at + slide.surfaces.len();
+        for (i, (contact, force)) in slide.contacts.iter().zip(slide.forces(y)).enumerate() {
+            for (state, effect) in &contact.direction {
+                out[*state] += force * effect;
+            }
+            let speed = self.speed(contact, t, &inner);
+            out[first + i] = speed.unwrap_or(f64::NAN) / contact.width + force - 1.0;
+        }
+        self.y = inner;
+    }
+
+    /// The rate of change of the crossing function of a contact without its force, at (t, y) of the
+    /// system within, positive away from the surface.
+    pub(in crate::sim) fn speed(
+        &mut self,
+        contact: &Contact,
+        t: f64,
+        y: &[f64],
+    ) -> Result<f64, Failure> {
+        let n = self.inner.n_differential();
+        let mut f = vec![0.0; y.len()];
+        let mut z = vec![0.0; self.inner.n_crossings()];
+        self.inner.rhs(t, y, &mut f)?;
+        let mut moved = y.to_vec();
+        let mut ends = [0.0; 2];
+        for (end, sign) in ends.iter_mut().zip([1.0, -1.0]) {
+            let ahead = sign * contact.ahead;
+            let points = moved.iter_mut().zip(y).zip(&f).take(n);
+            points.for_each(|((moved, y), f)| *moved = y + ahead * f);
+            self.inner.crossings(t + ahead, &moved, &mut z)?;
+            *end = z[contact.crossing];
+        }
+        let speed = (ends[0] - ends[1]) / (2.0 * contact.ahead);
+        Ok(if contact.is_free_above { speed } else { -speed })
+    }
+
+    pub(super) fn blended_observation(
+        &mut self,
+        slide: &Slide,
+        t: f64,
+        y: &[f64],
+        out: &mut [f64],
+    ) -> Evaluated {
+        let nearest = slide.nearest_mode(y);
+        let mut values = vec![0.0; out.len()];
+        out.fill(0.0);
+        for mode in 0..slide.n_modes() {
+            self.enter(slide, mode);
+            self.inner.observe(t, &self.y, &mut values)?;
+            let weight = weight(mode, slide.shares(y));
+            for (column, (out, value)) in out.iter_mut().zip(&values).enumerate() {
+                match self.inner.has_means(column) {
+                    true => *out += weight * value,
+                    false if mode == nearest => *out = *value,
+                    false => {}
+                }
+            }
+        }
+        Ok(())
+    }
+}

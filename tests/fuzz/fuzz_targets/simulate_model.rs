@@ -1,0 +1,8 @@
+//! Simulates small models. Seeds: `tests/fuzz/corpus/models`.
+#![no_main]
+
+#[path = "../targets.rs"]
+#[allow(dead_code)]
+mod targets;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| targets::simulate_model(bytes));

@@ -1,0 +1,8 @@
+//! The reader of spreadsheets. Seeds: `tests/data/spreadsheet`.
+#![no_main]
+
+#[path = "../targets.rs"]
+#[allow(dead_code)]
+mod targets;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| targets::read_spreadsheet(bytes));

@@ -1,0 +1,174 @@
+//! The prompt, as a user meets it at a terminal: what is pasted and typed ahead, Ctrl-C and Ctrl-D.
+
+use crate::cli::{command, folder};
+use rexpect::session::{PtySession, spawn_command};
+use tempfile::TempDir;
+
+/// Milliseconds to wait for an answer: the machine may be busy.
+const PATIENCE: u64 = 120_000;
+
+/// A model whose simulation takes longer than anybody waits.
+const ENDLESS: &str = "model M Real x(start = 1); equation der(x) = sin(1e6*time); end M;\n";
+
+struct Prompt {
+    session: PtySession,
+    here: TempDir,
+}
+
+impl Prompt {
+    fn new() -> Prompt {
+        let here = folder(&[
+            ("Endless.mo", ENDLESS),
+            ("Decay.mo", "model Decay Real x(start = 1); equation der(x) = -x; end Decay;\n"),
+        ]);
+        let mut command = command(here.path(), &["repl"]);
+        command.env("GAPI_HISTORY", "").env("TERM", "xterm").env("NO_COLOR", "1");
+        let session = spawn_command(command, Some(PATIENCE)).expect("a terminal");
+        let mut prompt = Prompt { session, here };
+        prompt.expect(":help lists what can be typed");
+        prompt.expect("> ");
+        prompt
+    }
+
+    fn send(&mut self, text: &str) {
+        self.session.send(text).expect("it reads");
+        self.session.flush().expect("it reads");
+    }
+
+    /// Types a line.
+    fn line(&mut self, text: &str) {
+        self.send(&format!("{text}\r"));
+    }
+
+    /// What is shown up to and without this text.
+    fn expect(&mut self, text: &str) -> String {
+        match self.session.exp_string(text) {
+            Ok(before) => before,
+            Err(error) => panic!("{text:?} does not come: {error}"),
+        }
+    }
+
+    /// Ctrl-D at an empty line ends it with exit code 0.
+    fn leave(mut self) {
+        self.session.send_control('d').expect("it reads");
+        self.session.exp_eof().expect("it ends");
+        let status = self.session.process().wait().expect("it ends");
+        assert!(format!("{status:?}").contains(", 0)"), "{status:?}");
+    }
+}
+
+#[test]
+fn the_banner_names_help_and_the_dialect() {
+    let mut prompt = Prompt::new();
+    prompt.line(":help");
+    prompt.expect(":dialect [D]");
+    prompt.line(":dialect");
+    prompt.expect("Dymola");
+    prompt.line(":dialect openmodelica");
+    prompt.expect("OpenModelica");
+    prompt.line("x := 3*7");
+    prompt.expect("21");
+    prompt.line(":dialect fortran");
+    prompt.expect("there are two dialects");
+    prompt.line("help(Fit)");
+    prompt.expect("function Fit");
+    prompt.leave();
+}
+
+#[test]
+fn a_call_of_the_other_dialect_is_recognised() {
+    let mut prompt = Prompt::new();
+    prompt.line("loadString(\"model A end A;\")");
+    prompt.expect("this looks like OpenModelica; `:dialect openmodelica`");
+    prompt.leave();
+}
+
+#[test]
+fn lines_typed_ahead_are_kept() {
+    let mut prompt = Prompt::new();
+    prompt.send("a = sum(i for i in 1:200000)\rb = 2\rb + 40\r");
+    prompt.expect(" = 42");
+    prompt.line("a");
+    prompt.expect(" = 20000100000");
+    prompt.leave();
+}
+
+#[test]
+fn pasted_lines_are_one_input() {
+    let mut prompt = Prompt::new();
+    let pasted = "a = 1\rfor i in 1:3 loop\r  a = a + i;\rend for;\ra + 35\r";
+    prompt.send(&format!("\x1b[200~{pasted}\x1b[201~\r"));
+    prompt.expect(" = 42");
+    prompt.leave();
+}
+
+#[test]
+fn an_open_block_goes_on_in_the_next_line() {
+    let mut prompt = Prompt::new();
+    prompt.line("x = 1");
+    prompt.line("for i in 1:4 loop");
+    prompt.line("  x = x*2;");
+    prompt.line("end for");
+    prompt.line("x + 26");
+    prompt.expect(" = 42");
+    prompt.leave();
+}
+
+#[test]
+fn errors_keep_the_session_and_its_variables() {
+    let mut prompt = Prompt::new();
+    prompt.line("a = 41");
+    prompt.line("b = nowhere + 1");
+    prompt.expect("there is no variable `nowhere`");
+    prompt.line("c = (1");
+    prompt.line("");
+    prompt.line("");
+    prompt.expect("error[");
+    prompt.line("a + 1");
+    prompt.expect(" = 42");
+    prompt.leave();
+}
+
+#[test]
+fn an_interrupt_stops_the_call_and_keeps_the_session() {
+    let mut prompt = Prompt::new();
+    prompt.line("a = 41");
+    prompt.line(":load Endless.mo");
+    prompt.line("print(\"begins\"); simulateModel(\"M\", stopTime = 1e6)");
+    // Once echoed, once printed.
+    prompt.expect("begins");
+    prompt.expect("begins");
+    std::thread::sleep(std::time::Duration::from_millis(1500));
+    prompt.session.send_control('c').expect("it reads");
+    prompt.expect("interrupted");
+    prompt.line("a + 1");
+    prompt.expect(" = 42");
+    prompt.leave();
+}
+
+#[test]
+fn an_interrupt_at_the_prompt_forgets_the_line() {
+    let mut prompt = Prompt::new();
+    prompt.line("a = 42");
+    prompt.send("a = 1");
+    prompt.session.send_control('c').expect("it reads");
+    prompt.expect("> ");
+    prompt.line("2*a");
+    prompt.expect(" = 84");
+    prompt.leave();
+}
+
+#[test]
+fn a_plot_says_which_file_it_wrote() {
+    let mut prompt = Prompt::new();
+    prompt.line("openModel(\"Decay.mo\")");
+    prompt.line("simulateModel(\"Decay\", stopTime = 1)");
+    prompt.expect("Finished");
+    prompt.line("plot({\"x\"})");
+    let shown = prompt.expect(".svg");
+    let name = shown.rsplit([' ', '`', '\n']).next().unwrap_or_default();
+    let file = prompt.here.path().join(format!("{name}.svg"));
+    prompt.expect("> ");
+    assert!(file.exists(), "{shown}");
+    prompt.leave();
+}
