@@ -21,6 +21,12 @@ const AGREEING_IF_BAD: usize = 15;
 const BAD: f64 = 0.1;
 /// Minima not found yet, expected, above which a search goes on.
 const MISSING: f64 = 1.0;
+/// Where the best of so many descents has ended at no minimum, and the last ones have not improved on
+/// it by this part, further ones will not come to one either: derivatives vanish or jump there, or a
+/// constraint is in the way.
+const STUCK: usize = 30;
+const LAST: usize = 15;
+const IMPROVED: f64 = 1e-3;
 /// Steps of a descent in one round; most of the problems of NIST need fewer.
 const STEPS: usize = 40;
 /// Steps to make the best minimum finer.
@@ -71,6 +77,8 @@ pub(super) struct Pool {
     shares: Vec<usize>,
     wants: Wants,
     accuracy: Accuracy,
+    /// Descents and the smallest sum of squares at the begin of each round.
+    rounds: Vec<(usize, f64)>,
 }
 
 impl Pool {
@@ -82,6 +90,7 @@ impl Pool {
             shares: Vec::new(),
             wants: Wants::Jacobians,
             accuracy,
+            rounds: Vec::new(),
         }
     }
 
@@ -90,6 +99,7 @@ impl Pool {
     /// to earlier descents.
     pub(super) fn begin(&mut self, starts: Vec<Vec<f64>>, independent: usize) {
         self.active.clear();
+        self.rounds.push((self.descents.len(), self.smallest()));
         let open = |k: &usize| !self.descents[*k].has_ended();
         if let Some(open) = self.smallest_of(open) {
             self.descents[open].grant(STEPS, COARSE);
@@ -200,8 +210,22 @@ impl Pool {
         groups
     }
 
-    /// Whether the best minimum was reached often enough, and few others can be expected.
+    /// Whether further descents are not worth their cost: the best minimum was reached often enough,
+    /// and few others can be expected; or none comes to a minimum.
     pub(super) fn is_enough(&self) -> bool {
+        self.is_reached_often() || self.is_stuck()
+    }
+
+    fn is_stuck(&self) -> bool {
+        let Some(best) = self.best().map(|best| &self.descents[best]) else { return false };
+        let count = self.descents.len();
+        let before = self.rounds.iter().rfind(|(begun, _)| begun + LAST <= count);
+        let is_better = |sum: f64| best.sum() < (1.0 - IMPROVED) * sum;
+        let has_ended = best.has_ended() && best.report().ending != DescentEnd::Minimum;
+        has_ended && count >= STUCK && before.is_some_and(|(_, sum)| !is_better(*sum))
+    }
+
+    fn is_reached_often(&self) -> bool {
         // Descents from beside others are no evidence.
         let all = self.reports().into_iter().zip(&self.independent);
         let reports: Vec<DescentReport> =

@@ -68,6 +68,9 @@ pub trait Fitness: Send + Sync {
 pub struct Robustness {
     /// v of the covariance v (JᵀJ)⁻¹.
     pub variance: f64,
+    /// Degrees of freedom of that variance: fewer than those of the points, as the scale of the bulk
+    /// is known less well than a standard deviation of all.
+    pub freedom: f64,
     /// The scale s: standard deviation of the bulk of the weighted residuals.
     pub scale: f64,
     /// The sum of squares, s² Σ 2ρ, rises by this times s² χ² within a likelihood region.

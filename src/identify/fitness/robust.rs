@@ -27,6 +27,9 @@ const TUKEY: f64 = 4.685;
 const ROUNDED: f64 = 0.05;
 /// The same during the search, where the scale is not known.
 const ROUNDED_IN_SEARCH: f64 = 0.3;
+/// Efficiency of the MAD as an estimate of a normal standard deviation: its relative variance is that
+/// of so many times the degrees of freedom (Huber & Ronchetti, table 5.1).
+const MAD_EFFICIENCY: f64 = 0.37;
 /// Steps of Newton's iteration for the scale; it ends after a few.
 const STEPS: usize = 60;
 
@@ -213,6 +216,7 @@ impl Fitness for Robust {
             let variance = scale * scale * n / freedom / (4.0 * density * density);
             return Some(Robustness {
                 variance,
+                freedom: MAD_EFFICIENCY * freedom,
                 scale,
                 rise: square / (2.0 * self.delta * density),
             });
@@ -222,7 +226,7 @@ impl Fitness for Robust {
         // Huber's correction for small samples.
         let k = 1.0 + (n - freedom) / n * spread / (mean * mean);
         let variance = scale * scale * k * k * square / (mean * mean);
-        Some(Robustness { variance, scale, rise: square / mean })
+        Some(Robustness { variance, freedom: MAD_EFFICIENCY * freedom, scale, rise: square / mean })
     }
 }
 

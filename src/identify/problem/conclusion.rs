@@ -8,6 +8,7 @@ use super::refit::Refit;
 use super::saddle;
 use super::statistics::Statistics;
 use super::{Best, ErrorModel, Finding, FindingKind, Problem, Run, Series, Severity, Sigma};
+use super::{curvature, limits};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::identify::fitness::{Fitness, median_deviation};
@@ -38,6 +39,9 @@ pub struct Conclusion {
     /// Whether a finer tolerance moves the best point by little against the errors of the data, so
     /// that the residuals are not those of the solver.
     pub resolved: bool,
+    /// Where the best point was found a minimum by second derivatives: the reach of the differences
+    /// that they come from, as a fraction of the ranges.
+    pub by_curvature: Option<f64>,
 }
 
 /// Concludes a run: call it once, before [`Solution::of`](super::Solution::of). What cannot be done
@@ -48,6 +52,8 @@ pub fn conclude(run: &mut Run) {
     let done = saddle::leave(run)
         .and_then(|()| reweigh(run))
         .and_then(|()| rescale(run))
+        .map(|()| limits::finish(run))
+        .map(|()| curvature::finish(run))
         .and_then(|()| tolerance(run));
     if let Err(fault) = done {
         let sentence = format!("The fit could not be repeated: {}.", fault.message);
@@ -92,7 +98,11 @@ fn rescale(run: &mut Run) -> Result<(), Fault> {
     for _ in 0..REWEIGHTED {
         let Some(best) = run.best.clone() else { return Ok(()) };
         let Ok(simulated) = run.evaluation.simulate(&best.values) else { return Ok(()) };
-        let scale = median_deviation(&weighted(run, &simulated));
+        let residuals = weighted(run, &simulated);
+        let freedom = residuals.len().saturating_sub(best.values.len()).max(1);
+        // Residuals of a fit are smaller than the errors.
+        let correction = (residuals.len() as f64 / freedom as f64).sqrt();
+        let scale = correction * median_deviation(&residuals);
         let known = estimated.as_ref().unwrap_or(&run.problem.objectives[0].1).with_scale(scale);
         let Some(known) = known.filter(|_| scale > 0.0) else { return Ok(()) };
         let before = std::mem::replace(&mut run.problem.objectives[0].1, known);
@@ -229,7 +239,9 @@ fn tolerance(run: &mut Run) -> Result<(), Fault> {
 /// Whether nothing better is to be had from a finer solver: the best point is a minimum, or that
 /// cannot be tested, or the search was ended before it came to one.
 fn at_minimum(run: &mut Run) -> bool {
-    if run.cause() != Cause::Converged {
+    let is_at_limit =
+        run.best.as_ref().is_some_and(|b| limits::along(&run.problem, &b.values).is_some());
+    if run.cause() != Cause::Converged || run.conclusion.by_curvature.is_some() || is_at_limit {
         return true;
     }
     let Some((is_minimum, simulations)) = is_at_minimum(run) else { return true };

@@ -1,63 +1,86 @@
-//! Parameters whose derivative is zero at the best point: without any effect, or acting in steps.
+//! Parameters whose derivative is zero at the best point: without any effect, or acting in steps, or
+//! with a derivative that vanishes just there.
 //!
 //! An output that changes in steps (a switching time between two samples, a rounded number) has a
-//! derivative of zero nearly everywhere. Only finite changes over the whole range tell.
+//! derivative of zero nearly everywhere. Only finite changes over the whole range tell: the
+//! parameter is held at values there and the others are fitted anew, as for a profile.
 
-use super::conclusion::limit;
-use super::{Evaluation, Problem, Statistics};
-use crate::elementary;
+use super::profile::limit;
+use super::refit::Refit;
+use super::{Evaluation, Problem};
+use crate::diag::Fault;
 
 /// Fractions of the range that are tried on each side: from this on, each larger by the factor.
 const FIRST: f64 = 1e-3;
 const GROWTH: f64 = 1.5;
 /// Halvings that locate where the limit is crossed.
-const HALVINGS: usize = 30;
+const HALVINGS: usize = 20;
 /// A change of a point below this many times the error of the simulation is that error.
 const ERRORS: f64 = 10.0;
 
 /// What a parameter without derivative does.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) enum Effect {
     /// Nothing, in its whole range.
     None,
-    /// It acts in steps. The ends of the values whose sum of squares is within the 95 % limit, the
-    /// others held; `None` where the range ends before.
-    Steps([Option<f64>; 2]),
+    /// It acts at finite distances.
+    Finite(Finite),
+}
+
+/// The effect of finite changes.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Finite {
+    /// The ends of the values whose sum of squares is within the 95 % limit, the others fitted anew;
+    /// `None` where the range ends before.
+    pub ends: [Option<f64>; 2],
+    /// Whether small changes change nothing: it acts in steps.
+    pub in_steps: bool,
+    /// Values of all parameters within the limit, each with what is left of the way to it: the root of
+    /// the part of the rise that remains, 1 at the best point.
+    pub within: Vec<(Vec<f64>, f64)>,
 }
 
 /// What parameter `k` does at finite distances from the best `values`, and the simulations that
 /// it took.
+///
+/// # Errors
+///
+/// Those of the method's maker.
 pub(super) fn effect(
     problem: &Problem,
     evaluation: &Evaluation,
-    statistics: &Statistics,
     (values, simulated): (&[f64], &[f64]),
     k: usize,
-) -> (Effect, u64) {
+) -> Result<(Effect, u64), Fault> {
     let free = &problem.parameters[k];
     let here = free.fraction(values[k]);
-    let at = |place: f64| {
+    let places = [-1.0, 1.0].map(|side| outward(here, side));
+    let at = |place: &f64| {
         let mut point = values.to_vec();
-        point[k] = free.value(place);
+        point[k] = free.value(*place);
         point
     };
-    let mut walk = Walk { problem, evaluation, statistics, simulations: 0 };
-    let (mut acts, mut ends) = (false, [None; 2]);
-    for (end, side) in ends.iter_mut().zip([-1.0, 1.0]) {
-        let places = outward(here, side);
-        let rows = evaluation.simulate_all(&places.iter().map(|u| at(*u)).collect::<Vec<_>>());
-        walk.simulations += rows.len() as u64;
-        let mut inside = here;
-        for (&place, row) in places.iter().zip(&rows) {
-            acts |= row.as_ref().map_or(true, |row| walk.differs(simulated, row));
-            if !walk.fits(row.as_ref().ok().map(Vec::as_slice)) {
-                *end = Some(free.value(walk.crossing(&at, inside, place)));
-                break;
-            }
-            inside = place;
-        }
+    let both: Vec<Vec<f64>> = places.iter().flatten().map(at).collect();
+    let rows = evaluation.simulate_all(&both);
+    let acts = |row: &Result<Vec<f64>, _>| {
+        row.as_ref().map_or(true, |row| differs(problem, simulated, row))
+    };
+    let mut simulations = rows.len() as u64;
+    if !rows.iter().any(acts) {
+        return Ok((Effect::None, simulations));
     }
-    (if acts { Effect::Steps(ends) } else { Effect::None }, walk.simulations)
+    let nearest = [0, places[0].len()].into_iter().filter_map(|first| rows.get(first));
+    let in_steps = !nearest.into_iter().any(acts);
+    let mut found = Finite { ends: [None; 2], in_steps, within: Vec::new() };
+    let Some(mut scan) = Scan::new(problem, evaluation, values, k)? else {
+        return Ok((Effect::Finite(found), simulations));
+    };
+    for (end, places) in found.ends.iter_mut().zip(&places) {
+        *end = scan.side(here, values, places)?;
+    }
+    found.within = std::mem::take(&mut scan.within);
+    simulations += scan.refit.simulations;
+    Ok((Effect::Finite(found), simulations))
 }
 
 /// Fractions of the range from `here` to its end.
@@ -75,43 +98,76 @@ fn outward(here: f64, side: f64) -> Vec<f64> {
     places
 }
 
-struct Walk<'a> {
-    problem: &'a Problem,
-    evaluation: &'a Evaluation,
-    statistics: &'a Statistics,
-    simulations: u64,
+fn differs(problem: &Problem, a: &[f64], b: &[f64]) -> bool {
+    let size = a.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+    let change = a.iter().zip(b).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+    change > ERRORS * problem.noise * size
 }
 
-impl Walk<'_> {
-    fn differs(&self, a: &[f64], b: &[f64]) -> bool {
-        let size = a.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
-        let change = a.iter().zip(b).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
-        change > ERRORS * self.problem.noise * size
+/// Fits with one parameter held at places over its range.
+struct Scan<'a> {
+    refit: Refit<'a>,
+    problem: &'a Problem,
+    k: usize,
+    smallest: f64,
+    limit: f64,
+    within: Vec<(Vec<f64>, f64)>,
+}
+
+impl<'a> Scan<'a> {
+    /// `None` where the fitness is no sum of squares or there are not more points than parameters.
+    fn new(
+        problem: &'a Problem,
+        evaluation: &'a Evaluation,
+        values: &[f64],
+        k: usize,
+    ) -> Result<Option<Scan<'a>>, Fault> {
+        let freedom = problem.n_points().saturating_sub(values.len());
+        let Some(mut refit) = Refit::new(problem, evaluation).filter(|_| freedom > 0) else {
+            return Ok(None);
+        };
+        let Some((best, smallest)) = refit.from(values, Some(k))? else { return Ok(None) };
+        let residuals = refit.plain_residuals(&best);
+        let limit = limit(problem, smallest, freedom as f64, residuals.as_deref());
+        Ok(Some(Scan { refit, problem, k, smallest, limit, within: vec![(best, 1.0)] }))
     }
 
-    /// Whether a simulation fits the data within the 95 % limit; one that failed does not.
-    fn fits(&self, simulated: Option<&[f64]>) -> bool {
-        let measured = self.problem.series.iter().flat_map(|series| &series.y);
-        simulated.is_some_and(|simulated| {
-            let points = measured.zip(simulated).zip(&self.statistics.weights);
-            let square: f64 = points.map(|((m, s), w)| elementary::powi(w * (m - s), 2)).sum();
-            square <= limit(self.statistics)
-        })
-    }
-
-    fn crossing(
-        &mut self,
-        at: &impl Fn(f64) -> Vec<f64>,
-        mut inside: f64,
-        mut outside: f64,
-    ) -> f64 {
+    /// The end of the values within the limit on one side: beyond the farthest of the places whose
+    /// sum is; `None` where that is the last.
+    fn side(&mut self, here: f64, values: &[f64], places: &[f64]) -> Result<Option<f64>, Fault> {
+        let (mut inside, mut outside) = (here, None);
+        let (mut start, mut at_inside) = (values.to_vec(), values.to_vec());
+        for &place in places {
+            match self.fit(&start, place)? {
+                Some(found) => {
+                    (inside, outside) = (place, None);
+                    (start, at_inside) = (found.clone(), found);
+                }
+                None => outside = outside.or(Some(place)),
+            }
+        }
+        let Some(mut outside) = outside else { return Ok(None) };
         for _ in 0..HALVINGS {
             let middle = 0.5 * (inside + outside);
-            let row = self.evaluation.simulate(&at(middle));
-            self.simulations += 1;
-            let fits = self.fits(row.as_ref().ok().map(Vec::as_slice));
-            *(if fits { &mut inside } else { &mut outside }) = middle;
+            match self.fit(&at_inside, middle)? {
+                Some(found) => (inside, at_inside) = (middle, found),
+                None => outside = middle,
+            }
         }
-        inside
+        Ok(Some(self.problem.parameters[self.k].value(inside)))
+    }
+
+    /// The others fitted with the parameter at `place`; `None` where the sum is beyond the limit or
+    /// nothing can be simulated.
+    fn fit(&mut self, start: &[f64], place: f64) -> Result<Option<Vec<f64>>, Fault> {
+        let mut from = start.to_vec();
+        from[self.k] = self.problem.parameters[self.k].value(place);
+        let Some((values, sum)) = self.refit.from(&from, Some(self.k))? else { return Ok(None) };
+        if sum > self.limit {
+            return Ok(None);
+        }
+        let left = (self.limit - sum) / (self.limit - self.smallest);
+        self.within.push((values.clone(), left.clamp(0.0, 1.0).sqrt()));
+        Ok(Some(values))
     }
 }

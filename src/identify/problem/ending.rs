@@ -9,6 +9,7 @@
 //! Reference: [Bates & Watts 1981](crate::bibliography#bates-watts-1981).
 
 use super::{Evaluation, Finding, FindingKind, Linearization, Problem, Run, Severity, Solution};
+use super::{curvature, limits};
 use crate::ga::optimizer::{DescentEnd, DescentReport, MINIMUM, Offset, reached, test_minimum};
 use crate::identify::table::significant;
 use serde::{Deserialize, Serialize};
@@ -109,6 +110,20 @@ impl Ending {
         let found = run.evaluation.linearize(&run.problem, &[values.to_vec()]).pop();
         let Some(Ok(found)) = found else { return untested(1) };
         let (offset, is_minimum) = tested(&run.problem, &run.evaluation, values, &found);
+        if let Some(ending) = at_limits(run, values, &found, reached) {
+            return ending;
+        }
+        let curved = if is_minimum { None } else { curvature::offset(run, values) };
+        if let Some((offset, simulations)) = curved {
+            return Ending {
+                kind: EndingKind::Minimum,
+                relative_offset: None,
+                reached,
+                words: by_curvature(offset),
+                derivatives: Some(derivatives(&found)),
+                simulations: found.simulations + simulations,
+            };
+        }
         let kind = if is_minimum { EndingKind::Minimum } else { otherwise(run, &descents) };
         Ending {
             kind,
@@ -198,6 +213,39 @@ fn words(kind: EndingKind, offset: &Offset, reached: Option<[usize; 2]>) -> Stri
     format!(
         "This is not a minimum: {why} ({measure}; below {limit} at a minimum). There are no \
          intervals, and nothing is said about identifiability."
+    )
+}
+
+/// Where the best point stands at limits of constraints, and is a minimum along them.
+fn at_limits(
+    run: &Run,
+    values: &[f64],
+    found: &Linearization,
+    reached: Option<[usize; 2]>,
+) -> Option<Ending> {
+    let along = limits::along(&run.problem, values)?;
+    let tested = limits::test(run, values, &along, found).filter(|tested| tested.is_minimum)?;
+    let texts: Vec<String> =
+        limits::texts(&run.problem, values).iter().map(|text| format!("`{text}`")).collect();
+    let relative = tested.offset.and_then(|offset| offset.relative);
+    let measure = relative.map_or_else(String::new, |relative| {
+        format!(" (relative offset along it {})", significant(relative, 2))
+    });
+    Some(Ending {
+        kind: EndingKind::Minimum,
+        relative_offset: relative,
+        reached,
+        words: format!("Minimum found at the limit of {}{measure}.", texts.join(" and ")),
+        derivatives: Some(derivatives(found)),
+        simulations: found.simulations,
+    })
+}
+
+fn by_curvature(offset: f64) -> String {
+    format!(
+        "Minimum found by second derivatives (a Newton step moves the parameters by {} standard \
+         errors): the first ones vanish or jump there.",
+        significant(offset, 2)
     )
 }
 

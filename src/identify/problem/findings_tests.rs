@@ -364,8 +364,17 @@ fn known(noise: &mut Noise) -> Vec<(Formula, Vec<f64>, Sigma)> {
 }
 
 fn spoilt(noise: &mut Noise) -> Vec<(Formula, Vec<f64>, Sigma)> {
-    let mut errors = noise.white(40, 0.1);
-    (0..40).filter(|k| k % 10 == 3).for_each(|k| errors[k] *= 10.0);
+    spoilt_of(40, noise)
+}
+
+fn few_spoilt(noise: &mut Noise) -> Vec<(Formula, Vec<f64>, Sigma)> {
+    spoilt_of(16, noise)
+}
+
+/// Every tenth point is an outlier.
+fn spoilt_of(n: usize, noise: &mut Noise) -> Vec<(Formula, Vec<f64>, Sigma)> {
+    let mut errors = noise.white(n, 0.1);
+    (0..n).filter(|k| k % 10 == 3).for_each(|k| errors[k] *= 10.0);
     vec![(decay, errors, Sigma::Unknown)]
 }
 
@@ -390,6 +399,7 @@ fn intervals_cover_the_truth_in_a_few_runs() {
 #[test]
 #[ignore = "thousands of fits"]
 fn intervals_cover_the_truth() {
+    let mut outside = Vec::new();
     for (name, fitness, outputs) in [
         ("white noise", None, white as fn(&mut Noise) -> _),
         ("given sigma", None, known),
@@ -397,10 +407,18 @@ fn intervals_cover_the_truth() {
         ("huber, 10 % outliers", Some("huber"), spoilt),
         ("tukey, 10 % outliers", Some("tukey"), spoilt),
         ("mean absolute, 10 % outliers", Some("mae"), spoilt),
+        ("huber, 16 points", Some("huber"), few_spoilt),
+        ("tukey, 16 points", Some("tukey"), few_spoilt),
+        ("mean absolute, 16 points", Some("mae"), few_spoilt),
     ] {
         let found = coverage(1000, fitness, outputs);
-        assert!((0.92..=0.98).contains(&found), "{name}: {found}");
+        #[expect(clippy::print_stderr, reason = "the figures for who runs it by hand")]
+        {
+            eprintln!("{name}: {found}");
+        }
+        outside.extend((!(0.92..=0.98).contains(&found)).then(|| format!("{name}: {found}")));
     }
+    assert!(outside.is_empty(), "{outside:?}");
 }
 
 /// Outliers of ten standard deviations hardly move a robust fit.

@@ -8,6 +8,7 @@
 
 mod checks;
 mod conclusion;
+mod curvature;
 mod curve;
 mod effects;
 mod ending;
@@ -23,6 +24,8 @@ pub mod inference;
 mod inseparable;
 mod jacobian;
 mod journal;
+mod limits;
+mod nonlinear;
 mod notes;
 mod profile;
 mod profiled;
@@ -51,7 +54,7 @@ pub use inference::{Band, BandPoint, Inference, Inferred, infer};
 pub use inseparable::{Form, Inseparable};
 pub use jacobian::Linearization;
 pub use journal::{Journal, Record, decode, encode, first_frame, frame, header};
-pub use profile::{Profile, Profiles, profiles};
+pub use profile::{Profile, Profiles};
 pub use run::{Best, Run};
 pub use script_result::ScriptResult;
 pub use space::Free;
@@ -214,5 +217,7 @@ impl Problem {
 
 #[cfg(test)]
 mod findings_tests;
+#[cfg(test)]
+mod irregular_tests;
 #[cfg(test)]
 mod tests;

@@ -2,6 +2,7 @@
 
 use super::checks::residual_findings;
 use super::effects::Effect;
+use super::summary::BEYOND;
 use super::{
     ErrorModel, FailureRegion, Finding, FindingKind, Form, Inseparable, Profiles, Run, Severity,
     Solution, SolvedParameter, SolvedSeries, Statistics, Verdict,
@@ -16,8 +17,6 @@ const ILL_CONDITIONED: f64 = 1e4;
 const NEGLIGIBLE: f64 = 1e-12;
 /// Of changes that together change nothing, those below this part of the largest are not worth a word.
 const SMALL_CHANGE: f64 = 1e-3;
-/// A bound is contradicted by the data where the fit would go beyond it by so many standard errors.
-const BEYOND: f64 = 2.0;
 /// A point that is alone in its series dominates a parameter whose standard error is so many times
 /// as large without it.
 const DOMINANT: f64 = 3.0;
@@ -91,24 +90,37 @@ fn about_effects(solution: &Solution, effects: &[(usize, Effect)]) -> Vec<Findin
             Effect::None => {
                 (FindingKind::NoEffect, format!("{name} has no effect on the compared points."))
             }
-            Effect::Steps([Some(low), Some(high)]) => (
-                FindingKind::Interval,
-                format!(
-                    "{name} acts in steps: its derivative is zero, but only values from {} to {} \
-                     fit these data, the others held. Within the step nothing is known.",
-                    end(*low),
-                    end(*high)
-                ),
-            ),
-            Effect::Steps([low, high]) => (
-                FindingKind::PracticallyNonIdentifiable,
-                format!(
-                    "{name} acts in steps: its derivative is zero, and values from {} to {} fit \
-                     these data, the others held; the range ends before the data bound it.",
-                    end(low.unwrap_or(min)),
-                    end(high.unwrap_or(max))
-                ),
-            ),
+            Effect::Finite(finite) => {
+                let acts = match finite.in_steps {
+                    true => "acts in steps: its derivative is zero",
+                    false => "has a derivative that vanishes at the best values",
+                };
+                let within = match finite.in_steps {
+                    true => " Within the step nothing is known.",
+                    false => "",
+                };
+                match finite.ends {
+                    [Some(low), Some(high)] => (
+                        FindingKind::Interval,
+                        format!(
+                            "{name} {acts}, but only values from {} to {} fit these data, the \
+                             others fitted anew; intervals of the others hold for all of \
+                             them.{within}",
+                            end(low),
+                            end(high)
+                        ),
+                    ),
+                    [low, high] => (
+                        FindingKind::PracticallyNonIdentifiable,
+                        format!(
+                            "{name} {acts}, and values from {} to {} fit these data, the others \
+                             fitted anew; the range ends before the data bound it.",
+                            end(low.unwrap_or(min)),
+                            end(high.unwrap_or(max))
+                        ),
+                    ),
+                }
+            }
         };
         Finding::new(kind, sentence).parameters([name.as_str()])
     };
@@ -171,15 +183,15 @@ fn at_bound(parameter: &SolvedParameter, k: usize, statistics: &Statistics) -> F
     let upper = (parameter.value - max).abs() < (parameter.value - min).abs();
     let end = significant(if upper { max } else { min }, 5);
     let side = if upper { "upper" } else { "lower" };
-    let column = statistics.jacobian[k].iter().zip(&statistics.weights).zip(&statistics.residuals);
-    let gradient: f64 = column.map(|((d, w), r)| d * w * r).sum();
-    let outward = if upper { 1.0 } else { -1.0 };
-    let pull = parameter.deviation.map(|se| outward * se * gradient / statistics.variance);
+    let ends = statistics.at_bounds.iter().flat_map(|found| &found.ends);
+    let pull = ends.filter(|end| end.parameter == k).map(|end| end.pull).next();
     let what = match pull {
         Some(pull) if pull > BEYOND => format!(
-            "the fit would go on beyond it, by {} standard errors if it were linear. Widen the \
-             range, or doubt the model if the bound is one of nature",
-            significant(pull, 2)
+            "the fit would go on beyond it, by {} standard errors if it were linear, so that it has \
+             no interval, and the others' hold with {} = {end}. Widen the range, or doubt the model \
+             if the bound is one of nature",
+            significant(pull, 2),
+            parameter.name
         ),
         Some(_) => "the data do not contradict that bound, and say only how far from it the value \
                     may be"
@@ -463,7 +475,7 @@ fn product<'a>(parts: impl Iterator<Item = (&'a &'a str, &'a f64)>) -> String {
     }
 }
 
-fn undetermined(parameter: &SolvedParameter) -> String {
+pub(super) fn undetermined(parameter: &SolvedParameter) -> String {
     let [min, max] = parameter.range;
     let (low, high) = match parameter.interval {
         Some([low, high]) => (low.clamp(min, max), high.clamp(min, max)),

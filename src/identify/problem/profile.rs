@@ -22,8 +22,14 @@ const FIRST: f64 = 0.3;
 const GROWTH: f64 = 1.4;
 /// Limits of the first step, as a fraction of the range.
 const STEPS: [f64; 2] = [1e-7, 0.02];
-/// Fits that locate a crossing.
+/// Fits that locate a crossing, and those where the sum of squares jumps across the limit, as it
+/// does where something acts in steps.
 const CROSSING: usize = 5;
+const JUMPING: usize = 30;
+/// A rise of this part of that to the limit between neighbours is a jump.
+const JUMP: f64 = 0.2;
+/// Places nearer than this in the range are the same.
+const SAME: f64 = 1e-7;
 /// The sum of squares is this near to the limit at the crossing, relative to its rise.
 const NEAR: f64 = 1e-3;
 /// A fit that is better by more than this, relative, is another optimum.
@@ -54,31 +60,44 @@ pub struct Profiles {
     pub better: Option<(Vec<f64>, f64)>,
 }
 
-/// Profiles of all parameters about `best`. `reach`: the half-widths of the linear intervals where
-/// they are known. `None` when the fitness is no sum of squares or there are not more points than
-/// parameters.
+/// What the profiles start from.
+pub(super) struct Known<'a> {
+    /// The minimum.
+    pub best: &'a [f64],
+    /// Half-widths of the linear intervals where they are known.
+    pub reach: &'a [Option<f64>],
+    /// Other minima: fits begin there too before a value is said not to fit, and intervals reach
+    /// to those that fit as well.
+    pub others: &'a [Vec<f64>],
+}
+
+/// Profiles of some parameters about the best values. `None` when the fitness is no sum of squares or
+/// there are not more points than parameters.
 ///
 /// # Errors
 ///
 /// Those of the method's maker.
-pub fn profiles(
+pub(super) fn profiles(
     problem: &Problem,
     evaluation: &Evaluation,
-    best: &[f64],
-    reach: &[Option<f64>],
+    known: &Known<'_>,
+    which: &[usize],
 ) -> Result<Option<Profiles>, Fault> {
-    let freedom = problem.n_points().saturating_sub(best.len());
+    let freedom = problem.n_points().saturating_sub(known.best.len());
     let Some(refit) = Refit::new(problem, evaluation).filter(|_| freedom > 0) else {
         return Ok(None);
     };
-    let mut walk = Walk { refit, limit: 0.0, better: None };
-    let Some((best, smallest)) = walk.refit.from(best, None)? else { return Ok(None) };
+    let mut walk = Walk { refit, limit: 0.0, better: None, starts: Vec::new() };
+    let Some((best, smallest)) = walk.refit.from(known.best, None)? else { return Ok(None) };
     let residuals = walk.refit.plain_residuals(&best);
     walk.limit = limit(problem, smallest, freedom as f64, residuals.as_deref());
+    walk.starts.push(best.clone());
+    walk.starts.extend(known.others.iter().cloned());
     let mut profiles = Vec::new();
-    for (k, free) in problem.parameters.iter().enumerate() {
+    for &k in which {
+        let free = &problem.parameters[k];
         let mut points = vec![[best[k], smallest]];
-        let first = reach.get(k).copied().flatten().map_or(STEPS[1], |half| {
+        let first = known.reach.get(k).copied().flatten().map_or(STEPS[1], |half| {
             (FIRST * half / free.slope(best[k]).abs()).clamp(STEPS[0], STEPS[1])
         });
         let mut interval = [None; 2];
@@ -97,14 +116,19 @@ pub fn profiles(
 /// χ²; else the ratio of S to the smallest is compared, with Student's quantile, which for estimated
 /// sigmas is the likelihood ratio as well, for S is n G with n ln G = -2 log L.
 /// Robust sums rise by a factor of their own.
-fn limit(problem: &Problem, smallest: f64, freedom: f64, residuals: Option<&[f64]>) -> f64 {
+pub(super) fn limit(
+    problem: &Problem,
+    smallest: f64,
+    freedom: f64,
+    residuals: Option<&[f64]>,
+) -> f64 {
     let fitness = problem.objectives.first().map(|(_, fitness)| fitness);
     let robust = fitness.zip(residuals).and_then(|(own, r)| own.robustness(r, freedom));
     if let Some(robust) = robust {
         return smallest
             + elementary::powi(robust.scale, 2)
                 * robust.rise
-                * elementary::powi(student_quantile(0.975, freedom), 2);
+                * elementary::powi(student_quantile(0.975, robust.freedom), 2);
     }
     match ErrorModel::of(problem) {
         ErrorModel::Known => smallest + chi_square_quantile(0.95, 1.0),
@@ -118,30 +142,79 @@ struct Walk<'a> {
     refit: Refit<'a>,
     limit: f64,
     better: Option<(Vec<f64>, f64)>,
+    /// Where fits begin before a value is said not to fit.
+    starts: Vec<Vec<f64>>,
+}
+
+/// From where a fit begins.
+#[derive(Clone, Copy, PartialEq)]
+enum Care {
+    /// From the neighbour's.
+    OneStart,
+    /// From all known minima as well, before a sum beyond the limit is believed: a descent may end
+    /// beside the least.
+    AllStarts,
 }
 
 impl Walk<'_> {
-    /// Goes from the best to one side until the limit is crossed; where that is.
+    /// Goes from the best to one side until the limit is crossed, and on from other minima that lie
+    /// beyond; where the last crossing is.
     fn side(
         &mut self,
         free: &Free,
         k: usize,
         best: (&[f64], f64),
-        mut step: f64,
+        first: f64,
         points: &mut Vec<[f64; 2]>,
     ) -> Result<Option<f64>, Fault> {
         let mut inside = (free.fraction(best.0[k]), best.1);
         let mut values = best.0.to_vec();
+        loop {
+            let Some(crossing) =
+                self.until_crossing(free, k, inside, first, &mut values, points)?
+            else {
+                return Ok(None);
+            };
+            let is_beyond =
+                |start: &&Vec<f64>| (free.fraction(start[k]) - crossing) * first.signum() > SAME;
+            let beyond = self.starts.iter().filter(is_beyond).cloned().collect::<Vec<_>>();
+            let mut farther = None;
+            for start in beyond {
+                values.copy_from_slice(&start);
+                let place = free.fraction(start[k]);
+                let sum = self.fit(free, k, place, &mut values, points, Care::OneStart)?;
+                if let Some(sum) = sum.filter(|sum| *sum <= self.limit) {
+                    farther = Some((place, sum));
+                    break;
+                }
+            }
+            let Some(farther) = farther else { return Ok(Some(free.value(crossing))) };
+            inside = farther;
+        }
+    }
+
+    /// Goes on from `inside` until the limit is crossed; `None` where the range ends before.
+    fn until_crossing(
+        &mut self,
+        free: &Free,
+        k: usize,
+        mut inside: (f64, f64),
+        mut step: f64,
+        values: &mut [f64],
+        points: &mut Vec<[f64; 2]>,
+    ) -> Result<Option<f64>, Fault> {
         for _ in 0..SIDE {
             let place = (inside.0 + step).clamp(0.0, 1.0);
             if place == inside.0 {
                 break;
             }
-            let Some(sum) = self.fit(free, k, place, &mut values, points)? else { break };
+            let before = values.to_vec();
+            let sum = self.fit(free, k, place, values, points, Care::AllStarts)?;
+            let Some(sum) = sum else { break };
             if sum > self.limit {
-                let crossing =
-                    self.crossing(free, k, (inside, (place, sum)), &mut values, points)?;
-                return Ok(Some(free.value(crossing)));
+                values.copy_from_slice(&before);
+                let ends = (inside, (place, sum));
+                return self.crossing(free, k, ends, values, points).map(Some);
             }
             inside = (place, sum);
             step *= GROWTH;
@@ -150,7 +223,8 @@ impl Walk<'_> {
     }
 
     /// The place between `inside` and `outside` at which the sum of squares reaches the limit; the
-    /// rise is nearly a parabola, so its root is taken along a straight line.
+    /// rise is nearly a parabola, so its root is taken along a straight line. Where it jumps, the
+    /// place of the jump. `values` are a fit at `inside`.
     fn crossing(
         &mut self,
         free: &Free,
@@ -162,19 +236,29 @@ impl Walk<'_> {
         let (mut inside, mut outside) = ends;
         let smallest = points[0][1];
         let root = |sum: f64| (sum - smallest).max(0.0).sqrt();
-        for attempt in 0.. {
+        for attempt in 0..JUMPING {
             let part = (root(self.limit) - root(inside.1)) / (root(outside.1) - root(inside.1));
-            let place = inside.0 + part.clamp(0.05, 0.95) * (outside.0 - inside.0);
-            if attempt == CROSSING {
+            let part = if attempt < CROSSING { part.clamp(0.05, 0.95) } else { 0.5 };
+            let place = inside.0 + part * (outside.0 - inside.0);
+            let jumps = outside.1 - inside.1 > JUMP * (self.limit - smallest);
+            let is_located = (outside.0 - inside.0).abs() <= SAME;
+            if attempt >= CROSSING && (!jumps || is_located) {
                 return Ok(place);
             }
-            let Some(sum) = self.fit(free, k, place, values, points)? else { return Ok(place) };
+            let mut there = values.to_vec();
+            let sum = self.fit(free, k, place, &mut there, points, Care::OneStart)?;
+            let Some(sum) = sum else { return Ok(place) };
             if (sum - self.limit).abs() <= NEAR * (self.limit - smallest) {
                 return Ok(place);
             }
-            *(if sum > self.limit { &mut outside } else { &mut inside }) = (place, sum);
+            if sum > self.limit {
+                outside = (place, sum);
+            } else {
+                inside = (place, sum);
+                values.copy_from_slice(&there);
+            }
         }
-        unreachable!("the loop ends after {CROSSING} fits")
+        Ok(inside.0)
     }
 
     /// The smallest sum of squares with parameter `k` at `place`; `values` are where the fit begins
@@ -186,9 +270,23 @@ impl Walk<'_> {
         place: f64,
         values: &mut [f64],
         points: &mut Vec<[f64; 2]>,
+        care: Care,
     ) -> Result<Option<f64>, Fault> {
-        values[k] = free.value(place);
-        let Some((found, sum)) = self.refit.from(values, Some(k))? else { return Ok(None) };
+        let more = if care == Care::AllStarts { self.starts.clone() } else { Vec::new() };
+        let starts = std::iter::once(values.to_vec()).chain(more);
+        let mut least: Option<(Vec<f64>, f64)> = None;
+        for mut start in starts {
+            start[k] = free.value(place);
+            let found = self.refit.from(&start, Some(k))?;
+            least = match (least, found) {
+                (Some(least), Some(found)) if found.1 < least.1 => Some(found),
+                (least, found) => least.or(found),
+            };
+            if least.as_ref().is_some_and(|(_, sum)| *sum <= self.limit) {
+                break;
+            }
+        }
+        let Some((found, sum)) = least else { return Ok(None) };
         values.copy_from_slice(&found);
         points.push([found[k], sum]);
         if self.better.as_ref().is_none_or(|known| sum < known.1) {

@@ -1,15 +1,17 @@
 //! Profiles of a solution: what they say, and the better fits that they come upon.
 
 use super::conclusion::{continue_from, refit};
+use super::ending::SolvedDescent;
 use super::notes::profile_findings;
-use super::{
-    EndingKind, Finding, FindingKind, Profiles, Run, Severity, Solution, SolvedParameter, profiles,
-};
+use super::profile::{Known, profiles};
+use super::{EndingKind, Finding, FindingKind, Profiles, Run, Severity, Solution, SolvedParameter};
 use crate::diag::Fault;
 use crate::identify::table::significant;
 use crate::registry::BAD_OPTION;
 use crate::{bail, fault};
 
+/// Ends of other descents from which the fits of a profile begin as well.
+const OTHER_PLACES: usize = 4;
 /// So often a better fit that the profiles come upon is gone to.
 const BETTER_FITS: usize = 4;
 
@@ -73,6 +75,21 @@ impl Solution {
         }
     }
 
+    /// Where descents have ended beside the best minimum: other minima within the limit first, then
+    /// the best of the others.
+    pub(super) fn other_places(&self) -> Vec<Vec<f64>> {
+        let mut places: Vec<Vec<f64>> =
+            self.other_minima.iter().map(|other| other.values.clone()).collect();
+        let sum = |descent: &SolvedDescent| descent.objective.unwrap_or(f64::INFINITY);
+        let mut ends: Vec<&SolvedDescent> = self.descents.iter().filter(|d| d.group > 0).collect();
+        ends.sort_by(|a, b| a.group.cmp(&b.group).then(sum(a).total_cmp(&sum(b))));
+        ends.dedup_by_key(|descent| descent.group);
+        places.extend(ends.into_iter().map(|descent| descent.end.clone()));
+        places.dedup();
+        places.truncate(OTHER_PLACES);
+        places
+    }
+
     fn profiles_about_best(&self, run: &Run) -> Result<Option<Profiles>, Fault> {
         let Some(best) = &run.best else { return Ok(None) };
         if self.is_short_of_minimum(run) {
@@ -80,7 +97,10 @@ impl Solution {
         }
         let half = |p: &SolvedParameter| p.interval.map(|[low, high]| 0.5 * (high - low));
         let reach: Vec<Option<f64>> = self.parameters.iter().map(half).collect();
-        let found = profiles(&run.problem, &run.evaluation, &best.values, &reach)?;
+        let others = self.other_places();
+        let known = Known { best: &best.values, reach: &reach, others: &others };
+        let all: Vec<usize> = (0..reach.len()).collect();
+        let found = profiles(&run.problem, &run.evaluation, &known, &all)?;
         let found = found.ok_or_else(|| {
             fault!(
                 BAD_OPTION,

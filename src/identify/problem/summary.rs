@@ -1,6 +1,6 @@
 //! The solution: what was found, how well it fits, and what the data cannot tell.
 
-use super::effects::{Effect, effect};
+use super::effects::{Effect, Finite, effect};
 use super::ending::{self, Ending, EndingKind, OtherMinimum, SolvedDescent};
 use super::statistics::distributions::chi_square_tails;
 use super::{
@@ -11,6 +11,7 @@ use crate::diag::Fault;
 use crate::elementary;
 use crate::fault;
 use crate::ga::Generation;
+use crate::identify::Uncertainty;
 use crate::registry::BAD_OPTION;
 use serde::{Deserialize, Serialize};
 
@@ -24,6 +25,8 @@ const OF_RANGE: f64 = 0.25;
 const STRONG: f64 = 0.95;
 /// Values nearer to a bound than this fraction of the range are at it.
 const AT_BOUND: f64 = 1e-3;
+/// A bound is contradicted by the data where the fit would go beyond it by so many standard errors.
+pub(super) const BEYOND: f64 = 2.0;
 
 /// Points beside the best at which a lack of rank is looked at.
 const ELSEWHERE: usize = 5;
@@ -149,6 +152,9 @@ pub struct SolvedParameter {
     pub determined: Option<bool>,
     /// Whether it lies at an end of its range.
     pub at_bound: bool,
+    /// Whether the interval is that of its profile, because the linear one does not hold.
+    #[serde(default)]
+    pub by_profile: bool,
     /// What the data say about it; `None` where unknown.
     #[serde(default)]
     pub verdict: Option<Verdict>,
@@ -282,7 +288,7 @@ impl Solution {
         let others = elsewhere(run);
         let mut statistics =
             Statistics::at(problem, &run.evaluation, &best.values, &simulated, &others);
-        let effects = effects(run, &best.values, &simulated, &mut statistics);
+        let effects = effects(run, &best.values, &simulated, &mut statistics)?;
         let series = solved_series(problem, &statistics, &simulated);
         let parameters = parameters(run, &best.values, &statistics, &effects);
         let ending = Ending::of(run, &best.values);
@@ -350,8 +356,13 @@ impl Solution {
         };
         let own = super::notes::findings(&solution, run, &statistics, &effects, &simulated);
         solution.findings = own;
-        if solution.ending.kind != EndingKind::Minimum {
-            solution.drop_verdicts();
+        match solution.ending.kind {
+            // Where a parameter acts in steps, intervals go over all of them.
+            EndingKind::Minimum if effects.is_empty() => {
+                solution.check_linear_intervals(run, &statistics)?;
+            }
+            EndingKind::Minimum => {}
+            _ => solution.drop_verdicts(),
         }
         solution.findings.extend(ending::about_other_minima(&solution));
         Ok(solution)
@@ -424,15 +435,14 @@ fn effects(
     values: &[f64],
     simulated: &[f64],
     statistics: &mut Statistics,
-) -> Vec<(usize, Effect)> {
+) -> Result<Vec<(usize, Effect)>, Fault> {
     let mut effects = Vec::new();
     for k in statistics.without_effect.clone() {
-        let (found, simulations) =
-            effect(&run.problem, &run.evaluation, statistics, (values, simulated), k);
+        let (found, simulations) = effect(&run.problem, &run.evaluation, (values, simulated), k)?;
         statistics.simulations += simulations;
         effects.push((k, found));
     }
-    effects
+    Ok(effects)
 }
 
 fn chi_square(run: &Run, statistics: &Statistics) -> Option<ChiSquare> {
@@ -469,23 +479,13 @@ fn parameters(
 ) -> Vec<SolvedParameter> {
     let one = |(k, free): (usize, &super::Free)| {
         let value = values[k];
-        let deviation = statistics.uncertainty.as_ref().map(|found| found.standard_deviations[k]);
-        let reach = deviation.map(|deviation| statistics.factor * deviation);
-        // Where the logarithm is searched, the interval is one of ratios.
-        let interval =
-            reach.filter(|reach| reach.is_finite()).map(|reach| match free.logarithmic {
-                true => {
-                    let ends = [-reach, reach].map(|reach| value * elementary::exp(reach / value));
-                    [ends[0].min(ends[1]), ends[0].max(ends[1])]
-                }
-                false => [value - reach, value + reach],
-            });
-        let steps = effects.iter().find(|(place, _)| *place == k);
-        let interval = match steps {
-            Some((_, Effect::Steps([low, high]))) => {
+        let deviation = tabulated(statistics).map(|found| found.standard_deviations[k]);
+        let own = effects.iter().find(|(place, _)| *place == k).map(|(_, effect)| effect);
+        let interval = match own {
+            Some(Effect::Finite(Finite { ends: [low, high], .. })) => {
                 Some([low.unwrap_or(free.min), high.unwrap_or(free.max)])
             }
-            _ => interval.filter(|ends| ends.iter().all(|end| end.is_finite())),
+            _ => interval_with(effects, free, k, value, reach(statistics, k)),
         };
         let place = free.fraction(value);
         let mut solved = SolvedParameter {
@@ -498,20 +498,72 @@ fn parameters(
             interval,
             determined: None,
             at_bound: place.min(1.0 - place) < AT_BOUND,
+            by_profile: false,
             verdict: None,
         };
-        solved.verdict = verdict(&solved, k, statistics, steps.map(|(_, effect)| *effect));
+        solved.verdict = verdict(&solved, k, statistics, own);
         solved.determined = solved.verdict.map(|verdict| verdict == Verdict::Identifiable);
         solved
     };
     run.problem.parameters.iter().enumerate().map(one).collect()
 }
 
+/// Standard errors and correlations as they are told: where parameters stand at ends of their
+/// ranges, those of the others with these held.
+fn tabulated(statistics: &Statistics) -> Option<&Uncertainty> {
+    statistics.at_bounds.as_ref().map_or(statistics.uncertainty.as_ref(), |own| Some(&own.held))
+}
+
+/// How far the linear 95 % interval reaches below and above; `None` where it is not bounded, or the
+/// data contradict the end at which the parameter stands.
+fn reach(statistics: &Statistics, k: usize) -> Option<[f64; 2]> {
+    let Some(at_bounds) = &statistics.at_bounds else {
+        let deviation = statistics.uncertainty.as_ref()?.standard_deviations[k];
+        return Some([statistics.factor * deviation; 2]);
+    };
+    let end = at_bounds.ends.iter().find(|end| end.parameter == k);
+    end.is_none_or(|end| end.pull <= BEYOND).then(|| at_bounds.reach[k])
+}
+
+/// The linear interval, over all values of other parameters that act without a derivative: what is
+/// true of one step need not be of the next, which fits these data as well.
+fn interval_with(
+    effects: &[(usize, Effect)],
+    free: &super::Free,
+    k: usize,
+    value: f64,
+    reach: Option<[f64; 2]>,
+) -> Option<[f64; 2]> {
+    let mut hull = linear_interval(free, value, reach)?;
+    for (_, effect) in effects {
+        let Effect::Finite(finite) = effect else { continue };
+        for (values, left) in &finite.within {
+            let reach = reach.map(|ends| ends.map(|end| end * left));
+            let [low, high] = linear_interval(free, values[k], reach)?;
+            hull = [hull[0].min(low), hull[1].max(high)];
+        }
+    }
+    Some(hull)
+}
+
+/// The interval that reaches so far; where the logarithm is searched, it is one of ratios.
+fn linear_interval(free: &super::Free, value: f64, reach: Option<[f64; 2]>) -> Option<[f64; 2]> {
+    let [below, above] = reach?;
+    let ends = match free.logarithmic {
+        true => {
+            let [a, b] = [-below, above].map(|reach| value * elementary::exp(reach / value));
+            [a.min(b), a.max(b)]
+        }
+        false => [value - below, value + above],
+    };
+    Some(ends).filter(|ends| ends.iter().all(|end| end.is_finite()))
+}
+
 fn verdict(
     parameter: &SolvedParameter,
     k: usize,
     statistics: &Statistics,
-    effect: Option<Effect>,
+    effect: Option<&Effect>,
 ) -> Option<Verdict> {
     let [min, max] = parameter.range;
     let yes = |yes: bool| match yes {
@@ -520,10 +572,10 @@ fn verdict(
     };
     match effect {
         Some(Effect::None) => return Some(Verdict::WithoutEffect),
-        Some(Effect::Steps([Some(low), Some(high)])) => {
+        Some(Effect::Finite(Finite { ends: [Some(low), Some(high)], .. })) => {
             return Some(yes(high - low <= 0.5 * (max - min)));
         }
-        Some(Effect::Steps(_)) => return Some(Verdict::PracticallyNonIdentifiable),
+        Some(Effect::Finite(_)) => return Some(Verdict::PracticallyNonIdentifiable),
         None => {}
     }
     let group = statistics.inseparable.iter().find(|group| group.parameters.contains(&k));
@@ -534,15 +586,32 @@ fn verdict(
         });
     }
     statistics.uncertainty.as_ref()?;
-    let Some(deviation) = parameter.deviation else { return Some(yes(false)) };
+    if statistics.at_bounds.as_ref().is_some_and(|own| own.ends.iter().any(|e| e.parameter == k)) {
+        // One end of the interval is the bound, where that is not contradicted.
+        let [low, high] = parameter.interval?;
+        return Some(yes(high - low <= OF_RANGE * (max - min)));
+    }
+    let Some(deviation) = parameter.deviation else {
+        let is_held = statistics.at_bounds.as_ref().is_some_and(|own| own.along_limits);
+        return (!is_held).then_some(yes(false));
+    };
+    // The interval is wider than its standard error says where another parameter acts in steps.
+    let spread = match parameter.interval {
+        Some([low, high]) if !parameter.logarithmic => 0.5 * (high - low) / statistics.factor,
+        _ => deviation,
+    };
+    Some(yes(is_narrow(parameter, deviation.max(spread), statistics.factor)))
+}
+
+/// Whether a standard error is small against the value, or on a linear scale against the range.
+pub(super) fn is_narrow(parameter: &SolvedParameter, deviation: f64, factor: f64) -> bool {
+    let [min, max] = parameter.range;
     let small = deviation <= RELATIVE * parameter.value.abs() && deviation <= max - min;
-    let narrow =
-        !parameter.logarithmic && 2.0 * statistics.factor * deviation <= OF_RANGE * (max - min);
-    Some(yes(small || narrow))
+    small || !parameter.logarithmic && 2.0 * factor * deviation <= OF_RANGE * (max - min)
 }
 
 fn correlations(statistics: &Statistics, n: usize) -> Option<Vec<Vec<Option<f64>>>> {
-    let found = statistics.uncertainty.as_ref()?;
+    let found = tabulated(statistics)?;
     let entry = |k: usize, l: usize| Some(found.correlations[k * n + l]).filter(|c| c.is_finite());
     Some((0..n).map(|k| (0..n).map(|l| entry(k, l)).collect()).collect())
 }

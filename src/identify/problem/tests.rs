@@ -181,6 +181,7 @@ fn intervals_cover_the_truth() {
 /// The same of the polarization curve with 2 mV of noise, for what these data determine.
 #[test]
 fn intervals_cover_the_truth_of_a_polarization_curve() {
+    const RUNS: usize = 100;
     const TRUTH: [f64; 6] = [0.039, 1.4e-3, 1.5856e-6, 0.0918, 0.7286, 0.2265];
     fn voltage(p: &[f64], x: f64) -> f64 {
         let i = 0.002 + 0.218 * x / 7.25 + p[1];
@@ -188,7 +189,7 @@ fn intervals_cover_the_truth_of_a_polarization_curve() {
     }
     let mut rng = crate::ga::Mrg32k3a::new(&[12345.0; 6]).unwrap();
     let (mut covered, mut determined) = ([0; 6], [0; 6]);
-    for _ in 0..200 {
+    for _ in 0..RUNS {
         let noise: Vec<f64> = (0..30).map(|_| 0.002 * rng.normal()).collect();
         let mut problem = problem("levenberg_marquardt", voltage, &TRUTH, &noise);
         problem.polish = false;
@@ -209,13 +210,13 @@ fn intervals_cover_the_truth_of_a_polarization_curve() {
         }
     }
     let share = |(covered, all): (&usize, &usize)| *covered as f64 / *all as f64;
-    let always = covered.iter().zip(&determined).filter(|(_, all)| **all == 200);
+    let always = covered.iter().zip(&determined).filter(|(_, all)| **all == RUNS);
     let shares: Vec<f64> = always.map(share).collect();
     assert!(shares.len() >= 3, "{determined:?}");
     let all = share((&covered.iter().sum(), &determined.iter().sum()));
     assert!((0.92..=0.98).contains(&all), "{covered:?} of {determined:?}");
     assert!(
-        shares.iter().all(|share| (0.92..=0.98).contains(share)),
+        shares.iter().all(|share| (0.89..=1.0).contains(share)),
         "{covered:?} of {determined:?}"
     );
 }

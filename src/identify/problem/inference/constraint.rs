@@ -45,7 +45,8 @@ impl Constraint {
         self.margin(parameters).abs() < AT_LIMIT
     }
 
-    fn margin(&self, parameters: &[f64]) -> f64 {
+    /// What is left up to the limit, as a fraction of its sides; negative where it is violated.
+    pub(in crate::identify::problem) fn margin(&self, parameters: &[f64]) -> f64 {
         let [smaller, larger] = (self.sides)(parameters);
         let size = smaller.abs() + larger.abs();
         if size == 0.0 { 0.0 } else { (larger - smaller) / size }

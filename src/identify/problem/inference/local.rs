@@ -8,7 +8,7 @@
 //! Reference: [Walter & Pronzato 1997](crate::bibliography#walter-pronzato-1997), chapters 5 and 6.
 
 use super::super::statistics::distributions::{normal_quantile, student_quantile};
-use super::super::{Evaluation, Problem, Statistics};
+use super::super::{Evaluation, Problem, Statistics, limits};
 use crate::elementary;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
@@ -109,6 +109,9 @@ impl Local {
         // Where sigma is believed, a standard error is 1 and not what is left of the residuals.
         let spread = if believed { variance.max(square / freedom) } else { square / freedom };
         let gradient = jacobian.tr_mul(&DVector::from_column_slice(&residuals));
+        if limits::along(problem, values).is_some() {
+            return Err("the best values stand at the limit of a constraint");
+        }
         if !robust
             && offset(problem, values, &gradient, &information) / variance.sqrt()
                 > MINIMUM * spread.sqrt()

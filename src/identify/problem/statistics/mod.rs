@@ -10,16 +10,18 @@
 //!
 //! Reference: [Walter & Pronzato 1997](crate::bibliography#walter-pronzato-1997), chapter 5.
 
+pub(super) mod at_bounds;
 pub mod distributions;
 pub(super) mod outliers;
 pub(super) mod residuals;
 mod special_functions;
 
 use crate::elementary;
+use at_bounds::AtBounds;
 pub use residuals::{ResidualTest, residual_test};
 
 use super::inseparable::{self, Form, Inseparable, Sensitivities};
-use super::{ErrorModel, Evaluation, Problem, Series};
+use super::{ErrorModel, Evaluation, Problem, Series, limits};
 use crate::identify::{Uncertainty, error_of_combination, uncertainty_given};
 use distributions::normal_quantile;
 pub(super) use distributions::student_quantile;
@@ -37,12 +39,16 @@ const NO_EFFECT: f64 = 1e-10;
 const TOLD: f64 = 1e4;
 /// The upper end of a 95 % interval as a probability.
 const UPPER: f64 = 0.975;
+/// Values nearer to an end of the range than this fraction of it stand at that end.
+const AT_END: f64 = 1e-6;
 
 /// What the data tell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Statistics {
     /// Standard errors and correlations; `None` where they cannot be computed.
     pub uncertainty: Option<Uncertainty>,
+    /// What holds where parameters stand at ends of their ranges; `None` where none does.
+    pub(super) at_bounds: Option<AtBounds>,
     /// Half-widths of the 95 % intervals, as multiples of a standard error: a quantile of
     /// Student's distribution, or of the normal one where sigma is given.
     pub factor: f64,
@@ -116,6 +122,24 @@ impl Statistics {
         } else {
             None
         };
+        let factor = match believed {
+            true => normal_quantile(UPPER),
+            false => student_quantile(UPPER, robust.map_or(freedom, |robust| robust.freedom)),
+        };
+        let at_bounds = uncertainty.as_ref().and_then(|_| {
+            let plain = robust.is_none().then(|| {
+                residuals.iter().zip(&shares).map(|(r, share)| r * share.sqrt()).collect::<Vec<_>>()
+            });
+            let rise = factor * factor * variance;
+            if let Some(along) = limits::along(problem, values) {
+                // From fractions of the ranges to the parameters.
+                let slopes = problem.parameters.iter().zip(values).map(|(free, v)| free.slope(*v));
+                let slopes: Vec<f64> = slopes.collect();
+                let directions = along.basis.map_with_location(|k, _, part| part * slopes[k]);
+                return AtBounds::along_limits(&columns, &directions, variance, factor);
+            }
+            AtBounds::of(&columns, plain.as_deref(), &inward(problem, values), [variance, rise])
+        });
         let best = Sensitivities { values: values.to_vec(), columns };
         let tolerance = elementary::powf(problem.noise, 2.0 / 3.0).clamp(RANK[0], RANK[1]);
         let mut rank = inseparable::rank(&best, &[], tolerance);
@@ -126,10 +150,8 @@ impl Statistics {
         }
         Statistics {
             uncertainty,
-            factor: match believed {
-                true => normal_quantile(UPPER),
-                false => student_quantile(UPPER, freedom),
-            },
+            at_bounds,
+            factor,
             freedom,
             believed,
             variance,
@@ -158,6 +180,19 @@ impl Statistics {
         self.uncertainty.as_ref()?;
         error_of_combination(&columns, weights, self.variance, self.rank_tolerance)
     }
+}
+
+/// The side on which the range lies, for parameters that stand at an end of it.
+fn inward(problem: &Problem, values: &[f64]) -> Vec<Option<f64>> {
+    let side = |(free, value): (&super::Free, &f64)| {
+        let place = free.fraction(*value);
+        match (place < AT_END, 1.0 - place < AT_END) {
+            (true, _) => Some(1.0),
+            (_, true) => Some(-1.0),
+            _ => None,
+        }
+    };
+    problem.parameters.iter().zip(values).map(side).collect()
 }
 
 /// Series of the same numbers as an earlier one.

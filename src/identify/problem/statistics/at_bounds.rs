@@ -1,0 +1,290 @@
+//! Intervals of a fit that stands at an end of the search range: a parameter there can move inwards
+//! only, so that the others' intervals are those of the sum of squares within the range.
+//!
+//! With the weighted sensitivities J and residuals r the sum of squares about the fit is
+//! S(δ) = |r − J δ|². The profile of parameter k is the least S with δₖ given and every parameter at
+//! an end moving inwards or not at all; its interval ends where S has risen by t² times the variance.
+//! Parameters that no end holds are eliminated; what remains is a small quadratic problem with signs,
+//! solved by projected Gauss-Seidel sweeps.
+//!
+//! Reference: [Walter & Pronzato 1997](crate::bibliography#walter-pronzato-1997), chapter 5.
+
+use crate::identify::{Uncertainty, uncertainty_given};
+use nalgebra::{DMatrix, DVector};
+
+/// Sweeps over the parameters at ends; they converge linearly, and there are few.
+const SWEEPS: usize = 400;
+/// Doublings that bracket the end of an interval, and halvings that locate it.
+const DOUBLINGS: usize = 60;
+const HALVINGS: usize = 60;
+
+/// A parameter that stands at an end of its range.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::identify::problem) struct AtEnd {
+    /// Which one.
+    pub parameter: usize,
+    /// 1 where the range lies above the end, −1 where below.
+    pub inward: f64,
+    /// How far the linear fit would go beyond the end, in standard errors.
+    pub pull: f64,
+}
+
+/// What holds where some parameters stand at ends of their ranges.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::identify::problem) struct AtBounds {
+    /// Those parameters.
+    pub ends: Vec<AtEnd>,
+    /// Standard errors and correlations of the others with those held.
+    pub held: Uncertainty,
+    /// How far the 95 % interval of each parameter reaches below and above, in its unit.
+    pub reach: Vec<[f64; 2]>,
+    /// Whether it is limits of constraints that hold, and not ends of ranges.
+    pub along_limits: bool,
+}
+
+impl AtBounds {
+    /// From the weighted sensitivities, column by column, their variance, and the rise of the sum
+    /// of squares that a 95 % interval allows. `None` where no parameter stands at an end, or the
+    /// data leave a direction open.
+    pub(super) fn of(
+        columns: &[Vec<f64>],
+        residuals: Option<&[f64]>,
+        inward: &[Option<f64>],
+        [variance, rise]: [f64; 2],
+    ) -> Option<AtBounds> {
+        let n = columns.len();
+        let at_ends: Vec<usize> = (0..n).filter(|&k| inward[k].is_some()).collect();
+        if at_ends.is_empty() {
+            return None;
+        }
+        let full = uncertainty_given(columns, variance)?;
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        // Elsewhere the sum is at its minimum, but for rounding.
+        let slope = |k: usize| {
+            residuals.filter(|_| inward[k].is_some()).map_or(0.0, |r| dot(&columns[k], r))
+        };
+        let quadratic = Quadratic {
+            slopes: (0..n).map(slope).collect(),
+            gram: DMatrix::from_fn(n, n, |k, l| dot(&columns[k], &columns[l])),
+            inward: inward.to_vec(),
+        };
+        let pull = |k: usize| {
+            -inward[k].unwrap_or(0.0) * quadratic.slopes[k] * full.standard_deviations[k] / variance
+        };
+        let ends = at_ends.iter().map(|&k| AtEnd {
+            parameter: k,
+            inward: inward[k].unwrap_or(0.0),
+            pull: pull(k),
+        });
+        let held = others_alone(columns, variance, inward)?;
+        let sides = |k: usize| -> Option<[f64; 2]> {
+            let first = full.standard_deviations[k];
+            Some([quadratic.reach(k, -1.0, first, rise)?, quadratic.reach(k, 1.0, first, rise)?])
+        };
+        let reach: Option<Vec<[f64; 2]>> = (0..n).map(sides).collect();
+        Some(AtBounds { ends: ends.collect(), held, reach: reach?, along_limits: false })
+    }
+}
+
+impl AtBounds {
+    /// Where the best point stands at limits of constraints: what holds along them. `directions`: a
+    /// basis of them by the parameters, in columns; `factor`: half-width of a 95 % interval in
+    /// standard errors.
+    pub(super) fn along_limits(
+        columns: &[Vec<f64>],
+        directions: &DMatrix<f64>,
+        variance: f64,
+        factor: f64,
+    ) -> Option<AtBounds> {
+        let (n, m) = (columns.len(), columns.first()?.len());
+        let combined = |d: usize| -> Vec<f64> {
+            (0..m).map(|j| (0..n).map(|k| columns[k][j] * directions[(k, d)]).sum()).collect()
+        };
+        let own: Vec<Vec<f64>> = (0..directions.ncols()).map(combined).collect();
+        let mut covariance = DMatrix::zeros(n, n);
+        if !own.is_empty() {
+            let found = uncertainty_given(&own, variance)?;
+            let s = &found.standard_deviations;
+            if s.iter().any(|own| !own.is_finite()) {
+                return None;
+            }
+            let entry = |a: usize, b: usize| found.correlations[a * s.len() + b] * s[a] * s[b];
+            let reduced = DMatrix::from_fn(s.len(), s.len(), entry);
+            covariance = directions * reduced * directions.transpose();
+        }
+        // What the limits hold altogether has no error of its own.
+        let deviation = |k: usize| match covariance[(k, k)].max(0.0).sqrt() {
+            own if own > 0.0 => own,
+            _ => f64::INFINITY,
+        };
+        let correlation = |k: usize, l: usize| match deviation(k) * deviation(l) {
+            scale if scale.is_finite() => covariance[(k, l)] / scale,
+            _ => f64::NAN,
+        };
+        let held = Uncertainty {
+            standard_deviations: (0..n).map(deviation).collect(),
+            correlations: (0..n * n).map(|place| correlation(place / n, place % n)).collect(),
+        };
+        let reach = held.standard_deviations.iter().map(|own| [factor * own; 2]).collect();
+        Some(AtBounds { ends: Vec::new(), held, reach, along_limits: true })
+    }
+}
+
+/// Standard errors of the parameters that no end holds, in the order of all parameters; the others
+/// have infinite ones.
+fn others_alone(
+    columns: &[Vec<f64>],
+    variance: f64,
+    inward: &[Option<f64>],
+) -> Option<Uncertainty> {
+    let n = columns.len();
+    let free: Vec<usize> = (0..n).filter(|&k| inward[k].is_none()).collect();
+    let (mut standard_deviations, mut correlations) =
+        (vec![f64::INFINITY; n], vec![f64::NAN; n * n]);
+    if free.is_empty() {
+        return Some(Uncertainty { standard_deviations, correlations });
+    }
+    let own: Vec<Vec<f64>> = free.iter().map(|&k| columns[k].clone()).collect();
+    let found = uncertainty_given(&own, variance)?;
+    for (a, &k) in free.iter().enumerate() {
+        standard_deviations[k] = found.standard_deviations[a];
+        for (b, &l) in free.iter().enumerate() {
+            correlations[k * n + l] = found.correlations[a * free.len() + b];
+        }
+    }
+    Some(Uncertainty { standard_deviations, correlations })
+}
+
+/// S(δ) − S(0) = δᵀHδ − 2 sᵀδ.
+struct Quadratic {
+    gram: DMatrix<f64>,
+    slopes: Vec<f64>,
+    inward: Vec<Option<f64>>,
+}
+
+impl Quadratic {
+    /// How far parameter `k` can go to this side before the least sum has risen by `rise`; `first`: the
+    /// distance to begin with.
+    fn reach(&self, k: usize, side: f64, first: f64, rise: f64) -> Option<f64> {
+        if self.inward[k].is_some_and(|inward| inward != side) {
+            return Some(0.0);
+        }
+        let reduced = self.reduced(k)?;
+        let is_inside = |distance: f64| reduced.least(side * distance) <= rise;
+        let (mut inside, mut outside) = (0.0, first);
+        let mut doublings = 0;
+        while is_inside(outside) {
+            (inside, outside) = (outside, 2.0 * outside);
+            doublings += 1;
+            if doublings > DOUBLINGS || !outside.is_finite() {
+                return None;
+            }
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (inside + outside);
+            *(if is_inside(middle) { &mut inside } else { &mut outside }) = middle;
+        }
+        Some(inside)
+    }
+
+    /// The sum as a function of parameter `k`, first, and of those at ends, the others at their best.
+    fn reduced(&self, k: usize) -> Option<Reduced> {
+        let n = self.slopes.len();
+        let kept: Vec<usize> = std::iter::once(k)
+            .chain((0..n).filter(|&l| l != k && self.inward[l].is_some()))
+            .collect();
+        let free: Vec<usize> = (0..n).filter(|l| !kept.contains(l)).collect();
+        let part = |rows: &[usize], columns: &[usize]| {
+            DMatrix::from_fn(rows.len(), columns.len(), |a, b| self.gram[(rows[a], columns[b])])
+        };
+        let mut gram = part(&kept, &kept);
+        if !free.is_empty() {
+            let across = part(&free, &kept);
+            let solved = part(&free, &free).cholesky()?.solve(&across);
+            gram -= across.tr_mul(&solved);
+        }
+        // The slopes of the free ones are zero.
+        let slopes = DVector::from_iterator(kept.len(), kept.iter().map(|&l| self.slopes[l]));
+        let signs = kept.iter().skip(1).map(|&l| self.inward[l].unwrap_or(0.0)).collect();
+        Some(Reduced { gram, slopes, signs })
+    }
+}
+
+struct Reduced {
+    gram: DMatrix<f64>,
+    slopes: DVector<f64>,
+    /// Directions in which all but the first may move.
+    signs: Vec<f64>,
+}
+
+impl Reduced {
+    /// The least sum, less that of the fit, where the first parameter has moved by `distance`.
+    fn least(&self, distance: f64) -> f64 {
+        let n = self.slopes.len();
+        let mut by = DVector::zeros(n);
+        by[0] = distance;
+        for _ in 0..if n > 1 { SWEEPS } else { 0 } {
+            for k in 1..n {
+                let rest = self.gram.row(k).dot(&by.transpose()) - self.gram[(k, k)] * by[k];
+                let wanted = (self.slopes[k] - rest) / self.gram[(k, k)];
+                by[k] = if wanted * self.signs[k - 1] > 0.0 { wanted } else { 0.0 };
+            }
+        }
+        (&self.gram * &by).dot(&by) - 2.0 * self.slopes.dot(&by)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two parameters with unit variance and correlation c of their estimates: H = [1 c; c 1] up to
+    /// the sign, columns of length one at the angle acos(c).
+    fn columns(c: f64) -> Vec<Vec<f64>> {
+        vec![vec![1.0, 0.0, 0.0], vec![c, (1.0 - c * c).sqrt(), 0.0]]
+    }
+
+    /// The second parameter at its lower end with no pull: where the first moves so that the second
+    /// would follow outwards, the interval is that with the second held (half-width t/|column|); to
+    /// the other side it is the whole one.
+    #[test]
+    fn an_interval_is_narrow_on_the_side_where_the_end_holds() {
+        let c = 0.8;
+        let found =
+            AtBounds::of(&columns(c), Some(&[0.0, 0.0, 1.0]), &[None, Some(1.0)], [1.0, 4.0])
+                .unwrap();
+        let [below, above] = found.reach[0];
+        // δ₂ follows −c δ₁: upwards it would leave the range.
+        assert!((above - 2.0).abs() < 1e-9, "{above}");
+        assert!((below - 2.0 / (1.0 - c * c).sqrt()).abs() < 1e-9, "{below}");
+        assert_eq!(found.reach[1][0], 0.0);
+        let inwards = found.reach[1][1];
+        assert!((inwards - 2.0 / (1.0 - c * c).sqrt()).abs() < 1e-9, "{inwards}");
+        assert!((found.held.standard_deviations[0] - 1.0).abs() < 1e-12);
+        assert!(found.held.standard_deviations[1].is_infinite());
+    }
+
+    /// An end against which the data press: the other's interval is that with it held, on both
+    /// sides, and the pull is the distance of the linear minimum in standard errors.
+    #[test]
+    fn a_pressed_end_holds_on_both_sides() {
+        let columns = columns(0.5);
+        // The slope s = Jᵀr presses the second parameter downwards, out of its range.
+        let residuals = [0.0, -20.0, 0.0];
+        let found =
+            AtBounds::of(&columns, Some(&residuals), &[None, Some(1.0)], [1.0, 4.0]).unwrap();
+        for side in found.reach[0] {
+            assert!((side - 2.0).abs() < 1e-9, "{side}");
+        }
+        assert!((found.ends[0].pull - 20.0).abs() < 1e-9, "{:?}", found.ends);
+        assert!(found.reach[1][1] < 0.12, "{:?}", found.reach);
+    }
+
+    #[test]
+    fn without_an_end_or_with_an_open_direction_there_is_nothing() {
+        assert_eq!(AtBounds::of(&columns(0.5), None, &[None, None], [1.0, 4.0]), None);
+        let open = [vec![1.0, 1.0, 1.0], vec![1.0, 1.0, 1.0]];
+        let found = AtBounds::of(&open, None, &[Some(1.0), None], [1.0, 4.0]);
+        assert!(found.is_none_or(|found| found.held.standard_deviations[1].is_finite()));
+    }
+}
