@@ -17,7 +17,10 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, LazyLock};
-use std::time::{Instant, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+/// How often a timer looks whether the user asked to stop.
+const TICK: Duration = Duration::from_millis(50);
 
 /// The operating system as scripts see it. The working directory is the session's own, so that
 /// `cd` in a script changes nothing outside it.
@@ -243,6 +246,25 @@ impl World for SystemWorld {
 
     fn interrupt_flag(&self) -> Option<Arc<AtomicBool>> {
         Some(Arc::clone(&self.stopping.flag))
+    }
+
+    fn flag_after(&self, seconds: f64) -> Option<Arc<AtomicBool>> {
+        let (flag, stopping) = (Arc::new(AtomicBool::new(false)), Arc::clone(&self.stopping.flag));
+        let end = Duration::try_from_secs_f64(seconds.max(0.0)).ok()?;
+        let (begin, raised) = (Instant::now(), Arc::downgrade(&flag));
+        std::thread::spawn(move || {
+            // Without anybody left who asks, it ends.
+            while let Some(flag) = raised.upgrade() {
+                let is_over = begin.elapsed() >= end || stopping.load(Ordering::Relaxed);
+                flag.store(is_over, Ordering::Relaxed);
+                drop(flag);
+                if is_over {
+                    break;
+                }
+                std::thread::sleep(TICK.min(end.saturating_sub(begin.elapsed())));
+            }
+        });
+        Some(flag)
     }
 
     fn stop_reason(&self) -> Option<String> {

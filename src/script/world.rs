@@ -119,6 +119,11 @@ pub trait World {
     fn interrupt_flag(&self) -> Option<Arc<AtomicBool>> {
         None
     }
+    /// What becomes true when the user asks to stop or so many seconds have passed; `None` where
+    /// there is no clock that could.
+    fn flag_after(&self, _seconds: f64) -> Option<Arc<AtomicBool>> {
+        None
+    }
     /// Why the run has to stop although nobody asked, such as a limit of time.
     fn stop_reason(&self) -> Option<String> {
         None

@@ -10,6 +10,7 @@ use super::statistics::distributions::{
 };
 use super::statistics::outliers::{outliers, rest_of};
 use super::statistics::residuals::{deviation, mean, noise_beneath, normality, spearman};
+use super::inference::PRIOR;
 use super::{
     ErrorModel, Finding, FindingKind, Problem, ResidualTest, Severity, Statistics, residual_test,
 };
@@ -42,6 +43,8 @@ struct Own<'a> {
     rows: &'a [usize],
     first: usize,
     has_sigma: bool,
+    /// Whether the fitness counts large residuals less.
+    robust: bool,
 }
 
 impl Own<'_> {
@@ -67,7 +70,9 @@ pub(super) fn residual_findings(
     let all = series(problem, statistics);
     let alpha = FAMILY / (TESTS * all.len() + 1) as f64;
     let (mut suspects, rest) = suspected_outliers(statistics, &all, alpha);
-    for (k, own) in all.iter().enumerate().filter(|(k, _)| !repeated(*k)) {
+    // What a prior says against the data is told of the prior.
+    let is_prior = |k: usize| problem.series[k].experiment == PRIOR;
+    for (k, own) in all.iter().enumerate().filter(|(k, _)| !repeated(*k) && !is_prior(*k)) {
         let size = rms(&own.points.iter().map(|&j| simulated[j]).collect::<Vec<f64>>());
         let raw: Vec<f64> = own
             .points
@@ -102,6 +107,7 @@ fn series<'a>(problem: &'a Problem, statistics: &Statistics) -> Vec<Own<'a>> {
             rows: &series.rows,
             first: start,
             has_sigma: series.sigma.is_known(),
+            robust: statistics.robust,
         }
     };
     problem.series.iter().map(one).collect()
@@ -388,13 +394,16 @@ fn outlier(own: &Own<'_>, suspects: &[usize]) -> Option<Finding> {
         Finding::new(
             FindingKind::Outlier,
             format!(
-                "{} of {} {} far from the fit while the others agree with it: look at {}, or \
-                 minimise `huber`, which counts {} less.",
+                "{} of {} {} far from the fit while the others agree with it: look at {}{}.",
                 text.join(", "),
                 own.label,
                 if one { "is" } else { "are" },
                 if one { "this outlier" } else { "these outliers" },
-                if one { "it" } else { "them" },
+                match (own.robust, one) {
+                    (true, _) => "; the robust fitness counts little of it",
+                    (false, true) => ", or minimise `huber`, which counts it less",
+                    (false, false) => ", or minimise `huber`, which counts them less",
+                },
             ),
         )
         .series(&own.label)
@@ -407,10 +416,13 @@ fn heavy_tails(own: &Own<'_>, p: f64, alpha: f64) -> Finding {
         FindingKind::HeavyTails,
         format!(
             "The residuals of {} are not normally distributed (Anderson-Darling, probability {}): \
-             large ones are more frequent than in normal noise. A robust fitness such as `huber` \
-             uses such data better.",
+             large ones are more frequent than in normal noise. {}.",
             own.label,
-            significant(p, 2)
+            significant(p, 2),
+            match own.robust {
+                true => "The robust fitness takes account of them",
+                false => "A robust fitness such as `huber` uses such data better",
+            }
         ),
     )
     .series(&own.label)
@@ -428,7 +440,8 @@ fn chi_square(
         return None;
     }
     let kept = (0..statistics.residuals.len()).filter(|j| !outliers.contains(j));
-    let value: f64 = kept.map(|j| elementary::powi(statistics.residuals[j], 2)).sum();
+    let square = |j: usize| statistics.shares[j] * elementary::powi(statistics.residuals[j], 2);
+    let value: f64 = kept.map(square).sum();
     let freedom = statistics.freedom - outliers.len() as f64;
     let [lower, upper] = chi_square_tails(value, freedom);
     let p = 2.0 * lower.min(upper);
@@ -452,7 +465,7 @@ fn chi_square(
             FindingKind::Sigma,
             format!(
                 "The residuals are {} times the given sigma (chi-square {} for {} degrees of \
-                 freedom, probability {}). {what}. The standard errors believe sigma; scaled by \
+                 freedom, two-sided probability {}). {what}. The standard errors believe sigma; scaled by \
                  the residuals they are: {}.",
                 significant(ratio, 2),
                 significant(value, 5),

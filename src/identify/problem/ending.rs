@@ -14,6 +14,9 @@ use crate::ga::optimizer::{DescentEnd, DescentReport, MINIMUM, Offset, reached, 
 use crate::identify::table::significant;
 use serde::{Deserialize, Serialize};
 
+/// A minimum with a larger relative offset is one whose residuals are those of rounding.
+const OF_ROUNDING: f64 = 0.02;
+
 /// Where a run ended.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -193,6 +196,10 @@ fn untested(problem: &Problem) -> String {
 fn words(kind: EndingKind, offset: &Offset, reached: Option<[usize; 2]>) -> String {
     let limit = significant(MINIMUM, 1);
     let measure = match offset.relative.filter(|relative| relative.is_finite()) {
+        // Noise-free data are fitted to the last digit, where the offset is one of rounding.
+        Some(relative) if kind == EndingKind::Minimum && relative > OF_ROUNDING => {
+            "the residuals are those of rounding".to_owned()
+        }
         Some(relative) => format!("relative offset {}", significant(relative, 2)),
         None => format!("step of Gauss and Newton {} of the ranges", significant(offset.step, 2)),
     };

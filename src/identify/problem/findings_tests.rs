@@ -412,10 +412,6 @@ fn intervals_cover_the_truth() {
         ("mean absolute, 16 points", Some("mae"), few_spoilt),
     ] {
         let found = coverage(1000, fitness, outputs);
-        #[expect(clippy::print_stderr, reason = "the figures for who runs it by hand")]
-        {
-            eprintln!("{name}: {found}");
-        }
         outside.extend((!(0.92..=0.98).contains(&found)).then(|| format!("{name}: {found}")));
     }
     assert!(outside.is_empty(), "{outside:?}");

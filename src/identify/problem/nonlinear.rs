@@ -148,7 +148,8 @@ impl Solution {
         let bounded = low.is_some() && high.is_some();
         own.interval = Some(interval);
         own.by_profile = true;
-        own.deviation = None;
+        // Where a derivative vanishes, the standard error is one of rounding.
+        own.deviation = own.deviation.filter(|deviation| *deviation < max - min);
         let deviation = match own.logarithmic && own.value > 0.0 && interval[0] > 0.0 {
             true => 0.5 * elementary::ln(interval[1] / interval[0]) * own.value / factor,
             false => 0.5 * width / factor,
@@ -164,7 +165,7 @@ impl Solution {
             [interval[0], interval[1], linear[0], linear[1]].map(|end| significant(end, 4));
         let sentence = format!(
             "The model is far from linear in {name} about the fit: its 95 % interval {a} .. {b} is \
-             that of its profile. The linear one, {c} .. {d}, and a standard error do not hold."
+             that of its profile. The linear one, {c} .. {d}, does not hold."
         );
         // What was said of the linear interval.
         let is_about = |finding: &Finding| {

@@ -171,6 +171,13 @@ impl Run {
         Some(format!("{limit} generations without improvement"))
     }
 
+    /// Ends the run because the time of its stop conditions is used up while a question is under way;
+    /// the reason in words.
+    pub fn end_by_time(&mut self) -> String {
+        self.cause = Cause::Condition;
+        format!("{} seconds", self.problem.stop.seconds.unwrap_or(self.seconds))
+    }
+
     /// What ended the search; the user, where nothing else did.
     pub(super) fn cause(&self) -> Cause {
         self.cause

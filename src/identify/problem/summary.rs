@@ -274,6 +274,13 @@ impl Solution {
     pub fn of(run: &Run, stop: &str, validation: Vec<SolvedSeries>) -> Result<Solution, Fault> {
         let problem = &run.problem;
         let Some(best) = &run.best else {
+            if run.evaluations == 0 {
+                return Err(fault!(
+                    BAD_OPTION,
+                    "the run was ended ({stop}) before a first generation was simulated: there is no result";
+                    help: "allow more time, or fewer individuals for each generation"
+                ));
+            }
             let most = run.causes.iter().max_by_key(|cause| cause.1);
             let why =
                 most.map_or_else(String::new, |(cause, count)| format!("; {count} times: {cause}"));
@@ -323,7 +330,7 @@ impl Solution {
             validation,
             findings: Vec::new(),
             error_model: ErrorModel::of(problem),
-            chi_square: chi_square(run, &statistics),
+            chi_square: chi_square(&statistics),
             negative_log_likelihood: negative_log_likelihood(run, &statistics),
             stop: stop.to_owned(),
             descents,
@@ -445,12 +452,14 @@ fn effects(
     Ok(effects)
 }
 
-fn chi_square(run: &Run, statistics: &Statistics) -> Option<ChiSquare> {
+fn chi_square(statistics: &Statistics) -> Option<ChiSquare> {
     if !statistics.believed {
         return None;
     }
-    let value: f64 = statistics.residuals.iter().map(|r| r * r).sum();
-    let freedom = run.problem.n_points() as f64 - run.problem.parameters.len() as f64;
+    // Equal series count once.
+    let pairs = statistics.residuals.iter().zip(&statistics.shares);
+    let value: f64 = pairs.map(|(r, share)| share * r * r).sum();
+    let freedom = statistics.freedom;
     let [_, probability] = chi_square_tails(value, freedom);
     (freedom > 0.0).then_some(ChiSquare { value, freedom, probability })
 }

@@ -273,18 +273,15 @@ pub(super) fn quoted(text: &str) -> String {
 }
 
 fn series_line(series: &SolvedSeries) -> String {
-    let mut line = format!(
-        "{}{}: {} points, RMSE {} {}",
-        if series.experiment.is_empty() {
-            String::new()
-        } else {
-            format!("{} / ", series.experiment)
-        },
-        series.y[0],
-        series.points.len(),
-        significant(series.rmse, 4),
-        series.y[1]
-    );
+    let of = match series.experiment.is_empty() {
+        true => String::new(),
+        false => format!("{} / ", series.experiment),
+    };
+    let mut line = format!("{of}{}: {} points", series.y[0], series.points.len());
+    if series.points.iter().all(|point| point[1].is_nan()) {
+        return line + ", whose measured values the script keeps to itself";
+    }
+    _ = write!(line, ", RMSE {} {}", significant(series.rmse, 4), series.y[1]);
     if let Some(sigma) = series.sigma {
         let how = if series.sigma_estimated { "estimated" } else { "given" };
         _ = write!(line, ", sigma {} ({how})", significant(sigma, 4));

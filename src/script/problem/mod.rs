@@ -38,6 +38,8 @@ use build::Built;
 use control::Watched;
 use live::Live;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Files that not every run writes.
 const OPTIONAL: [&str; 4] = ["bands.csv", "bootstrap.csv", "posterior.csv", "profiles.csv"];
@@ -151,6 +153,15 @@ fn solve_text(
     solve_built(session, built, options, every).map_err(one)
 }
 
+/// Lets simulations end when the user asks to or the seconds of the stop conditions have passed, of
+/// which so many are over.
+fn set_timer(session: &Session, run: &mut Run, over: f64) -> Option<Arc<AtomicBool>> {
+    let left = run.problem.stop.seconds.map(|limit| limit - over);
+    let timer = left.and_then(|seconds| session.world.flag_after(seconds));
+    run.evaluation.cancel_by(timer.clone().or_else(|| session.world.interrupt_flag()));
+    timer
+}
+
 fn solve_built(
     session: &mut Session,
     built: Built,
@@ -164,8 +175,8 @@ fn solve_built(
     let mut checkpoint = open(session, &mut run, &folder, &origins, options, every)?;
     let mut watched = options.watch.clone().map(Watched::new);
     let mut live = Live::default();
-    run.evaluation.cancel_by(session.world.interrupt_flag());
     let before = run.seconds;
+    let mut timer = set_timer(session, &mut run, before);
     let mut started = session.world.monotonic_seconds();
     let mut looked = f64::NEG_INFINITY;
     let (stop, interrupted) = loop {
@@ -186,8 +197,15 @@ fn solve_built(
                 break ("ended by the user: these are the best values so far".to_owned(), true);
             }
             started += session.world.monotonic_seconds() - paused;
+            timer = set_timer(session, &mut run, seconds);
         }
-        let Some(record) = run.step(seconds) else { continue };
+        let Some(record) = run.step(seconds) else {
+            let is_over = timer.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed));
+            if is_over && !session.world.interrupted() {
+                break (run.end_by_time(), false);
+            }
+            continue;
+        };
         checkpoint.note(session, &solving::encode(&record), seconds);
         live.show(session, &run);
     };

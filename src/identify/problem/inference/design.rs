@@ -135,7 +135,10 @@ pub(super) fn add(
     let search = Search::new(problem, local, settings.points);
     let candidates = candidates(problem, settings, &search, curves.curves, &linear)?;
     let mut proposals = search.windows(&candidates);
-    proposals.extend(["D", "A"].map(|criterion| search.exchange(&candidates, criterion)));
+    let optimal = ["D", "A"].map(|criterion| search.exchange(&candidates, criterion));
+    found.refusals.extend(unbounded(problem, &optimal[0]));
+    // Determinant and sum of variances compare plans only where all variances are finite.
+    proposals.extend(optimal.into_iter().filter(|plan| plan.after.iter().all(Option::is_some)));
     proposals.extend(search.repeats(problem));
     found.next_measurement = Some(NextMeasurement {
         points: settings.points,
@@ -144,6 +147,19 @@ pub(super) fn add(
         proposals,
     });
     Ok(())
+}
+
+/// That there is no optimal plan, because some parameters stay unbounded with every point tried.
+fn unbounded(problem: &Problem, plan: &Proposal) -> Option<String> {
+    let open = problem.parameters.iter().zip(&plan.after).filter(|(_, after)| after.is_none());
+    let names: Vec<&str> = open.map(|(free, _)| free.name.as_str()).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "There is no D- or A-optimal plan: whatever is measured more of these variables leaves \
+             {} unbounded.",
+            names.join(", ")
+        )
+    })
 }
 
 fn candidates(

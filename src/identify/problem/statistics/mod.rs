@@ -78,7 +78,7 @@ pub struct Statistics {
     /// Simulations that it took.
     pub simulations: u64,
     /// What each point counts.
-    shares: Vec<f64>,
+    pub(super) shares: Vec<f64>,
     /// Singular values below this part of the largest are none.
     rank_tolerance: f64,
 }
