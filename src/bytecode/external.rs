@@ -141,6 +141,7 @@ impl RunExternal for Dual<f64> {
         };
         let values = at(0.0)?;
         let slopes = match speed {
+            _ if call.entry.in_steps => vec![0.0; values.len()],
             0.0 => vec![0.0; values.len()],
             _ => {
                 let step = elementary::cbrt(f64::EPSILON) * size.max(1e-3) / speed;

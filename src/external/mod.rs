@@ -56,6 +56,8 @@ pub struct Entry {
     pub signature: &'static str,
     /// What it does besides giving results.
     pub effect: Effect,
+    /// Whether its results change in steps only, so that derivatives are zero.
+    pub in_steps: bool,
     /// What it does.
     pub run: Native,
 }
@@ -76,22 +78,27 @@ pub enum Effect {
 impl Entry {
     /// A function without effects.
     const fn pure(name: &'static str, signature: &'static str, run: Native) -> Entry {
-        Entry { name, signature, effect: Effect::None, run }
+        Entry { name, signature, effect: Effect::None, in_steps: false, run }
+    }
+
+    /// A function without effects whose results change in steps only.
+    const fn stepwise(name: &'static str, signature: &'static str, run: Native) -> Entry {
+        Entry { in_steps: true, ..Entry::pure(name, signature, run) }
     }
 
     /// A function with a hidden state.
     const fn stateful(name: &'static str, signature: &'static str, run: Native) -> Entry {
-        Entry { name, signature, effect: Effect::State, run }
+        Entry { name, signature, effect: Effect::State, in_steps: false, run }
     }
 
     /// A function that writes.
     pub(crate) const fn writing(name: &'static str, signature: &'static str, run: Native) -> Entry {
-        Entry { name, signature, effect: Effect::Writes, run }
+        Entry { name, signature, effect: Effect::Writes, in_steps: false, run }
     }
 
     /// A function that learns from outside.
     const fn impure(name: &'static str, signature: &'static str, run: Native) -> Entry {
-        Entry { name, signature, effect: Effect::Outside, run }
+        Entry { name, signature, effect: Effect::Outside, in_steps: false, run }
     }
 
     /// Whether the result is a new object.

@@ -27,7 +27,11 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaStandardTables_CombiTimeTable_getDer2Value", "onnnnnn->n", time::second),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_minimumTime", "o->n", time::minimum),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_maximumTime", "o->n", time::maximum),
-    Entry::pure("ModelicaStandardTables_CombiTimeTable_nextTimeEvent", "on->n", time::next_event),
+    Entry::stepwise(
+        "ModelicaStandardTables_CombiTimeTable_nextTimeEvent",
+        "on->n",
+        time::next_event,
+    ),
     Entry::pure("ModelicaStandardTables_CombiTable1D_init", "tfannann->o", one::init),
     Entry::pure("ModelicaStandardTables_CombiTable1D_init2", "ftannannnn->o", one::init2),
     Entry::pure("ModelicaStandardTables_CombiTable1D_init3", "ftannannnntn->o", one::init3),

@@ -5,12 +5,12 @@
 //! refutes are not made: where neighbours are alike, or the spread changes, large residuals are not
 //! outliers and their distribution is not asked.
 
+use super::inference::PRIOR;
 use super::statistics::distributions::{
     chi_square_tails, f_upper, signs_two_sided, student_two_sided,
 };
 use super::statistics::outliers::{outliers, rest_of};
 use super::statistics::residuals::{deviation, mean, noise_beneath, normality, spearman};
-use super::inference::PRIOR;
 use super::{
     ErrorModel, Finding, FindingKind, Problem, ResidualTest, Severity, Statistics, residual_test,
 };

@@ -22,6 +22,8 @@ const FACTOR: f64 = 2.0;
 const TOLD: f64 = 0.1;
 /// Intervals whose ends differ by less than this part of their width are the same.
 const SAME: f64 = 0.1;
+/// Residuals below this many times the error of the simulation come from the simulation.
+const FROM_THE_SOLVER: f64 = 100.0;
 
 impl Solution {
     /// Tests the linear intervals and takes profiles for those that do not hold.
@@ -35,6 +37,9 @@ impl Solution {
         statistics: &Statistics,
     ) -> Result<(), Fault> {
         if statistics.robust || statistics.freedom < 1.0 || !statistics.repeated.is_empty() {
+            return Ok(());
+        }
+        if is_without_noise(run, statistics) {
             return Ok(());
         }
         let curved = self.curved(run, statistics);
@@ -183,6 +188,15 @@ impl Solution {
             self.findings.push(finding.parameters([name.as_str()]));
         }
     }
+}
+
+/// Whether the residuals may be those of the solver, which tell nothing of intervals.
+fn is_without_noise(run: &Run, statistics: &Statistics) -> bool {
+    let measured = run.problem.series.iter().flat_map(|series| &series.y);
+    let size: f64 =
+        measured.zip(&statistics.weights).map(|(y, w)| elementary::powi(w * y, 2)).sum();
+    let square: f64 = statistics.residuals.iter().map(|r| r * r).sum();
+    !statistics.believed && square.sqrt() <= FROM_THE_SOLVER * run.problem.noise * size.sqrt()
 }
 
 /// The weighted sum of squares of a simulation, as the statistics have it.
