@@ -16,6 +16,7 @@ mod inquiry;
 mod jacobian;
 mod least_squares;
 mod linear_system;
+mod literal_relations;
 mod lower;
 mod machine_code;
 mod memory;

@@ -5,6 +5,7 @@ use super::events::{CompiledRounding, Events, compile_events, linear_in_time};
 use super::held::Held;
 use super::hoist::Hoisting;
 use super::jacobian::differentiate_sequence;
+use super::literal_relations::Literal;
 use super::lower::{Registers, TapeBuilder};
 use super::machine_code::MachineCode;
 use super::notices::Notice;
@@ -202,6 +203,8 @@ pub struct Program {
     /// Warnings: they do not end a simulation.
     pub(super) notices: Vec<Notice>,
     pub(super) events: Events,
+    /// What became of its relations inside `noEvent`.
+    pub(super) literal: Literal,
 }
 
 impl Program {
@@ -455,6 +458,7 @@ impl Program {
             assertions,
             notices,
             events,
+            literal: Literal::default(),
         };
         program.fill_defaults();
         Ok(Arc::new(program))

@@ -3,6 +3,7 @@
 use super::event_iteration::{Clock, Stage, either, same_time};
 use super::history::History;
 use super::hoist::Hoisting;
+use super::literal_relations::LiteralRelations;
 use super::lower::Registers;
 use super::memory::Memory;
 use super::newton::LoopSolver;
@@ -33,8 +34,10 @@ pub struct System {
     pub(super) program: Arc<Program>,
     pub(super) registers: Memory,
     /// Values set from outside, by number of the parameter.
-    set: Vec<Option<f64>>,
+    pub(super) set: Vec<Option<f64>>,
     observed: Option<Outputs>,
+    /// What [`System::observe_only`] was asked for.
+    pub(super) observed_variables: Option<Vec<usize>>,
     /// Times at which relations on time switch.
     pub(super) switches: Vec<Option<f64>>,
     /// Whether relations have changed in the event at hand.
@@ -56,9 +59,9 @@ pub struct System {
     solvers: Vec<LoopSolver>,
     event_solvers: Vec<LoopSolver>,
     /// One for every selection of states.
-    choices: Vec<Choice>,
+    pub(super) choices: Vec<Choice>,
     /// Whether the iteration variables are solved for in every evaluation.
-    solves_loops: bool,
+    pub(super) solves_loops: bool,
     /// The samples.
     pub(super) clocks: Vec<Clock>,
     /// Values that discrete variables had before an event.
@@ -82,6 +85,8 @@ pub struct System {
     pub(super) treated: Vec<Treated>,
     /// Of the observed variables those of which a mean is a value.
     has_means: Vec<bool>,
+    /// Its relations inside `noEvent`.
+    pub(super) literal: LiteralRelations,
 }
 
 impl System {
@@ -92,6 +97,7 @@ impl System {
             registers,
             set: vec![None; program.parameters().len()],
             observed: None,
+            observed_variables: None,
             switches: vec![None; program.relations.len()],
             has_changed: vec![false; program.relations.len()],
             restless: vec![false; program.relations.len()],
@@ -118,6 +124,7 @@ impl System {
             modes: Modes::default(),
             treated: Vec::new(),
             has_means: program.observed.iter().map(|v| program.has_means(*v)).collect(),
+            literal: LiteralRelations::default(),
             program,
         };
         system.evaluate_nominals();
@@ -157,6 +164,8 @@ impl System {
     /// Restricts [`DaeSystem::observe`] to these variables (positions in [`Program::variables`]),
     /// one column each in this order, and computes nothing that they do not need.
     pub fn observe_only(&mut self, variables: &[usize]) {
+        self.restore_program();
+        self.observed_variables = Some(variables.to_vec());
         let program = self.program.clone();
         let mut pool = program.sorted.dae.pool.clone();
         let outputs = expressions(&program, &mut pool, variables);
@@ -452,6 +461,10 @@ impl System {
 }
 
 impl DaeSystem for System {
+    fn begin(&mut self) {
+        self.restore_program();
+    }
+
     fn n_differential(&self) -> usize {
         self.program.sorted.states.len()
     }
@@ -609,6 +622,17 @@ impl DaeSystem for System {
     fn follow(&mut self, t: f64, y: &[f64], sides: &[(usize, bool)]) -> Result<(), Failure> {
         self.load(t, y);
         self.change_sides(sides)
+    }
+
+    fn literal_relations(&mut self, t: f64, y: &[f64], out: &mut Vec<f64>) -> Result<(), Failure> {
+        self.load_solved(t, y)?;
+        self.literal_differences(out)
+    }
+
+    fn give_events(&mut self, t: f64, y: &[f64]) -> Result<bool, Failure> {
+        self.load_solved(t, y)?;
+        self.solve(Stage::Continuous)?;
+        self.replace_program(t)
     }
 
     fn has_means(&self, observed: usize) -> bool {

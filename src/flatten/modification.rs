@@ -39,6 +39,9 @@ pub(super) struct Redeclaration {
     pub(super) context: ScopeId,
     /// The inner redeclaration that this one stands over, which a class extends may extend.
     pub(super) over: Option<Box<Redeclaration>>,
+    /// What modifies the element besides the modifiers of this redeclaration and of those that it
+    /// stands over.
+    pub(super) plain: Box<Modifier>,
 }
 
 /// The text of a redeclaration.
@@ -150,7 +153,7 @@ impl Modifier {
                 (component.name, replacement, modifier, clause.prefixes.is_final)
             }
         };
-        modifier.redeclaration = Some(Redeclaration { replacement, context, over: None });
+        modifier.redeclaration = Some(Redeclaration::new(replacement, context));
         modifier.is_final = is_final;
         modifier.span = Some(name.span);
         let known = self.elements.shift_remove(&name.node).unwrap_or_default();
@@ -173,7 +176,7 @@ impl Modifier {
         let mut modifier = Modifier::new(component.modification.as_ref(), false, context)?;
         let one = ComponentClause { components: vec![component.clone()], ..clause.clone() };
         let replacement = Replacement::Component(Arc::new(one));
-        modifier.redeclaration = Some(Redeclaration { replacement, context, over: None });
+        modifier.redeclaration = Some(Redeclaration::new(replacement, context));
         modifier.span = Some(component.name.span);
         self.elements.insert(component.name.node, modifier);
         Ok(())
@@ -227,7 +230,7 @@ impl Modifier {
     /// This modifier with an outer one over it; `name` is the element's, for messages.
     pub(super) fn overridden_by(
         mut self,
-        outer: Modifier,
+        mut outer: Modifier,
         name: Ident,
     ) -> Result<Modifier, Diagnostic> {
         let changes = !outer.is_empty();
@@ -235,18 +238,21 @@ impl Modifier {
             return Err(fault!(FINAL_OVERRIDE, "`{name}` is final and cannot be modified")
                 .at(outer.place().or(self.span).unwrap_or(Span::NONE)));
         }
+        match (self.redeclaration.take(), outer.redeclaration.take()) {
+            (inner, Some(redeclaration)) => {
+                if let Some(inner) = &inner {
+                    self = (*inner.plain).clone();
+                }
+                self.redeclaration = Some(redeclaration.standing_over(inner, &self, name)?);
+            }
+            (Some(mut inner), None) => {
+                *inner.plain = inner.plain.overridden_by(outer.clone(), name)?;
+                self.redeclaration = Some(inner);
+            }
+            (None, None) => {}
+        }
         if outer.binding.is_some() {
             self.binding = outer.binding;
-        }
-        if let Some(mut redeclaration) = outer.redeclaration {
-            redeclaration.over = match (redeclaration.over.take(), self.redeclaration.take()) {
-                (Some(mut over), Some(inner)) => {
-                    over.put_under(inner);
-                    Some(over)
-                }
-                (over, inner) => over.or(inner.map(Box::new)),
-            };
-            self.redeclaration = Some(redeclaration);
         }
         for (element, modifier) in outer.elements {
             let inner = self.elements.shift_remove(&element).unwrap_or_default();
@@ -282,6 +288,31 @@ impl Modifier {
 }
 
 impl Redeclaration {
+    /// A redeclaration of an element that nothing else modifies.
+    pub(super) fn new(replacement: Replacement, context: ScopeId) -> Redeclaration {
+        Redeclaration { replacement, context, over: None, plain: Box::default() }
+    }
+
+    /// This redeclaration of an element that has been redeclared before, maybe, and is modified
+    /// besides. The modifiers of the inner redeclaration belong to it alone: for further ones, those
+    /// of the original declaration or of a constraining clause hold (MLS §7.3.2).
+    fn standing_over(
+        mut self,
+        inner: Option<Redeclaration>,
+        plain: &Modifier,
+        name: Ident,
+    ) -> Result<Redeclaration, Diagnostic> {
+        self.over = match (self.over.take(), inner) {
+            (Some(mut over), Some(inner)) => {
+                over.put_under(inner);
+                Some(over)
+            }
+            (over, inner) => over.or(inner.map(Box::new)),
+        };
+        *self.plain = plain.clone().overridden_by(*self.plain, name)?;
+        Ok(self)
+    }
+
     fn put_under(&mut self, inner: Redeclaration) {
         match &mut self.over {
             Some(over) => over.put_under(inner),

@@ -399,11 +399,7 @@ impl Instantiation<'_> {
             text.id.map_or(Vec::new(), |class| library.class(class).children().collect());
         for (name, child) in children {
             if library.is_redeclaration(child) {
-                let redeclaration = Redeclaration {
-                    replacement: Replacement::Element(child),
-                    context: id,
-                    over: None,
-                };
+                let redeclaration = Redeclaration::new(Replacement::Element(child), id);
                 let span = library.class(child).definition().name.span;
                 own.redeclare(name, redeclaration, span);
             }

@@ -121,6 +121,18 @@ impl DaeSystem for Continued {
         self.system.has_means(observed)
     }
 
+    fn begin(&mut self) {
+        self.system.begin();
+    }
+
+    fn literal_relations(&mut self, t: f64, y: &[f64], out: &mut Vec<f64>) -> Result<(), Failure> {
+        self.system.literal_relations(t, y, out)
+    }
+
+    fn give_events(&mut self, t: f64, y: &[f64]) -> Result<bool, Failure> {
+        self.system.give_events(t, y)
+    }
+
     fn note_treatment(&mut self, t: f64, crossing: usize, treatment: Treatment) {
         self.system.note_treatment(t, crossing, treatment);
     }

@@ -133,9 +133,8 @@ fn simulate(
     let mut system = program.system();
     system.observe_only(&observed);
     let mut trajectory = Trajectory::default();
-    Simulator::new()
-        .run(&mut system, &settings, &mut trajectory)
-        .map_err(|error| program.explain(&error))?;
+    let run = Simulator::new().run(&mut system, &settings, &mut trajectory);
+    run.map_err(|error| system.program().explain(&error))?;
     let mut table = ResultTable::new(trajectory.time().to_vec());
     let column = |(at, name)| Series::new(name, Values::Trajectory(trajectory.column(at).to_vec()));
     table.series = names.into_iter().enumerate().map(column).collect();

@@ -62,6 +62,7 @@ mod newton;
 mod norm;
 #[cfg(test)]
 mod problems;
+mod progress;
 mod settings;
 mod simulator;
 mod sliding;

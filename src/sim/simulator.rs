@@ -3,6 +3,7 @@
 use super::chattering::{Watch, nominal_share};
 use super::event::CrossingSearch;
 use super::integrators::{Integrator, Problem, WithoutUnknowns, bdf};
+use super::progress::Progress;
 use super::sliding::{MOST_SURFACES, Sliding};
 use super::{
     Culprit, DaeSystem, EventOutcome, Failure, Settings, SimError, SimErrorKind, Statistics,
@@ -99,6 +100,7 @@ impl Simulator {
         settings: &Settings,
         out: &mut Trajectory,
     ) -> Result<Statistics, SimError> {
+        system.begin();
         // Explicit methods see no algebraic variables if the system can do without; and without
         // states there is nothing to integrate, only equations to solve at every point.
         let is_explicit = integrator(&mut self.integrator, settings).is_explicit();
@@ -145,6 +147,7 @@ impl Simulator {
             last_jump: f64::NEG_INFINITY,
             last_solved: f64::NEG_INFINITY,
             events_at_once: 0,
+            progress: Progress::default(),
         };
         let ended = run.run();
         ended.map_err(|kind| SimError { time: run.t, kind, culprit: run.culprit(kind) })?;
@@ -234,6 +237,7 @@ pub(super) struct Run<'a> {
     /// When algebraic unknowns were solved for because no step could be made.
     last_solved: f64,
     events_at_once: u32,
+    pub(super) progress: Progress,
 }
 
 impl Run<'_> {
@@ -247,6 +251,7 @@ impl Run<'_> {
             if after == After::Terminated {
                 break;
             }
+            self.watch_progress()?;
         }
         self.end_slide();
         let finished = self.problem.system.finish(self.t, self.y);

@@ -15,6 +15,8 @@ use super::Failure;
 /// [`DaeSystem::initialize`] and [`DaeSystem::handle_event`]. Systems without events and assertions
 /// leave the methods for these as they are.
 pub trait DaeSystem {
+    /// A simulation begins: nothing is left of the one before.
+    fn begin(&mut self) {}
     /// Number of differential variables x; they come first in y.
     fn n_differential(&self) -> usize;
     /// Number of algebraic variables v.
@@ -120,6 +122,21 @@ pub trait DaeSystem {
     /// (t, y) on.
     fn follow(&mut self, _t: f64, _y: &[f64], _sides: &[(usize, bool)]) -> Result<(), Failure> {
         Ok(())
+    }
+    /// Writes left − right of the relations that have no events although the right-hand side
+    /// depends on them (`noEvent`); as many at all times.
+    fn literal_relations(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _out: &mut Vec<f64>,
+    ) -> Result<(), Failure> {
+        Ok(())
+    }
+    /// Gives events to these relations from (t, y) on until the end of the simulation; whether it
+    /// can. There are more crossing functions then, and nothing else has changed.
+    fn give_events(&mut self, _t: f64, _y: &[f64]) -> Result<bool, Failure> {
+        Ok(false)
     }
     /// Whether the mean of values in several modes is a value of an observed variable.
     fn has_means(&self, _observed: usize) -> bool {

@@ -461,3 +461,69 @@ fn the_ends_of_the_original_layers_are_as_long_as_their_middle() {
     }
     near(voltage(&halved, folder.path()), 0.3241, 1e-4);
 }
+
+#[test]
+fn a_solution_slides_along_relations_inside_no_event() {
+    let relay = "model R Real x(start = 2, fixed = true);
+        equation der(x) = noEvent(if x >= 1 then -1 else 1); end R;";
+    // Leaves the surface at t = 3, where both fields point upwards: x = 1 + (t - 3)^2/2 then.
+    let leaves = "model L Real x(start = 2, fixed = true); Real u;
+        equation u = noEvent(if x >= 1 then -1 else 1); der(x) = u + max(0, time - 2);
+        end L;";
+    // Dry friction that sticks from then on: sin t stays below 2.
+    let friction =
+        "model F Real v(start = 1, fixed = true); Real s(start = 0, fixed = true); Real f;
+        equation der(s) = v; der(v) = sin(time) - f;
+        f = smooth(0, noEvent(if v > 0 then 2 else -2)); end F;";
+    for method in ["dassl", "rodas4", "radau5"] {
+        for tolerance in [1e-6, 1e-8] {
+            let one = run(relay, method, tolerance, 5.0);
+            near(one.at("x", 0.5), 1.5, 10.0 * tolerance);
+            near(one.at("x", 5.0), 1.0, 10.0 * tolerance);
+            assert!(one.cost().steps < 5000, "{method}, {tolerance}: {:?}", one.cost());
+            assert_eq!(one.treatments(), [Treatment::Slides], "{method}, {tolerance}");
+            let other = run(leaves, method, tolerance, 5.0);
+            near(other.at("x", 2.5), 1.0, 100.0 * tolerance);
+            // One-step methods interpolate the share, and so find where it becomes 1.
+            let leaving = if method == "dassl" { 100.0 * tolerance } else { 5e-3 };
+            near(other.at("x", 5.0), 3.0, leaving);
+            let mass = run(friction, method, tolerance, 4.0);
+            near(mass.at("v", 4.0), 0.0, 10.0 * tolerance);
+            near(mass.at("s", 4.0), friction_distance(), 1e3 * tolerance);
+        }
+    }
+}
+
+/// The way of a mass with the speed 1 at first under sin t − 2 until it rests.
+fn friction_distance() -> f64 {
+    let v = |t: f64| 1.0 + (1.0 - t.cos()) - 2.0 * t;
+    let (mut a, mut b) = (0.0, 1.0);
+    for _ in 0..100 {
+        let middle = 0.5 * (a + b);
+        if v(middle) > 0.0 { a = middle } else { b = middle }
+    }
+    2.0 * a - a.sin() - a * a
+}
+
+#[test]
+fn a_simulation_begins_without_the_events_of_the_one_before() {
+    let text = "model R parameter Real level = 1; Real x(start = 2, fixed = true);
+        equation der(x) = noEvent(if x >= level then -1 else 1); end R;";
+    let program = compiled(text).expect("compiles");
+    let level = program.find_parameter("level").expect("a parameter");
+    let mut system = program.system();
+    let settings = Settings { stop: 5.0, tolerance: 1e-6, ..Settings::default() };
+    let mut end = |level_set: f64| {
+        system.set_parameter(level, level_set).expect("a number");
+        let mut rows = Trajectory::default();
+        let cost = Simulator::new().run(&mut system, &settings, &mut rows).expect("runs");
+        let x = rows.column(0).last().copied().expect("a row");
+        (x, cost)
+    };
+    let (x, first) = end(1.0);
+    near(x, 1.0, 1e-5);
+    let (x, without) = end(-10.0);
+    near(x, -3.0, 1e-5);
+    assert_eq!((without.state_events, without.slides), (0, 0));
+    assert_eq!(end(1.0).1, first);
+}

@@ -1,7 +1,10 @@
 //! Rules that classes keep or break by their text: what is refused, and what is not.
 
+use gapilib::compile::{Access, Program};
+use gapilib::dae::sort;
 use gapilib::flatten::{Library, check, flatten};
 use gapilib::name::Name;
+use gapilib::sim::{Settings, simulate};
 use gapilib::source::SourceMap;
 use gapilib::syntax::parse_stored_definition;
 
@@ -262,4 +265,50 @@ fn classes_that_nobody_uses_are_checked_alone() {
     assert_eq!(errors.len(), 1);
     assert_eq!(errors[0].code.slug, "class-restriction");
     assert_eq!(check(&library, &Name::parse("P.S")), []);
+}
+
+/// MLS §7.3.2: without a constraining clause, the modifiers of the original declaration hold for all
+/// redeclarations, those of a redeclaration for itself.
+#[test]
+fn the_modifiers_of_a_redeclaration_do_not_hold_for_the_next_one() {
+    let text = |last: &str| {
+        format!(
+            "partial model Part parameter Real p = 1; Real y; end Part;
+            model First extends Part; parameter Real k = 1; equation y = p + 100*k; end First;
+            model Second extends Part; parameter Real q = 1; equation y = p + 10*q; end Second;
+            partial model Plan replaceable Part part; end Plan;
+            model One extends Plan(redeclare replaceable First part(k = 20, p = 3)); end One;
+            model Two extends One(redeclare Second part(q = 4)); end Two;
+            model Plain extends Plan(part(p = 5)); end Plain;
+            model Three extends Plain(redeclare replaceable First part(k = 20)); end Three;
+            model Four extends Three(redeclare Second part); end Four;
+            partial model Kept replaceable Part part(p = 6); end Kept;
+            model Five extends Kept(redeclare replaceable First part(k = 2)); end Five;
+            model Six extends Five(redeclare Second part); end Six;
+            model Seven extends Three(part(p = 9)); end Seven;
+            model Eight extends Seven(redeclare Second part); end Eight;
+            model M extends {last}; Real y = part.y; end M;"
+        )
+    };
+    let cases = [
+        ("One", 2003.0),
+        ("Two", 41.0),
+        ("Three", 2005.0),
+        ("Four", 15.0),
+        ("Five", 206.0),
+        ("Six", 16.0),
+        ("Seven", 2009.0),
+        ("Eight", 19.0),
+    ];
+    for (name, expected) in cases {
+        let library = library(&text(name));
+        let flat = flatten(&library, &Name::parse("M"), &[]).expect("flattens").model;
+        let program = Program::compile(sort(&flat).expect("sorts")).expect("compiles");
+        let (rows, _) = simulate(&mut program.system(), &Settings::default()).expect("runs");
+        let y = program.find_variable("y").expect("the variable exists");
+        let Access::Observed { column, .. } = program.variables()[y].access else {
+            panic!("y is not observed")
+        };
+        assert_eq!(rows.column(column).last(), Some(&expected), "{name}");
+    }
 }

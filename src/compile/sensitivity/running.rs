@@ -34,6 +34,7 @@ impl System {
     /// Carries sensitivities from the next initialization on, or none any more. The code must be
     /// made for the program and for the variables that the system observes.
     pub fn differentiate(&mut self, code: Option<&Arc<SensitivityCode>>) {
+        self.restore_program();
         self.sensitivity = code.map(|code| {
             if self.registers.len() < code.registers.len() {
                 self.registers.extend(&code.registers);

@@ -15,6 +15,10 @@ macro_rules! sliding {
 }
 
 impl DaeSystem for Sliding<'_> {
+    fn begin(&mut self) {
+        self.inner.begin();
+    }
+
     fn n_differential(&self) -> usize {
         self.inner.n_differential()
     }
@@ -137,6 +141,15 @@ impl DaeSystem for Sliding<'_> {
 
     fn follow(&mut self, t: f64, y: &[f64], sides: &[(usize, bool)]) -> Result<(), Failure> {
         self.inner.follow(t, y, sides)
+    }
+
+    /// Asked where nothing slides.
+    fn literal_relations(&mut self, t: f64, y: &[f64], out: &mut Vec<f64>) -> Result<(), Failure> {
+        self.inner.literal_relations(t, y, out)
+    }
+
+    fn give_events(&mut self, t: f64, y: &[f64]) -> Result<bool, Failure> {
+        self.inner.give_events(t, y)
     }
 
     fn note_treatment(&mut self, t: f64, crossing: usize, treatment: Treatment) {
