@@ -144,7 +144,7 @@ impl Session {
             let statements = script.part(at)?;
             if let Err(diagnostic) = self.statements(&statements, outermost) {
                 for later in at + 1..script.count() {
-                    self.follow_ups.not_done(&*script.part(later)?);
+                    self.follow_ups.not_done(&script.part(later)?);
                 }
                 return Err(diagnostic);
             }
