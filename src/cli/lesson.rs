@@ -1,6 +1,7 @@
 //! `gapi lesson N`: short scripts that teach one thing each.
 
 use super::args::{Global, LessonArgs};
+use super::disk;
 use super::output::{Output, RESULTS};
 use super::session;
 use super::terminal::{self, Terminal};
@@ -84,8 +85,8 @@ fn list() {
 fn copied(file: &Path, text: &str) -> Result<(PathBuf, String), String> {
     let failed = |error: std::io::Error| format!("error: `{}`: {error}\n", file.display());
     if !file.exists() {
-        file.parent().map_or(Ok(()), std::fs::create_dir_all).map_err(failed)?;
-        std::fs::write(file, text).map_err(failed)?;
+        file.parent().map_or(Ok(()), disk::create_named_folders).map_err(failed)?;
+        disk::write_named(file, text.as_bytes()).map_err(failed)?;
     }
     Ok((file.to_owned(), super::named::read_text(file).map_err(failed)?))
 }

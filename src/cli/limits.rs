@@ -122,13 +122,10 @@ fn spawn(
     if limits.memory_limit.is_some() && memory::taken().is_none() {
         return Err(refused("`--memory-limit` works on Linux only"));
     }
-    let mut limits = limits.clone();
-    let is_default = limits.memory_limit.is_none();
-    limits.memory_limit = limits.memory_limit.or_else(memory::default_limit);
-    if limits.time_limit.is_none() && limits.memory_limit.is_none() {
+    let limits = Watched::of(limits);
+    if limits.limits.time_limit.is_none() && limits.limits.memory_limit.is_none() {
         return Ok(watch);
     }
-    let limits = Watched { limits, is_default };
     let over = Arc::clone(&watch.over);
     let thread = std::thread::Builder::new().name("limits".to_owned());
     match thread.spawn(move || work(limits, &over)) {
@@ -165,6 +162,13 @@ struct Watched {
 }
 
 impl Watched {
+    /// What was asked for, and the default limit of memory where none was.
+    fn of(limits: &Limits) -> Watched {
+        let is_default = limits.memory_limit.is_none();
+        let memory_limit = limits.memory_limit.or_else(memory::default_limit);
+        Watched { limits: Limits { memory_limit, ..limits.clone() }, is_default }
+    }
+
     /// Whether the process takes more memory than a multiple of its limit. There is no multiple of
     /// nearly all there is.
     fn memory_beyond(&self, factor: u64) -> bool {
@@ -179,4 +183,30 @@ fn end_process(message: &str) -> ! {
     terminal::eprint(&format!("error[{}]: {message}\n", LIMIT_REACHED.slug));
     #[allow(clippy::exit, reason = "the thread that works does not listen")]
     std::process::exit(1)
+}
+
+#[cfg(all(test, target_os = "linux"))]
+mod tests {
+    use super::*;
+
+    fn limits(memory_limit: Option<u32>) -> Limits {
+        Limits { time_limit: None, memory_limit, interpret: false, instruction_limit: None }
+    }
+
+    #[test]
+    fn memory_is_limited_where_nobody_asked_for_it() {
+        let watched = Watched::of(&limits(None));
+        let machine = std::fs::read_to_string("/proc/meminfo").expect("Linux tells");
+        let total = machine.split_whitespace().nth(1).expect("MemTotal").parse::<u64>();
+        let total = total.expect("a number of kibibytes") / 1024;
+        let limit = watched.limits.memory_limit.expect("a limit");
+        assert!(watched.is_default && limit > 0 && u64::from(limit) <= total / 4 * 3, "{limit}");
+        // A process that has more than such a limit is told that it was nobody's wish.
+        let reached = Watched { limits: limits(Some(1)), is_default: true };
+        let message = wait(&reached, Instant::now(), &AtomicBool::new(false)).expect("reached");
+        assert!(message.contains("1 MiB, three quarters of what there is"), "{message}");
+        let asked = Watched::of(&limits(Some(1)));
+        let message = wait(&asked, Instant::now(), &AtomicBool::new(false)).expect("reached");
+        assert!(message.ends_with("1 MiB"), "{message}");
+    }
 }

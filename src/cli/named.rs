@@ -1,6 +1,7 @@
 //! Reading files that the command line names. Pipes and devices are read as well, as shells make them
 //! (`<(…)`, `/dev/stdin`), but not for ever.
 
+use super::disk;
 use std::fs::{self, File};
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
@@ -22,7 +23,7 @@ const WAITING: usize = 16;
 /// It cannot be read; nothing comes from it; it does not end.
 pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
     let is_device = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
-    if is_device { read_device(path, PATIENCE, LONGEST) } else { fs::read(path) }
+    if is_device { read_device(path, PATIENCE, LONGEST) } else { disk::read_named(path) }
 }
 
 /// The text of a file, a pipe or a device.

@@ -51,11 +51,9 @@ pub(super) fn scripts(paths: &[PathBuf]) -> Vec<PathBuf> {
 }
 
 fn collect(folder: &Path, found: &mut Vec<PathBuf>) {
-    let Ok(entries) = std::fs::read_dir(folder) else { return };
-    for entry in entries.flatten() {
-        let path = entry.path();
-        let is_link = entry.file_type().is_ok_and(|kind| kind.is_symlink());
-        if path.is_dir() && !is_link {
+    let Ok(names) = super::disk::list_named(folder) else { return };
+    for path in names.iter().map(|name| folder.join(name)) {
+        if path.is_dir() && !path.is_symlink() {
             collect(&path, found);
         } else if path.extension().is_some_and(|extension| extension == "mos") {
             found.push(path);

@@ -1,6 +1,7 @@
 //! `gapi teach SCRIPT`: a run of the genetic algorithm, step by step.
 
 use super::args::{Global, TeachArgs};
+use super::disk;
 use super::output::{Output, RESULTS, latest_of, shown};
 use super::session;
 use super::teach_screen;
@@ -142,7 +143,7 @@ fn branch(arguments: &TeachArgs, global: &Global, change: Change<'_>) -> Result<
 }
 
 fn write(file: &Path, text: &str) -> Result<(), Trouble> {
-    std::fs::write(file, text).map_err(|error| {
+    disk::write_named(file, text.as_bytes()).map_err(|error| {
         Trouble::Message(format!("`{}` cannot be written: {error}", file.display()))
     })
 }
@@ -150,7 +151,7 @@ fn write(file: &Path, text: &str) -> Result<(), Trouble> {
 /// Writes the page of a trace. The report of the run lies in the folder `results`; where the run was
 /// recorded earlier, only if it is the report of that run.
 fn write_page(trace: Trace, file: &Path, results: &Path, is_new: bool) -> Result<(), Trouble> {
-    let report = std::fs::read_to_string(results.join("result.json")).ok();
+    let report = super::named::read_text(&results.join("result.json")).ok();
     let report = report.filter(|report| is_new || page::belongs(&trace, report));
     write(file, &page::page(trace, report.as_deref()))?;
     terminal::print(&format!("written to {}\n", file.display()));

@@ -3,6 +3,7 @@
 use super::Session;
 use super::errors::{FILE_ERROR, REFUSED};
 use super::policy::{Access, Refusal, refusal_of};
+use super::world::normalized;
 use crate::diag::Fault;
 use crate::results::{Format, ResultTable};
 use crate::syntax;
@@ -17,7 +18,7 @@ impl Session {
         let path = self.expanded(path);
         let folders = self.frames.iter().rev().map(|frame| frame.folder.join(&path));
         std::iter::once(self.world.absolute(&path))
-            .chain(folders.map(|candidate| super::world::normalized(&candidate)))
+            .chain(folders.map(|candidate| normalized(&candidate)))
             .find(|candidate| self.world.exists(candidate))
     }
 
@@ -72,8 +73,21 @@ impl Session {
         }
     }
 
-    /// The fault of a file that is nowhere.
+    /// Whether a folder (`Some(true)`) or a file has this path, as a script asks: what may not be
+    /// read is not told either. That the folders above the working directory exist is no secret.
+    pub(super) fn kind_of(&self, path: &Path) -> Result<Option<bool>, Fault> {
+        let path = normalized(&self.world.absolute(&self.expanded(path)));
+        if !self.world.current_dir().starts_with(&path) {
+            self.may(Access::Read, &path)?;
+        }
+        Ok(self.world.exists(&path).then(|| self.world.is_dir(&path)))
+    }
+
+    /// The fault of a file that is nowhere, or that it may not be read if it were there.
     pub fn missing_file(&self, path: &Path) -> Fault {
+        if let Err(refused) = self.may(Access::Read, &self.expanded(path)) {
+            return refused;
+        }
         let fault = Fault::new(FILE_ERROR, format!("there is no file `{}`", path.display()));
         fault.help_if(self.similar_file(path)).help(format!(
             "relative paths start from the working directory `{}` or the script's folder",

@@ -186,8 +186,7 @@ impl Outside for Session {
     }
 
     fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {
-        let path = self.expanded(Path::new(path));
-        Ok(self.world.exists(&path).then(|| self.world.is_dir(&path)))
+        self.kind_of(Path::new(path))
     }
 }
 

@@ -29,6 +29,7 @@ mod identification;
 mod journal;
 mod libraries;
 mod linearization;
+mod log;
 mod measured_units;
 mod messages;
 pub mod parsing;

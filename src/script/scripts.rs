@@ -2,7 +2,7 @@
 
 use super::errors::{INTERRUPTED, LIMIT_REACHED, SCRIPT_NOT_FOUND, SCRIPTS_TOO_DEEP};
 use super::files::cannot;
-use super::policy::Grant;
+use super::policy::{Access, Grant};
 use super::session::Stop;
 use super::world::{Stamp, normalized};
 use super::{Dialect, RunStatus, Session};
@@ -10,8 +10,8 @@ use crate::bail;
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::script::builtins::Failure;
 use crate::source::{SourceId, Span};
-use crate::syntax::ast::{Expression, ExpressionKind, InteractiveKind, Script, StatementKind};
-use crate::syntax::{self, ast};
+use crate::syntax::ast::{Expression, ExpressionKind, InteractiveKind, StatementKind};
+use crate::syntax::{self, ScriptParts, ast};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -26,11 +26,25 @@ pub(super) struct Frame {
     pub(super) folder: PathBuf,
 }
 
+/// A script that was read.
+struct Parsed {
+    parts: ScriptParts,
+    /// The dialect that it shows: that of the first call or `=` that only one of them has.
+    dialect: Option<Dialect>,
+}
+
+impl Parsed {
+    fn read(source: SourceId, text: &str) -> Result<Parsed, Diagnostic> {
+        let (parts, dialect) = ScriptParts::read(source, text, |one| dialect_of(&one.kind))?;
+        Ok(Parsed { parts, dialect })
+    }
+}
+
 /// Scripts read before, by path, each valid as long as the file's stamp stays; and the paths that
 /// names led to.
 #[derive(Default)]
 pub(super) struct ParsedScripts {
-    by_path: HashMap<PathBuf, (Option<Stamp>, Arc<Script>)>,
+    by_path: HashMap<PathBuf, (Option<Stamp>, Arc<Parsed>)>,
     found: HashMap<(PathBuf, PathBuf, String), PathBuf>,
 }
 
@@ -51,11 +65,11 @@ impl Session {
     /// Runs a text as the outermost script; `name` stands in diagnostics.
     pub fn run_text(&mut self, name: &str, text: &str) -> RunStatus {
         let source = self.sources.add(name, text);
-        match syntax::parse_script(source, text) {
+        match Parsed::read(source, text) {
             Ok(script) => {
                 let folder = self.world.current_dir();
                 let frame = Frame { folder };
-                let done = self.run_script_statements(&Arc::new(script), frame);
+                let done = self.run_script_statements(&script, frame);
                 debug_assert!(done.is_ok(), "the outermost script reports its own errors");
             }
             Err(diagnostic) => self.report(diagnostic),
@@ -65,7 +79,7 @@ impl Session {
 
     /// The dialect that a text shows by what only one of them has.
     pub fn looks_like(&self, text: &str) -> Option<Dialect> {
-        telling(&syntax::parse_script(SourceId::NONE, text).ok()?)
+        Parsed::read(SourceId::NONE, text).ok()?.dialect
     }
 
     /// Runs a script that another one names; its errors end it and come back with a trace.
@@ -114,19 +128,28 @@ impl Session {
 
     /// Executes the statements of a script. Errors of the outermost one are reported where they
     /// happen; in a nested one the first ends it.
-    fn run_script_statements(
-        &mut self,
-        script: &Arc<Script>,
-        frame: Frame,
-    ) -> Result<(), Diagnostic> {
+    fn run_script_statements(&mut self, script: &Parsed, frame: Frame) -> Result<(), Diagnostic> {
         let outermost = self.frames.is_empty();
         if outermost && self.options.dialect.is_none() {
-            self.dialect = recognised(script);
+            self.dialect = script.dialect.unwrap_or_default();
         }
         self.frames.push(frame);
-        let result = self.statements(&script.statements, outermost);
+        let result = self.parts(&script.parts, outermost);
         self.frames.pop();
         result
+    }
+
+    fn parts(&mut self, script: &ScriptParts, outermost: bool) -> Result<(), Diagnostic> {
+        for at in 0..script.count() {
+            let statements = script.part(at)?;
+            if let Err(diagnostic) = self.statements(&statements, outermost) {
+                for later in at + 1..script.count() {
+                    self.follow_ups.not_done(&script.part(later)?);
+                }
+                return Err(diagnostic);
+            }
+        }
+        Ok(())
     }
 
     fn statements(
@@ -218,6 +241,8 @@ impl Session {
             self.note(SCRIPT_NOT_FOUND, message);
             return Ok(path);
         }
+        // Whether there is a file that may not be read is not told.
+        self.may(Access::Read, &plain)?;
         let fault = Fault::new(SCRIPT_NOT_FOUND, format!("there is no script `{name}`"));
         let [own, working] = folders.each_ref().map(|folder| folder.display());
         let is_one = normalized(&folders[0]) == normalized(&folders[1]);
@@ -251,7 +276,7 @@ impl Session {
         (!self.world.is_dir(&found)).then_some(found)
     }
 
-    fn parsed_script(&mut self, path: &Path) -> Result<Arc<Script>, Vec<Diagnostic>> {
+    fn parsed_script(&mut self, path: &Path) -> Result<Arc<Parsed>, Vec<Diagnostic>> {
         let stamp = self.world.stamp(path);
         if let Some((known, script)) = self.parsed.by_path.get(path)
             && *known == stamp
@@ -260,7 +285,7 @@ impl Session {
             return Ok(script.clone());
         }
         let (source, text) = self.add_file(path).map_err(|fault| vec![fault.at(Span::NONE)])?;
-        let script = Arc::new(syntax::parse_script(source, &text).map_err(|error| vec![error])?);
+        let script = Arc::new(Parsed::read(source, &text).map_err(|error| vec![error])?);
         self.parsed.by_path.insert(path.to_path_buf(), (stamp, script.clone()));
         Ok(script)
     }
@@ -280,15 +305,7 @@ impl Session {
     }
 }
 
-/// The dialect of a script: that of the first call or `=` that only one of them has.
-fn recognised(script: &Script) -> Dialect {
-    telling(script).unwrap_or_default()
-}
-
-fn telling(script: &Script) -> Option<Dialect> {
-    script.statements.iter().find_map(|s| dialect_of(&s.kind))
-}
-
+/// The dialect that a statement shows, if only one of them has it.
 fn dialect_of(kind: &InteractiveKind) -> Option<Dialect> {
     let call = match kind {
         InteractiveKind::Expression(expression) => expression,

@@ -3,6 +3,7 @@
 use super::callees::Callees;
 use super::classes::Classes;
 use super::follow_up::FollowUps;
+use super::log::Log;
 use super::policy::Grant;
 use super::scripts::{Frame, ParsedScripts};
 use super::simulation::{Models, Translated};
@@ -124,9 +125,6 @@ pub(super) enum Stop {
     Error,
 }
 
-/// Bytes of answers that the log keeps.
-const MAX_LOG: usize = 4 << 20;
-
 /// Work that is done when the outermost script ends.
 type AtEnd = fn(&mut Session) -> Result<(), Diagnostic>;
 
@@ -164,7 +162,7 @@ pub struct Session {
     /// Environment variables that scripts set.
     pub(super) environment: BTreeMap<String, String>,
     /// What was said and answered so far, for `savelog`.
-    pub(super) log: Transcript,
+    pub(super) log: Log,
     /// Names of script variables that were said to be parameters of the model too.
     pub(super) shared: BTreeSet<Ident>,
     /// Warnings told, where each is told once.
@@ -192,7 +190,7 @@ impl Session {
     pub fn new(world: Box<dyn World>) -> Session {
         Session {
             environment: BTreeMap::new(),
-            log: Transcript::default(),
+            log: Log::default(),
             world,
             sources: SourceMap::default(),
             messages: Messages::default(),
@@ -304,7 +302,7 @@ impl Session {
         if let Some(transcript) = &mut self.transcript {
             transcript.print(text);
         }
-        self.log.answer_within(text, MAX_LOG);
+        self.log.answer(text);
     }
 
     /// The one place where a diagnostic is told to the user without ending a statement: it goes to
@@ -326,7 +324,7 @@ impl Session {
         if let Some(transcript) = &mut self.transcript {
             transcript.report(&plain, diagnostic.code);
         }
-        self.log.answer_within(&plain, MAX_LOG);
+        self.log.answer(&plain);
         if diagnostic.is_error() && self.options.strictness == Strictness::Strict {
             self.stop.get_or_insert(Stop::Error);
         }

@@ -31,11 +31,10 @@ impl Session {
     }
 
     fn begin_exchange(&mut self, span: Span) {
-        let statement = self.sources.text(span);
         if let Some(transcript) = &mut self.transcript {
-            transcript.begin(statement);
+            transcript.begin(self.sources.text(span));
         }
-        self.log.begin(statement);
+        self.log.begin(span);
     }
 
     fn interactive(&mut self, statement: &InteractiveStatement) -> Result<(), Diagnostic> {

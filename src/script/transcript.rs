@@ -21,8 +21,6 @@ pub struct Exchange {
 pub struct Transcript {
     /// The exchanges, in order.
     pub exchanges: Vec<Exchange>,
-    /// Bytes of all answers.
-    size: usize,
 }
 
 impl Transcript {
@@ -31,25 +29,8 @@ impl Transcript {
         self.exchanges.push(Exchange { input: input.to_owned(), ..Exchange::default() });
     }
 
-    /// The statements alone, each ended by a semicolon.
-    pub fn statements(&self) -> String {
-        let inputs = self.exchanges.iter().filter(|exchange| !exchange.input.is_empty());
-        inputs.map(|exchange| format!("{};\n", exchange.input)).collect()
-    }
-
-    /// As [`Transcript::answer`], until the answers are longer than `limit` bytes.
-    pub fn answer_within(&mut self, text: &str, limit: usize) {
-        if self.size <= limit {
-            self.answer(text);
-            if self.size > limit {
-                self.answer("...\n");
-            }
-        }
-    }
-
     /// Adds to the answer of the current statement.
     pub fn answer(&mut self, text: &str) {
-        self.size += text.len();
         self.current().answer.push_str(text);
     }
 
@@ -78,18 +59,22 @@ impl Transcript {
 
 impl fmt::Display for Transcript {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for exchange in &self.exchanges {
-            for (at, line) in exchange.input.lines().enumerate() {
-                let prompt = if at == 0 { ">>> " } else { "... " };
-                writeln!(f, "{}", format!("{prompt}{line}").trim_end())?;
-            }
-            f.write_str(&exchange.answer)?;
-            if !exchange.answer.is_empty() && !exchange.answer.ends_with('\n') {
-                writeln!(f)?;
-            }
-        }
-        Ok(())
+        let mut each = self.exchanges.iter();
+        each.try_for_each(|exchange| interleaved(f, &exchange.input, &exchange.answer))
     }
+}
+
+/// A statement behind prompts, and its answer.
+pub(super) fn interleaved(f: &mut impl fmt::Write, input: &str, answer: &str) -> fmt::Result {
+    for (at, line) in input.lines().enumerate() {
+        let prompt = if at == 0 { ">>> " } else { "... " };
+        writeln!(f, "{}", format!("{prompt}{line}").trim_end())?;
+    }
+    f.write_str(answer)?;
+    if !answer.is_empty() && !answer.ends_with('\n') {
+        writeln!(f)?;
+    }
+    Ok(())
 }
 
 #[cfg(test)]

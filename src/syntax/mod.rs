@@ -19,17 +19,19 @@ mod parser;
 mod place;
 pub mod print;
 mod scan;
+mod script_parts;
 pub mod visit;
 
 pub use decode::decode;
 pub use lazy::Sections;
 pub use outline::{Outline, OutlinedClass};
+pub use script_parts::ScriptParts;
 
 use crate::diag::Diagnostic;
 use crate::name::Name;
 use crate::source::{SourceId, Span};
 use ast::{Argument, Expression, Script, StoredDefinition};
-use parser::Rule;
+use parser::{Pieces, Rule};
 use place::Place;
 use scan::Dialect;
 use std::sync::Arc;
@@ -120,8 +122,8 @@ pub fn parse_all_of_stored_definition(
 /// # Ok::<(), gapilib::diag::Diagnostic>(())
 /// ```
 pub fn parse_script(source: SourceId, text: &str) -> Result<Script, Diagnostic> {
-    let parts =
-        parser::parse_in_pieces(source, text, Rule::script, Dialect::Script, lower::script)?;
+    let lower = |_, nodes: parser::Nodes<'_>| lower::script(nodes);
+    let (_, parts) = Pieces::read(source, text, Rule::script, Dialect::Script, lower)?;
     let mut statements = Vec::with_capacity(parts.iter().map(|part| part.statements.len()).sum());
     parts.into_iter().for_each(|part| statements.extend(part.statements));
     Ok(Script { statements, span: Span::new(source, 0, text.len()) })

@@ -50,37 +50,82 @@ fn parse_scanned<T>(
     lower(Nodes { place, pairs, whole })
 }
 
-/// The same for a text that may be long, piece by piece, on all processors: what the grammar
-/// answers takes far more memory than the text and the tree.
-pub(super) fn parse_in_pieces<T: Send>(
+/// A long text, ready for the grammar piece by piece: what the grammar answers takes far more memory
+/// than the text and the tree.
+#[derive(Debug)]
+pub(super) struct Pieces {
     source: SourceId,
-    text: &str,
     rule: Rule,
-    dialect: Dialect,
-    lower: impl Fn(Nodes<'_>) -> Result<T, Diagnostic> + Sync,
-) -> Result<Vec<T>, Diagnostic> {
-    let scanned = scan::scan(source, text, dialect)?;
-    let pieces = scanned.pieces();
-    if let [_] = pieces.as_slice() {
-        let place = Place::in_source(source);
-        return Ok(vec![parse_scanned(&place, scanned, rule, lower)?]);
-    }
-    let lowered = |piece: &Range<usize>| {
-        let place = Place::part(source, piece.start);
-        let part = &scanned.text[piece.clone()];
-        let pairs = read(rule, part).ok()?;
-        Some(lower(Nodes { place: &place, pairs, whole: place.span(0, part.len()) }))
-    };
-    let read: Vec<_> = pieces.par_iter().map(lowered).collect();
-    let each = read.into_iter().zip(pieces).map(|(read, piece)| match read {
-        Some(read) => read,
-        // This thread has more stack, and the time to say what is wrong.
-        None => {
-            let place = Place::part(source, piece.start);
-            parse_scanned(&place, Scanned::part(scanned.text[piece].to_owned()), rule, &lower)
+    text: String,
+    ranges: Vec<Range<usize>>,
+}
+
+impl Pieces {
+    /// Scans a text and lowers each of its pieces, whose numbers `lower` gets, on all processors.
+    ///
+    /// # Errors
+    /// The first error of the text.
+    pub(super) fn read<T: Send>(
+        source: SourceId,
+        text: &str,
+        rule: Rule,
+        dialect: Dialect,
+        lower: impl Fn(usize, Nodes<'_>) -> Result<T, Diagnostic> + Sync,
+    ) -> Result<(Pieces, Vec<T>), Diagnostic> {
+        let scanned = scan::scan(source, text, dialect)?;
+        let ranges = scanned.pieces();
+        if scanned.problem.is_some() {
+            let place = Place::in_source(source);
+            let whole = parse_scanned(&place, scanned, rule, |nodes| lower(0, nodes))?;
+            return Ok((Pieces { source, rule, text: String::new(), ranges }, vec![whole]));
         }
-    });
-    each.collect()
+        let pieces = Pieces { source, rule, text: scanned.text, ranges };
+        let lowered = pieces.lowered(0..pieces.count(), lower)?;
+        Ok((pieces, lowered))
+    }
+
+    /// How many there are.
+    pub(super) fn count(&self) -> usize {
+        self.ranges.len()
+    }
+
+    /// Lowers some of the pieces, on all processors if they are many.
+    ///
+    /// # Errors
+    /// The first error in them.
+    pub(super) fn lowered<T: Send>(
+        &self,
+        wanted: Range<usize>,
+        lower: impl Fn(usize, Nodes<'_>) -> Result<T, Diagnostic> + Sync,
+    ) -> Result<Vec<T>, Diagnostic> {
+        let read: Vec<Option<_>> = match wanted.len() {
+            1 => vec![self.attempt(wanted.start, &lower)],
+            _ => wanted.clone().into_par_iter().map(|at| self.attempt(at, &lower)).collect(),
+        };
+        let each = read.into_iter().zip(wanted).map(|(read, at)| match read {
+            Some(read) => read,
+            // This thread has more stack, and the time to say what is wrong.
+            None => {
+                let part = self.text[self.ranges[at].clone()].to_owned();
+                let place = Place::part(self.source, self.ranges[at].start);
+                parse_scanned(&place, Scanned::part(part), self.rule, |nodes| lower(at, nodes))
+            }
+        });
+        each.collect()
+    }
+
+    /// Lowers a piece, if the grammar reads it.
+    fn attempt<T>(
+        &self,
+        at: usize,
+        lower: &impl Fn(usize, Nodes<'_>) -> Result<T, Diagnostic>,
+    ) -> Option<Result<T, Diagnostic>> {
+        let range = self.ranges[at].clone();
+        let place = Place::part(self.source, range.start);
+        let part = &self.text[range];
+        let pairs = read(self.rule, part).ok()?;
+        Some(lower(at, Nodes { place: &place, pairs, whole: place.span(0, part.len()) }))
+    }
 }
 
 /// Reads a scanned text; the nodes are those inside `rule`.

@@ -109,19 +109,40 @@ pub(super) const MAX_BYTES: usize = 1 << 28;
 /// A fault if a string of so many bytes is longer than 2^28 bytes, which no string of a script or model may be.
 pub fn check_length(bytes: usize) -> Result<(), Fault> {
     match bytes {
-        0..=MAX_BYTES => Ok(()),
+        // It is put together, and then copied to where it is shared.
+        0..=MAX_BYTES if is_available(2 * bytes) => Ok(()),
+        0..=MAX_BYTES => bail!(STRING_TOO_LONG, "there is no memory for a string of {bytes} bytes"),
         _ => {
             bail!(STRING_TOO_LONG, "a string of {bytes} bytes is too long; {MAX_BYTES} is the most")
         }
     }
 }
 
+/// Sizes in bytes from which on the system is asked for the memory before it is used: what is smaller
+/// is not what exhausts it.
+const LARGE: usize = 1 << 20;
+
+/// Whether the system has so many bytes. It is asked right before they are taken, so that an array
+/// or a string that a script asks for ends with an error and not the process.
+fn is_available(bytes: usize) -> bool {
+    bytes < LARGE || Vec::<u8>::new().try_reserve_exact(bytes).is_ok()
+}
+
+/// A fault if there is no memory for so many elements.
+pub(super) fn has_room(count: usize, dims: &[usize]) -> Result<(), Fault> {
+    // The largest elements, strings, take two words.
+    match is_available(count.saturating_mul(16)) {
+        true => Ok(()),
+        false => bail!(ARRAY_TOO_LARGE, "there is no memory for an array {}", sizes(dims)),
+    }
+}
+
 /// The number of elements of an array of these sizes; a fault if that is more than
-/// [`MAX_ELEMENTS`].
+/// [`MAX_ELEMENTS`], or more than there is memory for.
 pub fn element_count(dims: &[usize]) -> Result<usize, Fault> {
     let count = dims.iter().try_fold(1usize, |product, size| product.checked_mul(*size));
     match count {
-        Some(count) if count <= MAX_ELEMENTS => Ok(count),
+        Some(count) if count <= MAX_ELEMENTS => has_room(count, dims).map(|()| count),
         _ => bail!(ARRAY_TOO_LARGE, "an array with the sizes {} is too large", sizes(dims)),
     }
 }

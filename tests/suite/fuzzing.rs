@@ -174,7 +174,7 @@ fn deep(work: impl FnOnce() + Send + 'static) {
 #[test]
 fn parsers() {
     deep(|| {
-        let mut inputs = files("tests/fuzz/corpus/models", &[".mo"]);
+        let mut inputs = files("tests/fuzz/seeds/models", &[".mo"]);
         inputs.extend(files("tests/grammar/valid", &[".mo", ".mos"]));
         fuzz(targets::parse_model, &inputs, 30);
         fuzz(targets::run_parser_of_scripts, &inputs, 30);
@@ -184,23 +184,23 @@ fn parsers() {
 
 #[test]
 fn flattening() {
-    deep(|| fuzz(targets::flatten_model, &files("tests/fuzz/corpus/models", &[".mo"]), 40));
+    deep(|| fuzz(targets::flatten_model, &files("tests/fuzz/seeds/models", &[".mo"]), 40));
 }
 
 #[test]
 fn simulations() {
-    deep(|| fuzz(targets::simulate_model, &files("tests/fuzz/corpus/models", &[".mo"]), 12));
+    deep(|| fuzz(targets::simulate_model, &files("tests/fuzz/seeds/models", &[".mo"]), 12));
 }
 
 #[test]
 fn scripts() {
-    deep(|| fuzz(targets::run_script, &files("tests/fuzz/corpus/scripts", &[".mos"]), 40));
+    deep(|| fuzz(targets::run_script, &files("tests/fuzz/seeds/scripts", &[".mos"]), 40));
 }
 
 #[test]
 fn data_files() {
     deep(|| {
-        let tables = files("tests/fuzz/corpus/csv", &[".csv", ".txt"]);
+        let tables = files("tests/fuzz/seeds/csv", &[".csv", ".txt"]);
         fuzz(targets::read_csv, &tables, 150);
         let matrices = files("tests/data/mat", &[".mat"]);
         fuzz(targets::read_mat, &matrices, 40);
@@ -211,7 +211,7 @@ fn data_files() {
 
 #[test]
 fn problem_files() {
-    deep(|| fuzz(targets::solve_problem, &files("tests/fuzz/corpus/problems", &[".toml"]), 25));
+    deep(|| fuzz(targets::solve_problem, &files("tests/fuzz/seeds/problems", &[".toml"]), 25));
 }
 
 #[test]

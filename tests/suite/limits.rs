@@ -220,9 +220,11 @@ fn fibonacci(prefix: &str, argument: &str) -> String {
 #[test]
 fn functions_of_exponential_cost_end_everywhere() {
     let problem = PROBLEM.replace("Slow", "Fib");
-    for (prefix, commands) in
-        [("constant", ["check", "simulate"].as_slice()), ("final parameter", &["simulate"])]
-    {
+    for (prefix, commands) in [
+        ("constant", ["check", "simulate"].as_slice()),
+        ("final parameter", &["simulate"]),
+        ("parameter", &["simulate"]),
+    ] {
         let text = fibonacci(prefix, "60").replace("model Fib", "model Fib parameter Real k = 1;");
         let here = folder(&[
             ("Fib.mo", &text),
@@ -309,4 +311,45 @@ fn a_filter_keeps_what_is_wanted_and_changes_no_byte_of_it() {
         })
         .collect();
     assert_eq!(some, expected);
+}
+
+/// Trees of a million statements take more memory than the machine of a student has.
+#[test]
+#[cfg(target_os = "linux")]
+fn long_scripts_are_not_kept_as_trees() {
+    let text = "x = 0;\n".to_owned() + &"x = x + 1;\n".repeat(150_000) + "print(String(x))\n";
+    let here = folder(&[("long.mos", &text)]);
+    let (code, out, errors) = gapi(&here, &["run", "long.mos", "--memory-limit", "180"]);
+    assert_eq!((code, out.trim()), (0, "150000"), "{errors}");
+}
+
+/// The memory that a script asks for may not be there: that ends the statement and not the process.
+#[test]
+#[cfg(target_os = "linux")]
+fn memory_that_is_not_there_is_an_error() {
+    let many = |begin: &str, one: fn(usize) -> String| {
+        begin.to_owned() + &(1..=20).map(one).collect::<String>()
+    };
+    for (asked, slug) in [
+        (many("", |k| format!("x{k} = fill(1.0, 4000, 4000);\n")), "array-too-large"),
+        (
+            many("x0 = zeros(4000, 4000);\n", |k| format!("x{k} = x{} + x0;\n", k - 1)),
+            "array-too-large",
+        ),
+        (
+            many("s = \"abcdefgh\";\nfor k in 1:24 loop s := s + s; end for;\n", |k| {
+                format!("s{k} = s + String({k});\n")
+            }),
+            "string-too-long",
+        ),
+    ] {
+        let here = folder(&[("big.mos", &asked)]);
+        let gapi = env!("CARGO_BIN_EXE_gapi");
+        let script = format!("ulimit -v 1800000; exec {gapi} run big.mos");
+        let mut command = std::process::Command::new("sh");
+        let output = command.args(["-c", &script]).current_dir(here.path()).output().unwrap();
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{errors}");
+        assert!(errors.contains(slug) && errors.contains("there is no memory"), "{errors}");
+    }
 }

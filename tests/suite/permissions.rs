@@ -170,3 +170,52 @@ fn names_of_files_carry_no_commands() {
     assert!(!errors.contains('\u{1b}') && errors.contains("␛[2J"), "{errors:?}");
     assert!(!Path::new("\u{1b}[2Jmissing.mos").exists());
 }
+
+/// Whether there is a file is not told of those that may not be read.
+#[test]
+fn what_exists_outside_is_not_told() {
+    let elsewhere = folder(&[("secret.txt", "a secret")]);
+    let outside = elsewhere.path().display();
+    for question in [
+        "regularFileExists(\"PATH\")",
+        "directoryExists(\"PATH\")",
+        "Modelica.Utilities.Files.exist(\"PATH\")",
+        "readFile(\"PATH/x\")",
+        "runScript(\"PATH.mos\")",
+    ] {
+        let dialect = if question.contains("Modelica.") { "dymola" } else { "openmodelica" };
+        let mut answers = Vec::new();
+        for name in ["secret.txt", "absent.txt"] {
+            let here =
+                home(&format!("{};\n", question.replace("PATH", &format!("{outside}/{name}"))));
+            let (code, out, errors) = gapi(&here, &["run", "job.mos", "--dialect", dialect]);
+            assert!(code == 1 && errors.contains("--allow-read"), "{question}: {out}{errors}");
+            answers.push((out + &errors).replace(name, "NAME"));
+        }
+        assert_eq!(answers[0], answers[1], "{question}");
+    }
+    // Folders that the run lies in are known to be there.
+    let here = home("print(String(directoryExists(\"..\")))\n");
+    let (code, out, errors) = gapi(&here, &["run", "job.mos", "--dialect", "openmodelica"]);
+    assert!(code == 0 && out.contains("true"), "{out}{errors}");
+}
+
+/// What `lesson`, `teach` and `test` write goes the way of all files: whole or not at all, and not
+/// into what is neither a file nor named as a device.
+#[cfg(unix)]
+#[test]
+fn all_commands_write_whole_files() {
+    use std::os::unix::fs::MetadataExt as _;
+    let here = home("1 + 1\n");
+    fs::write(here.path().join("report.xml"), "old").unwrap();
+    let before = fs::metadata(here.path().join("report.xml")).unwrap().ino();
+    let (_, out, errors) = gapi(&here, &["test", "job.mos", "--junit", "report.xml", "--accept"]);
+    assert!(text(&here, "report.xml").contains("<testsuite"), "{out}{errors}");
+    let after = fs::metadata(here.path().join("report.xml")).unwrap().ino();
+    assert_ne!(before, after, "a new file takes the name when it is whole");
+    assert!(text(&here, "job.mos.snap").contains("[exit code 0]"), "{out}{errors}");
+    let (code, _, errors) = gapi(&here, &["test", "job.mos", "--junit", "/dev/null"]);
+    assert_eq!(code, 0, "{errors}");
+    let (code, _, errors) = gapi(&here, &["test", "job.mos", "--junit", "nowhere/report.xml"]);
+    assert!(code == 1 && errors.contains("nowhere/report.xml"), "{errors}");
+}

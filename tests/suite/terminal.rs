@@ -176,3 +176,22 @@ fn a_plot_says_which_file_it_wrote() {
     assert!(file.exists(), "{shown}");
     prompt.leave();
 }
+
+/// What a script prints is text for a terminal, not commands; elsewhere it is kept as it is.
+#[test]
+fn printed_text_carries_no_commands_to_the_terminal() {
+    let text = "a\u{1b}]52;c;ZXZpbA==\u{7}b\u{9b}2Jc\u{1b}[31md";
+    let here = folder(&[("print.mos", &format!("print(\"{text}\")\n"))]);
+    let mut run = command(here.path(), &["run", "print.mos"]);
+    run.env("TERM", "xterm").env("NO_COLOR", "1");
+    let mut session = spawn_command(run, Some(PATIENCE)).expect("a terminal");
+    let shown = session.exp_eof().expect("it ends");
+    // It gives every byte as a character.
+    let shown = shown.chars().map(|c| u8::try_from(u32::from(c)).expect("a byte")).collect();
+    let shown = String::from_utf8(shown).expect("UTF-8");
+    assert!(shown.contains("a␛]52;c;ZXZpbA==␇b"), "{shown:?}");
+    assert!(shown.contains("c␛[31md"), "{shown:?}");
+    assert!(!shown.contains(['\u{1b}', '\u{7}', '\u{9b}']), "{shown:?}");
+    let kept = command(here.path(), &["run", "print.mos"]).output().expect("it runs").stdout;
+    assert!(String::from_utf8(kept).expect("UTF-8").contains(text));
+}

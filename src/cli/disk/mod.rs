@@ -9,10 +9,11 @@ mod place;
 #[path = "portable.rs"]
 mod place;
 mod record;
+mod steps;
 
 use crate::models;
 use crate::script::policy::{Access, Grant, Policy, RECORD, Refusal};
-use crate::script::world::{Content, Files};
+use crate::script::world::{Content, Files, normalized};
 use place::Place;
 use record::{Lines, Record};
 use std::collections::BTreeSet;
@@ -20,6 +21,7 @@ use std::fs::{self, File};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use steps::{Stepwise, step};
 
 /// The disk with what the user allows, and the models in the program. Paths are absolute.
 #[derive(Debug, Default)]
@@ -69,7 +71,14 @@ impl Disk {
     }
 
     fn to_read(&self, path: &Path) -> io::Result<Place> {
-        let place = Place::of(path, true)?;
+        let place = match Place::of(path, true) {
+            Ok(place) => place,
+            Err(error) => {
+                // Why a path cannot be resolved tells what is there: of places that may be read only.
+                self.state().policy.may_read(&normalized(path))?;
+                return Err(error);
+            }
+        };
         let read = self.state().policy.may_read(&place.real);
         if read == Err(Refusal::Reading) {
             self.know_record();
@@ -145,16 +154,18 @@ impl Disk {
         }
         let place = self.to_write(path, true)?;
         let shared = self.state().policy.writes_all();
-        let mut file = place.open_to_append(shared)?;
+        let file = place.open_to_append(shared)?;
         if !place.exists() {
             self.note_made(&place.real, &file)?;
         }
-        file.write_all(bytes)
+        Stepwise(&file).write_all(bytes)
     }
 
     /// Makes what a file holds safe against a power cut.
     pub(super) fn sync(&self, path: &Path) -> io::Result<()> {
-        self.to_write(path, true)?.open_to_append(true)?.sync_data()
+        let file = self.to_write(path, true)?.open_to_append(true)?;
+        step(|| ())?;
+        file.sync_data()
     }
 
     /// Removes a file, an empty folder, or a link itself.
@@ -182,7 +193,7 @@ fn written_down(own: &Path, lines: Lines) -> io::Result<()> {
     fs::create_dir_all(own)?;
     let place = Place::of(&own.join(RECORD), false)?;
     match lines {
-        Lines::Further(line) => place.open_to_append(false)?.write_all(line.as_bytes()),
+        Lines::Further(line) => Stepwise(&place.open_to_append(false)?).write_all(line.as_bytes()),
         Lines::All(lines) => place.write(&mut |file| file.write_all(lines.as_bytes()), |_| Ok(())),
     }
 }
@@ -216,6 +227,30 @@ pub(super) fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Place::of(&path, true)?.write(&mut |file| file.write_all(bytes), |_| Ok(()))
 }
 
+/// Reads a file that the command line names, no pipe and no device.
+pub(super) fn read_named(path: &Path) -> io::Result<Vec<u8>> {
+    Place::of(&std::path::absolute(path)?, true)?.read()
+}
+
+/// Writes a file that the command line names, all of it or nothing; a pipe or a device as it is.
+pub(super) fn write_named(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let is_device = fs::metadata(path).is_ok_and(|found| !found.is_file() && !found.is_dir());
+    match is_device {
+        true => fs::OpenOptions::new().write(true).open(path)?.write_all(bytes),
+        false => write_atomically(path, bytes),
+    }
+}
+
+/// The names in a folder that the command line names, sorted.
+pub(super) fn list_named(path: &Path) -> io::Result<Vec<String>> {
+    Place::of(&std::path::absolute(path)?, true)?.list()
+}
+
+/// Makes a folder that the command line names, and those it lies in.
+pub(super) fn create_named_folders(path: &Path) -> io::Result<()> {
+    Place::of(&std::path::absolute(path)?, true)?.create_folders().map(drop)
+}
+
 /// Removes the files in a folder that writing has left behind which did not come to its end.
 pub(super) fn remove_temporary_files(folder: &Path) {
     let is_temporary = |name: &str| {
@@ -233,11 +268,13 @@ pub(super) fn remove_temporary_files(folder: &Path) {
 }
 
 #[cfg(test)]
+mod failure_points;
+#[cfg(test)]
 mod tests;
 
 /// Writes the content of a file, in pieces.
 fn filled(file: &fs::File, content: Content<'_>) -> io::Result<()> {
-    let mut buffer = io::BufWriter::with_capacity(1 << 16, file);
+    let mut buffer = io::BufWriter::with_capacity(1 << 16, Stepwise(file));
     content(&mut buffer)?;
     buffer.flush()
 }

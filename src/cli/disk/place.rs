@@ -4,6 +4,7 @@
 //! This is what `openat2` does with `RESOLVE_NO_MAGICLINKS`, in the portable calls of POSIX.1-2008
 //! (`openat`, `fstatat`, `readlinkat`); the real path is known as a by-product.
 
+use super::steps::step;
 use crate::script::policy::Refusal;
 use crate::script::world::Content;
 use rustix::fs::{self, AtFlags, FileType, Mode, OFlags};
@@ -207,8 +208,9 @@ impl Place {
         let written = self
             .fill(&file, content)
             .and_then(|()| note(&file))
+            .and_then(|()| step(|| ()))
             .and_then(|()| Ok(fs::renameat(&self.folder, &temporary, &self.folder, &self.name)?));
-        if written.is_err() {
+        if written.is_err() && step(|| ()).is_ok() {
             // The error of the write is the one to report.
             let _ = fs::unlinkat(&self.folder, &temporary, AtFlags::empty());
         }
@@ -219,15 +221,18 @@ impl Place {
     fn create(&self, name: &OsStr) -> io::Result<File> {
         let flags = OFlags::WRONLY | OFlags::CREATE | OFlags::EXCL;
         let flags = flags | OFlags::NOFOLLOW | OFlags::CLOEXEC;
+        step(|| ())?;
         Ok(fs::openat(&self.folder, name, flags, Mode::from_raw_mode(0o666))?.into())
     }
 
     fn fill(&self, file: &File, content: Content<'_>) -> io::Result<()> {
         if self.exists() {
+            step(|| ())?;
             fs::fchmod(file, Mode::from_raw_mode(self.mode as _))?;
         }
         super::filled(file, content)?;
         // After a power cut the name must not lead to a file without its content.
+        step(|| ())?;
         file.sync_data()
     }
 
@@ -251,6 +256,7 @@ impl Place {
             return Err(io::ErrorKind::NotFound.into());
         }
         let flags = if self.is_folder() { AtFlags::REMOVEDIR } else { AtFlags::empty() };
+        step(|| ())?;
         Ok(fs::unlinkat(&self.folder, &self.name, flags)?)
     }
 
@@ -262,6 +268,7 @@ impl Place {
         let (mut folder, mut new) = (self.folder, Vec::new());
         let count = self.missing.len() + 1;
         for (k, name) in self.missing.iter().chain([&self.name]).enumerate() {
+            step(|| ())?;
             match fs::mkdirat(&folder, name, Mode::from_raw_mode(0o777)) {
                 Ok(()) => new.extend(self.real.ancestors().nth(count - 1 - k).map(Path::to_owned)),
                 Err(Errno::EXIST) => {}

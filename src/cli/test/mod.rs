@@ -5,6 +5,7 @@ mod junit;
 mod wording;
 
 use super::args::{Freedom, Global, TestArgs};
+use super::disk;
 use super::parsing::scripts;
 use super::run::without_folders;
 use super::scratch::{Output, ScratchWorld};
@@ -61,7 +62,7 @@ pub(super) fn test(arguments: &TestArgs, global: &Global) -> ExitCode {
         terminal::print(&format!("{counts}\n"));
     }
     if let Some(file) = &arguments.junit
-        && let Err(error) = std::fs::write(file, junit::report(&results))
+        && let Err(error) = disk::write_named(file, junit::report(&results).as_bytes())
     {
         terminal::eprint(&format!("error: cannot write `{}`: {error}\n", file.display()));
         return ExitCode::FAILURE;
@@ -80,7 +81,7 @@ fn examined(path: &Path, arguments: &TestArgs, global: &Global) -> io::Result<Ve
     let bytes = super::named::read(path)?;
     let (script, _) = crate::script::parsing::text(&bytes);
     let snap = recorded(path);
-    let expected = std::fs::read_to_string(&snap).ok();
+    let expected = super::named::read_text(&snap).ok();
     if let (None, Some(expected)) = (&expected, embedded(&script)) {
         let mut ran = Ran::new(path, &arguments.freedom, global, true)?;
         for one in &mut ran.exchanges {
@@ -101,7 +102,7 @@ fn examined(path: &Path, arguments: &TestArgs, global: &Global) -> io::Result<Ve
     match lines {
         Some(None) => Ok(Verdict::Agrees(0)),
         _ if arguments.accept => {
-            std::fs::write(snap, ran.transcript)?;
+            disk::write_named(&snap, ran.transcript.as_bytes())?;
             Ok(Verdict::Accepted)
         }
         Some(Some(lines)) => Ok(Verdict::Differs(lines, Vec::new())),
@@ -171,7 +172,7 @@ fn reviewed(path: &Path, verdict: Verdict, arguments: &TestArgs, global: &Global
     let mut answer = String::new();
     let read = io::stdin().read_line(&mut answer);
     let accepted = read.is_ok() && answer.trim().eq_ignore_ascii_case("y");
-    match accepted && std::fs::write(recorded(path), ran.transcript).is_ok() {
+    match accepted && disk::write_named(&recorded(path), ran.transcript.as_bytes()).is_ok() {
         true => Verdict::Accepted,
         false => verdict,
     }

@@ -2,6 +2,7 @@
 //! `creation.txt`, or a `.csv` file with the folder's name. The path of the folder below the
 //! collection is the name of the model.
 
+use crate::cli::disk::list_named;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -33,12 +34,11 @@ fn collect(folder: &Path, parts: &mut Vec<String>, cases: &mut Vec<Case>) -> io:
     if parts.len() == MAX_DEPTH {
         return Ok(());
     }
-    for entry in std::fs::read_dir(folder)? {
-        let entry = entry?;
-        let name = entry.file_name().to_string_lossy().into_owned();
-        if entry.file_type()?.is_dir() && !name.starts_with('.') {
+    for name in list_named(folder)? {
+        let path = folder.join(&name);
+        if path.is_dir() && !path.is_symlink() && !name.starts_with('.') {
             parts.push(name);
-            collect(&entry.path(), parts, cases)?;
+            collect(&path, parts, cases)?;
             parts.pop();
         }
     }

@@ -60,7 +60,10 @@ end exist;
 
 fn exist(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let name: String = args.take("name")?;
-    Ok(session.find_file(Path::new(&name)).is_some().into())
+    match session.find_file(Path::new(&name)) {
+        Some(found) => Ok(session.kind_of(&found)?.is_some().into()),
+        None => Ok(session.kind_of(Path::new(&name))?.is_some().into()),
+    }
 }
 
 const LIST_FILES: &str = r#"
@@ -257,8 +260,8 @@ end regularFileExists;
 "#;
 
 fn regular_file_exists(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let path = PathBuf::from(args.take::<String>("fileName")?);
-    Ok((session.world.exists(&path) && !session.world.is_dir(&path)).into())
+    let name: String = args.take("fileName")?;
+    Ok((session.kind_of(Path::new(&name))? == Some(false)).into())
 }
 
 const DIRECTORY_EXISTS: &str = r#"
@@ -269,7 +272,8 @@ end directoryExists;
 "#;
 
 fn directory_exists(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    Ok(session.world.is_dir(Path::new(&args.take::<String>("dirName")?)).into())
+    let name: String = args.take("dirName")?;
+    Ok((session.kind_of(Path::new(&name))? == Some(true)).into())
 }
 
 const DELETE_FILE: &str = r#"

@@ -122,8 +122,8 @@ end savelog;
 fn savelog(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let file: String = args.take("logfile")?;
     let contents = match file.ends_with(".mos") {
-        true => session.log.statements(),
-        false => session.log.to_string(),
+        true => session.log.statements(&session.sources),
+        false => session.log.text(&session.sources),
     };
     let written = session.write_file(file.as_ref(), contents.as_bytes());
     Ok(session.succeeded(written))

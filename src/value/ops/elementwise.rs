@@ -8,7 +8,7 @@ use super::arithmetic::{
 use super::unsuitable;
 use crate::diag::Fault;
 use crate::fault;
-use crate::value::array::sizes;
+use crate::value::array::{has_room, sizes};
 use crate::value::check_length;
 use crate::value::errors::SIZE_MISMATCH;
 use crate::value::{ArrayValue, Elements, Value};
@@ -151,14 +151,17 @@ fn zip<T: Clone, R>(
     match (left, right) {
         (Value::Array(left), Value::Array(right)) => {
             same_sizes(symbol, left, right)?;
+            has_room(a.len(), &left.dims)?;
             let values = a.iter().zip(b).map(apply).collect::<Result<_, _>>()?;
             Ok((Some(left.dims.clone()), values))
         }
         (Value::Array(array), _) => {
+            has_room(a.len(), &array.dims)?;
             let values = a.iter().map(|x| apply((x, &b[0]))).collect::<Result<_, _>>()?;
             Ok((Some(array.dims.clone()), values))
         }
         (_, Value::Array(array)) => {
+            has_room(b.len(), &array.dims)?;
             let values = b.iter().map(|y| apply((&a[0], y))).collect::<Result<_, _>>()?;
             Ok((Some(array.dims.clone()), values))
         }

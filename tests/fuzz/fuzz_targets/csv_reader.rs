@@ -1,4 +1,4 @@
-//! The reader of tables of text. Seeds: `tests/fuzz/corpus/csv`.
+//! The reader of tables of text. Seeds: `tests/fuzz/seeds/csv`.
 #![no_main]
 
 #[path = "../targets.rs"]

@@ -1,4 +1,4 @@
-//! Checks and flattens the classes of a file. Seeds: `tests/fuzz/corpus/models`.
+//! Checks and flattens the classes of a file. Seeds: `tests/fuzz/seeds/models`.
 #![no_main]
 
 #[path = "../targets.rs"]

@@ -1,4 +1,4 @@
-//! Journals of identifications. Seeds: `tests/fuzz/corpus/journals`.
+//! Journals of identifications. Seeds: none, the suite writes its own.
 #![no_main]
 
 #[path = "../targets.rs"]

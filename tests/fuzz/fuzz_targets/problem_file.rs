@@ -1,4 +1,4 @@
-//! Problem files, solved with a few simulations. Seeds: `tests/fuzz/corpus/problems`.
+//! Problem files, solved with a few simulations. Seeds: `tests/fuzz/seeds/problems`.
 #![no_main]
 
 #[path = "../targets.rs"]

@@ -1,4 +1,4 @@
-//! Scripts in a world in memory. Seeds: `tests/fuzz/corpus/scripts`.
+//! Scripts in a world in memory. Seeds: `tests/fuzz/seeds/scripts`.
 #![no_main]
 
 #[path = "../targets.rs"]

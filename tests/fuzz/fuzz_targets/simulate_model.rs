@@ -1,4 +1,4 @@
-//! Simulates small models. Seeds: `tests/fuzz/corpus/models`.
+//! Simulates small models. Seeds: `tests/fuzz/seeds/models`.
 #![no_main]
 
 #[path = "../targets.rs"]
