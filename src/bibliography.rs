@@ -206,6 +206,7 @@
 //! <a id="bates-watts-1988"></a>
 //! - **bates-watts-1988** — D. M. Bates, D. G. Watts: Nonlinear Regression Analysis and Its
 //!   Applications. Wiley, 1988.
+//!
 //! <a id="boender-rinnooy-kan-1987"></a>
 //! - **boender-rinnooy-kan-1987** — C. G. E. Boender, A. H. G. Rinnooy Kan: Bayesian stopping rules
 //!   for multistart global optimization methods. Mathematical Programming 37, 1987, 59–80.

@@ -83,3 +83,14 @@ fn nsga2_covers_the_fronts() {
         assert!(volume > least, "{number}: {volume}");
     }
 }
+
+/// Data that the model reproduces to within the errors of the simulation: there the gradient is one of
+/// those errors, and no minimum is nearer. With larger residuals it tells.
+#[test]
+fn residuals_within_the_errors_of_the_simulation_are_those_of_a_minimum() {
+    let jacobian = [1.0, 1.0, 1.0, 1.0];
+    let along = |size: f64| [size, size, size, -0.9 * size];
+    let accuracy = [1e-8, 3.0];
+    assert!(test_minimum(&[0.5], &along(1e-9), &jacobian, accuracy).1);
+    assert!(!test_minimum(&[0.5], &along(1e-6), &jacobian, accuracy).1);
+}

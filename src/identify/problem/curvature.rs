@@ -163,8 +163,11 @@ fn about(run: &Run, values: &[f64], reach: f64) -> Option<(Curvature, u64)> {
     Some((found, simulations))
 }
 
+/// Half a gradient and the sum of squares.
+type Slope = (Vec<f64>, f64);
+
 /// Half the gradients of the sum of squares by the fractions of the ranges, and the sums.
-fn gradients(run: &Run, places: &[Vec<f64>]) -> Option<(Vec<(Vec<f64>, f64)>, u64)> {
+fn gradients(run: &Run, places: &[Vec<f64>]) -> Option<(Vec<Slope>, u64)> {
     let mut simulations = 0;
     let one = |(values, found): (&Vec<f64>, Result<super::Linearization, _>)| {
         let found = found.ok()?;

@@ -177,7 +177,8 @@ fn descend(run: &mut Run, first: &Best, mut texts: Vec<String>) -> Option<Best> 
         let from = best.as_ref().map_or(&first.values, |best| &best.values).clone();
         let values = onto(run, &from, &texts)?;
         let along = Along::of(&run.problem, &values, &named(&run.problem, &texts))?;
-        let linearized = run.evaluation.linearize(&run.problem, &[values.clone()]).pop()?.ok()?;
+        let linearized =
+            run.evaluation.linearize(&run.problem, std::slice::from_ref(&values)).pop()?.ok()?;
         run.conclusion.simulations += linearized.simulations;
         let fitness = run.evaluation.objective(&run.problem, &linearized.simulated);
         if best.as_ref().is_none_or(|best| fitness <= best.fitness) {
