@@ -25,6 +25,9 @@ const MARGIN: f64 = 1e-3;
 /// one asked for is tighter: the contradiction of the flows that start at zero in FuelCellLib 1.0
 /// does not become smaller with the tolerance.
 const COARSEST: f64 = 1e-6;
+/// A function that has had another sign, and has grown, at the ends of so many steps in a row changes it:
+/// errors of y have no such memory, however large they may be.
+const LASTING: u32 = 10;
 /// The golden ratio: its multiples modulo 1 are spread evenly, so that no sum of perturbations
 /// cancels by chance.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -45,6 +48,8 @@ pub(super) struct CrossingSearch {
     pub(super) is_rising: Vec<bool>,
     /// Functions within their margin where the search began.
     is_near: Vec<bool>,
+    /// Steps in a row at whose ends a function had another sign within its margin, and has grown.
+    lasting: Vec<u32>,
     perturbed: Vec<f64>,
     /// The functions before `left`, and when; none behind an event.
     earlier: Vec<f64>,
@@ -84,6 +89,8 @@ impl CrossingSearch {
         for vector in vectors.into_iter().chain([&mut self.earlier]) {
             vector.resize(n_crossings, 0.0);
         }
+        self.lasting.clear();
+        self.lasting.resize(n_crossings, 0);
         self.earlier_time = None;
     }
 
@@ -98,6 +105,7 @@ impl CrossingSearch {
             return Ok(false);
         }
         self.earlier_time = None;
+        self.lasting.fill(0);
         self.estimate_uncertainty(problem, t, y);
         problem.system.crossings(t, y, &mut self.left)?;
         let changed = self.signs.iter().zip(&self.left).any(|(old, z)| *old != sign(*z));
@@ -150,6 +158,7 @@ impl CrossingSearch {
         }
         problem.system.crossings(b, y, &mut self.right)?;
         self.is_near.fill(true);
+        self.note_lasting();
         if !self.changed(&self.right) {
             match self.turning_point(problem, integrator, (a, b), y)? {
                 Some(vertex) => b = vertex,
@@ -197,6 +206,16 @@ impl CrossingSearch {
             }
         }
         Ok(Some(b))
+    }
+
+    /// Counts the steps at whose ends a function has kept another sign and grown.
+    fn note_lasting(&mut self) {
+        let ends = self.left.iter().zip(&self.right).zip(&self.signs);
+        for (count, ((left, right), old)) in self.lasting.iter_mut().zip(ends) {
+            let grows = sign(*left) == sign(*right) && right.abs() > left.abs();
+            let other = sign(*right) != 0 && sign(*right) != *old;
+            *count = if grows && other { *count + 1 } else { 0 };
+        }
     }
 
     /// A time within (`a`, `b`) where a sign has changed although it has not at `b`; `right` has the
@@ -264,7 +283,11 @@ impl CrossingSearch {
     }
 
     pub(super) fn margin(&self, at: usize) -> f64 {
-        self.uncertainty[at] * if self.followed[at] { 1.0 } else { MARGIN }
+        match (self.followed[at], self.lasting[at] >= LASTING) {
+            (true, _) => self.uncertainty[at],
+            (false, true) => 0.0,
+            (false, false) => self.uncertainty[at] * MARGIN,
+        }
     }
 
     fn has_changed(&self, at: usize, z: f64) -> bool {

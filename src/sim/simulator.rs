@@ -267,6 +267,11 @@ impl Run<'_> {
         if !self.y.iter().all(|y| y.is_finite()) {
             return Err(SimErrorKind::NotFinite);
         }
+        // Steps no longer than a delay that is all but zero would come to no end.
+        let (longest, way) = (system.longest_step(), self.problem.settings.stop - self.t);
+        if way > 0.0 && (longest <= 0.0 || way / longest > self.problem.settings.max_steps as f64) {
+            return Err(SimErrorKind::StepBudget);
+        }
         system.check(self.t, self.y).map_err(SimErrorKind::Evaluation)?;
         if self.next_output == Some(self.t) {
             self.record()?;

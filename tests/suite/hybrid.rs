@@ -205,6 +205,18 @@ fn a_comparator_with_positive_feedback_jumps() {
     }
 }
 
+/// What starts at zero and grows steadily changes its sign, although errors of the tolerance's size would
+/// make it larger: der(H) > 0 of a magnetic core, whose H follows from a flux of 1e-4 Wb.
+#[test]
+fn what_grows_from_zero_is_no_error_however_sensitive_it_is() {
+    let text = "model M Real x(start = 0, fixed = true); Real s(start = 0, fixed = true); \
+                Real y(start = 0, fixed = true); Boolean on; equation der(x) = 1e-14*(1 + time); \
+                der(s) = cos(20*time); on = 1e17*x > 0; der(y) = if on then 1 else 0; end M;";
+    let run = simulated(text, 1.0);
+    near(run.last("on"), 1.0, 0.0);
+    assert!(run.last("y") > 0.95, "{}", run.last("y"));
+}
+
 #[test]
 fn what_breaks_away_is_kept_by_what_it_was_before() {
     let run = simulated(&file("Breakaway"), 3.0);

@@ -199,7 +199,7 @@ pub fn test_minimum(
     let offset = model.offset(point);
     let length = residuals.iter().map(|r| r * r).sum::<f64>().sqrt();
     // Residuals within the errors of the simulation: nothing better can be told from it.
-    let is_exact = !offset.blind && offset.rank > 0 && length <= noise * size;
+    let is_exact = length == 0.0 || !offset.blind && offset.rank > 0 && length <= noise * size;
     (offset, is_exact || levenberg_marquardt::is_minimum(&offset, length, accuracy, MINIMUM))
 }
 

@@ -7,8 +7,10 @@
 
 use super::profile::limit;
 use super::refit::Refit;
-use super::{Evaluation, Problem};
+use super::statistics::sensitivities;
+use super::{Evaluation, Problem, Statistics};
 use crate::diag::Fault;
+use crate::identify::uncertainty_given;
 
 /// Fractions of the range that are tried on each side: from this on, each larger by the factor.
 const FIRST: f64 = 1e-3;
@@ -17,6 +19,12 @@ const GROWTH: f64 = 1.5;
 const HALVINGS: usize = 20;
 /// A change of a point below this many times the error of the simulation is that error.
 const ERRORS: f64 = 10.0;
+
+/// Fits nearer to each other than this, as parts of the way to the limit and of the ranges, belong to
+/// the same step.
+const SAME_STEP: f64 = 1e-3;
+/// Steps whose standard errors are looked at.
+const STEPS: usize = 40;
 
 /// What a parameter without derivative does.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,11 +41,33 @@ pub(super) struct Finite {
     /// The ends of the values whose sum of squares is within the 95 % limit, the others fitted anew;
     /// `None` where the range ends before.
     pub ends: [Option<f64>; 2],
-    /// Whether small changes change nothing: it acts in steps.
-    pub in_steps: bool,
-    /// Values of all parameters within the limit, each with what is left of the way to it: the root of
-    /// the part of the rise that remains, 1 at the best point.
-    pub within: Vec<(Vec<f64>, f64)>,
+    /// Why there is no derivative to go by.
+    pub how: How,
+    /// Fits within the limit.
+    pub within: Vec<Within>,
+}
+
+/// Why a parameter has no derivative to go by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum How {
+    /// Small changes change nothing.
+    InSteps,
+    /// The derivative is zero at the best values.
+    Vanishing,
+    /// It cancels with those of others.
+    Cancelling,
+}
+
+/// A fit within the limit, with the parameter held.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Within {
+    /// Values of all parameters.
+    pub values: Vec<f64>,
+    /// What is left of the way to the limit: the root of the part of the rise that remains, 1 at the
+    /// best point.
+    pub left: f64,
+    /// Standard errors of the others there; infinite where there are none.
+    pub deviations: Vec<f64>,
 }
 
 /// What parameter `k` does at finite distances from the best `values`, and the simulations that
@@ -49,6 +79,7 @@ pub(super) struct Finite {
 pub(super) fn effect(
     problem: &Problem,
     evaluation: &Evaluation,
+    statistics: &Statistics,
     (values, simulated): (&[f64], &[f64]),
     k: usize,
 ) -> Result<(Effect, u64), Fault> {
@@ -70,17 +101,61 @@ pub(super) fn effect(
         return Ok((Effect::None, simulations));
     }
     let nearest = [0, places[0].len()].into_iter().filter_map(|first| rows.get(first));
-    let in_steps = !nearest.into_iter().any(acts);
-    let mut found = Finite { ends: [None; 2], in_steps, within: Vec::new() };
+    let how = if statistics.cancelling.contains(&k) {
+        How::Cancelling
+    } else if nearest.into_iter().any(acts) {
+        How::Vanishing
+    } else {
+        How::InSteps
+    };
+    let mut found = Finite { ends: [None; 2], how, within: Vec::new() };
     let Some(mut scan) = Scan::new(problem, evaluation, values, k)? else {
         return Ok((Effect::Finite(found), simulations));
     };
     for (end, places) in found.ends.iter_mut().zip(&places) {
         *end = scan.side(here, values, places)?;
     }
-    found.within = std::mem::take(&mut scan.within);
     simulations += scan.refit.simulations;
+    let mut within: Vec<Within> = Vec::new();
+    for fit in std::mem::take(&mut scan.within) {
+        let is_known = within.iter().any(|known| known.is_same_step(&fit, problem, k));
+        if !is_known && within.len() < STEPS {
+            within.push(fit);
+        }
+    }
+    for fit in &mut within {
+        let (jacobian, took) = sensitivities(problem, evaluation, &fit.values);
+        simulations += took;
+        fit.deviations = deviations(&jacobian, statistics, k);
+    }
+    found.within = within;
     Ok((Effect::Finite(found), simulations))
+}
+
+impl Within {
+    /// Whether another fit has the same sum and the same values, but for parameter `k`.
+    fn is_same_step(&self, other: &Within, problem: &Problem, k: usize) -> bool {
+        let pairs = self.values.iter().zip(&other.values).zip(&problem.parameters).enumerate();
+        let apart = |((a, b), free): ((&f64, &f64), &super::Free)| {
+            (free.fraction(*a) - free.fraction(*b)).abs()
+        };
+        (self.left - other.left).abs() < SAME_STEP
+            && pairs.filter(|(j, _)| *j != k).all(|(_, pair)| apart(pair) < SAME_STEP)
+    }
+}
+
+/// Standard errors with parameter `k` held.
+fn deviations(jacobian: &[Vec<f64>], statistics: &Statistics, k: usize) -> Vec<f64> {
+    let others = jacobian.iter().enumerate().filter(|(j, _)| *j != k);
+    let weighted = |(_, column): (usize, &Vec<f64>)| {
+        column.iter().zip(&statistics.weights).map(|(d, w)| d * w).collect::<Vec<f64>>()
+    };
+    let columns: Vec<Vec<f64>> = others.map(weighted).collect();
+    let found = uncertainty_given(&columns, statistics.variance);
+    let mut all =
+        found.map_or_else(|| vec![f64::INFINITY; columns.len()], |found| found.standard_deviations);
+    all.insert(k, f64::INFINITY);
+    all
 }
 
 /// Fractions of the range from `here` to its end.
@@ -111,7 +186,7 @@ struct Scan<'a> {
     k: usize,
     smallest: f64,
     limit: f64,
-    within: Vec<(Vec<f64>, f64)>,
+    within: Vec<Within>,
 }
 
 impl<'a> Scan<'a> {
@@ -129,7 +204,8 @@ impl<'a> Scan<'a> {
         let Some((best, smallest)) = refit.from(values, Some(k))? else { return Ok(None) };
         let residuals = refit.plain_residuals(&best);
         let limit = limit(problem, smallest, freedom as f64, residuals.as_deref());
-        Ok(Some(Scan { refit, problem, k, smallest, limit, within: vec![(best, 1.0)] }))
+        let within = vec![Within { values: best, left: 1.0, deviations: Vec::new() }];
+        Ok(Some(Scan { refit, problem, k, smallest, limit, within }))
     }
 
     /// The end of the values within the limit on one side: beyond the farthest of the places whose
@@ -167,7 +243,8 @@ impl<'a> Scan<'a> {
             return Ok(None);
         }
         let left = (self.limit - sum) / (self.limit - self.smallest);
-        self.within.push((values.clone(), left.clamp(0.0, 1.0).sqrt()));
+        let left = left.clamp(0.0, 1.0).sqrt();
+        self.within.push(Within { values: values.clone(), left, deviations: Vec::new() });
         Ok(Some(values))
     }
 }

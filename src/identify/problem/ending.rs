@@ -295,6 +295,22 @@ pub(super) fn other_minima(descents: &[SolvedDescent], limit: f64) -> Vec<OtherM
     others.into_iter().map(|(_, other)| other).collect()
 }
 
+/// Findings that rest on standard errors and intervals.
+pub(super) fn is_about_intervals(kind: FindingKind) -> bool {
+    matches!(
+        kind,
+        FindingKind::StructurallyNonIdentifiable
+            | FindingKind::PracticallyNonIdentifiable
+            | FindingKind::Interval
+            | FindingKind::AtBound
+            | FindingKind::Correlated
+            | FindingKind::IllConditioned
+            | FindingKind::Dominant
+            | FindingKind::Sigma
+            | FindingKind::Prior
+    )
+}
+
 /// Findings that need no minimum.
 pub(super) fn holds_anywhere(kind: FindingKind) -> bool {
     matches!(

@@ -46,6 +46,9 @@ pub struct Inseparable {
     /// What is determined: factors of a sum or exponents of a product, for each of `parameters`.
     /// Of a group known locally, relative changes that together have no effect.
     pub combinations: Vec<Vec<f64>>,
+    /// Changes of the parameters that together have no effect as far as derivatives tell; relative
+    /// ones of a product.
+    pub directions: Vec<Vec<f64>>,
 }
 
 /// What the sensitivities tell of the rank.
@@ -160,7 +163,8 @@ fn inseparable(
         Form::Product => orthogonal(&relative, n),
         Form::Local => relative.iter().map(|direction| largest_is_one(direction)).collect(),
     };
-    Inseparable { excess: null.len(), parameters, form, combinations }
+    let directions = if form == Form::Product { relative } else { changes };
+    Inseparable { excess: null.len(), parameters, form, combinations, directions }
 }
 
 fn nonzero(value: f64) -> f64 {

@@ -8,6 +8,7 @@
 
 mod checks;
 mod conclusion;
+mod confirmed;
 mod curvature;
 mod curve;
 mod effects;

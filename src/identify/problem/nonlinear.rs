@@ -63,10 +63,6 @@ impl Solution {
 
     /// Parameters whose linear interval does not hold.
     fn curved(&mut self, run: &Run, statistics: &Statistics) -> Vec<usize> {
-        // Beyond a limit nothing is simulated.
-        if statistics.at_bounds.as_ref().is_some_and(|own| own.along_limits) {
-            return Vec::new();
-        }
         // Where parameters stand at ends of their ranges, with these held.
         let held = statistics.at_bounds.as_ref().map(|own| &own.held);
         let Some(found) = held.or(statistics.uncertainty.as_ref()) else { return Vec::new() };
@@ -97,7 +93,14 @@ impl Solution {
         self.simulations_for_statistics += rows.len() as u64;
         let allowed = elementary::powi(statistics.factor, 2) * statistics.variance;
         let smallest = statistics.residuals.iter().map(|r| r * r).sum::<f64>();
+        // What a constraint forbids tells nothing of the model.
+        let is_forbidden = |at: usize| {
+            run.problem.inference.constraints.iter().any(|own| own.violation(&places[at]) > 0.0)
+        };
         let holds = |at: usize| {
+            if is_forbidden(at) {
+                return true;
+            }
             let expected = allowed * parts[at] * parts[at];
             let rise = match &rows[at] {
                 Ok(row) => square(run, statistics, row) - smallest,
@@ -142,6 +145,9 @@ impl Solution {
     pub(super) fn adopt(&mut self, k: usize, profile: &Profile, factor: f64) {
         let own = &mut self.parameters[k];
         let [min, max] = own.range;
+        if profile.cut.iter().any(Option::is_some) {
+            return;
+        }
         let [low, high] = profile.interval;
         let interval = [low.unwrap_or(min), high.unwrap_or(max)];
         let Some(linear) = own.interval else { return };

@@ -1,7 +1,7 @@
 //! Findings about parameters and data: what the intervals mean, and what the data cannot say.
 
 use super::checks::residual_findings;
-use super::effects::Effect;
+use super::effects::{Effect, How};
 use super::summary::BEYOND;
 use super::{
     ErrorModel, FailureRegion, Finding, FindingKind, Form, Inseparable, Profiles, Run, Severity,
@@ -91,13 +91,14 @@ fn about_effects(solution: &Solution, effects: &[(usize, Effect)]) -> Vec<Findin
                 (FindingKind::NoEffect, format!("{name} has no effect on the compared points."))
             }
             Effect::Finite(finite) => {
-                let acts = match finite.in_steps {
-                    true => "acts in steps: its derivative is zero",
-                    false => "has a derivative that vanishes at the best values",
+                let acts = match finite.how {
+                    How::InSteps => "acts in steps: its derivative is zero",
+                    How::Vanishing => "has a derivative that vanishes at the best values",
+                    How::Cancelling => "has a derivative that cancels with those of others",
                 };
-                let within = match finite.in_steps {
-                    true => " Within the step nothing is known.",
-                    false => "",
+                let within = match finite.how {
+                    How::InSteps => " Within the step nothing is known.",
+                    How::Vanishing | How::Cancelling => "",
                 };
                 match finite.ends {
                     [Some(low), Some(high)] => (
@@ -196,6 +197,9 @@ fn at_bound(parameter: &SolvedParameter, k: usize, statistics: &Statistics) -> F
         Some(_) => "the data do not contradict that bound, and say only how far from it the value \
                     may be"
             .to_owned(),
+        None if (parameter.value - if upper { max } else { min }).abs() > 0.0 => {
+            "the best value lies just inside, and the interval ends with the range".to_owned()
+        }
         None => "the best value may lie beyond it".to_owned(),
     };
     let finding = Finding::new(
@@ -401,7 +405,7 @@ fn inseparable<'a>(group: &Inseparable, name: &impl Fn(usize) -> &'a str) -> Str
     };
     if group.form == Form::Local {
         return format!(
-            "{all} are not separately identifiable about the best values: changing {} together changes nothing. Fix {fix} of them.",
+            "{all} are not separately identifiable about the best values: changing {}, all at once, changes nothing. Fix {fix} of them.",
             combinations.join(", or ")
         );
     }
@@ -420,6 +424,9 @@ fn determined(group: &Inseparable, solution: &Solution, statistics: &Statistics)
         let parts = names.iter().zip(combination).filter(|(_, part)| part.abs() > NEGLIGIBLE);
         let mut weights = vec![0.0; solution.parameters.len()];
         let is_product = group.form == Form::Product;
+        // Ratios, as the parameters have them; a parameter that may be zero or change its sign has none.
+        let is_ratio =
+            is_product && group.parameters.iter().all(|&k| solution.parameters[k].logarithmic);
         let mut value = if is_product { 1.0 } else { 0.0 };
         for ((&k, own), part) in group.parameters.iter().zip(values).zip(combination) {
             weights[k] = if is_product { part / own } else { *part };
@@ -427,9 +434,10 @@ fn determined(group: &Inseparable, solution: &Solution, statistics: &Statistics)
                 if is_product { value * elementary::powf(own, *part) } else { value + part * own };
         }
         let reach = statistics.factor * statistics.error_of(&weights)?;
-        let [low, high] = match is_product {
-            true => [-reach, reach].map(|reach| value * elementary::exp(reach)),
-            false => [value - reach, value + reach],
+        let [low, high] = match (is_product, is_ratio) {
+            (true, true) => [-reach, reach].map(|reach| value * elementary::exp(reach)),
+            (true, false) => [-reach, reach].map(|reach| value + value.abs() * reach),
+            (false, _) => [value - reach, value + reach],
         };
         let text = if is_product { product(parts) } else { sum(parts) };
         let [value, low, high] = [value, low, high].map(|value| significant(value, 4));
@@ -496,6 +504,16 @@ pub(super) fn profile_findings(solution: &Solution, found: &Profiles) -> Vec<Fin
     for (parameter, profile) in solution.parameters.iter().zip(&found.profiles) {
         let [min, max] = parameter.range.map(|end| significant(end, 4));
         let name = &parameter.name;
+        if let [Some(cut), _] | [_, Some(cut)] = profile.cut {
+            let sentence = format!(
+                "The profile of {name} ends at {}, without its 95 % limit: beyond it a constraint does \
+                 not hold or simulations fail, so that nothing is known there.",
+                significant(cut, 4)
+            );
+            let finding = Finding::new(FindingKind::Missing, sentence);
+            findings.push(finding.parameters([name.as_str()]));
+            continue;
+        }
         let sentence = match profile.interval.map(|end| end.map(|end| significant(end, 4))) {
             [Some(_), Some(_)] => continue,
             [None, None] => format!(

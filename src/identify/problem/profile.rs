@@ -44,8 +44,12 @@ pub struct Profile {
     pub points: Vec<[f64; 2]>,
     /// The sum of squares that the 95 % interval stays below.
     pub limit: f64,
-    /// The ends of that interval; `None` where it reaches the end of the range.
+    /// The ends of that interval; `None` where it reaches the end of the range or is cut.
     pub interval: [Option<f64>; 2],
+    /// The last values that could be simulated, where a constraint does not hold beyond or
+    /// simulations fail: nothing is known from there on.
+    #[serde(default)]
+    pub cut: [Option<f64>; 2],
 }
 
 /// All profiles.
@@ -87,7 +91,7 @@ pub(super) fn profiles(
     let Some(refit) = Refit::new(problem, evaluation).filter(|_| freedom > 0) else {
         return Ok(None);
     };
-    let mut walk = Walk { refit, limit: 0.0, better: None, starts: Vec::new() };
+    let mut walk = Walk { refit, limit: 0.0, better: None, starts: Vec::new(), cut: None };
     let Some((best, smallest)) = walk.refit.from(known.best, None)? else { return Ok(None) };
     let residuals = walk.refit.plain_residuals(&best);
     walk.limit = limit(problem, smallest, freedom as f64, residuals.as_deref());
@@ -100,13 +104,14 @@ pub(super) fn profiles(
         let first = known.reach.get(k).copied().flatten().map_or(STEPS[1], |half| {
             (FIRST * half / free.slope(best[k]).abs()).clamp(STEPS[0], STEPS[1])
         });
-        let mut interval = [None; 2];
-        for (end, step) in interval.iter_mut().zip([-first, first]) {
-            *end = walk.side(free, k, (&best, smallest), step, &mut points)?;
+        let (mut interval, mut cut) = ([None; 2], [None; 2]);
+        for (side, step) in [-first, first].into_iter().enumerate() {
+            interval[side] = walk.side(free, k, (&best, smallest), step, &mut points)?;
+            cut[side] = walk.cut.take();
         }
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let limit = walk.limit;
-        profiles.push(Profile { name: free.name.clone(), points, limit, interval });
+        profiles.push(Profile { name: free.name.clone(), points, limit, interval, cut });
     }
     let better = walk.better.filter(|(_, sum)| *sum < smallest * (1.0 - BETTER));
     Ok(Some(Profiles { profiles, simulations: walk.refit.simulations, better }))
@@ -144,6 +149,8 @@ struct Walk<'a> {
     better: Option<(Vec<f64>, f64)>,
     /// Where fits begin before a value is said not to fit.
     starts: Vec<Vec<f64>>,
+    /// The last value before one that could not be simulated.
+    cut: Option<f64>,
 }
 
 /// From where a fit begins.
@@ -210,7 +217,10 @@ impl Walk<'_> {
             }
             let before = values.to_vec();
             let sum = self.fit(free, k, place, values, points, Care::AllStarts)?;
-            let Some(sum) = sum else { break };
+            let Some(sum) = sum else {
+                self.cut = Some(free.value(inside.0));
+                break;
+            };
             if sum > self.limit {
                 values.copy_from_slice(&before);
                 let ends = (inside, (place, sum));

@@ -95,6 +95,15 @@ impl Solution {
         if self.is_short_of_minimum(run) {
             bail!(BAD_OPTION, "There are no profiles, because this is not known to be a minimum");
         }
+        if self.findings.iter().any(|finding| finding.kind == FindingKind::NoNoise) {
+            bail!(
+                BAD_OPTION,
+                "There are no profiles: the residuals are those of the simulation, which are no noise"
+            );
+        }
+        if super::limits::along(&run.problem, &best.values).is_some() {
+            bail!(BAD_OPTION, "There are no profiles at the limit of a constraint");
+        }
         let half = |p: &SolvedParameter| p.interval.map(|[low, high]| 0.5 * (high - low));
         let reach: Vec<Option<f64>> = self.parameters.iter().map(half).collect();
         let others = self.other_places();

@@ -155,6 +155,9 @@ pub struct SolvedParameter {
     /// Whether the interval is that of its profile, because the linear one does not hold.
     #[serde(default)]
     pub by_profile: bool,
+    /// Whether finite changes have told what its derivative does not.
+    #[serde(default)]
+    pub in_steps: bool,
     /// What the data say about it; `None` where unknown.
     #[serde(default)]
     pub verdict: Option<Verdict>,
@@ -363,6 +366,9 @@ impl Solution {
         };
         let own = super::notes::findings(&solution, run, &statistics, &effects, &simulated);
         solution.findings = own;
+        if super::limits::along(problem, &best.values).is_some() {
+            solution.drop_intervals();
+        }
         match solution.ending.kind {
             // Where a parameter acts in steps, intervals go over all of them.
             EndingKind::Minimum if effects.is_empty() => {
@@ -375,13 +381,20 @@ impl Solution {
         Ok(solution)
     }
 
-    /// Takes away everything that holds at a minimum only, and says that this is none.
-    fn drop_verdicts(&mut self) {
+    /// Takes standard errors and intervals away, and what was said of them. At the limit of a
+    /// constraint they would be too small along it: the data may as well hold inside.
+    fn drop_intervals(&mut self) {
         for parameter in &mut self.parameters {
             (parameter.deviation, parameter.interval) = (None, None);
             (parameter.determined, parameter.verdict) = (None, None);
         }
         (self.correlations, self.condition) = (None, None);
+        self.findings.retain(|finding| !ending::is_about_intervals(finding.kind));
+    }
+
+    /// Takes away everything that holds at a minimum only, and says that this is none.
+    fn drop_verdicts(&mut self) {
+        self.drop_intervals();
         self.findings.retain(|finding| ending::holds_anywhere(finding.kind));
         let words = self.ending.words.clone();
         let finding = Finding::new(FindingKind::NotAMinimum, words).severity(Severity::Serious);
@@ -444,8 +457,11 @@ fn effects(
     statistics: &mut Statistics,
 ) -> Result<Vec<(usize, Effect)>, Fault> {
     let mut effects = Vec::new();
-    for k in statistics.without_effect.clone() {
-        let (found, simulations) = effect(&run.problem, &run.evaluation, (values, simulated), k)?;
+    for k in
+        statistics.without_effect.iter().chain(&statistics.cancelling).copied().collect::<Vec<_>>()
+    {
+        let at = (values, simulated);
+        let (found, simulations) = effect(&run.problem, &run.evaluation, statistics, at, k)?;
         statistics.simulations += simulations;
         effects.push((k, found));
     }
@@ -494,7 +510,7 @@ fn parameters(
             Some(Effect::Finite(Finite { ends: [low, high], .. })) => {
                 Some([low.unwrap_or(free.min), high.unwrap_or(free.max)])
             }
-            _ => interval_with(effects, free, k, value, reach(statistics, k)),
+            _ => interval_with(effects, free, k, value, reach(statistics, k), statistics.factor),
         };
         let place = free.fraction(value);
         let mut solved = SolvedParameter {
@@ -508,6 +524,7 @@ fn parameters(
             determined: None,
             at_bound: place.min(1.0 - place) < AT_BOUND,
             by_profile: false,
+            in_steps: matches!(own, Some(Effect::Finite(_))),
             verdict: None,
         };
         solved.verdict = verdict(&solved, k, statistics, own);
@@ -542,13 +559,14 @@ fn interval_with(
     k: usize,
     value: f64,
     reach: Option<[f64; 2]>,
+    factor: f64,
 ) -> Option<[f64; 2]> {
     let mut hull = linear_interval(free, value, reach)?;
     for (_, effect) in effects {
         let Effect::Finite(finite) = effect else { continue };
-        for (values, left) in &finite.within {
-            let reach = reach.map(|ends| ends.map(|end| end * left));
-            let [low, high] = linear_interval(free, values[k], reach)?;
+        for fit in &finite.within {
+            let half = factor * fit.left * fit.deviations[k];
+            let [low, high] = linear_interval(free, fit.values[k], Some([half; 2]))?;
             hull = [hull[0].min(low), hull[1].max(high)];
         }
     }
@@ -565,7 +583,10 @@ fn linear_interval(free: &super::Free, value: f64, reach: Option<[f64; 2]>) -> O
         }
         false => [value - below, value + above],
     };
-    Some(ends).filter(|ends| ends.iter().all(|end| end.is_finite()))
+    // The truth is taken to lie in the range.
+    let ends = ends.map(|end| if end.is_nan() { end } else { end.clamp(free.min, free.max) });
+    let is_finite = below.is_finite() && above.is_finite();
+    Some(ends).filter(|ends| is_finite && ends.iter().all(|end| end.is_finite()))
 }
 
 fn verdict(
@@ -600,13 +621,13 @@ fn verdict(
         let [low, high] = parameter.interval?;
         return Some(yes(high - low <= OF_RANGE * (max - min)));
     }
-    let Some(deviation) = parameter.deviation else {
-        let is_held = statistics.at_bounds.as_ref().is_some_and(|own| own.along_limits);
-        return (!is_held).then_some(yes(false));
-    };
+    let Some(deviation) = parameter.deviation else { return Some(yes(false)) };
     // The interval is wider than its standard error says where another parameter acts in steps.
     let spread = match parameter.interval {
-        Some([low, high]) if !parameter.logarithmic => 0.5 * (high - low) / statistics.factor,
+        Some([low, high]) if parameter.logarithmic => {
+            0.5 * elementary::ln(high / low).abs() * parameter.value.abs() / statistics.factor
+        }
+        Some([low, high]) => 0.5 * (high - low) / statistics.factor,
         _ => deviation,
     };
     Some(yes(is_narrow(parameter, deviation.max(spread), statistics.factor)))

@@ -27,7 +27,7 @@ pub use local::Local;
 pub use posterior::{Posterior, PosteriorSettings, Sampled, diagnostics};
 pub use predictions::{Curve, Curves, ModelPredictions, Predict, Reach, Wanted};
 
-use super::{Finding, Run, Solution};
+use super::{Finding, FindingKind, Run, Solution};
 use crate::diag::Fault;
 use serde::{Deserialize, Serialize};
 
@@ -140,9 +140,32 @@ impl Solution {
     /// As [`infer`].
     pub fn add_inference(&mut self, run: &Run) -> Result<(), Fault> {
         let mut found = infer(run)?;
+        if let Some(why) = self.keeps_chains().filter(|_| found.posterior.is_some()) {
+            found.posterior = None;
+            found.refusals.push(format!(
+                "There is no posterior: {why}, and chains that begin at the best values would not \
+                 come there."
+            ));
+        }
         self.findings.append(&mut found.findings);
         self.inferred = found;
         Ok(())
+    }
+}
+
+impl Solution {
+    /// Why chains from the best values may miss a part of the posterior.
+    fn keeps_chains(&self) -> Option<String> {
+        let has = |kind: FindingKind| self.findings.iter().any(|finding| finding.kind == kind);
+        if has(FindingKind::OtherMinimum) {
+            return Some("another minimum fits these data as well".to_owned());
+        }
+        let steps = self.parameters.iter().find(|own| own.in_steps);
+        if let Some(own) = steps {
+            return Some(format!("{} acts in steps, or its derivative vanishes", own.name));
+        }
+        let curved = self.parameters.iter().find(|own| own.by_profile && own.deviation.is_none());
+        curved.map(|own| format!("the derivative by {} vanishes at the best values", own.name))
     }
 }
 

@@ -57,7 +57,7 @@ pub(super) fn at_constraints(problem: &Problem, values: &[f64]) -> Vec<Finding> 
         problem.inference.constraints.iter().filter(|constraint| constraint.is_active(values));
     let remark = |text: &str| {
         let sentence = format!(
-            "The best values lie at the limit of the constraint `{text}`: a better fit may lie beyond it. Where they stand on it, intervals are those along the limit; beside it, they take no account of it."
+            "The best values lie at the limit of the constraint `{text}`: a better fit may lie beyond it. On the limit there are no standard errors and intervals: along it they would be too small, as the truth may lie inside."
         );
         Finding::new(FindingKind::Constraint, sentence)
     };

@@ -38,8 +38,6 @@ pub(in crate::identify::problem) struct AtBounds {
     pub held: Uncertainty,
     /// How far the 95 % interval of each parameter reaches below and above, in its unit.
     pub reach: Vec<[f64; 2]>,
-    /// Whether it is limits of constraints that hold, and not ends of ranges.
-    pub along_limits: bool,
 }
 
 impl AtBounds {
@@ -58,6 +56,9 @@ impl AtBounds {
             return None;
         }
         let full = uncertainty_given(columns, variance)?;
+        if !full.standard_deviations.iter().all(|own| own.is_finite()) {
+            return None;
+        }
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         // Elsewhere the sum is at its minimum, but for rounding.
         let slope = |k: usize| {
@@ -82,51 +83,7 @@ impl AtBounds {
             Some([quadratic.reach(k, -1.0, first, rise)?, quadratic.reach(k, 1.0, first, rise)?])
         };
         let reach: Option<Vec<[f64; 2]>> = (0..n).map(sides).collect();
-        Some(AtBounds { ends: ends.collect(), held, reach: reach?, along_limits: false })
-    }
-}
-
-impl AtBounds {
-    /// Where the best point stands at limits of constraints: what holds along them. `directions`: a
-    /// basis of them by the parameters, in columns; `factor`: half-width of a 95 % interval in
-    /// standard errors.
-    pub(super) fn along_limits(
-        columns: &[Vec<f64>],
-        directions: &DMatrix<f64>,
-        variance: f64,
-        factor: f64,
-    ) -> Option<AtBounds> {
-        let (n, m) = (columns.len(), columns.first()?.len());
-        let combined = |d: usize| -> Vec<f64> {
-            (0..m).map(|j| (0..n).map(|k| columns[k][j] * directions[(k, d)]).sum()).collect()
-        };
-        let own: Vec<Vec<f64>> = (0..directions.ncols()).map(combined).collect();
-        let mut covariance = DMatrix::zeros(n, n);
-        if !own.is_empty() {
-            let found = uncertainty_given(&own, variance)?;
-            let s = &found.standard_deviations;
-            if s.iter().any(|own| !own.is_finite()) {
-                return None;
-            }
-            let entry = |a: usize, b: usize| found.correlations[a * s.len() + b] * s[a] * s[b];
-            let reduced = DMatrix::from_fn(s.len(), s.len(), entry);
-            covariance = directions * reduced * directions.transpose();
-        }
-        // What the limits hold altogether has no error of its own.
-        let deviation = |k: usize| match covariance[(k, k)].max(0.0).sqrt() {
-            own if own > 0.0 => own,
-            _ => f64::INFINITY,
-        };
-        let correlation = |k: usize, l: usize| match deviation(k) * deviation(l) {
-            scale if scale.is_finite() => covariance[(k, l)] / scale,
-            _ => f64::NAN,
-        };
-        let held = Uncertainty {
-            standard_deviations: (0..n).map(deviation).collect(),
-            correlations: (0..n * n).map(|place| correlation(place / n, place % n)).collect(),
-        };
-        let reach = held.standard_deviations.iter().map(|own| [factor * own; 2]).collect();
-        Some(AtBounds { ends: Vec::new(), held, reach, along_limits: true })
+        Some(AtBounds { ends: ends.collect(), held, reach: reach? })
     }
 }
 
@@ -285,6 +242,6 @@ mod tests {
         assert_eq!(AtBounds::of(&columns(0.5), None, &[None, None], [1.0, 4.0]), None);
         let open = [vec![1.0, 1.0, 1.0], vec![1.0, 1.0, 1.0]];
         let found = AtBounds::of(&open, None, &[Some(1.0), None], [1.0, 4.0]);
-        assert!(found.is_none_or(|found| found.held.standard_deviations[1].is_finite()));
+        assert_eq!(found, None);
     }
 }

@@ -20,8 +20,9 @@ use crate::elementary;
 use at_bounds::AtBounds;
 pub use residuals::{ResidualTest, residual_test};
 
+use super::confirmed::is_confirmed;
 use super::inseparable::{self, Form, Inseparable, Sensitivities};
-use super::{ErrorModel, Evaluation, Problem, Series, limits};
+use super::{ErrorModel, Evaluation, Problem, Series};
 use crate::identify::{Uncertainty, error_of_combination, uncertainty_given};
 use distributions::normal_quantile;
 pub(super) use distributions::student_quantile;
@@ -71,6 +72,8 @@ pub struct Statistics {
     pub condition: Option<f64>,
     /// Groups of parameters that only together have an effect.
     pub inseparable: Vec<Inseparable>,
+    /// Parameters whose derivatives cancel each other, while finite changes do not.
+    pub(super) cancelling: Vec<usize>,
     /// Parameters without any effect on the compared points at the best values.
     pub without_effect: Vec<usize>,
     /// Sensitivities of the simulated points by the parameters, column by column, without weights.
@@ -131,13 +134,6 @@ impl Statistics {
                 residuals.iter().zip(&shares).map(|(r, share)| r * share.sqrt()).collect::<Vec<_>>()
             });
             let rise = factor * factor * variance;
-            if let Some(along) = limits::along(problem, values) {
-                // From fractions of the ranges to the parameters.
-                let slopes = problem.parameters.iter().zip(values).map(|(free, v)| free.slope(*v));
-                let slopes: Vec<f64> = slopes.collect();
-                let directions = along.basis.map_with_location(|k, _, part| part * slopes[k]);
-                return AtBounds::along_limits(&columns, &directions, variance, factor);
-            }
             AtBounds::of(&columns, plain.as_deref(), &inward(problem, values), [variance, rise])
         });
         let best = Sensitivities { values: values.to_vec(), columns };
@@ -147,6 +143,24 @@ impl Statistics {
             let elsewhere = elsewhere(problem, evaluation, others, &scales, &mut simulations);
             rank = inseparable::rank(&best, &elsewhere, tolerance);
             rank.inseparable.retain(|group| problem.noise <= EXACT || group.form != Form::Local);
+        }
+        let rise = factor * factor * variance;
+        let measured: Vec<f64> =
+            problem.series.iter().flat_map(|series| series.y.iter().copied()).collect();
+        let is_within = |row: &[f64]| {
+            let points = measured.iter().zip(row).zip(&scales);
+            points.map(|((m, s), w)| elementary::powi(w * (m - s), 2)).sum::<f64>() <= square + rise
+        };
+        let (mut cancelling, mut kept) = (Vec::new(), Vec::new());
+        for group in rank.inseparable {
+            let at = (values, simulated);
+            let (holds, took) = is_confirmed(problem, evaluation, at, &group, &is_within);
+            simulations += took;
+            if holds {
+                kept.push(group);
+            } else {
+                cancelling.extend(group.parameters);
+            }
         }
         Statistics {
             uncertainty,
@@ -160,7 +174,8 @@ impl Statistics {
             residuals,
             repeated,
             condition: rank.condition,
-            inseparable: rank.inseparable,
+            inseparable: kept,
+            cancelling,
             without_effect: rank.without_effect,
             jacobian,
             simulations,
