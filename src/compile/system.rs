@@ -17,6 +17,7 @@ use super::tape::{Instruction, Tape};
 use crate::dae::Homotopy;
 use crate::diag::Fault;
 use crate::fault;
+use crate::flatten::BaseType;
 use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
 use crate::symbolic::{Expr, Pool, VarId, function};
 use std::sync::Arc;
@@ -140,10 +141,16 @@ impl System {
     /// initialization. Bounds are the caller's to check.
     pub fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), Fault> {
         let name = &self.program.parameters().get(index).map(|p| p.name.clone());
+        let is_fraction = value.fract() != 0.0 && !self.is_real(index);
         match (self.set.get_mut(index), name) {
             (Some(_), Some(name)) if value.is_nan() => Err(fault!(
                 super::errors::UNKNOWN_PARAMETER,
                 "the value of `{name}` is not a number"
+            )),
+            (Some(_), Some(name)) if is_fraction => Err(fault!(
+                super::errors::UNKNOWN_PARAMETER,
+                "`{name}` takes whole numbers only";
+                help: "in an identification, compare the fits of several values that are set"
             )),
             (Some(slot), _) => {
                 *slot = Some(value);
@@ -154,6 +161,10 @@ impl System {
                 "there is no parameter number {index}"
             )),
         }
+    }
+
+    fn is_real(&self, parameter: usize) -> bool {
+        self.program.parameters().get(parameter).is_none_or(|own| own.base == BaseType::Real)
     }
 
     /// Takes back all values set.

@@ -7,7 +7,7 @@ use super::retranslation::{self, Changed, Changes};
 use crate::compile::errors::{ASSERTION_FAILED, CHATTERING, UNDETERMINED};
 use crate::compile::{Access, Program, System, Told, Treated, Undetermined};
 use crate::diag::{At, Diagnostic, Fault, suggest};
-use crate::flatten::{self, Experiment, FlatModel, Variability};
+use crate::flatten::{self, BaseType, Experiment, FlatModel, Variability};
 use crate::name::Ident;
 use crate::results::{ResultTable, Series, Values};
 use crate::sim::{self, OutputGrid, Settings, Simulator, Statistics, Trajectory, Treatment};
@@ -688,6 +688,9 @@ fn check_value(model: &Translated, index: usize, value: f64) -> Result<(), Fault
     let name = &parameter.name;
     if value.is_nan() {
         bail!(BAD_PARAMETER_VALUE, "`{name}` cannot be NaN");
+    }
+    if value.fract() != 0.0 && parameter.base != BaseType::Real {
+        bail!(BAD_PARAMETER_VALUE, "`{name}` takes whole numbers, and {value} is none");
     }
     let domain = match (parameter.min.is_finite(), parameter.max.is_finite()) {
         (true, true) => format!("outside {} to {}", parameter.min, parameter.max),
