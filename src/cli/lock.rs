@@ -17,6 +17,9 @@ impl Drop for Lock {
     fn drop(&mut self) {
         // Equal runs leave equal files: who held it is of no use any more.
         let _ = self.0.set_len(0);
+        // A process that is being started holds the file, too, until it begins its program: closing
+        // alone would leave it locked so long.
+        let _ = self.0.unlock();
     }
 }
 
