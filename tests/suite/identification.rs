@@ -111,6 +111,16 @@ fn least_squares_from_the_script_s_best_individual_reach_the_minimum() {
         assert!((100.0 * error / at - percent).abs() < 0.02 * percent, "{own}");
         assert_eq!(own["determined"], true, "{own}");
     }
+    // Profile likelihoods, computed with scipy as well: the model is far from linear in these three.
+    let profiles = [(3, [0.055_365, 0.267_66]), (4, [0.189_98, 0.288_82]), (5, [1.7799, 2.5870])];
+    for (k, ends) in profiles {
+        let own = &found["parameters"][k];
+        assert_eq!(own["by_profile"], true, "{own}");
+        for (end, expected) in ends.into_iter().enumerate() {
+            let end = own["interval"][end].as_f64().unwrap();
+            assert!((end - expected).abs() < 1e-3 * expected, "{own}");
+        }
+    }
     let text = "RunScript(\"GAPILib_INI.mos\")\nN_Cycle = 50\nRunScript(\"GAPILib_CYCLE.mos\")\n";
     let world = shipped::world().with_file("scripts/test.mos", text);
     let options =
