@@ -34,7 +34,7 @@
 //!                                │
 //!                                │ Eval, simulateModel, …
 //!                                ▼
-//!  model text ──syntax──▶ tree ──flatten──▶ FlatModel ──dae──▶ SortedDae ──compile──▶ Program
+//!  model text ──syntax──▶ tree ──flatten──▶ FlatModel ──dae──▶ CausalizedDae ──compile──▶ Program
 //!                                                                                      │
 //!               Outcome ◀──identify── fitness ◀── Trajectory ◀──sim── System (one a thread)
 //!                                │
@@ -71,14 +71,15 @@ pub mod source;
 
 pub mod budget;
 pub mod bytecode;
+pub mod causalize;
 pub mod compile;
-pub mod dae;
 pub mod eval;
 pub mod external;
 pub mod flatten;
 pub mod ga;
 pub mod graph;
 pub mod identify;
+pub mod lower;
 pub mod mat;
 pub mod page;
 pub mod plot;

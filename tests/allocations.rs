@@ -8,8 +8,8 @@
 #![allow(clippy::disallowed_methods, reason = "expected values need not have every digit")]
 #![allow(clippy::print_stdout, reason = "the figures are asked for with --nocapture")]
 
+use gapilib::causalize::causalize;
 use gapilib::compile::{Program, SensitivityCode, System};
-use gapilib::dae::sort;
 use gapilib::flatten::{self, Library, LibraryFiles};
 use gapilib::ga::optimizer::METHODS;
 use gapilib::identify::CompiledModel;
@@ -89,7 +89,7 @@ fn chain() -> System {
     let mut library = Library::new();
     library.load(&file).expect("a loadable file");
     let flat = flatten::flatten(&library, &Name::parse("Chain"), &[]).expect("a model").model;
-    Program::compile(sort(&flat).expect("it can be sorted")).expect("it compiles").system()
+    Program::compile(causalize(&flat).expect("it can be sorted")).expect("it compiles").system()
 }
 
 /// A model of the packages that come with the program.
@@ -101,7 +101,7 @@ fn shipped(class: &str) -> Arc<Program> {
         library.load_lazily(&files, &models.join(name), &Name::default()).expect("it is there");
     }
     let flat = flatten::flatten(&library, &Name::parse(class), &[]).expect("a model").model;
-    Program::compile(sort(&flat).expect("it can be sorted")).expect("it compiles")
+    Program::compile(causalize(&flat).expect("it can be sorted")).expect("it compiles")
 }
 
 /// A cell whose voltage is observed.

@@ -531,15 +531,9 @@ pub(super) struct SimulateArgs {
 
 /// The passes whose system can be shown, the flat model as the first.
 fn pass_names() -> clap::builder::PossibleValuesParser {
-    let value = |(name, what): &(&'static str, &'static str)| {
-        clap::builder::PossibleValue::new(*name).help(*what)
-    };
-    let flat = ("flatten", "the flat model");
-    std::iter::once(&flat)
-        .chain(crate::script::simulation::PASSES)
-        .map(value)
-        .collect::<Vec<_>>()
-        .into()
+    let value = |name, what| clap::builder::PossibleValue::new(name).help(what);
+    let passes = crate::script::simulation::PASSES.iter().map(|pass| value(pass.name, pass.what));
+    std::iter::once(value("flatten", "the flat model")).chain(passes).collect::<Vec<_>>().into()
 }
 
 /// Arguments of `gapi check`.

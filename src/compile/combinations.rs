@@ -8,7 +8,7 @@
 
 use super::event_iteration::Stage;
 use super::system::System;
-use crate::dae::SortedDae;
+use crate::causalize::CausalizedDae;
 use crate::symbolic::{Containing, Expr, Pool};
 use rustc_hash::FxHashMap;
 
@@ -18,7 +18,7 @@ const MOST_RELATIONS: usize = 10;
 const PASSES: usize = 10;
 
 /// For every block that is solved at once, the relations in it.
-pub(super) fn relations_of_blocks(pool: &Pool, sorted: &SortedDae) -> Vec<Vec<usize>> {
+pub(super) fn relations_of_blocks(pool: &Pool, sorted: &CausalizedDae) -> Vec<Vec<usize>> {
     let numbers: FxHashMap<_, _> =
         sorted.dae.relations.iter().enumerate().map(|(at, r)| (r.variable, at)).collect();
     let mut containing = Containing::new(|pool, e| {

@@ -4,8 +4,9 @@ use super::lower::Registers;
 use super::notices::Notice;
 use super::program::{Outputs, Step, compile_outputs};
 use super::tape::Register;
-use crate::dae::{Assignment, Equation, Kind, Level, SortedDae};
+use crate::causalize::{Assignment, CausalizedDae};
 use crate::flatten::BaseType;
+use crate::lower::{Equation, Kind, Level};
 use crate::symbolic::{Expr, Pool, VarId, VariableCollection, linear_in};
 
 /// The part of a program that acts at events alone.
@@ -103,7 +104,7 @@ impl Events {
 pub(super) fn compile_events(
     pool: &Pool,
     registers: &mut Registers,
-    sorted: &SortedDae,
+    sorted: &CausalizedDae,
     sequence: &[Assignment],
 ) -> Events {
     let dae = &sorted.dae;
@@ -162,7 +163,7 @@ pub(super) fn compile_events(
     }
 }
 
-fn shows_samples(pool: &Pool, sorted: &SortedDae) -> bool {
+fn shows_samples(pool: &Pool, sorted: &CausalizedDae) -> bool {
     let dae = &sorted.dae;
     let is_shown = |e: &&Equation| match pool.as_variable(e.left) {
         Some(v) => !dae.variable(v).name.starts_with('$'),
@@ -182,7 +183,11 @@ fn pairs(list: impl Iterator<Item = (Expr, Expr)>) -> Vec<Expr> {
 }
 
 /// `slope * time + rest` with a known slope that is not zero and a rest of parameters.
-pub(super) fn linear_in_time(pool: &mut Pool, sorted: &SortedDae, e: Expr) -> Option<(f64, Expr)> {
+pub(super) fn linear_in_time(
+    pool: &mut Pool,
+    sorted: &CausalizedDae,
+    e: Expr,
+) -> Option<(f64, Expr)> {
     let varies =
         |v: VarId| v != VarId(0) && !matches!(sorted.dae.variable(v).kind, Kind::Parameter { .. });
     if pool.any_variable(e, varies) {

@@ -4,7 +4,7 @@ use super::errors::{ASSERTION_FAILED, DOMAIN_ERROR, INITIALIZATION_FAILED, SIMUL
 use super::memory::Memory;
 use super::program::{Program, number_of_equations};
 use crate::bytecode::{self, Reason};
-use crate::dae::Block;
+use crate::causalize::Block;
 use crate::diag::{Code, Diagnostic};
 use crate::fault;
 use crate::sim::{Culprit, Failure, SimError, SimErrorKind};

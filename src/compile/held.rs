@@ -9,7 +9,7 @@
 //! every so-manieth variable of a chain as well, the Jacobian is a band with a border again. These
 //! are auxiliary: whoever looks at them computes them from the others.
 
-use crate::dae::{Assignment, Block, SortedDae};
+use crate::causalize::{Assignment, Block, CausalizedDae};
 use crate::symbolic::{Expr, Pool, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -36,7 +36,7 @@ pub(super) struct Held {
 
 impl Held {
     /// The form with the sparser Jacobian; `derivatives` are those of the states.
-    pub(super) fn choose(pool: &mut Pool, sorted: &SortedDae, derivatives: &[Expr]) -> Held {
+    pub(super) fn choose(pool: &mut Pool, sorted: &CausalizedDae, derivatives: &[Expr]) -> Held {
         let plain = Held::plain(sorted);
         if sorted.states.len() + plain.iteration.len() < FEWEST {
             return plain;
@@ -65,7 +65,7 @@ impl Held {
     }
 
     /// The iteration variables of torn loops alone.
-    fn plain(sorted: &SortedDae) -> Held {
+    fn plain(sorted: &CausalizedDae) -> Held {
         let mut iteration = Vec::new();
         let mut residuals = Vec::new();
         for block in &sorted.blocks {
@@ -79,7 +79,7 @@ impl Held {
     }
 
     /// With the unknowns of long linear loops.
-    fn opened(sorted: &SortedDae) -> Held {
+    fn opened(sorted: &CausalizedDae) -> Held {
         let mut held = Held::plain(sorted);
         let linear = long_loops(sorted).filter_map(|block| match block {
             Block::Linear(solved) => Some(solved),
@@ -112,7 +112,7 @@ impl Held {
 }
 
 /// Loops of which the Jacobian may profit.
-fn long_loops(sorted: &SortedDae) -> impl Iterator<Item = &Block> {
+fn long_loops(sorted: &CausalizedDae) -> impl Iterator<Item = &Block> {
     sorted.blocks.iter().filter(|block| block.assignments().len() > WIDEST)
 }
 
@@ -132,7 +132,7 @@ impl Dependence {
     /// unknown.
     fn of(
         pool: &Pool,
-        sorted: &SortedDae,
+        sorted: &CausalizedDae,
         held: &Held,
         may_be_cut: &FxHashSet<VarId>,
     ) -> Dependence {

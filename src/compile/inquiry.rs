@@ -2,10 +2,11 @@
 
 use super::errors::*;
 use super::program::{ParameterInfo, Program, VariableInfo, close};
-use crate::dae::{Kind, SortedDae};
+use crate::causalize::CausalizedDae;
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::fault;
 use crate::flatten::{Experiment, Variability};
+use crate::lower::Kind;
 use crate::symbolic::VarId;
 use rustc_hash::FxHashSet;
 
@@ -16,7 +17,7 @@ impl Program {
     }
 
     /// The sorted system it was made of.
-    pub fn sorted(&self) -> &SortedDae {
+    pub fn sorted(&self) -> &CausalizedDae {
         &self.sorted
     }
 

@@ -1,7 +1,7 @@
 //! Exact derivatives through a sequence of assignments: forward accumulation, column by column,
 //! on symbolic expressions.
 
-use crate::dae::Assignment;
+use crate::causalize::Assignment;
 use crate::symbolic::{Expr, Node, Pool, VarId, derivative, differentiate};
 use rustc_hash::FxHashMap;
 use std::collections::{BTreeMap, BTreeSet};

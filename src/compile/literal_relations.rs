@@ -13,8 +13,9 @@ use super::lower::Registers;
 use super::memory::Memory;
 use super::program::{Outputs, Program, compile_outputs};
 use super::system::{System, run};
-use crate::dae::{Assignment, Block, Dae, Kind, Relation, SortedDae, Variable};
+use crate::causalize::{Assignment, Block, CausalizedDae};
 use crate::flatten::{BaseType, Variability};
+use crate::lower::{Dae, Kind, Relation, Variable};
 use crate::sim::{DaeSystem, Failure};
 use crate::symbolic::{Expr, Node, Pool, RelationOperator, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -47,7 +48,7 @@ pub(super) struct LiteralRelations {
 type Found = (Expr, usize);
 
 /// The relations in equations between events that are taken literally and vary there.
-fn literal_relations(sorted: &SortedDae) -> Vec<Found> {
+fn literal_relations(sorted: &CausalizedDae) -> Vec<Found> {
     let (dae, pool) = (&sorted.dae, &sorted.dae.pool);
     let mut known: FxHashSet<Expr> = FxHashSet::default();
     let mut found = Vec::new();
@@ -84,7 +85,7 @@ fn is_candidate(dae: &Dae, e: Expr) -> bool {
 }
 
 /// The system with relations that switch at events instead of these.
-fn with_events(sorted: &SortedDae, literal: &[Found]) -> SortedDae {
+fn with_events(sorted: &CausalizedDae, literal: &[Found]) -> CausalizedDae {
     let mut sorted = sorted.clone();
     let mut replaced: FxHashMap<Expr, Expr> = FxHashMap::default();
     for (e, equation) in literal {
@@ -107,7 +108,7 @@ fn with_events(sorted: &SortedDae, literal: &[Found]) -> SortedDae {
         replaced.insert(*e, dae.pool.variable(variable));
         sorted.aliases.push(None);
     }
-    let SortedDae { dae, blocks, event_blocks, .. } = &mut sorted;
+    let CausalizedDae { dae, blocks, event_blocks, .. } = &mut sorted;
     let (pool, variables) = (&mut dae.pool, &dae.variables);
     let mut successors = replaced;
     for block in blocks.iter_mut().chain(event_blocks) {

@@ -6,7 +6,7 @@ use super::program::Outputs;
 use super::system::System;
 use super::undetermined::Open;
 use crate::bytecode::Journal;
-use crate::dae::{Assertion, Level, Part};
+use crate::lower::{Assertion, Level, Part};
 use crate::sim::Failure;
 use crate::source::Span;
 use crate::value::Value;

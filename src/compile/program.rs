@@ -12,9 +12,10 @@ use super::notices::Notice;
 use super::sliding::memoryless;
 use super::system::System;
 use super::tape::{Register, Tape};
-use crate::dae::{Assertion, Assignment, Block, Kind, Level, SortedDae, Variable};
+use crate::causalize::{Assignment, Block, CausalizedDae};
 use crate::diag::Diagnostic;
 use crate::flatten::{BaseType, Variability};
+use crate::lower::{Assertion, Kind, Level, Variable};
 use crate::sim::Pattern;
 use crate::symbolic::{Expr, Pool, VarId, VariableCollection};
 use crate::syntax::ast::CausalityPrefix;
@@ -152,7 +153,7 @@ pub(super) struct Outputs {
 /// A compiled model.
 #[derive(Debug)]
 pub struct Program {
-    pub(super) sorted: SortedDae,
+    pub(super) sorted: CausalizedDae,
     pub(super) registers: Registers,
     /// Everything in solving order, iteration variables of loops given.
     pub(super) sequence: Vec<Assignment>,
@@ -209,7 +210,7 @@ pub struct Program {
 
 impl Program {
     /// Compiles a sorted system.
-    pub fn compile(mut sorted: SortedDae) -> Result<Arc<Program>, Diagnostic> {
+    pub fn compile(mut sorted: CausalizedDae) -> Result<Arc<Program>, Diagnostic> {
         let n = sorted.dae.variables.len();
         let sequence: Vec<Assignment> =
             sorted.blocks.iter().flat_map(|block| block.assignments()).copied().collect();
@@ -492,7 +493,7 @@ impl Program {
 }
 
 /// Equations, initial equations and those of events.
-pub(super) fn number_of_equations(sorted: &SortedDae) -> usize {
+pub(super) fn number_of_equations(sorted: &CausalizedDae) -> usize {
     let dae = &sorted.dae;
     dae.equations.len() + dae.initial_equations.len() + dae.events.equations.len()
 }
@@ -632,7 +633,7 @@ fn compile_run(pool: &Pool, registers: &mut Registers, run: &mut Vec<Assignment>
 }
 
 /// A variable's representative, with its sign.
-pub(super) fn resolved(pool: &mut Pool, sorted: &SortedDae, variable: VarId) -> Expr {
+pub(super) fn resolved(pool: &mut Pool, sorted: &CausalizedDae, variable: VarId) -> Expr {
     match sorted.aliases[variable.0 as usize] {
         None => pool.variable(variable),
         Some(alias) => {
@@ -662,7 +663,7 @@ fn by_columns(rows: &[BTreeMap<usize, Expr>], n: usize) -> (Pattern, Vec<Expr>) 
     (pattern, values)
 }
 
-fn parameters(sorted: &SortedDae) -> Vec<ParameterInfo> {
+fn parameters(sorted: &CausalizedDae) -> Vec<ParameterInfo> {
     let tunable = |(_, v): &(usize, &Variable)| v.kind == Kind::Parameter { tunable: true };
     let info = |(at, v): (usize, &Variable)| ParameterInfo {
         name: v.name.clone(),
@@ -678,7 +679,7 @@ fn parameters(sorted: &SortedDae) -> Vec<ParameterInfo> {
     sorted.dae.variables.iter().enumerate().filter(tunable).map(info).collect()
 }
 
-fn variables(sorted: &SortedDae, observed: &[VarId]) -> Vec<VariableInfo> {
+fn variables(sorted: &CausalizedDae, observed: &[VarId]) -> Vec<VariableInfo> {
     let mut infos = Vec::new();
     for (at, v) in sorted.dae.variables.iter().enumerate() {
         let id = VarId(at as u32);

@@ -8,8 +8,9 @@ use super::event_iteration::Stage;
 use super::program::Program;
 use super::system::System;
 use super::tape::Register;
-use crate::dae::{Kind, SortedDae};
+use crate::causalize::CausalizedDae;
 use crate::flatten::BaseType;
+use crate::lower::Kind;
 use crate::sim::{Failure, Side, Treatment};
 use crate::source::Span;
 use crate::symbolic::{Expr, Pool, RelationOperator, VarId};
@@ -40,7 +41,7 @@ pub struct Treated {
 
 /// For every relation, whether nothing follows from it at events but values that are functions of
 /// the relations at hand.
-pub(super) fn memoryless(pool: &Pool, sorted: &SortedDae) -> Vec<bool> {
+pub(super) fn memoryless(pool: &Pool, sorted: &CausalizedDae) -> Vec<bool> {
     let dae = &sorted.dae;
     let events = &dae.events;
     let mut remembered: FxHashSet<VarId> = FxHashSet::default();

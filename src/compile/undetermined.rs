@@ -4,7 +4,7 @@
 use super::notices::Notices;
 use super::program::{Program, Step};
 use super::system::System;
-use crate::dae::{Block, LinearLoop, Loop};
+use crate::causalize::{Block, LinearLoop, Loop};
 use crate::source::Span;
 use crate::symbolic::{Node, VarId};
 

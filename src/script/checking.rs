@@ -2,7 +2,7 @@
 
 use super::Session;
 use super::simulation::{self, Translated};
-use crate::dae;
+use crate::causalize;
 use crate::diag::Diagnostic;
 use crate::flatten::FlatModel;
 use crate::name::Name;
@@ -10,7 +10,7 @@ use crate::syntax::ast::Restriction;
 
 /// Counts, alias sets and sorted blocks of a translated model.
 pub fn report(session: &mut Session, model: &Translated) -> String {
-    let report = dae::report(model.program.sorted());
+    let report = causalize::report(model.program.sorted());
     let (name, rest) = report.split_once('\n').unwrap_or((&report, ""));
     let classes = session.library().number_read();
     let unknowns = simulation::unknowns(&model.flat);

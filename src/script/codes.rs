@@ -15,7 +15,7 @@ pub fn all() -> Vec<Code> {
         crate::results::errors::CODES,
         crate::plot::errors::CODES,
         crate::flatten::errors::CODES,
-        crate::dae::errors::CODES,
+        crate::lower::errors::CODES,
         crate::compile::errors::CODES,
         crate::ga::errors::CODES,
         crate::identify::errors::CODES,

@@ -2,14 +2,14 @@
 
 use crate::codes;
 use crate::diag::Code;
-use crate::{dae, eval, flatten};
+use crate::{eval, flatten, lower};
 
 /// Codes that say that something is not there, rather than that something is wrong.
 pub const OUT_OF_REACH: &[Code] = &[
     eval::errors::UNKNOWN_FUNCTION,
     eval::errors::MODEL_ONLY,
     REFUSED,
-    dae::errors::NOT_SUPPORTED,
+    lower::errors::NOT_SUPPORTED,
     flatten::errors::NOT_SUPPORTED,
 ];
 

@@ -13,8 +13,8 @@
 use super::Session;
 use super::errors::BAD_ARGUMENT;
 use super::simulation::{self, Translated, Wishes, state_names};
+use crate::causalize;
 use crate::compile::{Access, Program};
-use crate::dae;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
 use crate::flatten::{Attribute, BaseType, FlatModel, Variability, Variable};
@@ -116,7 +116,7 @@ fn with_states_for_inputs(
         make_state(&mut flat, &variable);
         inputs.extend(element_names(&variable));
     }
-    let program = Program::compile(dae::sort(&flat)?)?;
+    let program = Program::compile(causalize::causalize(&flat)?)?;
     Ok(Some(Translated { problem: model.problem.clone(), flat, program }))
 }
 
@@ -128,7 +128,7 @@ fn slope_name(input: &str) -> String {
 /// der(u) = slope, der(slope) = 0.
 fn make_state(flat: &mut FlatModel, input: &Variable) {
     let literal = |kind| Attribute { value: Expression::new(kind, Span::NONE), is_final: false };
-    let always = literal(ExpressionKind::Integer(dae::StateSelect::Always as i64 + 1));
+    let always = literal(ExpressionKind::Integer(crate::lower::StateSelect::Always as i64 + 1));
     let mut state = Variable { causality: None, ..input.clone() };
     state.attributes.insert("fixed", literal(ExpressionKind::Boolean(true)));
     state.attributes.insert("stateSelect", always);

@@ -13,7 +13,7 @@ use crate::results::{ResultTable, Series, Values};
 use crate::sim::{self, OutputGrid, Settings, Simulator, Statistics, Trajectory, Treatment};
 use crate::source::Span;
 use crate::value::Value;
-use crate::{bail, dae, fault, syntax};
+use crate::{bail, causalize, fault, syntax};
 use indexmap::IndexMap;
 use regex::Regex;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -177,7 +177,7 @@ pub(super) fn compiled(
     problem: &str,
 ) -> Result<Translated, Vec<Diagnostic>> {
     let flat = flat_model(session, problem)?;
-    let sorted = dae::sort(&flat).map_err(|error| vec![error])?;
+    let sorted = causalize::causalize(&flat).map_err(|error| vec![error])?;
     let program = Program::compile(sorted).map_err(|error| vec![error])?;
     warn(session, program.warnings());
     Ok(Translated { problem: problem.to_owned(), flat, program })
@@ -200,7 +200,7 @@ pub fn flat_model(session: &mut Session, problem: &str) -> Result<FlatModel, Vec
     flattened(session, problem).map(|flattened| flattened.model)
 }
 
-pub use crate::dae::PASSES;
+pub use crate::causalize::PASSES;
 
 /// The system of a model after a pass of [`PASSES`] as text, in its own names; else the flat model.
 ///
@@ -208,7 +208,7 @@ pub use crate::dae::PASSES;
 /// Everything that is wrong with it up to there.
 pub fn dump(session: &mut Session, problem: &str, pass: &str) -> Result<String, Vec<Diagnostic>> {
     let flat = flat_model(session, problem)?;
-    let system = dae::dump(&flat, pass).map_err(|error| vec![error])?;
+    let system = causalize::dump(&flat, pass).map_err(|error| vec![error])?;
     Ok(system.unwrap_or_else(|| flat.to_string()))
 }
 
@@ -235,7 +235,7 @@ pub(super) fn flattened(
             errors.map(|error| placed(error, session.call)).collect::<Vec<_>>()
         })?;
         if let Some(imbalance) = imbalance {
-            return Err(vec![dae::explain_imbalance(&flattened.model, imbalance)]);
+            return Err(vec![causalize::explain_imbalance(&flattened.model, imbalance)]);
         }
         warn(session, &flattened.warnings);
         return Ok(flattened);

@@ -2,8 +2,8 @@
 
 use super::Session;
 use super::simulation::{self, Wishes};
+use crate::causalize;
 use crate::compile::Program;
-use crate::dae;
 use crate::diag::{Diagnostic, Fault};
 use crate::flatten::{self, Library};
 use crate::name::Name;
@@ -103,7 +103,7 @@ pub fn verify(
     let flat = flatten::flatten(library, class, &[])
         .map_err(|errors| Stuck { stage: Stage::Flatten, errors })?;
     enter(Stage::Sort);
-    let sorted = dae::sort(&flat.model).map_err(stuck(Stage::Sort))?;
+    let sorted = causalize::causalize(&flat.model).map_err(stuck(Stage::Sort))?;
     enter(Stage::Compile);
     let program = Program::compile(sorted).map_err(stuck(Stage::Compile))?;
     enter(Stage::Simulate);

@@ -1,8 +1,8 @@
 //! One evaluation of a point of the polarization curve: parameters set, two variables observed.
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use gapilib::causalize::causalize;
 use gapilib::compile::Program;
-use gapilib::dae::sort;
 use gapilib::sim::DaeSystem;
 use std::hint::black_box;
 
@@ -16,7 +16,7 @@ const MODEL: &str = "model P parameter Real Eoc = 1.2; parameter Real R = 0.73;
     V = Eoc - R*(i + In) - A*log((i + In)/Io) + B*log(1 - (i + In)/Ilim); end P;";
 
 fn evaluation(criterion: &mut Criterion) {
-    let sorted = sort(&flat_class::flat(MODEL)).expect("the model can be sorted");
+    let sorted = causalize(&flat_class::flat(MODEL)).expect("the model can be sorted");
     let program = Program::compile(sorted).expect("the model compiles");
     let variables = ["i", "V"].map(|name| program.find_variable(name).expect("declared"));
     let mut system = program.system();

@@ -7,8 +7,8 @@
 
 #![allow(clippy::print_stdout, reason = "it prints a table")]
 
+use gapilib::causalize::causalize;
 use gapilib::compile::Program;
-use gapilib::dae::sort;
 use gapilib::flatten::{self, Library, LibraryFiles};
 use gapilib::name::Name;
 use gapilib::plot::{Axis, Figure, Mark, Panel, Series};
@@ -61,7 +61,7 @@ fn program(model: &str, layers: usize, n: usize) -> Arc<Program> {
     let (class, arguments) =
         syntax::parse_class_with_modification(source, &text).expect("a modification");
     let flat = flatten::flatten(&library, &class, &arguments).expect("a model").model;
-    Program::compile(sort(&flat).expect("it can be sorted")).expect("it compiles")
+    Program::compile(causalize(&flat).expect("it can be sorted")).expect("it compiles")
 }
 
 fn measure(model: &str, layers: usize, n: usize) -> Row {

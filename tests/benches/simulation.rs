@@ -16,8 +16,8 @@
 
 use criterion::measurement::{Measurement, ValueFormatter, WallTime};
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
+use gapilib::causalize::causalize;
 use gapilib::compile::Program;
-use gapilib::dae::sort;
 use gapilib::flatten::{self, Library, LibraryFiles};
 use gapilib::name::Name;
 use gapilib::sim::{OutputGrid, Settings, Simulator, Trajectory};
@@ -92,7 +92,7 @@ fn program(folder: &Path, packages: &[&str], class: &str) -> Arc<Program> {
         loaded.expect("the library is there");
     }
     let flat = flatten::flatten(&library, &Name::parse(class), &[]).expect("a model").model;
-    Program::compile(sort(&flat).expect("it can be sorted")).expect("it compiles")
+    Program::compile(causalize(&flat).expect("it can be sorted")).expect("it compiles")
 }
 
 /// A model of the folder `models`, or of `tests/models`.

@@ -4,8 +4,8 @@
 // What includes this file, a test or a benchmark, uses parts of it.
 #![allow(dead_code)]
 
+use gapilib::causalize::causalize;
 use gapilib::compile::Program;
-use gapilib::dae::sort;
 use gapilib::flatten::{Library, flatten};
 use gapilib::ga::optimizer::METHODS;
 use gapilib::identify::CompiledModel;
@@ -201,7 +201,8 @@ impl Dataset {
         let stored = parse_stored_definition(SourceId(0), &text).expect("a class");
         library.load(&stored).expect("a library");
         let flat = flatten(&library, &Name::parse(self.name), &[]).expect("a model").model;
-        let program = Program::compile(sort(&flat).expect("it is sorted")).expect("it compiles");
+        let program =
+            Program::compile(causalize(&flat).expect("it is sorted")).expect("it compiles");
         Experiment {
             second_attempt: true,
             name: format!("z = {z}"),

@@ -1,7 +1,7 @@
 //! Rules that classes keep or break by their text: what is refused, and what is not.
 
+use gapilib::causalize::causalize;
 use gapilib::compile::{Access, Program};
-use gapilib::dae::sort;
 use gapilib::flatten::{Library, check, flatten};
 use gapilib::name::Name;
 use gapilib::sim::{Settings, simulate};
@@ -303,7 +303,7 @@ fn the_modifiers_of_a_redeclaration_do_not_hold_for_the_next_one() {
     for (name, expected) in cases {
         let library = library(&text(name));
         let flat = flatten(&library, &Name::parse("M"), &[]).expect("flattens").model;
-        let program = Program::compile(sort(&flat).expect("sorts")).expect("compiles");
+        let program = Program::compile(causalize(&flat).expect("sorts")).expect("compiles");
         let (rows, _) = simulate(&mut program.system(), &Settings::default()).expect("runs");
         let y = program.find_variable("y").expect("the variable exists");
         let Access::Observed { column, .. } = program.variables()[y].access else {

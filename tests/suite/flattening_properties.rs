@@ -1,8 +1,8 @@
 //! No damaged model makes flattening or compilation panic, hang or run out of stack: the corpora
 //! with tokens deleted, doubled, exchanged or replaced by others of the same file.
 
+use gapilib::causalize;
 use gapilib::compile::Program;
-use gapilib::dae;
 use gapilib::flatten::{Library, flatten};
 use gapilib::name::Name;
 use gapilib::source::SourceId;
@@ -146,7 +146,7 @@ fn compile_all(text: &str) {
     }
     for class in library.all() {
         if let Ok(flattened) = flatten(&library, &class, &[]) {
-            let _ = dae::sort(&flattened.model).map(Program::compile);
+            let _ = causalize::causalize(&flattened.model).map(Program::compile);
         }
         let _ = library.function(&class);
     }

@@ -2,8 +2,8 @@
 //! derivatives those of its differences.
 
 use super::hybrid::simulated;
+use gapilib::causalize::causalize;
 use gapilib::compile::{Program, System};
-use gapilib::dae::sort;
 use gapilib::diag::Diagnostic;
 use gapilib::eval::{Arguments, Callee, Function, Host, call_function};
 use gapilib::flatten::{Library, flatten};
@@ -165,7 +165,7 @@ fn library(functions: &str) -> Library {
 fn compiled(library: &Library) -> Result<Arc<Program>, Diagnostic> {
     let flat = flatten(library, &Name::parse("P.Main"), &[])
         .map_err(|errors| errors.into_iter().next().expect("an error"))?;
-    Program::compile(sort(&flat.model)?)
+    Program::compile(causalize(&flat.model)?)
 }
 
 /// f(u, n) and ∂f/∂u as the model computes them.

@@ -1,7 +1,7 @@
 //! Models with events, from text to trajectory, against exact solutions.
 
+use gapilib::causalize::causalize;
 use gapilib::compile::{Access, Program, System};
-use gapilib::dae::sort;
 use gapilib::diag::Diagnostic;
 use gapilib::flatten::{FlatModel, Library, flatten};
 use gapilib::sim::{OutputGrid, Settings, SimError, Simulator, Trajectory};
@@ -27,7 +27,7 @@ fn flat(text: &str) -> Result<FlatModel, Diagnostic> {
 }
 
 pub(super) fn compiled(text: &str) -> Result<Arc<Program>, Diagnostic> {
-    flat(text).and_then(|flat| sort(&flat)).and_then(Program::compile)
+    flat(text).and_then(|flat| causalize(&flat)).and_then(Program::compile)
 }
 
 pub(super) fn attempt(

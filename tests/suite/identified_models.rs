@@ -20,7 +20,7 @@ fn polarization_curve(problem: &str) -> CompiledModel {
     let source = sources.add("problem", problem);
     let (class, modification) = syntax::parse_class_with_modification(source, problem).unwrap();
     let flat = flatten::flatten(&library, &class, &modification).unwrap();
-    let program = Program::compile(dae::sort(&flat.model).unwrap()).unwrap();
+    let program = Program::compile(causalize::causalize(&flat.model).unwrap()).unwrap();
     CompiledModel::new(problem, program)
 }
 

@@ -1,7 +1,7 @@
 //! Systems of higher index, from Modelica text, against exact solutions.
 
+use gapilib::causalize::causalize;
 use gapilib::compile::{Access, Program, System};
-use gapilib::dae::sort;
 use gapilib::flatten::{FlatModel, Library, flatten};
 use gapilib::sim::{Settings, SimErrorKind, Trajectory, simulate};
 use gapilib::source::SourceMap;
@@ -20,7 +20,7 @@ pub(crate) fn flat(text: &str) -> FlatModel {
 }
 
 pub(crate) fn compiled(text: &str) -> Arc<Program> {
-    let sorted = sort(&flat(text)).unwrap_or_else(|error| panic!("{error}"));
+    let sorted = causalize(&flat(text)).unwrap_or_else(|error| panic!("{error}"));
     Program::compile(sorted).expect("it compiles")
 }
 
@@ -224,7 +224,7 @@ fn redundant_initial_values_must_agree() {
 fn no_number_of_differentiations_makes_a_singular_system_regular() {
     let text =
         "model M Real x; Real y; Real z; equation der(x) = 1; x = time; z = y + time; end M;";
-    let error = sort(&flat(text)).expect_err("it is singular");
+    let error = causalize(&flat(text)).expect_err("it is singular");
     assert_eq!(error.code.slug, "singular-system", "{error}");
 }
 

@@ -1,8 +1,8 @@
 //! Linear algebraic loops, from Modelica text, against exact solutions.
 
 use super::index_reduction::{Run, compiled};
+use gapilib::causalize::{Block, causalize};
 use gapilib::compile::Program;
-use gapilib::dae::{Block, sort};
 use gapilib::sim::{Settings, simulate};
 
 /// Sizes of the linear and of the other loops.
@@ -108,10 +108,10 @@ fn parameters_that_are_zero_are_not_divided_by() {
 
 #[test]
 fn what_cannot_be_set_becomes_a_number() {
-    let sorted = sort(&super::index_reduction::flat(AXIS)).unwrap();
+    let sorted = causalize(&super::index_reduction::flat(AXIS)).unwrap();
     let kind = |name: &str| sorted.dae.variables.iter().find(|v| &*v.name == name).unwrap().kind;
-    assert_eq!(kind("e[2]"), gapilib::dae::Kind::Constant(1.0));
-    assert_eq!(kind("r[3]"), gapilib::dae::Kind::Parameter { tunable: true });
+    assert_eq!(kind("e[2]"), gapilib::causalize::Kind::Constant(1.0));
+    assert_eq!(kind("r[3]"), gapilib::causalize::Kind::Parameter { tunable: true });
 }
 
 #[test]

@@ -288,7 +288,7 @@ fn every_model_is_balanced() {
             assert!(name.contains("Table"), "{name} is not flattened");
             continue;
         };
-        if let Err(error) = gapilib::dae::sort(&flat) {
+        if let Err(error) = gapilib::causalize::causalize(&flat) {
             assert!(ALONE.contains(&error.code.slug), "{name}: {error}");
         }
     }

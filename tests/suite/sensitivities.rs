@@ -2,8 +2,8 @@
 
 use super::flat_class::flat;
 use super::shipped::world;
+use gapilib::causalize::causalize;
 use gapilib::compile::{Program, SensitivityCode, System};
-use gapilib::dae::sort;
 use gapilib::flatten::FlatModel;
 use gapilib::identify::CompiledModel;
 use gapilib::identify::problem::{Experiment, ModelSimulator, Observation, Simulate};
@@ -32,7 +32,8 @@ fn experiment(
     (x_name, x): (&str, &[f64]),
     tolerance: f64,
 ) -> ModelSimulator {
-    let program = Program::compile(sort(model).expect("it can be sorted")).expect("it compiles");
+    let program =
+        Program::compile(causalize(model).expect("it can be sorted")).expect("it compiles");
     let observation = |name: &&str| Observation { y_name: (*name).to_owned(), x: x.to_vec() };
     let stop = if x_name == "time" { x.last().copied().unwrap_or(1.0) } else { 1.0 };
     let experiment = Experiment {
@@ -267,7 +268,7 @@ const VAN_DER_POL: &str = "model M parameter Real mu = 5; Real x(start = 2, fixe
 /// What a simulation with sensitivities costs in steps and evaluations.
 #[test]
 fn sensitivities_take_few_more_steps() {
-    let program = Program::compile(sort(&flat(VAN_DER_POL)).unwrap()).unwrap();
+    let program = Program::compile(causalize(&flat(VAN_DER_POL)).unwrap()).unwrap();
     let mu = program.find_parameter("mu").unwrap();
     let x = program.find_variable("x").unwrap();
     let mut system = program.system();
@@ -326,7 +327,7 @@ fn what_cannot_be_differentiated_says_why() {
 #[test]
 fn other_methods_integrate_no_sensitivities_but_static_curves_need_none() {
     let of = |text: &str| {
-        let program = Program::compile(sort(&flat(text)).unwrap()).unwrap();
+        let program = Program::compile(causalize(&flat(text)).unwrap()).unwrap();
         let experiment = Experiment {
             second_attempt: true,
             name: "test".to_owned(),
@@ -355,7 +356,7 @@ fn static_curves_are_differentiated_point_by_point() {
     let text = "model M parameter Real p = 1; parameter Real q = 1; parameter Real at = 1; \
                 Real x = at; Real y = p*x/(q + x); Real z(start = 1); \
                 equation z^3 + p*z = x; end M;";
-    let program = Program::compile(sort(&flat(text)).unwrap()).unwrap();
+    let program = Program::compile(causalize(&flat(text)).unwrap()).unwrap();
     let x = vec![0.5, 2.0];
     let observed = |name: &str| Observation { y_name: name.to_owned(), x: x.clone() };
     let experiment = Experiment {

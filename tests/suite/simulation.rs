@@ -1,18 +1,18 @@
 //! Compiled models against exact solutions.
 
 use super::flat_class::flat;
+use gapilib::causalize::causalize;
 use gapilib::compile::{Access, Program, System};
-use gapilib::dae::sort;
 use gapilib::sim::{DaeSystem, Settings, Trajectory, simulate};
 use std::sync::Arc;
 
 fn compiled(text: &str) -> Arc<Program> {
-    Program::compile(sort(&flat(text)).expect("the model can be sorted")).expect("it compiles")
+    Program::compile(causalize(&flat(text)).expect("the model can be sorted")).expect("it compiles")
 }
 
 /// The code of the diagnostic that sorting or compiling gives.
 fn refused(text: &str) -> &'static str {
-    match sort(&flat(text)).and_then(Program::compile) {
+    match causalize(&flat(text)).and_then(Program::compile) {
         Ok(_) => panic!("the model is accepted"),
         Err(diagnostic) => diagnostic.code.slug,
     }

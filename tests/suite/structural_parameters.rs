@@ -1,8 +1,8 @@
 //! Parameters that shaped the equations cannot be set afterwards; those that only choose values
 //! can, and what is simulated with a function is what the interpreter computes with it.
 
+use gapilib::causalize::causalize;
 use gapilib::compile::{Access, Program};
-use gapilib::dae::sort;
 use gapilib::eval::{Arguments, Callee, Function, Host, call_function};
 use gapilib::flatten::{Library, flatten};
 use gapilib::name::Name;
@@ -19,7 +19,7 @@ fn compiled_class(text: &str, name: &str) -> Arc<Program> {
     let mut library = Library::new();
     library.load(&file).expect("a loadable file");
     let flat = flatten(&library, &Name::parse(name), &[]).expect("a model").model;
-    Program::compile(sort(&flat).expect("it can be sorted")).expect("it compiles")
+    Program::compile(causalize(&flat).expect("it can be sorted")).expect("it compiles")
 }
 
 fn compiled(text: &str) -> Arc<Program> {

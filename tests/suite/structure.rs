@@ -2,8 +2,8 @@
 
 use super::flat_class::flat;
 use super::shipped::{project, world};
+use gapilib::causalize::{PASSES, Pass, causalize, dump, report, sizes};
 use gapilib::compile::Program;
-use gapilib::dae::{PASSES, dump, report, sizes, sort};
 use gapilib::diag::Diagnostic;
 use gapilib::flatten::FlatModel;
 use gapilib::script::Session;
@@ -13,7 +13,7 @@ use std::path::Path;
 
 #[test]
 fn sorted_systems() {
-    shown("", |flat| sort(flat).map(|sorted| report(&sorted)));
+    shown("", |flat| causalize(flat).map(|sorted| report(&sorted)));
 }
 
 #[test]
@@ -27,7 +27,7 @@ fn every_pass_can_be_shown() {
     let text = std::fs::read_to_string(format!("{root}/tests/structure/Gear.mo")).expect("a model");
     let flat = flat(&text);
     let shown = |pass: &str| dump(&flat, pass).expect("the model can be sorted");
-    for (pass, _) in PASSES {
+    for Pass { name: pass, .. } in PASSES {
         assert!(shown(pass).is_some(), "{pass}");
     }
     assert_eq!(shown("nothing"), None);
@@ -60,7 +60,7 @@ fn nonzeros_of_the_jacobian_grow_with_the_control_volumes() {
     let mut cost = |n: u32| {
         let class = format!("CaseStudies.LoadSteps(n = {n})");
         let flat = flat_model(&mut session, &class).expect("a model");
-        let program = Program::compile(sort(&flat).expect("it can be sorted")).expect("code");
+        let program = Program::compile(causalize(&flat).expect("it can be sorted")).expect("code");
         let mut system = program.system();
         let settings = Settings { stop: 25.0, tolerance: 1e-6, ..Settings::default() };
         let mut trajectory = Trajectory::default();

@@ -2,7 +2,7 @@
 //! their registers, so that only derivatives are computed.
 
 use super::super::jacobian::{Forward, differentiate_sequence};
-use crate::dae::{Assignment, Block, Loop};
+use crate::causalize::{Assignment, Block, Loop};
 use crate::symbolic::Expr;
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -11,8 +11,9 @@ use super::super::program::{
 use super::super::system::{expressions, observing};
 use super::super::tape::{Register, Tape};
 use super::blocks::through_blocks;
-use crate::dae::{Assignment, Block, Kind, Reinit};
+use crate::causalize::{Assignment, Block};
 use crate::flatten::BaseType;
+use crate::lower::{Kind, Reinit};
 use crate::symbolic::{Expr, Pool, VarId};
 use rustc_hash::FxHashSet;
 use std::collections::BTreeMap;

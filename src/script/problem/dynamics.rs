@@ -4,7 +4,7 @@
 use super::build::Around;
 use super::file::{ColumnEntry, DelayEntry, ExperimentEntry, ProblemFile, Role};
 use crate::bail;
-use crate::dae::SortedDae;
+use crate::causalize::CausalizedDae;
 use crate::diag::Fault;
 use crate::registry::BAD_OPTION;
 use std::fmt::Write;
@@ -79,7 +79,7 @@ pub(super) fn delayed(
 pub(super) fn steady(
     file: &ProblemFile,
     entry: &ExperimentEntry,
-    model: &SortedDae,
+    model: &CausalizedDae,
     around: &mut Around,
 ) -> Result<(), Fault> {
     let given = file.parameters.iter().find(|(_, parameter)| parameter.initial);

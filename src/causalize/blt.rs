@@ -1,0 +1,226 @@
+//! Block lower triangular form: which equation determines which unknown, in solving order.
+
+use super::causalized::{Assignment, Block, Loop};
+use super::linear_loops::solve_linear;
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::graph::{Bipartite, Matching, blocks, dulmage_mendelsohn, match_equations, tear};
+use crate::lower::errors::{NOT_SUPPORTED, SINGULAR_SYSTEM, UNBALANCED_MODEL};
+use crate::lower::{Dae, Equation, Kind};
+use crate::source::Span;
+use crate::symbolic::{Expr, VarId, solve};
+use indexmap::{IndexMap, IndexSet};
+use rustc_hash::FxHashMap;
+
+/// The most instances named for an equation.
+const MAX_OWNERS: usize = 4;
+
+/// Sorts equations for unknowns.
+pub(super) fn sort_blocks(
+    dae: &mut Dae,
+    equations: &[Equation],
+    unknowns: &[VarId],
+) -> Result<Vec<Block>, Diagnostic> {
+    let graph = incidence(dae, equations, unknowns);
+    let matching = match_equations(&graph);
+    if equations.len() != unknowns.len() || !matching.is_perfect() {
+        let system = format!("`{}`", dae.name);
+        return Err(report(dae, &system, equations, unknowns, &graph, &matching));
+    }
+    let mut sorted = Vec::new();
+    for block in blocks(&graph, &matching) {
+        let members: Vec<VarId> = block
+            .iter()
+            .filter_map(|equation| matching.equation_to_unknown[*equation])
+            .map(|unknown| unknowns[unknown])
+            .collect();
+        sorted.push(solve_block(dae, equations, &block, &members)?);
+    }
+    Ok(sorted)
+}
+
+/// Which unknowns every equation contains.
+pub(super) fn incidence(dae: &Dae, equations: &[Equation], unknowns: &[VarId]) -> Bipartite {
+    let column: FxHashMap<VarId, usize> =
+        unknowns.iter().enumerate().map(|(at, v)| (*v, at)).collect();
+    let rows = equations.iter().map(|equation| {
+        let mut row = Vec::new();
+        let sides = [equation.left, equation.right];
+        dae.pool.visit_variables(&sides, |v| row.extend(column.get(&v).copied()));
+        row.sort_unstable();
+        row
+    });
+    Bipartite::new(unknowns.len(), rows.collect::<Vec<_>>())
+}
+
+pub(super) fn solve_block(
+    dae: &mut Dae,
+    equations: &[Equation],
+    block: &[usize],
+    members: &[VarId],
+) -> Result<Block, Diagnostic> {
+    if let (&[equation], &[variable]) = (block, members)
+        && let Some(value) = explicit(dae, equations[equation], variable)
+    {
+        return Ok(Block::Assignment(Assignment { variable, value, equation }));
+    }
+    let is_discrete = |v: &&VarId| dae.variable(**v).base != crate::flatten::BaseType::Real;
+    if let Some(discrete) = members.iter().find(is_discrete) {
+        return Err(fault!(
+            NOT_SUPPORTED,
+            "`{}` is discrete and stands in an algebraic loop",
+            dae.variable(*discrete).name
+        )
+        .at(equations[block[0]].span));
+    }
+    let local: Vec<Equation> = block.iter().map(|equation| equations[*equation]).collect();
+    let graph = incidence(dae, &local, members);
+    let mut solutions: FxHashMap<(usize, usize), Expr> = FxHashMap::default();
+    for (row, equation) in local.iter().enumerate() {
+        for unknown in graph.unknowns(row) {
+            if !may_determine(dae, *equation, members[*unknown], members) {
+                continue;
+            }
+            if let Some(value) = explicit(dae, *equation, members[*unknown]) {
+                solutions.insert((row, *unknown), value);
+            }
+        }
+    }
+    let torn = tear(&graph, |row, unknown| solutions.contains_key(&(row, unknown)));
+    let assignments = torn
+        .assignments
+        .iter()
+        .map(|(row, unknown)| Assignment {
+            variable: members[*unknown],
+            value: solutions[&(*row, *unknown)],
+            equation: block[*row],
+        })
+        .collect();
+    let residuals = torn
+        .residual_equations
+        .iter()
+        .map(|row| (dae.pool.sub(local[*row].left, local[*row].right), block[*row]))
+        .collect();
+    let iteration = torn.iteration_unknowns.iter().map(|u| members[*u]).collect();
+    let torn = Loop { iteration, assignments, residuals };
+    Ok(match solve_linear(dae, &torn) {
+        Some(solved) => Block::Linear(solved),
+        None => Block::Loop(torn),
+    })
+}
+
+/// Within a loop a discrete variable has the value of its own equation, so that it keeps its value
+/// exactly where no when-clause acts.
+fn may_determine(dae: &Dae, equation: Equation, variable: VarId, members: &[VarId]) -> bool {
+    let is_discrete = |v: VarId| dae.variable(v).kind == Kind::Discrete;
+    match dae.pool.as_variable(equation.left) {
+        Some(own) if is_discrete(own) && members.contains(&own) => own == variable,
+        _ => !is_discrete(variable),
+    }
+}
+
+/// The value of a variable by one equation, if it can be had without dividing by what may be zero.
+pub(super) fn explicit(dae: &mut Dae, equation: Equation, variable: VarId) -> Option<Expr> {
+    let pool = &mut dae.pool;
+    if pool.as_variable(equation.left) == Some(variable)
+        && !pool.depends_on(equation.right, variable)
+    {
+        return Some(equation.right);
+    }
+    if pool.as_variable(equation.right) == Some(variable)
+        && !pool.depends_on(equation.left, variable)
+    {
+        return Some(equation.left);
+    }
+    let solution = solve(pool, equation.left, equation.right, variable)?;
+    is_safe(dae, solution.divisor).then_some(solution.value)
+}
+
+/// Whether a divisor is a number that is not zero, or made of parameters that do not make it zero
+/// by default: where others make it zero, the division fails with a message rather than giving a
+/// wrong value.
+pub(super) fn is_safe(dae: &Dae, divisor: Expr) -> bool {
+    if let Some(value) = dae.pool.as_constant(divisor) {
+        return value != 0.0;
+    }
+    let varies = |v: VarId| !matches!(dae.variable(v).kind, Kind::Parameter { .. });
+    !dae.pool.any_variable(divisor, varies) && {
+        let value = dae.defaults.of(dae, divisor);
+        value.is_finite() && value != 0.0
+    }
+}
+
+/// Where equations are written and, where instances share the place, whose they are.
+fn places(dae: &Dae, equations: impl Iterator<Item = Equation>) -> IndexMap<Span, String> {
+    let mut owners: IndexMap<Span, IndexSet<&str>> = IndexMap::new();
+    for equation in equations {
+        let owners = owners.entry(equation.span).or_default();
+        let path = equation.instance.map_or("", |of| &*dae.instances[of.0 as usize]);
+        owners.extend((!path.is_empty()).then_some(path));
+    }
+    let words = |owners: IndexSet<&str>| match owners.len() {
+        0 => String::new(),
+        n => {
+            let shown: Vec<String> =
+                owners.iter().take(MAX_OWNERS).map(|path| format!("`{path}`")).collect();
+            let more = if n > MAX_OWNERS { ", …" } else { "" };
+            format!(", in {}{more}", shown.join(", "))
+        }
+    };
+    owners.into_iter().map(|(span, owners)| (span, words(owners))).collect()
+}
+
+/// Names the variables and equations that do not fit.
+pub(super) fn report(
+    dae: &Dae,
+    system: &str,
+    equations: &[Equation],
+    unknowns: &[VarId],
+    graph: &Bipartite,
+    matching: &Matching,
+) -> Diagnostic {
+    let parts = dulmage_mendelsohn(graph, matching);
+    let names = |list: &[usize]| -> String {
+        let shown: Vec<String> =
+            list.iter().take(6).map(|u| format!("`{}`", dae.variable(unknowns[*u]).name)).collect();
+        let more = if list.len() > 6 { ", …" } else { "" };
+        format!("{}{more}", shown.join(", "))
+    };
+    let balanced = equations.len() == unknowns.len();
+    let mut fault = match balanced {
+        true => fault!(SINGULAR_SYSTEM, "the equations of {system} do not determine its variables"),
+        false => fault!(
+            UNBALANCED_MODEL,
+            "{system} has {} unknowns but {} equations",
+            unknowns.len(),
+            equations.len()
+        ),
+    };
+    if !parts.under_unknowns.is_empty() {
+        fault =
+            fault.help(format!("add an equation that determines {}", names(&parts.under_unknowns)));
+    }
+    if !parts.over_equations.is_empty() {
+        fault = fault.help(match parts.over_unknowns.is_empty() {
+            true => "remove one of the equations marked: it contains no unknown".to_owned(),
+            false => format!(
+                "remove one of the equations marked: they determine {} more than once",
+                names(&parts.over_unknowns)
+            ),
+        });
+    }
+    let undetermined = parts.under_unknowns.first().map(|u| dae.variable(unknowns[*u]).span);
+    let mut places = places(dae, parts.over_equations.iter().map(|e| equations[*e])).into_iter();
+    let (first, text) = match undetermined {
+        Some(span) => (span, "no equation determines this".to_owned()),
+        None => {
+            let (span, whose) = places.next().unwrap_or((Span::NONE, String::new()));
+            (span, format!("one equation too many{whose}"))
+        }
+    };
+    let mut diagnostic = fault.labelled(first, text);
+    for (span, whose) in places.take(6) {
+        diagnostic = diagnostic.related(span, format!("one of too many equations{whose}"));
+    }
+    diagnostic
+}

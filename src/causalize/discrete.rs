@@ -1,0 +1,126 @@
+//! Which equations determine discrete variables (MLS §3.8.4, §4.5): these become assignments that
+//! are executed at events.
+
+use super::causalized::Alias;
+use super::used_variables::used_variables;
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::flatten::BaseType;
+use crate::graph::{Bipartite, match_equations};
+use crate::lower::errors::{NOT_SUPPORTED, UNBALANCED_MODEL};
+use crate::lower::{Dae, Equation, Kind};
+use crate::symbolic::function::ResultType;
+use crate::symbolic::{Expr, Node, VarId};
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// Moves the equations that determine discrete variables to those of events, and drops previous
+/// values that nothing uses.
+pub(super) fn separate_discrete(
+    dae: &mut Dae,
+    aliases: &[Option<Alias>],
+) -> Result<(), Diagnostic> {
+    drop_unused_previous(dae);
+    let given: std::collections::BTreeSet<VarId> =
+        dae.events.equations.iter().filter_map(|e| dae.pool.as_variable(e.left)).collect();
+    let open: Vec<VarId> = (0..dae.variables.len() as u32)
+        .map(VarId)
+        .filter(|v| dae.variable(*v).kind == Kind::Discrete && aliases[v.0 as usize].is_none())
+        .filter(|v| !given.contains(v))
+        .collect();
+    if open.is_empty() {
+        return Ok(());
+    }
+    let column: FxHashMap<VarId, usize> = open.iter().enumerate().map(|(at, v)| (*v, at)).collect();
+    let rows: Vec<Vec<usize>> = dae
+        .equations
+        .iter()
+        .map(|equation| {
+            let sides = [(equation.left, equation.right), (equation.right, equation.left)];
+            let target = |(side, other): &(Expr, Expr)| {
+                let variable = dae.pool.as_variable(*side)?;
+                let at = column.get(&variable).copied()?;
+                let fits = !is_real(dae, *other) && !dae.pool.depends_on(*other, variable);
+                fits.then_some(at)
+            };
+            sides.iter().filter_map(target).collect()
+        })
+        .collect();
+    let matching = match_equations(&Bipartite::new(open.len(), rows));
+    if let Some(missing) = matching.unknown_to_equation.iter().position(Option::is_none) {
+        let variable = dae.variable(open[missing]);
+        return Err(fault!(UNBALANCED_MODEL, "no equation determines the discrete `{}`",
+            variable.name; help: "write an equation `{} = …` for it", variable.name)
+        .labelled(variable.span, "no equation determines this"));
+    }
+    for (equation, unknown) in
+        std::mem::take(&mut dae.equations).into_iter().zip(&matching.equation_to_unknown)
+    {
+        let Some(unknown) = unknown else {
+            dae.equations.push(equation);
+            continue;
+        };
+        let left = dae.pool.variable(open[*unknown]);
+        let right = if equation.left == left { equation.right } else { equation.left };
+        check_constant_between_events(dae, open[*unknown], right, equation)?;
+        dae.events.equations.push(Equation { left, right, ..equation });
+    }
+    Ok(())
+}
+
+fn drop_unused_previous(dae: &mut Dae) {
+    let used = used_variables(dae);
+    for (variable, used) in dae.variables.iter_mut().zip(used) {
+        if matches!(variable.kind, Kind::Previous(_)) && !used {
+            variable.kind = Kind::Signal;
+        }
+    }
+}
+
+fn check_constant_between_events(
+    dae: &Dae,
+    variable: VarId,
+    value: Expr,
+    equation: Equation,
+) -> Result<(), Diagnostic> {
+    let varies =
+        |v: VarId| dae.is_unknown(v) || matches!(dae.variable(v).kind, Kind::Time | Kind::Delayed);
+    match dae.pool.any_variable(value, varies) {
+        false => Ok(()),
+        true => Err(fault!(NOT_SUPPORTED,
+            "`{}` is discrete, but its equation may change between events",
+            dae.variable(variable).name;
+            help: "write relations outside `noEvent` and outside functions")
+        .at(equation.span)),
+    }
+}
+
+/// Whether the value of an expression is a Real rather than an Integer, Boolean or enumeration.
+fn is_real(dae: &Dae, e: Expr) -> bool {
+    let (mut open, mut seen) = (vec![e], FxHashSet::default());
+    while let Some(e) = open.pop() {
+        if !seen.insert(e) {
+            continue;
+        }
+        match dae.pool.node(e) {
+            Node::Constant(number) if number.0.fract() != 0.0 => return true,
+            Node::Variable(v) => {
+                let variable = dae.variable(*v);
+                if variable.base == BaseType::Real && variable.kind != Kind::Frozen {
+                    return true;
+                }
+            }
+            Node::Div(..) | Node::Pow(..) => return true,
+            Node::Apply(id, arguments) => match id.get().result {
+                ResultType::Real if id.get().event_generating => {}
+                ResultType::Real => return true,
+                ResultType::Integer => {}
+                ResultType::AsArguments => open.extend(arguments.iter()),
+            },
+            Node::Neg(a) => open.push(*a),
+            Node::Add(a, b) | Node::Sub(a, b) | Node::Mul(a, b) => open.extend([*a, *b]),
+            Node::If(_, a, b) => open.extend([*a, *b]),
+            _ => {}
+        }
+    }
+    false
+}

@@ -1,0 +1,152 @@
+//! Linear loops: the residuals contain the iteration variables linearly, with coefficients free of
+//! them.
+//!
+//! ```text
+//! one   a z + r = 0                    z = −r / a
+//! two   a z + b w + r = 0              z = (b s − d r) / (a d − b c)
+//!       c z + d w + s = 0              w = (c r − a s) / (a d − b c)
+//! more  A z = b                        by elimination when it is evaluated
+//! ```
+//!
+//! The closed forms are taken where the divisor cannot vanish. Where it can, elimination finds out
+//! whether there is a solution; of many it takes the smallest.
+
+use super::blt::is_safe;
+use super::causalized::{Assignment, LinearLoop, Loop};
+use crate::lower::Dae;
+use crate::symbolic::{Expr, Linear, Node, Pool, VarId, differentiate_all, linear_in, substitute};
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// Nodes of the residuals beyond which a loop is left to iteration.
+const MOST_NODES: usize = 200_000;
+/// Unknowns beyond which a loop is left to the integrator, which knows sparse matrices.
+const MOST_UNKNOWNS: usize = 120;
+
+/// The solution of a torn loop, if it is linear.
+pub(super) fn solve_linear(dae: &mut Dae, torn: &Loop) -> Option<LinearLoop> {
+    if torn.iteration.is_empty() || torn.iteration.len() > MOST_UNKNOWNS {
+        return None;
+    }
+    let residuals = residuals(&mut dae.pool, torn)?;
+    if !are_linear(&dae.pool, &residuals, &torn.iteration) {
+        return None;
+    }
+    let values = match closed_form(dae, &torn.iteration, &residuals) {
+        Some(values) => values,
+        None => by_elimination(&mut dae.pool, &torn.iteration, &residuals),
+    };
+    let solved = torn.iteration.iter().zip(values).zip(&torn.residuals);
+    let mut assignments: Vec<Assignment> = solved
+        .map(|((variable, value), (_, equation))| Assignment {
+            variable: *variable,
+            value,
+            equation: *equation,
+        })
+        .collect();
+    assignments.extend(&torn.assignments);
+    let (unknowns, residuals) = (torn.iteration.clone(), torn.residuals.clone());
+    Some(LinearLoop { unknowns, assignments, residuals })
+}
+
+/// The residuals as expressions of the iteration variables.
+fn residuals(pool: &mut Pool, torn: &Loop) -> Option<Vec<Expr>> {
+    let mut inner: FxHashMap<VarId, Expr> = FxHashMap::default();
+    for assignment in &torn.assignments {
+        let value = substitute(pool, assignment.value, &|v| inner.get(&v).copied());
+        inner.insert(assignment.variable, value);
+    }
+    let mut residuals = Vec::new();
+    for (residual, _) in &torn.residuals {
+        residuals.push(substitute(pool, *residual, &|v| inner.get(&v).copied()));
+    }
+    (pool.reachable(&residuals).len() <= MOST_NODES).then_some(residuals)
+}
+
+/// Whether expressions are linear in variables by the form they are written in.
+fn are_linear(pool: &Pool, exprs: &[Expr], variables: &[VarId]) -> bool {
+    let variables: FxHashSet<VarId> = variables.iter().copied().collect();
+    let mut depending: FxHashSet<Expr> = FxHashSet::default();
+    for e in pool.reachable(exprs) {
+        let depends = |a: &Expr| depending.contains(a);
+        let (depends, is_linear) = match pool.node(e) {
+            Node::Variable(v) => (variables.contains(v), true),
+            Node::Neg(a) => (depends(a), true),
+            Node::Add(a, b) | Node::Sub(a, b) => (depends(a) || depends(b), true),
+            Node::Mul(a, b) => (depends(a) || depends(b), !(depends(a) && depends(b))),
+            Node::Div(a, b) => (depends(a), !depends(b)),
+            Node::If(condition, a, b) => (depends(a) || depends(b), !depends(condition)),
+            node => {
+                let mut any = false;
+                node.for_each_operand(|operand| any |= depends(&operand));
+                (any, !any)
+            }
+        };
+        if !is_linear {
+            return false;
+        }
+        if depends {
+            depending.insert(e);
+        }
+    }
+    true
+}
+
+fn closed_form(dae: &mut Dae, unknowns: &[VarId], residuals: &[Expr]) -> Option<Vec<Expr>> {
+    let (values, divisor) = match (unknowns, residuals) {
+        (&[z], &[residual]) => one(&mut dae.pool, residual, z)?,
+        (&[z, w], &[first, second]) => two(&mut dae.pool, [first, second], [z, w])?,
+        _ => return None,
+    };
+    is_safe(dae, divisor).then_some(values)
+}
+
+/// The unknown and what is divided by.
+fn one(pool: &mut Pool, residual: Expr, z: VarId) -> Option<(Vec<Expr>, Expr)> {
+    let Linear { coefficient, rest } = linear_in(pool, residual, z)?;
+    let opposite = pool.neg(rest);
+    Some((vec![pool.div(opposite, coefficient)], coefficient))
+}
+
+/// The unknowns and what is divided by.
+fn two(pool: &mut Pool, residuals: [Expr; 2], [z, w]: [VarId; 2]) -> Option<(Vec<Expr>, Expr)> {
+    let [(a, b, r), (c, d, s)] =
+        [coefficients(pool, residuals[0], [z, w])?, coefficients(pool, residuals[1], [z, w])?];
+    let mut cross = |a: Expr, d: Expr, b: Expr, c: Expr| {
+        let (ad, bc) = (pool.mul(a, d), pool.mul(b, c));
+        pool.sub(ad, bc)
+    };
+    let determinant = cross(a, d, b, c);
+    let (upper, lower) = (cross(b, s, d, r), cross(c, r, a, s));
+    Some((vec![pool.div(upper, determinant), pool.div(lower, determinant)], determinant))
+}
+
+fn coefficients(pool: &mut Pool, residual: Expr, [z, w]: [VarId; 2]) -> Option<(Expr, Expr, Expr)> {
+    let Linear { coefficient: a, rest } = linear_in(pool, residual, z)?;
+    if pool.depends_on(a, w) {
+        return None;
+    }
+    let Linear { coefficient: b, rest } = linear_in(pool, rest, w)?;
+    Some((a, b, rest))
+}
+
+/// A holds the slopes of the residuals, b what they are where all unknowns are zero, negated.
+fn by_elimination(pool: &mut Pool, unknowns: &[VarId], residuals: &[Expr]) -> Vec<Expr> {
+    let n = unknowns.len();
+    let (zero, one) = (pool.constant(0.0), pool.constant(1.0));
+    let mut matrix = vec![zero; n * n];
+    for (column, unknown) in unknowns.iter().enumerate() {
+        let seed = |v: VarId| (v == *unknown).then_some(one);
+        let slopes = differentiate_all(pool, residuals, &seed);
+        for (row, slope) in slopes.into_iter().enumerate() {
+            matrix[row * n + column] = slope;
+        }
+    }
+    let at_zero = |v: VarId| unknowns.contains(&v).then_some(zero);
+    let mut right = Vec::with_capacity(n);
+    for residual in residuals {
+        let rest = substitute(pool, *residual, &at_zero);
+        right.push(if pool.as_constant(rest) == Some(0.0) { zero } else { pool.neg(rest) });
+    }
+    let (matrix, right) = (pool.list(&matrix), pool.list(&right));
+    (0..n as u32).map(|output| pool.solution(matrix, right, output)).collect()
+}

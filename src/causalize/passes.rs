@@ -1,0 +1,251 @@
+//! The passes of causalization: one table, executed from top to bottom.
+
+use super::causalized::{Alias, CausalizedDae};
+use super::dummy_derivatives::ChosenStates;
+use super::event_system::{self, EventSystem};
+use super::initial_system::{self, InitialSystem};
+use super::zero_coefficients::ZeroCoefficients;
+use super::{
+    alias_elimination, blt, discrete, homotopy, index_reduction, parameter_order, reinit, report,
+    zero_coefficients, zero_derivatives,
+};
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::flatten::FlatModel;
+use crate::lower::errors::NOT_SUPPORTED;
+use crate::lower::{self, Dae, DefaultValues, Equation, Kind};
+use crate::symbolic::VarId;
+
+/// A pass of causalization.
+#[derive(Debug)]
+pub struct Pass {
+    /// Its name for `--dump`.
+    pub name: &'static str,
+    /// What it does, in one line.
+    pub what: &'static str,
+    run: fn(&mut Causalization<'_>) -> Result<(), Diagnostic>,
+    /// Writes the blocks that it makes; without, a dump shows the equations after it.
+    pub(super) write_blocks: Option<WriteBlocks>,
+}
+
+type WriteBlocks = fn(&CausalizedDae, &mut String) -> std::fmt::Result;
+
+const fn pass(
+    name: &'static str,
+    what: &'static str,
+    run: fn(&mut Causalization<'_>) -> Result<(), Diagnostic>,
+) -> Pass {
+    Pass { name, what, run, write_blocks: None }
+}
+
+impl Pass {
+    const fn writing(mut self, write_blocks: WriteBlocks) -> Pass {
+        self.write_blocks = Some(write_blocks);
+        self
+    }
+}
+
+/// The passes, in order.
+pub const PASSES: &[Pass] = &[
+    pass("build", "every variable a scalar, relations outside `noEvent` frozen", |system| {
+        system.lower()
+    }),
+    pass("order_parameters", "bindings of parameters in order of dependence", |system| {
+        system.order_parameters()
+    }),
+    pass("fold_parameters", "parameters that cannot be set become numbers", |system| {
+        system.fold_parameters()
+    }),
+    pass("eliminate_aliases", "`a = b` and `a = -b` become names", |system| {
+        system.eliminate_aliases()
+    }),
+    pass("drop_vanishing", "derivatives with coefficients of zero are dropped", |system| {
+        system.drop_zero_derivatives()
+    }),
+    pass(
+        "separate_discrete",
+        "equations of discrete variables become assignments at events",
+        |system| system.separate_discrete(),
+    ),
+    pass("reduce_index", "constraints between states differentiated, states chosen", |system| {
+        system.reduce_index()
+    }),
+    pass("sort_blocks", "matching, strongly connected components, tearing", |system| {
+        system.sort_blocks()
+    })
+    .writing(report::write_blocks),
+    pass(
+        "sort_events",
+        "the same for the system at events, discrete equations included",
+        |system| system.sort_events(),
+    )
+    .writing(report::write_event_blocks),
+    pass("sort_initial", "the same for the system at the start", |system| system.sort_initial())
+        .writing(report::write_initial_blocks),
+];
+
+/// A system on its way through the passes.
+pub(super) struct Causalization<'a> {
+    flat: &'a FlatModel,
+    /// Parameters of zero that the structure takes as numbers.
+    zeros: &'a ZeroCoefficients,
+    dae: Dae,
+    parameters: Vec<VarId>,
+    aliases: Vec<Option<Alias>>,
+    chosen: ChosenStates,
+    /// The equations after the start, and what they are solved for.
+    actual: Vec<Equation>,
+    unknowns: Vec<VarId>,
+    blocks: Vec<super::Block>,
+    events: EventSystem,
+    initial: InitialSystem,
+}
+
+/// Is shown the name of a pass, the system after it, and the aliases known so far.
+pub(super) type Show<'a> = dyn FnMut(&str, &Dae, &[Option<Alias>]) + 'a;
+
+/// Executes all passes.
+pub(super) fn run_passes(
+    flat: &FlatModel,
+    zeros: &ZeroCoefficients,
+    show: &mut Show<'_>,
+) -> Result<CausalizedDae, Diagnostic> {
+    let mut system = Causalization::new(flat, zeros);
+    for pass in PASSES {
+        (pass.run)(&mut system)?;
+        if pass.write_blocks.is_none() {
+            show(pass.name, &system.dae, &system.aliases);
+        }
+    }
+    Ok(system.finish())
+}
+
+impl<'a> Causalization<'a> {
+    fn new(flat: &'a FlatModel, zeros: &'a ZeroCoefficients) -> Self {
+        Causalization {
+            flat,
+            zeros,
+            dae: Dae::default(),
+            parameters: Vec::new(),
+            aliases: Vec::new(),
+            chosen: ChosenStates::default(),
+            actual: Vec::new(),
+            unknowns: Vec::new(),
+            blocks: Vec::new(),
+            events: EventSystem::default(),
+            initial: InitialSystem::default(),
+        }
+    }
+
+    fn lower(&mut self) -> Result<(), Diagnostic> {
+        self.dae = lower::build(self.flat)?;
+        zero_inputs(&mut self.dae, self.flat);
+        zero_coefficients::evaluate(&mut self.dae, self.zeros);
+        Ok(())
+    }
+
+    fn order_parameters(&mut self) -> Result<(), Diagnostic> {
+        self.parameters = parameter_order::order_parameters(&mut self.dae)?;
+        Ok(())
+    }
+
+    fn fold_parameters(&mut self) -> Result<(), Diagnostic> {
+        let parameters = std::mem::take(&mut self.parameters);
+        self.parameters = lower::fold_parameters(&mut self.dae, parameters);
+        self.dae.defaults = DefaultValues::of_parameters(&self.dae, &self.parameters);
+        Ok(())
+    }
+
+    fn eliminate_aliases(&mut self) -> Result<(), Diagnostic> {
+        self.aliases = alias_elimination::eliminate_aliases(&mut self.dae);
+        Ok(())
+    }
+
+    fn drop_zero_derivatives(&mut self) -> Result<(), Diagnostic> {
+        zero_derivatives::drop_zero_derivatives(&mut self.dae, &self.aliases);
+        Ok(())
+    }
+
+    fn separate_discrete(&mut self) -> Result<(), Diagnostic> {
+        discrete::separate_discrete(&mut self.dae, &self.aliases)
+    }
+
+    fn reduce_index(&mut self) -> Result<(), Diagnostic> {
+        self.chosen = index_reduction::reduce_index(&mut self.dae, &mut self.aliases)?;
+        Ok(())
+    }
+
+    fn sort_blocks(&mut self) -> Result<(), Diagnostic> {
+        let ChosenStates { states, selections } = &self.chosen;
+        reinit::check_reinits(&self.dae, &self.aliases, states, selections)?;
+        self.unknowns = index_reduction::unknowns(&self.dae, &self.aliases, states);
+        self.actual = homotopy::actual_equations(&mut self.dae);
+        self.blocks = blt::sort_blocks(&mut self.dae, &self.actual, &self.unknowns)?;
+        Ok(())
+    }
+
+    fn sort_events(&mut self) -> Result<(), Diagnostic> {
+        self.events = event_system::sort_events(&mut self.dae, &self.actual, &self.unknowns)?;
+        Ok(())
+    }
+
+    fn sort_initial(&mut self) -> Result<(), Diagnostic> {
+        let ChosenStates { states, selections } = &self.chosen;
+        self.initial = initial_system::sort_initial(
+            &mut self.dae,
+            states,
+            selections,
+            &self.unknowns,
+            &self.aliases,
+        )?;
+        Ok(())
+    }
+
+    fn finish(self) -> CausalizedDae {
+        let mut lagged = self.events.lagged;
+        lagged.extend(self.initial.lagged);
+        lagged.sort_unstable();
+        lagged.dedup();
+        CausalizedDae {
+            dae: self.dae,
+            aliases: self.aliases,
+            states: self.chosen.states,
+            selections: self.chosen.selections,
+            blocks: self.blocks,
+            event_blocks: self.events.blocks,
+            initial_blocks: self.initial.blocks,
+            initial_checks: self.initial.checks,
+            lagged,
+            parameters: self.parameters,
+        }
+    }
+}
+
+/// An input at the top level without a binding has its start value, which is zero by default.
+fn zero_inputs(dae: &mut Dae, flat: &FlatModel) {
+    let is_bound = |name: &str| {
+        let whole = name.strip_suffix(']').and_then(|name| name.rsplit_once('['));
+        let declared = flat.variables.get(name);
+        let declared = declared.or_else(|| flat.variables.get(whole?.0));
+        declared.is_some_and(|variable| variable.binding.is_some())
+    };
+    for position in 0..dae.variables.len() {
+        let variable = &dae.variables[position];
+        if variable.causality == Some(crate::syntax::ast::CausalityPrefix::Input)
+            && matches!(variable.kind, Kind::Unknown | Kind::Discrete)
+            && !is_bound(&variable.name)
+        {
+            let zero = dae.pool.constant(0.0);
+            let right = variable.start.unwrap_or(zero);
+            let span = variable.span;
+            let warning = fault!(
+                NOT_SUPPORTED,
+                "the input `{}` is not connected; it keeps its start value",
+                variable.name
+            );
+            dae.warnings.push(warning.at(span).warning());
+            let left = dae.pool.variable(VarId(position as u32));
+            dae.equations.push(Equation::new(left, right, span));
+        }
+    }
+}

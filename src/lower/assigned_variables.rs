@@ -1,0 +1,205 @@
+//! The variables that the left sides of statements stand for (MLS §11.2.1).
+//!
+//! A subscript that is computed stands for one element of several: each of these is assigned under
+//! the condition that the subscript is its own.
+
+use super::algorithm::Loops;
+use super::build::Builder;
+use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
+use super::expressions::{Choice, Lowered, Lowering};
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::source::Span;
+use crate::symbolic::{Expr, RelationOperator, VarId};
+use crate::syntax::ast::{
+    ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
+};
+use crate::syntax::visit::Rewrite;
+
+/// Where one scalar of a value goes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    pub(super) variable: VarId,
+    /// The scalar of the value, by its position.
+    pub(super) element: usize,
+    /// The condition under which it goes there.
+    pub(super) guard: Option<Expr>,
+}
+
+impl Builder<'_> {
+    /// The scalars that statements assign, loops unrolled where their ranges are known.
+    pub(super) fn targets(
+        &mut self,
+        statements: &[Statement],
+        loops: &mut Loops,
+        found: &mut Vec<VarId>,
+    ) {
+        for statement in statements {
+            match &statement.kind {
+                StatementKind::Assign { target, .. } => self.add_target(target, loops, found),
+                StatementKind::MultiAssign { targets, .. } => {
+                    targets.iter().flatten().for_each(|t| self.add_target(t, loops, found));
+                }
+                StatementKind::If { branches, otherwise } => {
+                    branches.iter().for_each(|(_, body)| self.targets(body, loops, found));
+                    self.targets(otherwise, loops, found);
+                }
+                StatementKind::When { branches } => {
+                    branches.iter().for_each(|(_, body)| self.targets(body, loops, found));
+                }
+                StatementKind::For { indices, body } => {
+                    self.targets_of_loop(indices, body, loops, found);
+                }
+                StatementKind::While { body, .. } => self.targets(body, loops, found),
+                StatementKind::Call(_) | StatementKind::Break | StatementKind::Return => {}
+            }
+        }
+    }
+
+    fn add_target(&mut self, target: &ComponentReference, loops: &Loops, found: &mut Vec<VarId>) {
+        let asserted = self.dae.assertions.len();
+        let places = self.places(target, loops);
+        self.dae.assertions.truncate(asserted);
+        found.extend(places.iter().flatten().map(|place| place.variable));
+    }
+
+    fn targets_of_loop(
+        &mut self,
+        indices: &[ForIndex],
+        body: &[Statement],
+        loops: &mut Loops,
+        found: &mut Vec<VarId>,
+    ) {
+        let Some((index, inner)) = indices.split_first() else {
+            return self.targets(body, loops, found);
+        };
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.clone();
+        let Ok(values) = lowering.loop_values(index) else {
+            // Whatever the loop variable is: all elements.
+            self.targets(&without_subscripts(body), loops, found);
+            return;
+        };
+        for value in values {
+            loops.push((index.name.node, value));
+            self.targets_of_loop(inner, body, loops, found);
+            loops.pop();
+        }
+    }
+
+    /// The places that a left side stands for.
+    pub(super) fn places(
+        &mut self,
+        target: &ComponentReference,
+        loops: &Loops,
+    ) -> Result<Vec<Place>, Diagnostic> {
+        let flat = self.flat;
+        let mut lowering = self.statement_lowering(loops);
+        let path = lowering.path(target)?;
+        let subscripts = &target.parts[target.parts.len() - 1].subscripts;
+        let Some((position, _, variable)) = flat.variables.get_full(path.as_str()) else {
+            return self.places_of_record(target, loops);
+        };
+        let choices = lowering.choices(&variable.dims, subscripts, target.span)?;
+        // Variables by their offsets from the first of the array.
+        let mut places = vec![Place { variable: VarId(0), element: 0, guard: None }];
+        for (dimension, size) in variable.dims.iter().enumerate() {
+            places = match choices.get(dimension) {
+                None => each(&places, *size, &(0..*size).collect::<Vec<_>>()),
+                Some(Choice::Known { positions, .. }) => each(&places, *size, positions),
+                Some(Choice::Computed(subscript)) => {
+                    self.one_of(&places, *size, *subscript, target.span)?
+                }
+            };
+        }
+        let first = self.first[position].0;
+        places.iter_mut().for_each(|place| place.variable.0 += first);
+        Ok(places)
+    }
+
+    /// The element of a dimension whose subscript is computed.
+    fn one_of(
+        &mut self,
+        places: &[Place],
+        size: usize,
+        subscript: Expr,
+        span: Span,
+    ) -> Result<Vec<Place>, Diagnostic> {
+        if self.varies(subscript) {
+            return Err(fault!(
+                NO_CONSTANT_VALUE,
+                "the subscript of an assignment must be known, or be discrete"
+            )
+            .at(span));
+        }
+        let one = self.dae.pool.constant(1.0);
+        let position = self.dae.pool.sub(subscript, one);
+        self.subscript_assertion(size, position, span);
+        let mut found = Vec::with_capacity(places.len() * size);
+        for place in places {
+            for at in 0..size {
+                let pool = &mut self.dae.pool;
+                let number = pool.constant((at + 1) as f64);
+                let mut guard = pool.relation(RelationOperator::Equal, subscript, number);
+                if let Some(outer) = place.guard {
+                    guard = pool.and(outer, guard);
+                }
+                let variable = VarId(place.variable.0 * size as u32 + at as u32);
+                found.push(Place { variable, element: place.element, guard: Some(guard) });
+            }
+        }
+        Ok(found)
+    }
+
+    fn places_of_record(
+        &mut self,
+        target: &ComponentReference,
+        loops: &Loops,
+    ) -> Result<Vec<Place>, Diagnostic> {
+        let e = Expression::new(ExpressionKind::Reference(target.clone()), target.span);
+        let mut lowering = self.statement_lowering(loops);
+        lowering.target.raw += 1;
+        let value: Result<Lowered<Expr>, Diagnostic> = lowering.lower(&e);
+        self.raw -= 1;
+        let mut scalars = Vec::new();
+        value?.append_scalars(&mut scalars);
+        let place = |(element, e): (usize, Expr)| match self.dae.pool.as_variable(e) {
+            Some(variable) => Ok(Place { variable, element, guard: None }),
+            None => {
+                Err(fault!(NOT_SUPPORTED, "`{}` cannot be assigned", target.name()).at(target.span))
+            }
+        };
+        scalars.into_iter().enumerate().map(place).collect()
+    }
+}
+
+/// The elements of a dimension at known positions.
+fn each(places: &[Place], size: usize, positions: &[usize]) -> Vec<Place> {
+    let of = |place: &Place| {
+        let (offset, element, guard) = (place.variable.0 as usize, place.element, place.guard);
+        let place = move |(at, position): (usize, &usize)| Place {
+            variable: VarId((offset * size + position) as u32),
+            element: element * positions.len() + at,
+            guard,
+        };
+        positions.iter().enumerate().map(place).collect::<Vec<_>>()
+    };
+    places.iter().flat_map(of).collect()
+}
+
+/// Statements that assign to whole arrays what these assign to elements.
+fn without_subscripts(statements: &[Statement]) -> Vec<Statement> {
+    let mut whole = statements.to_vec();
+    whole.iter_mut().for_each(|statement| Whole.statement(statement));
+    whole
+}
+
+struct Whole;
+
+impl Rewrite for Whole {
+    fn reference(&mut self, reference: &mut ComponentReference) {
+        if let Some(last) = reference.parts.last_mut() {
+            last.subscripts.clear();
+        }
+    }
+}

@@ -1,0 +1,769 @@
+//! A flat model becomes a [`Dae`]: every variable a scalar, every equation a pair of scalars.
+
+use super::algorithm::Execution;
+use super::dae;
+use super::dae::{Assertion, Dae, Equation, Instance, Kind, Level, StateSelect, Variable};
+use super::errors::{
+    ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, PARAMETER_CYCLE, UNRESOLVED_REFERENCE,
+};
+use super::expressions::{Array, Lowered, Lowering, Target, size_fault};
+use super::message::message_parts;
+use crate::diag::{Diagnostic, suggest};
+use crate::fault;
+use crate::flatten::{self, BaseType, FlatModel, Part, Variability};
+use crate::source::Span;
+use crate::symbolic::{Containing, Expr, Pool, VarId};
+use crate::syntax::ast::{self, EquationKind, Expression, ExpressionKind};
+use indexmap::IndexSet;
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Stands for a text, or a part of one, that is not known when compiling; messages show it.
+pub(super) const UNKNOWN_TEXT: &str = "…";
+
+/// Largest number of scalar equations.
+const MAX_EQUATIONS: usize = 2_000_000;
+
+/// What is known about a flat variable so far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Folding {
+    Unvisited,
+    InProgress,
+    Done,
+}
+
+/// Builds a [`Dae`].
+pub(super) struct Builder<'a> {
+    pub(super) flat: &'a FlatModel,
+    pub(super) dae: Dae,
+    /// First scalar of every flat variable.
+    pub(super) first: Vec<VarId>,
+    pub(super) folding: Vec<Folding>,
+    pub(super) derivatives: FxHashMap<VarId, VarId>,
+    pub(super) relations: FxHashMap<(crate::symbolic::RelationOperator, Expr, Expr), VarId>,
+    /// How deep calls of user functions are nested, and how many statements they may still run.
+    pub(super) calls: usize,
+    pub(super) inlined: usize,
+    /// How many statements of algorithms may still be carried out.
+    pub(super) statements: usize,
+    /// Statements that became functions so far.
+    pub(super) statement_functions: usize,
+    /// Functions that cannot be expressions.
+    pub(super) functions: super::function::Instances,
+    /// What calls came to.
+    pub(super) repeated: super::function::Repeated,
+    /// Whether expressions contain variables of functions without value.
+    pub(super) undefined: Containing<fn(&Pool, Expr) -> bool>,
+    /// How many calls of impure functions were read.
+    pub(super) impure_calls: u32,
+    /// The calls of functions that write, in the statement at hand.
+    pub(super) written: Vec<Expr>,
+    /// Whose equations are being read.
+    pub(super) instance: Option<Instance>,
+    /// Whether initial equations are being read.
+    pub(super) initial: bool,
+    /// Whether the body of a when-clause is being read.
+    pub(super) in_when: bool,
+    /// How many branches of if-equations are being read whose conditions are not known.
+    pub(super) branches: usize,
+    /// `pre` of every variable that needs it.
+    pub(super) previous: FxHashMap<VarId, VarId>,
+    /// Discrete variables that hold conditions.
+    pub(super) conditions: FxHashMap<Expr, VarId>,
+    /// What when-clauses and algorithms assign.
+    pub(super) assigned: FxHashSet<VarId>,
+    /// The algorithm in progress.
+    pub(super) execution: Execution,
+    /// More than zero where a reference means the variable, not the value it has in an algorithm.
+    pub(super) raw: usize,
+    /// How many assertions there were when the branches of if-expressions began.
+    pub(super) asserted: Vec<usize>,
+    /// The texts that have numbers.
+    pub(super) texts: IndexSet<Arc<str>>,
+}
+
+/// The scalar system of a flat model.
+pub(crate) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
+    let mut builder = Builder {
+        flat,
+        dae: Dae {
+            name: flat.name.clone(),
+            pool: Pool::new(),
+            experiment: flat.experiment,
+            ..Dae::default()
+        },
+        first: Vec::new(),
+        folding: vec![Folding::Unvisited; flat.variables.len()],
+        derivatives: FxHashMap::default(),
+        relations: FxHashMap::default(),
+        calls: 0,
+        statements: super::inline::MAX_STATEMENTS,
+        statement_functions: 0,
+        inlined: 0,
+        functions: super::function::Instances::default(),
+        repeated: FxHashMap::default(),
+        undefined: Containing::new(|pool, e| pool.as_constant(e).is_some_and(f64::is_nan)),
+        impure_calls: 0,
+        written: Vec::new(),
+        instance: None,
+        initial: false,
+        in_when: false,
+        branches: 0,
+        previous: FxHashMap::default(),
+        conditions: FxHashMap::default(),
+        assigned: FxHashSet::default(),
+        execution: Execution::default(),
+        raw: 0,
+        asserted: Vec::new(),
+        texts: IndexSet::new(),
+    };
+    builder.declare();
+    builder.find_varying_texts();
+    builder.find_discrete();
+    builder.fold_constants()?;
+    builder.bindings()?;
+    builder.dae.instances = flat.parts.iter().map(|part| part.instance.clone()).collect();
+    let owners_of = |range| owners(&flat.parts, range);
+    let owners = owners_of(|part| &part.equations);
+    for (position, equation) in flat.equations.iter().enumerate() {
+        builder.instance = owners.get(&position).copied();
+        builder.equation(equation, &mut Vec::new())?;
+    }
+    let owners = owners_of(|part| &part.algorithms);
+    for (position, statements) in flat.algorithms.iter().enumerate() {
+        builder.instance = owners.get(&position).copied();
+        builder.algorithm(statements)?;
+    }
+    builder.initial = true;
+    let asserted = builder.dae.assertions.len();
+    let owners = owners_of(|part| &part.initial_equations);
+    for (position, equation) in flat.initial_equations.iter().enumerate() {
+        builder.instance = owners.get(&position).copied();
+        builder.equation(equation, &mut Vec::new())?;
+    }
+    builder.instance = None;
+    for statements in &flat.initial_algorithms {
+        builder.algorithm(statements)?;
+    }
+    builder.move_to_start(asserted);
+    builder.dae.functions = Arc::new(builder.functions.finish());
+    Ok(builder.dae)
+}
+
+impl<'a> Builder<'a> {
+    /// All scalars, time first.
+    fn declare(&mut self) {
+        let mut time = scalar_of_nothing("time", Kind::Time, Span::NONE);
+        time.unit = "s".into();
+        time.description = "simulated time".into();
+        self.dae.variables.push(time);
+        for variable in self.flat.variables.values() {
+            self.first.push(VarId(self.dae.variables.len() as u32));
+            for position in 0..variable.len() {
+                let mut scalar = declared(variable, position);
+                if matches!(variable.base, BaseType::Enumeration(_)) {
+                    // The default is the first literal (MLS §4.9.5).
+                    scalar.start = Some(self.dae.pool.constant(1.0));
+                }
+                self.dae.variables.push(scalar);
+            }
+        }
+    }
+
+    /// Values of constants and of parameters that cannot be set.
+    fn fold_constants(&mut self) -> Result<(), Diagnostic> {
+        (0..self.flat.variables.len()).try_for_each(|position| self.fold(position))
+    }
+
+    /// Replaces a constant or fixed parameter by its value if its binding has one.
+    pub(super) fn fold(&mut self, position: usize) -> Result<(), Diagnostic> {
+        let variable = &self.flat.variables[position];
+        let fixed = variable.variability <= Variability::Parameter && !variable.is_tunable();
+        match (self.folding[position], &variable.binding) {
+            (Folding::Done, _) => return Ok(()),
+            (Folding::InProgress, _) => {
+                return Err(fault!(PARAMETER_CYCLE, "`{}` depends on itself", variable.name)
+                    .at(variable.span));
+            }
+            (Folding::Unvisited, Some(binding)) if fixed && variable.base != BaseType::String => {
+                self.folding[position] = Folding::InProgress;
+                self.functions.take_exhausted();
+                let array = self.sized(binding, &variable.dims)?;
+                if let (Some(words), Variability::Constant) =
+                    (self.functions.take_exhausted(), variable.variability)
+                {
+                    let name = &variable.name;
+                    return Err(fault!(NO_CONSTANT_VALUE, "`{name}` has no value: {words}";
+                        help: "{}", crate::budget::REMEDY)
+                    .at(binding.span));
+                }
+                for (at, element) in array.elements.iter().enumerate() {
+                    if let Some(value) = self.dae.pool.as_constant(*element) {
+                        let id = self.first[position].0 as usize + at;
+                        self.dae.variables[id].kind = Kind::Constant(value);
+                    }
+                }
+            }
+            _ => {}
+        }
+        self.folding[position] = Folding::Done;
+        Ok(())
+    }
+
+    /// Bindings of parameters, binding equations of variables, attributes.
+    fn bindings(&mut self) -> Result<(), Diagnostic> {
+        let parts = self.flat.parts.iter().zip(0..);
+        let instances: FxHashMap<&str, Instance> =
+            parts.map(|(part, number)| (&*part.instance, Instance(number))).collect();
+        for (position, variable) in self.flat.variables.values().enumerate() {
+            if variable.base == BaseType::String {
+                self.varying_text(position)?;
+                continue;
+            }
+            let first = self.first[position].0 as usize;
+            let holder = variable.name.rsplit_once('.').map_or("", |(holder, _)| holder);
+            let instance = instances.get(holder).copied();
+            let is_parameter = variable.variability <= Variability::Parameter
+                || matches!(variable.base, BaseType::ExternalObject(_));
+            if let Some(binding) = &variable.binding {
+                let array = self.sized(binding, &variable.dims)?;
+                for (at, element) in array.elements.into_iter().enumerate() {
+                    if is_parameter {
+                        self.dae.variables[first + at].binding = Some(element);
+                    } else {
+                        let left = self.dae.pool.variable(VarId((first + at) as u32));
+                        let equation = Equation::new(left, element, binding.span);
+                        if matches!(binding.kind, ExpressionKind::Field { .. }) {
+                            self.allow_continuous(equation);
+                        }
+                        self.dae.equations.push(Equation { instance, ..equation });
+                    }
+                }
+            }
+            self.attributes(variable, first)?;
+        }
+        Ok(())
+    }
+
+    fn attributes(&mut self, variable: &flatten::Variable, first: usize) -> Result<(), Diagnostic> {
+        for (name, attribute) in &variable.attributes {
+            let e = &attribute.value;
+            match *name {
+                "start" | "min" | "max" | "nominal" | "fixed" | "stateSelect" => {}
+                "unit" | "displayUnit" => {
+                    if let ExpressionKind::String(text) = &e.kind {
+                        for scalar in &mut self.dae.variables[first..first + variable.len()] {
+                            match *name {
+                                "unit" => scalar.unit = text.clone(),
+                                _ => scalar.display_unit = text.clone(),
+                            }
+                        }
+                    }
+                    continue;
+                }
+                _ => continue,
+            }
+            let array = Lowering::new(self).array(e)?;
+            if !array.dims.is_empty() && array.dims != variable.dims {
+                return Err(size_fault(&variable.dims, &array.dims).at(e.span));
+            }
+            for at in 0..variable.len() {
+                let element = array.elements[if array.dims.is_empty() { 0 } else { at }];
+                let known = match *name {
+                    "fixed" | "stateSelect" => self.settled(element)?,
+                    _ => None,
+                };
+                let scalar = &mut self.dae.variables[first + at];
+                match *name {
+                    "start" => scalar.start = Some(element),
+                    "min" => scalar.min = Some(element),
+                    "max" => scalar.max = Some(element),
+                    "nominal" => scalar.nominal = Some(element),
+                    "stateSelect" => scalar.state_select = state_select(known, e.span)?,
+                    _ => match known {
+                        Some(value) => scalar.fixed = value != 0.0,
+                        None => {
+                            return Err(fault!(NOT_SUPPORTED, "`fixed` must be known").at(e.span));
+                        }
+                    },
+                }
+            }
+            if *name == "fixed" && variable.variability == Variability::Parameter {
+                self.free_parameters(first..first + variable.len(), e.span)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Parameters with `fixed = false` are found by the initial system; a binding is a start value.
+    fn free_parameters(
+        &mut self,
+        scalars: std::ops::Range<usize>,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        for scalar in &mut self.dae.variables[scalars] {
+            match scalar.kind {
+                _ if scalar.fixed => {}
+                Kind::Parameter { .. } => {
+                    scalar.kind = Kind::Solved;
+                    scalar.start = scalar.start.or(scalar.binding.take());
+                }
+                _ => {
+                    let name = &scalar.name;
+                    return Err(fault!(
+                        NOT_SUPPORTED,
+                        "`{name}` shaped the model and cannot have `fixed = false`"
+                    )
+                    .at(span));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// A value that must have these sizes; a scalar is repeated.
+    pub(super) fn sized(
+        &mut self,
+        e: &Expression,
+        dims: &[usize],
+    ) -> Result<Array<Expr>, Diagnostic> {
+        let array = Lowering::new(self).array(e)?;
+        if array.dims == dims {
+            return Ok(array);
+        }
+        if array.dims.is_empty() {
+            let count = dims.iter().product();
+            return Ok(Array { dims: dims.to_vec(), elements: vec![array.elements[0]; count] });
+        }
+        Err(size_fault(dims, &array.dims).at(e.span))
+    }
+
+    fn equation(
+        &mut self,
+        equation: &ast::Equation,
+        loops: &mut Vec<(crate::name::Ident, Expr)>,
+    ) -> Result<(), Diagnostic> {
+        if self.dae.equations.len() > MAX_EQUATIONS {
+            return Err(
+                fault!(NOT_SUPPORTED, "more than {MAX_EQUATIONS} equations").at(equation.span)
+            );
+        }
+        match &equation.kind {
+            EquationKind::Equal { left, right } => {
+                for pair in self.equal(left, right, equation.span, loops)? {
+                    self.push(pair);
+                }
+                Ok(())
+            }
+            EquationKind::For { indices, body } => self.for_equation(indices, body, loops),
+            EquationKind::If { branches, otherwise } => {
+                for pair in self.if_equation(branches, otherwise, equation.span, loops)? {
+                    self.push(pair);
+                }
+                Ok(())
+            }
+            EquationKind::Call(call) => self.call_equation(call, loops),
+            EquationKind::When { branches } => self.when_equation(branches, equation.span, loops),
+            EquationKind::Connect { .. } => {
+                Err(fault!(NOT_SUPPORTED, "a connection is left in the flat model")
+                    .at(equation.span))
+            }
+        }
+    }
+
+    pub(super) fn push(&mut self, equation: Equation) {
+        let equation = Equation { instance: self.instance, ..equation };
+        match self.initial {
+            true => self.dae.initial_equations.push(equation),
+            false => self.dae.equations.push(equation),
+        }
+    }
+
+    /// The scalar equations of `left = right`.
+    pub(super) fn equal(
+        &mut self,
+        left: &Expression,
+        right: &Expression,
+        span: Span,
+        loops: &[(crate::name::Ident, Expr)],
+    ) -> Result<Vec<Equation>, Diagnostic> {
+        if let ExpressionKind::Tuple(targets) = &left.kind {
+            return self.tuple_equal(targets, right, span, loops);
+        }
+        let live = self.in_when;
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.to_vec();
+        lowering.live = live;
+        let (a, b) = (lowering.lower(left)?, lowering.lower(right)?);
+        if matches!(a, Lowered::Numbered(_)) || matches!(b, Lowered::Numbered(_)) {
+            let left = lowering.number_of_text(a, span)?;
+            let right = lowering.number_of_text(b, span)?;
+            return Ok(vec![Equation::new(left, right, span)]);
+        }
+        let pairs = pairs(&a, &b, span)?;
+        let of_record = |e: &Expression| matches!(e.kind, ExpressionKind::Field { .. });
+        let is_record = matches!(a, Lowered::Record(_)) || of_record(left) || of_record(right);
+        if is_record && !live && !self.initial {
+            pairs.iter().for_each(|pair| self.allow_continuous(*pair));
+        }
+        Ok(pairs)
+    }
+
+    /// Lets an Integer within a record, such as the phase in the state of a medium, change between
+    /// events where the function that computes the record lets it.
+    fn allow_continuous(&mut self, pair: Equation) {
+        for (side, other) in [(pair.left, pair.right), (pair.right, pair.left)] {
+            if let Some(variable) = self.dae.pool.as_variable(side)
+                && self.dae.variable(variable).kind == Kind::Discrete
+                && self.dae.variable(variable).base != BaseType::Real
+                && self.varies(other)
+            {
+                self.dae.variables[variable.0 as usize].kind = Kind::Unknown;
+            }
+        }
+    }
+
+    /// `(a, , b) = f(x)`
+    fn tuple_equal(
+        &mut self,
+        targets: &[Option<Expression>],
+        right: &Expression,
+        span: Span,
+        loops: &[(crate::name::Ident, Expr)],
+    ) -> Result<Vec<Equation>, Diagnostic> {
+        let ExpressionKind::Call { function, arguments } = &right.kind else {
+            return Err(fault!(ARRAY_MISMATCH, "an output list needs a function call").at(span));
+        };
+        let live = self.in_when;
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.to_vec();
+        lowering.live = live;
+        let name = function.name();
+        let user =
+            super::expressions::Target::function(lowering.target, &name).ok_or_else(|| {
+                fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`").at(function.span)
+            })?;
+        let outputs = lowering.user_call(&user, arguments, right.span)?;
+        let mut equations = Vec::new();
+        for (position, target) in targets.iter().enumerate() {
+            let Some(target) = target else { continue };
+            let Some(output) = outputs.get(position) else {
+                return Err(fault!(ARRAY_MISMATCH, "`{name}` has {} outputs", outputs.len())
+                    .at(target.span));
+            };
+            let value = lowering.lower(target)?;
+            let pairs = pairs(&value, output, span)?;
+            if matches!(value, Lowered::Record(_)) && !live && !lowering.target.initial {
+                pairs.iter().for_each(|pair| lowering.target.allow_continuous(*pair));
+            }
+            equations.extend(pairs);
+        }
+        Ok(equations)
+    }
+
+    fn for_equation(
+        &mut self,
+        indices: &[ast::ForIndex],
+        body: &[ast::Equation],
+        loops: &mut Vec<(crate::name::Ident, Expr)>,
+    ) -> Result<(), Diagnostic> {
+        let Some((index, inner)) = indices.split_first() else {
+            return body.iter().try_for_each(|equation| self.equation(equation, loops));
+        };
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.clone();
+        for value in lowering.loop_values(index)? {
+            loops.push((index.name.node, value));
+            let result = self.for_equation(inner, body, loops);
+            loops.pop();
+            result?;
+        }
+        Ok(())
+    }
+
+    /// Equations of all branches, pairwise: `0 = if c then left₁ - right₁ else left₂ - right₂`,
+    /// with common left sides kept.
+    fn if_equation(
+        &mut self,
+        branches: &[(Expression, Vec<ast::Equation>)],
+        otherwise: &[ast::Equation],
+        span: Span,
+        loops: &mut Vec<(crate::name::Ident, Expr)>,
+    ) -> Result<Vec<Equation>, Diagnostic> {
+        let Some(((condition, body), rest)) = branches.split_first() else {
+            return self.collect(otherwise, loops);
+        };
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.clone();
+        let condition = lowering.scalar(condition)?;
+        if let Some(known) = self.dae.pool.as_constant(condition) {
+            return match known != 0.0 {
+                true => self.collect(body, loops),
+                false => self.if_equation(rest, otherwise, span, loops),
+            };
+        }
+        self.branches += 1;
+        let asserted = self.dae.assertions.len();
+        let first = self.collect(body, loops)?;
+        self.guard_assertions(asserted, condition);
+        let asserted = self.dae.assertions.len();
+        let second = self.if_equation(rest, otherwise, span, loops)?;
+        self.branches -= 1;
+        let not = self.dae.pool.not(condition);
+        self.guard_assertions(asserted, not);
+        if first.len() != second.len() {
+            return Err(fault!(
+                super::errors::UNBALANCED_MODEL,
+                "the branches of this if-equation have {} and {} equations",
+                first.len(),
+                second.len()
+            )
+            .at(span));
+        }
+        let pool = &mut self.dae.pool;
+        let merged = first.into_iter().zip(second).map(|(a, b)| {
+            if a.left == b.left {
+                let right = pool.if_then_else(condition, a.right, b.right);
+                return Equation { right, ..a };
+            }
+            let (x, y) = (pool.sub(a.left, a.right), pool.sub(b.left, b.right));
+            let left = pool.constant(0.0);
+            Equation { left, right: pool.if_then_else(condition, x, y), ..a }
+        });
+        Ok(merged.collect())
+    }
+
+    /// Assertions in a branch hold only where it is taken, and are looked at only there.
+    pub(super) fn guard_assertions(&mut self, from: usize, condition: Expr) {
+        let holds = self.dae.pool.constant(1.0);
+        for assertion in self.dae.assertions.iter_mut().skip(from) {
+            assertion.condition = self.dae.pool.if_then_else(condition, assertion.condition, holds);
+        }
+    }
+
+    /// The equations of a branch, not yet part of the system.
+    fn collect(
+        &mut self,
+        body: &[ast::Equation],
+        loops: &mut Vec<(crate::name::Ident, Expr)>,
+    ) -> Result<Vec<Equation>, Diagnostic> {
+        let list = |builder: &mut Self| match builder.initial {
+            true => std::mem::take(&mut builder.dae.initial_equations),
+            false => std::mem::take(&mut builder.dae.equations),
+        };
+        let before = list(self);
+        let result = body.iter().try_for_each(|equation| self.equation(equation, loops));
+        let collected = list(self);
+        match self.initial {
+            true => self.dae.initial_equations = before,
+            false => self.dae.equations = before,
+        }
+        result.map(|()| collected)
+    }
+
+    fn call_equation(
+        &mut self,
+        call: &Expression,
+        loops: &[(crate::name::Ident, Expr)],
+    ) -> Result<(), Diagnostic> {
+        let ExpressionKind::Call { function, arguments } = &call.kind else {
+            return Err(fault!(NOT_SUPPORTED, "this is no equation").at(call.span));
+        };
+        let name = function.name().to_string();
+        match name.as_str() {
+            "assert" => self.assertion(arguments, call.span, loops),
+            _ if name.starts_with("Connections.") => Ok(()),
+            _ => self.call_statement(call, loops, self.initial),
+        }
+    }
+
+    pub(super) fn assertion(
+        &mut self,
+        arguments: &ast::Arguments,
+        span: Span,
+        loops: &[(crate::name::Ident, Expr)],
+    ) -> Result<(), Diagnostic> {
+        let find = |position: usize, name: &str| {
+            let named = arguments.named.iter().find(|a| a.name.node == name).map(|a| &a.value);
+            arguments.positional.get(position).or(named)
+        };
+        let Some(condition) = find(0, "condition") else {
+            return Err(fault!(ARRAY_MISMATCH, "`assert` needs a condition").at(span));
+        };
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.to_vec();
+        lowering.live = true;
+        let condition = lowering.scalar(condition)?;
+        let level = match find(2, "level") {
+            Some(level) if lowering.known(level)? == 1.0 => Level::Warning,
+            _ => Level::Error,
+        };
+        // What ends a simulation is told with what was known when compiling.
+        let parts = match level {
+            Level::Error => {
+                vec![dae::Part::Text(message_text(&mut lowering, find(1, "message")).into())]
+            }
+            _ => message_parts(&mut lowering, find(1, "message")),
+        };
+        self.dae.assertions.push(Assertion::new(condition, parts, level, span));
+        Ok(())
+    }
+}
+
+/// The text of a message as far as it is known when compiling.
+pub(super) fn message_text<T: Target>(
+    lowering: &mut Lowering<'_, T>,
+    e: Option<&Expression>,
+) -> String {
+    let Some(e) = e else { return String::new() };
+    let text = match &e.kind {
+        ExpressionKind::String(text) => return text.to_string(),
+        ExpressionKind::Binary { operator: ast::BinaryOperator::Add, left, right } => {
+            return message_text(lowering, Some(left)) + &message_text(lowering, Some(right));
+        }
+        ExpressionKind::Call { function, .. }
+            if function.as_ident().is_some_and(|name| name == "String") =>
+        {
+            lowering.lower(e)
+        }
+        ExpressionKind::Reference(_) => lowering.lower(e),
+        _ => return UNKNOWN_TEXT.into(),
+    };
+    match text {
+        Ok(Lowered::Text(text)) => text.to_string(),
+        _ => UNKNOWN_TEXT.into(),
+    }
+}
+
+/// Scalar equations of two values of one shape.
+fn pairs(a: &Lowered<Expr>, b: &Lowered<Expr>, span: Span) -> Result<Vec<Equation>, Diagnostic> {
+    let (Some(x), Some(y)) = (a.shape(), b.shape()) else {
+        return Err(fault!(NOT_SUPPORTED, "equations of texts are not supported").at(span));
+    };
+    if x.holds_text() || y.holds_text() {
+        return Err(fault!(NOT_SUPPORTED, "equations of texts are not supported").at(span));
+    }
+    if x.len() != y.len() || std::mem::discriminant(&x) != std::mem::discriminant(&y) {
+        return Err(fault!(
+            ARRAY_MISMATCH,
+            "the sides of this equation have {} and {} elements",
+            x.len(),
+            y.len()
+        )
+        .at(span));
+    }
+    if let (Lowered::Array(x), Lowered::Array(y)) = (a, b)
+        && x.dims != y.dims
+    {
+        return Err(size_fault(&x.dims, &y.dims).at(span));
+    }
+    let (mut left, mut right) = (Vec::new(), Vec::new());
+    a.append_scalars(&mut left);
+    b.append_scalars(&mut right);
+    let equation = |(left, right)| Equation::new(left, right, span);
+    Ok(left.into_iter().zip(right).map(equation).collect())
+}
+
+/// Whose the equations at these positions are.
+fn owners(parts: &[Part], range: fn(&Part) -> &Range<usize>) -> FxHashMap<usize, Instance> {
+    let parts = parts.iter().zip(0..);
+    parts
+        .flat_map(|(part, number)| range(part).clone().map(move |at| (at, Instance(number))))
+        .collect()
+}
+
+/// The scalar at a position of a flat variable.
+fn declared(variable: &flatten::Variable, position: usize) -> Variable {
+    let name: Arc<str> = match variable.dims.is_empty() {
+        true => variable.name.clone(),
+        false => format!("{}[{}]", variable.name, subscripts(&variable.dims, position)).into(),
+    };
+    let kind = match (&variable.base, variable.variability) {
+        (BaseType::String, _) => Kind::Text,
+        // Its constructor runs once, before the simulation.
+        (BaseType::ExternalObject(_), _) => Kind::Parameter { tunable: false },
+        (_, Variability::Constant | Variability::Parameter) => {
+            Kind::Parameter { tunable: variable.is_tunable() }
+        }
+        (BaseType::Real, _) => Kind::Unknown,
+        _ => Kind::Discrete,
+    };
+    Variable {
+        name,
+        kind,
+        base: variable.base.clone(),
+        variability: variable.variability,
+        causality: variable.causality,
+        top_level: variable.top_level,
+        protected: variable.protected,
+        description: variable.description.clone().unwrap_or_default(),
+        ..scalar_of_nothing("", kind, variable.span)
+    }
+}
+
+/// The value of `stateSelect` by its ordinal.
+fn state_select(ordinal: Option<f64>, span: Span) -> Result<StateSelect, Diagnostic> {
+    match ordinal {
+        Some(1.0) => Ok(StateSelect::Never),
+        Some(2.0) => Ok(StateSelect::Avoid),
+        Some(3.0) => Ok(StateSelect::Default),
+        Some(4.0) => Ok(StateSelect::Prefer),
+        Some(5.0) => Ok(StateSelect::Always),
+        _ => Err(fault!(NOT_SUPPORTED, "`stateSelect` must be known").at(span)),
+    }
+}
+
+/// `2,3` for a row-major position.
+fn subscripts(dims: &[usize], position: usize) -> String {
+    let mut rest = position;
+    let mut texts = vec![String::new(); dims.len()];
+    for (text, size) in texts.iter_mut().zip(dims).rev() {
+        *text = (rest % size + 1).to_string();
+        rest /= size;
+    }
+    texts.join(",")
+}
+
+/// A Real without attributes.
+pub(crate) fn scalar_of_nothing(name: &str, kind: Kind, span: Span) -> Variable {
+    Variable {
+        name: name.into(),
+        kind,
+        base: BaseType::Real,
+        variability: Variability::Continuous,
+        causality: None,
+        top_level: false,
+        protected: false,
+        unit: "".into(),
+        display_unit: "".into(),
+        description: "".into(),
+        binding: None,
+        start: None,
+        fixed: false,
+        min: None,
+        max: None,
+        nominal: None,
+        state_select: StateSelect::Default,
+        span,
+    }
+}
+
+impl Builder<'_> {
+    /// The fault of a name that nothing declares.
+    pub(super) fn unresolved(&self, path: &str, span: Span) -> Diagnostic {
+        fault!(UNRESOLVED_REFERENCE, "there is no variable `{path}` in `{}`", self.flat.name)
+            .help_if(suggest::did_you_mean(path, self.flat.variables.keys().map(|n| &**n)))
+            .at(span)
+    }
+}
+
+/// The derivative of a variable, as a variable.
+pub(crate) fn derivative_of(source: &Variable, of: VarId) -> Variable {
+    let name = format!("der({})", source.name);
+    let mut variable = scalar_of_nothing(&name, Kind::Derivative(of), source.span);
+    if !source.unit.is_empty() {
+        variable.unit = format!("{}/s", source.unit).into();
+    }
+    variable
+}

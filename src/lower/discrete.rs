@@ -1,0 +1,101 @@
+//! Which Reals are discrete: those that a when-clause assigns (MLS §3.8.4, §4.5).
+
+use super::build::Builder;
+use super::dae::Kind;
+use super::expressions::Lowering;
+use crate::symbolic::VarId;
+use crate::syntax::ast::{self, ComponentReference, EquationKind, ExpressionKind, StatementKind};
+
+impl Builder<'_> {
+    /// Marks the Reals that when-clauses assign.
+    pub(super) fn find_discrete(&mut self) {
+        let flat = self.flat;
+        let mut targets = Vec::new();
+        flat.equations.iter().for_each(|e| equation_targets(e, false, &mut targets));
+        for statements in &flat.algorithms {
+            statements.iter().for_each(|s| statement_targets(s, false, &mut targets));
+        }
+        for target in targets {
+            for variable in self.target_scalars(target) {
+                let kind = &mut self.dae.variables[variable.0 as usize].kind;
+                if *kind == Kind::Unknown {
+                    *kind = Kind::Discrete;
+                }
+            }
+        }
+    }
+
+    /// The scalars of a target; the whole array where subscripts depend on a loop.
+    fn target_scalars(&mut self, target: &ComponentReference) -> Vec<VarId> {
+        let asserted = self.dae.assertions.len();
+        let places = self.places(target, &Vec::new());
+        self.dae.assertions.truncate(asserted);
+        if let Ok(places) = places {
+            return places.into_iter().map(|place| place.variable).collect();
+        }
+        let Ok(path) = Lowering::new(self).path(target) else { return Vec::new() };
+        let Some((position, _, variable)) = self.flat.variables.get_full(path.as_str()) else {
+            return Vec::new();
+        };
+        let first = self.first[position].0;
+        (first..first + variable.len() as u32).map(VarId).collect()
+    }
+}
+
+fn equation_targets<'a>(
+    equation: &'a ast::Equation,
+    in_when: bool,
+    targets: &mut Vec<&'a ComponentReference>,
+) {
+    let each = |body: &'a [ast::Equation], in_when, targets: &mut Vec<&'a ComponentReference>| {
+        body.iter().for_each(|e| equation_targets(e, in_when, targets));
+    };
+    match &equation.kind {
+        EquationKind::Equal { left, .. } if in_when => match &left.kind {
+            ExpressionKind::Reference(reference) => targets.push(reference),
+            ExpressionKind::Tuple(elements) => {
+                targets.extend(elements.iter().flatten().filter_map(|e| match &e.kind {
+                    ExpressionKind::Reference(reference) => Some(reference),
+                    _ => None,
+                }));
+            }
+            _ => {}
+        },
+        EquationKind::For { body, .. } => each(body, in_when, targets),
+        EquationKind::If { branches, otherwise } => {
+            branches.iter().for_each(|(_, body)| each(body, in_when, targets));
+            each(otherwise, in_when, targets);
+        }
+        EquationKind::When { branches } => {
+            branches.iter().for_each(|(_, body)| each(body, true, targets));
+        }
+        EquationKind::Equal { .. } | EquationKind::Connect { .. } | EquationKind::Call(_) => {}
+    }
+}
+
+fn statement_targets<'a>(
+    statement: &'a ast::Statement,
+    in_when: bool,
+    targets: &mut Vec<&'a ComponentReference>,
+) {
+    let each = |body: &'a [ast::Statement], in_when, targets: &mut Vec<&'a ComponentReference>| {
+        body.iter().for_each(|s| statement_targets(s, in_when, targets));
+    };
+    match &statement.kind {
+        StatementKind::Assign { target, .. } if in_when => targets.push(target),
+        StatementKind::MultiAssign { targets: several, .. } if in_when => {
+            targets.extend(several.iter().flatten());
+        }
+        StatementKind::For { body, .. } | StatementKind::While { body, .. } => {
+            each(body, in_when, targets);
+        }
+        StatementKind::If { branches, otherwise } => {
+            branches.iter().for_each(|(_, body)| each(body, in_when, targets));
+            each(otherwise, in_when, targets);
+        }
+        StatementKind::When { branches } => {
+            branches.iter().for_each(|(_, body)| each(body, true, targets));
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,60 @@
+//! Values of parameters that shape the sorted system: those in `fixed` and `stateSelect`.
+
+use super::build::Builder;
+use super::dae::Kind;
+use crate::diag::Diagnostic;
+use crate::symbolic::{Expr, VarId, evaluate};
+
+/// Deepest chain of parameters.
+const MAX_DEPTH: usize = 100;
+
+impl Builder<'_> {
+    /// The value that parameters give an expression when compiling; they cannot be set any more.
+    /// `None` if it depends on variables, or on parameters without values.
+    pub(super) fn settled(&mut self, e: Expr) -> Result<Option<f64>, Diagnostic> {
+        self.settled_below(e, MAX_DEPTH)
+    }
+
+    fn settled_below(&mut self, e: Expr, depth: usize) -> Result<Option<f64>, Diagnostic> {
+        if let Some(known) = self.dae.pool.as_constant(e) {
+            return Ok(Some(known));
+        }
+        let variables = self.dae.pool.variables(e);
+        let mut values = vec![f64::NAN; variables.last().map_or(0, |v| v.0 as usize + 1)];
+        for variable in variables {
+            let Some(value) = self.settled_parameter(variable, depth)? else { return Ok(None) };
+            values[variable.0 as usize] = value;
+        }
+        let value = evaluate(&self.dae.pool, e, &values[..]);
+        Ok(value.is_finite().then_some(value))
+    }
+
+    fn settled_parameter(
+        &mut self,
+        variable: VarId,
+        depth: usize,
+    ) -> Result<Option<f64>, Diagnostic> {
+        let position = variable.0 as usize;
+        match self.dae.variables[position].kind {
+            Kind::Constant(value) => return Ok(Some(value)),
+            Kind::Parameter { .. } if depth > 0 => {}
+            _ => return Ok(None),
+        }
+        // The variable after the last that begins before it.
+        let Some(at) = self.first.partition_point(|first| *first <= variable).checked_sub(1) else {
+            return Ok(None);
+        };
+        let declared = &self.flat.variables[at];
+        let given = declared.binding.as_ref();
+        let Some(given) = given.or(declared.attributes.get("start").map(|a| &a.value)) else {
+            return Ok(None);
+        };
+        let element =
+            self.sized(given, &declared.dims)?.elements[(variable.0 - self.first[at].0) as usize];
+        let value = self.settled_below(element, depth - 1)?;
+        if value.is_some() {
+            self.dae.variables[position].kind = Kind::Parameter { tunable: false };
+        }
+        Ok(value)
+    }
+}

@@ -1,0 +1,321 @@
+//! The forms of expressions.
+
+use super::records::stacked;
+use super::{Array, Lowered, Lowering, MAX_DEPTH, MAX_SCALARS, Target, size_fault};
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
+use crate::source::Span;
+use crate::syntax::ast::{
+    ComponentReference, Expression, ExpressionKind, ForIndex, Subscript, UnaryOperator,
+};
+
+impl<T: Target> Lowering<'_, T> {
+    /// Any expression.
+    pub(crate) fn lower(&mut self, e: &Expression) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        if self.depth >= MAX_DEPTH {
+            return Err(
+                fault!(NOT_SUPPORTED, "expressions nested deeper than {MAX_DEPTH}").at(e.span)
+            );
+        }
+        self.depth += 1;
+        let result = self.lower_kind(e);
+        self.depth -= 1;
+        result
+    }
+
+    fn lower_kind(&mut self, e: &Expression) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let array = match &e.kind {
+            ExpressionKind::Real(value) => Array::scalar(self.target.constant(*value)),
+            ExpressionKind::Integer(value) => Array::scalar(self.target.constant(*value as f64)),
+            ExpressionKind::Boolean(value) => {
+                Array::scalar(self.target.constant(f64::from(u8::from(*value))))
+            }
+            ExpressionKind::String(text) => return Ok(Lowered::Text(text.clone())),
+            ExpressionKind::Reference(reference) => return self.reference(reference),
+            ExpressionKind::Call { function, arguments } => {
+                return self.call(function, arguments, e.span);
+            }
+            ExpressionKind::Unary { operator, operand } => match operator {
+                UnaryOperator::Plus | UnaryOperator::ElementwisePlus => self.array(operand)?,
+                UnaryOperator::Minus | UnaryOperator::ElementwiseMinus => {
+                    let operand = self.array(operand)?;
+                    self.map_unary(super::Unary::Neg, operand)
+                }
+                UnaryOperator::Not => {
+                    let operand = self.array(operand)?;
+                    self.map_unary(super::Unary::Not, operand)
+                }
+            },
+            ExpressionKind::Binary { operator, left, right } => {
+                return self.binary(*operator, left, right, e.span);
+            }
+            ExpressionKind::If { branches, otherwise } => {
+                return self.if_expression(branches, otherwise, e.span);
+            }
+            ExpressionKind::Range { start, step, stop } => {
+                let values = self.range(start, step.as_deref(), stop, e.span)?;
+                Array::vector(values.into_iter().map(|v| self.target.constant(v)).collect())
+            }
+            ExpressionKind::Array(elements) => return self.constructor(elements, e.span),
+            ExpressionKind::Comprehension { element, indices } => {
+                return self.comprehension(element, indices, e.span);
+            }
+            ExpressionKind::Matrix(rows) => self.matrix(rows, e.span)?,
+            ExpressionKind::End => match self.ends.last() {
+                Some(size) => Array::scalar(self.target.constant(*size as f64)),
+                None => {
+                    return Err(fault!(ARRAY_MISMATCH, "`end` outside a subscript").at(e.span));
+                }
+            },
+            ExpressionKind::TypeName(_) | ExpressionKind::Code(_) => {
+                return Err(fault!(
+                    NOT_SUPPORTED,
+                    "a class or code as a value stands in scripts only"
+                )
+                .at(e.span));
+            }
+            ExpressionKind::Subscripted { base, subscripts } => {
+                let base = self.lower(base)?;
+                return self.elements_of(base, subscripts, e.span);
+            }
+            ExpressionKind::Field { base, name } => {
+                let base = self.lower(base)?;
+                return field(base, *name, e.span);
+            }
+            ExpressionKind::Tuple(elements) => match elements.as_slice() {
+                [Some(only)] => return self.lower(only),
+                _ => {
+                    return Err(fault!(NOT_SUPPORTED, "an output list is no value").at(e.span));
+                }
+            },
+            ExpressionKind::PartialApplication { function, .. } => {
+                return Err(fault!(
+                    NOT_SUPPORTED,
+                    "the function `{function}` as an argument is not supported in models"
+                )
+                .at(e.span));
+            }
+        };
+        Ok(Lowered::Array(array))
+    }
+
+    fn reference(
+        &mut self,
+        reference: &ComponentReference,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        if let Some(ident) = reference.as_ident()
+            && let Some((_, value)) = self.loops.iter().rev().find(|(name, _)| *name == ident)
+        {
+            return Ok(Lowered::scalar(*value));
+        }
+        if let Some(value) = self.part_of_own(reference)? {
+            return Ok(value);
+        }
+        let path = self.path(reference)?;
+        if let Some(chosen) = self.element_of_variable(&path, reference)? {
+            return Ok(chosen);
+        }
+        let value = self.target.reference(&path, reference)?;
+        let subscripts = &reference.parts[reference.parts.len() - 1].subscripts;
+        self.elements_of(value, subscripts, reference.span)
+    }
+
+    /// The flat name without the last part's subscripts: `c[2].x`.
+    pub(crate) fn path(&mut self, reference: &ComponentReference) -> Result<String, Diagnostic> {
+        let mut path = String::new();
+        for (position, part) in reference.parts.iter().enumerate() {
+            if position > 0 {
+                path.push('.');
+            }
+            path.push_str(part.name.as_str());
+            if part.subscripts.is_empty() || position + 1 == reference.parts.len() {
+                continue;
+            }
+            let mut texts = Vec::new();
+            for subscript in &part.subscripts {
+                match subscript {
+                    Subscript::Index(index) => texts.push(self.known_size(index)?.to_string()),
+                    Subscript::All(span) => {
+                        return Err(
+                            fault!(NOT_SUPPORTED, "a slice of an array of components").at(*span)
+                        );
+                    }
+                }
+            }
+            path.push_str(&format!("[{}]", texts.join(",")));
+        }
+        Ok(path)
+    }
+
+    fn if_expression(
+        &mut self,
+        branches: &[(Expression, Expression)],
+        otherwise: &Expression,
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let Some(((condition, value), rest)) = branches.split_first() else {
+            return self.lower(otherwise);
+        };
+        let condition = self.scalar(condition)?;
+        if let Some(known) = self.target.as_constant(condition) {
+            return match known != 0.0 {
+                true => self.lower(value),
+                false => self.if_expression(rest, otherwise, span),
+            };
+        }
+        let mut branch = self.target.begin_if(condition);
+        let first = self.lower(value)?;
+        let mut scalars = Vec::new();
+        first.append_scalars(&mut scalars);
+        self.target.begin_else(&mut branch, &scalars);
+        let second = self.if_expression(rest, otherwise, span)?;
+        if let (Lowered::Text(a), Lowered::Text(b)) = (&first, &second) {
+            self.target.end_if(branch, &[]);
+            if a == b {
+                return Ok(first);
+            }
+            if let Some(holds) = self.target.settle(condition) {
+                return Ok(if holds != 0.0 { first } else { second });
+            }
+            let numbers = [self.number_of_text(first, span)?, self.number_of_text(second, span)?];
+            return Ok(self.choice_of_texts(condition, numbers));
+        }
+        if let (Lowered::Numbered(_), _) | (_, Lowered::Numbered(_)) = (&first, &second) {
+            self.target.end_if(branch, &[]);
+            let numbers = [self.number_of_text(first, span)?, self.number_of_text(second, span)?];
+            return Ok(self.choice_of_texts(condition, numbers));
+        }
+        let (Some(a), Some(b)) = (first.shape(), second.shape()) else {
+            return Err(fault!(NOT_SUPPORTED, "texts that depend on conditions").at(span));
+        };
+        let Some(shape) = a.joined(&b) else {
+            return Err(fault!(ARRAY_MISMATCH, "the branches differ in size").at(span));
+        };
+        scalars.clear();
+        second.append_scalars(&mut scalars);
+        let values = self.target.end_if(branch, &scalars);
+        Ok(Lowered::from_scalars(&shape, &mut values.into_iter()))
+    }
+
+    /// The numbers of a range (MLS §10.4.3).
+    pub(crate) fn range(
+        &mut self,
+        start: &Expression,
+        step: Option<&Expression>,
+        stop: &Expression,
+        span: Span,
+    ) -> Result<Vec<f64>, Diagnostic> {
+        let start = self.shaping(start)?;
+        let step = step.map_or(Ok(1.0), |step| self.shaping(step))?;
+        let stop = self.shaping(stop)?;
+        let count = ((stop - start) / step * (1.0 + f64::EPSILON)).floor() + 1.0;
+        if step == 0.0 || !count.is_finite() || count > MAX_SCALARS as f64 {
+            return Err(fault!(
+                ARRAY_MISMATCH,
+                "the range {start}:{step}:{stop} has no end that can be reached"
+            )
+            .at(span));
+        }
+        Ok((0..count.max(0.0) as usize).map(|i| start + i as f64 * step).collect())
+    }
+
+    fn comprehension(
+        &mut self,
+        element: &Expression,
+        indices: &[ForIndex],
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let Some((last, outer)) = indices.split_last() else {
+            return self.lower(element);
+        };
+        let mut inner = Vec::new();
+        for value in self.loop_values(last)? {
+            self.loops.push((last.name.node, value));
+            let element = self.comprehension(element, outer, span);
+            self.loops.pop();
+            inner.push(element?);
+        }
+        stacked(inner, span)
+    }
+
+    /// The values of a loop variable.
+    pub(crate) fn loop_values(&mut self, index: &ForIndex) -> Result<Vec<T::Scalar>, Diagnostic> {
+        let Some(range) = &index.range else {
+            return Err(fault!(NOT_SUPPORTED,
+                "the range of `{}` is not written and must be deduced", index.name.node;
+                help: "write the range")
+            .at(index.name.span));
+        };
+        let values = self.array(range)?;
+        if values.dims.len() != 1 {
+            return Err(fault!(ARRAY_MISMATCH, "a loop runs over a vector").at(range.span));
+        }
+        Ok(values.elements)
+    }
+
+    /// Every element of `f(e for i in …)`.
+    pub(crate) fn reduction_elements(
+        &mut self,
+        element: &Expression,
+        indices: &[ForIndex],
+    ) -> Result<Vec<T::Scalar>, Diagnostic> {
+        match self.comprehension(element, indices, element.span)? {
+            Lowered::Array(array) => Ok(array.elements),
+            _ => Err(fault!(ARRAY_MISMATCH, "a reduction of what is no number").at(element.span)),
+        }
+    }
+
+    fn constructor(
+        &mut self,
+        elements: &[Expression],
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let values = elements.iter().map(|e| self.lower(e)).collect::<Result<Vec<_>, _>>()?;
+        stacked(values, span)
+    }
+}
+
+/// A component of a record.
+pub(crate) fn field<S: Copy>(
+    base: Lowered<S>,
+    name: crate::name::Ident,
+    span: Span,
+) -> Result<Lowered<S>, Diagnostic> {
+    field_of(&base, name, span).cloned()
+}
+
+/// As [`field`], without copying.
+pub(crate) fn field_of<S: Copy>(
+    base: &Lowered<S>,
+    name: crate::name::Ident,
+    span: Span,
+) -> Result<&Lowered<S>, Diagnostic> {
+    if let Lowered::Record(fields) = base
+        && let Some((_, value)) = fields.iter().find(|(field, _)| *field == name)
+    {
+        return Ok(value);
+    }
+    Err(fault!(super::super::errors::UNRESOLVED_REFERENCE, "there is no component `{name}`")
+        .at(span))
+}
+
+/// Arrays of one size as the elements of an array with one more dimension.
+pub(super) fn stack<S: Copy>(arrays: Vec<Array<S>>, span: Span) -> Result<Array<S>, Diagnostic> {
+    let mut dims = vec![arrays.len()];
+    let Some(first) = arrays.first() else {
+        return Ok(Array { dims, elements: Vec::new() });
+    };
+    dims.extend(&first.dims);
+    let mut elements = Vec::new();
+    for array in &arrays {
+        if array.dims != first.dims {
+            return super::at(Err(size_fault(&first.dims, &array.dims)), span);
+        }
+        elements.extend(&array.elements);
+    }
+    if elements.len() > MAX_SCALARS {
+        return Err(fault!(ARRAY_MISMATCH, "an array of more than {MAX_SCALARS} elements").at(span));
+    }
+    Ok(Array { dims, elements })
+}

@@ -1,0 +1,284 @@
+//! Operators on scalars, vectors and matrices (MLS §10.6).
+
+use super::{Array, Binary, Lowered, Lowering, Target, Unary, size_fault};
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::lower::build::UNKNOWN_TEXT;
+use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
+use crate::source::Span;
+use crate::symbolic::RelationOperator;
+use crate::syntax::ast::{BinaryOperator, Expression};
+use std::sync::Arc;
+
+/// The greatest exponent of a matrix.
+const MAX_POWER: f64 = 64.0;
+
+impl<T: Target> Lowering<'_, T> {
+    pub(super) fn map_unary(&mut self, op: Unary, mut a: Array<T::Scalar>) -> Array<T::Scalar> {
+        for element in &mut a.elements {
+            *element = self.target.unary(op, *element);
+        }
+        a
+    }
+
+    pub(super) fn binary(
+        &mut self,
+        operator: BinaryOperator,
+        left: &Expression,
+        right: &Expression,
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let a = match self.lower(left)? {
+            Lowered::Text(a) => return self.texts(operator, a, right, span),
+            Lowered::Numbered(a) => return self.varying_texts(operator, a, right, span),
+            Lowered::Array(a) => a,
+            Lowered::Record(_) => self.array(left)?,
+        };
+        if matches!(operator, BinaryOperator::And | BinaryOperator::Or)
+            && a.dims.is_empty()
+            && self.target.short_circuits()
+        {
+            return self.short_circuit(operator, a.elements[0], right);
+        }
+        let b = self.array(right)?;
+        let array = match operator {
+            BinaryOperator::Add => self.same_size(Binary::Add, a, b, span)?,
+            BinaryOperator::Subtract => self.same_size(Binary::Sub, a, b, span)?,
+            BinaryOperator::ElementwiseAdd => self.elementwise(Binary::Add, a, b, span)?,
+            BinaryOperator::ElementwiseSubtract => self.elementwise(Binary::Sub, a, b, span)?,
+            BinaryOperator::ElementwiseMultiply => self.elementwise(Binary::Mul, a, b, span)?,
+            BinaryOperator::ElementwiseDivide => self.elementwise(Binary::Div, a, b, span)?,
+            BinaryOperator::ElementwisePower => self.elementwise(Binary::Pow, a, b, span)?,
+            BinaryOperator::Multiply => self.product(a, b, span)?,
+            BinaryOperator::Divide if b.dims.is_empty() => {
+                self.elementwise(Binary::Div, a, b, span)?
+            }
+            BinaryOperator::Divide => {
+                return Err(fault!(ARRAY_MISMATCH, "the divisor is an array";
+                    help: "write `./` to divide element by element")
+                .at(span));
+            }
+            BinaryOperator::Power => self.power(a, b, span)?,
+            BinaryOperator::And => self.same_size(Binary::And, a, b, span)?,
+            BinaryOperator::Or => self.same_size(Binary::Or, a, b, span)?,
+            BinaryOperator::Less => self.compare(RelationOperator::Less, a, b, span)?,
+            BinaryOperator::LessEqual => self.compare(RelationOperator::LessEqual, a, b, span)?,
+            BinaryOperator::Greater => self.compare(RelationOperator::Greater, a, b, span)?,
+            BinaryOperator::GreaterEqual => {
+                self.compare(RelationOperator::GreaterEqual, a, b, span)?
+            }
+            BinaryOperator::Equal => self.compare(RelationOperator::Equal, a, b, span)?,
+            BinaryOperator::NotEqual => self.compare(RelationOperator::NotEqual, a, b, span)?,
+        };
+        Ok(Lowered::Array(array))
+    }
+
+    /// `a and b` as `if a then b else false`, `a or b` as `if a then true else b`.
+    fn short_circuit(
+        &mut self,
+        operator: BinaryOperator,
+        a: T::Scalar,
+        right: &Expression,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let is_and = operator == BinaryOperator::And;
+        if let Some(known) = self.target.as_constant(a) {
+            return match (known != 0.0) == is_and {
+                true => Ok(Lowered::scalar(self.scalar(right)?)),
+                false => Ok(Lowered::scalar(a)),
+            };
+        }
+        let decided = self.target.constant(f64::from(u8::from(!is_and)));
+        let mut branch = self.target.begin_if(a);
+        let first = if is_and { self.scalar(right)? } else { decided };
+        self.target.begin_else(&mut branch, &[first]);
+        let second = if is_and { decided } else { self.scalar(right)? };
+        let values = self.target.end_if(branch, &[second]);
+        Ok(Lowered::scalar(values[0]))
+    }
+
+    /// Two texts joined, which may be unknown in parts, or a relation of two that are known.
+    fn texts(
+        &mut self,
+        operator: BinaryOperator,
+        a: Arc<str>,
+        right: &Expression,
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let b = match self.lower(right)? {
+            Lowered::Text(b) => b,
+            Lowered::Numbered(_) if operator == BinaryOperator::Add => UNKNOWN_TEXT.into(),
+            Lowered::Numbered(b) => {
+                let a = self.number_of_text(Lowered::Text(a), span)?;
+                return self.compare_texts(operator, a, b, span);
+            }
+            _ => return Err(fault!(ARRAY_MISMATCH, "a text and a number").at(span)),
+        };
+        let a = &*a;
+        if operator == BinaryOperator::Add {
+            return Ok(Lowered::Text(format!("{a}{b}").into()));
+        }
+        if a.contains(UNKNOWN_TEXT) || b.contains(UNKNOWN_TEXT) {
+            return Err(fault!(NOT_SUPPORTED, "a text that is not known when compiling").at(span));
+        }
+        let holds = match operator {
+            BinaryOperator::Equal => a == &*b,
+            BinaryOperator::NotEqual => a != &*b,
+            BinaryOperator::Less => a < &*b,
+            BinaryOperator::LessEqual => a <= &*b,
+            BinaryOperator::Greater => a > &*b,
+            BinaryOperator::GreaterEqual => a >= &*b,
+            _ => {
+                return Err(fault!(NOT_SUPPORTED, "this operator takes no texts").at(span));
+            }
+        };
+        Ok(Lowered::scalar(self.target.constant(f64::from(u8::from(holds)))))
+    }
+
+    fn compare(
+        &mut self,
+        operator: RelationOperator,
+        a: Array<T::Scalar>,
+        b: Array<T::Scalar>,
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        match (a.dims.as_slice(), b.dims.as_slice(), a.elements.as_slice(), b.elements.as_slice()) {
+            ([], [], [a], [b]) => {
+                Ok(Array::scalar(self.target.relation(operator, *a, *b, self.live, span)))
+            }
+            _ => Err(fault!(ARRAY_MISMATCH, "relations compare scalars").at(span)),
+        }
+    }
+
+    fn same_size(
+        &mut self,
+        op: Binary,
+        a: Array<T::Scalar>,
+        b: Array<T::Scalar>,
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        if a.dims != b.dims {
+            return Err(size_fault(&a.dims, &b.dims).at(span));
+        }
+        self.elementwise(op, a, b, span)
+    }
+
+    /// Element by element; a scalar goes with every element.
+    pub(super) fn elementwise(
+        &mut self,
+        op: Binary,
+        a: Array<T::Scalar>,
+        b: Array<T::Scalar>,
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        let (dims, elements) = if a.dims == b.dims {
+            let pairs = a.elements.iter().zip(&b.elements);
+            (a.dims, pairs.map(|(x, y)| self.target.binary(op, *x, *y)).collect())
+        } else if b.dims.is_empty() {
+            let y = b.elements[0];
+            (a.dims, a.elements.iter().map(|x| self.target.binary(op, *x, y)).collect())
+        } else if a.dims.is_empty() {
+            let x = a.elements[0];
+            (b.dims, b.elements.iter().map(|y| self.target.binary(op, x, *y)).collect())
+        } else {
+            return Err(size_fault(&a.dims, &b.dims).at(span));
+        };
+        Ok(Array { dims, elements })
+    }
+
+    /// `*`: scaling, inner product, matrix products (MLS §10.6.5).
+    fn product(
+        &mut self,
+        a: Array<T::Scalar>,
+        b: Array<T::Scalar>,
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        let (rows, inner, columns, dims) = match (a.dims.as_slice(), b.dims.as_slice()) {
+            ([], _) | (_, []) => return self.elementwise(Binary::Mul, a, b, span),
+            (&[n], &[m]) if n == m => (1, n, 1, vec![]),
+            (&[r, n], &[m]) if n == m => (r, n, 1, vec![r]),
+            (&[n], &[m, c]) if n == m => (1, n, c, vec![c]),
+            (&[r, n], &[m, c]) if n == m => (r, n, c, vec![r, c]),
+            _ => return Err(size_fault(&a.dims, &b.dims).at(span)),
+        };
+        let mut elements = Vec::with_capacity(rows * columns);
+        for row in 0..rows {
+            for column in 0..columns {
+                let products: Vec<T::Scalar> = (0..inner)
+                    .map(|k| {
+                        let (x, y) =
+                            (a.elements[row * inner + k], b.elements[k * columns + column]);
+                        self.target.binary(Binary::Mul, x, y)
+                    })
+                    .collect();
+                elements.push(self.fold(Binary::Add, 0.0, &products));
+            }
+        }
+        Ok(Array { dims, elements })
+    }
+
+    fn power(
+        &mut self,
+        a: Array<T::Scalar>,
+        b: Array<T::Scalar>,
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        if a.dims.is_empty() && b.dims.is_empty() {
+            return self.elementwise(Binary::Pow, a, b, span);
+        }
+        let exponent = match (b.dims.as_slice(), b.elements.as_slice()) {
+            ([], [b]) => self.target.as_constant(*b),
+            _ => None,
+        };
+        let &[n, m] = a.dims.as_slice() else {
+            return Err(
+                fault!(ARRAY_MISMATCH, "`^` needs scalars, or a square matrix and a whole number";
+                help: "write `.^` for element by element")
+                .at(span),
+            );
+        };
+        let Some(exponent) = exponent else {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "a matrix to a power that is not known when compiling"
+            )
+            .at(span));
+        };
+        if n != m || exponent < 0.0 || exponent.fract() != 0.0 {
+            return Err(fault!(ARRAY_MISMATCH,
+                "the power of a matrix needs a square matrix and a whole number, 0 or more";
+                help: "write `.^` for element by element")
+            .at(span));
+        }
+        if exponent > MAX_POWER {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "the power of a matrix with an exponent above {MAX_POWER}"
+            )
+            .at(span));
+        }
+        if exponent == 0.0 {
+            return Ok(self.identity(n));
+        }
+        let mut result = a.clone();
+        for _ in 1..exponent as usize {
+            result = self.product(result, a.clone(), span)?;
+        }
+        Ok(result)
+    }
+
+    fn identity(&mut self, n: usize) -> Array<T::Scalar> {
+        let element = |at: usize| if at / n == at % n { 1.0 } else { 0.0 };
+        let elements = (0..n * n).map(|at| self.target.constant(element(at))).collect();
+        Array { dims: vec![n, n], elements }
+    }
+
+    /// `a op b op …`; `empty` without elements.
+    pub(super) fn fold(&mut self, op: Binary, empty: f64, elements: &[T::Scalar]) -> T::Scalar {
+        match elements.split_first() {
+            None => self.target.constant(empty),
+            Some((first, rest)) => {
+                rest.iter().fold(*first, |sum, element| self.target.binary(op, sum, *element))
+            }
+        }
+    }
+}

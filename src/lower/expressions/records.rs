@@ -1,0 +1,113 @@
+//! Arrays of records, as records of arrays: the sizes of the array stand before those of each
+//! component, so that `v.x` of an array of records `v` is the component `x` itself (MLS §10.6.1).
+
+use super::expression::{field, field_of, stack};
+use super::{Array, Lowered, Lowering, Target};
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::lower::dae::Shape;
+use crate::lower::errors::ARRAY_MISMATCH;
+use crate::source::Span;
+use crate::syntax::ast::{ComponentReference, Subscript};
+use std::sync::Arc;
+
+impl<T: Target> Lowering<'_, T> {
+    /// What subscripts choose of an array, or of an array of records.
+    pub(super) fn elements_of(
+        &mut self,
+        value: Lowered<T::Scalar>,
+        subscripts: &[Subscript],
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        if subscripts.is_empty() {
+            return Ok(value);
+        }
+        match value {
+            Lowered::Array(array) => self.subscripted(array, subscripts, span).map(Lowered::Array),
+            // All elements have the same text, or it is not known.
+            Lowered::Text(text) => Ok(Lowered::Text(text)),
+            Lowered::Record(fields) => {
+                let mut chosen = Vec::with_capacity(fields.len());
+                for (name, value) in fields {
+                    chosen.push((name, self.elements_of(value, subscripts, span)?));
+                }
+                Ok(Lowered::Record(chosen))
+            }
+            Lowered::Numbered(_) => Err(fault!(ARRAY_MISMATCH, "subscripts of a text").at(span)),
+        }
+    }
+
+    /// A variable of a function being compiled, or a part of it; `None` elsewhere.
+    pub(super) fn part_of_own(
+        &mut self,
+        reference: &ComponentReference,
+    ) -> Result<Option<Lowered<T::Scalar>>, Diagnostic> {
+        let Some((first, rest)) = reference.parts.split_first() else { return Ok(None) };
+        let Some(mut own) = self.target.own_variable(first.name) else { return Ok(None) };
+        // Records are large: what is chosen by name alone is chosen before anything is copied.
+        let (mut subscripts, mut rest) = (&first.subscripts, rest.iter());
+        while subscripts.is_empty()
+            && let Some(part) = rest.next()
+        {
+            own = field_of(own, part.name, reference.span)?;
+            subscripts = &part.subscripts;
+        }
+        let own = own.clone();
+        let mut value = self.elements_of(own, subscripts, reference.span)?;
+        for part in rest {
+            value = field(value, part.name, reference.span)?;
+            value = self.elements_of(value, &part.subscripts, reference.span)?;
+        }
+        Ok(Some(value))
+    }
+}
+
+/// Values of one shape as the elements of an array with one more dimension.
+pub(super) fn stacked<S: Copy>(
+    values: Vec<Lowered<S>>,
+    span: Span,
+) -> Result<Lowered<S>, Diagnostic> {
+    if let Some(text) = common_text(&values) {
+        return Ok(Lowered::Text(text));
+    }
+    let Some(Lowered::Record(first)) = values.first() else {
+        return stack(arrays(values, span)?, span).map(Lowered::Array);
+    };
+    let names: Vec<_> = first.iter().map(|(name, _)| *name).collect();
+    let mut fields = Vec::with_capacity(names.len());
+    for name in names {
+        let of_one = |value: &Lowered<S>| field(value.clone(), name, span);
+        let column = values.iter().map(of_one).collect::<Result<Vec<_>, _>>()?;
+        fields.push((name, stacked(column, span)?));
+    }
+    Ok(Lowered::Record(fields))
+}
+
+/// The text of all elements, not known where theirs differ; `None` for numbers.
+pub(super) fn common_text<S: Copy>(column: &[Lowered<S>]) -> Option<Arc<str>> {
+    let mut common = column.first()?.shape()?;
+    for value in column {
+        common = common.joined(&value.shape()?)?;
+    }
+    match common {
+        Shape::Text(text) => Some(text),
+        _ => None,
+    }
+}
+
+/// Values that are arrays of numbers.
+pub(super) fn arrays<S: Copy>(
+    values: Vec<Lowered<S>>,
+    span: Span,
+) -> Result<Vec<Array<S>>, Diagnostic> {
+    let array = |value| match value {
+        Lowered::Array(array) => Ok(array),
+        Lowered::Record(_) => {
+            Err(fault!(ARRAY_MISMATCH, "a record stands where a number is needed").at(span))
+        }
+        Lowered::Text(_) | Lowered::Numbered(_) => {
+            Err(fault!(ARRAY_MISMATCH, "a text stands where a number is needed").at(span))
+        }
+    };
+    values.into_iter().map(array).collect()
+}

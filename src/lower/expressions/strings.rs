@@ -1,0 +1,292 @@
+//! Functions of texts: called while the model is compiled, by the interpreter.
+
+use super::{Array, Lowered, Lowering, Target};
+use crate::budget;
+use crate::diag::{Diagnostic, Fault};
+use crate::eval::{self, Callee, Function, Host, Scope, ValueType};
+use crate::external::{Outside, Resources};
+use crate::fault;
+use crate::lower::build::UNKNOWN_TEXT;
+use crate::lower::errors::NOT_SUPPORTED;
+use crate::name::Name;
+use crate::source::Span;
+use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
+use crate::value::{ArrayValue, Elements, EnumerationValue, Value};
+use std::cell::Cell;
+use std::sync::Arc;
+
+/// Functions that find files: whoever compiles the model knows where they are (MLS §13.5).
+const FIND_FILES: &[&str] = &[
+    "Modelica.Utilities.Files.loadResource",
+    "ModelicaServices.ExternalReferences.loadResource",
+    "Modelica.Utilities.Files.fullPathName",
+];
+
+impl<T: Target> Lowering<'_, T> {
+    /// The outputs of a function that takes or gives texts, if all its arguments are known and it
+    /// can be run now; parameters that a text depends on are settled.
+    pub(super) fn text_call(
+        &mut self,
+        function: &Arc<Function>,
+        arguments: &[Lowered<T::Scalar>],
+        span: Span,
+    ) -> Result<Option<Vec<Lowered<T::Scalar>>>, Diagnostic> {
+        let is_text = |c: &eval::FunctionComponent| c.value_type == ValueType::String;
+        let gives_text = function.outputs.iter().any(is_text);
+        if !gives_text && !function.inputs.iter().any(is_text) {
+            return Ok(None);
+        }
+        let mut values = Vec::with_capacity(arguments.len());
+        for (input, argument) in function.inputs.iter().zip(arguments) {
+            match self.known_argument(argument, input, gives_text) {
+                Some(value) => values.push(value),
+                None if gives_text => {
+                    return Err(fault!(
+                        NOT_SUPPORTED,
+                        "`{}` gives a text, but `{}` is not known when the model is compiled",
+                        function.name,
+                        input.name
+                    )
+                    .at(span));
+                }
+                None => return Ok(None),
+            }
+        }
+        if let ([Value::String(name)], true) =
+            (values.as_slice(), FIND_FILES.contains(&function.name.to_string().as_str()))
+        {
+            let path = self.target.resources().path(name).map_err(|fault| fault.at(span))?;
+            return Ok(Some(vec![Lowered::Text(path.into())]));
+        }
+        match self.interpreted(function, values, span) {
+            Err(_) if !gives_text => Ok(None),
+            outputs => outputs,
+        }
+    }
+
+    /// The outputs of a function that cannot be compiled, run now; `None` if an argument is not
+    /// known or the interpreter cannot run it either. Parameters among the arguments are settled.
+    pub(super) fn settled_call(
+        &mut self,
+        function: &Arc<Function>,
+        arguments: &[Lowered<T::Scalar>],
+        span: Span,
+    ) -> Option<Vec<Lowered<T::Scalar>>> {
+        if function.impure {
+            return None;
+        }
+        let known = function
+            .inputs
+            .iter()
+            .zip(arguments)
+            .map(|(input, argument)| self.known_argument(argument, input, true));
+        let values = known.collect::<Option<Vec<Value>>>()?;
+        self.interpreted(function, values, span).ok().flatten()
+    }
+
+    /// The outputs of a function as numbers and texts; `None` if one of them is neither.
+    fn interpreted(
+        &mut self,
+        function: &Arc<Function>,
+        arguments: Vec<Value>,
+        span: Span,
+    ) -> Result<Option<Vec<Lowered<T::Scalar>>>, Diagnostic> {
+        let mut host = Compiling { target: &*self.target, resources: self.target.resources() };
+        let outputs = eval::call_function(function, arguments.into(), span, &mut host)?;
+        Ok(outputs.iter().map(|value| self.lowered_value(value)).collect())
+    }
+
+    /// `String(x, …)` (MLS §3.7.1), [`UNKNOWN_TEXT`] if that is not known.
+    pub(super) fn string_operator(
+        &mut self,
+        callee: &ComponentReference,
+        arguments: &Arguments,
+        span: Span,
+    ) -> Arc<str> {
+        let (function, arguments) = (callee.clone(), Box::new(arguments.clone()));
+        let call = Expression::new(ExpressionKind::Call { function, arguments }, span);
+        match eval::evaluate(&call, &mut Scope::script(), &mut Reading { lowering: self }) {
+            Ok(Value::String(text)) => text,
+            _ => UNKNOWN_TEXT.into(),
+        }
+    }
+
+    /// What a reference stands for, if that is known.
+    fn known_reference(&mut self, reference: &ComponentReference) -> Option<Value> {
+        let is_index = |name| self.loops.iter().any(|(index, _)| *index == name);
+        let wanted = match reference.as_ident().is_some_and(is_index) {
+            true => ValueType::Integer,
+            false => {
+                let path = self.path(reference).ok()?;
+                self.target.value_type(&path)?
+            }
+        };
+        let e = Expression::new(ExpressionKind::Reference(reference.clone()), reference.span);
+        let value = self.lower(&e).ok()?;
+        self.known_value(&value, &wanted, false)
+    }
+
+    /// The value of an argument; of arrays of texts too little is known.
+    fn known_argument(
+        &mut self,
+        argument: &Lowered<T::Scalar>,
+        input: &eval::FunctionComponent,
+        settle: bool,
+    ) -> Option<Value> {
+        match argument {
+            Lowered::Text(_) if !input.dims.is_empty() => None,
+            _ => self.known_value(argument, &input.value_type, settle),
+        }
+    }
+
+    fn known_value(
+        &mut self,
+        argument: &Lowered<T::Scalar>,
+        wanted: &ValueType,
+        settle: bool,
+    ) -> Option<Value> {
+        match argument {
+            Lowered::Text(text) => {
+                (!text.contains(UNKNOWN_TEXT)).then(|| Value::String(text.clone()))
+            }
+            Lowered::Record(_) | Lowered::Numbered(_) => None,
+            Lowered::Array(array) => {
+                let mut values = Vec::with_capacity(array.elements.len());
+                for element in &array.elements {
+                    let known = self.target.as_constant(*element);
+                    let known = match settle {
+                        true => known.or_else(|| self.target.settle(*element)),
+                        false => known,
+                    };
+                    values.push(typed(known?, wanted)?);
+                }
+                match array.dims.is_empty() {
+                    true => values.pop(),
+                    false => gathered(array.dims.clone(), values),
+                }
+            }
+        }
+    }
+
+    /// A value of the interpreter; `None` for records and external objects.
+    fn lowered_value(&mut self, value: &Value) -> Option<Lowered<T::Scalar>> {
+        if let Value::String(text) = value {
+            return Some(Lowered::Text(text.clone()));
+        }
+        let (dims, numbers) = match value {
+            Value::Array(array) => {
+                let all = (0..array.elements.len()).map(|at| number(&array.elements.get(at)));
+                (array.dims.clone(), all.collect::<Option<Vec<f64>>>()?)
+            }
+            other => (Vec::new(), vec![number(other)?]),
+        };
+        let elements = numbers.into_iter().map(|number| self.target.constant(number)).collect();
+        Some(Lowered::Array(Array { dims, elements }))
+    }
+}
+
+/// Answers the interpreter while a model is compiled.
+struct Compiling<'a, T> {
+    target: &'a T,
+    resources: Resources,
+}
+
+impl<T: Target> Host for Compiling<'_, T> {
+    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
+        Ok(self.target.function(name).map(Callee::Function))
+    }
+
+    fn call_builtin(
+        &mut self,
+        header: &Arc<Function>,
+        _: Vec<Value>,
+        span: Span,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        Err(fault!(NOT_SUPPORTED, "the command `{}` in a model", header.name).at(span))
+    }
+
+    fn variable(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
+        let _ = reference;
+        Ok(None)
+    }
+
+    fn outside(&mut self) -> Option<&mut dyn Outside> {
+        Some(&mut self.resources)
+    }
+
+    fn interrupted(&mut self) -> Option<Fault> {
+        exhausted(self.target.interpreted())
+    }
+}
+
+/// Answers the interpreter with what is known of variables while a model is compiled.
+struct Reading<'r, 'a, T: Target> {
+    lowering: &'r mut Lowering<'a, T>,
+}
+
+impl<T: Target> Host for Reading<'_, '_, T> {
+    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
+        Ok(self.lowering.target.function(name).map(Callee::Function))
+    }
+
+    fn call_builtin(
+        &mut self,
+        header: &Arc<Function>,
+        _: Vec<Value>,
+        span: Span,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        Err(fault!(NOT_SUPPORTED, "the command `{}` in a model", header.name).at(span))
+    }
+
+    fn variable(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
+        Ok(self.lowering.known_reference(reference))
+    }
+
+    fn interrupted(&mut self) -> Option<Fault> {
+        exhausted(self.lowering.target.interpreted())
+    }
+}
+
+/// Counts a statement or an iteration of a loop, and says when there were too many.
+fn exhausted(steps: &Cell<u64>) -> Option<Fault> {
+    steps.set(steps.get() + 1);
+    let limit = budget::step_limit() / 2;
+    (steps.get() > limit).then(|| {
+        fault!(NOT_SUPPORTED, "the functions called at translation take more than {} steps",
+            budget::in_millions(limit); help: "{}", budget::REMEDY)
+    })
+}
+
+/// Scalars of one type as an array.
+fn gathered(dims: Vec<usize>, values: Vec<Value>) -> Option<Value> {
+    let mut values = values.into_iter();
+    let mut elements = Elements::repeated(&values.next()?, 1).ok()?;
+    for value in values {
+        elements.append(Elements::repeated(&value, 1).ok()?).ok()?;
+    }
+    Some(Value::Array(ArrayValue { dims, elements }))
+}
+
+fn number(value: &Value) -> Option<f64> {
+    match value {
+        Value::Real(value) => Some(*value),
+        Value::Integer(value) => Some(*value as f64),
+        Value::Boolean(value) => Some(f64::from(u8::from(*value))),
+        Value::Enumeration(value) => Some(value.ordinal as f64),
+        _ => None,
+    }
+}
+
+/// A number as a value of a type.
+fn typed(number: f64, wanted: &ValueType) -> Option<Value> {
+    Some(match wanted {
+        ValueType::Real => Value::Real(number),
+        ValueType::Integer => Value::Integer(number as i64),
+        ValueType::Boolean => Value::Boolean(number != 0.0),
+        ValueType::Enumeration(definition) => Value::Enumeration(EnumerationValue {
+            definition: definition.clone(),
+            ordinal: number as i64,
+        }),
+        _ => return None,
+    })
+}

@@ -1,0 +1,82 @@
+//! Texts that change at events, as the numbers of a table: two are the same if their numbers are.
+
+use super::{Lowered, Lowering, Target};
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::lower::build::UNKNOWN_TEXT;
+use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
+use crate::source::Span;
+use crate::symbolic::RelationOperator;
+use crate::syntax::ast::{BinaryOperator, Expression};
+
+impl<T: Target> Lowering<'_, T> {
+    /// The number of a text.
+    pub(crate) fn number_of_text(
+        &mut self,
+        text: Lowered<T::Scalar>,
+        span: Span,
+    ) -> Result<T::Scalar, Diagnostic> {
+        match text {
+            Lowered::Numbered(number) => Ok(number),
+            Lowered::Text(text) if text.contains(UNKNOWN_TEXT) => {
+                Err(fault!(NOT_SUPPORTED, "a text that is made while the model is simulated";
+                    help: "choose among texts that are known when compiling")
+                .at(span))
+            }
+            Lowered::Text(text) => self
+                .target
+                .text_number(&text)
+                .ok_or_else(|| fault!(NOT_SUPPORTED, "texts that depend on conditions").at(span)),
+            Lowered::Array(_) | Lowered::Record(_) => {
+                Err(fault!(ARRAY_MISMATCH, "a number stands where a text is needed").at(span))
+            }
+        }
+    }
+
+    /// `if condition then first else second`
+    pub(super) fn choice_of_texts(
+        &mut self,
+        condition: T::Scalar,
+        [first, second]: [T::Scalar; 2],
+    ) -> Lowered<T::Scalar> {
+        let mut branch = self.target.begin_if(condition);
+        self.target.begin_else(&mut branch, &[first]);
+        Lowered::Numbered(self.target.end_if(branch, &[second])[0])
+    }
+
+    /// A relation of a text that changes and another one.
+    pub(super) fn varying_texts(
+        &mut self,
+        operator: BinaryOperator,
+        a: T::Scalar,
+        right: &Expression,
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let b = self.lower(right)?;
+        if operator == BinaryOperator::Add && matches!(b, Lowered::Text(_) | Lowered::Numbered(_)) {
+            return Ok(Lowered::Text(UNKNOWN_TEXT.into()));
+        }
+        let b = self.number_of_text(b, span)?;
+        self.compare_texts(operator, a, b, span)
+    }
+
+    /// Whether two texts are the same, by their numbers.
+    pub(super) fn compare_texts(
+        &mut self,
+        operator: BinaryOperator,
+        a: T::Scalar,
+        b: T::Scalar,
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let relation = match operator {
+            BinaryOperator::Equal => RelationOperator::Equal,
+            BinaryOperator::NotEqual => RelationOperator::NotEqual,
+            _ => {
+                return Err(
+                    fault!(NOT_SUPPORTED, "this operator takes no texts that change").at(span)
+                );
+            }
+        };
+        Ok(Lowered::scalar(self.target.relation(relation, a, b, self.live, span)))
+    }
+}

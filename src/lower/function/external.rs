@@ -1,0 +1,135 @@
+//! External functions of [`external`](crate::external) in functions being compiled (MLS §12.9).
+
+use super::emitter::Operand;
+use super::instances::Instances;
+use super::statements::Body;
+use crate::bytecode::{ExternalCall, Instruction};
+use crate::diag::{At, Diagnostic};
+use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
+use crate::external::{self, Effect, Kind, Slot};
+use crate::fault;
+use crate::lower::errors::NOT_SUPPORTED;
+use crate::lower::expressions::{Lowered, Lowering};
+use crate::syntax::ast;
+
+/// The external name of a function.
+pub(super) fn external_name(function: &Function, clause: &ast::External) -> String {
+    let own = || function.name.last().map_or(String::new(), |name| name.to_string());
+    clause.function.as_ref().map_or_else(own, |name| name.node.to_string())
+}
+
+/// Why a function that is external cannot be compiled, if it cannot.
+pub(super) fn refusal(function: &Function) -> Option<String> {
+    let FunctionBody::External(clause) = &function.body else { return None };
+    let name = external_name(function, clause);
+    if function.inputs.iter().any(|i| i.value_type == ValueType::String && !i.dims.is_empty()) {
+        return Some(format!("is the external function `{name}`, which takes arrays of texts"));
+    }
+    match external::find(&name) {
+        None => {
+            Some(format!("is the external function `{name}`, which this program does not have"))
+        }
+        Some(entry) if entry.effect == Effect::Outside => {
+            Some(format!("is the external function `{name}`, whose values change by themselves"))
+        }
+        Some(_) => None,
+    }
+}
+
+/// Whether a function is external and needs its texts: all but one that fails with a message, which
+/// may be unknown in parts.
+pub(super) fn reads_texts(function: &Function) -> bool {
+    match &function.body {
+        FunctionBody::External(clause) => external_name(function, clause) != "ModelicaError",
+        _ => false,
+    }
+}
+
+/// Whether external objects go in or out: such a call is not the number that it returns.
+pub(super) fn handles_objects(function: &Function) -> bool {
+    function.inputs.iter().chain(&function.outputs).any(is_object)
+}
+
+fn is_object(component: &FunctionComponent) -> bool {
+    matches!(component.value_type, ValueType::ExternalObject(_))
+}
+
+impl Body<'_, '_> {
+    /// The call that is the body of an external function.
+    pub(super) fn external(&mut self, clause: &ast::External) -> Result<(), Diagnostic> {
+        let function = self.function.clone();
+        let name = external_name(&function, clause);
+        let Some(entry) = external::find(&name) else {
+            return Err(
+                fault!(NOT_SUPPORTED, "there is no external function `{name}`").at(clause.span)
+            );
+        };
+        self.emitter.place(clause.span);
+        self.emitter.open();
+        let mut arguments = Vec::with_capacity(clause.arguments.len());
+        for argument in &clause.arguments {
+            let value = Lowering::new(self).lower(argument)?;
+            let component = match &argument.kind {
+                ast::ExpressionKind::Reference(reference) => reference.as_ident(),
+                _ => None,
+            };
+            let component = component.and_then(|name| {
+                let mut all =
+                    function.inputs.iter().chain(&function.outputs).chain(&function.locals);
+                all.find(|component| component.name == name)
+            });
+            arguments.push(self.slot(value, component, argument.span)?);
+        }
+        let output = clause.output.as_ref().and_then(|output| output.as_ident());
+        let result = match function.outputs.iter().find(|c| Some(c.name) == output) {
+            Some(output) => {
+                let value = self.local(&[output.name]).cloned();
+                let value = value.unwrap_or(Lowered::Text("".into()));
+                Some(self.slot(value, Some(output), clause.span)?)
+            }
+            None => None,
+        };
+        entry.check(&arguments, result.as_ref()).at(clause.span)?;
+        for argument in entry.files() {
+            let name = self.emitter.text_at(arguments[argument].first);
+            if external::names_a_file(&name) {
+                let Instances { functions, .. } = &mut *self.instances;
+                functions.files.keep(&name, &self.flat.resources).at(clause.span)?;
+            }
+        }
+        let external = self.emitter.external(ExternalCall { entry, arguments, result });
+        self.emitter.emit(Instruction::External { external });
+        self.emitter.close();
+        Ok(())
+    }
+
+    /// Where an argument stands: the registers of a component itself, which the call may write to.
+    pub(super) fn slot(
+        &mut self,
+        value: Lowered<Operand>,
+        component: Option<&FunctionComponent>,
+        span: crate::source::Span,
+    ) -> Result<Slot, Diagnostic> {
+        match value {
+            Lowered::Text(text) => {
+                let first = self.emitter.text(text);
+                Ok(Slot { kind: Kind::Text, first, dims: Box::new([]) })
+            }
+            Lowered::Array(array) => {
+                let kind = match component.is_some_and(is_object) {
+                    true => Kind::Object,
+                    false => Kind::Number,
+                };
+                let first = self.emitter.row(&array.elements);
+                let dims = array.dims.iter().map(|size| *size as u32).collect();
+                Ok(Slot { kind, first, dims })
+            }
+            Lowered::Record(_) => {
+                Err(fault!(NOT_SUPPORTED, "a record for an external function").at(span))
+            }
+            Lowered::Numbered(_) => {
+                Err(fault!(NOT_SUPPORTED, "a text that changes for an external function").at(span))
+            }
+        }
+    }
+}

@@ -1,0 +1,334 @@
+//! Functions compiled for certain arguments, each combination once.
+
+use super::statements::Body;
+use crate::budget::instruction_limit;
+use crate::bytecode::{Code, ExternalCall, Failure, Functions, Instruction, Machine, Reason};
+use crate::diag::Diagnostic;
+use crate::eval::{Function, FunctionBody, ValueType};
+use crate::external::Effect;
+use crate::fault;
+use crate::flatten::FlatModel;
+use crate::lower::build::UNKNOWN_TEXT;
+use crate::lower::dae::Shape;
+use crate::lower::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
+use crate::lower::expressions::Lowered;
+use crate::name::Name;
+use crate::source::Span;
+use indexmap::IndexMap;
+use rustc_hash::FxHashSet;
+use std::cell::Cell;
+use std::sync::Arc;
+
+/// Deepest nesting of functions being compiled.
+const MAX_DEPTH: usize = 40;
+/// Most functions.
+const MAX_INSTANCES: usize = 5_000;
+/// Most instructions of all functions.
+pub(super) const MAX_INSTRUCTIONS: usize = 5_000_000;
+
+/// Calls of numbers are left to the simulation after so many that took all the instructions that one
+/// may take.
+const MAX_FOLDED: u64 = 5;
+
+/// What a function is compiled for.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+struct Signature {
+    name: Name,
+    arguments: Vec<Argument>,
+}
+
+/// What is known of an argument.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(super) enum Argument {
+    /// Its shape; its scalars are passed.
+    Shape(Shape),
+    /// The bits of its value.
+    Known(u64),
+    /// A text.
+    Text(Arc<str>),
+}
+
+/// A compiled function.
+#[derive(Debug, Clone)]
+pub(crate) struct Instance {
+    /// Its number.
+    pub(super) code: u32,
+    /// Shapes of its outputs.
+    pub(super) outputs: Vec<Shape>,
+    /// Whether a call with numbers is a number.
+    pub(super) folds: bool,
+    /// Whether equal calls may give different results.
+    pub(super) impure: bool,
+    /// Whether calls write files or print.
+    pub(super) writes: bool,
+    /// Which arguments are passed; the others are known.
+    pub(super) passed: Vec<bool>,
+}
+
+/// All functions compiled so far.
+#[derive(Debug, Default)]
+pub(crate) struct Instances {
+    pub(super) functions: Functions,
+    /// Whether each function is compiled to its end.
+    finished: Vec<bool>,
+    known: IndexMap<Signature, Instance>,
+    failed: IndexMap<Signature, Diagnostic>,
+    depth: usize,
+    /// How many statements the interpreter has run.
+    pub(in crate::lower) interpreted: Cell<u64>,
+    /// How many instructions calls of numbers took.
+    folded: u64,
+    /// The last call of numbers that took too many.
+    exhausted: Option<Failure>,
+    instructions: usize,
+    /// Whether a statement is at hand that may write.
+    pub(crate) may_write: bool,
+}
+
+impl Instances {
+    /// The finished functions.
+    pub(crate) fn finish(self) -> Functions {
+        self.functions
+    }
+
+    /// A function for arguments of which some scalars are known.
+    pub(crate) fn instance(
+        &mut self,
+        flat: &FlatModel,
+        function: &Arc<Function>,
+        arguments: &[Lowered<Option<f64>>],
+        span: Span,
+    ) -> Result<Instance, Diagnostic> {
+        let general = signature(function, arguments, false, span)?;
+        let found = match self.compiled(flat, function, general, span) {
+            Err(e) if e.code == NO_CONSTANT_VALUE => {
+                let special = signature(function, arguments, true, span)?;
+                if special.arguments.iter().any(|a| matches!(a, Argument::Known(_))) {
+                    self.compiled(flat, function, special, span)
+                } else {
+                    Err(e)
+                }
+            }
+            result => result,
+        }?;
+        if found.writes && !self.may_write && self.depth == 0 {
+            return Err(fault!(NOT_SUPPORTED, "the function `{}` writes, and its value is used",
+                function.name;
+                help: "call it in a when-clause without using its value")
+            .at(span));
+        }
+        Ok(found)
+    }
+
+    fn compiled(
+        &mut self,
+        flat: &FlatModel,
+        function: &Arc<Function>,
+        signature: Signature,
+        span: Span,
+    ) -> Result<Instance, Diagnostic> {
+        if let Some(known) = self.known.get(&signature) {
+            return Ok(known.clone());
+        }
+        if let Some(failed) = self.failed.get(&signature) {
+            return Err(failed.clone());
+        }
+        let name = &function.name;
+        if let Some(reason) = super::external::refusal(function) {
+            return Err(fault!(NOT_SUPPORTED, "the function `{name}` {reason}").at(span));
+        }
+        let statements = match &function.body {
+            FunctionBody::Algorithm(statements) => statements.as_slice(),
+            FunctionBody::External(_) | FunctionBody::RecordConstructor => &[],
+        };
+        if self.depth >= MAX_DEPTH || self.finished.len() >= MAX_INSTANCES {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "the function `{name}` calls itself with sizes that differ without an end"
+            )
+            .at(span));
+        }
+        let before = (self.finished.len(), self.known.len());
+        self.depth += 1;
+        let result = self.compile(flat, function, statements, &signature, span);
+        self.depth -= 1;
+        if let Err(e) = &result {
+            // Functions compiled meanwhile may call the one that failed.
+            self.functions.codes.truncate(before.0);
+            self.finished.truncate(before.0);
+            self.known.truncate(before.1);
+            self.failed.insert(signature, e.clone());
+        }
+        result
+    }
+
+    fn compile(
+        &mut self,
+        flat: &FlatModel,
+        function: &Arc<Function>,
+        statements: &[crate::syntax::ast::Statement],
+        signature: &Signature,
+        span: Span,
+    ) -> Result<Instance, Diagnostic> {
+        let mut body = Body::new(flat, self, function);
+        let outputs = body.declare(&signature.arguments, statements, span)?;
+        let passed = |a: &Argument| matches!(a, Argument::Shape(_));
+        let mut instance = Instance {
+            code: body.instances.finished.len() as u32,
+            outputs,
+            folds: !function.impure && !super::external::handles_objects(function),
+            impure: function.impure,
+            writes: false,
+            passed: signature.arguments.iter().map(passed).collect(),
+        };
+        body.instances.functions.codes.push(Code::default());
+        body.instances.finished.push(false);
+        body.instances.known.insert(signature.clone(), instance.clone());
+        let mut code = body.compile(statements)?;
+        code.writes = self.writes(&code);
+        code.impure = function.impure || self.has_effects(&code);
+        if code.n_outputs == 0 {
+            // Something stands for the call where its statement is carried out.
+            (code.outputs, code.n_outputs) = (code.frame, 1);
+            code.constants.push((code.outputs, 0.0));
+            code.frame += 1;
+        }
+        if code.impure {
+            instance.folds = false;
+            instance.impure = true;
+            instance.writes = code.writes;
+            self.known.insert(signature.clone(), instance.clone());
+        }
+        code.derivative = self.derivative(flat, function, &signature.arguments, span);
+        self.instructions += code.instructions.len();
+        if self.instructions > MAX_INSTRUCTIONS {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "the functions of this model need more than {MAX_INSTRUCTIONS} instructions"
+            )
+            .at(function.span));
+        }
+        self.functions.codes[instance.code as usize] = code;
+        self.finished[instance.code as usize] = true;
+        Ok(instance)
+    }
+
+    /// The scalars that a call returns, if it has a value and nothing it needs is still being
+    /// compiled.
+    pub(crate) fn evaluate(&mut self, instance: &Instance, arguments: &[f64]) -> Option<Vec<f64>> {
+        if !self.is_finished(instance.code) {
+            return None;
+        }
+        if self.folded > MAX_FOLDED * instruction_limit() {
+            return None;
+        }
+        let mut machine = Machine::default();
+        let results = machine.call(&self.functions, instance.code, arguments.iter().copied());
+        let is_exhausted = |failure: &Failure| failure.reason == Reason::Budget;
+        self.exhausted = results.as_ref().err().copied().filter(is_exhausted).or(self.exhausted);
+        let results = results.map(<[f64]>::to_vec);
+        self.folded += machine.spent();
+        results.ok().filter(|results| !results.iter().any(|x| x.is_nan()))
+    }
+
+    /// What the last call of numbers said that took too many instructions, once.
+    pub(in crate::lower) fn take_exhausted(&mut self) -> Option<String> {
+        let failure = self.exhausted.take()?;
+        Some(self.functions.explain(&failure).0)
+    }
+
+    /// Whether a function writes, itself or by what it calls.
+    fn writes(&self, code: &Code) -> bool {
+        let of_call = |instruction: &Instruction| match instruction {
+            Instruction::Call { function, .. } => self.functions.codes[*function as usize].writes,
+            _ => false,
+        };
+        code.externals.iter().any(|call| call.entry.effect == Effect::Writes)
+            || code.instructions.iter().any(of_call)
+    }
+
+    /// Whether a function writes, or reads or changes the hidden state, itself or by what it calls.
+    fn has_effects(&self, code: &Code) -> bool {
+        let of_call = |instruction: &Instruction| match instruction {
+            Instruction::Call { function, .. } => self.functions.codes[*function as usize].impure,
+            _ => false,
+        };
+        let has_effect = |call: &ExternalCall| call.entry.effect != Effect::None;
+        code.externals.iter().any(has_effect) || code.instructions.iter().any(of_call)
+    }
+
+    /// Whether a function and all that it calls are compiled to their ends.
+    fn is_finished(&self, function: u32) -> bool {
+        let mut seen = FxHashSet::default();
+        let mut stack = vec![function];
+        while let Some(function) = stack.pop() {
+            if !self.finished[function as usize] {
+                return false;
+            }
+            if seen.insert(function) {
+                let code = &self.functions.codes[function as usize];
+                stack.extend(code.instructions.iter().filter_map(
+                    |instruction| match instruction {
+                        Instruction::Call { function, .. } => Some(*function),
+                        _ => None,
+                    },
+                ));
+            }
+        }
+        true
+    }
+}
+
+fn signature(
+    function: &Function,
+    arguments: &[Lowered<Option<f64>>],
+    with_values: bool,
+    span: Span,
+) -> Result<Signature, Diagnostic> {
+    let mut list = Vec::with_capacity(arguments.len());
+    for (input, argument) in function.inputs.iter().zip(arguments) {
+        let whole = matches!(
+            input.value_type,
+            ValueType::Integer | ValueType::Boolean | ValueType::Enumeration(_)
+        );
+        list.push(match argument {
+            // Algorithms refuse to decide by it themselves.
+            Lowered::Text(text)
+                if text.contains(UNKNOWN_TEXT) && super::external::reads_texts(function) =>
+            {
+                return Err(fault!(
+                    NOT_SUPPORTED,
+                    "the text for `{}` of `{}` must be known when the model is compiled",
+                    input.name,
+                    function.name
+                )
+                .at(span));
+            }
+            Lowered::Numbered(_) => {
+                return Err(
+                    fault!(NOT_SUPPORTED, "a text that changes for `{}`", input.name).at(span)
+                );
+            }
+            Lowered::Text(text) => Argument::Text(text.clone()),
+            Lowered::Array(array) => match array.elements.as_slice() {
+                [Some(value)] if array.dims.is_empty() && whole && with_values => {
+                    Argument::Known(value.to_bits())
+                }
+                _ => Argument::Shape(Shape::Array(array.dims.clone())),
+            },
+            Lowered::Record(_) => match argument.shape() {
+                Some(shape) => Argument::Shape(shape),
+                None => {
+                    return Err(fault!(
+                        NOT_SUPPORTED,
+                        "the record `{}` of `{}` holds texts that change",
+                        input.name,
+                        function.name
+                    )
+                    .at(span));
+                }
+            },
+        });
+    }
+    Ok(Signature { name: function.name.clone(), arguments: list })
+}

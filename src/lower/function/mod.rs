@@ -1,0 +1,205 @@
+//! User functions become [`bytecode`](crate::bytecode) where they cannot become expressions: loops,
+//! exits and subscripts that depend on variables, recursion, bodies too big to be repeated at every
+//! call (MLS ch. 11, 12).
+//!
+//! A function is compiled once for every combination of sizes of its arguments. Where a size
+//! depends on the value of an Integer input, it is compiled for that value, which must be known.
+//! Loops stay loops; only a loop whose body needs sizes that change from turn to turn is unrolled.
+
+mod assigned_shape;
+mod derivative;
+mod emitter;
+mod external;
+mod instances;
+mod place;
+mod printing;
+mod repeated;
+mod single_assignment;
+mod statements;
+mod target;
+
+pub(super) use instances::Instances;
+pub(super) use printing::prints;
+pub(super) use repeated::Repeated;
+
+use super::build::Builder;
+use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
+use super::expressions::{Lowered, field_of};
+use super::inline::{MAX_INLINED, MAX_STATEMENTS, inline};
+use crate::diag::Diagnostic;
+use crate::eval::{Function, FunctionComponent, ValueType};
+use crate::fault;
+use crate::name::{Ident, Name};
+use crate::source::Span;
+use crate::symbolic::Expr;
+use crate::syntax::ast::ComponentReference;
+use std::sync::Arc;
+
+/// The outputs of a call in an equation: expressions where its statements can be carried out on
+/// expressions, else calls of its code.
+pub(super) fn call(
+    builder: &mut Builder<'_>,
+    function: &Arc<Function>,
+    arguments: Vec<Lowered<Expr>>,
+    span: Span,
+) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+    if builder.functions.may_write {
+        // Carried out on expressions, a function would write whatever its branches are.
+        return compiled_call(builder, function, arguments, span);
+    }
+    if builder.calls == 0 {
+        builder.inlined = MAX_INLINED;
+    }
+    if let Some(results) = repeated::repeat(builder, function, &arguments) {
+        return Ok(results);
+    }
+    let before = repeated::Before::new(builder);
+    let results = inlined_or_compiled(builder, function, arguments.clone(), span)?;
+    repeated::remember(builder, function, arguments, &before, &results);
+    Ok(results)
+}
+
+fn inlined_or_compiled(
+    builder: &mut Builder<'_>,
+    function: &Arc<Function>,
+    mut arguments: Vec<Lowered<Expr>>,
+    span: Span,
+) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+    let asserted = builder.dae.assertions.len();
+    let error = match inline(builder, function, arguments.clone(), span) {
+        Err(e) if [NOT_SUPPORTED, NO_CONSTANT_VALUE, ARRAY_MISMATCH].contains(&e.code) => e,
+        result => return result,
+    };
+    let too_big = builder.inlined == 0;
+    if too_big && builder.calls > 0 {
+        return Err(error);
+    }
+    builder.dae.assertions.truncate(asserted);
+    let mut result = compiled_call(builder, function, arguments.clone(), span);
+    if matches!(&result, Err(e) if e.code == NO_CONSTANT_VALUE)
+        && settle_whole_numbers(builder, function, &mut arguments)
+    {
+        result = compiled_call(builder, function, arguments.clone(), span);
+    }
+    match result {
+        // What does not fit may stand in a branch that is never taken.
+        Err(_) if error.code == ARRAY_MISMATCH => Err(error),
+        Err(_) if too_big => {
+            builder.inlined = MAX_STATEMENTS;
+            inline(builder, function, arguments, span)
+        }
+        result => result,
+    }
+}
+
+/// Gives Integer and Boolean arguments, which sizes may depend on, the values that parameters have
+/// when compiling; whether there are any.
+fn settle_whole_numbers(
+    builder: &mut Builder<'_>,
+    function: &Function,
+    arguments: &mut [Lowered<Expr>],
+) -> bool {
+    let mut any = false;
+    for (input, argument) in function.inputs.iter().zip(arguments) {
+        let is_whole = matches!(input.value_type, ValueType::Integer | ValueType::Boolean);
+        let Lowered::Array(array) = &*argument else { continue };
+        let ([element], true) = (array.elements.as_slice(), array.dims.is_empty()) else {
+            continue;
+        };
+        if !is_whole || builder.dae.pool.as_constant(*element).is_some() {
+            continue;
+        }
+        if let Ok(Some(value)) = builder.settled(*element) {
+            *argument = Lowered::scalar(builder.dae.pool.constant(value));
+            any = true;
+        }
+    }
+    any
+}
+
+/// Expressions that call the code of a function.
+pub(super) fn compiled_call(
+    builder: &mut Builder<'_>,
+    function: &Arc<Function>,
+    arguments: Vec<Lowered<Expr>>,
+    span: Span,
+) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+    let pool = &builder.dae.pool;
+    let known: Vec<Lowered<Option<f64>>> =
+        arguments.iter().map(|a| a.map(&mut |e| pool.as_constant(e))).collect();
+    let instance = builder.functions.instance(builder.flat, function, &known, span)?;
+    let mut scalars = Vec::new();
+    for (argument, passed) in arguments.iter().zip(&instance.passed) {
+        if *passed {
+            argument.append_scalars(&mut scalars);
+        }
+    }
+    if instance.impure {
+        // Calls in different places are different calls, though their arguments are the same.
+        let site = builder.impure_calls;
+        builder.impure_calls += 1;
+        scalars.push(builder.dae.pool.constant(f64::from(site)));
+    }
+    let numbers: Option<Vec<f64>> = match instance.folds {
+        true => scalars.iter().map(|e| builder.dae.pool.as_constant(*e)).collect(),
+        false => None,
+    };
+    let folded = numbers.and_then(|numbers| builder.functions.evaluate(&instance, &numbers));
+    let pool = &mut builder.dae.pool;
+    let mut results = Vec::new();
+    match folded {
+        Some(values) => results.extend(values.into_iter().map(|value| pool.constant(value))),
+        None => {
+            let n: usize = instance.outputs.iter().map(|shape| shape.len()).sum();
+            results.extend((0..n as u32).map(|at| pool.call(instance.code, at, &scalars)));
+            if instance.writes {
+                builder.written.push(pool.call(instance.code, 0, &scalars));
+            } else if n == 0 && instance.impure {
+                return Err(fault!(
+                    NOT_SUPPORTED,
+                    "the impure function `{}` is called where nothing uses a value of it",
+                    function.name
+                )
+                .at(span));
+            } else if n == 0 {
+                let call = pool.call(instance.code, 0, &scalars);
+                builder.assert_call(call, span);
+            }
+        }
+    }
+    let mut results = results.into_iter();
+    Ok(instance.outputs.iter().map(|s| Lowered::from_scalars(s, &mut results)).collect())
+}
+
+/// What a variable of a function holds, or a field of it.
+pub(super) fn local_value<T: Copy>(
+    locals: &[(Ident, Lowered<T>)],
+    path: &str,
+    reference: &ComponentReference,
+) -> Result<Lowered<T>, Diagnostic> {
+    let mut parts = Name::parse(path).parts.into_iter();
+    let first = parts.next();
+    let found = locals.iter().find(|(name, _)| Some(*name) == first);
+    let value = found.map(|(_, value)| value).ok_or_else(|| {
+        fault!(UNRESOLVED_REFERENCE, "there is no variable `{path}` in this function")
+            .at(reference.span)
+    })?;
+    parts.try_fold(value, |value, part| field_of(value, part, reference.span)).cloned()
+}
+
+/// The type of a variable of a function, or of a field of it.
+pub(super) fn component_type(function: &Function, path: &str) -> Option<ValueType> {
+    component_of(function, path).map(|component| component.value_type.clone())
+}
+
+/// The declaration of a variable of a function, or of a field of it.
+fn component_of<'f>(function: &'f Function, path: &str) -> Option<&'f FunctionComponent> {
+    let mut parts = Name::parse(path).parts.into_iter();
+    let first = parts.next();
+    let mut all = function.inputs.iter().chain(&function.outputs).chain(&function.locals);
+    let component = all.find(|component| Some(component.name) == first)?;
+    parts.try_fold(component, |component, part| match &component.value_type {
+        ValueType::Record(_, fields) => fields.get(&part),
+        _ => None,
+    })
+}

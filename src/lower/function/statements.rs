@@ -1,0 +1,471 @@
+//! Declarations and statements of a function being compiled (MLS ch. 11, §12.4).
+
+use super::emitter::{Emitter, Operand};
+use super::instances::{Argument, Instances, MAX_INSTRUCTIONS};
+use super::printing::prints;
+use super::single_assignment::assigned_once;
+use crate::bytecode::{Code, Instruction, Register};
+use crate::diag::Diagnostic;
+use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
+use crate::fault;
+use crate::flatten::FlatModel;
+use crate::lower::build::message_text;
+use crate::lower::errors::{
+    ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED_REFERENCE,
+};
+use crate::lower::expressions::{Array, Lowered, Lowering, Target};
+use crate::name::Ident;
+use crate::source::Span;
+use crate::syntax::ast::{
+    ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
+};
+use std::sync::Arc;
+
+/// A function being compiled.
+pub(super) struct Body<'a, 'f> {
+    pub(super) flat: &'f FlatModel,
+    pub(super) instances: &'a mut Instances,
+    pub(super) function: &'a Arc<Function>,
+    pub(super) emitter: Emitter,
+    /// Inputs, outputs and locals with their registers or numbers.
+    pub(super) locals: Vec<(Ident, Lowered<Operand>)>,
+    /// Jumps of if-expressions being written, innermost last.
+    pub(super) branches: Vec<usize>,
+    /// `break` of every loop being written, innermost last.
+    breaks: Vec<Vec<usize>>,
+    returns: Vec<usize>,
+    pub(super) n_inputs: u32,
+    /// Variables that are assigned once, whatever happens.
+    known_once: Vec<Ident>,
+}
+
+/// Loop variables, innermost last.
+pub(super) type Loops = Vec<(Ident, Operand)>;
+
+impl<'a, 'f> Body<'a, 'f> {
+    pub(super) fn new(
+        flat: &'f FlatModel,
+        instances: &'a mut Instances,
+        function: &'a Arc<Function>,
+    ) -> Body<'a, 'f> {
+        Body {
+            flat,
+            instances,
+            function,
+            emitter: Emitter::default(),
+            locals: Vec::new(),
+            branches: Vec::new(),
+            breaks: Vec::new(),
+            returns: Vec::new(),
+            n_inputs: 0,
+            known_once: Vec::new(),
+        }
+    }
+
+    /// The statements, all components being declared.
+    pub(super) fn compile(mut self, statements: &[Statement]) -> Result<Code, Diagnostic> {
+        if let FunctionBody::External(clause) = &self.function.clone().body {
+            self.external(clause)?;
+        }
+        self.known_once = assigned_once(statements);
+        self.statements(statements, &mut Vec::new())?;
+        for jump in std::mem::take(&mut self.returns) {
+            self.emitter.land(jump);
+        }
+        self.emitter.place(self.function.span);
+        let mut outputs = Vec::new();
+        let mut plain = Vec::new();
+        for output in &self.function.outputs {
+            if let Some(value) = self.local(&[output.name]) {
+                let before = outputs.len() as Register;
+                value.append_scalars(&mut outputs);
+                if !matches!(value, Lowered::Record(_)) {
+                    plain.push((before, outputs.len() as Register - before));
+                }
+            }
+        }
+        let first = self.emitter.row(&outputs);
+        // Outputs without value are a fault of the whole; a component of a record may have none as
+        // long as nobody reads it.
+        for &(at, n) in &plain {
+            self.emitter.emit(Instruction::Check { a: first + at, n });
+        }
+        let name = self.function.name.to_string().into();
+        let n: Register = plain.iter().map(|(_, n)| n).sum();
+        let mut code = self.emitter.finish(name, self.n_inputs, first, outputs.len() as u32);
+        code.may_lack = n < code.n_outputs;
+        Ok(code)
+    }
+
+    /// An input: a number, or registers that the caller fills.
+    pub(super) fn input(&mut self, name: Ident, argument: &Argument) {
+        let value = match argument {
+            Argument::Known(bits) => Lowered::scalar(Operand::Constant(f64::from_bits(*bits))),
+            Argument::Text(text) => Lowered::Text(text.clone()),
+            Argument::Shape(shape) => {
+                let first = self.emitter.permanent(shape.len() as u32);
+                self.n_inputs += shape.len() as u32;
+                Lowered::from_scalars(shape, &mut (first..).map(Operand::Register))
+            }
+        };
+        self.locals.push((name, value));
+    }
+
+    pub(super) fn lowering(&mut self, loops: &Loops) -> Lowering<'_, Self> {
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.clone();
+        lowering.live = true;
+        lowering
+    }
+
+    fn statements(&mut self, list: &[Statement], loops: &mut Loops) -> Result<(), Diagnostic> {
+        for statement in list {
+            if self.emitter.len() > MAX_INSTRUCTIONS {
+                return Err(fault!(
+                    NOT_SUPPORTED,
+                    "this function needs more than {MAX_INSTRUCTIONS} instructions"
+                )
+                .at(statement.span));
+            }
+            self.emitter.place(statement.span);
+            self.emitter.open();
+            self.statement(statement, loops)?;
+            self.emitter.close();
+        }
+        Ok(())
+    }
+
+    fn statement(&mut self, s: &Statement, loops: &mut Loops) -> Result<(), Diagnostic> {
+        match &s.kind {
+            StatementKind::Assign { target, value } => {
+                let value = self.lowering(loops).lower(value)?;
+                if self.becomes_known(target, &value) {
+                    return Ok(());
+                }
+                self.assign(target, value, loops)
+            }
+            StatementKind::MultiAssign { targets, value } => {
+                self.assign_outputs(targets, value, loops)
+            }
+            StatementKind::If { branches, otherwise } => self.branches(branches, otherwise, loops),
+            StatementKind::For { indices, body } => self.for_loop(indices, body, loops),
+            StatementKind::While { condition, body } => self.while_loop(condition, body, loops),
+            StatementKind::Break => match self.breaks.last_mut() {
+                Some(breaks) => {
+                    breaks.push(self.emitter.jump());
+                    Ok(())
+                }
+                None => Err(fault!(NOT_SUPPORTED, "`break` outside of a loop").at(s.span)),
+            },
+            StatementKind::Return => {
+                self.returns.push(self.emitter.jump());
+                Ok(())
+            }
+            StatementKind::Call(call) => self.call_statement(call, loops),
+            StatementKind::When { .. } => {
+                Err(fault!(NOT_SUPPORTED, "`when` in a function").at(s.span))
+            }
+        }
+    }
+
+    /// Whether a local variable is a number from here on, which needs no register.
+    fn becomes_known(&mut self, target: &ComponentReference, value: &Lowered<Operand>) -> bool {
+        let Lowered::Array(array) = value else { return false };
+        let ([Operand::Constant(_)], Some(name)) = (array.elements.as_slice(), target.as_ident())
+        else {
+            return false;
+        };
+        let is_local = |c: &FunctionComponent| {
+            c.name == name && c.dims.is_empty() && !matches!(c.value_type, ValueType::String)
+        };
+        if !array.dims.is_empty()
+            || !self.known_once.contains(&name)
+            || !self.function.locals.iter().any(is_local)
+        {
+            return false;
+        }
+        match self.locals.iter_mut().find(|(local, _)| *local == name) {
+            Some((_, local)) => {
+                *local = value.clone();
+                true
+            }
+            None => false,
+        }
+    }
+
+    fn assign_outputs(
+        &mut self,
+        targets: &[Option<ComponentReference>],
+        call: &Expression,
+        loops: &Loops,
+    ) -> Result<(), Diagnostic> {
+        let ExpressionKind::Call { function, arguments } = &call.kind else {
+            return Err(fault!(NOT_SUPPORTED, "several variables need a call").at(call.span));
+        };
+        let name = function.name();
+        let Some(user) = self.function(&name) else {
+            return Err(
+                fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`").at(function.span)
+            );
+        };
+        let outputs = self.lowering(loops).user_call(&user, arguments, call.span)?;
+        if outputs.len() < targets.len() {
+            return Err(
+                fault!(ARRAY_MISMATCH, "`{name}` has {} outputs", outputs.len()).at(call.span)
+            );
+        }
+        for (target, output) in targets.iter().zip(outputs) {
+            if let Some(target) = target {
+                self.assign(target, output, loops)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn branches(
+        &mut self,
+        branches: &[(Expression, Vec<Statement>)],
+        otherwise: &[Statement],
+        loops: &mut Loops,
+    ) -> Result<(), Diagnostic> {
+        let mut ends = Vec::new();
+        for (condition, body) in branches {
+            let condition = self.lowering(loops).scalar(condition)?;
+            match condition {
+                Operand::Constant(value) if value != 0.0 => {
+                    self.statements(body, loops)?;
+                    ends.into_iter().for_each(|end| self.emitter.land(end));
+                    return Ok(());
+                }
+                Operand::Constant(_) => continue,
+                Operand::Register(_) => {}
+            }
+            let skip = self.emitter.jump_unless(condition);
+            self.statements(body, loops)?;
+            ends.push(self.emitter.jump());
+            self.emitter.land(skip);
+        }
+        self.statements(otherwise, loops)?;
+        ends.into_iter().for_each(|end| self.emitter.land(end));
+        Ok(())
+    }
+
+    fn while_loop(
+        &mut self,
+        condition: &Expression,
+        body: &[Statement],
+        loops: &mut Loops,
+    ) -> Result<(), Diagnostic> {
+        let start = self.emitter.len();
+        self.emitter.place(condition.span);
+        let condition = self.lowering(loops).scalar(condition)?;
+        let exit = match condition {
+            Operand::Constant(0.0) => return Ok(()),
+            Operand::Constant(_) => None,
+            register => Some(self.emitter.jump_unless(register)),
+        };
+        self.breaks.push(Vec::new());
+        self.statements(body, loops)?;
+        self.emitter.jump_to(start);
+        exit.into_iter().for_each(|exit| self.emitter.land(exit));
+        self.end_loop();
+        Ok(())
+    }
+
+    fn end_loop(&mut self) {
+        for jump in self.breaks.pop().unwrap_or_default() {
+            self.emitter.land(jump);
+        }
+    }
+
+    /// As a loop; unrolled if the body needs sizes that change from turn to turn.
+    fn for_loop(
+        &mut self,
+        indices: &[ForIndex],
+        body: &[Statement],
+        loops: &mut Loops,
+    ) -> Result<(), Diagnostic> {
+        let Some((index, inner)) = indices.split_first() else {
+            return self.statements(body, loops);
+        };
+        let before = self.emitter.checkpoint();
+        let jumps = (self.branches.len(), self.breaks.len(), self.returns.len());
+        let outer_breaks: Vec<usize> = self.breaks.iter().map(Vec::len).collect();
+        match self.counted(index, inner, body, loops) {
+            Err(e) if e.code == NO_CONSTANT_VALUE => {
+                self.emitter.rollback(before);
+                self.branches.truncate(jumps.0);
+                self.breaks.truncate(jumps.1);
+                self.returns.truncate(jumps.2);
+                for (breaks, n) in self.breaks.iter_mut().zip(outer_breaks) {
+                    breaks.truncate(n);
+                }
+                self.unrolled(index, inner, body, loops)
+                    .map_err(|again| if again.code == NO_CONSTANT_VALUE { e } else { again })
+            }
+            result => result,
+        }
+    }
+
+    fn unrolled(
+        &mut self,
+        index: &ForIndex,
+        inner: &[ForIndex],
+        body: &[Statement],
+        loops: &mut Loops,
+    ) -> Result<(), Diagnostic> {
+        let values = self.lowering(loops).loop_values(index)?;
+        let mut copies = Vec::with_capacity(values.len());
+        for value in values {
+            copies.push(match value {
+                Operand::Constant(_) => value,
+                Operand::Register(_) => Operand::Register(self.emitter.copies(&[value])),
+            });
+        }
+        self.breaks.push(Vec::new());
+        for value in copies {
+            loops.push((index.name.node, value));
+            let turn = self.for_loop(inner, body, loops);
+            loops.pop();
+            turn?;
+        }
+        self.end_loop();
+        Ok(())
+    }
+
+    fn counted(
+        &mut self,
+        index: &ForIndex,
+        inner: &[ForIndex],
+        body: &[Statement],
+        loops: &mut Loops,
+    ) -> Result<(), Diagnostic> {
+        let range = self.iterated(index, loops)?;
+        let (counter, value) = (self.emitter.block(1), self.emitter.block(1));
+        let one = self.emitter.register(Operand::Constant(1.0));
+        let goes_on = self.emitter.block(1);
+        self.emitter.emit(Instruction::Constant { d: counter, value: 0.0 });
+        let start = self.emitter.len();
+        let operator = crate::symbolic::RelationOperator::Less;
+        let (a, b) = (counter, self.emitter.register(range.turns()));
+        self.emitter.emit(Instruction::Relation { operator, d: goes_on, a, b });
+        let exit = self.emitter.jump_unless(Operand::Register(goes_on));
+        match range {
+            Iterated::Range { first, .. } => {
+                self.emitter.emit(Instruction::Mul { d: value, a: counter, b: first + 1 });
+                self.emitter.emit(Instruction::Add { d: value, a: first, b: value });
+            }
+            Iterated::Elements { first, .. } => {
+                self.emitter.emit(Instruction::Load { d: value, base: first, offset: counter });
+            }
+        }
+        self.emitter.emit(Instruction::Add { d: counter, a: counter, b: one });
+        self.breaks.push(Vec::new());
+        loops.push((index.name.node, Operand::Register(value)));
+        let turn = self.for_loop(inner, body, loops);
+        loops.pop();
+        turn?;
+        self.emitter.jump_to(start);
+        self.emitter.land(exit);
+        self.end_loop();
+        Ok(())
+    }
+
+    /// What a loop runs over, computed once.
+    fn iterated(&mut self, index: &ForIndex, loops: &Loops) -> Result<Iterated, Diagnostic> {
+        if let Some(ExpressionKind::Range { start, step, stop }) =
+            index.range.as_ref().map(|range| &range.kind)
+        {
+            let start = self.lowering(loops).scalar(start)?;
+            let step = match step {
+                Some(step) => self.lowering(loops).scalar(step)?,
+                None => Operand::Constant(1.0),
+            };
+            let stop = self.lowering(loops).scalar(stop)?;
+            let first = self.emitter.copies(&[start, step, stop]);
+            let turns = self.emitter.block(1);
+            self.emitter.emit(Instruction::Turns { d: turns, range: first });
+            return Ok(Iterated::Range { first, turns });
+        }
+        let elements = self.lowering(loops).loop_values(index)?;
+        let first = self.emitter.copies(&elements);
+        Ok(Iterated::Elements { first, n: elements.len() })
+    }
+
+    fn call_statement(&mut self, call: &Expression, loops: &Loops) -> Result<(), Diagnostic> {
+        let ExpressionKind::Call { function, arguments } = &call.kind else {
+            return Err(fault!(NOT_SUPPORTED, "this is no statement").at(call.span));
+        };
+        if function.as_ident().is_some_and(|name| name == "assert") {
+            return self.assertion(arguments, call.span, loops);
+        }
+        let name = function.name();
+        match self.function(&name) {
+            Some(user) if prints(&user) => self.printing(arguments, call.span, loops),
+            Some(user) => {
+                self.lowering(loops).user_call(&user, arguments, call.span)?;
+                Ok(())
+            }
+            None => {
+                Err(fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`").at(function.span))
+            }
+        }
+    }
+
+    fn assertion(
+        &mut self,
+        arguments: &crate::syntax::ast::Arguments,
+        span: Span,
+        loops: &Loops,
+    ) -> Result<(), Diagnostic> {
+        let find = |position: usize, name: &str| {
+            let named = arguments.named.iter().find(|a| a.name.node == name).map(|a| &a.value);
+            arguments.positional.get(position).or(named)
+        };
+        let Some(condition) = find(0, "condition") else {
+            return Err(fault!(ARRAY_MISMATCH, "`assert` needs a condition").at(span));
+        };
+        if let Some(level) = find(2, "level")
+            && self.lowering(loops).known(level)? == 1.0
+        {
+            return Ok(());
+        }
+        let condition = self.lowering(loops).scalar(condition)?;
+        if let Operand::Constant(value) = condition
+            && value != 0.0
+        {
+            return Ok(());
+        }
+        let text = message_text(&mut self.lowering(loops), find(1, "message"));
+        let message = self.emitter.message(text.into());
+        let a = self.emitter.register(condition);
+        self.emitter.emit(Instruction::Assert { a, message });
+        Ok(())
+    }
+}
+
+/// What a loop runs over.
+#[derive(Debug, Clone, Copy)]
+enum Iterated {
+    /// Three registers from `first` on, and one for the number of turns.
+    Range { first: Register, turns: Register },
+    /// Elements in a row.
+    Elements { first: Register, n: usize },
+}
+
+impl Iterated {
+    fn turns(self) -> Operand {
+        match self {
+            Iterated::Range { turns, .. } => Operand::Register(turns),
+            Iterated::Elements { n, .. } => Operand::Constant(n as f64),
+        }
+    }
+}
+
+/// The scalars of an array, `None` for other values.
+pub(super) fn elements(value: &Lowered<Operand>) -> Option<&Array<Operand>> {
+    match value {
+        Lowered::Array(array) => Some(array),
+        _ => None,
+    }
+}

@@ -1,0 +1,303 @@
+//! Expressions of a function being compiled.
+
+use super::emitter::Operand;
+use super::statements::Body;
+use crate::bytecode::{Elementary, Instruction};
+use crate::diag::Diagnostic;
+use crate::elementary;
+use crate::eval::{Function, ValueType};
+use crate::fault;
+use crate::lower::errors::NOT_SUPPORTED;
+use crate::lower::expressions::{Array, Binary, Branch, Choice, Lowered, Operator, Target, Unary};
+use crate::name::{Ident, Name};
+use crate::source::Span;
+use crate::symbolic::RelationOperator;
+use crate::symbolic::function::{FunctionId, Value};
+use crate::syntax::ast::{ComponentReference, Expression};
+use std::cell::Cell;
+use std::sync::Arc;
+
+impl Body<'_, '_> {
+    /// The result of an instruction that writes one register.
+    fn computed(&mut self, instruction: impl FnOnce(u32) -> Instruction) -> Operand {
+        let d = self.emitter.block(1);
+        self.emitter.emit(instruction(d));
+        Operand::Register(d)
+    }
+}
+
+impl Target for Body<'_, '_> {
+    type Scalar = Operand;
+
+    fn constant(&mut self, value: f64) -> Operand {
+        Operand::Constant(value)
+    }
+
+    fn as_constant(&self, scalar: Operand) -> Option<f64> {
+        match scalar {
+            Operand::Constant(value) => Some(value),
+            Operand::Register(_) => None,
+        }
+    }
+
+    fn unary(&mut self, operation: Unary, a: Operand) -> Operand {
+        match (operation, a) {
+            (Unary::Neg, Operand::Constant(a)) => Operand::Constant(-a),
+            (Unary::Not, Operand::Constant(a)) => Operand::Constant(truth(a == 0.0)),
+            (Unary::Neg, Operand::Register(a)) => self.computed(|d| Instruction::Neg { d, a }),
+            (Unary::Not, Operand::Register(a)) => self.computed(|d| Instruction::Not { d, a }),
+        }
+    }
+
+    fn binary(&mut self, operation: Binary, a: Operand, b: Operand) -> Operand {
+        if let (Operand::Constant(x), Operand::Constant(y)) = (a, b)
+            && let Some(value) = folded(operation, x, y)
+        {
+            return Operand::Constant(value);
+        }
+        if operation == Binary::Pow && b == Operand::Constant(2.0) {
+            return self.binary(Binary::Mul, a, a);
+        }
+        let (a, b) = (self.emitter.register(a), self.emitter.register(b));
+        self.computed(|d| match operation {
+            Binary::Add => Instruction::Add { d, a, b },
+            Binary::Sub => Instruction::Sub { d, a, b },
+            // Truths are 0 and 1.
+            Binary::Mul | Binary::And => Instruction::Mul { d, a, b },
+            Binary::Div => Instruction::Div { d, a, b },
+            Binary::Pow => Instruction::Pow { d, a, b },
+            Binary::Or => {
+                let function = Elementary::maximum();
+                Instruction::Binary { function, d, a, b }
+            }
+        })
+    }
+
+    fn relation(
+        &mut self,
+        operator: RelationOperator,
+        a: Operand,
+        b: Operand,
+        _: bool,
+        _: Span,
+    ) -> Operand {
+        if let (Operand::Constant(a), Operand::Constant(b)) = (a, b) {
+            return Operand::Constant(truth(operator.holds(a, b)));
+        }
+        let (a, b) = (self.emitter.register(a), self.emitter.register(b));
+        self.computed(|d| Instruction::Relation { operator, d, a, b })
+    }
+
+    fn apply(
+        &mut self,
+        function: FunctionId,
+        arguments: &[Operand],
+        _: bool,
+        _: Span,
+    ) -> Result<Operand, Diagnostic> {
+        let known: Option<Vec<f64>> = arguments.iter().map(|a| self.as_constant(*a)).collect();
+        if let Some(known) = known {
+            let value = function.get().value.of(&known);
+            if value.is_finite() {
+                return Ok(Operand::Constant(value));
+            }
+        }
+        let function = Elementary::of(function);
+        let registers: Vec<u32> = arguments.iter().map(|a| self.emitter.register(*a)).collect();
+        Ok(match (function.value, registers.as_slice()) {
+            (Value::Unary(_), &[a]) => self.computed(|d| Instruction::Unary { function, d, a }),
+            (Value::Binary(_), &[a, b]) => {
+                self.computed(|d| Instruction::Binary { function, d, a, b })
+            }
+            _ => unreachable!("lowering checks the number of arguments"),
+        })
+    }
+
+    fn begin_if(&mut self, condition: Operand) -> Branch<Operand> {
+        let skip = self.emitter.jump_unless(condition);
+        self.branches.push(skip);
+        Branch { condition, values: Vec::new() }
+    }
+
+    fn begin_else(&mut self, branch: &mut Branch<Operand>, values: &[Operand]) {
+        let d = self.emitter.copies(values);
+        branch.values = (d..).take(values.len()).map(Operand::Register).collect();
+        let end = self.emitter.jump();
+        if let Some(skip) = self.branches.last_mut() {
+            let skip = std::mem::replace(skip, end);
+            self.emitter.land(skip);
+        }
+    }
+
+    fn end_if(&mut self, branch: Branch<Operand>, values: &[Operand]) -> Vec<Operand> {
+        if let Some(Operand::Register(d)) = branch.values.first().copied() {
+            self.emitter.copy(d, values);
+        }
+        if let Some(end) = self.branches.pop() {
+            self.emitter.land(end);
+        }
+        branch.values
+    }
+
+    fn short_circuits(&self) -> bool {
+        true
+    }
+
+    fn element(
+        &mut self,
+        elements: &[Operand],
+        position: Operand,
+        span: Span,
+    ) -> Result<Operand, Diagnostic> {
+        let one = Operand::Constant(1.0);
+        let subscript = self.binary(Binary::Add, position, one);
+        let array = Array { dims: vec![elements.len()], elements: elements.to_vec() };
+        let chosen = self.subscripted(&array, vec![Choice::Computed(subscript)], span)?;
+        Ok(chosen.elements[0])
+    }
+
+    fn chooses(&self) -> bool {
+        true
+    }
+
+    fn subscripted(
+        &mut self,
+        array: &Array<Operand>,
+        choices: Vec<Choice<Operand>>,
+        span: Span,
+    ) -> Result<Array<Operand>, Diagnostic> {
+        let chosen = self.chosen(&array.dims, choices, span)?;
+        let elements = match chosen.offset {
+            None => chosen.positions.iter().map(|at| array.elements[*at]).collect(),
+            Some(offset) => {
+                let first = self.emitter.row(&array.elements);
+                let load = |at: &usize| {
+                    let base = first + *at as u32;
+                    self.computed(|d| Instruction::Load { d, base, offset })
+                };
+                chosen.positions.iter().map(load).collect()
+            }
+        };
+        Ok(Array { dims: chosen.dims, elements })
+    }
+
+    fn reference(
+        &mut self,
+        path: &str,
+        reference: &ComponentReference,
+    ) -> Result<Lowered<Operand>, Diagnostic> {
+        super::local_value(&self.locals, path, reference)
+    }
+
+    fn own_variable(&self, name: Ident) -> Option<&Lowered<Operand>> {
+        self.locals.iter().find(|(own, _)| *own == name).map(|(_, value)| value)
+    }
+
+    fn function(&self, name: &Name) -> Option<Arc<Function>> {
+        let bare = Name { global: false, parts: name.parts.clone() };
+        self.flat.functions.get(&bare).or_else(|| self.flat.functions.get(name)).cloned()
+    }
+
+    fn value_type(&self, path: &str) -> Option<ValueType> {
+        super::component_type(self.function, path)
+    }
+
+    fn call(
+        &mut self,
+        function: &Arc<Function>,
+        arguments: Vec<Lowered<Operand>>,
+        span: Span,
+    ) -> Result<Vec<Lowered<Operand>>, Diagnostic> {
+        let known: Vec<Lowered<Option<f64>>> =
+            arguments.iter().map(|a| a.map(&mut |operand| self.as_constant(operand))).collect();
+        let instance = self.instances.instance(self.flat, function, &known, span)?;
+        let mut scalars = Vec::new();
+        for (argument, passed) in arguments.iter().zip(&instance.passed) {
+            if *passed {
+                argument.append_scalars(&mut scalars);
+            }
+        }
+        let numbers: Option<Vec<f64>> = match instance.folds {
+            true => scalars.iter().map(|s| self.as_constant(*s)).collect(),
+            false => None,
+        };
+        let folded = numbers.and_then(|numbers| self.instances.evaluate(&instance, &numbers));
+        let results: Vec<Operand> = match folded {
+            Some(values) => values.into_iter().map(Operand::Constant).collect(),
+            None => {
+                let n: usize = instance.outputs.iter().map(|shape| shape.len()).sum();
+                let a = self.emitter.row(&scalars);
+                // A call without outputs returns one number, too.
+                let d = self.emitter.block(n.max(1) as u32);
+                self.emitter.place(span);
+                self.emitter.emit(Instruction::Call { function: instance.code, d, a });
+                (d..).take(n).map(Operand::Register).collect()
+            }
+        };
+        let mut results = results.into_iter();
+        Ok(instance.outputs.iter().map(|s| Lowered::from_scalars(s, &mut results)).collect())
+    }
+
+    fn operator(
+        &mut self,
+        name: &str,
+        _: &[Expression],
+        span: Span,
+    ) -> Option<Result<Operator, Diagnostic>> {
+        Some(match name {
+            "noEvent" | "homotopy" => Ok(Operator::Live(0)),
+            "smooth" => Ok(Operator::Live(1)),
+            "der"
+            | "initial"
+            | "terminal"
+            | "pre"
+            | "edge"
+            | "change"
+            | "sample"
+            | "delay"
+            | "reinit"
+            | "terminate"
+            | "semiLinear"
+            | "spatialDistribution"
+            | "cardinality"
+            | "inStream"
+            | "actualStream"
+            | "getInstanceName"
+            | "previous"
+            | "hold" => {
+                Err(fault!(NOT_SUPPORTED, "`{name}` in a function of an equation").at(span))
+            }
+            _ => return None,
+        })
+    }
+
+    fn interpreted(&self) -> &Cell<u64> {
+        &self.instances.interpreted
+    }
+
+    fn resources(&self) -> crate::external::Resources {
+        self.flat.resources.clone()
+    }
+
+    fn derivative(&mut self, _: Operand, span: Span) -> Result<Operand, Diagnostic> {
+        Err(fault!(NOT_SUPPORTED, "`der` in a function").at(span))
+    }
+}
+
+fn truth(holds: bool) -> f64 {
+    f64::from(u8::from(holds))
+}
+
+/// The result of an operation on numbers, if it is finite.
+fn folded(operation: Binary, a: f64, b: f64) -> Option<f64> {
+    let value = match operation {
+        Binary::Add => a + b,
+        Binary::Sub => a - b,
+        Binary::Mul => a * b,
+        Binary::Div => a / b,
+        Binary::Pow => elementary::powf(a, b),
+        Binary::And => truth(a != 0.0 && b != 0.0),
+        Binary::Or => truth(a != 0.0 || b != 0.0),
+    };
+    value.is_finite().then_some(value)
+}

@@ -1,0 +1,557 @@
+//! User functions become expressions: statements are carried out on symbolic values, loops of known
+//! length unrolled, branches merged into if-expressions (MLS ch. 11, §12.4).
+//!
+//! Not possible for external and impure functions, for `while`, `break`, `return` and subscripts
+//! that depend on variables, and for recursion that does not end when compiling: such calls are left
+//! to the bytecode of `function`, which refuses impure functions.
+
+use super::build::{Builder, UNKNOWN_TEXT, message_text};
+use super::component_shape::{Declared, declared};
+use super::dae::{Assertion, Level, Part};
+use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
+use super::expressions::{
+    Array, Binary, Branch, Choice, Lowered, Lowering, Operator, Target, Unary,
+};
+use super::function::{component_type, local_value};
+use crate::diag::Diagnostic;
+use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
+use crate::fault;
+use crate::name::{Ident, Name};
+use crate::source::Span;
+use crate::symbolic::function::FunctionId;
+use crate::symbolic::{Expr, RelationOperator};
+use crate::syntax::ast::{
+    Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
+    Subscript,
+};
+use std::cell::Cell;
+use std::sync::Arc;
+
+/// Most statements that one call may run where it cannot be compiled.
+pub(super) const MAX_STATEMENTS: usize = 1_000_000;
+/// Deepest nesting of calls.
+const MAX_CALLS: usize = 40;
+
+/// Most statements that one call may run where it can be compiled instead.
+pub(super) const MAX_INLINED: usize = 2_000;
+
+/// How a sequence of statements ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Flow {
+    Next,
+    Break,
+    Return,
+}
+
+/// The outputs of a call.
+pub(super) fn inline(
+    builder: &mut Builder<'_>,
+    function: &Arc<Function>,
+    arguments: Vec<Lowered<Expr>>,
+    span: Span,
+) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+    let name = &function.name;
+    let refuse =
+        |reason: &str| Err(fault!(NOT_SUPPORTED, "the function `{name}` {reason}").at(span));
+    let FunctionBody::Algorithm(statements) = &function.body else {
+        return refuse("is external and cannot be used in equations");
+    };
+    if function.impure {
+        return refuse("is impure and cannot be used in equations");
+    }
+    if builder.calls >= MAX_CALLS {
+        builder.inlined = 0;
+        return refuse("calls itself without an end that is known when compiling");
+    }
+    builder.calls += 1;
+    let mut call =
+        Call { builder, function: function.clone(), locals: Vec::new(), unassigned: false };
+    let result = call.run(function, statements, arguments, span);
+    builder.calls -= 1;
+    result
+}
+
+/// A call being carried out.
+struct Call<'a, 'b> {
+    builder: &'a mut Builder<'b>,
+    function: Arc<Function>,
+    /// Variables with their values; NaN where nothing was assigned.
+    locals: Vec<(Ident, Lowered<Expr>)>,
+    /// Whether a decision depended on a variable without value.
+    unassigned: bool,
+}
+
+type Loops = Vec<(Ident, Expr)>;
+
+impl Call<'_, '_> {
+    fn run(
+        &mut self,
+        function: &Function,
+        statements: &[Statement],
+        arguments: Vec<Lowered<Expr>>,
+        span: Span,
+    ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+        for (input, argument) in function.inputs.iter().zip(arguments) {
+            check_rank(function, input, &argument, span)?;
+            self.locals.push((input.name, argument));
+        }
+        for component in function.outputs.iter().chain(&function.locals) {
+            let mut undeclared = |_: &mut Self, _: &[Ident]| Ok(None);
+            let Declared { shape, scalars } =
+                declared(&mut Lowering::new(self), component, &mut undeclared)?;
+            let nothing = self.constant(f64::NAN);
+            let mut scalars = scalars.into_iter().map(|scalar| scalar.unwrap_or(nothing));
+            let value = Lowered::from_scalars(&shape, &mut scalars);
+            self.locals.push((component.name, value));
+        }
+        self.statements(statements, &mut Vec::new())?;
+        let outputs: Vec<Lowered<Expr>> = function
+            .outputs
+            .iter()
+            .filter_map(|o| self.locals.iter().find(|(name, _)| *name == o.name))
+            .map(|(_, value)| value.clone())
+            .collect();
+        let mut scalars = Vec::new();
+        outputs.iter().for_each(|output| output.append_scalars(&mut scalars));
+        let Builder { dae, undefined, .. } = &mut *self.builder;
+        if self.unassigned || scalars.iter().any(|e| undefined.contains(&dae.pool, *e)) {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "the function `{}` uses or returns a variable that it does not always assign",
+                function.name
+            )
+            .at(function.span)
+            .related(span, "called here"));
+        }
+        Ok(outputs)
+    }
+
+    fn statements(&mut self, list: &[Statement], loops: &mut Loops) -> Result<Flow, Diagnostic> {
+        for statement in list {
+            let flow = self.statement(statement, loops)?;
+            if flow != Flow::Next {
+                return Ok(flow);
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    fn lowering(&mut self, loops: &Loops) -> Lowering<'_, Self> {
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.clone();
+        lowering.live = true;
+        lowering
+    }
+
+    fn statement(&mut self, s: &Statement, loops: &mut Loops) -> Result<Flow, Diagnostic> {
+        self.builder.inlined = self.builder.inlined.saturating_sub(1);
+        if self.builder.inlined == 0 {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "functions in equations run more than {MAX_STATEMENTS} statements"
+            )
+            .at(s.span));
+        }
+        match &s.kind {
+            StatementKind::Assign { target, value } => {
+                let value = self.lowering(loops).lower(value)?;
+                self.assign(target, value, loops)?;
+            }
+            StatementKind::MultiAssign { targets, value } => {
+                let ExpressionKind::Call { function, arguments } = &value.kind else {
+                    return Err(fault!(NOT_SUPPORTED, "several variables need a call").at(s.span));
+                };
+                let name = function.name();
+                let Some(user) = self.function(&name) else {
+                    return Err(fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`")
+                        .at(function.span));
+                };
+                let outputs = self.lowering(loops).user_call(&user, arguments, s.span)?;
+                for (target, output) in targets.iter().zip(outputs) {
+                    if let Some(target) = target {
+                        self.assign(target, output, loops)?;
+                    }
+                }
+            }
+            StatementKind::If { branches, otherwise } => {
+                return self.branches(branches, otherwise, s.span, loops);
+            }
+            StatementKind::For { indices, body } => return self.repeat(indices, body, loops),
+            StatementKind::While { condition, body } => {
+                while self.lowering(loops).known(condition)? != 0.0 {
+                    match self.statements(body, loops)? {
+                        Flow::Next => {}
+                        Flow::Break => break,
+                        Flow::Return => return Ok(Flow::Return),
+                    }
+                    self.builder.inlined = self.builder.inlined.saturating_sub(1);
+                    if self.builder.inlined == 0 {
+                        return Err(fault!(NOT_SUPPORTED, "this loop has no end").at(s.span));
+                    }
+                }
+            }
+            StatementKind::Break => return Ok(Flow::Break),
+            StatementKind::Return => return Ok(Flow::Return),
+            StatementKind::Call(call) => self.call_statement(call, loops)?,
+            StatementKind::When { .. } => {
+                return Err(fault!(NOT_SUPPORTED, "`when` in a function").at(s.span));
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    fn branches(
+        &mut self,
+        branches: &[(Expression, Vec<Statement>)],
+        otherwise: &[Statement],
+        span: Span,
+        loops: &mut Loops,
+    ) -> Result<Flow, Diagnostic> {
+        let Some(((condition, body), rest)) = branches.split_first() else {
+            return self.statements(otherwise, loops);
+        };
+        let condition = self.lowering(loops).scalar(condition)?;
+        if let Some(known) = self.as_constant(condition) {
+            return match known != 0.0 {
+                true => self.statements(body, loops),
+                false => self.branches(rest, otherwise, span, loops),
+            };
+        }
+        let before = self.locals.clone();
+        let asserted = self.builder.dae.assertions.len();
+        let first = self.statements(body, loops);
+        self.builder.guard_assertions(asserted, condition);
+        let taken = std::mem::replace(&mut self.locals, before);
+        let not = self.unary(Unary::Not, condition);
+        let asserted = self.builder.dae.assertions.len();
+        let second = self.branches(rest, otherwise, span, loops);
+        self.builder.guard_assertions(asserted, not);
+        if (first?, second?) != (Flow::Next, Flow::Next) {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "`break` or `return` under a condition that depends on variables"
+            )
+            .at(span));
+        }
+        for ((_, local), (_, taken)) in self.locals.iter_mut().zip(&taken) {
+            merge(self.builder, condition, taken, local);
+        }
+        Ok(Flow::Next)
+    }
+
+    fn repeat(
+        &mut self,
+        indices: &[ForIndex],
+        body: &[Statement],
+        loops: &mut Loops,
+    ) -> Result<Flow, Diagnostic> {
+        let Some((index, inner)) = indices.split_first() else {
+            return self.statements(body, loops);
+        };
+        for value in self.lowering(loops).loop_values(index)? {
+            loops.push((index.name.node, value));
+            let flow = self.repeat(inner, body, loops);
+            loops.pop();
+            match flow? {
+                Flow::Next => {}
+                Flow::Break => break,
+                Flow::Return => return Ok(Flow::Return),
+            }
+        }
+        Ok(Flow::Next)
+    }
+
+    fn call_statement(&mut self, call: &Expression, loops: &Loops) -> Result<(), Diagnostic> {
+        let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(()) };
+        if function.as_ident().is_some_and(|name| name == "assert") {
+            return self.assertion(call, arguments, loops);
+        }
+        match self.function(&function.name()) {
+            Some(user) => {
+                let outputs = self.lowering(loops).user_call(&user, arguments, call.span)?;
+                self.builder.unused(&outputs, call.span);
+                Ok(())
+            }
+            None => {
+                let name = function.name();
+                Err(fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`").at(function.span))
+            }
+        }
+    }
+
+    fn assertion(
+        &mut self,
+        call: &Expression,
+        arguments: &Arguments,
+        loops: &Loops,
+    ) -> Result<(), Diagnostic> {
+        let find = |position: usize, name: &str| {
+            let named = arguments.named.iter().find(|a| a.name.node == name).map(|a| &a.value);
+            arguments.positional.get(position).or(named)
+        };
+        let Some(condition) = find(0, "condition") else {
+            return Err(fault!(ARRAY_MISMATCH, "`assert` needs a condition").at(call.span));
+        };
+        let level = match find(2, "level") {
+            Some(level) if self.lowering(loops).known(level)? == 1.0 => Level::Warning,
+            _ => Level::Error,
+        };
+        let condition = self.lowering(loops).scalar(condition)?;
+        let text = message_text(&mut self.lowering(loops), find(1, "message")).into();
+        let assertion = Assertion::new(condition, vec![Part::Text(text)], level, call.span);
+        self.builder.dae.assertions.push(assertion);
+        Ok(())
+    }
+
+    fn assign(
+        &mut self,
+        target: &ComponentReference,
+        value: Lowered<Expr>,
+        loops: &Loops,
+    ) -> Result<(), Diagnostic> {
+        let (last, path) = match target.parts.split_last() {
+            Some((last, path)) if path.iter().all(|part| part.subscripts.is_empty()) => {
+                (last, path)
+            }
+            _ => return Err(fault!(NOT_SUPPORTED, "an array of records").at(target.span)),
+        };
+        let names: Vec<Ident> = path.iter().chain([last]).map(|part| part.name).collect();
+        let unknown = || {
+            fault!(UNRESOLVED_REFERENCE, "there is no variable `{}`", target.name()).at(target.span)
+        };
+        let dims = match self.local(&names).ok_or_else(unknown)? {
+            Lowered::Array(array) => array.dims.clone(),
+            _ if !last.subscripts.is_empty() => {
+                return Err(fault!(NOT_SUPPORTED, "an array of records").at(target.span));
+            }
+            _ => Vec::new(),
+        };
+        let positions = self.positions(&dims, &last.subscripts, target.span, loops)?;
+        let place = self.local(&names).ok_or_else(unknown)?;
+        let Some(positions) = positions else {
+            if !place.fits(&value) {
+                return Err(fault!(
+                    ARRAY_MISMATCH,
+                    "the value of `{}` has another size",
+                    target.name()
+                )
+                .at(target.span));
+            }
+            *place = value;
+            return Ok(());
+        };
+        let (Lowered::Array(array), Lowered::Array(value)) = (place, value) else {
+            return Err(fault!(NOT_SUPPORTED, "subscripts of a record").at(target.span));
+        };
+        if positions.len() != value.elements.len() {
+            return Err(fault!(
+                ARRAY_MISMATCH,
+                "{} elements are assigned to {}",
+                value.elements.len(),
+                positions.len()
+            )
+            .at(target.span));
+        }
+        for (position, element) in positions.into_iter().zip(value.elements) {
+            array.elements[position] = element;
+        }
+        Ok(())
+    }
+
+    /// Row-major positions that subscripts choose; `None` without subscripts.
+    fn positions(
+        &mut self,
+        dims: &[usize],
+        subscripts: &[Subscript],
+        span: Span,
+        loops: &Loops,
+    ) -> Result<Option<Vec<usize>>, Diagnostic> {
+        if subscripts.is_empty() {
+            return Ok(None);
+        }
+        let mut positions = vec![0];
+        let mut choices = self.lowering(loops).choices(dims, subscripts, span)?.into_iter();
+        for size in dims {
+            let chosen: Vec<usize> = match choices.next() {
+                Some(Choice::Known { positions, .. }) => positions,
+                Some(Choice::Computed(_)) => return Err(subscript_unknown(span)),
+                None => (0..*size).collect(),
+            };
+            let step = |at: &usize| chosen.iter().map(|c| at * size + c).collect::<Vec<_>>();
+            positions = positions.iter().flat_map(step).collect();
+        }
+        Ok(Some(positions))
+    }
+
+    fn local(&mut self, names: &[Ident]) -> Option<&mut Lowered<Expr>> {
+        let (first, rest) = names.split_first()?;
+        let mut place = &mut self.locals.iter_mut().find(|(name, _)| name == first)?.1;
+        for name in rest {
+            let Lowered::Record(fields) = place else { return None };
+            place = &mut fields.iter_mut().find(|(field, _)| field == name)?.1;
+        }
+        Some(place)
+    }
+}
+
+fn subscript_unknown(span: Span) -> Diagnostic {
+    fault!(NOT_SUPPORTED, "a subscript that depends on variables is not supported yet").at(span)
+}
+
+/// `local := if condition then taken else local`
+fn merge(
+    builder: &mut Builder<'_>,
+    condition: Expr,
+    taken: &Lowered<Expr>,
+    local: &mut Lowered<Expr>,
+) {
+    match (taken, local) {
+        (Lowered::Array(a), Lowered::Array(b)) => {
+            for (x, y) in a.elements.iter().zip(&mut b.elements) {
+                *y = builder.dae.pool.if_then_else(condition, *x, *y);
+            }
+        }
+        (Lowered::Record(a), Lowered::Record(b)) => {
+            for ((_, x), (_, y)) in a.iter().zip(b) {
+                merge(builder, condition, x, y);
+            }
+        }
+        (Lowered::Text(a), Lowered::Text(b)) if a != b => *b = UNKNOWN_TEXT.into(),
+        _ => {}
+    }
+}
+
+fn check_rank(
+    function: &Function,
+    input: &FunctionComponent,
+    argument: &Lowered<Expr>,
+    span: Span,
+) -> Result<(), Diagnostic> {
+    match argument {
+        Lowered::Array(Array { dims, .. }) if dims.len() != input.dims.len() => Err(fault!(
+            ARRAY_MISMATCH,
+            "the argument `{}` of `{}` has {} dimensions instead of {}",
+            input.name,
+            function.name,
+            dims.len(),
+            input.dims.len()
+        )
+        .at(span)),
+        Lowered::Text(_) | Lowered::Numbered(_) => {
+            Err(fault!(NOT_SUPPORTED, "the text argument `{}` of `{}`", input.name, function.name)
+                .at(span))
+        }
+        _ => Ok(()),
+    }
+}
+
+impl Target for Call<'_, '_> {
+    type Scalar = Expr;
+
+    fn constant(&mut self, value: f64) -> Expr {
+        self.builder.constant(value)
+    }
+
+    fn as_constant(&self, scalar: Expr) -> Option<f64> {
+        self.builder.as_constant(scalar)
+    }
+
+    fn unary(&mut self, operation: Unary, a: Expr) -> Expr {
+        self.builder.unary(operation, a)
+    }
+
+    fn binary(&mut self, operation: Binary, a: Expr, b: Expr) -> Expr {
+        self.builder.binary(operation, a, b)
+    }
+
+    fn relation(&mut self, op: RelationOperator, a: Expr, b: Expr, _: bool, span: Span) -> Expr {
+        self.unassigned |= [a, b].iter().any(|e| self.as_constant(*e).is_some_and(f64::is_nan));
+        // Relations inside functions cause no events (MLS §12.2).
+        self.builder.relation(op, a, b, true, span)
+    }
+
+    fn apply(
+        &mut self,
+        function: FunctionId,
+        arguments: &[Expr],
+        _: bool,
+        span: Span,
+    ) -> Result<Expr, Diagnostic> {
+        self.builder.apply(function, arguments, true, span)
+    }
+
+    fn begin_if(&mut self, condition: Expr) -> Branch<Expr> {
+        self.builder.begin_if(condition)
+    }
+
+    fn begin_else(&mut self, branch: &mut Branch<Expr>, values: &[Expr]) {
+        self.builder.begin_else(branch, values);
+    }
+
+    fn end_if(&mut self, branch: Branch<Expr>, values: &[Expr]) -> Vec<Expr> {
+        self.builder.end_if(branch, values)
+    }
+
+    fn element(&mut self, _: &[Expr], _: Expr, span: Span) -> Result<Expr, Diagnostic> {
+        Err(subscript_unknown(span))
+    }
+
+    fn reference(
+        &mut self,
+        path: &str,
+        reference: &ComponentReference,
+    ) -> Result<Lowered<Expr>, Diagnostic> {
+        local_value(&self.locals, path, reference)
+    }
+
+    fn own_variable(&self, name: Ident) -> Option<&Lowered<Expr>> {
+        self.locals.iter().find(|(own, _)| *own == name).map(|(_, value)| value)
+    }
+
+    fn function(&self, name: &Name) -> Option<Arc<Function>> {
+        self.builder.function(name)
+    }
+
+    fn value_type(&self, path: &str) -> Option<ValueType> {
+        component_type(&self.function, path)
+    }
+
+    fn call(
+        &mut self,
+        function: &Arc<Function>,
+        arguments: Vec<Lowered<Expr>>,
+        span: Span,
+    ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+        super::function::call(self.builder, function, arguments, span)
+    }
+
+    fn operator(
+        &mut self,
+        name: &str,
+        arguments: &[Expression],
+        span: Span,
+    ) -> Option<Result<Operator, Diagnostic>> {
+        match name {
+            "der" | "initial" => {
+                Some(Err(fault!(NOT_SUPPORTED, "`{name}` in a function").at(span)))
+            }
+            _ => self.builder.operator(name, arguments, span),
+        }
+    }
+
+    fn gives_up(&self) -> bool {
+        self.builder.inlined == 0
+    }
+
+    fn interpreted(&self) -> &Cell<u64> {
+        self.builder.interpreted()
+    }
+
+    fn resources(&self) -> crate::external::Resources {
+        self.builder.flat.resources.clone()
+    }
+
+    fn derivative(&mut self, _: Expr, span: Span) -> Result<Expr, Diagnostic> {
+        Err(fault!(NOT_SUPPORTED, "`der` in a function").at(span))
+    }
+}

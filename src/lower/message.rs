@@ -1,0 +1,200 @@
+//! Texts for people: of assertions, and of functions that print (MLS §8.3.7, §12.9).
+
+use super::build::{Builder, UNKNOWN_TEXT, message_text};
+use super::dae::{Assertion, Level, Part};
+use super::errors::NOT_SUPPORTED;
+use super::expressions::{Lowered, Lowering, Target};
+use super::function::prints;
+use crate::diag::Diagnostic;
+use crate::eval::Function;
+use crate::fault;
+use crate::flatten::BaseType;
+use crate::source::Span;
+use crate::symbolic::{Expr, Node, RelationOperator};
+use crate::syntax::ast::{Arguments, BinaryOperator, Expression, ExpressionKind};
+use std::sync::Arc;
+
+/// The parts of a text: what is known when compiling, and numbers that are not.
+pub(super) fn message_parts(
+    lowering: &mut Lowering<'_, Builder<'_>>,
+    e: Option<&Expression>,
+) -> Vec<Part> {
+    let mut parts = Vec::new();
+    if let Some(e) = e {
+        collect(lowering, e, &mut parts);
+    }
+    parts
+}
+
+fn collect(lowering: &mut Lowering<'_, Builder<'_>>, e: &Expression, parts: &mut Vec<Part>) {
+    if let ExpressionKind::Binary { operator: BinaryOperator::Add, left, right } = &e.kind {
+        collect(lowering, left, parts);
+        collect(lowering, right, parts);
+        return;
+    }
+    let text = message_text(lowering, Some(e));
+    let part = match text.contains(UNKNOWN_TEXT) {
+        true => number(lowering, e).unwrap_or_else(|| Part::Text(text.into())),
+        false => Part::Text(text.into()),
+    };
+    parts.push(part);
+}
+
+/// `String(x)` of a number that is not known yet.
+fn number(lowering: &mut Lowering<'_, Builder<'_>>, e: &Expression) -> Option<Part> {
+    let ExpressionKind::Call { function, arguments } = &e.kind else { return None };
+    let [argument] = arguments.positional.as_slice() else { return None };
+    if function.as_ident()? != "String" || !arguments.named.is_empty() {
+        return None;
+    }
+    let value = lowering.scalar(argument).ok()?;
+    let variable = lowering.target.dae.pool.as_variable(value);
+    match variable.map(|v| &lowering.target.dae.variable(v).base) {
+        Some(BaseType::Boolean) => Some(Part::Boolean(value)),
+        Some(BaseType::Real | BaseType::Integer) | None => Some(Part::Number(value)),
+        Some(_) => None,
+    }
+}
+
+impl Builder<'_> {
+    /// A call of a function that prints to the screen; `None` for other calls. It is a message that
+    /// is told wherever it is carried out.
+    pub(super) fn printing(
+        &mut self,
+        call: &Expression,
+        loops: &[(crate::name::Ident, Expr)],
+    ) -> Result<Option<()>, Diagnostic> {
+        let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(None) };
+        let Some(user) = Target::function(self, &function.name()) else { return Ok(None) };
+        if !prints(&user) {
+            return Ok(None);
+        }
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.to_vec();
+        lowering.live = true;
+        if let Some(file) = nth(arguments, 1, "fileName")
+            && !message_text(&mut lowering, Some(file)).is_empty()
+        {
+            return Ok(None);
+        }
+        let parts = message_parts(&mut lowering, nth(arguments, 0, "string"));
+        let condition = self.dae.pool.constant(0.0);
+        self.dae.assertions.push(Assertion::new(condition, parts, Level::Message, call.span));
+        Ok(Some(()))
+    }
+
+    /// The call of a function without use of its value: what it asserts must hold, and where it
+    /// `acts`, in when-clauses and initial sections, what it writes is written.
+    pub(super) fn call_statement(
+        &mut self,
+        call: &Expression,
+        loops: &[(crate::name::Ident, Expr)],
+        acts: bool,
+    ) -> Result<(), Diagnostic> {
+        let ExpressionKind::Call { function, arguments } = &call.kind else {
+            return Err(fault!(NOT_SUPPORTED, "this is no call").at(call.span));
+        };
+        if acts && self.printing(call, loops)?.is_some() {
+            return Ok(());
+        }
+        let name = function.name();
+        let Some(user) = Target::function(self, &name) else {
+            return Err(fault!(NOT_SUPPORTED, "`{name}(…)` as a statement here").at(call.span));
+        };
+        if acts {
+            return self.effect(&user, arguments, call.span, loops);
+        }
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.to_vec();
+        let outputs = lowering.user_call(&user, arguments, call.span)?;
+        if !user.impure {
+            self.unused(&outputs, call.span);
+        }
+        Ok(())
+    }
+
+    /// Outputs that nobody uses: the calls behind them are made for what they assert.
+    pub(super) fn unused(&mut self, outputs: &[Lowered<Expr>], span: Span) {
+        let mut scalars = Vec::new();
+        outputs.iter().for_each(|output| output.append_scalars(&mut scalars));
+        let pool = &self.dae.pool;
+        let is_call = |e: &Expr| matches!(pool.node(*e), Node::Call { .. });
+        if let Some(call) = scalars.into_iter().find(is_call) {
+            self.assert_call(call, span);
+        }
+    }
+
+    /// The call of a function that has no other value.
+    pub(super) fn assert_call(&mut self, call: Expr, span: Span) {
+        let holds = self.dae.pool.relation(RelationOperator::Equal, call, call);
+        self.dae.assertions.push(Assertion::new(holds, Vec::new(), Level::Error, span));
+    }
+
+    /// The call of a function at an instant: what it writes is written whenever the statement is
+    /// carried out.
+    fn effect(
+        &mut self,
+        user: &Arc<Function>,
+        arguments: &Arguments,
+        span: Span,
+        loops: &[(crate::name::Ident, Expr)],
+    ) -> Result<(), Diagnostic> {
+        self.written.clear();
+        self.functions.may_write = true;
+        let mut lowering = Lowering::new(self);
+        lowering.loops = loops.to_vec();
+        lowering.live = true;
+        let called = lowering.user_call(user, arguments, span);
+        self.functions.may_write = false;
+        let outputs = called?;
+        if !user.impure && self.written.is_empty() {
+            self.unused(&outputs, span);
+        }
+        let parts: Vec<Part> = self.written.drain(..).map(Part::Number).collect();
+        if !parts.is_empty() {
+            let condition = self.dae.pool.constant(0.0);
+            self.dae.assertions.push(Assertion::new(condition, parts, Level::Effect, span));
+        }
+        Ok(())
+    }
+}
+
+pub(super) fn nth<'a>(
+    arguments: &'a Arguments,
+    position: usize,
+    name: &str,
+) -> Option<&'a Expression> {
+    let named = arguments.named.iter().find(|a| a.name.node == name).map(|a| &a.value);
+    arguments.positional.get(position).or(named)
+}
+
+impl Assertion {
+    /// An assertion of this text.
+    pub fn new(condition: Expr, parts: Vec<Part>, level: Level, span: Span) -> Assertion {
+        let known = |part: &Part| match part {
+            Part::Text(text) => text.to_string(),
+            _ => UNKNOWN_TEXT.to_owned(),
+        };
+        let message = parts.iter().map(known).collect::<String>().into();
+        Assertion { condition, message, parts, level, span }
+    }
+
+    /// Visits every expression.
+    pub fn for_each_expression(&mut self, mut visit: impl FnMut(&mut Expr)) {
+        visit(&mut self.condition);
+        for part in &mut self.parts {
+            if let Part::Number(value) | Part::Boolean(value) = part {
+                visit(value);
+            }
+        }
+    }
+
+    /// The numbers in its text.
+    pub fn values(&self) -> Vec<Expr> {
+        let value = |part: &Part| match part {
+            Part::Number(value) | Part::Boolean(value) => Some(*value),
+            Part::Text(_) => None,
+        };
+        self.parts.iter().filter_map(value).collect()
+    }
+}

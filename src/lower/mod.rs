@@ -1,0 +1,36 @@
+//! Lowering: a flat model becomes a system of differential-algebraic equations, a [`Dae`] — every
+//! variable a scalar, every equation a pair of scalar expressions (MLS appendix B).
+//!
+//! Arrays, records and functions are expanded ([`expressions`], [`function`], [`inline`]);
+//! algorithm sections and when-clauses become equations ([`algorithm`], [`when`]); every relation
+//! outside `noEvent` becomes a variable that changes at events only ([`build`]); operators with a
+//! meaning in time become variables too ([`temporal`]).
+//!
+//! Not supported yet, and refused with `not-supported`: `delay` by a time that varies,
+//! `spatialDistribution`, statements whose loops depend on variables.
+
+mod algorithm;
+mod assigned_variables;
+mod build;
+mod component_shape;
+mod dae;
+mod default_values;
+mod discrete;
+pub mod errors;
+mod evaluated_parameters;
+mod events;
+mod expressions;
+mod function;
+mod inline;
+mod message;
+mod statement_function;
+mod symbolic_target;
+mod temporal;
+mod varying_strings;
+mod when;
+
+pub(crate) use build::{build, derivative_of, scalar_of_nothing};
+pub use dae::*;
+pub use default_values::DefaultValues;
+pub(crate) use default_values::fold_parameters;
+pub use events::*;

@@ -1,0 +1,244 @@
+//! Statements of algorithm sections that cannot be carried out on expressions, such as loops whose
+//! ends depend on variables: each is a function of what it reads (MLS §11.1.1), and what it assigns
+//! are results of a call. Relations in it cause no events.
+
+use super::algorithm::Loops;
+use super::build::Builder;
+use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
+use super::expressions::{Lowered, Lowering, Target};
+use super::function::compiled_call;
+use crate::diag::Diagnostic;
+use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
+use crate::fault;
+use crate::name::{Ident, Name};
+use crate::source::Span;
+use crate::symbolic::{Expr, VarId};
+use crate::syntax::ast::{
+    ComponentReference, Expression, ExpressionKind, ForIndex, ReferencePart, Statement,
+    StatementKind, Subscript,
+};
+use crate::syntax::visit::{Rewrite, Visit, rewrite_reference, walk_expression, walk_statement};
+use indexmap::IndexMap;
+use rustc_hash::FxHashSet;
+use std::sync::Arc;
+
+/// Whether an error says that something is not possible on expressions.
+pub(super) fn may_be_a_function(error: &Diagnostic) -> bool {
+    error.code == NOT_SUPPORTED || error.code == NO_CONSTANT_VALUE
+}
+
+impl Builder<'_> {
+    /// Carries out a statement as the call of a function of its own.
+    pub(super) fn call_of_statement(
+        &mut self,
+        s: &Statement,
+        loops: &Loops,
+    ) -> Result<(), Diagnostic> {
+        let mut statement = s.clone();
+        let mut naming = Naming {
+            known: IndexMap::new(),
+            own: iterators(s)?,
+            builder: self,
+            loops,
+            failure: None,
+        };
+        naming.statement(&mut statement);
+        let (known, failure) = (naming.known, naming.failure);
+        if let Some(failure) = failure {
+            return Err(failure);
+        }
+        let assigned = assigned(&statement);
+        let (mut inputs, mut outputs, mut arguments) = (Vec::new(), Vec::new(), Vec::new());
+        for (name, value) in loops {
+            inputs.push(component(*name, ValueType::Real, &[], None, s.span));
+            arguments.push(Lowered::scalar(*value));
+        }
+        for (path, name) in &known {
+            let value_type = self.value_type(path).unwrap_or(ValueType::Real);
+            let reference = reference_to(Ident::new(path), s.span);
+            let value = Target::reference(self, path, &reference)?;
+            let Lowered::Array(array) = &value else {
+                return Err(fault!(NOT_SUPPORTED, "`{path}` in a statement like this").at(s.span));
+            };
+            let input = match assigned.contains(name) {
+                true => Ident::new(&format!("{name} before")),
+                false => *name,
+            };
+            inputs.push(component(input, value_type.clone(), &array.dims, None, s.span));
+            if input != *name {
+                let before = ExpressionKind::Reference(reference_to(input, s.span));
+                let before = Some(Expression::new(before, s.span));
+                outputs.push(component(*name, value_type, &array.dims, before, s.span));
+            }
+            arguments.push(value);
+        }
+        let function = self.function_of(statement, inputs, outputs);
+        let results = compiled_call(self, &function, arguments, s.span)?;
+        let paths = known.iter().filter(|(_, name)| assigned.contains(*name));
+        for ((path, _), result) in paths.zip(results) {
+            self.assign_results(path, &result);
+        }
+        Ok(())
+    }
+
+    fn function_of(
+        &mut self,
+        statement: Statement,
+        inputs: Vec<FunctionComponent>,
+        outputs: Vec<FunctionComponent>,
+    ) -> Arc<Function> {
+        self.statement_functions += 1;
+        let name = Ident::new(&format!("statement {}", self.statement_functions));
+        Arc::new(Function {
+            name: Name::from(name),
+            inputs,
+            outputs,
+            locals: Vec::new(),
+            span: statement.span,
+            body: FunctionBody::Algorithm(vec![statement]),
+            description: None,
+            annotation: Vec::new(),
+            impure: false,
+            compiled: Default::default(),
+        })
+    }
+
+    /// Gives the elements of a variable that the algorithm assigns their values.
+    fn assign_results(&mut self, path: &str, result: &Lowered<Expr>) {
+        let mut values = Vec::new();
+        result.append_scalars(&mut values);
+        let Some(position) = self.flat.variables.get_index_of(path) else { return };
+        let first = self.first[position].0;
+        for (variable, value) in (first..).map(VarId).zip(values) {
+            if let Some(before) = self.execution.values.get_mut(&variable) {
+                *before = value;
+                if self.in_when {
+                    self.execution.in_when.insert(variable);
+                }
+            }
+        }
+    }
+}
+
+/// Gives the variables of the model in a statement names of one part each.
+struct Naming<'s, 'b> {
+    builder: &'s mut Builder<'b>,
+    loops: &'s Loops,
+    /// Loop variables of the statement.
+    own: FxHashSet<Ident>,
+    /// The new names of variables, by their paths.
+    known: IndexMap<String, Ident>,
+    failure: Option<Diagnostic>,
+}
+
+impl Rewrite for Naming<'_, '_> {
+    fn reference(&mut self, reference: &mut ComponentReference) {
+        rewrite_reference(self, reference);
+        let is_loop = |name: Ident| {
+            self.own.contains(&name) || self.loops.iter().any(|(known, _)| *known == name)
+        };
+        if reference.as_ident().is_some_and(is_loop) {
+            return;
+        }
+        let mut lowering = Lowering::new(self.builder);
+        lowering.loops = self.loops.clone();
+        let path = match lowering.path(reference) {
+            Ok(path) => path,
+            Err(error) => {
+                self.failure.get_or_insert(error);
+                return;
+            }
+        };
+        if path != "time" && !self.builder.flat.variables.contains_key(path.as_str()) {
+            return;
+        }
+        let number = self.known.len() + 1;
+        let name = *self.known.entry(path).or_insert_with(|| Ident::new(&format!("v {number}")));
+        let subscripts = reference.parts.pop().map_or(Vec::new(), |part| part.subscripts);
+        reference.parts = vec![ReferencePart { name, subscripts }];
+    }
+}
+
+/// The names of the loop variables of a statement; an error where a statement in it has no meaning
+/// in a function.
+fn iterators(statement: &Statement) -> Result<FxHashSet<Ident>, Diagnostic> {
+    let mut search = Iterators { names: FxHashSet::default(), alien: None };
+    search.statement(statement);
+    match search.alien {
+        Some(span) => Err(fault!(NOT_SUPPORTED, "this statement in a loop like this").at(span)),
+        None => Ok(search.names),
+    }
+}
+
+struct Iterators {
+    names: FxHashSet<Ident>,
+    alien: Option<Span>,
+}
+
+impl Iterators {
+    fn add(&mut self, indices: &[ForIndex]) {
+        self.names.extend(indices.iter().map(|index| index.name.node));
+    }
+}
+
+impl Visit for Iterators {
+    fn statement(&mut self, statement: &Statement) {
+        match &statement.kind {
+            StatementKind::For { indices, .. } => self.add(indices),
+            StatementKind::When { .. } | StatementKind::Return => self.alien = Some(statement.span),
+            _ => {}
+        }
+        walk_statement(self, statement);
+    }
+
+    fn expression(&mut self, expression: &Expression) {
+        match &expression.kind {
+            ExpressionKind::Comprehension { indices, .. } => self.add(indices),
+            ExpressionKind::Call { arguments, .. } => self.add(&arguments.iterators),
+            _ => {}
+        }
+        walk_expression(self, expression);
+    }
+}
+
+/// The variables on the left sides of a statement.
+fn assigned(statement: &Statement) -> FxHashSet<Ident> {
+    let mut search = Assigned(FxHashSet::default());
+    search.statement(statement);
+    search.0
+}
+
+struct Assigned(FxHashSet<Ident>);
+
+impl Visit for Assigned {
+    fn statement(&mut self, statement: &Statement) {
+        match &statement.kind {
+            StatementKind::Assign { target, .. } => {
+                self.0.extend(target.parts.first().map(|p| p.name))
+            }
+            StatementKind::MultiAssign { targets, .. } => {
+                let first = |target: &ComponentReference| target.parts.first().map(|p| p.name);
+                self.0.extend(targets.iter().flatten().filter_map(first));
+            }
+            _ => {}
+        }
+        walk_statement(self, statement);
+    }
+}
+
+fn component(
+    name: Ident,
+    value_type: ValueType,
+    dims: &[usize],
+    binding: Option<Expression>,
+    span: Span,
+) -> FunctionComponent {
+    let size =
+        |n: &usize| Subscript::Index(Expression::new(ExpressionKind::Integer(*n as i64), span));
+    let dims = dims.iter().map(size).collect();
+    FunctionComponent { name, value_type, dims, binding, description: None, span }
+}
+
+fn reference_to(name: Ident, span: Span) -> ComponentReference {
+    ComponentReference::from_name(&Name::from(name), span)
+}

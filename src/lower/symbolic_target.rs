@@ -1,0 +1,443 @@
+//! Lowering into the symbolic expressions of a [`Dae`](super::dae::Dae).
+
+use super::build::derivative_of;
+use super::build::{Builder, Folding, UNKNOWN_TEXT, scalar_of_nothing};
+use super::dae::{Assertion, Homotopy, Kind, Level, Part, Relation};
+use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
+use super::expressions::{Array, Binary, Branch, Lowered, Lowering, Operator, Target, Unary};
+use crate::diag::Diagnostic;
+use crate::eval::{Function, ValueType};
+use crate::fault;
+use crate::flatten::{BaseType, Variability};
+use crate::name::{Ident, Name};
+use crate::source::Span;
+use crate::symbolic::function::FunctionId;
+use crate::symbolic::{Expr, RelationOperator, VarId};
+use crate::syntax::ast::{ComponentReference, Expression, ExpressionKind};
+use indexmap::IndexSet;
+use std::cell::Cell;
+use std::sync::Arc;
+
+impl Target for Builder<'_> {
+    type Scalar = Expr;
+
+    fn constant(&mut self, value: f64) -> Expr {
+        self.dae.pool.constant(value)
+    }
+
+    fn as_constant(&self, scalar: Expr) -> Option<f64> {
+        self.dae.pool.as_constant(scalar)
+    }
+
+    fn unary(&mut self, operation: Unary, a: Expr) -> Expr {
+        match operation {
+            Unary::Neg => self.dae.pool.neg(a),
+            Unary::Not => self.dae.pool.not(a),
+        }
+    }
+
+    fn binary(&mut self, operation: Binary, a: Expr, b: Expr) -> Expr {
+        let pool = &mut self.dae.pool;
+        match operation {
+            Binary::Add => pool.add(a, b),
+            Binary::Sub => pool.sub(a, b),
+            Binary::Mul => pool.mul(a, b),
+            Binary::Div => pool.div(a, b),
+            Binary::Pow => pool.pow(a, b),
+            Binary::And => pool.and(a, b),
+            Binary::Or => pool.or(a, b),
+        }
+    }
+
+    fn relation(
+        &mut self,
+        operator: RelationOperator,
+        a: Expr,
+        b: Expr,
+        live: bool,
+        span: Span,
+    ) -> Expr {
+        let relation = self.dae.pool.relation(operator, a, b);
+        let equality = matches!(operator, RelationOperator::Equal | RelationOperator::NotEqual);
+        // `a == b` of Integers and Booleans has no zero crossing of its own: it changes when they do.
+        if live || equality || self.as_constant(relation).is_some() {
+            return relation;
+        }
+        if !self.varies(a) && !self.varies(b) {
+            return relation;
+        }
+        let key = (operator, a, b);
+        let variable = match self.relations.get(&key) {
+            Some(variable) => *variable,
+            None => {
+                let variable = VarId(self.dae.variables.len() as u32);
+                let name = format!("$relation[{}]", self.dae.relations.len() + 1);
+                let mut frozen = scalar_of_nothing(&name, Kind::Frozen, span);
+                frozen.base = BaseType::Boolean;
+                frozen.variability = Variability::Discrete;
+                self.dae.variables.push(frozen);
+                self.dae.relations.push(Relation { variable, operator, left: a, right: b, span });
+                self.relations.insert(key, variable);
+                variable
+            }
+        };
+        self.dae.pool.variable(variable)
+    }
+
+    fn apply(
+        &mut self,
+        function: FunctionId,
+        arguments: &[Expr],
+        live: bool,
+        span: Span,
+    ) -> Result<Expr, Diagnostic> {
+        let may_jump = function.get().event_generating && !live;
+        match may_jump && arguments.iter().any(|a| self.varies(*a)) {
+            true => self.rounding_function(function, arguments, span),
+            false => Ok(self.dae.pool.apply(function, arguments)),
+        }
+    }
+
+    fn begin_if(&mut self, condition: Expr) -> Branch<Expr> {
+        self.asserted.push(self.dae.assertions.len());
+        Branch { condition, values: Vec::new() }
+    }
+
+    fn begin_else(&mut self, branch: &mut Branch<Expr>, values: &[Expr]) {
+        branch.values = values.to_vec();
+        let from = self.asserted.pop().unwrap_or(usize::MAX);
+        self.guard_assertions(from, branch.condition);
+        self.asserted.push(self.dae.assertions.len());
+    }
+
+    fn end_if(&mut self, branch: Branch<Expr>, values: &[Expr]) -> Vec<Expr> {
+        let from = self.asserted.pop().unwrap_or(usize::MAX);
+        let not = self.dae.pool.not(branch.condition);
+        self.guard_assertions(from, not);
+        let pairs = branch.values.iter().zip(values);
+        pairs.map(|(a, b)| self.dae.pool.if_then_else(branch.condition, *a, *b)).collect()
+    }
+
+    fn settle(&mut self, condition: Expr) -> Option<f64> {
+        self.settled(condition).ok().flatten()
+    }
+
+    fn element(
+        &mut self,
+        elements: &[Expr],
+        position: Expr,
+        span: Span,
+    ) -> Result<Expr, Diagnostic> {
+        if self.varies(position) || elements.is_empty() {
+            return Err(fault!(NO_CONSTANT_VALUE,
+                "this subscript must be known when the model is compiled, or be discrete";
+                help: "use a constant, or a parameter that is `final` or has `annotation(Evaluate = true)`")
+            .at(span));
+        }
+        self.subscript_assertion(elements.len(), position, span);
+        Ok(self.chosen(elements, 0, position))
+    }
+
+    fn reference(
+        &mut self,
+        path: &str,
+        reference: &ComponentReference,
+    ) -> Result<Lowered<Expr>, Diagnostic> {
+        if path == "time" {
+            return Ok(Lowered::scalar(self.dae.pool.variable(VarId(0))));
+        }
+        let flat = self.flat;
+        let Some((position, _, variable)) = flat.variables.get_full(path) else {
+            return self.record(path).ok_or_else(|| self.unresolved(path, reference.span));
+        };
+        if variable.base == BaseType::String {
+            let first = self.first[position];
+            return Ok(match self.dae.variable(first).kind {
+                Kind::Discrete if self.raw > 0 => Lowered::Numbered(self.dae.pool.variable(first)),
+                Kind::Discrete => Lowered::Numbered(self.value_now(first)),
+                _ => Lowered::Text(self.text(position)),
+            });
+        }
+        if variable.variability <= Variability::Parameter {
+            self.fold(position)?;
+        }
+        let first = self.first[position].0;
+        let elements =
+            (first..first + variable.len() as u32).map(|id| self.scalar_now(id)).collect();
+        Ok(Lowered::Array(Array { dims: variable.dims.clone(), elements }))
+    }
+
+    fn interpreted(&self) -> &Cell<u64> {
+        &self.functions.interpreted
+    }
+
+    fn sizes(&self, path: &str) -> Option<Vec<usize>> {
+        let variable = self.flat.variables.get(path)?;
+        (variable.base != BaseType::String).then(|| variable.dims.clone())
+    }
+
+    fn element_of(&mut self, path: &str, position: usize) -> Result<Option<Expr>, Diagnostic> {
+        let Some((number, _, variable)) = self.flat.variables.get_full(path) else {
+            return Ok(None);
+        };
+        if variable.variability <= Variability::Parameter {
+            self.fold(number)?;
+        }
+        Ok(Some(self.scalar_now(self.first[number].0 + position as u32)))
+    }
+
+    fn function(&self, name: &Name) -> Option<Arc<Function>> {
+        let bare = Name { global: false, parts: name.parts.clone() };
+        self.flat.functions.get(&bare).or_else(|| self.flat.functions.get(name)).cloned()
+    }
+
+    fn value_type(&self, path: &str) -> Option<ValueType> {
+        Some(match &self.flat.variables.get(path)?.base {
+            BaseType::Real => ValueType::Real,
+            BaseType::Integer => ValueType::Integer,
+            BaseType::Boolean => ValueType::Boolean,
+            BaseType::String => ValueType::String,
+            BaseType::Enumeration(definition) => ValueType::Enumeration(definition.clone()),
+            BaseType::ExternalObject(class) => ValueType::ExternalObject(class.clone()),
+        })
+    }
+
+    fn call(
+        &mut self,
+        function: &Arc<Function>,
+        arguments: Vec<Lowered<Expr>>,
+        span: Span,
+    ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
+        super::function::call(self, function, arguments, span)
+    }
+
+    fn text_number(&mut self, text: &Arc<str>) -> Option<Expr> {
+        Some(self.number_of(text))
+    }
+
+    fn operator(
+        &mut self,
+        name: &str,
+        arguments: &[Expression],
+        span: Span,
+    ) -> Option<Result<Operator, Diagnostic>> {
+        Some(Ok(match name {
+            "der" => Operator::Derivative,
+            "noEvent" => Operator::Live(0),
+            // What is continuous alone still has kinks, which no step and no iteration may pass.
+            "smooth" => match arguments.first().map(|order| &order.kind) {
+                Some(ExpressionKind::Integer(0)) => Operator::Plain(1),
+                _ => Operator::Live(1),
+            },
+            "pre" | "edge" | "change" => {
+                // Until `temporal`, which follows when the argument is lowered.
+                self.raw += 1;
+                Operator::Temporal
+            }
+            "sample" | "initial" | "terminal" | "semiLinear" | "delay" => Operator::Temporal,
+            "reinit"
+            | "terminate"
+            | "spatialDistribution"
+            | "cardinality"
+            | "inStream"
+            | "actualStream"
+            | "getInstanceName"
+            | "previous"
+            | "hold" => {
+                return Some(Err(fault!(NOT_SUPPORTED, "`{name}` is not supported yet").at(span)));
+            }
+            _ => return None,
+        }))
+    }
+
+    fn homotopy(&mut self, actual: Expr, simplified: Expr) -> Expr {
+        if actual == simplified {
+            return actual;
+        }
+        let Homotopy { active, lambda } = self.homotopy_variables();
+        let pool = &mut self.dae.pool;
+        let (active, lambda) = (pool.variable(active), pool.variable(lambda));
+        let difference = pool.sub(actual, simplified);
+        let part = pool.mul(lambda, difference);
+        let between = pool.add(simplified, part);
+        pool.if_then_else(active, between, actual)
+    }
+
+    fn resources(&self) -> crate::external::Resources {
+        self.flat.resources.clone()
+    }
+
+    fn derivative(&mut self, a: Expr, span: Span) -> Result<Expr, Diagnostic> {
+        if self.is_parametric(a) {
+            return Ok(self.dae.pool.constant(0.0));
+        }
+        let Some(variable) = self.dae.pool.as_variable(a) else {
+            return self.chain_rule(a, span);
+        };
+        let derivative = self.derivative_variable(variable, span)?;
+        Ok(self.dae.pool.variable(derivative))
+    }
+
+    fn temporal(
+        &mut self,
+        name: &str,
+        arguments: Vec<Array<Expr>>,
+        live: bool,
+        span: Span,
+    ) -> Result<Array<Expr>, Diagnostic> {
+        self.temporal_operator(name, arguments, live, span)
+    }
+}
+
+impl Builder<'_> {
+    /// The text that a variable is bound to, [`UNKNOWN_TEXT`] if that is not known.
+    pub(super) fn text(&mut self, position: usize) -> Arc<str> {
+        let flat = self.flat;
+        let unknown = || Arc::from(UNKNOWN_TEXT);
+        let Some(binding) = &flat.variables[position].binding else { return unknown() };
+        if self.folding[position] == Folding::InProgress {
+            return unknown();
+        }
+        let before = std::mem::replace(&mut self.folding[position], Folding::InProgress);
+        let lowered = Lowering::new(self).lower(binding);
+        self.folding[position] = before;
+        match lowered {
+            Ok(Lowered::Text(text)) => text,
+            _ => unknown(),
+        }
+    }
+
+    /// One of the elements, the first of which has the position `first`: by halves.
+    fn chosen(&mut self, elements: &[Expr], first: usize, position: Expr) -> Expr {
+        if elements.iter().all(|element| *element == elements[0]) {
+            return elements[0];
+        }
+        let half = elements.len() / 2;
+        let middle = self.dae.pool.constant((first + half) as f64);
+        let below = self.dae.pool.relation(RelationOperator::Less, position, middle);
+        let low = self.chosen(&elements[..half], first, position);
+        let high = self.chosen(&elements[half..], first + half, position);
+        self.dae.pool.if_then_else(below, low, high)
+    }
+
+    /// A position from 0 lies inside its array.
+    pub(super) fn subscript_assertion(&mut self, size: usize, position: Expr, span: Span) {
+        let pool = &mut self.dae.pool;
+        let (zero, size) = (pool.constant(0.0), pool.constant(size as f64));
+        let below = pool.relation(RelationOperator::Less, position, size);
+        let above = pool.relation(RelationOperator::GreaterEqual, position, zero);
+        let condition = pool.and(above, below);
+        if self.dae.assertions.last().is_none_or(|last| last.condition != condition) {
+            let message = "a subscript lies outside its array".into();
+            let parts = vec![Part::Text(message)];
+            self.dae.assertions.push(Assertion::new(condition, parts, Level::Error, span));
+        }
+    }
+
+    /// Whether an expression is made of parameters and numbers alone.
+    pub(super) fn is_parametric(&self, a: Expr) -> bool {
+        let varies =
+            |v: VarId| !matches!(self.dae.variable(v).kind, Kind::Parameter { .. } | Kind::Solved);
+        !self.dae.pool.any_variable(a, varies)
+    }
+
+    /// Whether an expression may vary between events.
+    pub(super) fn varies(&self, a: Expr) -> bool {
+        let varies = |v: VarId| {
+            matches!(
+                self.dae.variable(v).kind,
+                Kind::Time | Kind::Unknown | Kind::Derivative(_) | Kind::Delayed | Kind::Text
+            )
+        };
+        self.dae.pool.any_variable(a, varies)
+    }
+
+    /// `der` of an expression: the sum of partial derivatives times derivatives.
+    fn chain_rule(&mut self, a: Expr, span: Span) -> Result<Expr, Diagnostic> {
+        let mut slopes = rustc_hash::FxHashMap::default();
+        for variable in self.dae.pool.variables(a) {
+            let slope = match self.dae.variable(variable).kind {
+                Kind::Time => self.dae.pool.constant(1.0),
+                Kind::Unknown => {
+                    let derivative = self.derivative_variable(variable, span)?;
+                    self.dae.pool.variable(derivative)
+                }
+                Kind::Delayed => {
+                    return Err(fault!(NOT_SUPPORTED, "the derivative of a delayed value").at(span));
+                }
+                Kind::Derivative(_) => {
+                    return Err(fault!(NOT_SUPPORTED, "second derivatives need a variable";
+                        help: "give the first derivative a name: `v = der(x)`, then `der(v)`")
+                    .at(span));
+                }
+                _ => continue,
+            };
+            slopes.insert(variable, slope);
+        }
+        let pool = &mut self.dae.pool;
+        Ok(crate::symbolic::differentiate(pool, a, &|v| slopes.get(&v).copied()))
+    }
+
+    fn derivative_variable(&mut self, of: VarId, span: Span) -> Result<VarId, Diagnostic> {
+        if let Some(known) = self.derivatives.get(&of) {
+            return Ok(*known);
+        }
+        let source = self.dae.variable(of);
+        if source.kind != Kind::Unknown || source.base != BaseType::Real {
+            return Err(fault!(NOT_SUPPORTED, "`{}` has no derivative", source.name).at(span));
+        }
+        let variable = derivative_of(source, of);
+        let id = VarId(self.dae.variables.len() as u32);
+        self.dae.variables.push(variable);
+        self.derivatives.insert(of, id);
+        Ok(id)
+    }
+
+    fn homotopy_variables(&mut self) -> Homotopy {
+        if let Some(known) = self.dae.homotopy {
+            return known;
+        }
+        let first = self.dae.variables.len() as u32;
+        for name in ["$homotopy.active", "$homotopy.lambda"] {
+            self.dae.variables.push(scalar_of_nothing(name, Kind::Frozen, Span::NONE));
+        }
+        let variables = Homotopy { active: VarId(first), lambda: VarId(first + 1) };
+        self.dae.homotopy = Some(variables);
+        variables
+    }
+
+    /// All variables below a path, as a record.
+    /// What a scalar variable stands for in the expression that is made.
+    fn scalar_now(&mut self, id: u32) -> Expr {
+        match self.dae.variables[id as usize].kind {
+            Kind::Constant(value) => self.dae.pool.constant(value),
+            _ if self.raw > 0 => self.dae.pool.variable(VarId(id)),
+            _ => self.value_now(VarId(id)),
+        }
+    }
+
+    fn record(&mut self, path: &str) -> Option<Lowered<Expr>> {
+        let prefix = format!("{path}.");
+        let flat = self.flat;
+        let mut names: IndexSet<Ident> = IndexSet::new();
+        for name in flat.variables.keys() {
+            if let Some(rest) = name.strip_prefix(&prefix) {
+                let field = Name::parse(rest).first()?;
+                if field.as_str().contains('[') {
+                    return None;
+                }
+                names.insert(field);
+            }
+        }
+        if names.is_empty() {
+            return None;
+        }
+        let mut fields = Vec::new();
+        for name in names {
+            let full = format!("{prefix}{name}");
+            let reference = ComponentReference::from_name(&Name::parse(&full), Span::NONE);
+            fields.push((name, self.reference(&full, &reference).ok()?));
+        }
+        Some(Lowered::Record(fields))
+    }
+}

@@ -1,0 +1,336 @@
+//! Operators with a meaning in time (MLS §3.7.4, §3.7.5) as variables that change at events only.
+
+use super::build::{Builder, scalar_of_nothing};
+use super::dae::{Assertion, Equation, Kind, Level, Part};
+use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
+use super::events::{Delay, Rounding, Sample};
+use super::expressions::{Array, Target, size_fault};
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::flatten::{BaseType, Variability};
+use crate::source::Span;
+use crate::symbolic::function::FunctionId;
+use crate::symbolic::{Expr, RelationOperator, VarId};
+
+impl Builder<'_> {
+    /// `pre`, `edge`, `change`, `initial`, `terminal`, `sample`, `semiLinear`.
+    pub(super) fn temporal_operator(
+        &mut self,
+        name: &str,
+        mut arguments: Vec<Array<Expr>>,
+        live: bool,
+        span: Span,
+    ) -> Result<Array<Expr>, Diagnostic> {
+        let arity = match name {
+            "initial" | "terminal" => 0,
+            "delay" if arguments.len() == 3 => 3,
+            "sample" | "delay" => 2,
+            "semiLinear" => 3,
+            _ => 1,
+        };
+        if matches!(name, "pre" | "edge" | "change") {
+            self.raw -= 1;
+        }
+        if arguments.len() != arity {
+            return Err(fault!(ARRAY_MISMATCH, "`{name}` takes {arity} arguments here").at(span));
+        }
+        let scalar = |position: usize| match arguments[position].elements.as_slice() {
+            [only] if arguments[position].dims.is_empty() => Ok(*only),
+            _ => Err(fault!(ARRAY_MISMATCH, "`{name}` takes scalars").at(span)),
+        };
+        let value = match name {
+            "initial" if self.initial => self.dae.pool.constant(1.0),
+            "initial" => self.initial_signal(),
+            "terminal" => self.terminal_signal(),
+            "sample" => {
+                let (start, interval) = (scalar(0)?, scalar(1)?);
+                self.sample(start, interval, span)?
+            }
+            "delay" | "semiLinear" => return self.of_each_element(name, &arguments, live, span),
+            _ => {
+                let mut array = arguments.swap_remove(0);
+                for element in &mut array.elements {
+                    *element = match name {
+                        "pre" => self.previous(*element, span)?,
+                        "edge" => self.edge_of_variable(*element, span)?,
+                        _ => self.change(*element, span)?,
+                    };
+                }
+                return Ok(array);
+            }
+        };
+        Ok(Array::scalar(value))
+    }
+
+    /// A function of scalars applied to the elements of arrays of one size, and to the scalars
+    /// among the arguments (MLS §12.4.6).
+    fn of_each_element(
+        &mut self,
+        name: &str,
+        arguments: &[Array<Expr>],
+        live: bool,
+        span: Span,
+    ) -> Result<Array<Expr>, Diagnostic> {
+        let arrays = || arguments.iter().map(|a| &a.dims).filter(|dims| !dims.is_empty());
+        let dims = arrays().next().cloned().unwrap_or_default();
+        if let Some(other) = arrays().find(|other| **other != dims) {
+            return Err(size_fault(&dims, other).at(span));
+        }
+        let mut elements = Vec::new();
+        for at in 0..dims.iter().product() {
+            let of = |argument: &Array<Expr>| match argument.dims.is_empty() {
+                true => argument.elements[0],
+                false => argument.elements[at],
+            };
+            elements.push(match (name, arguments) {
+                ("semiLinear", [x, positive, negative]) => {
+                    self.semi_linear(of(x), of(positive), of(negative), live, span)
+                }
+                (_, [argument, time, ..]) => self.delay(of(argument), of(time), span)?,
+                _ => return Err(fault!(ARRAY_MISMATCH, "`{name}` needs more arguments").at(span)),
+            });
+        }
+        Ok(Array { dims, elements })
+    }
+
+    /// `pre(a)`: the value of a variable before the event iteration in progress.
+    pub(super) fn previous(&mut self, a: Expr, span: Span) -> Result<Expr, Diagnostic> {
+        if self.is_parametric(a) {
+            return Ok(a);
+        }
+        let variable = self.dae.pool.as_variable(a);
+        match variable.map(|v| (v, self.dae.variable(v).kind)) {
+            Some((v, Kind::Discrete | Kind::Unknown | Kind::Derivative(_))) => {
+                let previous = self.previous_variable(v);
+                Ok(self.dae.pool.variable(previous))
+            }
+            _ => Err(fault!(NOT_SUPPORTED, "`pre` of something that is no variable";
+                help: "give the expression a name and use `pre` of that variable")
+            .at(span)),
+        }
+    }
+
+    pub(super) fn previous_variable(&mut self, of: VarId) -> VarId {
+        if let Some(known) = self.previous.get(&of) {
+            return *known;
+        }
+        let source = self.dae.variable(of);
+        let mut variable =
+            scalar_of_nothing(&format!("pre({})", source.name), Kind::Previous(of), source.span);
+        variable.base = source.base.clone();
+        variable.variability = Variability::Discrete;
+        let id = self.declare_scalar(variable);
+        self.previous.insert(of, id);
+        id
+    }
+
+    /// `b and not pre(b)`
+    pub(super) fn edge(&mut self, b: Expr, span: Span) -> Result<Expr, Diagnostic> {
+        let b = self.condition(b, span)?;
+        let before = self.previous(b, span)?;
+        let not = self.dae.pool.not(before);
+        Ok(self.dae.pool.and(b, not))
+    }
+
+    /// `edge(b)` of a variable, with the value it has where an algorithm stands.
+    fn edge_of_variable(&mut self, b: Expr, span: Span) -> Result<Expr, Diagnostic> {
+        let before = self.previous(b, span)?;
+        let now = self.now(b);
+        let not = self.dae.pool.not(before);
+        Ok(self.dae.pool.and(now, not))
+    }
+
+    /// `v <> pre(v)`
+    fn change(&mut self, v: Expr, span: Span) -> Result<Expr, Diagnostic> {
+        let before = self.previous(v, span)?;
+        let now = self.now(v);
+        Ok(self.dae.pool.relation(RelationOperator::NotEqual, now, before))
+    }
+
+    fn now(&mut self, v: Expr) -> Expr {
+        match self.dae.pool.as_variable(v) {
+            Some(variable) => self.value_now(variable),
+            None => v,
+        }
+    }
+
+    /// A Boolean as a discrete variable, so that it has a previous value.
+    fn condition(&mut self, b: Expr, span: Span) -> Result<Expr, Diagnostic> {
+        let known = self.dae.pool.as_variable(b).map(|v| self.dae.variable(v).kind);
+        if known == Some(Kind::Discrete) || self.is_parametric(b) {
+            return Ok(b);
+        }
+        if let Some(variable) = self.conditions.get(&b) {
+            return Ok(self.dae.pool.variable(*variable));
+        }
+        if self.varies(b) {
+            return Err(fault!(NOT_SUPPORTED, "this condition may change between events";
+                help: "write relations outside `noEvent` and outside functions")
+            .at(span));
+        }
+        let name = format!("$condition[{}]", self.conditions.len() + 1);
+        let mut variable = scalar_of_nothing(&name, Kind::Discrete, span);
+        variable.base = BaseType::Boolean;
+        variable.variability = Variability::Discrete;
+        let id = self.declare_scalar(variable);
+        self.conditions.insert(b, id);
+        let left = self.dae.pool.variable(id);
+        self.dae.events.equations.push(Equation::new(left, b, span));
+        Ok(left)
+    }
+
+    /// 1 during initialization.
+    pub(super) fn initial_signal(&mut self) -> Expr {
+        let id = match self.dae.events.initial {
+            Some(known) => known,
+            None => self.signal("$initial"),
+        };
+        self.dae.events.initial = Some(id);
+        self.dae.pool.variable(id)
+    }
+
+    fn terminal_signal(&mut self) -> Expr {
+        let id = match self.dae.events.terminal {
+            Some(known) => known,
+            None => self.signal("$terminal"),
+        };
+        self.dae.events.terminal = Some(id);
+        self.dae.pool.variable(id)
+    }
+
+    fn signal(&mut self, name: &str) -> VarId {
+        let mut variable = scalar_of_nothing(name, Kind::Signal, Span::NONE);
+        variable.base = BaseType::Boolean;
+        variable.variability = Variability::Discrete;
+        self.declare_scalar(variable)
+    }
+
+    fn sample(&mut self, start: Expr, interval: Expr, span: Span) -> Result<Expr, Diagnostic> {
+        if !self.is_parametric(start) || !self.is_parametric(interval) {
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "`sample` of a variable: clocks are not supported, \
+                 start and interval are made of parameters"
+            )
+            .at(span));
+        }
+        let same = |s: &&Sample| s.start == start && s.interval == interval;
+        if let Some(known) = self.dae.events.samples.iter().find(same) {
+            return Ok(self.dae.pool.variable(known.variable));
+        }
+        let zero = self.dae.pool.constant(0.0);
+        let condition = self.dae.pool.relation(RelationOperator::Greater, interval, zero);
+        let parts = vec![Part::Text("the interval of `sample` must be positive".into())];
+        self.dae.assertions.push(Assertion::new(condition, parts, Level::Error, span));
+        let variable = self.signal(&format!("$sample[{}]", self.dae.events.samples.len() + 1));
+        self.dae.events.samples.push(Sample { variable, start, interval, span });
+        Ok(self.dae.pool.variable(variable))
+    }
+
+    fn delay(&mut self, argument: Expr, time: Expr, span: Span) -> Result<Expr, Diagnostic> {
+        if !self.is_parametric(time) {
+            return Err(
+                fault!(NOT_SUPPORTED, "`delay` by a time that varies is not supported").at(span)
+            );
+        }
+        if self.is_parametric(argument) {
+            return Ok(argument);
+        }
+        let same = |d: &&Delay| d.argument == argument && d.time == time;
+        if let Some(known) = self.dae.events.delays.iter().find(same) {
+            return Ok(self.dae.pool.variable(known.variable));
+        }
+        let zero = self.dae.pool.constant(0.0);
+        let condition = self.dae.pool.relation(RelationOperator::Greater, time, zero);
+        let message = "the time of `delay` must be positive".into();
+        let parts = vec![Part::Text(message)];
+        self.dae.assertions.push(Assertion::new(condition, parts, Level::Error, span));
+        let name = format!("$delay[{}]", self.dae.events.delays.len() + 1);
+        let variable = self.declare_scalar(scalar_of_nothing(&name, Kind::Delayed, span));
+        self.dae.events.delays.push(Delay { variable, argument, time, span });
+        Ok(self.dae.pool.variable(variable))
+    }
+
+    /// `if x >= 0 then positive*x else negative*x`
+    fn semi_linear(
+        &mut self,
+        x: Expr,
+        positive: Expr,
+        negative: Expr,
+        live: bool,
+        span: Span,
+    ) -> Expr {
+        let zero = self.dae.pool.constant(0.0);
+        let condition = self.relation(RelationOperator::GreaterEqual, x, zero, live, span);
+        let (a, b) = (self.dae.pool.mul(positive, x), self.dae.pool.mul(negative, x));
+        self.dae.pool.if_then_else(condition, a, b)
+    }
+
+    /// A function that jumps, outside `noEvent`, in terms of `floor` (MLS §3.7.2).
+    pub(super) fn rounding_function(
+        &mut self,
+        function: FunctionId,
+        arguments: &[Expr],
+        span: Span,
+    ) -> Result<Expr, Diagnostic> {
+        Ok(match (function.get().name, arguments) {
+            ("floor" | "integer", [x]) => self.floor(*x, span),
+            ("ceil", [x]) => self.ceil(*x, span),
+            ("div", [x, y]) => self.quotient(*x, *y, span),
+            ("mod", [x, y]) => {
+                let ratio = self.dae.pool.div(*x, *y);
+                let quotient = self.floor(ratio, span);
+                self.remainder(*x, quotient, *y)
+            }
+            ("rem", [x, y]) => {
+                let quotient = self.quotient(*x, *y, span);
+                self.remainder(*x, quotient, *y)
+            }
+            (name, _) => {
+                return Err(fault!(NOT_SUPPORTED, "events of `{name}`";
+                    help: "write `noEvent({name}(…))`")
+                .at(span));
+            }
+        })
+    }
+
+    fn floor(&mut self, argument: Expr, span: Span) -> Expr {
+        let roundings = &self.dae.events.roundings;
+        if let Some(known) = roundings.iter().find(|r| r.argument == argument) {
+            return self.dae.pool.variable(known.variable);
+        }
+        let name = format!("$floor[{}]", roundings.len() + 1);
+        let mut variable = scalar_of_nothing(&name, Kind::Frozen, span);
+        variable.variability = Variability::Discrete;
+        let variable = self.declare_scalar(variable);
+        self.dae.events.roundings.push(Rounding { variable, argument, span });
+        self.dae.pool.variable(variable)
+    }
+
+    fn ceil(&mut self, x: Expr, span: Span) -> Expr {
+        let minus = self.dae.pool.neg(x);
+        let floor = self.floor(minus, span);
+        self.dae.pool.neg(floor)
+    }
+
+    /// x/y rounded towards zero.
+    fn quotient(&mut self, x: Expr, y: Expr, span: Span) -> Expr {
+        let ratio = self.dae.pool.div(x, y);
+        let zero = self.dae.pool.constant(0.0);
+        let positive = self.relation(RelationOperator::GreaterEqual, ratio, zero, false, span);
+        let (floor, ceil) = (self.floor(ratio, span), self.ceil(ratio, span));
+        self.dae.pool.if_then_else(positive, floor, ceil)
+    }
+
+    fn remainder(&mut self, x: Expr, quotient: Expr, y: Expr) -> Expr {
+        let multiple = self.dae.pool.mul(quotient, y);
+        self.dae.pool.sub(x, multiple)
+    }
+
+    /// Adds a variable of the system that the model does not declare.
+    fn declare_scalar(&mut self, variable: super::dae::Variable) -> VarId {
+        let id = VarId(self.dae.variables.len() as u32);
+        self.dae.variables.push(variable);
+        id
+    }
+}
