@@ -34,8 +34,12 @@
 //!                                │
 //!                                │ Eval, simulateModel, …
 //!                                ▼
-//!  model text ──syntax──▶ tree ──flatten──▶ FlatModel ──dae──▶ CausalizedDae ──compile──▶ Program
-//!                                                                                      │
+//!  model text ──syntax──▶ tree ──flatten──▶ FlatModel ──lower──▶ Dae
+//!                                                                                 │ causalize
+//!                                                                           CausalizedDae
+//!                                                                                 │ codegen
+//!                                                                              Program
+//!                                                                                 │ runtime
 //!               Outcome ◀──identify── fitness ◀── Trajectory ◀──sim── System (one a thread)
 //!                                │
 //!                                └── ga: selection, crossover, mutation, random numbers
@@ -51,7 +55,10 @@
 //! - [`symbolic`], [`graph`]: scalar expressions; matching, sorting, tearing;
 //! - [`external`]: functions that libraries declare `external`, in Rust;
 //! - [`bytecode`]: functions that loop and branch, as instructions;
-//! - [`flatten`], [`dae`], [`compile`]: from a class to a program that evaluates itself;
+//! - [`flatten`], [`lower`]: from a class to a flat model, to a system of differential-algebraic
+//!   equations;
+//! - [`causalize`]: structural analysis: index reduction, block lower triangular form, tearing;
+//! - [`codegen`], [`runtime`]: a program of instruction tapes, and the systems that execute it;
 //! - [`sim`]: integrators, events, trajectories; knows nothing of Modelica;
 //! - [`ga`], [`identify`]: the genetic algorithm; populations of simulations, and what they tell;
 //! - [`units`]: units of measurement and their conversion;
@@ -72,7 +79,7 @@ pub mod source;
 pub mod budget;
 pub mod bytecode;
 pub mod causalize;
-pub mod compile;
+pub mod codegen;
 pub mod eval;
 pub mod external;
 pub mod flatten;
@@ -84,6 +91,7 @@ pub mod mat;
 pub mod page;
 pub mod plot;
 pub mod results;
+pub mod runtime;
 pub mod script;
 pub mod sim;
 mod singular_values;

@@ -9,7 +9,7 @@
 #![allow(clippy::print_stdout, reason = "the figures are asked for with --nocapture")]
 
 use gapilib::causalize::causalize;
-use gapilib::compile::{Program, SensitivityCode, System};
+use gapilib::codegen::{Program, SensitivityCode};
 use gapilib::flatten::{self, Library, LibraryFiles};
 use gapilib::ga::optimizer::METHODS;
 use gapilib::identify::CompiledModel;
@@ -19,6 +19,7 @@ use gapilib::identify::problem::{
 };
 use gapilib::name::Name;
 use gapilib::registry::{self, Options};
+use gapilib::runtime::System;
 use gapilib::sim::{OutputGrid, Settings, SimErrorKind, Simulator, Trajectory};
 use gapilib::source::SourceId;
 use gapilib::syntax::parse_stored_definition;

@@ -10,10 +10,8 @@ use super::{
     zero_coefficients, zero_derivatives,
 };
 use crate::diag::Diagnostic;
-use crate::fault;
 use crate::flatten::FlatModel;
-use crate::lower::errors::NOT_SUPPORTED;
-use crate::lower::{self, Dae, DefaultValues, Equation, Kind};
+use crate::lower::{self, Dae, DefaultValues, Equation};
 use crate::symbolic::VarId;
 
 /// A pass of causalization.
@@ -138,8 +136,7 @@ impl<'a> Causalization<'a> {
     }
 
     fn lower(&mut self) -> Result<(), Diagnostic> {
-        self.dae = lower::build(self.flat)?;
-        zero_inputs(&mut self.dae, self.flat);
+        self.dae = lower::lower(self.flat)?;
         zero_coefficients::evaluate(&mut self.dae, self.zeros);
         Ok(())
     }
@@ -217,35 +214,6 @@ impl<'a> Causalization<'a> {
             initial_checks: self.initial.checks,
             lagged,
             parameters: self.parameters,
-        }
-    }
-}
-
-/// An input at the top level without a binding has its start value, which is zero by default.
-fn zero_inputs(dae: &mut Dae, flat: &FlatModel) {
-    let is_bound = |name: &str| {
-        let whole = name.strip_suffix(']').and_then(|name| name.rsplit_once('['));
-        let declared = flat.variables.get(name);
-        let declared = declared.or_else(|| flat.variables.get(whole?.0));
-        declared.is_some_and(|variable| variable.binding.is_some())
-    };
-    for position in 0..dae.variables.len() {
-        let variable = &dae.variables[position];
-        if variable.causality == Some(crate::syntax::ast::CausalityPrefix::Input)
-            && matches!(variable.kind, Kind::Unknown | Kind::Discrete)
-            && !is_bound(&variable.name)
-        {
-            let zero = dae.pool.constant(0.0);
-            let right = variable.start.unwrap_or(zero);
-            let span = variable.span;
-            let warning = fault!(
-                NOT_SUPPORTED,
-                "the input `{}` is not connected; it keeps its start value",
-                variable.name
-            );
-            dae.warnings.push(warning.at(span).warning());
-            let left = dae.pool.variable(VarId(position as u32));
-            dae.equations.push(Equation::new(left, right, span));
         }
     }
 }

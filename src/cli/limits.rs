@@ -109,7 +109,7 @@ fn spawn(
     work: impl FnOnce(Watched, &AtomicBool) + Send + 'static,
 ) -> Result<Watch, ExitCode> {
     if limits.interpret {
-        crate::compile::interpret();
+        crate::codegen::interpret();
     }
     if let Some(millions) = limits.instruction_limit {
         limit_instructions(u64::from(millions) * 1_000_000);

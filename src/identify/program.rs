@@ -1,8 +1,9 @@
 //! Compiled programs as models to identify.
 
 use super::{Instance, Model, Parameter};
-use crate::compile::{Program, SensitivityCode, System, VariableInfo};
+use crate::codegen::{Program, SensitivityCode, VariableInfo};
 use crate::diag::Fault;
+use crate::runtime::System;
 use crate::sim::{DaeSystem, OutputGrid, Settings, SimError};
 use std::sync::{Arc, Mutex, PoisonError};
 

@@ -84,7 +84,7 @@ pub(super) struct Builder<'a> {
 }
 
 /// The scalar system of a flat model.
-pub(crate) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
+pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
     let mut builder = Builder {
         flat,
         dae: Dae {

@@ -22,6 +22,7 @@ mod events;
 mod expressions;
 mod function;
 mod inline;
+mod inputs;
 mod message;
 mod statement_function;
 mod symbolic_target;
@@ -29,8 +30,21 @@ mod temporal;
 mod varying_strings;
 mod when;
 
-pub(crate) use build::{build, derivative_of, scalar_of_nothing};
+pub(crate) use build::{derivative_of, scalar_of_nothing};
 pub use dae::*;
 pub use default_values::DefaultValues;
 pub(crate) use default_values::fold_parameters;
 pub use events::*;
+
+use crate::diag::Diagnostic;
+use crate::flatten::FlatModel;
+
+/// Lowers a flat model.
+///
+/// # Errors
+/// What the language or this program does not allow in equations: see [`errors`].
+pub fn lower(flat: &FlatModel) -> Result<Dae, Diagnostic> {
+    let mut dae = build::build(flat)?;
+    inputs::zero_inputs(&mut dae, flat);
+    Ok(dae)
+}

@@ -16,7 +16,7 @@ pub fn all() -> Vec<Code> {
         crate::plot::errors::CODES,
         crate::flatten::errors::CODES,
         crate::lower::errors::CODES,
-        crate::compile::errors::CODES,
+        crate::codegen::errors::CODES,
         crate::ga::errors::CODES,
         crate::identify::errors::CODES,
         crate::teach::errors::CODES,

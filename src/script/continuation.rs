@@ -1,6 +1,6 @@
 //! Simulations that begin where another one ended.
 
-use crate::compile::System;
+use crate::runtime::System;
 use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
 
 /// A system whose states have given values at the start, whatever its initial equations say; all

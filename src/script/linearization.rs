@@ -14,7 +14,7 @@ use super::Session;
 use super::errors::BAD_ARGUMENT;
 use super::simulation::{self, Translated, Wishes, state_names};
 use crate::causalize;
-use crate::compile::{Access, Program};
+use crate::codegen::{Access, Program};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
 use crate::flatten::{Attribute, BaseType, FlatModel, Variability, Variable};
@@ -185,7 +185,7 @@ fn outputs_of(program: &Program) -> Vec<usize> {
 /// Rows of the states' slopes, then of the outputs; columns of the states. `None` where the
 /// algebraic equations are singular.
 fn reduced(
-    mut system: crate::compile::System,
+    mut system: crate::runtime::System,
     time: f64,
     y0: &[f64],
     outputs: &[usize],

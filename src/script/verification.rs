@@ -3,7 +3,7 @@
 use super::Session;
 use super::simulation::{self, Wishes};
 use crate::causalize;
-use crate::compile::Program;
+use crate::codegen::Program;
 use crate::diag::{Diagnostic, Fault};
 use crate::flatten::{self, Library};
 use crate::name::Name;

@@ -2,7 +2,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use gapilib::causalize::causalize;
-use gapilib::compile::Program;
+use gapilib::codegen::Program;
 use gapilib::sim::DaeSystem;
 use std::hint::black_box;
 

@@ -8,7 +8,7 @@
 #![allow(clippy::print_stdout, reason = "it prints a table")]
 
 use gapilib::causalize::causalize;
-use gapilib::compile::Program;
+use gapilib::codegen::Program;
 use gapilib::flatten::{self, Library, LibraryFiles};
 use gapilib::name::Name;
 use gapilib::plot::{Axis, Figure, Mark, Panel, Series};

@@ -17,7 +17,7 @@
 use criterion::measurement::{Measurement, ValueFormatter, WallTime};
 use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main};
 use gapilib::causalize::causalize;
-use gapilib::compile::Program;
+use gapilib::codegen::Program;
 use gapilib::flatten::{self, Library, LibraryFiles};
 use gapilib::name::Name;
 use gapilib::sim::{OutputGrid, Settings, Simulator, Trajectory};

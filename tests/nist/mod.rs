@@ -5,7 +5,7 @@
 #![allow(dead_code)]
 
 use gapilib::causalize::causalize;
-use gapilib::compile::Program;
+use gapilib::codegen::Program;
 use gapilib::flatten::{Library, flatten};
 use gapilib::ga::optimizer::METHODS;
 use gapilib::identify::CompiledModel;

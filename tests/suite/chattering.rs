@@ -1,7 +1,8 @@
 //! Chattering, sliding and accumulating events, against exact solutions; work is counted.
 
 use super::hybrid::{compiled, file, near};
-use gapilib::compile::{Access, Program, System, Treated};
+use gapilib::codegen::{Access, Program};
+use gapilib::runtime::{System, Treated};
 use gapilib::sim::{
     OutputGrid, Settings, SimError, Simulator, Statistics, Trajectory, Treatment, find_integrator,
 };

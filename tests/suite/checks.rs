@@ -1,7 +1,7 @@
 //! Rules that classes keep or break by their text: what is refused, and what is not.
 
 use gapilib::causalize::causalize;
-use gapilib::compile::{Access, Program};
+use gapilib::codegen::{Access, Program};
 use gapilib::flatten::{Library, check, flatten};
 use gapilib::name::Name;
 use gapilib::sim::{Settings, simulate};

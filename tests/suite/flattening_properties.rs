@@ -2,7 +2,7 @@
 //! with tokens deleted, doubled, exchanged or replaced by others of the same file.
 
 use gapilib::causalize;
-use gapilib::compile::Program;
+use gapilib::codegen::Program;
 use gapilib::flatten::{Library, flatten};
 use gapilib::name::Name;
 use gapilib::source::SourceId;

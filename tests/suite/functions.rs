@@ -3,11 +3,12 @@
 
 use super::hybrid::simulated;
 use gapilib::causalize::causalize;
-use gapilib::compile::{Program, System};
+use gapilib::codegen::Program;
 use gapilib::diag::Diagnostic;
 use gapilib::eval::{Arguments, Callee, Function, Host, call_function};
 use gapilib::flatten::{Library, flatten};
 use gapilib::name::Name;
+use gapilib::runtime::System;
 use gapilib::script::Session;
 use gapilib::script::world::MemoryWorld;
 use gapilib::sim::{DaeSystem, Failure, Settings, simulate};

@@ -1,9 +1,10 @@
 //! Models with events, from text to trajectory, against exact solutions.
 
 use gapilib::causalize::causalize;
-use gapilib::compile::{Access, Program, System};
+use gapilib::codegen::{Access, Program};
 use gapilib::diag::Diagnostic;
 use gapilib::flatten::{FlatModel, Library, flatten};
+use gapilib::runtime::System;
 use gapilib::sim::{OutputGrid, Settings, SimError, Simulator, Trajectory};
 use gapilib::source::SourceMap;
 use gapilib::syntax::parse_stored_definition;

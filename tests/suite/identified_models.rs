@@ -1,12 +1,12 @@
 //! Shipped models, compiled and evaluated without a script.
 
 use crate::shipped;
-use gapilib::compile::Program;
+use gapilib::codegen::Program;
 use gapilib::flatten::{self, Library};
 use gapilib::ga::Genomes;
 use gapilib::identify::{CompiledModel, Evaluator, Question};
 use gapilib::source::SourceMap;
-use gapilib::{dae, syntax};
+use gapilib::{causalize, syntax};
 
 fn polarization_curve(problem: &str) -> CompiledModel {
     let mut library = Library::new();

@@ -1,8 +1,9 @@
 //! Systems of higher index, from Modelica text, against exact solutions.
 
 use gapilib::causalize::causalize;
-use gapilib::compile::{Access, Program, System};
+use gapilib::codegen::{Access, Program};
 use gapilib::flatten::{FlatModel, Library, flatten};
+use gapilib::runtime::System;
 use gapilib::sim::{Settings, SimErrorKind, Trajectory, simulate};
 use gapilib::source::SourceMap;
 use gapilib::syntax::parse_stored_definition;

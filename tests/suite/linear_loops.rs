@@ -2,7 +2,7 @@
 
 use super::index_reduction::{Run, compiled};
 use gapilib::causalize::{Block, causalize};
-use gapilib::compile::Program;
+use gapilib::codegen::Program;
 use gapilib::sim::{Settings, simulate};
 
 /// Sizes of the linear and of the other loops.
@@ -110,8 +110,8 @@ fn parameters_that_are_zero_are_not_divided_by() {
 fn what_cannot_be_set_becomes_a_number() {
     let sorted = causalize(&super::index_reduction::flat(AXIS)).unwrap();
     let kind = |name: &str| sorted.dae.variables.iter().find(|v| &*v.name == name).unwrap().kind;
-    assert_eq!(kind("e[2]"), gapilib::causalize::Kind::Constant(1.0));
-    assert_eq!(kind("r[3]"), gapilib::causalize::Kind::Parameter { tunable: true });
+    assert_eq!(kind("e[2]"), gapilib::lower::Kind::Constant(1.0));
+    assert_eq!(kind("r[3]"), gapilib::lower::Kind::Parameter { tunable: true });
 }
 
 #[test]

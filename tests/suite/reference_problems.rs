@@ -4,7 +4,7 @@
 //! tolerances. `cargo test reference_problems -- --nocapture` prints them.
 
 use super::index_reduction::{Run, compiled};
-use gapilib::compile::{Access, Program};
+use gapilib::codegen::{Access, Program};
 use gapilib::sim::{OutputGrid, Settings, Statistics, find_integrator, simulate};
 use std::sync::Arc;
 

@@ -3,10 +3,11 @@
 use super::flat_class::flat;
 use super::shipped::world;
 use gapilib::causalize::causalize;
-use gapilib::compile::{Program, SensitivityCode, System};
+use gapilib::codegen::{Program, SensitivityCode};
 use gapilib::flatten::FlatModel;
 use gapilib::identify::CompiledModel;
 use gapilib::identify::problem::{Experiment, ModelSimulator, Observation, Simulate};
+use gapilib::runtime::System;
 use gapilib::script::Session;
 use gapilib::script::simulation::flat_model;
 use gapilib::sim::{Settings, Simulator, Trajectory, find_integrator};

@@ -2,7 +2,8 @@
 
 use super::flat_class::flat;
 use gapilib::causalize::causalize;
-use gapilib::compile::{Access, Program, System};
+use gapilib::codegen::{Access, Program};
+use gapilib::runtime::System;
 use gapilib::sim::{DaeSystem, Settings, Trajectory, simulate};
 use std::sync::Arc;
 

@@ -2,7 +2,7 @@
 //! can, and what is simulated with a function is what the interpreter computes with it.
 
 use gapilib::causalize::causalize;
-use gapilib::compile::{Access, Program};
+use gapilib::codegen::{Access, Program};
 use gapilib::eval::{Arguments, Callee, Function, Host, call_function};
 use gapilib::flatten::{Library, flatten};
 use gapilib::name::Name;

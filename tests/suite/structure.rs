@@ -3,7 +3,7 @@
 use super::flat_class::flat;
 use super::shipped::{project, world};
 use gapilib::causalize::{PASSES, Pass, causalize, dump, report, sizes};
-use gapilib::compile::Program;
+use gapilib::codegen::Program;
 use gapilib::diag::Diagnostic;
 use gapilib::flatten::FlatModel;
 use gapilib::script::Session;

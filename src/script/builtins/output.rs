@@ -2,7 +2,7 @@
 //! `Advanced.StoreProtectedVariables`.
 
 use super::{Args, Builtin, Failure, Family};
-use crate::compile::VariableInfo;
+use crate::codegen::VariableInfo;
 use crate::results::ResultTable;
 use crate::script::simulation::{Translated, state_names};
 use crate::script::{Dialect, Session};

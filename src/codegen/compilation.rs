@@ -1,0 +1,500 @@
+//! `Program::compile`: a causalized system becomes the tapes of a [`Program`], part by part.
+//!
+//! The order of the parts decides the numbers of registers and auxiliary variables, and with them
+//! the bits of results where sums are formed: it is part of the contract of equal bytes.
+
+use super::event_code::{CompiledRounding, compile_events, linear_in_time};
+use super::hoist::Hoisting;
+use super::iteration_variables::IterationVariables;
+use super::jacobian::differentiate_sequence;
+use super::memory::Memory;
+use super::noevent_relations::Literal;
+use super::program::{
+    Access, CompiledRelation, CompiledSelection, Notice, Outputs, ParameterInfo, Program, Step,
+    VariableInfo, number_of_equations,
+};
+use super::relation_groups::{memoryless, relations_of_blocks};
+use super::sequence::{compile_continuous, compile_outputs, compile_steps, resolved, slice};
+use super::tape::{Register, Tape};
+use super::tape_builder::{Registers, TapeBuilder};
+use crate::causalize::{Assignment, CausalizedDae};
+use crate::diag::Diagnostic;
+use crate::flatten::BaseType;
+use crate::lower::{Assertion, Kind, Level, Variable};
+use crate::sim::Pattern;
+use crate::symbolic::{Expr, Pool, VarId};
+use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+impl Program {
+    /// Compiles a causalized system.
+    ///
+    /// # Errors
+    /// None so far; callers treat compilation as a stage that may refuse.
+    pub fn compile(causalized: CausalizedDae) -> Result<Arc<Program>, Diagnostic> {
+        let mut compilation = Compilation::new(causalized);
+        let blocks = compilation.blocks();
+        let continuous = compilation.continuous();
+        let relations = compilation.relations();
+        let selections = compilation.selections();
+        let observe = compilation.observation();
+        let assertions = compilation.assertions();
+        let notices = compilation.notices();
+        let initial_checks = compilation.initial_checks();
+        let mut events = compilation.events();
+        events.steps = blocks.at_events;
+        events.roundings = relations.roundings;
+        let values = compilation.values();
+        let Compilation { mut causalized, pool, registers, sequence, observed, .. } = compilation;
+        let relations_of_blocks = relations_of_blocks(&pool, &causalized);
+        let memoryless = memoryless(&pool, &causalized);
+        causalized.dae.pool = pool;
+        let mut program = Program {
+            variables: variables(&causalized, &observed),
+            parameters: parameters(&causalized),
+            sorted: causalized,
+            registers,
+            sequence,
+            integrated: continuous.sequence,
+            residuals: continuous.residuals,
+            unknowns: continuous.unknowns,
+            iteration: continuous.iteration,
+            n_auxiliary: continuous.n_auxiliary,
+            observed,
+            parameter_tapes: values.parameters,
+            starts: values.starts,
+            solved: values.solved,
+            nominals: values.nominals,
+            initial_steps: blocks.initial,
+            initial_checks,
+            steps: blocks.between_events,
+            relations: relations.relations,
+            relation_sides: relations.sides,
+            time_rests: relations.time_rests,
+            rhs: continuous.rhs,
+            jacobian: continuous.jacobian,
+            pattern: continuous.pattern,
+            crossing_relations: relations.crossing_relations,
+            crossings_vary_in_time: relations.crossings_vary_in_time,
+            crossings: relations.crossings,
+            relations_of_blocks,
+            memoryless,
+            selections,
+            observe,
+            assertions,
+            notices,
+            events,
+            literal: Literal::default(),
+        };
+        program.fill_defaults();
+        Ok(Arc::new(program))
+    }
+
+    /// Default values and bounds, computed with the default parameters.
+    fn fill_defaults(&mut self) {
+        let values = default_values(self);
+        let dae = &self.sorted.dae;
+        let number = |e: Option<Expr>, otherwise: f64| match e {
+            None => otherwise,
+            Some(e) => crate::symbolic::evaluate(&dae.pool, e, &values[..]),
+        };
+        for parameter in &mut self.parameters {
+            let variable = dae.variable(parameter.variable);
+            parameter.default = values[parameter.variable.0 as usize];
+            parameter.min = number(variable.min, f64::NEG_INFINITY);
+            parameter.max = number(variable.max, f64::INFINITY);
+        }
+    }
+}
+
+/// A system on its way to a program.
+struct Compilation {
+    causalized: CausalizedDae,
+    pool: Pool,
+    registers: Registers,
+    /// Everything in solving order, iteration variables of loops given.
+    sequence: Vec<Assignment>,
+    observed: Vec<VarId>,
+    /// The next free number of an auxiliary variable.
+    next: u32,
+}
+
+/// The blocks as steps of solving.
+struct Blocks {
+    between_events: Vec<Step>,
+    initial: Vec<Step>,
+    at_events: Vec<Step>,
+}
+
+/// What the integrator evaluates: right sides, residuals, and their Jacobian.
+struct Continuous {
+    sequence: Vec<Assignment>,
+    residuals: Vec<Expr>,
+    unknowns: Vec<VarId>,
+    iteration: Vec<VarId>,
+    n_auxiliary: usize,
+    rhs: Outputs,
+    jacobian: Outputs,
+    pattern: Pattern,
+}
+
+/// Relations and roundings with their crossing functions.
+struct Relations {
+    relations: Vec<CompiledRelation>,
+    sides: Vec<Outputs>,
+    roundings: Vec<CompiledRounding>,
+    time_rests: Tape,
+    crossing_relations: Vec<usize>,
+    crossings_vary_in_time: bool,
+    crossings: Outputs,
+}
+
+/// Code for single values: parameters, start values, nominal values.
+struct Values {
+    parameters: Vec<(VarId, Tape)>,
+    starts: Vec<(VarId, Tape)>,
+    nominals: Vec<(VarId, Tape, Register)>,
+    solved: Vec<VarId>,
+}
+
+impl Compilation {
+    fn new(mut causalized: CausalizedDae) -> Compilation {
+        let n = causalized.dae.variables.len() as u32;
+        let sequence: Vec<Assignment> =
+            causalized.blocks.iter().flat_map(|block| block.assignments()).copied().collect();
+        let mut registers = Registers::new(n as usize, causalized.dae.functions.clone());
+        for (variable, info) in (0u32..).zip(&causalized.dae.variables) {
+            if matches!(info.kind, Kind::Parameter { .. } | Kind::Constant(_)) {
+                registers.hoisted.fix(variable);
+            }
+        }
+        let is_observed = |v: &VarId| {
+            causalized.dae.is_solved_for(*v) && causalized.aliases[v.0 as usize].is_none()
+        };
+        let observed = (0..n).map(VarId).filter(is_observed).collect();
+        let pool = std::mem::take(&mut causalized.dae.pool);
+        Compilation { causalized, pool, registers, sequence, observed, next: n }
+    }
+
+    fn blocks(&mut self) -> Blocks {
+        let Compilation { causalized, pool, registers, next, .. } = self;
+        let between_events = compile_steps(pool, registers, &causalized.blocks, next);
+        let initial = compile_steps(pool, registers, &causalized.initial_blocks, next);
+        let mut at_events = compile_steps(pool, registers, &causalized.event_blocks, next);
+        for step in &mut at_events {
+            if let Step::Solve(newton) = step {
+                newton.block += causalized.blocks.len() as u32;
+            }
+        }
+        Blocks { between_events, initial, at_events }
+    }
+
+    /// The derivatives of the states, in order.
+    fn derivatives(&mut self) -> Vec<Expr> {
+        let mut derivatives: FxHashMap<VarId, VarId> = FxHashMap::default();
+        for (v, variable) in (0..).map(VarId).zip(&self.causalized.dae.variables) {
+            if let Kind::Derivative(of) = variable.kind {
+                derivatives.entry(of).or_insert(v);
+            }
+        }
+        let Compilation { causalized, pool, .. } = self;
+        let states = causalized.states.iter();
+        states.map(|state| resolved(pool, causalized, derivatives[state])).collect()
+    }
+
+    fn continuous(&mut self) -> Continuous {
+        let mut outputs = self.derivatives();
+        let Compilation { causalized, pool, registers, next, .. } = self;
+        let chosen = IterationVariables::choose(pool, causalized, &outputs);
+        let IterationVariables { iteration, n_auxiliary, residuals, sequence } = chosen;
+        outputs.extend(&residuals);
+        let rhs = compile_continuous(pool, registers, &sequence, &outputs, Hoisting::Certain);
+
+        let unknowns: Vec<VarId> = causalized.states.iter().chain(&iteration).copied().collect();
+        let needed = slice(pool, &sequence, &outputs);
+        let derivatives = differentiate_sequence(pool, &needed, &outputs, &unknowns, next);
+        let mut rows = derivatives.rows;
+        let zero = pool.constant(0.0);
+        // An implicit method subtracts from the diagonal of the states: it belongs to the pattern.
+        for (state, row) in rows.iter_mut().take(causalized.states.len()).enumerate() {
+            row.entry(state).or_insert(zero);
+        }
+        let (pattern, entries) = by_columns(&rows, unknowns.len());
+        let extended = derivatives.sequence;
+        let jacobian = compile_continuous(pool, registers, &extended, &entries, Hoisting::Total);
+        Continuous { sequence, residuals, unknowns, iteration, n_auxiliary, rhs, jacobian, pattern }
+    }
+
+    fn relations(&mut self) -> Relations {
+        let Compilation { causalized, pool, registers, sequence, .. } = self;
+        let mut relations = Vec::new();
+        let mut sides = Vec::new();
+        let mut crossing_relations = Vec::new();
+        let mut differences = Vec::new();
+        let mut rests = Vec::new();
+        for relation in &causalized.dae.relations {
+            let difference = pool.sub(relation.left, relation.right);
+            let time = linear_in_time(pool, causalized, difference);
+            match time {
+                None => {
+                    crossing_relations.push(relations.len());
+                    differences.extend([relation.left, relation.right]);
+                }
+                Some((_, rest)) => rests.push((relations.len(), rest)),
+            }
+            relations.push(CompiledRelation {
+                register: relation.variable.0,
+                operator: relation.operator,
+                time: time.map(|(factor, _)| (factor, 0)),
+            });
+            let both = [relation.left, relation.right];
+            sides.push(compile_outputs(pool, registers, &[], &both));
+        }
+        let mut roundings = Vec::new();
+        for rounding in &causalized.dae.events.roundings {
+            let time = linear_in_time(pool, causalized, rounding.argument);
+            match time {
+                None => {
+                    let value = pool.variable(rounding.variable);
+                    let above = pool.sub(rounding.argument, value);
+                    let one = pool.constant(1.0);
+                    differences.extend([above, pool.sub(above, one)]);
+                }
+                Some((_, rest)) => rests.push((relations.len() + roundings.len(), rest)),
+            }
+            let time = time.map(|(factor, _)| (factor, 0));
+            roundings.push(CompiledRounding { register: rounding.variable.0, time });
+        }
+        let rest_expressions: Vec<Expr> = rests.iter().map(|(_, rest)| *rest).collect();
+        let time_rests = compile_outputs(pool, registers, &[], &rest_expressions);
+        for ((at, _), register) in rests.iter().zip(&time_rests.outputs) {
+            let time = match at.checked_sub(relations.len()) {
+                None => &mut relations[*at].time,
+                Some(at) => &mut roundings[at].time,
+            };
+            if let Some(time) = time {
+                time.1 = *register;
+            }
+        }
+        let crossings_vary_in_time = depend_on_time(pool, sequence, &differences);
+        let crossings =
+            compile_continuous(pool, registers, sequence, &differences, Hoisting::Total);
+        let time_rests = time_rests.tape;
+        Relations {
+            relations,
+            sides,
+            roundings,
+            time_rests,
+            crossing_relations,
+            crossings_vary_in_time,
+            crossings,
+        }
+    }
+
+    fn selections(&mut self) -> Vec<CompiledSelection> {
+        let Compilation { causalized, pool, registers, sequence, .. } = self;
+        let registers_of = |variables: &[VarId]| variables.iter().map(|v| v.0).collect::<Vec<_>>();
+        let selections = causalized.selections.iter().map(|selection| {
+            let entries: Vec<Expr> = selection.jacobian.iter().flatten().copied().collect();
+            CompiledSelection {
+                jacobian: compile_outputs(pool, registers, sequence, &entries),
+                candidates: registers_of(&selection.candidates),
+                states: registers_of(&selection.states),
+                weights: selection.weights.iter().map(|row| registers_of(row)).collect(),
+                chosen: selection.chosen.clone(),
+            }
+        });
+        selections.collect()
+    }
+
+    /// Code over the whole sequence that runs when the parameters have their values.
+    fn total(&mut self, outputs: &[Expr]) -> Outputs {
+        let Compilation { pool, registers, sequence, .. } = self;
+        compile_continuous(pool, registers, sequence, outputs, Hoisting::Total)
+    }
+
+    fn observation(&mut self) -> Outputs {
+        let expressions: Vec<Expr> = self.observed.iter().map(|v| self.pool.variable(*v)).collect();
+        self.total(&expressions)
+    }
+
+    fn assertions(&mut self) -> Vec<(usize, Outputs)> {
+        let conditions = self.numbered(
+            |assertion| assertion.level == Level::Error,
+            |assertion| vec![assertion.condition],
+        );
+        conditions.into_iter().map(|(at, condition)| (at, self.total(&condition))).collect()
+    }
+
+    fn notices(&mut self) -> Vec<Notice> {
+        let outputs = self.numbered(
+            |assertion| assertion.level != Level::Error,
+            |assertion| std::iter::once(assertion.condition).chain(assertion.values()).collect(),
+        );
+        let notice = |(at, outputs): (usize, Vec<Expr>)| Notice {
+            assertion: at as u32,
+            code: self.total(&outputs),
+        };
+        outputs.into_iter().map(notice).collect()
+    }
+
+    /// What is computed for the assertions of a kind, with their numbers among all.
+    fn numbered(
+        &self,
+        kind: impl Fn(&Assertion) -> bool,
+        outputs: impl Fn(&Assertion) -> Vec<Expr>,
+    ) -> Vec<(usize, Vec<Expr>)> {
+        let all = self.causalized.dae.assertions.iter().enumerate();
+        all.filter(|(_, assertion)| kind(assertion))
+            .map(|(at, assertion)| (at, outputs(assertion)))
+            .collect()
+    }
+
+    fn initial_checks(&mut self) -> Vec<Outputs> {
+        let Compilation { causalized, pool, registers, .. } = self;
+        let checks = causalized.initial_checks.iter();
+        checks
+            .map(|check| compile_outputs(pool, registers, &[], &[check.left, check.right]))
+            .collect()
+    }
+
+    fn events(&mut self) -> super::event_code::Events {
+        let Compilation { causalized, pool, registers, sequence, .. } = self;
+        compile_events(pool, registers, causalized, sequence)
+    }
+
+    fn values(&mut self) -> Values {
+        let Compilation { causalized, pool, registers, .. } = self;
+        let base = number_of_equations(causalized);
+        let origin = |v: VarId| (base + v.0 as usize) as u32;
+        let stored = |registers: &mut Registers, variable: VarId, value: Expr| {
+            let mut builder = TapeBuilder::new(pool, registers);
+            builder.origin(origin(variable));
+            builder.store(variable, value);
+            (variable, builder.finish())
+        };
+        let dae = &causalized.dae;
+        let bindings =
+            causalized.parameters.iter().filter_map(|p| Some((*p, dae.variable(*p).binding?)));
+        let parameters =
+            bindings.map(|(parameter, binding)| stored(registers, parameter, binding)).collect();
+        let all = (0u32..).map(VarId).zip(&dae.variables);
+        let solved =
+            all.clone().filter(|(_, v)| v.kind == Kind::Solved).map(|(id, _)| id).collect();
+        let (mut starts, mut nominals) = (Vec::new(), Vec::new());
+        for (id, variable) in all {
+            if !dae.is_solved_for(id) && variable.kind != Kind::Solved {
+                continue;
+            }
+            if let Some(start) = variable.start {
+                starts.push(stored(registers, id, start));
+            }
+            if let Some(nominal) = variable.nominal {
+                let mut builder = TapeBuilder::new(pool, registers);
+                let register = builder.emit(nominal);
+                nominals.push((id, builder.finish(), register));
+            }
+        }
+        Values { parameters, starts, nominals, solved }
+    }
+}
+
+fn depend_on_time(pool: &Pool, sequence: &[Assignment], outputs: &[Expr]) -> bool {
+    let needed = slice(pool, sequence, outputs);
+    let mut values = needed.iter().map(|a| a.value).chain(outputs.iter().copied());
+    values.any(|value| pool.depends_on(value, VarId(0)))
+}
+
+/// Values of all variables that parameters have by default; NaN where none can be computed.
+fn default_values(program: &Program) -> Vec<f64> {
+    let mut registers = Memory::new(&program.registers);
+    for (parameter, tape) in &program.parameter_tapes {
+        if tape.run(&mut registers).is_err() {
+            registers[parameter.0 as usize] = f64::NAN;
+        }
+    }
+    registers.registers
+}
+
+/// Entries of a Jacobian by columns.
+fn by_columns(rows: &[BTreeMap<usize, Expr>], n: usize) -> (Pattern, Vec<Expr>) {
+    let mut columns: Vec<Vec<(usize, Expr)>> = vec![Vec::new(); n];
+    for (row, entries) in rows.iter().enumerate() {
+        for (column, entry) in entries {
+            columns[*column].push((row, *entry));
+        }
+    }
+    let mut pattern = Pattern { n, column_starts: vec![0], rows: Vec::new() };
+    let mut values = Vec::new();
+    for column in columns {
+        for (row, entry) in column {
+            pattern.rows.push(row);
+            values.push(entry);
+        }
+        pattern.column_starts.push(pattern.rows.len());
+    }
+    (pattern, values)
+}
+
+fn parameters(sorted: &CausalizedDae) -> Vec<ParameterInfo> {
+    let tunable = |(_, v): &(usize, &Variable)| v.kind == Kind::Parameter { tunable: true };
+    let info = |(at, v): (usize, &Variable)| ParameterInfo {
+        name: v.name.clone(),
+        unit: v.unit.clone(),
+        description: v.description.clone(),
+        base: v.base.clone(),
+        min: f64::NEG_INFINITY,
+        max: f64::INFINITY,
+        default: f64::NAN,
+        top_level: v.top_level,
+        variable: VarId(at as u32),
+    };
+    sorted.dae.variables.iter().enumerate().filter(tunable).map(info).collect()
+}
+
+fn variables(sorted: &CausalizedDae, observed: &[VarId]) -> Vec<VariableInfo> {
+    let mut infos = Vec::new();
+    for (at, v) in sorted.dae.variables.iter().enumerate() {
+        let id = VarId(at as u32);
+        let alias = sorted.aliases[at];
+        // Made by the compiler, of no use to anybody else.
+        if v.name.contains('$') {
+            continue;
+        }
+        let access = match v.kind {
+            Kind::Time => Access::Time,
+            Kind::Constant(value) => Access::Constant(value),
+            Kind::Parameter { .. } if matches!(v.base, BaseType::ExternalObject(_)) => continue,
+            Kind::Parameter { .. } | Kind::Solved => Access::Parameter,
+            Kind::Frozen | Kind::Text | Kind::Previous(_) | Kind::Signal | Kind::Delayed => {
+                continue;
+            }
+            // A trajectory has no place for texts.
+            Kind::Discrete if v.base == BaseType::String => continue,
+            Kind::Discrete if v.name.starts_with('$') => continue,
+            Kind::Unknown | Kind::Derivative(_) | Kind::Discrete => {
+                let of = alias.map_or(id, |alias| alias.of);
+                let column = observed.binary_search(&of);
+                Access::Observed {
+                    column: column.expect("every representative is observed"),
+                    negated: alias.is_some_and(|alias| alias.negated),
+                }
+            }
+        };
+        infos.push(VariableInfo {
+            name: v.name.clone(),
+            unit: v.unit.clone(),
+            display_unit: v.display_unit.clone(),
+            description: v.description.clone(),
+            base: v.base.clone(),
+            variability: v.variability,
+            causality: v.causality,
+            top_level: v.top_level,
+            protected: v.protected,
+            access,
+            variable: id,
+        });
+    }
+    infos
+}

@@ -1,0 +1,150 @@
+//! What a running system writes to: its registers, and the machine that runs its functions.
+
+use super::linear_system::LinearSystem;
+use super::tape::Call;
+use super::tape_builder::Registers;
+use crate::bytecode::{Failure, Functions, Journal, Machine};
+use std::ops::{Deref, DerefMut};
+use std::sync::Arc;
+
+/// Registers and machine; it reads as its registers.
+#[derive(Debug, Clone)]
+pub(crate) struct Memory {
+    pub(crate) registers: Vec<f64>,
+    pub(crate) calls: Calls,
+    pub(crate) systems: Vec<LinearSystem>,
+}
+
+/// Runs calls of functions.
+#[derive(Debug, Clone)]
+pub(crate) struct Calls {
+    functions: Arc<Functions>,
+    machine: Machine,
+    /// Calls of impure functions at this instant: an event iteration repeats them, and their values
+    /// stay.
+    impure: Vec<ImpureCall>,
+    /// Why the last call failed.
+    pub(crate) failure: Option<Failure>,
+}
+
+/// An impure call that was carried out.
+#[derive(Debug, Clone)]
+struct ImpureCall {
+    function: u32,
+    /// The bits of the arguments, the last of which is the place of the call.
+    arguments: Vec<u64>,
+    results: Vec<f64>,
+}
+
+impl Memory {
+    /// Registers with the constants of a program in them.
+    pub(crate) fn new(registers: &Registers) -> Memory {
+        let calls = Calls {
+            functions: registers.functions().clone(),
+            machine: Machine::default(),
+            impure: Vec::new(),
+            failure: None,
+        };
+        let mut memory = Memory { registers: Vec::new(), calls, systems: Vec::new() };
+        memory.extend(registers);
+        memory
+    }
+
+    /// More registers, with their constants.
+    pub(crate) fn extend(&mut self, registers: &Registers) {
+        self.registers.resize(registers.len(), 0.0);
+        let known = self.systems.len();
+        self.systems.extend(registers.systems()[known..].iter().map(|n| LinearSystem::new(*n)));
+        for (register, value) in &registers.values {
+            self.registers[*register as usize] = *value;
+        }
+    }
+
+    /// From here on linear systems tell of solutions to come.
+    pub(crate) fn forget_solutions(&mut self) {
+        self.systems.iter_mut().for_each(LinearSystem::forget_solution);
+    }
+}
+
+impl Calls {
+    /// Before parameters are evaluated: a simulation knows nothing of the one before.
+    pub(crate) fn restart(&mut self) {
+        self.machine.restart();
+        self.next_instant();
+    }
+
+    /// What the external function said that failed last.
+    pub(crate) fn message(&self) -> &str {
+        self.machine.message()
+    }
+
+    /// What calls have written since the last [`Calls::restart`].
+    pub(crate) fn journal(&self) -> &Journal {
+        self.machine.journal()
+    }
+
+    /// Impure calls have new values from here on.
+    pub(crate) fn next_instant(&mut self) {
+        self.impure.clear();
+    }
+
+    /// The place behind the last instruction of a function.
+    pub(crate) fn end_of(&self, function: u32) -> u32 {
+        self.functions.codes[function as usize].end()
+    }
+
+    /// Writes the results of a call.
+    pub(super) fn run(&mut self, call: &Call, r: &mut [f64]) -> Result<(), Failure> {
+        if !self.functions.codes[call.function as usize].impure {
+            return self.run_anew(call, r);
+        }
+        let n = self.functions.n_outputs(call.function);
+        if !call.inputs.is_empty() {
+            r[call.d as usize..][..n].fill(0.0);
+            return Ok(());
+        }
+        let arguments: Vec<u64> = call.arguments.iter().map(|a| r[*a as usize].to_bits()).collect();
+        let is_known =
+            |known: &&ImpureCall| known.function == call.function && known.arguments == arguments;
+        if let Some(known) = self.impure.iter().find(is_known) {
+            r[call.d as usize..][..n].copy_from_slice(&known.results);
+            return Ok(());
+        }
+        self.run_anew(call, r)?;
+        let results = r[call.d as usize..][..n].to_vec();
+        self.impure.push(ImpureCall { function: call.function, arguments, results });
+        Ok(())
+    }
+
+    fn run_anew(&mut self, call: &Call, r: &mut [f64]) -> Result<(), Failure> {
+        let arguments = call.arguments.iter().map(|a| r[*a as usize]);
+        let results = match call.inputs.is_empty() {
+            true => self.machine.call(&self.functions, call.function, arguments),
+            false => self.machine.partial(&self.functions, call.function, &call.inputs, arguments),
+        };
+        match results {
+            Ok(results) => {
+                r[call.d as usize..][..results.len()].copy_from_slice(results);
+                Ok(())
+            }
+            Err(failure) => {
+                self.failure = Some(failure);
+                Err(failure)
+            }
+        }
+    }
+}
+
+impl Deref for Memory {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        &self.registers
+    }
+}
+
+impl DerefMut for Memory {
+    fn deref_mut(&mut self) -> &mut [f64] {
+        &mut self.registers
+    }
+}

@@ -1,0 +1,37 @@
+//! Code generation: a causalized system becomes a [`Program`] — instruction tapes for the residuals,
+//! Jacobians, crossing functions and events of a model; tapes that run often become machine code.
+//!
+//! ```text
+//! iteration_variables   which tearing variables stay unknowns of the DAE
+//! jacobian, sensitivity symbolic derivatives: forward mode, column by column
+//! tape_builder          expressions as instructions, common subexpressions once
+//! hoist                 what depends on parameters alone runs once a simulation
+//! compilation           all of it, in order: Program::compile
+//! machine_code          Cranelift's code of the tapes
+//! ```
+
+mod branches;
+mod compilation;
+pub mod errors;
+pub(crate) mod event_code;
+pub(crate) mod hoist;
+mod iteration_variables;
+pub(crate) mod jacobian;
+pub(crate) mod linear_system;
+mod machine_code;
+pub(crate) mod memory;
+pub(crate) mod noevent_relations;
+pub(crate) mod program;
+mod queries;
+mod regions;
+mod relation_groups;
+mod routines;
+pub(crate) mod sensitivity;
+pub(crate) mod sequence;
+pub(crate) mod tape;
+pub(crate) mod tape_builder;
+mod translation;
+
+pub use machine_code::interpret;
+pub use program::{Access, ParameterInfo, Program, VariableInfo};
+pub use sensitivity::SensitivityCode;

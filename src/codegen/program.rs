@@ -1,0 +1,226 @@
+//! A compiled model: immutable, shared by any number of systems.
+
+use super::event_code::Events;
+use super::machine_code::MachineCode;
+use super::noevent_relations::Literal;
+use super::tape::{Register, Tape};
+use super::tape_builder::Registers;
+use crate::causalize::{Assignment, CausalizedDae};
+use crate::flatten::{BaseType, Variability};
+use crate::lower::Kind;
+use crate::sim::Pattern;
+use crate::symbolic::{Expr, VarId};
+use crate::syntax::ast::CausalityPrefix;
+use std::sync::Arc;
+
+/// A parameter that can be set between simulations.
+#[derive(Debug, Clone)]
+pub struct ParameterInfo {
+    /// Its full name.
+    pub name: Arc<str>,
+    /// Unit, empty if none.
+    pub unit: Arc<str>,
+    /// The string behind its declaration.
+    pub description: Arc<str>,
+    /// Predefined type; values are numbers (Boolean 0 or 1, enumerations by ordinal).
+    pub base: BaseType,
+    /// Attribute `min`; `-∞` without.
+    pub min: f64,
+    /// Attribute `max`; `∞` without.
+    pub max: f64,
+    /// Its value if nobody sets it; NaN if it cannot be computed.
+    pub default: f64,
+    /// Whether it stands directly in the class.
+    pub top_level: bool,
+    pub(crate) variable: VarId,
+}
+
+/// A scalar variable of the model, aliases, parameters and constants included.
+#[derive(Debug, Clone)]
+pub struct VariableInfo {
+    /// Its full name.
+    pub name: Arc<str>,
+    /// Unit, empty if none.
+    pub unit: Arc<str>,
+    /// Unit for people, empty if none.
+    pub display_unit: Arc<str>,
+    /// The string behind its declaration.
+    pub description: Arc<str>,
+    /// Predefined type.
+    pub base: BaseType,
+    /// When it may change.
+    pub variability: Variability,
+    /// `input` or `output`.
+    pub causality: Option<CausalityPrefix>,
+    /// Whether it stands directly in the class.
+    pub top_level: bool,
+    /// Whether it is protected.
+    pub protected: bool,
+    /// Where its value is found.
+    pub access: Access,
+    pub(crate) variable: VarId,
+}
+
+impl VariableInfo {
+    /// Whether its value does not change during a simulation.
+    pub fn is_known(&self) -> bool {
+        self.variability <= Variability::Parameter
+    }
+
+    /// Whether it is an output of the model itself.
+    pub fn is_output(&self) -> bool {
+        self.top_level && self.causality == Some(CausalityPrefix::Output)
+    }
+}
+
+/// Where the value of a variable is found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Access {
+    /// It is the simulated time.
+    Time,
+    /// A number.
+    Constant(f64),
+    /// A parameter: ask [`System::value`](crate::runtime::System::value).
+    Parameter,
+    /// A column of the observed variables (when all are observed), with its sign.
+    Observed {
+        /// Which column.
+        column: usize,
+        /// Whether the variable has the opposite sign.
+        negated: bool,
+    },
+}
+
+/// A step of solving for all variables, the states (or nothing, at the start) given.
+#[derive(Debug, Clone)]
+pub(crate) enum Step {
+    Run(Tape),
+    Solve(CompiledLoop),
+}
+
+/// A torn loop with its Jacobian.
+#[derive(Debug, Clone)]
+pub(crate) struct CompiledLoop {
+    pub(crate) tape: Tape,
+    pub(crate) unknowns: Vec<Register>,
+    pub(crate) residuals: Vec<Register>,
+    /// Row-major.
+    pub(crate) jacobian: Vec<Register>,
+    /// 1 once the tape has computed the residuals: what fails behind them is a derivative.
+    pub(crate) has_residuals: Register,
+    pub(crate) block: u32,
+}
+
+/// A frozen relation, compiled.
+#[derive(Debug, Clone)]
+pub(crate) struct CompiledRelation {
+    pub(crate) register: Register,
+    pub(crate) operator: crate::symbolic::RelationOperator,
+    /// For a relation on time alone: registers of the factor of time and of the rest.
+    pub(crate) time: Option<(f64, Register)>,
+}
+
+/// States chosen at run time, as registers.
+#[derive(Debug, Clone)]
+pub(crate) struct CompiledSelection {
+    /// By rows.
+    pub(crate) jacobian: Outputs,
+    pub(crate) candidates: Vec<Register>,
+    pub(crate) states: Vec<Register>,
+    pub(crate) weights: Vec<Vec<Register>>,
+    /// Places of the candidates that are states at first.
+    pub(crate) chosen: Vec<usize>,
+}
+
+/// Code with the registers of its results.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Outputs {
+    pub(crate) tape: Tape,
+    pub(crate) outputs: Vec<Register>,
+    pub(crate) machine_code: MachineCode,
+}
+
+/// The condition that must hold, and the numbers in the message.
+#[derive(Debug, Clone)]
+pub(crate) struct Notice {
+    /// Its number among all assertions, those at events behind the others.
+    pub(crate) assertion: u32,
+    pub(crate) code: Outputs,
+}
+
+/// A compiled model.
+#[derive(Debug)]
+pub struct Program {
+    pub(crate) sorted: CausalizedDae,
+    pub(crate) registers: Registers,
+    /// Everything in solving order, iteration variables of loops given.
+    pub(super) sequence: Vec<Assignment>,
+    /// The same where all algebraic unknowns of the integrator are given.
+    pub(crate) integrated: Vec<Assignment>,
+    /// What must be zero there.
+    pub(super) residuals: Vec<Expr>,
+    /// The unknowns of the integrator: states, then [`Program::iteration`].
+    pub(crate) unknowns: Vec<VarId>,
+    /// The algebraic ones.
+    pub(crate) iteration: Vec<VarId>,
+    /// Of these, how many at the end are in the sequence as well.
+    pub(crate) n_auxiliary: usize,
+    pub(super) parameters: Vec<ParameterInfo>,
+    pub(super) variables: Vec<VariableInfo>,
+    pub(crate) observed: Vec<VarId>,
+    /// Every parameter's own tape, in order.
+    pub(crate) parameter_tapes: Vec<(VarId, Tape)>,
+    /// Start value of every unknown that has one.
+    pub(crate) starts: Vec<(VarId, Tape)>,
+    /// Parameters that the initial system determines.
+    pub(crate) solved: Vec<VarId>,
+    pub(crate) nominals: Vec<(VarId, Tape, Register)>,
+    pub(crate) initial_steps: Vec<Step>,
+    /// Both sides of what initial values must fulfil besides.
+    pub(crate) initial_checks: Vec<Outputs>,
+    pub(crate) steps: Vec<Step>,
+    pub(crate) relations: Vec<CompiledRelation>,
+    /// Both sides of every relation, from the registers of the variables.
+    pub(crate) relation_sides: Vec<Outputs>,
+    /// The part of [`CompiledRelation::time`] that parameters make.
+    pub(crate) time_rests: Tape,
+    pub(crate) rhs: Outputs,
+    pub(crate) jacobian: Outputs,
+    pub(crate) pattern: Pattern,
+    pub(crate) crossings: Outputs,
+    /// Whether these depend on time otherwise than through states and unknowns of loops.
+    pub(crate) crossings_vary_in_time: bool,
+    /// The relations that have crossing functions.
+    pub(crate) crossing_relations: Vec<usize>,
+    /// For every block that is solved at once, the relations in it.
+    pub(crate) relations_of_blocks: Vec<Vec<usize>>,
+    /// For every relation, whether only functions of the relations follow from it at events.
+    pub(crate) memoryless: Vec<bool>,
+    pub(crate) selections: Vec<CompiledSelection>,
+    pub(crate) observe: Outputs,
+    pub(crate) assertions: Vec<(usize, Outputs)>,
+    /// Warnings: they do not end a simulation.
+    pub(crate) notices: Vec<Notice>,
+    pub(crate) events: Events,
+    /// What became of its relations inside `noEvent`.
+    pub(super) literal: Literal,
+}
+
+impl Program {
+    /// Number of crossing functions of relations and roundings.
+    pub(crate) fn n_crossings(&self) -> usize {
+        self.crossings.outputs.len() - self.crossing_relations.len()
+    }
+
+    /// Whether a mean of values of a variable is a value of it.
+    pub(crate) fn has_means(&self, variable: VarId) -> bool {
+        let variable = self.sorted.dae.variable(variable);
+        variable.base == BaseType::Real && variable.kind != Kind::Discrete
+    }
+}
+
+/// Equations, initial equations and those of events.
+pub(crate) fn number_of_equations(sorted: &CausalizedDae) -> usize {
+    let dae = &sorted.dae;
+    dae.equations.len() + dae.initial_equations.len() + dae.events.equations.len()
+}

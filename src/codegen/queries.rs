@@ -1,0 +1,139 @@
+//! What a compiled model tells of itself: its parameters and variables, and what depends on what.
+
+use super::errors::*;
+use super::program::{ParameterInfo, Program, VariableInfo};
+use super::sequence::close;
+use crate::causalize::CausalizedDae;
+use crate::diag::{Diagnostic, Fault, suggest};
+use crate::fault;
+use crate::flatten::{Experiment, Variability};
+use crate::lower::Kind;
+use crate::symbolic::VarId;
+use rustc_hash::FxHashSet;
+
+impl Program {
+    /// Name of the class.
+    pub fn name(&self) -> &str {
+        &self.sorted.dae.name
+    }
+
+    /// The sorted system it was made of.
+    pub fn sorted(&self) -> &CausalizedDae {
+        &self.sorted
+    }
+
+    /// Parameters that can be set, in order of declaration.
+    pub fn parameters(&self) -> &[ParameterInfo] {
+        &self.parameters
+    }
+
+    /// All scalar variables, time first, then in order of declaration, then derivatives.
+    pub fn variables(&self) -> &[VariableInfo] {
+        &self.variables
+    }
+
+    /// The `experiment` annotation.
+    pub fn experiment(&self) -> Experiment {
+        self.sorted.dae.experiment
+    }
+
+    /// What deserves a warning.
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.sorted.dae.warnings
+    }
+
+    /// Position of a variable in [`Program::variables`].
+    pub fn find_variable(&self, name: &str) -> Result<usize, Fault> {
+        self.variables.iter().position(|v| &*v.name == name).ok_or_else(|| {
+            let known = self.variables.iter().map(|v| &*v.name);
+            fault!(UNKNOWN_VARIABLE, "`{}` has no variable `{name}`", self.name())
+                .help_if(suggest::did_you_mean(name, known))
+        })
+    }
+
+    /// Position of a parameter in [`Program::parameters`].
+    pub fn find_parameter(&self, name: &str) -> Result<usize, Fault> {
+        if let Some(found) = self.parameters.iter().position(|p| &*p.name == name) {
+            return Ok(found);
+        }
+        let exists = self.variables.iter().find(|v| &*v.name == name);
+        if exists.is_some_and(|v| v.variability <= Variability::Parameter) {
+            return Err(fault!(STRUCTURAL_PARAMETER,
+                "`{name}` cannot be set: it is constant, final, or shaped the compiled model";
+                help: "change it with a modification when translating the model"));
+        }
+        let known = self.parameters.iter().map(|p| &*p.name);
+        Err(fault!(UNKNOWN_PARAMETER, "`{}` has no parameter `{name}`", self.name())
+            .help_if(suggest::did_you_mean(name, known)))
+    }
+
+    /// The expression of a variable of [`Program::variables`], aliases resolved, with its sign.
+    pub(super) fn resolve(&self, variable: VarId) -> (VarId, bool) {
+        match self.sorted.aliases[variable.0 as usize] {
+            Some(alias) => (alias.of, alias.negated),
+            None => (variable, false),
+        }
+    }
+
+    /// Everything that variables of [`Program::variables`] are computed from, what relations
+    /// compare included.
+    fn dependencies(&self, variables: &[usize]) -> FxHashSet<VarId> {
+        let dae = &self.sorted.dae;
+        let wanted: FxHashSet<VarId> = variables
+            .iter()
+            .filter_map(|at| self.variables.get(*at))
+            .map(|info| self.resolve(info.variable).0)
+            .collect();
+        let mut needed = close(&dae.pool, &self.sequence, wanted);
+        loop {
+            let mut wanted = needed.clone();
+            for relation in dae.relations.iter().filter(|r| needed.contains(&r.variable)) {
+                wanted.extend(dae.pool.variables(relation.left));
+                wanted.extend(dae.pool.variables(relation.right));
+            }
+            for rounding in dae.events.roundings.iter().filter(|r| needed.contains(&r.variable)) {
+                wanted.extend(dae.pool.variables(rounding.argument));
+            }
+            let before = needed.len();
+            needed = close(&dae.pool, &self.sequence, wanted);
+            if needed.len() == before {
+                return needed;
+            }
+        }
+    }
+
+    /// Whether states, iteration variables or values of events are needed to compute these
+    /// variables: if not, they are functions of time and parameters alone.
+    pub fn needs_states(&self, variables: &[usize]) -> bool {
+        let needed = self.dependencies(variables);
+        let remembered = |v: &VarId| {
+            matches!(
+                self.sorted.dae.variable(*v).kind,
+                Kind::Discrete | Kind::Previous(_) | Kind::Signal | Kind::Solved | Kind::Delayed
+            )
+        };
+        let found = |v: &VarId| needed.contains(v);
+        needed.iter().any(remembered) || self.unknowns.iter().any(found)
+    }
+
+    /// Whether a variable is computed from one of these parameters, other parameters between them
+    /// included. States, iteration variables and values of events count as depending on every parameter.
+    pub fn depends_on_parameters(&self, variable: usize, parameters: &[usize]) -> bool {
+        if parameters.is_empty() {
+            return false;
+        }
+        if self.needs_states(&[variable]) {
+            return true;
+        }
+        let mut needed = self.dependencies(&[variable]);
+        for parameter in self.sorted.parameters.iter().rev() {
+            if needed.contains(parameter)
+                && let Some(binding) = self.sorted.dae.variable(*parameter).binding
+            {
+                needed.extend(self.sorted.dae.pool.variables(binding));
+            }
+        }
+        let of = |at: &usize| self.parameters.get(*at).map(|p| p.variable);
+        parameters.iter().filter_map(of).any(|p| needed.contains(&p))
+    }
+}

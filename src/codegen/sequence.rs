@@ -1,0 +1,171 @@
+//! Code for outputs, and only for what they need: slices of the sequence of assignments as tapes.
+
+use super::hoist::Hoisting;
+use super::jacobian::differentiate_sequence;
+use super::program::{Access, CompiledLoop, Outputs, Program, Step};
+use super::tape_builder::{Registers, TapeBuilder};
+use crate::causalize::{Assignment, Block, CausalizedDae};
+use crate::symbolic::{Expr, Pool, VarId, VariableCollection};
+use rustc_hash::FxHashSet;
+
+/// A set of variables with all that they are computed from.
+pub(super) fn close(
+    pool: &Pool,
+    sequence: &[Assignment],
+    mut wanted: FxHashSet<VarId>,
+) -> FxHashSet<VarId> {
+    let mut collection = VariableCollection::new(pool);
+    for assignment in sequence.iter().rev() {
+        if wanted.contains(&assignment.variable) {
+            collection.add(assignment.value, |variable| {
+                wanted.insert(variable);
+            });
+        }
+    }
+    wanted
+}
+
+/// The assignments that outputs need, in order.
+pub(crate) fn slice(pool: &Pool, sequence: &[Assignment], outputs: &[Expr]) -> Vec<Assignment> {
+    let mut wanted = FxHashSet::default();
+    let mut collection = VariableCollection::new(pool);
+    for output in outputs {
+        collection.add(*output, |variable| {
+            wanted.insert(variable);
+        });
+    }
+    let wanted = close(pool, sequence, wanted);
+    sequence.iter().filter(|a| wanted.contains(&a.variable)).copied().collect()
+}
+
+/// Code that computes outputs, and only what they need.
+pub(crate) fn compile_outputs(
+    pool: &Pool,
+    registers: &mut Registers,
+    sequence: &[Assignment],
+    outputs: &[Expr],
+) -> Outputs {
+    compile_continuous(pool, registers, sequence, outputs, Hoisting::Never)
+}
+
+/// The same for code that runs when the parameters have their values.
+pub(crate) fn compile_continuous(
+    pool: &Pool,
+    registers: &mut Registers,
+    sequence: &[Assignment],
+    outputs: &[Expr],
+    hoisting: Hoisting,
+) -> Outputs {
+    let needed = slice(pool, sequence, outputs);
+    let mut builder = TapeBuilder::new(pool, registers).hoisting(hoisting);
+    for assignment in &needed {
+        builder.origin(assignment.equation as u32);
+        builder.define(assignment.variable, assignment.value);
+    }
+    let registers = outputs.iter().map(|output| builder.emit(*output)).collect();
+    Outputs { tape: builder.finish(), outputs: registers, ..Outputs::default() }
+}
+
+/// The steps of solving blocks one after another.
+pub(super) fn compile_steps(
+    pool: &mut Pool,
+    registers: &mut Registers,
+    blocks: &[Block],
+    next: &mut u32,
+) -> Vec<Step> {
+    let mut steps = Vec::new();
+    let mut run: Vec<Assignment> = Vec::new();
+    for (number, block) in blocks.iter().enumerate() {
+        let torn = match block {
+            Block::Assignment(_) | Block::Linear(_) => {
+                run.extend(block.assignments());
+                continue;
+            }
+            Block::Loop(torn) => torn,
+        };
+        steps.extend(compile_run(pool, registers, &mut run));
+        let residuals: Vec<Expr> = torn.residuals.iter().map(|(residual, _)| *residual).collect();
+        let slopes =
+            differentiate_sequence(pool, &torn.assignments, &residuals, &torn.iteration, next);
+        let zero = pool.constant(0.0);
+        let one = pool.constant(1.0);
+        let has_residuals = registers.fresh();
+        let mut builder = TapeBuilder::new(pool, registers);
+        builder.mark(has_residuals, zero);
+        for Assignment { variable, value, equation } in &torn.assignments {
+            builder.origin(*equation as u32);
+            builder.store(*variable, *value);
+        }
+        let mut results = Vec::new();
+        for (residual, equation) in &torn.residuals {
+            builder.origin(*equation as u32);
+            results.push(builder.emit(*residual));
+        }
+        builder.mark(has_residuals, one);
+        let inner: FxHashSet<VarId> = torn.assignments.iter().map(|a| a.variable).collect();
+        for Assignment { variable, value, equation } in &slopes.sequence {
+            if !inner.contains(variable) {
+                builder.origin(*equation as u32);
+                builder.define(*variable, *value);
+            }
+        }
+        let mut jacobian = Vec::new();
+        for (row, (_, equation)) in torn.residuals.iter().enumerate() {
+            builder.origin(*equation as u32);
+            for column in 0..torn.iteration.len() {
+                let entry = slopes.rows[row].get(&column).copied().unwrap_or(zero);
+                jacobian.push(builder.emit(entry));
+            }
+        }
+        steps.push(Step::Solve(CompiledLoop {
+            tape: builder.finish(),
+            unknowns: torn.iteration.iter().map(|v| v.0).collect(),
+            residuals: results,
+            jacobian,
+            has_residuals,
+            block: number as u32,
+        }));
+    }
+    steps.extend(compile_run(pool, registers, &mut run));
+    steps
+}
+
+fn compile_run(pool: &Pool, registers: &mut Registers, run: &mut Vec<Assignment>) -> Option<Step> {
+    if run.is_empty() {
+        return None;
+    }
+    let mut builder = TapeBuilder::new(pool, registers);
+    for assignment in run.drain(..) {
+        builder.origin(assignment.equation as u32);
+        builder.store(assignment.variable, assignment.value);
+    }
+    Some(Step::Run(builder.finish()))
+}
+
+/// A variable's representative, with its sign.
+pub(crate) fn resolved(pool: &mut Pool, sorted: &CausalizedDae, variable: VarId) -> Expr {
+    match sorted.aliases[variable.0 as usize] {
+        None => pool.variable(variable),
+        Some(alias) => {
+            let of = pool.variable(alias.of);
+            if alias.negated { pool.neg(of) } else { of }
+        }
+    }
+}
+
+/// What variables (positions in [`Program::variables`]) are.
+pub(crate) fn expressions(program: &Program, pool: &mut Pool, variables: &[usize]) -> Vec<Expr> {
+    let of = |at: &usize| match program.variables()[*at].access {
+        Access::Constant(value) => pool.constant(value),
+        _ => resolved(pool, &program.sorted, program.variables()[*at].variable),
+    };
+    variables.iter().map(of).collect()
+}
+
+/// Code for what a system observes, with the registers that the system has then.
+pub(crate) fn observing(program: &Program, pool: &Pool, outputs: &[Expr]) -> (Registers, Outputs) {
+    let mut registers = program.registers.clone();
+    let sequence = &program.sequence;
+    let code = compile_continuous(pool, &mut registers, sequence, outputs, Hoisting::Known);
+    (registers, code)
+}

@@ -1,0 +1,398 @@
+//! Symbolic expressions become instructions, common subexpressions computed once.
+
+use super::branches::{Branches, Computed};
+use super::hoist::{Hoisted, Hoisting};
+use super::linear_system::LinearSolve;
+use super::routines::{Routine, Routines};
+use super::tape::{Call, Instruction, Register, Tape};
+use crate::bytecode::Functions;
+use crate::symbolic::function::Value;
+use crate::symbolic::{Expr, Node, Pool, VarId};
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::sync::Arc;
+
+/// The registers of a program: one for every variable, then constants and temporaries.
+#[derive(Debug, Clone)]
+pub(crate) struct Registers {
+    next: Register,
+    constants: FxHashMap<u64, Register>,
+    functions: Arc<Functions>,
+    /// Workspaces of linear systems by matrix, and their sizes.
+    workspaces: FxHashMap<Expr, u32>,
+    systems: Vec<usize>,
+    /// Registers with their values.
+    pub(super) values: Vec<(Register, f64)>,
+    /// What is computed once a simulation.
+    pub(crate) hoisted: Hoisted,
+}
+
+impl Registers {
+    pub(super) fn new(n_variables: usize, functions: Arc<Functions>) -> Registers {
+        let next = n_variables as Register;
+        Registers {
+            next,
+            constants: FxHashMap::default(),
+            functions,
+            workspaces: FxHashMap::default(),
+            systems: Vec::new(),
+            values: Vec::new(),
+            hoisted: Hoisted::default(),
+        }
+    }
+
+    /// Sizes of the linear systems that tapes on these registers solve.
+    pub(super) fn systems(&self) -> &[usize] {
+        &self.systems
+    }
+
+    /// The workspace for a matrix of n rows. Tapes that share it factorise the matrix anew.
+    fn workspace(&mut self, matrix: Expr, n: usize) -> u32 {
+        *self.workspaces.entry(matrix).or_insert_with(|| {
+            self.systems.push(n);
+            self.systems.len() as u32 - 1
+        })
+    }
+
+    /// The workspace for a matrix, if any tape solves a system with it.
+    pub(crate) fn workspace_of(&self, matrix: Expr) -> Option<u32> {
+        self.workspaces.get(&matrix).copied()
+    }
+
+    /// The functions that tapes on these registers call.
+    pub(super) fn functions(&self) -> &Arc<Functions> {
+        &self.functions
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.next as usize
+    }
+
+    pub(super) fn fresh(&mut self) -> Register {
+        self.row(1)
+    }
+
+    /// New registers that follow each other.
+    fn row(&mut self, n: usize) -> Register {
+        self.next += n as Register;
+        self.next - n as Register
+    }
+
+    fn constant(&mut self, value: f64) -> Register {
+        if let Some(known) = self.constants.get(&value.to_bits()) {
+            return *known;
+        }
+        let register = self.fresh();
+        self.constants.insert(value.to_bits(), register);
+        self.values.push((register, value));
+        self.hoisted.fix(register);
+        register
+    }
+}
+
+/// What has several results.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+enum Several {
+    /// A call: function, inputs that it is differentiated for, the list of its arguments.
+    Call(u32, Box<[u32]>, Expr),
+    /// The factors of a matrix, which are in its workspace.
+    Factors(Expr),
+    /// The solution of a linear system: matrix, right side, whether it is a derivative.
+    Solution(Expr, Expr, bool),
+}
+
+/// Writes one tape.
+pub(super) struct TapeBuilder<'a> {
+    pool: &'a Pool,
+    registers: &'a mut Registers,
+    tape: Tape,
+    known: Computed<Expr>,
+    /// First registers of what has several results.
+    several: Computed<Several>,
+    /// Registers of variables that are not in their own.
+    moved: FxHashMap<VarId, Register>,
+    /// Variables that have been read.
+    read: FxHashSet<VarId>,
+    hoisting: Hoisting,
+    branches: Branches,
+    routines: Routines,
+    origin: u32,
+}
+
+impl<'a> TapeBuilder<'a> {
+    pub(super) fn new(pool: &'a Pool, registers: &'a mut Registers) -> TapeBuilder<'a> {
+        TapeBuilder {
+            pool,
+            registers,
+            tape: Tape::default(),
+            known: Computed::new(),
+            several: Computed::new(),
+            moved: FxHashMap::default(),
+            read: FxHashSet::default(),
+            hoisting: Hoisting::Never,
+            branches: Branches::new(),
+            routines: Routines::default(),
+            origin: u32::MAX,
+        }
+    }
+
+    /// Computes what parameters determine once a simulation.
+    pub(super) fn hoisting(mut self, hoisting: Hoisting) -> TapeBuilder<'a> {
+        self.hoisting = hoisting;
+        self
+    }
+
+    pub(super) fn finish(mut self) -> Tape {
+        self.routines.append(&mut self.tape);
+        self.tape
+    }
+
+    /// What follows comes from this equation.
+    pub(super) fn origin(&mut self, origin: u32) {
+        self.tape.origins.push((self.tape.code.len() as u32, origin));
+        self.origin = origin;
+    }
+
+    /// `variable := value`, kept in whatever register holds the value.
+    pub(super) fn define(&mut self, variable: VarId, value: Expr) {
+        let register = self.emit(value);
+        self.moved.insert(variable, register);
+    }
+
+    /// `variable := value`, written to the variable's own register.
+    pub(super) fn store(&mut self, variable: VarId, value: Expr) {
+        let a = self.emit(value);
+        self.tape.code.push(Instruction::Move { d: variable.0, a });
+        // What branches computed from the value before, or on condition of it, is not known again.
+        if self.read.contains(&variable) {
+            self.branches.forget();
+            self.routines.forget();
+        }
+    }
+
+    /// Writes a value that has been computed to a register; nothing is computed afterwards.
+    pub(super) fn copy(&mut self, d: Register, a: Register) {
+        self.tape.code.push(Instruction::Move { d, a });
+    }
+
+    /// Writes a constant to a register that no expression reads.
+    pub(super) fn mark(&mut self, d: Register, constant: Expr) {
+        let a = self.emit(constant);
+        self.tape.code.push(Instruction::Move { d, a });
+    }
+
+    /// Computes an expression; returns where its value is.
+    pub(super) fn emit(&mut self, root: Expr) -> Register {
+        let mut stack = vec![(root, false)];
+        while let Some((expr, ready)) = stack.pop() {
+            if self.known.get(&expr, &self.branches).is_some() {
+                continue;
+            }
+            if !ready {
+                if let Some(routine) = self.routine(expr) {
+                    self.tape.code.push(routine.perform());
+                    self.known.insert(expr, routine.result, &self.branches);
+                    continue;
+                }
+                stack.push((expr, true));
+                match self.pool.node(expr) {
+                    // Its branches are computed only where they are needed.
+                    Node::If(condition, ..) => stack.push((*condition, false)),
+                    node => node.for_each_operand(|operand| stack.push((operand, false))),
+                }
+                continue;
+            }
+            let register = self.instruction(expr);
+            self.known.insert(expr, register, &self.branches);
+        }
+        self.register(root)
+    }
+
+    /// Where an expression is that has been computed.
+    fn register(&self, expr: Expr) -> Register {
+        self.known.get(&expr, &self.branches).expect("operands are computed first")
+    }
+
+    fn instruction(&mut self, expr: Expr) -> Register {
+        let of = |a: &Expr| self.register(*a);
+        let node = self.pool.node(expr);
+        match node {
+            Node::Constant(number) => return self.registers.constant(number.0),
+            Node::Variable(v) => {
+                self.read.insert(*v);
+                return self.moved.get(v).copied().unwrap_or(v.0);
+            }
+            Node::If(condition, a, b) => {
+                let condition = of(condition);
+                let before = self.tape.code.len();
+                let register = self.branches(condition, *a, *b);
+                self.routines.note(expr, self.tape.code.len() - before);
+                return register;
+            }
+            Node::Call { function, output, arguments } => {
+                let d = output + self.call(*function, Box::new([]), *arguments);
+                if self.registers.functions.codes[*function as usize].may_lack {
+                    self.tape.code.push(Instruction::Given { a: d, function: *function });
+                }
+                return d;
+            }
+            Node::CallDerivative { function, output, inputs, arguments } => {
+                return output + self.call(*function, inputs.clone(), *arguments);
+            }
+            // Its entries are read where it is used.
+            Node::List(_) => return 0,
+            Node::Solution { matrix, right, output, is_slope } => {
+                return output + self.solution(*matrix, *right, *is_slope);
+            }
+            _ => {}
+        }
+        let d = self.registers.len() as Register;
+        let instruction = match node {
+            Node::Neg(a) => Instruction::Neg { d, a: of(a) },
+            Node::Not(a) => Instruction::Not { d, a: of(a) },
+            Node::Add(a, b) => Instruction::Add { d, a: of(a), b: of(b) },
+            Node::Sub(a, b) => Instruction::Sub { d, a: of(a), b: of(b) },
+            Node::Mul(a, b) => Instruction::Mul { d, a: of(a), b: of(b) },
+            Node::Div(a, b) => Instruction::Div { d, a: of(a), b: of(b) },
+            Node::Pow(a, b) if self.pool.as_constant(*b) == Some(2.0) => {
+                Instruction::Mul { d, a: of(a), b: of(a) }
+            }
+            Node::Pow(a, b) => Instruction::Pow { d, a: of(a), b: of(b) },
+            Node::And(a, b) => Instruction::And { d, a: of(a), b: of(b) },
+            Node::Or(a, b) => Instruction::Or { d, a: of(a), b: of(b) },
+            Node::Relation(operator, a, b) => {
+                Instruction::Relation { operator: *operator, d, a: of(a), b: of(b) }
+            }
+            Node::Apply(id, arguments) => {
+                let a = of(&arguments.first());
+                match (id.get().value, arguments.second()) {
+                    (Value::Unary(function), _) => Instruction::Unary { id: *id, d, a, function },
+                    (Value::Binary(function), Some(b)) => {
+                        Instruction::Binary { id: *id, d, a, b: of(&b), function }
+                    }
+                    (Value::Binary(_), None) => {
+                        unreachable!("a pool checks the number of arguments")
+                    }
+                }
+            }
+            Node::Constant(_)
+            | Node::Variable(_)
+            | Node::If(..)
+            | Node::Call { .. }
+            | Node::CallDerivative { .. }
+            | Node::List(_)
+            | Node::Solution { .. } => unreachable!("returned above"),
+        };
+        let in_branch = self.branches.is_inside();
+        match self.registers.hoist(instruction, self.hoisting, in_branch, self.origin) {
+            Some(hoisted) => hoisted,
+            None => {
+                self.tape.code.push(instruction);
+                self.registers.fresh()
+            }
+        }
+    }
+
+    /// A call, once for all its outputs; returns the first register of its results.
+    fn call(&mut self, function: u32, inputs: Box<[u32]>, arguments: Expr) -> Register {
+        let key = Several::Call(function, inputs.clone(), arguments);
+        if let Some(known) = self.several.get(&key, &self.branches) {
+            return known;
+        }
+        self.compute_entries(arguments);
+        let d = self.registers.row(self.registers.functions.n_outputs(function));
+        self.tape.code.push(Instruction::Call { call: self.tape.calls.len() as u32 });
+        let arguments = self.pool.entries(arguments).iter().map(|a| self.register(*a)).collect();
+        self.tape.calls.push(Call { function, inputs, arguments, d });
+        self.several.insert(key, d, &self.branches);
+        d
+    }
+
+    /// Computes the entries of a list that are not known: a branch that is entered again knows the
+    /// list from before, but of its entries only those that no other branch has computed since.
+    fn compute_entries(&mut self, list: Expr) {
+        let pool = self.pool;
+        for entry in pool.entries(list) {
+            if self.known.get(entry, &self.branches).is_none() {
+                self.emit(*entry);
+            }
+        }
+    }
+
+    /// The solution of a linear system, once for all unknowns; returns the register of the first.
+    fn solution(&mut self, matrix: Expr, right: Expr, is_slope: bool) -> Register {
+        let key = Several::Solution(matrix, right, is_slope);
+        if let Some(known) = self.several.get(&key, &self.branches) {
+            return known;
+        }
+        self.compute_entries(right);
+        self.compute_entries(matrix);
+        let right: Box<[Register]> =
+            self.pool.entries(right).iter().map(|entry| self.register(*entry)).collect();
+        let d = self.registers.row(right.len());
+        let system = self.registers.workspace(matrix, right.len());
+        let factors = Several::Factors(matrix);
+        let entries = match self.several.get(&factors, &self.branches) {
+            Some(_) => None,
+            None => {
+                self.several.insert(factors, 0, &self.branches);
+                Some(self.entries(matrix))
+            }
+        };
+        self.tape.code.push(Instruction::Solve { solve: self.tape.solves.len() as u32 });
+        self.tape.solves.push(LinearSolve { system, entries, right, d, is_slope });
+        self.several.insert(key, d, &self.branches);
+        d
+    }
+
+    /// The entries of a matrix that are not always zero.
+    fn entries(&self, matrix: Expr) -> Box<[(u32, Register)]> {
+        let entries = self.pool.entries(matrix).iter().enumerate();
+        let nonzero = entries.filter(|(_, e)| self.pool.as_constant(**e) != Some(0.0));
+        nonzero.map(|(place, entry)| (place as u32, self.register(*entry))).collect()
+    }
+
+    fn branches(&mut self, condition: Register, a: Expr, b: Expr) -> Register {
+        let d = self.registers.fresh();
+        let skip = self.tape.code.len();
+        self.tape.code.push(Instruction::JumpUnless { a: condition, target: 0 });
+        self.branch(condition, true, d, a);
+        let end = self.tape.code.len();
+        self.tape.code.push(Instruction::Jump { target: 0 });
+        self.tape.code[skip] =
+            Instruction::JumpUnless { a: condition, target: self.tape.code.len() as u32 };
+        self.branch(condition, false, d, b);
+        self.tape.code[end] = Instruction::Jump { target: self.tape.code.len() as u32 };
+        d
+    }
+
+    /// The routine of what other branches compute as well, if it is long.
+    fn routine(&mut self, e: Expr) -> Option<Routine> {
+        if !self.branches.is_inside() {
+            return None;
+        }
+        if let Some(known) = self.routines.get(e) {
+            return Some(known);
+        }
+        if !self.routines.take_large(e) {
+            return None;
+        }
+        let link = self.registers.fresh();
+        let code = std::mem::take(&mut self.tape.code);
+        let known = (self.known.suspend(), self.several.suspend());
+        let suspended = self.branches.begin_routine();
+        let result = self.emit(e);
+        self.branches.end_routine(suspended);
+        self.known.resume(known.0);
+        self.several.resume(known.1);
+        self.tape.code.push(Instruction::Return { link });
+        let code = std::mem::replace(&mut self.tape.code, code);
+        Some(self.routines.add(e, (self.origin, code), [link, result]))
+    }
+
+    fn branch(&mut self, condition: Register, holds: bool, d: Register, value: Expr) {
+        self.branches.enter(condition, holds);
+        let a = self.emit(value);
+        self.branches.leave();
+        self.tape.code.push(Instruction::Move { d, a });
+    }
+}

@@ -1,0 +1,55 @@
+//! Exact slopes of chosen variables, as a model that is linearized needs them.
+
+use super::system::{System, read};
+use crate::codegen::jacobian::differentiate_sequence;
+use crate::codegen::sequence::{compile_outputs, slice};
+use crate::sim::{DaeSystem, Failure};
+use nalgebra::DMatrix;
+
+impl System {
+    /// ∂(f, g)/∂y: the right sides of the states and the residuals of the algebraic loops, for the
+    /// states and the iteration variables of the loops.
+    pub fn dense_jacobian(&mut self, t: f64, y: &[f64]) -> Result<DMatrix<f64>, Failure> {
+        let pattern = self.pattern().clone();
+        let mut values = vec![0.0; pattern.rows.len()];
+        self.jacobian(t, y, &mut values)?;
+        let mut dense = DMatrix::zeros(pattern.n, pattern.n);
+        for column in 0..pattern.n {
+            for entry in pattern.column(column) {
+                dense[(pattern.rows[entry], column)] = values[entry];
+            }
+        }
+        Ok(dense)
+    }
+
+    /// ∂v/∂y of variables v (positions in [`Program::variables`](crate::codegen::Program::variables)): a row
+    /// for each, columns as those of [`System::dense_jacobian`].
+    pub fn slopes(&self, variables: &[usize], t: f64, y: &[f64]) -> Result<DMatrix<f64>, Failure> {
+        let program = self.program.clone();
+        let mut pool = program.sorted.dae.pool.clone();
+        let outputs = crate::codegen::sequence::expressions(&program, &mut pool, variables);
+        let columns = &program.unknowns;
+        let needed = slice(&pool, &program.integrated, &outputs);
+        let mut next = program.sorted.dae.variables.len() as u32;
+        let slopes = differentiate_sequence(&mut pool, &needed, &outputs, columns, &mut next);
+        let places: Vec<(usize, usize)> = slopes
+            .rows
+            .iter()
+            .enumerate()
+            .flat_map(|(row, entries)| entries.keys().map(move |column| (row, *column)))
+            .collect();
+        let entries: Vec<_> = slopes.rows.iter().flat_map(|row| row.values().copied()).collect();
+        let mut registers = program.registers.clone();
+        let code = compile_outputs(&pool, &mut registers, &slopes.sequence, &entries);
+        let mut system = self.clone();
+        system.registers.extend(&registers);
+        system.load(t, y);
+        let mut values = vec![0.0; entries.len()];
+        read(&code, &mut system.registers, &mut values)?;
+        let mut dense = DMatrix::zeros(variables.len(), columns.len());
+        for (place, value) in places.into_iter().zip(values) {
+            dense[place] = value;
+        }
+        Ok(dense)
+    }
+}

@@ -1,0 +1,150 @@
+//! What a model tells while it is simulated: warnings, and texts that it prints (MLS §8.3.7). Only
+//! systems that somebody listens to look after them.
+
+use super::singular_systems::Open;
+use super::system::System;
+use crate::bytecode::Journal;
+use crate::codegen::Program;
+use crate::codegen::program::Notice;
+use crate::lower::{Assertion, Level, Part};
+use crate::sim::Failure;
+use crate::source::Span;
+use crate::value::Value;
+use crate::value::format::text;
+
+/// More are counted only.
+const MOST: usize = 200;
+
+/// What was told in a simulation.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Notices {
+    told: Vec<Recorded>,
+    omitted: u64,
+    /// Which warnings hold now, so that each is told when it begins.
+    active: Vec<bool>,
+    /// What the equations left open.
+    pub(super) open: Vec<Open>,
+}
+
+#[derive(Debug, Clone)]
+struct Recorded {
+    time: f64,
+    assertion: u32,
+    values: Vec<f64>,
+}
+
+/// A text that a model has told.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Told {
+    /// When, seconds.
+    pub time: f64,
+    /// The text.
+    pub text: String,
+    /// Whether it is a warning, and not something printed.
+    pub is_warning: bool,
+    /// Where it is written.
+    pub span: Span,
+}
+
+impl Notices {
+    fn record(&mut self, time: f64, assertion: u32, values: Vec<f64>) {
+        match self.told.len() < MOST {
+            true => self.told.push(Recorded { time, assertion, values }),
+            false => self.omitted += 1,
+        }
+    }
+}
+
+impl System {
+    /// From now on what the model tells is kept.
+    pub fn listen(&mut self) {
+        self.notices = Some(Notices::default());
+    }
+
+    /// What the model would have written in the last simulation, if somebody listened to it.
+    pub fn journal(&self) -> &Journal {
+        self.registers.calls.journal()
+    }
+
+    /// What the model has told in the last simulation, and how much more there was.
+    pub fn told(&self) -> (Vec<Told>, u64) {
+        let Some(notices) = &self.notices else { return (Vec::new(), 0) };
+        let told = notices.told.iter().filter_map(|one| told(&self.program, one));
+        (told.collect(), notices.omitted)
+    }
+
+    pub(super) fn forget_notices(&mut self) {
+        if let Some(notices) = &mut self.notices {
+            let active = vec![false; self.program.notices.len()];
+            *notices = Notices { active, ..Notices::default() };
+        }
+    }
+
+    /// The warnings that begin to hold now.
+    pub(super) fn notice(&mut self, t: f64) -> Result<(), Failure> {
+        let Some(mut notices) = self.notices.take() else { return Ok(()) };
+        let program = self.program.clone();
+        let done = program.notices.iter().enumerate().try_for_each(|(at, notice)| {
+            let values = self.noticed(notice)?;
+            let holds = values.is_some();
+            if let Some(values) = values.filter(|_| !notices.active.get(at).is_some_and(|a| *a)) {
+                notices.record(t, notice.assertion, values);
+            }
+            if let Some(active) = notices.active.get_mut(at) {
+                *active = holds;
+            }
+            Ok(())
+        });
+        self.notices = Some(notices);
+        done
+    }
+
+    /// What is told at an event.
+    pub(super) fn notice_at_event(&mut self, t: f64) -> Result<(), Failure> {
+        let Some(mut notices) = self.notices.take() else { return Ok(()) };
+        let program = self.program.clone();
+        let done = program.events.notices.iter().try_for_each(|notice| {
+            if let Some(values) = self.noticed(notice)? {
+                notices.record(t, notice.assertion, values);
+            }
+            Ok(())
+        });
+        self.notices = Some(notices);
+        done
+    }
+
+    /// The numbers of a text whose condition does not hold.
+    fn noticed(&mut self, notice: &Notice) -> Result<Option<Vec<f64>>, Failure> {
+        super::system::run(&notice.code.tape, &mut self.registers)?;
+        let mut values = notice.code.outputs.iter().map(|at| self.registers[*at as usize]);
+        let holds = values.next() != Some(0.0);
+        Ok((!holds).then(|| values.collect()))
+    }
+}
+
+fn told(program: &Program, recorded: &Recorded) -> Option<Told> {
+    let dae = &program.sorted().dae;
+    let mut all = dae.assertions.iter().chain(&dae.events.assertions);
+    let Assertion { parts, level, span, .. } = all.nth(recorded.assertion as usize)?;
+    if *level == Level::Effect {
+        return None;
+    }
+    let mut values = recorded.values.iter().copied();
+    let mut words = String::new();
+    for part in parts {
+        let value = match part {
+            Part::Text(known) => {
+                words += known;
+                continue;
+            }
+            Part::Number(_) => Value::Real(values.next()?),
+            Part::Boolean(_) => Value::Boolean(values.next()? != 0.0),
+        };
+        words += &text(&value, DIGITS, 0, true).ok()?;
+    }
+    let is_warning = *level == Level::Warning;
+    Some(Told { time: recorded.time, text: words, is_warning, span: *span })
+}
+
+/// As `String` writes Reals (MLS §3.7.1).
+const DIGITS: i64 = 6;

@@ -1,0 +1,36 @@
+//! The run time of compiled models: every thread runs its own [`System`] of a
+//! [`Program`](crate::codegen::Program).
+//!
+//! ```text
+//! system                 registers, parameter values, evaluation: the DaeSystem of the integrators
+//! event_iteration        discrete equations until pre(v) = v, mode_search where that does not end
+//! newton                 torn loops: Newton, then global_newton and levenberg_marquardt
+//! delay_buffer           the past of delayed expressions
+//! state_selection        dynamic state selection
+//! sliding                both sides of relations that chatter
+//! sensitivity            forward sensitivities carried along
+//! log_messages           warnings and printed strings; failure_messages, singular_systems
+//! ```
+
+mod delay_buffer;
+mod difference_quotients;
+mod event_iteration;
+mod failure_messages;
+mod global_newton;
+mod levenberg_marquardt;
+mod linearization;
+mod log_messages;
+mod mode_search;
+mod newton;
+mod noevent_relations;
+mod relations;
+mod sensitivity;
+mod singular_systems;
+mod sliding;
+mod state_selection;
+mod system;
+
+pub use log_messages::Told;
+pub use singular_systems::Undetermined;
+pub use sliding::Treated;
+pub use system::System;

@@ -1,0 +1,98 @@
+//! Combinations of relations: where they do not come to rest by themselves.
+//!
+//! Each relation taken for itself may contradict the values that solving with it gives, although
+//! together with another one it holds: a limiter with positive feedback jumps from its upper to its
+//! lower limit and has no solution between them. What keeps changing is tried in all combinations,
+//! then together with what other relations want to change, and with those of the same blocks; of
+//! combinations that hold, that with the fewest changes is taken.
+
+use super::event_iteration::Stage;
+use super::system::System;
+
+/// The most relations that are tried in all combinations.
+const MOST_RELATIONS: usize = 10;
+/// Passes in which variables of discrete loops must come to rest.
+const PASSES: usize = 10;
+
+impl System {
+    /// Looks for values of the relations that keep changing, and of those that go with them, with
+    /// which all hold; whether there are any. Without, all is as before.
+    pub(super) fn find_combination(&mut self, t: f64, stage: Stage) -> bool {
+        let before = self.registers.clone();
+        let mut group: Vec<usize> = Vec::new();
+        let restless = |group: &[usize], system: &System| {
+            let all = system.restless.iter().enumerate();
+            all.filter(|(at, restless)| **restless && !group.contains(at))
+                .map(|(at, _)| at)
+                .collect()
+        };
+        let mut added: Vec<usize> = restless(&group, self);
+        while !added.is_empty() && group.len() + added.len() <= MOST_RELATIONS {
+            group.append(&mut added);
+            if self.try_combinations(&group, &before, t, stage) {
+                return true;
+            }
+            added = restless(&group, self);
+            if added.is_empty() {
+                added = self.companions(&group);
+            }
+        }
+        self.registers.copy_from_slice(&before);
+        false
+    }
+
+    /// The relations that stand in a block with one of a group.
+    fn companions(&self, group: &[usize]) -> Vec<usize> {
+        let blocks = self.program.relations_of_blocks.iter();
+        let touched = blocks.filter(|block| block.iter().any(|at| group.contains(at)));
+        let mut others: Vec<usize> =
+            touched.flatten().copied().filter(|at| !group.contains(at)).collect();
+        others.sort_unstable();
+        others.dedup();
+        others
+    }
+
+    fn try_combinations(&mut self, group: &[usize], before: &[f64], t: f64, stage: Stage) -> bool {
+        let mut combinations: Vec<u32> = (0..1 << group.len()).collect();
+        combinations.sort_by_key(|combination| combination.count_ones());
+        combinations.into_iter().any(|combination| {
+            self.registers.copy_from_slice(before);
+            for (bit, at) in group.iter().enumerate() {
+                self.has_changed[*at] = true;
+                if combination >> bit & 1 == 1 {
+                    let register = self.program.relations[*at].register as usize;
+                    self.registers[register] = 1.0 - self.registers[register];
+                }
+            }
+            self.holds(t, stage)
+        })
+    }
+
+    /// Solves with the relations as they are; whether they then hold. Those that do not are
+    /// restless.
+    fn holds(&mut self, t: f64, stage: Stage) -> bool {
+        for _ in 0..PASSES {
+            self.note_lagged();
+            if self.solve(stage).is_err() {
+                return false;
+            }
+            if self.moved_lagged().is_none() {
+                return !self.note_restless(t) && !self.update_roundings(t);
+            }
+        }
+        false
+    }
+
+    /// Marks the relations that do not hold; whether there are any.
+    fn note_restless(&mut self, t: f64) -> bool {
+        let mut any = false;
+        for at in 0..self.program.relations.len() {
+            let value = self.registers[self.program.relations[at].register as usize] != 0.0;
+            if self.relation_value(at, value, t) != value {
+                self.restless[at] = true;
+                any = true;
+            }
+        }
+        any
+    }
+}

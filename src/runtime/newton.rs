@@ -1,0 +1,193 @@
+//! One torn loop: Newton's method, and where it fails, least squares with damping.
+//!
+//! ```text
+//! from the values at hand, then with zeros replaced by nominal values (at the start only)
+//!     Newton's method
+//!     otherwise Levenberg and Marquardt's method, then Newton's again
+//!     otherwise Newton's method without damping, which leaps over kinks
+//!     otherwise the same from zero, if the guess is outside the domain
+//!     otherwise the global Newton method, where a jump is no error
+//! ```
+//!
+//! A loop whose Jacobian is singular at the solution need not have only this one. At the start the one
+//! nearest to the start values is taken, with a warning; later it is an error.
+
+use super::difference_quotients::quotient;
+use super::global_newton::Continuation;
+use super::levenberg_marquardt::LeastSquares;
+use super::system::run;
+use crate::codegen::memory::Memory;
+use crate::codegen::program::CompiledLoop;
+use crate::sim::{Equations, Failure, Newton, NewtonFailure};
+use std::sync::Arc;
+
+/// The workspace of one loop.
+#[derive(Debug, Clone)]
+pub(super) struct LoopSolver {
+    newton: Newton,
+    least_squares: LeastSquares,
+    continuation: Continuation,
+    nominal: Arc<[f64]>,
+    guess: Vec<f64>,
+    /// Where an attempt begins, or what least squares found.
+    start: Vec<f64>,
+    x: Vec<f64>,
+    /// Whether the Jacobian is singular at the last solution.
+    pub(super) is_singular: bool,
+}
+
+impl LoopSolver {
+    /// For a loop whose unknowns have these magnitudes.
+    pub(super) fn new(nominal: Vec<f64>) -> LoopSolver {
+        let n = nominal.len();
+        LoopSolver {
+            newton: Newton::new(n),
+            least_squares: LeastSquares::new(n),
+            continuation: Continuation::new(n),
+            nominal: nominal.into(),
+            guess: vec![0.0; n],
+            start: vec![0.0; n],
+            x: vec![0.0; n],
+            is_singular: false,
+        }
+    }
+
+    /// Solves a loop from the values its unknowns have; they keep these on failure.
+    pub(super) fn solve(
+        &mut self,
+        torn: &CompiledLoop,
+        r: &mut Memory,
+        initial: bool,
+        may_jump: bool,
+    ) -> Result<(), Failure> {
+        for (value, unknown) in self.guess.iter_mut().zip(&torn.unknowns) {
+            *value = r[*unknown as usize];
+        }
+        self.x.copy_from_slice(&self.guess);
+        let nominal = self.nominal.clone();
+        let mut equations = Evaluation { torn, r, nominal, has_jacobian: false };
+        let mut outcome = self.attempt(&mut equations, initial);
+        if outcome.is_err() && initial && self.guess.contains(&0.0) {
+            for ((x, guess), nominal) in self.x.iter_mut().zip(&self.guess).zip(&*self.nominal) {
+                *x = if *guess == 0.0 { *nominal } else { *guess };
+            }
+            outcome = self.attempt(&mut equations, initial).or(outcome);
+        }
+        if may_jump && matches!(outcome, Err(Failure::Domain { .. })) {
+            // The guess may lie a little outside the domain, as -1e-8 for a root.
+            self.x.fill(0.0);
+            outcome = self.attempt(&mut equations, initial).or(outcome);
+        }
+        if outcome.is_err() && may_jump {
+            self.x.copy_from_slice(&self.guess);
+            let (newton, nominal) = (&mut self.newton, &self.nominal);
+            let found = self.continuation.solve(newton, &mut equations, &mut self.x, nominal);
+            outcome = if found.is_ok() { Ok(()) } else { outcome };
+        }
+        let solution = if outcome.is_ok() { &self.x } else { &self.guess };
+        // What follows from the unknowns is computed from the values they end with.
+        let evaluated = equations.evaluate(solution);
+        outcome.and(evaluated)
+    }
+
+    fn attempt(&mut self, equations: &mut Evaluation, initial: bool) -> Result<(), Failure> {
+        let block = equations.torn.block;
+        self.is_singular = false;
+        self.start.copy_from_slice(&self.x);
+        let first = self.newton.solve(equations, &mut self.x, &self.nominal);
+        let Err(failure) = first else { return Ok(()) };
+        self.x.copy_from_slice(&self.start);
+        let near = self.least_squares.solve(equations, &mut self.x, &self.nominal);
+        if near.is_ok() {
+            self.start.copy_from_slice(&self.x);
+            match self.newton.solve(equations, &mut self.x, &self.nominal) {
+                Ok(()) => return Ok(()),
+                Err(NewtonFailure::Singular) if !initial => {
+                    return Err(Failure::Singular { block });
+                }
+                Err(failure) if initial => {
+                    self.is_singular = failure == NewtonFailure::Singular;
+                    self.x.copy_from_slice(&self.start);
+                    return Ok(());
+                }
+                Err(_) => {}
+            }
+        }
+        self.x.copy_from_slice(&self.guess);
+        if self.newton.solve_undamped(equations, &mut self.x, &self.nominal).is_ok() {
+            return Ok(());
+        }
+        Err(match failure {
+            NewtonFailure::Evaluation(failure) => failure,
+            NewtonFailure::Singular => Failure::Singular { block },
+            NewtonFailure::NoProgress => Failure::Newton { block },
+        })
+    }
+}
+
+/// A loop evaluated in the registers.
+struct Evaluation<'a> {
+    torn: &'a CompiledLoop,
+    r: &'a mut Memory,
+    nominal: Arc<[f64]>,
+    /// Whether the registers hold the Jacobian at the unknowns that they hold.
+    has_jacobian: bool,
+}
+
+impl Evaluation<'_> {
+    /// Computes residuals and Jacobian. Only a residual without a value is a failure.
+    fn evaluate(&mut self, x: &[f64]) -> Result<(), Failure> {
+        for (unknown, value) in self.torn.unknowns.iter().zip(x) {
+            self.r[*unknown as usize] = *value;
+        }
+        let done = run(&self.torn.tape, self.r);
+        self.has_jacobian = done.is_ok();
+        match done {
+            Err(Failure::Domain { .. }) if self.r[self.torn.has_residuals as usize] == 1.0 => {
+                Ok(())
+            }
+            other => other,
+        }
+    }
+
+    /// The Jacobian where a derivative has no value.
+    fn difference_jacobian(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        let n = x.len();
+        let (mut before, mut moved) = (vec![0.0; n], x.to_vec());
+        self.residual(x, &mut before)?;
+        for (j, column) in out.chunks_exact_mut(n).enumerate() {
+            quotient(x[j], self.nominal[j], &before, column, |value, out| {
+                moved[j] = value;
+                self.residual(&moved, out)
+            })?;
+            moved[j] = x[j];
+        }
+        self.evaluate(x)
+    }
+}
+
+impl Equations for Evaluation<'_> {
+    fn residual(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.evaluate(x)?;
+        for (out, register) in out.iter_mut().zip(&self.torn.residuals) {
+            *out = self.r[*register as usize];
+        }
+        Ok(())
+    }
+
+    fn jacobian(&mut self, x: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        let here = self.torn.unknowns.iter().zip(x).all(|(u, x)| self.r[*u as usize] == *x);
+        if !here {
+            self.evaluate(x)?;
+        }
+        if !self.has_jacobian {
+            return self.difference_jacobian(x, out);
+        }
+        let n = x.len();
+        for (at, register) in self.torn.jacobian.iter().enumerate() {
+            let (row, column) = (at / n, at % n);
+            out[column * n + row] = self.r[*register as usize];
+        }
+        Ok(())
+    }
+}

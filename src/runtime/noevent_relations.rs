@@ -1,0 +1,104 @@
+//! Relations inside `noEvent` that have events after all, once the integrator cannot go on: the
+//! system replaces its program by one in which they are relations as all others.
+
+use super::system::{System, run};
+use crate::codegen::memory::Memory;
+use crate::codegen::noevent_relations::Differences;
+use crate::codegen::program::Program;
+use crate::sim::{DaeSystem, Failure};
+use std::sync::Arc;
+
+/// A system whose relations inside `noEvent` are looked at, or have events.
+#[derive(Debug, Clone, Default)]
+pub(super) struct LiteralRelations {
+    /// Where differences are computed.
+    memory: Option<Box<Memory>>,
+    /// The system as it was before they had events.
+    plain: Option<Box<System>>,
+}
+
+impl System {
+    /// Writes left − right of every relation inside `noEvent`; y is loaded and solved.
+    pub(super) fn literal_differences(&mut self, out: &mut Vec<f64>) -> Result<(), Failure> {
+        out.clear();
+        let program = self.program.clone();
+        let Some(Differences { registers, code }) = program.differences() else { return Ok(()) };
+        let made = || Box::new(Memory::new(registers));
+        let memory = self.literal.memory.get_or_insert_with(made);
+        let n = program.sorted.dae.variables.len();
+        memory.registers[..n].copy_from_slice(&self.registers[..n]);
+        run(&code.tape, memory)?;
+        out.extend(code.outputs.iter().map(|at| memory.registers[*at as usize]));
+        Ok(())
+    }
+
+    /// Goes on with a program in which relations inside `noEvent` have events; whether there is one.
+    /// y is loaded and solved.
+    pub(super) fn replace_program(&mut self, t: f64) -> Result<bool, Failure> {
+        // The past of delays and derivatives along directions belong to the program at hand.
+        if self.n_directions() > 0 || !self.histories.is_empty() {
+            return Ok(false);
+        }
+        let Some(program) = self.program.clone().with_events().cloned() else { return Ok(false) };
+        let mut next = self.in_program(program);
+        next.start_relations(self.program.relations.len(), t)?;
+        let plain = std::mem::replace(self, next);
+        self.literal.plain = Some(Box::new(plain));
+        Ok(true)
+    }
+
+    /// Takes events of relations inside `noEvent` back: every simulation begins without.
+    pub(super) fn restore_program(&mut self) {
+        let Some(plain) = self.literal.plain.take() else { return };
+        let changed = std::mem::replace(self, *plain);
+        self.take_settings(changed);
+    }
+}
+
+impl System {
+    /// This system in a program that has more relations, at the same point of the same simulation.
+    fn in_program(&mut self, program: Arc<Program>) -> System {
+        let mut next = System::new(program);
+        if let Some(variables) = &self.observed_variables {
+            next.observe_only(variables);
+        }
+        let n = self.program.sorted.dae.variables.len();
+        next.registers[..n].copy_from_slice(&self.registers[..n]);
+        next.registers.calls = self.registers.calls.clone();
+        let m = self.program.relations.len();
+        next.held[..m].copy_from_slice(&self.held);
+        next.excused[..m].copy_from_slice(&self.excused);
+        next.switches[..m].copy_from_slice(&self.switches[..m]);
+        next.switches[m..].fill(None);
+        next.choices = self.choices.clone();
+        next.clocks = self.clocks.clone();
+        next.before = self.before.clone();
+        next.lagged = self.lagged.clone();
+        next.sampled = self.sampled;
+        next.solves_loops = self.solves_loops;
+        next.set = self.set.clone();
+        next.notices = self.notices.take();
+        next.treated = std::mem::take(&mut self.treated);
+        next
+    }
+
+    /// Everything that follows from parameters, and the relations that have events from now on: all
+    /// but the first so many.
+    fn start_relations(&mut self, known: usize, t: f64) -> Result<(), Failure> {
+        let program = self.program.clone();
+        run(&program.registers.hoisted.tape, &mut self.registers)?;
+        run(&program.time_rests, &mut self.registers)?;
+        for at in known..program.relations.len() {
+            let holds = self.relation_value(at, false, t);
+            let register = program.relations[at].register as usize;
+            self.registers[register] = f64::from(u8::from(holds));
+        }
+        Ok(())
+    }
+
+    /// What was asked of a system since its simulation began.
+    fn take_settings(&mut self, changed: System) {
+        self.set = changed.set;
+        self.notices = changed.notices;
+    }
+}

@@ -1,0 +1,174 @@
+//! Systems that are structurally regular and yet singular: equations that depend on each other leave
+//! unknowns open. Who listens to a simulation is told of them, once for each loop.
+
+use super::log_messages::Notices;
+use super::system::System;
+use crate::causalize::{Block, LinearLoop, Loop};
+use crate::codegen::program::{Program, Step};
+use crate::source::Span;
+use crate::symbolic::{Node, VarId};
+
+/// More names are counted only.
+const MOST_NAMES: usize = 6;
+
+/// What a loop left open when it was noticed first.
+#[derive(Debug, Clone)]
+pub(super) struct Open {
+    time: f64,
+    what: OpenLoop,
+}
+
+/// The loop.
+#[derive(Debug, Clone, PartialEq)]
+enum OpenLoop {
+    /// A linear system by its workspace, with the places of the unknowns.
+    Linear { system: u32, places: Vec<usize> },
+    /// A torn loop of the initial system.
+    Initial { block: u32 },
+}
+
+/// Unknowns that equations which depend on each other do not determine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Undetermined {
+    /// When that was so first, seconds.
+    pub time: f64,
+    /// Their names, each in backquotes.
+    pub names: Vec<String>,
+    /// How many more there are.
+    pub omitted: usize,
+    /// Whether they are those of a linear system: of its solutions that of least norm was taken.
+    pub is_linear: bool,
+    /// Where one of the equations is written.
+    pub span: Span,
+}
+
+impl Notices {
+    fn note_open(&mut self, time: f64, what: OpenLoop) {
+        let is_same = |known: &Open| match (&known.what, &what) {
+            (OpenLoop::Linear { system: a, .. }, OpenLoop::Linear { system: b, .. }) => a == b,
+            (a, b) => a == b,
+        };
+        if !self.open.iter().any(is_same) {
+            self.open.push(Open { time, what });
+        }
+    }
+}
+
+impl System {
+    /// Notes linear systems that had many solutions in the evaluation before.
+    pub(super) fn note_open(&mut self, t: f64) {
+        let Some(notices) = &mut self.notices else { return };
+        for (system, solved) in (0..).zip(&self.registers.systems) {
+            let places = solved.open_unknowns();
+            if !places.is_empty() {
+                notices.note_open(t, OpenLoop::Linear { system, places });
+            }
+        }
+    }
+
+    /// As [`System::note_open`], for the initial system with its torn loops.
+    pub(super) fn note_open_at_start(&mut self, t: f64) {
+        self.note_open(t);
+        let Some(notices) = &mut self.notices else { return };
+        let loops = self.program.initial_steps.iter().filter_map(|step| match step {
+            Step::Solve(torn) => Some(torn),
+            Step::Run(_) => None,
+        });
+        for (torn, solver) in loops.zip(&self.initial_solvers) {
+            if solver.is_singular {
+                notices.note_open(t, OpenLoop::Initial { block: torn.block });
+            }
+        }
+    }
+
+    /// What the equations left open in the last simulation, if somebody listened to it.
+    pub fn undetermined(&self) -> Vec<Undetermined> {
+        let Some(notices) = &self.notices else { return Vec::new() };
+        let mut found: Vec<Undetermined> = Vec::new();
+        for open in &notices.open {
+            let of = match &open.what {
+                OpenLoop::Linear { system, places } => {
+                    self.program.open_linear(*system, places, open.time)
+                }
+                OpenLoop::Initial { block } => self.program.open_initial(*block, open.time),
+            };
+            // The initial system and the others may have the same loop.
+            found.extend(of.filter(|of| !found.iter().any(|known| known.names == of.names)));
+        }
+        found
+    }
+}
+
+impl Program {
+    /// The unknowns of the linear loops that are solved in a workspace; `None` where that is a
+    /// derivative of loops only.
+    fn open_linear(&self, system: u32, places: &[usize], time: f64) -> Option<Undetermined> {
+        let sorted = &self.sorted;
+        let blocks = sorted.blocks.iter().chain(&sorted.event_blocks).chain(&sorted.initial_blocks);
+        let loops: Vec<&LinearLoop> = blocks
+            .filter_map(|block| match block {
+                Block::Linear(solved) => Some(solved),
+                Block::Assignment(_) | Block::Loop(_) => None,
+            })
+            .filter(|solved| self.workspace_of(solved) == Some(system))
+            .collect();
+        let mut names: Vec<String> = Vec::new();
+        for solved in &loops {
+            for variable in self.open_variables(solved, places) {
+                let name = format!("`{}`", self.sorted.dae.variable(variable).name);
+                if !names.contains(&name) {
+                    names.push(name);
+                }
+            }
+        }
+        let equation = loops.first()?.assignments.first()?.equation;
+        Some(self.undetermined(time, names, equation, true))
+    }
+
+    /// The unknowns of a linear loop that its equations leave open, with what follows from these in
+    /// the loop.
+    fn open_variables(&self, solved: &LinearLoop, places: &[usize]) -> Vec<VarId> {
+        let mut open: Vec<VarId> =
+            places.iter().filter_map(|at| solved.unknowns.get(*at)).copied().collect();
+        for assignment in &solved.assignments {
+            let depends = |v| open.contains(&v);
+            if !solved.unknowns.contains(&assignment.variable)
+                && self.sorted.dae.pool.any_variable(assignment.value, depends)
+            {
+                open.push(assignment.variable);
+            }
+        }
+        open
+    }
+
+    /// The workspace in which a linear loop is solved.
+    fn workspace_of(&self, solved: &LinearLoop) -> Option<u32> {
+        let assignment = solved.assignments.first()?;
+        match self.sorted.dae.pool.node(assignment.value) {
+            Node::Solution { matrix, .. } => self.registers.workspace_of(*matrix),
+            _ => None,
+        }
+    }
+
+    fn open_initial(&self, block: u32, time: f64) -> Option<Undetermined> {
+        let Some(Block::Loop(Loop { iteration, residuals, .. })) =
+            self.sorted.initial_blocks.get(block as usize)
+        else {
+            return None;
+        };
+        let names = iteration.iter().map(|v| format!("`{}`", self.sorted.dae.variable(*v).name));
+        Some(self.undetermined(time, names.collect(), residuals.first()?.1, false))
+    }
+
+    fn undetermined(
+        &self,
+        time: f64,
+        mut names: Vec<String>,
+        equation: usize,
+        is_linear: bool,
+    ) -> Undetermined {
+        let omitted = names.len().saturating_sub(MOST_NAMES);
+        names.truncate(MOST_NAMES);
+        Undetermined { time, names, omitted, is_linear, span: self.place(equation as u32) }
+    }
+}

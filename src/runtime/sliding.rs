@@ -1,0 +1,134 @@
+//! A compiled model on both sides of relations: what chattering and sliding need.
+//!
+//! A mode is a combination of values of relations with the values of events that follow from them.
+//! It is a function of the combination alone where no value of events remembers another one: no
+//! `pre`, no when-clause and no `reinit` depends on the relations.
+
+use super::event_iteration::Stage;
+use super::system::System;
+use crate::codegen::tape::Register;
+use crate::sim::{Failure, Side, Treatment};
+use crate::source::Span;
+
+/// Passes in which the values of events of a mode must come to rest.
+const PASSES: usize = 10;
+
+/// The modes prepared last.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Modes {
+    /// Relations and values of events.
+    registers: Vec<Register>,
+    /// Their values, one mode after the other.
+    values: Vec<f64>,
+}
+
+/// What was done about a relation, once for each.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Treated {
+    /// When it was done first, seconds.
+    pub time: f64,
+    /// What.
+    pub treatment: Treatment,
+    /// Where the relation is written.
+    pub span: Span,
+}
+
+impl System {
+    /// The relation of a crossing function.
+    fn relation_of(&self, crossing: usize) -> Option<usize> {
+        self.program.crossing_relations.get(crossing).copied()
+    }
+
+    pub(super) fn is_memoryless(&self, crossing: usize) -> bool {
+        let relation = self.relation_of(crossing);
+        relation.is_some_and(|at| self.program.memoryless[at]) && self.histories.is_empty()
+    }
+
+    /// Sets the relation of a crossing function to its value on one side.
+    fn set_side(&mut self, crossing: usize, is_positive: bool) {
+        let Some(at) = self.relation_of(crossing) else { return };
+        let relation = &self.program.relations[at];
+        let side = if is_positive { 1.0 } else { -1.0 };
+        let holds = relation.operator.holds(side, 0.0);
+        let register = relation.register as usize;
+        self.registers[register] = f64::from(u8::from(holds));
+    }
+
+    /// Solves for the values of events that follow from the relations at hand.
+    fn solve_for_values_of_events(&mut self) -> Result<bool, Failure> {
+        if self.program.events.steps.is_empty() {
+            return Ok(true);
+        }
+        for _ in 0..PASSES {
+            self.note_lagged();
+            self.solve(Stage::Event)?;
+            if self.moved_lagged().is_none() {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    pub(super) fn compute_modes(&mut self, sides: &[Side]) -> Result<bool, Failure> {
+        if !sides.iter().all(|side| self.is_memoryless(side.crossing)) {
+            return Ok(false);
+        }
+        let program = self.program.clone();
+        self.modes.registers.clear();
+        self.modes.values.clear();
+        let relations = sides.iter().map(|side| program.crossing_relations[side.crossing]);
+        self.modes.registers.extend(relations.map(|at| program.relations[at].register));
+        self.modes.registers.extend(program.events.discrete.iter().map(|v| v.0));
+        let before = self.registers.to_vec();
+        let mut found = Ok(true);
+        let surfaces = sides.iter().map(|side| side.surface + 1).max().unwrap_or(0);
+        for mode in 0..1usize << surfaces {
+            for side in sides {
+                let is_above = mode >> side.surface & 1 == 1;
+                self.set_side(side.crossing, is_above != side.is_reversed);
+            }
+            found = self.solve_for_values_of_events();
+            if found != Ok(true) {
+                break;
+            }
+            let values = self.modes.registers.iter().map(|at| self.registers[*at as usize]);
+            self.modes.values.extend(values);
+            self.registers.copy_from_slice(&before);
+        }
+        self.registers.copy_from_slice(&before);
+        // In a mode that has no values there is no field either.
+        Ok(found.unwrap_or(false))
+    }
+
+    pub(super) fn load_mode(&mut self, mode: usize) {
+        let n = self.modes.registers.len();
+        let values = self.modes.values.iter().skip(mode * n);
+        for (register, value) in self.modes.registers.iter().zip(values) {
+            self.registers[*register as usize] = *value;
+        }
+    }
+
+    pub(super) fn change_sides(&mut self, sides: &[(usize, bool)]) -> Result<(), Failure> {
+        sides.iter().for_each(|(crossing, is_positive)| self.set_side(*crossing, *is_positive));
+        self.solve_for_values_of_events().map(|_| ())
+    }
+
+    pub(super) fn keep_uncertainty(&mut self, crossings: &[f64]) {
+        for (at, value) in self.program.crossing_relations.iter().zip(crossings) {
+            self.uncertainty[*at] = *value;
+        }
+    }
+
+    pub(super) fn note_treated(&mut self, time: f64, crossing: usize, treatment: Treatment) {
+        let Some(relation) = self.relation_of(crossing) else { return };
+        let span = self.program.sorted().dae.relations[relation].span;
+        if !self.treated.iter().any(|known| known.span == span && known.treatment == treatment) {
+            self.treated.push(Treated { time, treatment, span });
+        }
+    }
+
+    /// What was done about relations that chattered in the last simulation, once for each place.
+    pub fn treated(&self) -> &[Treated] {
+        &self.treated
+    }
+}

@@ -1,0 +1,750 @@
+//! One running instance of a program: its registers, parameter values and frozen relations.
+
+use super::delay_buffer::History;
+use super::event_iteration::{Clock, Stage, either, same_time};
+use super::log_messages::Notices;
+use super::newton::LoopSolver;
+use super::noevent_relations::LiteralRelations;
+use super::relations::Change;
+use super::sensitivity::Sensitivity;
+use super::sliding::{Modes, Treated};
+use super::state_selection::Choice;
+use crate::codegen::memory::Memory;
+use crate::codegen::program::{Access, Outputs, Program, Step};
+use crate::codegen::sequence::{expressions, observing};
+use crate::codegen::tape::{Instruction, Tape};
+use crate::diag::Fault;
+use crate::fault;
+use crate::flatten::BaseType;
+use crate::lower::Homotopy;
+use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
+use crate::symbolic::{VarId, function};
+use std::sync::Arc;
+
+/// How far, relative to their size or 1, the sides of a redundant initial equation may differ.
+const CONSISTENT: f64 = 1e-6;
+
+/// Parts of the way from simplified to actual expressions.
+const FIRST_HOMOTOPY_STEP: f64 = 0.1;
+const SMALLEST_HOMOTOPY_STEP: f64 = 1e-5;
+
+/// A system that one thread simulates.
+#[derive(Debug, Clone)]
+pub struct System {
+    pub(super) program: Arc<Program>,
+    pub(super) registers: Memory,
+    /// Values set from outside, by number of the parameter.
+    pub(super) set: Vec<Option<f64>>,
+    observed: Option<Outputs>,
+    /// What [`System::observe_only`] was asked for.
+    pub(super) observed_variables: Option<Vec<usize>>,
+    /// Times at which relations on time switch.
+    pub(super) switches: Vec<Option<f64>>,
+    /// Whether relations have changed in the event at hand.
+    pub(super) has_changed: Vec<bool>,
+    /// Relations that keep changing in the round at hand.
+    pub(super) restless: Vec<bool>,
+    /// Whether relations have been kept at a value that their sides did not quite have.
+    pub(super) held: Vec<bool>,
+    /// Whether such relations are kept so from the beginning of the event at hand.
+    pub(super) keeps_held: bool,
+    /// What the tolerance makes of the sides of relations, and whether it excuses relations that do
+    /// not hold, and by how much it has.
+    pub(super) uncertainty: Vec<f64>,
+    pub(super) is_lenient: bool,
+    pub(super) excused: Vec<f64>,
+    nominal: Vec<f64>,
+    /// One for every loop of the initial system, of the system, and of that at events, in order.
+    pub(super) initial_solvers: Vec<LoopSolver>,
+    solvers: Vec<LoopSolver>,
+    event_solvers: Vec<LoopSolver>,
+    /// One for every selection of states.
+    pub(super) choices: Vec<Choice>,
+    /// Whether the iteration variables are solved for in every evaluation.
+    pub(super) solves_loops: bool,
+    /// The samples.
+    pub(super) clocks: Vec<Clock>,
+    /// Values that discrete variables had before an event.
+    pub(super) before: Vec<f64>,
+    /// Values that variables of discrete loops had in the pass before.
+    pub(super) lagged: Vec<f64>,
+    /// The past of delayed expressions, and by how much they are delayed.
+    pub(super) histories: Vec<History>,
+    pub(super) delay_times: Vec<f64>,
+    /// Whether samples are true that an event at the same time makes false.
+    pub(super) sampled: bool,
+    /// The variable that changed last in an event iteration.
+    pub(super) unstable: u32,
+    /// Derivatives that are carried along, if any are.
+    pub(super) sensitivity: Option<Box<Sensitivity>>,
+    /// What is told of a simulation, where somebody listens.
+    pub(super) notices: Option<Notices>,
+    /// The modes on both sides of relations.
+    pub(super) modes: Modes,
+    /// What was done about relations that chattered.
+    pub(super) treated: Vec<Treated>,
+    /// Of the observed variables those of which a mean is a value.
+    has_means: Vec<bool>,
+    /// Its relations inside `noEvent`.
+    pub(super) literal: LiteralRelations,
+}
+
+impl Program {
+    /// An independent system, one for every thread.
+    pub fn system(self: &Arc<Program>) -> System {
+        System::new(self.clone())
+    }
+}
+
+impl System {
+    /// An independent system, one for every thread.
+    pub fn new(program: Arc<Program>) -> System {
+        let registers = Memory::new(&program.registers);
+        let n = program.unknowns.len();
+        let mut system = System {
+            registers,
+            set: vec![None; program.parameters().len()],
+            observed: None,
+            observed_variables: None,
+            switches: vec![None; program.relations.len()],
+            has_changed: vec![false; program.relations.len()],
+            restless: vec![false; program.relations.len()],
+            held: vec![false; program.relations.len()],
+            keeps_held: false,
+            uncertainty: vec![0.0; program.relations.len()],
+            is_lenient: false,
+            excused: vec![0.0; program.relations.len()],
+            nominal: vec![1.0; n],
+            initial_solvers: Vec::new(),
+            solvers: Vec::new(),
+            event_solvers: Vec::new(),
+            choices: Vec::new(),
+            solves_loops: false,
+            clocks: Vec::with_capacity(program.events.samples.len()),
+            before: vec![0.0; program.events.discrete.len()],
+            lagged: vec![0.0; program.events.lagged.len()],
+            histories: vec![History::default(); program.events.delays.len()],
+            delay_times: vec![0.0; program.events.delays.len()],
+            sampled: false,
+            unstable: 0,
+            sensitivity: None,
+            notices: None,
+            modes: Modes::default(),
+            treated: Vec::new(),
+            has_means: program.observed.iter().map(|v| program.has_means(*v)).collect(),
+            literal: LiteralRelations::default(),
+            program,
+        };
+        system.evaluate_nominals();
+        system
+    }
+
+    /// The program it runs.
+    pub fn program(&self) -> &Arc<Program> {
+        &self.program
+    }
+
+    /// Sets a parameter by its position in [`Program::parameters`]; it takes effect at the next
+    /// initialization. Bounds are the caller's to check.
+    pub fn set_parameter(&mut self, index: usize, value: f64) -> Result<(), Fault> {
+        let name = &self.program.parameters().get(index).map(|p| p.name.clone());
+        let is_fraction = value.fract() != 0.0 && !self.is_real(index);
+        match (self.set.get_mut(index), name) {
+            (Some(_), Some(name)) if value.is_nan() => Err(fault!(
+                crate::codegen::errors::UNKNOWN_PARAMETER,
+                "the value of `{name}` is not a number"
+            )),
+            (Some(_), Some(name)) if is_fraction => Err(fault!(
+                crate::codegen::errors::UNKNOWN_PARAMETER,
+                "`{name}` takes whole numbers only";
+                help: "in an identification, compare the fits of several values that are set"
+            )),
+            (Some(slot), _) => {
+                *slot = Some(value);
+                Ok(())
+            }
+            (None, _) => Err(fault!(
+                crate::codegen::errors::UNKNOWN_PARAMETER,
+                "there is no parameter number {index}"
+            )),
+        }
+    }
+
+    fn is_real(&self, parameter: usize) -> bool {
+        self.program.parameters().get(parameter).is_none_or(|own| own.base == BaseType::Real)
+    }
+
+    /// Takes back all values set.
+    pub fn reset_parameters(&mut self) {
+        self.set.fill(None);
+    }
+
+    /// Restricts [`DaeSystem::observe`] to these variables (positions in [`Program::variables`]),
+    /// one column each in this order, and computes nothing that they do not need.
+    pub fn observe_only(&mut self, variables: &[usize]) {
+        self.restore_program();
+        self.observed_variables = Some(variables.to_vec());
+        let program = self.program.clone();
+        let mut pool = program.sorted.dae.pool.clone();
+        let outputs = expressions(&program, &mut pool, variables);
+        let (registers, observed) = observing(&program, &pool, &outputs);
+        self.registers.extend(&registers);
+        self.observed = Some(observed);
+        let variables = variables.iter().map(|at| program.variables()[*at].variable);
+        self.has_means = variables.map(|v| program.has_means(v)).collect();
+    }
+
+    /// The value of a parameter or constant (position in [`Program::variables`]) after
+    /// initialization; `None` for other variables.
+    pub fn value(&self, variable: usize) -> Option<f64> {
+        let info = self.program.variables().get(variable)?;
+        match info.access {
+            Access::Constant(value) => Some(value),
+            Access::Parameter => Some(self.registers[info.variable.0 as usize]),
+            _ => None,
+        }
+    }
+
+    pub(super) fn load(&mut self, t: f64, y: &[f64]) {
+        self.registers[0] = t;
+        let registers = &mut self.registers[..];
+        for (variable, value) in self.program.unknowns.iter().zip(y) {
+            registers[variable.0 as usize] = *value;
+        }
+        if !self.histories.is_empty() {
+            self.load_delayed(t);
+        }
+        if self.sensitivity.is_some() {
+            self.load_derivatives(y);
+        }
+    }
+
+    /// Loads y, and solves for the iteration variables that it does not hold.
+    fn load_solved(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        self.load(t, y);
+        if !self.solves_loops || self.program.iteration.is_empty() {
+            return Ok(());
+        }
+        self.solve(Stage::Continuous)
+    }
+
+    fn unload(&self, y: &mut [f64]) {
+        for (variable, value) in self.program.unknowns.iter().zip(y.iter_mut()) {
+            *value = self.registers[variable.0 as usize];
+        }
+        if self.sensitivity.is_some() {
+            self.unload_derivatives(y);
+        }
+    }
+
+    /// A domain failure where an assertion does not hold is the assertion's.
+    pub(super) fn refine(&mut self, failure: Failure) -> Failure {
+        match failure {
+            Failure::Domain { .. } | Failure::Function { .. } => self.violated().unwrap_or(failure),
+            other => other,
+        }
+    }
+
+    /// The first assertion that does not hold, of those that can be evaluated.
+    fn violated(&mut self) -> Option<Failure> {
+        let mut failures =
+            (0..self.program.assertions.len()).filter_map(|at| self.assert(at).err());
+        failures.find(|failure| matches!(failure, Failure::Assertion { .. }))
+    }
+
+    /// Evaluates all assertions.
+    fn assert_all(&mut self) -> Result<(), Failure> {
+        (0..self.program.assertions.len()).try_for_each(|at| self.assert(at))
+    }
+
+    /// Evaluates an assertion.
+    fn assert(&mut self, at: usize) -> Result<(), Failure> {
+        let (number, condition) = &self.program.assertions[at];
+        run(&condition.tape, &mut self.registers)?;
+        match self.registers[condition.outputs[0] as usize] == 0.0 {
+            true => Err(Failure::Assertion { assertion: *number as u32 }),
+            false => Ok(()),
+        }
+    }
+
+    fn evaluate_parameters(&mut self) -> Result<(), Failure> {
+        let program = self.program.clone();
+        self.registers.calls.restart();
+        let mut tunable = 0;
+        // Slots of set values first: tapes run in order of dependence, not of declaration.
+        let mut given: Vec<(VarId, f64)> = Vec::new();
+        for (info, set) in program.parameters().iter().zip(&self.set) {
+            if let Some(value) = set {
+                given.push((info.variable, *value));
+                tunable += 1;
+            }
+        }
+        for (parameter, tape) in &program.parameter_tapes {
+            let set = match tunable {
+                0 => None,
+                _ => given.iter().find(|(v, _)| v == parameter),
+            };
+            match set {
+                Some((_, value)) => self.registers[parameter.0 as usize] = *value,
+                None => run(tape, &mut self.registers)?,
+            }
+        }
+        run(&program.registers.hoisted.tape, &mut self.registers)?;
+        run(&program.time_rests, &mut self.registers)?;
+        for (switch, relation) in self.switches.iter_mut().zip(&program.relations) {
+            *switch = relation
+                .time
+                .map(|(factor, rest)| -self.registers[rest as usize] / factor)
+                .filter(|time| time.is_finite());
+        }
+        Ok(())
+    }
+
+    /// With the default parameters, so that no run depends on those before it: the attribute
+    /// `nominal`, else the start value, else 1.
+    fn evaluate_nominals(&mut self) {
+        let program = self.program.clone();
+        let tapes = program.parameter_tapes.iter().chain(&program.starts);
+        for (variable, tape) in tapes {
+            if tape.run(&mut self.registers).is_err() {
+                self.registers[variable.0 as usize] = 1.0;
+            }
+        }
+        for (at, variable) in program.unknowns.iter().enumerate() {
+            self.nominal[at] = self.nominal_of(*variable);
+        }
+        self.initial_solvers = self.solvers_of(&program.initial_steps);
+        self.solvers = self.solvers_of(&program.steps);
+        self.event_solvers = self.solvers_of(&program.events.steps);
+        for selection in &program.selections {
+            let candidates = selection.candidates.iter();
+            let nominal = candidates.map(|c| self.nominal_of(VarId(*c))).collect();
+            self.choices.push(Choice::new(selection, nominal));
+        }
+    }
+
+    fn solvers_of(&mut self, steps: &[Step]) -> Vec<LoopSolver> {
+        let loops = steps.iter().filter_map(|step| match step {
+            Step::Solve(torn) => Some(torn),
+            Step::Run(_) => None,
+        });
+        loops
+            .map(|torn| {
+                let unknowns = torn.unknowns.iter();
+                LoopSolver::new(unknowns.map(|u| self.nominal_of(VarId(*u))).collect())
+            })
+            .collect()
+    }
+
+    fn nominal_of(&mut self, variable: VarId) -> f64 {
+        let program = self.program.clone();
+        let value = match program.nominals.iter().find(|(v, ..)| *v == variable) {
+            Some((_, tape, register)) => match tape.run(&mut self.registers) {
+                Ok(()) => self.registers[*register as usize],
+                Err(_) => 1.0,
+            },
+            None => self.registers[variable.0 as usize],
+        };
+        let usable = value.is_finite() && value != 0.0;
+        if usable { value.abs() } else { 1.0 }
+    }
+
+    /// Solves the blocks of a stage one after another.
+    pub(super) fn solve(&mut self, stage: Stage) -> Result<(), Failure> {
+        let program = self.program.clone();
+        let (steps, solvers) = match stage {
+            Stage::Initial => (&program.initial_steps, &mut self.initial_solvers),
+            Stage::Event if !program.events.steps.is_empty() => {
+                (&program.events.steps, &mut self.event_solvers)
+            }
+            Stage::Event | Stage::Continuous => (&program.steps, &mut self.solvers),
+        };
+        let initial = stage == Stage::Initial;
+        if initial && self.notices.is_some() {
+            self.registers.forget_solutions();
+        }
+        let may_jump = stage != Stage::Continuous || program.sorted.states.is_empty();
+        let mut solvers = solvers.iter_mut();
+        for step in steps {
+            match step {
+                Step::Run(tape) => run(tape, &mut self.registers)?,
+                Step::Solve(torn) => {
+                    let solver = solvers.next().expect("every loop has its solver");
+                    solver.solve(torn, &mut self.registers, initial, may_jump).map_err(
+                        |f| match (f, initial) {
+                            (Failure::Newton { block } | Failure::Singular { block }, true) => {
+                                Failure::Initialization { block }
+                            }
+                            _ => f,
+                        },
+                    )?
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Everything as it is before the initial system is solved.
+    fn take_start_values(&mut self, t: f64) -> Result<(), Failure> {
+        let program = self.program.clone();
+        self.registers[0] = t;
+        for variable in program.observed.iter().chain(&program.solved) {
+            self.registers[variable.0 as usize] = 0.0;
+        }
+        for relation in &program.relations {
+            self.registers[relation.register as usize] = 0.0;
+        }
+        self.evaluate_parameters()?;
+        for (_, tape) in &program.starts {
+            run(tape, &mut self.registers)?;
+        }
+        self.take_start_values_of_events();
+        self.has_changed.fill(false);
+        self.held.fill(false);
+        self.uncertainty.fill(0.0);
+        self.excused.fill(0.0);
+        self.update_relations(t, Change::All);
+        self.has_changed.fill(false);
+        for (choice, selection) in self.choices.iter_mut().zip(&program.selections) {
+            choice.reset(selection, &mut self.registers);
+        }
+        Ok(())
+    }
+
+    /// Chooses better states where those at hand come to their end; whether it did.
+    fn improve_choices(&mut self) -> Result<bool, Failure> {
+        let mut improved = false;
+        for (choice, selection) in self.choices.iter_mut().zip(&self.program.selections) {
+            improved |= choice.improve(selection, &mut self.registers)?;
+        }
+        Ok(improved)
+    }
+
+    /// Of several solutions the one that `homotopy` leads to; directly where it leads nowhere.
+    fn solve_initial_system(&mut self, t: f64) -> Result<(), Failure> {
+        if let Some(homotopy) = self.program.sorted.dae.homotopy
+            && self.follow_homotopy(t, homotopy).is_ok()
+        {
+            return Ok(());
+        }
+        self.take_start_values(t)?;
+        self.settle(t, Stage::Initial).map(|_| ())
+    }
+
+    /// Solves the initial system with the simplified expressions of `homotopy` and goes on from
+    /// there to the actual ones, in shorter steps where a solution is missed.
+    fn follow_homotopy(&mut self, t: f64, homotopy: Homotopy) -> Result<(), Failure> {
+        let (active, lambda) = (homotopy.active.0 as usize, homotopy.lambda.0 as usize);
+        self.take_start_values(t)?;
+        self.registers[active] = 1.0;
+        self.registers[lambda] = 0.0;
+        let mut outcome = self.settle(t, Stage::Initial).map(|_| ());
+        let (mut done, mut step) = (0.0, FIRST_HOMOTOPY_STEP);
+        let mut reached = self.registers.clone();
+        while outcome.is_ok() && done < 1.0 {
+            let next = f64::min(done + step, 1.0);
+            self.registers[lambda] = next;
+            match self.settle(t, Stage::Initial) {
+                Ok(_) => {
+                    done = next;
+                    step *= 2.0;
+                    reached.copy_from_slice(&self.registers);
+                }
+                Err(failure) => {
+                    self.registers.copy_from_slice(&reached);
+                    step *= 0.25;
+                    if step < SMALLEST_HOMOTOPY_STEP {
+                        outcome = Err(failure);
+                    }
+                }
+            }
+        }
+        self.registers[active] = 0.0;
+        outcome?;
+        self.settle(t, Stage::Initial).map(|_| ())
+    }
+
+    /// Compares both sides of the initial equations that were not needed.
+    fn check_initial_values(&mut self) -> Result<(), Failure> {
+        for (number, check) in self.program.initial_checks.iter().enumerate() {
+            run(&check.tape, &mut self.registers)?;
+            let [a, b] = [check.outputs[0], check.outputs[1]];
+            let (a, b) = (self.registers[a as usize], self.registers[b as usize]);
+            if (a - b).abs() > CONSISTENT * a.abs().max(b.abs()).max(1.0) {
+                return Err(Failure::Inconsistent { check: number as u32 });
+            }
+        }
+        Ok(())
+    }
+}
+
+impl DaeSystem for System {
+    fn begin(&mut self) {
+        self.restore_program();
+    }
+
+    fn n_differential(&self) -> usize {
+        self.program.sorted.states.len()
+    }
+
+    fn n_algebraic(&self) -> usize {
+        if self.solves_loops { 0 } else { self.program.iteration.len() }
+    }
+
+    fn n_auxiliary(&self) -> usize {
+        if self.solves_loops { 0 } else { self.program.n_auxiliary }
+    }
+
+    fn solve_loops(&mut self, inside: bool) {
+        self.solves_loops = inside;
+    }
+
+    fn nominal(&self, out: &mut [f64]) {
+        out.copy_from_slice(&self.nominal[..out.len()]);
+    }
+
+    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.load_solved(t, y)?;
+        read(&self.program.rhs, &mut self.registers, out).map_err(|f| self.refine(f))
+    }
+
+    fn pattern(&self) -> &Pattern {
+        &self.program.pattern
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        self.load(t, y);
+        match read(&self.program.jacobian, &mut self.registers, values) {
+            // A derivative may have no value where the right-hand side has one.
+            Err(Failure::Domain { .. }) if self.sensitivity.is_none() => {
+                self.difference_jacobian(t, y, values)
+            }
+            other => other,
+        }
+    }
+
+    fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
+        self.forget_notices();
+        self.treated.clear();
+        self.solve_initial_system(t)?;
+        self.note_open_at_start(t);
+        self.check_initial_values()?;
+        self.assert_at_event()?;
+        self.notice_at_event(t)?;
+        self.improve_choices()?;
+        self.start_clocks(t)?;
+        self.start_histories(t)?;
+        self.start_sensitivities()?;
+        self.iterate_at_start(t)?;
+        self.improve_choices()?;
+        self.unload(y);
+        self.assert_all()?;
+        self.notice(t)
+    }
+
+    fn n_crossings(&self) -> usize {
+        self.program.n_crossings() + self.choices.len()
+    }
+
+    fn crossings_vary_in_time(&self) -> bool {
+        self.program.crossings_vary_in_time
+    }
+
+    fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.load_solved(t, y)?;
+        let (first, last) = out.split_at_mut(self.program.n_crossings());
+        self.relation_crossings(first)?;
+        for ((choice, selection), out) in
+            self.choices.iter_mut().zip(&self.program.selections).zip(last)
+        {
+            *out = choice.quality(selection, &mut self.registers)?;
+        }
+        Ok(())
+    }
+
+    fn next_time_event(&self, t: f64) -> Option<f64> {
+        let later = |time: &f64| *time > t && !same_time(*time, t);
+        let all = self
+            .switches
+            .iter()
+            .flatten()
+            .copied()
+            .chain(self.scheduled())
+            .chain(self.arriving_jumps());
+        all.filter(later).min_by(f64::total_cmp)
+    }
+
+    fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
+        self.load(t, y);
+        self.registers.calls.next_instant();
+        self.has_changed.fill(false);
+        self.enter_event(t)?;
+        let mut outcome = self.event(t)?;
+        if self.improve_choices()? {
+            outcome = either(outcome, EventOutcome::Continue { y_changed: true });
+        }
+        self.leave_event(outcome)?;
+        self.unload(y);
+        Ok(outcome)
+    }
+
+    fn remembers(&self) -> bool {
+        !self.histories.is_empty()
+    }
+
+    fn remember(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        self.load(t, y);
+        self.remember_values(t).map_err(|f| self.refine(f))
+    }
+
+    fn longest_step(&self) -> f64 {
+        self.delay_times.iter().copied().fold(f64::INFINITY, f64::min)
+    }
+
+    fn finish(&mut self, t: f64, y: &mut [f64]) -> Result<bool, Failure> {
+        let Some(terminal) = self.program.events.terminal else { return Ok(false) };
+        self.load(t, y);
+        self.final_event(t, terminal)?;
+        self.unload(y);
+        // Continuous variables may depend on `terminal()`, too.
+        Ok(true)
+    }
+
+    fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        let tells = self.notices.is_some() && !self.program.notices.is_empty();
+        if self.program.assertions.is_empty() && !tells {
+            return Ok(());
+        }
+        self.load_solved(t, y)?;
+        self.assert_all()?;
+        self.notice(t)
+    }
+
+    fn set_uncertainty(&mut self, crossings: &[f64]) {
+        self.keep_uncertainty(crossings);
+    }
+
+    fn prepare_modes(&mut self, t: f64, y: &[f64], sides: &[Side]) -> Result<bool, Failure> {
+        self.load(t, y);
+        self.compute_modes(sides)
+    }
+
+    fn enter_mode(&mut self, mode: usize) {
+        self.load_mode(mode);
+    }
+
+    fn can_follow(&self, crossing: usize) -> bool {
+        self.is_memoryless(crossing)
+    }
+
+    fn follow(&mut self, t: f64, y: &[f64], sides: &[(usize, bool)]) -> Result<(), Failure> {
+        self.load(t, y);
+        self.change_sides(sides)
+    }
+
+    fn literal_relations(&mut self, t: f64, y: &[f64], out: &mut Vec<f64>) -> Result<(), Failure> {
+        self.load_solved(t, y)?;
+        self.literal_differences(out)
+    }
+
+    fn give_events(&mut self, t: f64, y: &[f64]) -> Result<bool, Failure> {
+        self.load_solved(t, y)?;
+        self.solve(Stage::Continuous)?;
+        self.replace_program(t)
+    }
+
+    fn has_means(&self, observed: usize) -> bool {
+        self.has_means.get(observed).is_none_or(|has| *has)
+    }
+
+    fn note_treatment(&mut self, t: f64, crossing: usize, treatment: Treatment) {
+        self.note_treated(t, crossing, treatment);
+    }
+
+    fn n_directions(&self) -> usize {
+        self.sensitivity.as_ref().map_or(0, |sensitivity| sensitivity.code.n_columns())
+    }
+
+    fn directions(&self, out: &mut [f64]) {
+        self.magnitudes_of_parameters(out);
+    }
+
+    fn sensitivity_rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.load(t, y);
+        let Some(sensitivity) = &self.sensitivity else { return Ok(()) };
+        read(&sensitivity.code.rhs, &mut self.registers, out).map_err(|f| self.refine(f))
+    }
+
+    fn crossed(&mut self, crossing: Option<usize>, span: f64) {
+        self.note_cause(crossing, span);
+    }
+
+    fn n_observed(&self) -> usize {
+        if let Some(sensitivity) = &self.sensitivity {
+            return sensitivity.code.observe.outputs.len();
+        }
+        self.observed.as_ref().unwrap_or(&self.program.observe).outputs.len()
+    }
+
+    fn observe(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        self.load_solved(t, y)?;
+        if self.solves_loops {
+            self.differentiate_algebraic()?;
+        }
+        if let Some(sensitivity) = &self.sensitivity {
+            let code = &sensitivity.code.observe;
+            return read(code, &mut self.registers, out).map_err(|f| self.refine(f));
+        }
+        if self.notices.is_some() {
+            self.registers.forget_solutions();
+        }
+        let observed = self.observed.as_ref().unwrap_or(&self.program.observe);
+        read(observed, &mut self.registers, out).map_err(|f| self.refine(f))?;
+        self.note_open(t);
+        Ok(())
+    }
+}
+
+/// Computes the outputs of code that computes nothing else.
+pub(super) fn read(code: &Outputs, registers: &mut Memory, out: &mut [f64]) -> Result<(), Failure> {
+    if code.machine_code.run(code, registers, out) {
+        return Ok(());
+    }
+    run(&code.tape, registers)?;
+    for (value, register) in out.iter_mut().zip(&code.outputs) {
+        *value = registers[*register as usize];
+    }
+    Ok(())
+}
+
+/// Runs a tape; a failure says which operation of which equation.
+pub(super) fn run(tape: &Tape, registers: &mut Memory) -> Result<(), Failure> {
+    tape.run(registers).map_err(|at| {
+        let code = match tape.code[at as usize] {
+            Instruction::Unary { id, .. } | Instruction::Binary { id, .. } => {
+                function::functions().position(|(known, _)| known == id).map_or(0xff, |n| n + 2)
+            }
+            Instruction::Call { .. } => {
+                if let Some(failure) = registers.calls.failure {
+                    return Failure::Function {
+                        function: failure.function,
+                        at: failure.at,
+                        reason: failure.reason as u8,
+                    };
+                }
+                0
+            }
+            Instruction::Given { function, .. } => {
+                return Failure::Function {
+                    function,
+                    at: registers.calls.end_of(function),
+                    reason: crate::bytecode::Reason::Unassigned as u8,
+                };
+            }
+            Instruction::Pow { .. } => 1,
+            _ => 0,
+        };
+        let origin = tape.origin(at).min(u32::MAX >> 8);
+        Failure::Domain { place: (origin << 8) | code.min(0xff) as u32 }
+    })
+}
