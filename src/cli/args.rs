@@ -532,7 +532,8 @@ pub(super) struct SimulateArgs {
 /// The passes whose system can be shown, the flat model as the first.
 fn pass_names() -> clap::builder::PossibleValuesParser {
     let value = |name, what| clap::builder::PossibleValue::new(name).help(what);
-    let passes = crate::script::simulation::PASSES.iter().map(|pass| value(pass.name, pass.what));
+    let passes =
+        crate::script::models::simulation::PASSES.iter().map(|pass| value(pass.name, pass.what));
     std::iter::once(value("flatten", "the flat model")).chain(passes).collect::<Vec<_>>().into()
 }
 

@@ -4,7 +4,8 @@ use super::args::{CheckArgs, FlattenArgs, Global};
 use super::{limits, session};
 use crate::diag::Diagnostic;
 use crate::name::Name;
-use crate::script::{Session, checking, simulation};
+use crate::script::Session;
+use crate::script::models::{checking, simulation};
 use std::process::ExitCode;
 
 /// Checks all models of the files, or one down to its sorted equations.

@@ -5,7 +5,7 @@ use super::session;
 use crate::diag::{Diagnostic, Fault};
 use crate::results::{self, Agreement, Compared, ResultTable};
 use crate::script::Session;
-use crate::script::policy::Grant;
+use crate::script::access::policy::Grant;
 use crate::source::Span;
 use std::path::Path;
 use std::process::ExitCode;

@@ -1,7 +1,8 @@
 //! `gapi run --parse-only`: which scripts can be read.
 
 use crate::diag::render;
-use crate::script::parsing::{self, Reading};
+use crate::script::language::parsing;
+use crate::script::language::parsing::Reading;
 use crate::source::SourceMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

@@ -5,7 +5,7 @@ use super::{output, session};
 use crate::diag::Fault;
 use crate::identify::problem::Solution;
 use crate::script::Session;
-use crate::script::policy::Grant;
+use crate::script::access::policy::Grant;
 use crate::source::Span;
 use std::path::Path;
 use std::process::ExitCode;

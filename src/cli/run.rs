@@ -6,7 +6,7 @@ use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, parsing, session};
 use crate::identify::Probe;
-use crate::script::policy::Grant;
+use crate::script::access::policy::Grant;
 use crate::script::{Echo, Journaling, Options, Session, Strictness, Transcript};
 use crate::source::Span;
 use std::path::Path;

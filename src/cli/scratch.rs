@@ -1,7 +1,7 @@
 //! The world of a test: it reads the disk, and keeps in memory what is written.
 
 use super::world::SystemWorld;
-use crate::script::policy::{Access, Grant, Policy};
+use crate::script::access::policy::{Access, Grant, Policy};
 use crate::script::world::{Files, Progress, Stamp, World};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;

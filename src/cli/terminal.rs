@@ -4,7 +4,7 @@
 use super::args::Colour;
 use super::live::Live;
 use crate::diag::visible;
-use crate::script::view::View;
+use crate::script::runs::view::View;
 use crate::script::world::Progress;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::borrow::Cow;

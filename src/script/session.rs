@@ -1,12 +1,12 @@
 //! The session: everything that lasts from one statement to the next.
 
-use super::callees::Callees;
-use super::classes::Classes;
-use super::follow_up::FollowUps;
-use super::log::Log;
-use super::policy::Grant;
-use super::scripts::{Frame, ParsedScripts};
-use super::simulation::{Models, Translated};
+use super::access::policy::Grant;
+use super::language::callees::Callees;
+use super::language::follow_up::FollowUps;
+use super::language::log::Log;
+use super::language::scripts::{Frame, ParsedScripts};
+use super::models::classes::Classes;
+use super::models::simulation::{Models, Translated};
 use super::world::World;
 use super::{Messages, Permissions, Transcript};
 use crate::diag::{Code, Diagnostic, Fault, render};

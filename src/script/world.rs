@@ -3,8 +3,8 @@
 //! Nothing below `cli/` touches the system in any other way, so a script runs in a [`MemoryWorld`]
 //! exactly as it runs on a disk.
 
-use super::policy::{Access, Grant, Policy};
-use super::view::View;
+use super::access::policy::{Access, Grant, Policy};
+use super::runs::view::View;
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fmt;
@@ -55,7 +55,7 @@ pub trait World {
     /// Whether a path may be read or written.
     ///
     /// # Errors
-    /// What refuses it; see [`refusal_of`](super::policy::refusal_of).
+    /// What refuses it; see [`refusal_of`](super::access::policy::refusal_of).
     fn permits(&self, path: &Path, access: Access) -> io::Result<()>;
     /// The bytes of a file.
     fn read(&self, path: &Path) -> io::Result<Vec<u8>>;

@@ -6,7 +6,7 @@ use gapilib::identify::problem;
 use gapilib::mat::{self, MatFile};
 use gapilib::results;
 use gapilib::script::Session;
-use gapilib::script::problem::{RunOptions, solve};
+use gapilib::script::runs::problem::{RunOptions, solve};
 use gapilib::script::world::MemoryWorld;
 use gapilib::source::SourceId;
 use gapilib::syntax::ast::StoredDefinition;

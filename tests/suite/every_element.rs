@@ -7,8 +7,9 @@ use crate::conformance::{Corpus, Ended, Failure, filter, folder, is_asked_for, j
 use crate::shipped::project;
 use gapilib::flatten::Library;
 use gapilib::name::Name;
+use gapilib::script::Session;
+use gapilib::script::models::checking;
 use gapilib::script::world::MemoryWorld;
-use gapilib::script::{Session, checking};
 use gapilib::syntax::ast::{
     CausalityPrefix, ClassDefinition, ClassSpecifier, ComponentClause, Element, Restriction,
     Section, VariabilityPrefix,

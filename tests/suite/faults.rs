@@ -9,9 +9,9 @@
 //!
 //! Reference: the way SQLite is tested (I/O error and crash tests).
 
-use gapilib::script::policy::{Access, Grant};
-use gapilib::script::problem::{RunOptions, solve};
-use gapilib::script::view::View;
+use gapilib::script::access::policy::{Access, Grant};
+use gapilib::script::runs::problem::{RunOptions, solve};
+use gapilib::script::runs::view::View;
 use gapilib::script::world::{Files, MemoryWorld, Progress, Stamp, World};
 use gapilib::script::{Journaling, Options, Session};
 use std::cell::RefCell;

@@ -3,7 +3,8 @@
 
 use crate::transcripts::{transcript_of, world_of};
 use gapilib::name::Name;
-use gapilib::script::{Dialect, Options, Session, simulation};
+use gapilib::script::models::simulation;
+use gapilib::script::{Dialect, Options, Session};
 use gapilib::source::SourceId;
 use std::path::Path;
 

@@ -2,7 +2,8 @@
 //! values: those of `tests/models`.
 
 use crate::shipped;
-use gapilib::script::{Session, checking};
+use gapilib::script::Session;
+use gapilib::script::models::checking;
 use std::f64::consts::PI;
 use std::path::Path;
 

@@ -9,7 +9,7 @@ use gapilib::identify::CompiledModel;
 use gapilib::identify::problem::{Experiment, ModelSimulator, Observation, Simulate};
 use gapilib::runtime::System;
 use gapilib::script::Session;
-use gapilib::script::simulation::flat_model;
+use gapilib::script::models::simulation::flat_model;
 use gapilib::sim::{Settings, Simulator, Trajectory, find_integrator};
 use proptest::prelude::*;
 use std::sync::Arc;

@@ -7,7 +7,7 @@ use gapilib::codegen::Program;
 use gapilib::diag::Diagnostic;
 use gapilib::flatten::FlatModel;
 use gapilib::script::Session;
-use gapilib::script::simulation::flat_model;
+use gapilib::script::models::simulation::flat_model;
 use gapilib::sim::{DaeSystem, Settings, Simulator, Trajectory};
 use std::path::Path;
 

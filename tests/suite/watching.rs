@@ -1,7 +1,7 @@
 //! Runs that somebody watches: views, pauses in which settings change, and scripts that are
 //! interrupted and go on.
 
-use gapilib::script::view::View;
+use gapilib::script::runs::view::View;
 use gapilib::script::world::{MemoryWorld, Views};
 use gapilib::script::{Journaling, Options, Session};
 use std::path::PathBuf;

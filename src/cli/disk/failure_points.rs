@@ -9,7 +9,7 @@
 
 use super::steps::failing::{Failure, PLAN, Plan, has_crashed};
 use super::*;
-use crate::script::problem::{RunOptions, solve};
+use crate::script::runs::problem::{RunOptions, solve};
 use crate::script::world::{MemoryWorld, Progress, Stamp, World};
 use crate::script::{Journaling, Options, Session};
 use std::cell::Cell;

@@ -12,7 +12,7 @@ mod record;
 mod steps;
 
 use crate::models;
-use crate::script::policy::{Access, Grant, Policy, RECORD, Refusal};
+use crate::script::access::policy::{Access, Grant, Policy, RECORD, Refusal};
 use crate::script::world::{Content, Files, normalized};
 use place::Place;
 use record::{Lines, Record};

@@ -5,7 +5,7 @@
 //! (`openat`, `fstatat`, `readlinkat`); the real path is known as a by-product.
 
 use super::steps::step;
-use crate::script::policy::Refusal;
+use crate::script::access::policy::Refusal;
 use crate::script::world::Content;
 use rustix::fs::{self, AtFlags, FileType, Mode, OFlags};
 use rustix::io::Errno;

@@ -1,7 +1,7 @@
 //! A path resolved once, where the calls of POSIX are missing: the folder is taken from the system
 //! in its real form, and the entry in it is judged and opened by that path.
 
-use crate::script::policy::Refusal;
+use crate::script::access::policy::Refusal;
 use crate::script::world::Content;
 use std::ffi::{OsStr, OsString};
 use std::fs::{self, File, OpenOptions};

@@ -1,7 +1,7 @@
 //! The ways out of the folders that are allowed.
 
 use super::*;
-use crate::script::policy::refusal_of;
+use crate::script::access::policy::refusal_of;
 
 #[test]
 fn a_failed_write_leaves_nothing_behind() {

@@ -1,7 +1,7 @@
 //! The frame: heading, fit, convergence, spread of the genes, and the line of keys.
 
 use crate::elementary;
-use crate::script::view::{Fitted, Spread, View};
+use crate::script::runs::view::{Fitted, Spread, View};
 use ratatui::Frame;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::style::{Color, Modifier, Style};

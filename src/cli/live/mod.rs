@@ -4,7 +4,7 @@
 mod draw;
 mod keys;
 
-use crate::script::view::View;
+use crate::script::runs::view::View;
 use keys::Keys;
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;

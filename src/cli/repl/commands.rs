@@ -1,7 +1,8 @@
 //! What is typed at the prompt: statements, and commands that begin with a colon.
 
 use super::terminal;
-use crate::script::{Dialect, Session, builtins, checking, simulation};
+use crate::script::models::{checking, simulation};
+use crate::script::{Dialect, Session, builtins};
 use std::path::Path;
 use std::time::Instant;
 

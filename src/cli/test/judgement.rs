@@ -4,7 +4,7 @@ use super::Verdict;
 use crate::diag::Code;
 use crate::script::Exchange;
 use crate::script::errors::OUT_OF_REACH;
-use crate::script::expectation::{Line, agreeing};
+use crate::script::language::expectation::{Line, agreeing};
 use std::fmt::{self, Write as _};
 use std::path::PathBuf;
 

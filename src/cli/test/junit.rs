@@ -2,7 +2,7 @@
 
 use super::Verdict;
 use super::judgement::{Judged, Judgement};
-use crate::script::expectation::shown;
+use crate::script::language::expectation::shown;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 

@@ -12,7 +12,7 @@ use super::scratch::{Output, ScratchWorld};
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, session};
-use crate::script::expectation::{Line, Tolerance, difference, embedded, shown};
+use crate::script::language::expectation::{Line, Tolerance, difference, embedded, shown};
 use crate::script::{Dialect, Echo, Exchange, Options, Transcript};
 use judgement::{Counts, Judged, judged, summary};
 use std::io;
@@ -79,7 +79,7 @@ fn recorded(path: &Path) -> PathBuf {
 
 fn examined(path: &Path, arguments: &TestArgs, global: &Global) -> io::Result<Verdict> {
     let bytes = super::named::read(path)?;
-    let (script, _) = crate::script::parsing::text(&bytes);
+    let (script, _) = crate::script::language::parsing::text(&bytes);
     let snap = recorded(path);
     let expected = super::named::read_text(&snap).ok();
     if let (None, Some(expected)) = (&expected, embedded(&script)) {

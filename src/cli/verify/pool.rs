@@ -1,6 +1,6 @@
 //! Many cases on few threads, each within its time.
 
-use crate::script::verification::Stage;
+use crate::script::models::verification::Stage;
 use crate::script::with_stack;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, mpsc};

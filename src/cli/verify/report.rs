@@ -2,7 +2,7 @@
 
 use super::super::compare::verdict;
 use crate::results::Compared;
-use crate::script::verification::Stage;
+use crate::script::models::verification::Stage;
 use serde::Serialize;
 use std::fmt::Write;
 

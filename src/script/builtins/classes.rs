@@ -7,8 +7,9 @@ use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::script::errors::BAD_ARGUMENT;
-use crate::script::retranslation::{modification_at, no_modification};
-use crate::script::{Dialect, Session, simulation};
+use crate::script::models::retranslation::{modification_at, no_modification};
+use crate::script::models::simulation;
+use crate::script::{Dialect, Session};
 use crate::source::SourceId;
 use crate::syntax::ast::{
     Argument, Binding, CausalityPrefix, ClassDefinition, ClassSpecifier, ComponentClause,

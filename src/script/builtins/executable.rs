@@ -6,7 +6,7 @@ use super::simflags::SimulationFlags;
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::script::errors::BAD_ARGUMENT;
-use crate::script::simulation::{Translated, Wishes};
+use crate::script::models::simulation::{Translated, Wishes};
 use crate::script::{Dialect, Session};
 use crate::value::Value;
 use crate::{bail, fault};

@@ -7,8 +7,8 @@ use crate::bail;
 use crate::diag::Fault;
 use crate::results::ResultTable;
 use crate::script::errors::BAD_ARGUMENT;
-use crate::script::linearization::linearized;
-use crate::script::simulation::{Simulated, Translated};
+use crate::script::models::linearization::linearized;
+use crate::script::models::simulation::{Simulated, Translated};
 use crate::script::{Dialect, Session};
 use crate::value::{ArrayValue, Elements, RealMatrix, Value, element_count};
 

@@ -4,7 +4,7 @@ use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
 use crate::script::errors::{BAD_ARGUMENT, NO_TRANSLATED_MODEL};
-use crate::script::simulation::{Translated, begin_with};
+use crate::script::models::simulation::{Translated, begin_with};
 use crate::script::{Dialect, Session};
 use crate::value::Value;
 use indexmap::IndexMap;

@@ -2,7 +2,7 @@
 
 use crate::script::Session;
 use crate::script::errors::METHOD_REPLACED;
-use crate::script::simulation::Wishes;
+use crate::script::models::simulation::Wishes;
 
 /// Methods that keep the tolerance with implicit formulas, or that choose between formulas.
 const IMPLICIT: &[&str] = &[

@@ -4,7 +4,7 @@
 use super::{Args, Builtin, Failure, Family};
 use crate::codegen::VariableInfo;
 use crate::results::ResultTable;
-use crate::script::simulation::{Translated, state_names};
+use crate::script::models::simulation::{Translated, state_names};
 use crate::script::{Dialect, Session};
 use crate::syntax::ast::CausalityPrefix;
 use crate::value::Value;

@@ -3,7 +3,8 @@
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::script::Session;
-use crate::script::problem::{self, RunOptions};
+use crate::script::runs::problem;
+use crate::script::runs::problem::RunOptions;
 use crate::value::Value;
 use crate::value::errors::TYPE_MISMATCH;
 use std::path::Path;

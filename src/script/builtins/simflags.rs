@@ -5,7 +5,7 @@ use crate::bail;
 use crate::diag::Fault;
 use crate::script::Session;
 use crate::script::errors::{BAD_ARGUMENT, NO_WINDOW};
-use crate::script::simulation::Wishes;
+use crate::script::models::simulation::Wishes;
 
 /// What `simflags` asks for.
 #[derive(Debug, Default, PartialEq)]
@@ -141,7 +141,7 @@ impl SimulationFlags {
 #[cfg(test)]
 mod tests {
     use super::SimulationFlags;
-    use crate::script::simulation::Wishes;
+    use crate::script::models::simulation::Wishes;
 
     #[test]
     fn flags_are_read_in_all_their_forms() {

@@ -11,7 +11,8 @@ use crate::fault;
 use crate::flatten::{self, Library};
 use crate::name::{Ident, Name};
 use crate::script::errors::{BAD_ARGUMENT, SCRIPT_ERROR};
-use crate::script::{Dialect, Session, simulation};
+use crate::script::models::simulation;
+use crate::script::{Dialect, Session};
 use crate::syntax::ast::{
     ClassDefinition, ClassElement, ClassSpecifier, Element, ElementPrefixes, Section,
 };

@@ -5,7 +5,7 @@ use gapilib::diag::Diagnostic;
 use gapilib::flatten::Library;
 use gapilib::name::Name;
 use gapilib::results::TUBE_TOLERANCE;
-use gapilib::script::verification;
+use gapilib::script::models::verification;
 use std::fmt;
 use std::sync::Arc;
 use std::sync::Mutex;

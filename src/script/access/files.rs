@@ -1,0 +1,168 @@
+//! Files as commands see them: found, read and written with errors that say what to do.
+
+use super::policy::{Access, Refusal, refusal_of};
+use crate::diag::Fault;
+use crate::results::{Format, ResultTable};
+use crate::script::Session;
+use crate::script::errors::{FILE_ERROR, REFUSED};
+use crate::script::world::normalized;
+use crate::syntax;
+use crate::value::Value;
+use std::io;
+use std::path::{Path, PathBuf};
+
+impl Session {
+    /// The file or directory that a script means: relative to the working directory, else to the
+    /// folders of the scripts being run, innermost first. `None` if it is nowhere.
+    pub fn find_file(&self, path: &Path) -> Option<PathBuf> {
+        let path = self.expanded(path);
+        let folders = self.frames.iter().rev().map(|frame| frame.folder.join(&path));
+        std::iter::once(self.world.absolute(&path))
+            .chain(folders.map(|candidate| normalized(&candidate)))
+            .find(|candidate| self.world.exists(candidate))
+    }
+
+    /// The bytes of a file that a script names.
+    pub fn read_bytes(&self, path: &Path) -> Result<Vec<u8>, Fault> {
+        let Some(found) = self.find_file(path) else {
+            return Err(self.missing_file(path));
+        };
+        self.world.read(&found).map_err(|error| cannot("read", path, &error))
+    }
+
+    /// The text of a file that a script names, UTF-8 or else Latin-1.
+    pub fn read_text(&self, path: &Path) -> Result<String, Fault> {
+        Ok(syntax::decode(&self.read_bytes(path)?).0)
+    }
+
+    /// Writes a file anew, with the directories it lies in.
+    pub fn write_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
+        self.may(Access::Write, path)?;
+        self.make_parents(path)?;
+        self.world.write(path, bytes).map_err(|error| cannot("write", path, &error))
+    }
+
+    /// Writes results into a file anew, with the directories it lies in.
+    pub fn write_results(
+        &mut self,
+        path: &Path,
+        format: &dyn Format,
+        table: &ResultTable,
+    ) -> Result<(), Fault> {
+        table.check()?;
+        self.may(Access::Write, path)?;
+        self.make_parents(path)?;
+        let mut content = |to: &mut dyn io::Write| format.write_to(table, to);
+        let written = self.world.write_with(path, &mut content);
+        written.map_err(|error| cannot("write", path, &error))
+    }
+
+    /// Writes behind the end of a file.
+    pub fn append_file(&mut self, path: &Path, bytes: &[u8]) -> Result<(), Fault> {
+        self.may(Access::Write, path)?;
+        self.make_parents(path)?;
+        self.world.append(path, bytes).map_err(|error| cannot("write", path, &error))
+    }
+
+    fn make_parents(&mut self, path: &Path) -> Result<(), Fault> {
+        match path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() && !self.world.exists(folder) => {
+                self.world.create_dirs(folder).map_err(|e| cannot("make", folder, &e))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether a folder (`Some(true)`) or a file has this path, as a script asks: what may not be
+    /// read is not told either. That the folders above the working directory exist is no secret.
+    pub(in crate::script) fn kind_of(&self, path: &Path) -> Result<Option<bool>, Fault> {
+        let path = normalized(&self.world.absolute(&self.expanded(path)));
+        if !self.world.current_dir().starts_with(&path) {
+            self.may(Access::Read, &path)?;
+        }
+        Ok(self.world.exists(&path).then(|| self.world.is_dir(&path)))
+    }
+
+    /// The fault of a file that is nowhere, or that it may not be read if it were there.
+    pub fn missing_file(&self, path: &Path) -> Fault {
+        if let Err(refused) = self.may(Access::Read, &self.expanded(path)) {
+            return refused;
+        }
+        let fault = Fault::new(FILE_ERROR, format!("there is no file `{}`", path.display()));
+        fault.help_if(self.similar_file(path)).help(format!(
+            "relative paths start from the working directory `{}` or the script's folder",
+            self.world.current_dir().display()
+        ))
+    }
+
+    fn similar_file(&self, path: &Path) -> Option<String> {
+        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let entries = self.world.list_dir(&self.find_file(folder)?).ok()?;
+        let name = path.file_name()?.to_string_lossy().into_owned();
+        crate::diag::suggest::did_you_mean(&name, entries.iter().map(String::as_str))
+    }
+
+    /// Windows' separators, `file://` and `$NAME` at the beginning of a path. A variable that is
+    /// not set or not readable stays as it is.
+    pub(in crate::script) fn expanded(&self, path: &Path) -> PathBuf {
+        let text = plain(&path.to_string_lossy());
+        let Some(rest) = text.strip_prefix('$') else { return PathBuf::from(text) };
+        let (name, rest) = rest.split_once('/').unwrap_or((rest, ""));
+        match self.environment_variable(name.trim_matches(['{', '}'])) {
+            Ok(Some(value)) => PathBuf::from(value).join(rest),
+            _ => PathBuf::from(text),
+        }
+    }
+}
+
+/// A path without `file://` and Windows' separators.
+pub(in crate::script) fn plain(path: &str) -> String {
+    path.strip_prefix("file://").unwrap_or(path).replace('\\', "/")
+}
+
+/// The fault of a file that the system does not let us use.
+pub(in crate::script) fn cannot(verb: &str, path: &Path, error: &io::Error) -> Fault {
+    if let Some(refusal) = refusal_of(error) {
+        return refused(refusal, path);
+    }
+    let reason = match error.kind() {
+        io::ErrorKind::NotFound => "it does not exist".to_owned(),
+        io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+        io::ErrorKind::IsADirectory => "it is a directory".to_owned(),
+        io::ErrorKind::NotADirectory => "a part of its path is no directory".to_owned(),
+        _ => error.to_string().to_lowercase(),
+    };
+    Fault::new(FILE_ERROR, format!("cannot {verb} `{}`: {reason}", path.display()))
+}
+
+/// The fault of a file that the policy does not let us use.
+fn refused(refusal: Refusal, path: &Path) -> Fault {
+    let verb = if refusal.is_of() == Access::Read { "read" } else { "changed" };
+    let verb = if refusal == Refusal::System { "opened" } else { verb };
+    let message = format!("`{}` is not {verb}: {}", path.display(), refusal.reason());
+    Fault::new(REFUSED, message).help_if(refusal.help().map(str::to_owned))
+}
+
+impl Session {
+    /// Removes a file or an empty directory.
+    pub(in crate::script) fn remove_file(&mut self, path: &Path) -> Result<(), Fault> {
+        self.may(Access::Write, path)?;
+        self.world.remove(path).map_err(|error| cannot("remove", path, &error))
+    }
+
+    /// Makes a directory and the ones it lies in.
+    pub(in crate::script) fn create_directory(&mut self, path: &Path) -> Result<(), Fault> {
+        self.may(Access::Write, path)?;
+        self.world.create_dirs(path).map_err(|error| cannot("make", path, &error))
+    }
+
+    /// A negative answer: `true`, or `false` and the fault reported.
+    pub fn succeeded(&mut self, result: Result<(), Fault>) -> Value {
+        Value::Boolean(self.or_report(result).is_some())
+    }
+
+    /// The value, or `None` and the fault reported.
+    pub fn or_report<T>(&mut self, result: Result<T, Fault>) -> Option<T> {
+        result.map_err(|fault| self.report_fault(fault)).ok()
+    }
+}

@@ -1,0 +1,337 @@
+//! Which files a script or a model may read, make, replace and remove.
+//!
+//! The rules work on real paths: a [`World`](crate::script::world::World) resolves a path once, links and
+//! `..` included, asks here, and acts on what it has resolved. So a name that leads somewhere else
+//! is judged by where it leads.
+
+use std::collections::BTreeSet;
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Access {
+    /// To read a file or the names in a folder.
+    Read,
+    /// To make, change or remove a file or folder.
+    Write,
+}
+
+/// What the user allows. Folders include what is below them; paths may be relative.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Grant<'a> {
+    /// To read what is in this folder, or this file or device, which the user has named.
+    Read(&'a Path),
+    /// To make new files in this folder.
+    Create(&'a Path),
+    /// To make new files of results and data in this folder, not below it.
+    Results(&'a Path),
+    /// To make, replace and remove files in this folder, which holds the results of the run.
+    Own(&'a Path),
+    /// To write this one file or device, whatever it is: the user has named it.
+    Named(&'a Path),
+    /// To read all files.
+    ReadAll,
+    /// To write and remove all files.
+    WriteAll,
+}
+
+impl<'a> Grant<'a> {
+    /// The file or folder that it names.
+    pub fn path(self) -> Option<&'a Path> {
+        match self {
+            Grant::Read(path)
+            | Grant::Create(path)
+            | Grant::Results(path)
+            | Grant::Own(path)
+            | Grant::Named(path) => Some(path),
+            Grant::ReadAll | Grant::WriteAll => None,
+        }
+    }
+
+    /// The same for another path.
+    #[must_use]
+    pub fn with_path(self, path: &'a Path) -> Grant<'a> {
+        match self {
+            Grant::Read(_) => Grant::Read(path),
+            Grant::Create(_) => Grant::Create(path),
+            Grant::Results(_) => Grant::Results(path),
+            Grant::Own(_) => Grant::Own(path),
+            Grant::Named(_) => Grant::Named(path),
+            Grant::ReadAll | Grant::WriteAll => self,
+        }
+    }
+}
+
+/// Why something is not done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Refusal {
+    /// Reading outside of the folders that may be read.
+    Reading,
+    /// Writing outside of the folders that may be written.
+    Outside,
+    /// A file of the operating system, or one that is neither a file nor a folder.
+    System,
+    /// A name that begins with a dot.
+    Hidden,
+    /// A Modelica file or a script.
+    Source,
+    /// A file that the run has not made.
+    Existing,
+    /// A file that has further names (hard links).
+    Shared,
+    /// A file in which the program keeps account.
+    Reserved,
+}
+
+impl Refusal {
+    /// Why, as the end of a sentence about the file.
+    pub fn reason(self) -> &'static str {
+        match self {
+            Refusal::Reading => "it lies outside of the folders that may be read",
+            Refusal::Outside => "it lies outside of the directory where the run began",
+            Refusal::System => "it belongs to the operating system",
+            Refusal::Hidden => "its name begins with a dot",
+            Refusal::Source => "it is a Modelica file or a script",
+            Refusal::Existing => "this run has not made it",
+            Refusal::Shared => "it has another name elsewhere (a hard link)",
+            Refusal::Reserved => "the program keeps account in it",
+        }
+    }
+
+    /// What the user can do about it.
+    pub fn help(self) -> Option<&'static str> {
+        match self {
+            Refusal::Reading => Some("allow it with `--allow-read`, or `--allow-read=DIR`"),
+            Refusal::System | Refusal::Reserved => None,
+            _ => Some("allow it with `--allow-write`"),
+        }
+    }
+
+    /// Whether it was about reading.
+    pub fn is_of(self) -> Access {
+        if self == Refusal::Reading { Access::Read } else { Access::Write }
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.reason())
+    }
+}
+
+impl std::error::Error for Refusal {}
+
+impl From<Refusal> for io::Error {
+    fn from(refusal: Refusal) -> io::Error {
+        io::Error::new(io::ErrorKind::PermissionDenied, refusal)
+    }
+}
+
+/// The refusal that an error is, if it is one.
+pub fn refusal_of(error: &io::Error) -> Option<Refusal> {
+    error.get_ref()?.downcast_ref().copied()
+}
+
+/// Folders whose files are not files, but the state of the operating system and its devices.
+const SYSTEM: &[&str] = &["/proc", "/sys", "/dev"];
+
+/// The file in an output folder that lists what runs have made outside of it.
+pub const RECORD: &str = "files_made.txt";
+
+/// What the user allows, all in real paths.
+#[derive(Debug, Clone, Default)]
+pub struct Policy {
+    readable: BTreeSet<PathBuf>,
+    creatable: BTreeSet<PathBuf>,
+    results: BTreeSet<PathBuf>,
+    own: BTreeSet<PathBuf>,
+    named: BTreeSet<PathBuf>,
+    made: BTreeSet<PathBuf>,
+    reads_all: bool,
+    writes_all: bool,
+}
+
+impl Policy {
+    /// Allows something; `real` is the real path of the one that the grant names.
+    pub fn grant(&mut self, grant: Grant<'_>, real: PathBuf) {
+        match grant {
+            Grant::Read(_) => drop(self.readable.insert(real)),
+            Grant::Create(_) => drop(self.creatable.insert(real)),
+            Grant::Results(_) => drop(self.results.insert(real)),
+            Grant::Own(_) => drop(self.own.insert(real)),
+            Grant::Named(_) => drop(self.named.insert(real)),
+            Grant::ReadAll => self.reads_all = true,
+            Grant::WriteAll => self.writes_all = true,
+        }
+    }
+
+    /// Notes that the run has made this file or folder.
+    pub fn note_made(&mut self, real: PathBuf) {
+        self.made.insert(real);
+    }
+
+    /// Whether the run has made this file or folder.
+    pub fn has_made(&self, real: &Path) -> bool {
+        self.made.contains(real)
+    }
+
+    /// Notes that the file or folder is gone.
+    pub fn note_removed(&mut self, real: &Path) {
+        self.made.remove(real);
+    }
+
+    /// Whether all files may be written.
+    pub fn writes_all(&self) -> bool {
+        self.writes_all
+    }
+
+    /// Whether the user has named this file.
+    pub fn is_named(&self, real: &Path) -> bool {
+        self.named.contains(real)
+    }
+
+    /// The output folder that a file is in.
+    pub fn own_folder_of(&self, real: &Path) -> Option<&Path> {
+        deepest(&self.own, real)
+    }
+
+    /// The output folders.
+    pub fn own_folders(&self) -> impl Iterator<Item = &Path> {
+        self.own.iter().map(PathBuf::as_path)
+    }
+
+    /// # Errors
+    /// The file or folder may not be read.
+    pub fn may_read(&self, real: &Path) -> Result<(), Refusal> {
+        if self.named.contains(real) {
+            return Ok(());
+        }
+        if is_of_system(real) {
+            return Err(Refusal::System);
+        }
+        let known = [&self.readable, &self.creatable, &self.own];
+        let is_readable = known.into_iter().any(|folders| deepest(folders, real).is_some());
+        match is_readable || self.reads_all || self.made.contains(real) {
+            true => Ok(()),
+            false => Err(Refusal::Reading),
+        }
+    }
+
+    /// # Errors
+    /// The file or folder, which exists or not, may not be made, changed or removed.
+    pub fn may_write(&self, real: &Path, exists: bool) -> Result<(), Refusal> {
+        if self.named.contains(real) {
+            return Ok(());
+        }
+        if is_of_system(real) {
+            return Err(Refusal::System);
+        }
+        let own = deepest(&self.own, real);
+        if own.is_some() && real.file_name().is_some_and(|name| name == RECORD) {
+            return Err(Refusal::Reserved);
+        }
+        if self.writes_all {
+            return Ok(());
+        }
+        let results =
+            real.parent().filter(|folder| is_result(real) && self.results.contains(*folder));
+        let roots = [own, deepest(&self.creatable, real), results];
+        let root = roots.into_iter().flatten().max_by_key(|root| root.as_os_str().len());
+        let below = root.and_then(|root| real.strip_prefix(root).ok()).ok_or(Refusal::Outside)?;
+        if below.iter().any(|name| name.as_encoded_bytes().starts_with(b".")) {
+            return Err(Refusal::Hidden);
+        }
+        // Calibrated models are results.
+        match own {
+            Some(_) => Ok(()),
+            None if exists && self.made.contains(real) => Ok(()),
+            None if is_source(real) => Err(Refusal::Source),
+            None if exists => Err(Refusal::Existing),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The folder among these that the path is in and that is the closest to it.
+fn deepest<'a>(folders: &'a BTreeSet<PathBuf>, real: &Path) -> Option<&'a Path> {
+    real.ancestors().find_map(|folder| folders.get(folder)).map(PathBuf::as_path)
+}
+
+fn is_of_system(real: &Path) -> bool {
+    // Linux keeps a file system for ordinary files there.
+    !real.starts_with("/dev/shm") && SYSTEM.iter().any(|folder| real.starts_with(folder))
+}
+
+/// Whether it has the name of a file of results or data.
+fn is_result(real: &Path) -> bool {
+    real.extension().is_some_and(|e| e == "mat" || e == "csv" || e == "txt")
+}
+
+/// Whether other runs would carry out what is in the file.
+fn is_source(real: &Path) -> bool {
+    real.extension().is_some_and(|e| e.eq_ignore_ascii_case("mo") || e.eq_ignore_ascii_case("mos"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn policy() -> Policy {
+        let mut policy = Policy::default();
+        for (grant, path) in [
+            (Grant::Create("".as_ref()), "/home/me"),
+            (Grant::Own("".as_ref()), "/home/me/results/fit"),
+            (Grant::Read("".as_ref()), "/libraries"),
+            (Grant::Named("".as_ref()), "/data/.curve.mo"),
+        ] {
+            policy.grant(grant, path.into());
+        }
+        policy
+    }
+
+    #[test]
+    fn reading_ends_at_the_folders_of_the_run() {
+        let policy = policy();
+        for path in ["/home/me/a", "/home/me/.b", "/libraries/M/a.mo", "/data/.curve.mo"] {
+            assert_eq!(policy.may_read(path.as_ref()), Ok(()), "{path}");
+        }
+        assert_eq!(policy.may_read("/data/other".as_ref()), Err(Refusal::Reading));
+        assert_eq!(policy.may_read("/home/me2/a".as_ref()), Err(Refusal::Reading));
+    }
+
+    #[test]
+    fn the_system_stays_closed_whatever_is_allowed() {
+        let mut policy = policy();
+        policy.grant(Grant::ReadAll, PathBuf::new());
+        policy.grant(Grant::WriteAll, PathBuf::new());
+        assert_eq!(policy.may_read("/etc/hostname".as_ref()), Ok(()));
+        for path in ["/proc/self/environ", "/sys/power/state", "/dev/sda"] {
+            assert_eq!(policy.may_read(path.as_ref()), Err(Refusal::System));
+            assert_eq!(policy.may_write(path.as_ref(), true), Err(Refusal::System));
+        }
+    }
+
+    #[test]
+    fn writing_makes_new_files_and_replaces_results() {
+        let mut policy = policy();
+        let write = |policy: &Policy, path: &str, exists| policy.may_write(path.as_ref(), exists);
+        assert_eq!(write(&policy, "/home/me/new.csv", false), Ok(()));
+        assert_eq!(write(&policy, "/home/me/thesis.tex", true), Err(Refusal::Existing));
+        assert_eq!(write(&policy, "/home/me/.profile", false), Err(Refusal::Hidden));
+        assert_eq!(write(&policy, "/home/me/.config/a", false), Err(Refusal::Hidden));
+        assert_eq!(write(&policy, "/home/me/M.mo", false), Err(Refusal::Source));
+        assert_eq!(write(&policy, "/home/me/results/fit/a.csv", true), Ok(()));
+        assert_eq!(write(&policy, "/home/me/results/fit/.a", true), Err(Refusal::Hidden));
+        assert_eq!(write(&policy, "/home/me/results/other/a.csv", true), Err(Refusal::Existing));
+        assert_eq!(
+            write(&policy, "/home/me/results/fit/files_made.txt", false),
+            Err(Refusal::Reserved)
+        );
+        assert_eq!(write(&policy, "/libraries/a.txt", false), Err(Refusal::Outside));
+        assert_eq!(write(&policy, "/data/.curve.mo", true), Ok(()));
+        policy.note_made("/home/me/new.csv".into());
+        assert_eq!(write(&policy, "/home/me/new.csv", true), Ok(()));
+    }
+}

@@ -1,0 +1,100 @@
+//! One cause, one error: what cannot be done because an earlier statement failed is noted once.
+
+use crate::name::Ident;
+use crate::syntax::ast::{
+    Expression, ExpressionKind, InteractiveKind, InteractiveStatement, Statement, StatementKind,
+};
+use std::collections::HashSet;
+
+/// Variables that have no value because their statement failed.
+#[derive(Debug, Default)]
+pub(in crate::script) struct FollowUps {
+    missing: HashSet<Ident>,
+    /// A script that was not run to its end ran others: anything may be missing.
+    anything: bool,
+    told: bool,
+}
+
+impl FollowUps {
+    /// Whether `name` would exist had an earlier statement not failed.
+    pub(super) fn is_missing(&self, name: Ident) -> bool {
+        self.anything || self.missing.contains(&name)
+    }
+
+    /// A statement gave the variable a value after all.
+    pub(super) fn found(&mut self, name: Ident) {
+        if !self.missing.is_empty() {
+            self.missing.remove(&name);
+        }
+    }
+
+    /// Whether this is the first follow-up, the only one that is told.
+    pub(super) fn is_first(&mut self) -> bool {
+        !std::mem::replace(&mut self.told, true)
+    }
+
+    /// The statement was executed, but not to its end: the scripts that it runs told themselves
+    /// what they did not do.
+    pub(super) fn failed(&mut self, statement: &InteractiveStatement) {
+        let anything = self.anything;
+        self.not_done(std::slice::from_ref(statement));
+        self.anything = anything;
+    }
+
+    /// A script that was asked for was not run at all.
+    pub(super) fn script_not_run(&mut self) {
+        self.anything = true;
+    }
+
+    /// These statements were not executed.
+    pub(super) fn not_done(&mut self, statements: &[InteractiveStatement]) {
+        for statement in statements {
+            match &statement.kind {
+                InteractiveKind::Statement(statement) => self.statement(statement),
+                InteractiveKind::Expression(expression) => self.expression(expression),
+                InteractiveKind::Declaration(clause) => {
+                    self.missing.extend(clause.components.iter().map(|c| c.name.node));
+                }
+                InteractiveKind::Class(_)
+                | InteractiveKind::Import(_)
+                | InteractiveKind::Command { .. } => {}
+            }
+        }
+    }
+
+    fn statement(&mut self, statement: &Statement) {
+        match &statement.kind {
+            StatementKind::Assign { target, value } => {
+                self.missing.extend(target.as_ident());
+                self.expression(value);
+            }
+            StatementKind::MultiAssign { targets, value } => {
+                self.missing.extend(targets.iter().flatten().filter_map(|t| t.as_ident()));
+                self.expression(value);
+            }
+            StatementKind::Call(call) => self.expression(call),
+            StatementKind::If { branches, otherwise } => {
+                branches.iter().for_each(|(_, body)| self.statements(body));
+                self.statements(otherwise);
+            }
+            StatementKind::For { body, .. } | StatementKind::While { body, .. } => {
+                self.statements(body);
+            }
+            StatementKind::When { branches } => {
+                branches.iter().for_each(|(_, body)| self.statements(body));
+            }
+            StatementKind::Break | StatementKind::Return => {}
+        }
+    }
+
+    fn statements(&mut self, statements: &[Statement]) {
+        statements.iter().for_each(|statement| self.statement(statement));
+    }
+
+    fn expression(&mut self, expression: &Expression) {
+        if let ExpressionKind::Call { function, .. } = &expression.kind {
+            let name = function.parts.last().map_or("", |part| part.name.as_str());
+            self.anything |= name.eq_ignore_ascii_case("RunScript");
+        }
+    }
+}

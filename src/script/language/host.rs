@@ -1,0 +1,255 @@
+//! The session as the host of evaluation: it answers calls, dotted names and questions.
+
+use crate::diag::{At, Diagnostic, Fault};
+use crate::eval::{self, Callee, Function, FunctionBody, Host, Scope};
+use crate::external::{Outside, Random};
+use crate::name::{Ident, Name};
+use crate::script::Session;
+use crate::script::builtins;
+use crate::script::builtins::{BuiltinId, Failure};
+use crate::script::errors::INTERRUPTED;
+use crate::source::Span;
+use crate::syntax::ast::ComponentReference;
+use crate::value::Value;
+use std::path::Path;
+use std::sync::Arc;
+
+impl Host for Session {
+    /// A function of a script or a loaded library first, then a command.
+    fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
+        let revision = self.classes.revision();
+        if let Some(known) = self.callees.get(name, revision, self.dialect) {
+            return Ok(known);
+        }
+        let callee = self.look_up_callee(name)?;
+        self.callees.put(name, callee.as_ref());
+        Ok(callee)
+    }
+
+    fn simple_callee(&mut self, name: Ident) -> Result<Option<Callee>, Diagnostic> {
+        let revision = self.classes.revision();
+        if let Some(known) = self.callees.get_simple(name, revision, self.dialect) {
+            return Ok(known);
+        }
+        let callee = self.callee(&Name::from(name))?;
+        self.callees.put_simple(name, callee.as_ref());
+        Ok(callee)
+    }
+
+    fn call_builtin(
+        &mut self,
+        header: &Arc<Function>,
+        arguments: Vec<Value>,
+        span: Span,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        let Some(id) = BuiltinId::of(header) else {
+            unreachable!("`callee` gives out headers of the table only")
+        };
+        let outer = std::mem::replace(&mut self.call, span);
+        let result = id.run(self, arguments);
+        self.call = outer;
+        if result.as_ref().is_ok_and(is_success) {
+            self.messages.note_success();
+        }
+        match result {
+            Ok(Value::Tuple(values)) => Ok(values),
+            Ok(value) => Ok(vec![value]),
+            Err(Failure::Here(fault)) => Err(fault.at(span)),
+            Err(Failure::Elsewhere(mut diagnostics)) => {
+                let last = diagnostics.pop();
+                diagnostics.into_iter().for_each(|diagnostic| self.report(diagnostic));
+                Err(last.unwrap_or_else(|| {
+                    Fault::new(crate::script::errors::SCRIPT_ERROR, "failed").at(span)
+                }))
+            }
+        }
+    }
+
+    fn outside(&mut self) -> Option<&mut dyn Outside> {
+        Some(self)
+    }
+
+    /// Commands that run scripts work among the variables of the caller.
+    fn call_builtin_among(
+        &mut self,
+        header: &Arc<Function>,
+        arguments: Vec<Value>,
+        span: Span,
+        scope: &mut Scope,
+    ) -> Result<Vec<Value>, Diagnostic> {
+        let outer = std::mem::replace(&mut self.in_function, !scope.is_script());
+        if !self.in_function {
+            std::mem::swap(&mut self.scope, scope);
+        }
+        self.silent += 1;
+        let result = self.call_builtin(header, arguments, span);
+        self.silent -= 1;
+        if !self.in_function {
+            std::mem::swap(&mut self.scope, scope);
+        }
+        self.in_function = outer;
+        result
+    }
+
+    fn variable(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
+        if let Some(value) = self.flag(reference) {
+            return Ok(Some(value));
+        }
+        if let Some(value) = self.constant(reference).at(reference.span)? {
+            return Ok(Some(value));
+        }
+        let first = reference.parts[0].name;
+        match self.follow_up(first, reference.span) {
+            Some(note) => Err(note),
+            None => self.model_value(reference),
+        }
+    }
+
+    fn assign(
+        &mut self,
+        target: &ComponentReference,
+        value: Value,
+        span: Span,
+    ) -> Result<bool, Diagnostic> {
+        if let Some(note) = self.follow_up(target.parts[0].name, target.span)
+            && target.parts.len() == 1
+        {
+            return Err(note);
+        }
+        self.assign_dotted(target, value, span)
+    }
+
+    fn assigned(
+        &mut self,
+        name: Ident,
+        before: Option<&Value>,
+        value: &Value,
+    ) -> Result<(), Fault> {
+        self.check_kind(name, before, value)?;
+        self.follow_ups.found(name);
+        self.share_with_model(name, value)
+    }
+
+    fn warn(&mut self, warning: Diagnostic) {
+        self.report(warning);
+    }
+
+    fn function_names(&mut self) -> Vec<String> {
+        let mut names: Vec<String> = builtins::names().into_iter().map(str::to_owned).collect();
+        names.extend(self.classes.read_names().iter().map(Name::to_string));
+        names
+    }
+
+    fn loop_turn(&mut self, turn: usize, turns: Option<usize>) {
+        self.loop_turn = Some((turn, turns));
+    }
+
+    fn interrupted(&mut self) -> Option<Fault> {
+        match self.is_interrupted() || self.stop.is_some() {
+            true => Some(Fault::new(INTERRUPTED, "interrupted")),
+            false => None,
+        }
+    }
+}
+
+/// External functions read files, print and ask for the time as commands do.
+impl Outside for Session {
+    fn read(&mut self, path: &str) -> Result<Vec<u8>, Fault> {
+        let path = self.resource(path)?;
+        self.read_bytes(&path)
+    }
+
+    fn write(&mut self, path: &str, bytes: &[u8]) -> Result<(), Fault> {
+        let path = self.expanded(Path::new(path));
+        self.write_file(&path, bytes)
+    }
+
+    fn append(&mut self, path: &str, bytes: &[u8]) -> Result<(), Fault> {
+        let path = self.expanded(Path::new(path));
+        self.append_file(&path, bytes)
+    }
+
+    fn remove(&mut self, path: &str) -> Result<(), Fault> {
+        let path = self.expanded(Path::new(path));
+        self.remove_file(&path)
+    }
+
+    fn print(&mut self, text: &str) -> Result<(), Fault> {
+        Session::print(self, &format!("{text}\n"));
+        Ok(())
+    }
+
+    fn unix_seconds(&mut self) -> Result<u64, Fault> {
+        Ok(self.world.unix_seconds())
+    }
+
+    fn random(&mut self) -> Result<&mut Random, Fault> {
+        Ok(&mut self.random)
+    }
+
+    fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {
+        self.kind_of(Path::new(path))
+    }
+}
+
+impl Session {
+    fn look_up_callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
+        if let Some(function) = self.loaded_function(name)? {
+            return Ok(Some(self.loaded_callee(function)));
+        }
+        for candidate in self.candidates(name) {
+            if let Some(id) = builtins::find(&candidate, self.dialect) {
+                return Ok(Some(Callee::Builtin(id.function())));
+            }
+        }
+        for candidate in self.candidates(name) {
+            let is_intrinsic = candidate.is_simple()
+                && eval::intrinsic_names().any(|intrinsic| candidate.parts[0] == intrinsic);
+            if !is_intrinsic && self.class_exists(&Name::new(candidate.first())) {
+                let function = self.loaded_function(name)?;
+                return Ok(function.map(|function| self.loaded_callee(function)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// A loaded function, or the command that it declares with `external "builtin"`, or that is its
+    /// implementation: the functions of `Modelica.Utilities` are commands, loaded or not.
+    fn loaded_callee(&self, function: Arc<Function>) -> Callee {
+        let is_utility = function.name.to_string().starts_with("Modelica.Utilities.");
+        let own = builtins::find(&function.name, self.dialect).filter(|_| is_utility);
+        let command = own.or_else(|| match &function.body {
+            FunctionBody::External(external) if external.language.as_deref() == Some("builtin") => {
+                external
+                    .function
+                    .as_ref()
+                    .and_then(|called| builtins::find(&Name::new([called.node]), self.dialect))
+            }
+            _ => None,
+        });
+        command.map_or(Callee::Function(function), |id| Callee::Builtin(id.function()))
+    }
+
+    /// What a name may stand for: itself, and what the imports of the scripts make of it.
+    pub(in crate::script) fn candidates(&self, name: &Name) -> Vec<Name> {
+        let mut all = vec![name.clone()];
+        let Some(first) = name.first().filter(|_| !name.global) else { return all };
+        if let Some(target) = self.imports.get(&first) {
+            let parts = target.parts.iter().chain(&name.parts[1..]);
+            all.push(Name::new(parts.copied()));
+        }
+        for package in &self.open_packages {
+            all.push(Name::new(package.parts.iter().chain(&name.parts).copied()));
+        }
+        all
+    }
+}
+
+/// Whether a command says that it succeeded.
+fn is_success(answer: &Value) -> bool {
+    let first = match answer {
+        Value::Tuple(values) => values.first(),
+        value => Some(value),
+    };
+    first == Some(&Value::Boolean(true))
+}

@@ -1,0 +1,345 @@
+//! Scripts that run scripts: finding them, reading each once, and the trace through them.
+
+use crate::bail;
+use crate::diag::{Diagnostic, Fault, suggest};
+use crate::script::access::files::cannot;
+use crate::script::access::policy::{Access, Grant};
+use crate::script::builtins::Failure;
+use crate::script::errors::{INTERRUPTED, LIMIT_REACHED, SCRIPT_NOT_FOUND, SCRIPTS_TOO_DEEP};
+use crate::script::session::Stop;
+use crate::script::world::{Stamp, normalized};
+use crate::script::{Dialect, RunStatus, Session};
+use crate::source::{SourceId, Span};
+use crate::syntax::ast::{Expression, ExpressionKind, InteractiveKind, StatementKind};
+use crate::syntax::{self, ScriptParts, ast};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Scripts may call each other this deep.
+const MAX_DEPTH: usize = 64;
+
+/// A script being run.
+#[derive(Debug, Clone)]
+pub(in crate::script) struct Frame {
+    /// The folder it lies in.
+    pub(in crate::script) folder: PathBuf,
+}
+
+/// A script that was read.
+struct Parsed {
+    parts: ScriptParts,
+    /// The dialect that it shows: that of the first call or `=` that only one of them has.
+    dialect: Option<Dialect>,
+}
+
+impl Parsed {
+    fn read(source: SourceId, text: &str) -> Result<Parsed, Diagnostic> {
+        let (parts, dialect) = ScriptParts::read(source, text, |one| dialect_of(&one.kind))?;
+        Ok(Parsed { parts, dialect })
+    }
+}
+
+/// Scripts read before, by path, each valid as long as the file's stamp stays; and the paths that
+/// names led to.
+#[derive(Default)]
+pub(in crate::script) struct ParsedScripts {
+    by_path: HashMap<PathBuf, (Option<Stamp>, Arc<Parsed>)>,
+    found: HashMap<(PathBuf, PathBuf, String), PathBuf>,
+}
+
+impl Session {
+    /// Runs a script from the command line as the outermost one.
+    pub fn run_file(&mut self, path: &Path) -> RunStatus {
+        self.grant_input(path);
+        if let Some(folder) = self.world.absolute(path).parent() {
+            self.world.grant(Grant::Create(folder));
+        }
+        let name = path.to_string_lossy().into_owned();
+        if let Err(diagnostics) = self.run_named(&name) {
+            diagnostics.into_iter().for_each(|diagnostic| self.report(diagnostic));
+        }
+        self.finish()
+    }
+
+    /// Runs a text as the outermost script; `name` stands in diagnostics.
+    pub fn run_text(&mut self, name: &str, text: &str) -> RunStatus {
+        let source = self.sources.add(name, text);
+        match Parsed::read(source, text) {
+            Ok(script) => {
+                let folder = self.world.current_dir();
+                let frame = Frame { folder };
+                let done = self.run_script_statements(&script, frame);
+                debug_assert!(done.is_ok(), "the outermost script reports its own errors");
+            }
+            Err(diagnostic) => self.report(diagnostic),
+        }
+        self.finish()
+    }
+
+    /// The dialect that a text shows by what only one of them has.
+    pub fn looks_like(&self, text: &str) -> Option<Dialect> {
+        Parsed::read(SourceId::NONE, text).ok()?.dialect
+    }
+
+    /// Runs a script that another one names; its errors end it and come back with a trace.
+    pub(in crate::script) fn run_nested(&mut self, name: &str) -> Result<(), Failure> {
+        if self.frames.len() >= MAX_DEPTH {
+            bail!(
+                SCRIPTS_TOO_DEEP,
+                "scripts call each other {MAX_DEPTH} levels deep, the last one `{name}`";
+                help: "end the recursion with a condition"
+            );
+        }
+        let call = self.call;
+        let frame_name = format!("script `{name}`");
+        let traced = |diagnostics: Vec<Diagnostic>| {
+            // A script that calls itself is one line of the trace, however often it does.
+            let frame = |diagnostic: Diagnostic| match diagnostic.trace.last() {
+                Some(last) if last.span == call && last.what == frame_name => diagnostic,
+                _ => diagnostic.called_from(call, &*frame_name),
+            };
+            diagnostics.into_iter().map(frame).collect::<Vec<_>>()
+        };
+        if let Err(fault) = self.find_script(name) {
+            self.script_not_run();
+            return Err(fault.into());
+        }
+        self.run_named(name).map_err(|diagnostics| Failure::Elsewhere(traced(diagnostics)))
+    }
+
+    /// What scripts that are not run would have defined is not missed.
+    pub(in crate::script) fn script_not_run(&mut self) {
+        self.follow_ups.script_not_run();
+    }
+
+    fn run_named(&mut self, name: &str) -> Result<(), Vec<Diagnostic>> {
+        let at = |fault: Fault| vec![fault.at(Span::NONE)];
+        let path = self.find_script(name).map_err(at)?;
+        let script = self.parsed_script(&path);
+        if script.is_err() {
+            self.script_not_run();
+        }
+        let script = script?;
+        let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
+        let frame = Frame { folder };
+        self.run_script_statements(&script, frame).map_err(|diagnostic| vec![diagnostic])
+    }
+
+    /// Executes the statements of a script. Errors of the outermost one are reported where they
+    /// happen; in a nested one the first ends it.
+    fn run_script_statements(&mut self, script: &Parsed, frame: Frame) -> Result<(), Diagnostic> {
+        let outermost = self.frames.is_empty();
+        if outermost && self.options.dialect.is_none() {
+            self.dialect = script.dialect.unwrap_or_default();
+        }
+        self.frames.push(frame);
+        let result = self.parts(&script.parts, outermost);
+        self.frames.pop();
+        result
+    }
+
+    fn parts(&mut self, script: &ScriptParts, outermost: bool) -> Result<(), Diagnostic> {
+        for at in 0..script.count() {
+            let statements = script.part(at)?;
+            if let Err(diagnostic) = self.statements(&statements, outermost) {
+                for later in at + 1..script.count() {
+                    self.follow_ups.not_done(&script.part(later)?);
+                }
+                return Err(diagnostic);
+            }
+        }
+        Ok(())
+    }
+
+    fn statements(
+        &mut self,
+        statements: &[ast::InteractiveStatement],
+        outermost: bool,
+    ) -> Result<(), Diagnostic> {
+        for (at, statement) in statements.iter().enumerate() {
+            if self.stop.is_some() {
+                return Ok(());
+            }
+            if self.world.interrupted() {
+                self.interrupt(statement.span);
+                return Ok(());
+            }
+            let Err(diagnostic) = self.top_level(statement, outermost) else { continue };
+            if diagnostic.code == INTERRUPTED {
+                self.interrupt(statement.span);
+                return Ok(());
+            }
+            self.follow_ups.failed(statement);
+            if !outermost {
+                self.follow_ups.not_done(&statements[at + 1..]);
+                return Err(diagnostic);
+            }
+            self.report_failed(diagnostic);
+            self.echo_nothing();
+        }
+        // A command that was interrupted may have answered with what it had.
+        if let (Some(last), true) = (statements.last(), outermost && self.world.interrupted()) {
+            self.interrupt(last.span);
+        }
+        Ok(())
+    }
+
+    fn report_failed(&mut self, diagnostic: Diagnostic) {
+        if diagnostic.code == crate::script::errors::FOLLOW_UP && !self.follow_ups.is_first() {
+            return;
+        }
+        self.report(diagnostic);
+    }
+
+    fn interrupt(&mut self, span: Span) {
+        if let (None, Some(reason)) = (self.stop, self.world.stop_reason()) {
+            self.stop = Some(Stop::Error);
+            self.report(Fault::new(LIMIT_REACHED, reason).at(span));
+            return;
+        }
+        if self.stop.is_none() {
+            self.stop = Some(Stop::Interrupt);
+            let message = "interrupted; what has been found until now is kept";
+            self.report(Fault::new(INTERRUPTED, message).at(span).warning());
+        }
+    }
+
+    /// The script of this name: in the folder of the calling script, then in the working
+    /// directory; with and without the ending; at last with other letter cases.
+    pub(in crate::script) fn find_script(&mut self, name: &str) -> Result<PathBuf, Fault> {
+        let folder = self.frames.last().map(|frame| frame.folder.clone()).unwrap_or_default();
+        let key = (folder, self.world.current_dir(), name.to_owned());
+        if let Some(path) = self.parsed.found.get(&key)
+            && self.world.exists(path)
+        {
+            return Ok(path.clone());
+        }
+        let path = self.search_script(&key.0, name)?;
+        self.parsed.found.insert(key, path.clone());
+        Ok(path)
+    }
+
+    fn search_script(&mut self, folder: &Path, name: &str) -> Result<PathBuf, Fault> {
+        let plain = self.expanded(Path::new(name));
+        let mut with_ending = plain.clone().into_os_string();
+        with_ending.push(".mos");
+        let with_ending = PathBuf::from(with_ending);
+        let folders = [self.world.absolute(folder), self.world.current_dir()];
+        let candidates = || {
+            folders.iter().flat_map(|folder| [&plain, &with_ending].map(|name| folder.join(name)))
+        };
+        let is_file = |path: &PathBuf| self.world.exists(path) && !self.world.is_dir(path);
+        let exact = candidates().map(|path| normalized(&self.world.absolute(&path))).find(is_file);
+        if let Some(path) = exact {
+            return Ok(path);
+        }
+        let other_case = candidates().find_map(|path| self.other_case(&path));
+        if let Some(path) = other_case {
+            let found = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into());
+            let message = format!("`{name}` is taken to be `{found}`: letter case differs");
+            self.note(SCRIPT_NOT_FOUND, message);
+            return Ok(path);
+        }
+        // Whether there is a file that may not be read is not told.
+        self.may(Access::Read, &plain)?;
+        let fault = Fault::new(SCRIPT_NOT_FOUND, format!("there is no script `{name}`"));
+        let [own, working] = folders.each_ref().map(|folder| folder.display());
+        let is_one = normalized(&folders[0]) == normalized(&folders[1]);
+        let searched = match Path::new(name).is_absolute() {
+            true => "an absolute path is looked at as it is".to_owned(),
+            false if is_one => format!("searched in the working directory `{working}`"),
+            false => format!("searched in `{own}` and in the working directory `{working}`"),
+        };
+        Err(fault.help_if(self.similar_script(&folders[0].join(&plain))).help(searched))
+    }
+
+    fn similar_script(&self, path: &Path) -> Option<String> {
+        let nearby = self.world.list_dir(path.parent()?).ok()?;
+        let scripts: Vec<&str> = nearby.iter().filter_map(|e| e.strip_suffix(".mos")).collect();
+        suggest::did_you_mean(&path.file_stem()?.to_string_lossy(), scripts)
+    }
+
+    /// The file of this path, letter case not counted in any of its parts.
+    fn other_case(&self, path: &Path) -> Option<PathBuf> {
+        let mut found = PathBuf::new();
+        for component in normalized(&self.world.absolute(path)).components() {
+            let exact = found.join(component);
+            if self.world.exists(&exact) {
+                found = exact;
+                continue;
+            }
+            let wanted = component.as_os_str().to_string_lossy().into_owned();
+            let entries = self.world.list_dir(&found).ok()?;
+            found.push(entries.iter().find(|entry| entry.eq_ignore_ascii_case(&wanted))?);
+        }
+        (!self.world.is_dir(&found)).then_some(found)
+    }
+
+    fn parsed_script(&mut self, path: &Path) -> Result<Arc<Parsed>, Vec<Diagnostic>> {
+        let stamp = self.world.stamp(path);
+        if let Some((known, script)) = self.parsed.by_path.get(path)
+            && *known == stamp
+            && stamp.is_some()
+        {
+            return Ok(script.clone());
+        }
+        let (source, text) = self.add_file(path).map_err(|fault| vec![fault.at(Span::NONE)])?;
+        let script = Arc::new(Parsed::read(source, &text).map_err(|error| vec![error])?);
+        self.parsed.by_path.insert(path.to_path_buf(), (stamp, script.clone()));
+        Ok(script)
+    }
+
+    /// Reads a text file among the sources, under its path relative to the working directory.
+    pub(in crate::script) fn add_file(
+        &mut self,
+        path: &Path,
+    ) -> Result<(SourceId, Arc<str>), Fault> {
+        let bytes = self.world.read(path).map_err(|error| cannot("read", path, &error))?;
+        let (text, warning) = syntax::decode(&bytes);
+        let current = self.world.current_dir();
+        let shown = path.strip_prefix(&current).unwrap_or(path).display().to_string();
+        let text: Arc<str> = text.into();
+        let source = self.sources.add(shown, text.clone());
+        if let Some(warning) = warning {
+            self.report(warning.at(Span::new(source, 0, 0)).warning());
+        }
+        Ok((source, text))
+    }
+}
+
+/// The dialect that a statement shows, if only one of them has it.
+fn dialect_of(kind: &InteractiveKind) -> Option<Dialect> {
+    let call = match kind {
+        InteractiveKind::Expression(expression) => expression,
+        InteractiveKind::Statement(statement) => match &statement.kind {
+            StatementKind::Assign { value, .. } | StatementKind::Call(value) => value,
+            _ => return None,
+        },
+        _ => return None,
+    };
+    let Expression { kind: ExpressionKind::Call { function, arguments }, .. } = call else {
+        return None;
+    };
+    let has_class = arguments
+        .positional
+        .first()
+        .is_some_and(|first| matches!(&first.kind, ExpressionKind::Reference(_)));
+    match function.parts.first()?.name.as_str() {
+        "OpenModelica" => return Some(Dialect::OpenModelica),
+        "DymolaCommands" => return Some(Dialect::Dymola),
+        _ => {}
+    }
+    match function.as_ident()?.as_str() {
+        "loadModel"
+        | "getErrorString"
+        | "loadString"
+        | "buildModel"
+        | "setCommandLineOptions"
+        | "instantiateModel"
+        | "loadFile" => Some(Dialect::OpenModelica),
+        "simulate" | "checkModel" if has_class => Some(Dialect::OpenModelica),
+        "simulateModel" | "translateModel" | "RunScript" | "openModel" => Some(Dialect::Dymola),
+        _ => None,
+    }
+}

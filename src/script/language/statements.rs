@@ -1,0 +1,213 @@
+//! Interactive statements, one after another.
+
+use crate::diag::{At, Diagnostic, Fault, suggest};
+use crate::eval::{self, Scope};
+use crate::fault;
+use crate::name::{Ident, Name};
+use crate::script::errors::{BAD_IMPORT, FOLLOW_UP, NO_TRANSLATED_MODEL};
+use crate::script::session::Stop;
+use crate::script::{Session, builtins};
+use crate::source::{Span, Spanned};
+use crate::syntax::ast::{
+    ComponentReference, Expression, Import, ImportKind, InteractiveKind, InteractiveStatement,
+    Statement, StatementKind,
+};
+use crate::value::Value;
+use std::path::Path;
+use std::sync::Arc;
+
+impl Session {
+    /// Executes one statement of a script and shows its answer as the dialect does.
+    pub(in crate::script) fn top_level(
+        &mut self,
+        statement: &InteractiveStatement,
+        outermost: bool,
+    ) -> Result<(), Diagnostic> {
+        if outermost {
+            self.begin_exchange(statement.span);
+        }
+        self.echo_input(statement.span);
+        self.interactive(statement)
+    }
+
+    fn begin_exchange(&mut self, span: Span) {
+        if let Some(transcript) = &mut self.transcript {
+            transcript.begin(self.sources.text(span));
+        }
+        self.log.begin(span);
+    }
+
+    fn interactive(&mut self, statement: &InteractiveStatement) -> Result<(), Diagnostic> {
+        match &statement.kind {
+            InteractiveKind::Statement(inner) => self.statement(inner),
+            InteractiveKind::Expression(expression) => {
+                let value = self.evaluate(expression)?;
+                self.echo_value(expression, &value);
+                Ok(())
+            }
+            InteractiveKind::Declaration(clause) => self.declare(clause),
+            InteractiveKind::Class(class) => self.define_class(class),
+            InteractiveKind::Import(import) => self.import(import),
+            InteractiveKind::Command { name, argument } => self.command(name, argument),
+        }
+    }
+
+    fn statement(&mut self, statement: &Statement) -> Result<(), Diagnostic> {
+        match &statement.kind {
+            StatementKind::Assign { target, .. } => {
+                let is_new = target.as_ident().is_some_and(|name| !self.scope.contains(name));
+                self.execute(statement)?;
+                if let Some(name) = target.as_ident() {
+                    self.echo_assignment(name, is_new);
+                }
+                Ok(())
+            }
+            StatementKind::MultiAssign { targets, .. } => {
+                let names = targets.iter().flatten().filter_map(ComponentReference::as_ident);
+                let new: Vec<Ident> = names.filter(|name| !self.scope.contains(*name)).collect();
+                self.execute(statement)?;
+                new.into_iter().for_each(|name| self.echo_declaration(name));
+                Ok(())
+            }
+            _ => {
+                self.silent += 1;
+                let done = self.execute(statement);
+                self.silent -= 1;
+                if done.is_ok() {
+                    self.echo_nothing();
+                }
+                done
+            }
+        }
+    }
+
+    /// The value of an expression among the script's variables.
+    pub(super) fn evaluate(&mut self, expression: &Expression) -> Result<Value, Diagnostic> {
+        self.with_scope(|scope, session| eval::evaluate(expression, scope, session))
+    }
+
+    fn execute(&mut self, statement: &Statement) -> Result<(), Diagnostic> {
+        let statements = std::slice::from_ref(statement);
+        self.with_scope(|scope, session| eval::execute(statements, scope, session))?;
+        Ok(())
+    }
+
+    pub(super) fn with_scope<T>(&mut self, work: impl FnOnce(&mut Scope, &mut Session) -> T) -> T {
+        let mut scope = std::mem::take(&mut self.scope);
+        let result = work(&mut scope, self);
+        self.scope = scope;
+        result
+    }
+
+    fn import(&mut self, import: &Import) -> Result<(), Diagnostic> {
+        self.callees.clear();
+        match &import.kind {
+            ImportKind::Qualified(name) => self.import_as(name.last(), name.clone(), import.span),
+            ImportKind::Renaming(alias, name) => {
+                self.import_as(Some(*alias), name.clone(), import.span)
+            }
+            ImportKind::Unqualified(package) => {
+                self.importable(package, import.span)?;
+                self.open_packages.push(package.clone());
+                Ok(())
+            }
+            ImportKind::Group(package, names) => names.iter().try_for_each(|name| {
+                self.import_as(Some(*name), package.child(*name), import.span)
+            }),
+        }
+    }
+
+    fn import_as(
+        &mut self,
+        alias: Option<Ident>,
+        name: Name,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        self.importable(&name, span)?;
+        if let Some(alias) = alias {
+            self.imports.insert(alias, name);
+        }
+        Ok(())
+    }
+
+    fn importable(&mut self, name: &Name, span: Span) -> Result<(), Diagnostic> {
+        let text = name.to_string();
+        let known = builtins::is_package(&text)
+            || builtins::find(name, self.dialect).is_some()
+            || self.class_exists(name)
+            || self.constant(&ComponentReference::from_name(name, span)).at(span)?.is_some();
+        if known {
+            return Ok(());
+        }
+        let packages = builtins::packages();
+        Err(fault!(BAD_IMPORT, "there is nothing named `{text}` to import")
+            .help_if(suggest::did_you_mean(&text, packages.iter().copied()))
+            .at(span))
+    }
+
+    fn command(
+        &mut self,
+        name: &Spanned<Arc<str>>,
+        argument: &Spanned<Arc<str>>,
+    ) -> Result<(), Diagnostic> {
+        match &*name.node {
+            "clear" => self.clear(),
+            "clearlog" => self.messages.clear(),
+            "exit" => {
+                let status = argument.node.trim_matches(['(', ')', ' ']).parse().unwrap_or(0);
+                self.stop = Some(Stop::Exit(status));
+            }
+            // The grammar knows no other command.
+            _ => {
+                let wanted = argument.node.trim().trim_matches('"');
+                self.change_directory(wanted).at(name.span)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Forgets variables, flags, imports and classes.
+    pub(in crate::script) fn clear(&mut self) {
+        self.scope.clear();
+        self.flags.clear();
+        self.imports.clear();
+        self.open_packages.clear();
+        self.callees.clear();
+        self.forget_classes();
+    }
+
+    /// Changes the working directory and shows it; an empty path only shows it.
+    pub(in crate::script) fn change_directory(&mut self, path: &str) -> Result<(), Fault> {
+        if !path.is_empty() {
+            self.go_to(path)?;
+        }
+        let shown = format!("{}\n", self.world.current_dir().display());
+        self.print(&shown);
+        Ok(())
+    }
+
+    /// Changes the working directory.
+    pub(in crate::script) fn go_to(&mut self, path: &str) -> Result<(), Fault> {
+        let path = self.expanded(Path::new(path));
+        let changed = self.world.set_current_dir(&path);
+        changed.map_err(|error| crate::script::access::files::cannot("change to", &path, &error))
+    }
+
+    /// What a name without a variable stands for in the model translated last, or why nothing.
+    pub(super) fn follow_up(&self, name: Ident, span: Span) -> Option<Diagnostic> {
+        if !self.follow_ups.is_missing(name) {
+            return None;
+        }
+        let message = format!(
+            "`{name}` has no value because an earlier statement failed; this and other consequences of it are not done"
+        );
+        Some(Fault::new(FOLLOW_UP, message).at(span).note())
+    }
+
+    /// The fault of a dotted name while no model is translated.
+    pub(in crate::script) fn nothing_translated(&self, reference: &ComponentReference) -> Fault {
+        let shown = reference.name();
+        fault!(NO_TRANSLATED_MODEL, "`{shown}` names a part of a model, but no model is translated";
+            help: "call `translateModel(\"Package.Model\")` first")
+    }
+}

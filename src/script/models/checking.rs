@@ -1,0 +1,55 @@
+//! Models as `gapi check` and `gapi flatten` show them.
+
+use super::simulation::{self, Translated};
+use crate::causalize;
+use crate::diag::Diagnostic;
+use crate::flatten::FlatModel;
+use crate::name::Name;
+use crate::script::Session;
+use crate::syntax::ast::Restriction;
+
+/// Counts, alias sets and sorted blocks of a translated model.
+pub fn report(session: &mut Session, model: &Translated) -> String {
+    let report = causalize::report(model.program.sorted());
+    let (name, rest) = report.split_once('\n').unwrap_or((&report, ""));
+    let classes = session.library().number_read();
+    let unknowns = simulation::unknowns(&model.flat);
+    format!("{name}\n  classes read {classes}\n  unknowns {unknowns}\n{rest}")
+}
+
+/// The counts of a report in one line.
+pub fn summary(session: &mut Session, model: &Translated) -> String {
+    let report = report(session, model);
+    let counts = report.lines().skip(2).take_while(|line| line.starts_with("  "));
+    counts.map(str::trim).collect::<Vec<_>>().join(", ")
+}
+
+/// The flat model of a class, which may carry a modification.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn flat_model(session: &mut Session, problem: &str) -> Result<FlatModel, Vec<Diagnostic>> {
+    simulation::flat_model(session, problem)
+}
+
+/// The local balance (MLS §4.8) of a class that is no system by itself, a component with open
+/// connectors; `None` for any other class.
+pub fn component_balance(session: &mut Session, problem: &str) -> Option<String> {
+    let flattened = simulation::flattened(session, problem).ok()?;
+    let balance = flattened.balance?.of_component()?;
+    Some(format!("{}: {balance}", flattened.model.name))
+}
+
+/// The classes that can be simulated among these and all in them: models and blocks that are not
+/// partial, in order of loading; and how many classes there are.
+pub fn models(session: &mut Session, loaded: &[Name]) -> (Vec<Name>, usize) {
+    let library = session.library();
+    let all: Vec<Name> = loaded.iter().flat_map(|name| library.all_in(name)).collect();
+    let count = all.len();
+    let is_model = |name: &Name| {
+        library.definition(name).is_some_and(|class| {
+            matches!(class.restriction, Restriction::Model | Restriction::Block) && !class.partial
+        })
+    };
+    (all.into_iter().filter(is_model).collect(), count)
+}

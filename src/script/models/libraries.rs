@@ -1,0 +1,277 @@
+//! Libraries: where they are found, and their files as classes are read from them.
+
+use crate::diag::{Diagnostic, Fault};
+use crate::flatten::LibraryFiles;
+use crate::models;
+use crate::name::{Ident, Name};
+use crate::script::Session;
+use crate::script::access::files::cannot;
+use crate::script::errors::OTHER_VERSION;
+use crate::script::world::{Files, normalized};
+use crate::source::{SourceId, SourceMap, Span};
+use crate::syntax;
+use crate::syntax::ast::{
+    Annotation, Argument, Binding, ClassDefinition, ClassSpecifier, ExpressionKind, Modification,
+    Section,
+};
+use crate::{fault, flatten::Library};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, OnceLock};
+
+/// The texts of one library: decoded, and put among the sources of the session.
+#[derive(Debug)]
+pub(super) struct LibraryTexts {
+    files: Arc<dyn Files>,
+    sources: SourceMap,
+    /// The working directory, to which shown paths are relative.
+    current: PathBuf,
+    /// The warning about the first file that is not UTF-8.
+    encoding: OnceLock<Diagnostic>,
+    warnings: Warnings,
+}
+
+/// What is to be told about the encodings of libraries.
+pub(super) type Warnings = Arc<Mutex<Vec<Diagnostic>>>;
+
+impl LibraryFiles for LibraryTexts {
+    fn read(&self, path: &Path) -> Result<(SourceId, Arc<str>), Fault> {
+        let bytes = self.files.read(path).map_err(|error| cannot("read", path, &error))?;
+        let (text, warning) = syntax::decode(&bytes);
+        let shown = path.strip_prefix(&self.current).unwrap_or(path).display().to_string();
+        let text: Arc<str> = text.into();
+        let source = self.sources.add(shown, text.clone());
+        if let Some(warning) = warning {
+            let warning = warning.at(Span::new(source, 0, 0)).warning();
+            if self.encoding.set(warning.clone()).is_ok()
+                && let Ok(mut warnings) = self.warnings.lock()
+            {
+                warnings.push(warning);
+            }
+        }
+        Ok((source, text))
+    }
+
+    fn list(&self, folder: &Path) -> Vec<String> {
+        self.files.list_dir(folder).unwrap_or_default()
+    }
+
+    fn is_file(&self, path: &Path) -> bool {
+        self.files.is_file(path)
+    }
+}
+
+impl Session {
+    /// Makes the packages in a folder loadable by name.
+    pub fn add_library_dir(&mut self, path: &Path) {
+        let path = self.world.absolute(path);
+        self.classes.add_directory(path);
+    }
+
+    /// The files of a library that is going to be loaded.
+    pub(super) fn library_texts(&self) -> Arc<dyn LibraryFiles> {
+        Arc::new(LibraryTexts {
+            files: self.world.files(),
+            sources: self.sources.clone(),
+            current: self.world.current_dir(),
+            encoding: OnceLock::new(),
+            warnings: self.classes.warnings.clone(),
+        })
+    }
+
+    /// The answer of the library to a question, or what is wrong with the texts that it needed for
+    /// it. Tells the warnings about them.
+    pub(in crate::script) fn ask_library<T>(
+        &mut self,
+        question: impl FnOnce(&mut Library) -> Result<T, Vec<Diagnostic>>,
+    ) -> Result<T, Vec<Diagnostic>> {
+        // What was found before concerned another question.
+        self.classes.library.take_problems();
+        let answer = question(&mut self.classes.library);
+        let mut warnings = self.classes.take_warnings();
+        warnings.extend(self.classes.library.take_warnings());
+        warnings.into_iter().for_each(|warning| self.report(warning));
+        match self.classes.library.take_problems() {
+            problems if problems.is_empty() => answer,
+            problems => Err(problems),
+        }
+    }
+
+    /// Where the top-level class of this name is: in the library folders, the working directory,
+    /// a folder `models` beside the scripts being run or above them, or in the program. A folder
+    /// of the version that was asked for comes first, one with the name in other case last.
+    pub(super) fn search_class(&self, name: Ident) -> Option<PathBuf> {
+        let folders = self.folders();
+        let exact = self.classes.versions.get(&name).and_then(|version| {
+            let wanted = format!("{name} {version}");
+            folders.iter().find_map(|folder| self.version_in(folder, &wanted))
+        });
+        let name = name.as_str();
+        exact
+            .or_else(|| folders.iter().find_map(|folder| self.class_in(folder, name)))
+            .or_else(|| folders.iter().find_map(|folder| self.in_other_case(folder, name)))
+    }
+
+    /// Asks for the first of these versions that is there, when the library is loaded.
+    pub(in crate::script) fn want_version(&mut self, name: &Name, versions: Vec<String>) {
+        let Some(library) = name.first() else { return };
+        let folders = self.folders();
+        let wanted = versions.into_iter().take_while(|version| version != "default");
+        let found = wanted.into_iter().find(|version| {
+            let named = format!("{library} {version}");
+            folders.iter().any(|folder| self.version_in(folder, &named).is_some())
+        });
+        if let Some(version) = found {
+            self.classes.versions.insert(library, version);
+        }
+    }
+
+    /// Folders that were named for libraries.
+    pub(in crate::script) fn library_folders(&self) -> &[PathBuf] {
+        self.classes.directories()
+    }
+
+    fn folders(&self) -> Vec<PathBuf> {
+        let current = self.world.current_dir();
+        let frames = self.frames.iter().rev().flat_map(|frame| frame.folder.ancestors());
+        let models = frames.chain(current.ancestors()).map(|folder| folder.join("models"));
+        let own = self.classes.directories().iter().cloned().chain([current.clone()]);
+        let all = own.chain(models).chain([PathBuf::from(models::FOLDER)]);
+        all.map(|folder| normalized(&folder)).collect()
+    }
+
+    /// The folder `Name 1.2.3`, also with more behind it: `Name 1.2.3+build.4`.
+    fn version_in(&self, folder: &Path, wanted: &str) -> Option<PathBuf> {
+        let entries = self.world.list_dir(folder).ok()?;
+        let fits = |entry: &&String| {
+            entry.strip_prefix(wanted).is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
+        };
+        let found = entries.iter().find(fits)?;
+        Some(folder.join(found))
+    }
+
+    fn class_in(&self, folder: &Path, name: &str) -> Option<PathBuf> {
+        let package = folder.join(name);
+        if self.world.exists(&package.join("package.mo")) {
+            return Some(package);
+        }
+        let file = folder.join(format!("{name}.mo"));
+        if self.world.exists(&file) {
+            return Some(file);
+        }
+        let prefix = format!("{name} ");
+        let entries = self.world.list_dir(folder).ok()?;
+        let versions = entries.iter().filter(|entry| entry.starts_with(&prefix));
+        let newest = versions.max_by_key(|entry| numbers(&entry[prefix.len()..]))?;
+        Some(folder.join(newest))
+    }
+
+    fn in_other_case(&self, folder: &Path, name: &str) -> Option<PathBuf> {
+        let entries = self.world.list_dir(folder).ok()?;
+        let mut same = entries.iter().filter(|entry| entry.eq_ignore_ascii_case(name));
+        let found = same.find(|entry| self.world.exists(&folder.join(entry).join("package.mo")));
+        found.map(|entry| folder.join(entry))
+    }
+
+    /// Notes the versions that loaded packages ask for, and tells if another one is loaded.
+    pub(super) fn note_versions(&mut self, names: &[Name]) {
+        for name in names {
+            let Some(definition) = self.classes.library.definition(name) else { continue };
+            for (library, version) in uses(&definition) {
+                self.classes.versions.entry(library).or_insert(version);
+            }
+        }
+        for name in names.iter().filter(|name| name.is_simple()) {
+            if let Some(fault) = self.other_version(name) {
+                self.report(fault.at(self.call).warning());
+            }
+        }
+    }
+
+    /// The `version` annotation of a loaded package; empty without.
+    pub(in crate::script) fn class_version(&self, name: &Name) -> Result<String, Fault> {
+        let definition = self.classes.library.definition(name);
+        let definition = definition.ok_or_else(|| self.unknown_class(name))?;
+        Ok(version(&definition).unwrap_or_default())
+    }
+
+    /// The warning about a library that is older than what was asked for, or of another main
+    /// version. The library in the program serves models of all versions.
+    fn other_version(&self, name: &Name) -> Option<Fault> {
+        let wanted = self.classes.versions.get(&name.first()?)?;
+        let definition = self.classes.library.definition(name)?;
+        let loaded = version(&definition)?;
+        let is_shipped = self.classes.file_of(name)?.starts_with(models::FOLDER);
+        let (asked, given) = (numbers(wanted), numbers(&loaded));
+        let fits = asked.first() == given.first() && asked <= given;
+        (!fits && !is_shipped).then(|| {
+            fault!(OTHER_VERSION, "version {loaded} of library `{name}` is loaded, {wanted} is asked for";
+                help: "name the folder that has the other one with `--library`, if results differ")
+        })
+    }
+
+    /// Puts the types under their former name into a standard library that lacks them.
+    pub(super) fn supply_units(&mut self, names: &[Name]) -> Result<(), Diagnostic> {
+        let modelica = Name::parse("Modelica");
+        let library: &mut Library = &mut self.classes.library;
+        let has = |part: &str| library.contains(&modelica.child(Ident::new(part)));
+        if !names.contains(&modelica) || !has("Units") || has("SIunits") {
+            return Ok(());
+        }
+        let path = Path::new(models::FOLDER).join("Modelica").join("SIunits.mo");
+        let texts = self.library_texts();
+        if texts.is_file(&path) {
+            self.classes.library.load_lazily(&texts, &path, &modelica)?;
+        }
+        Ok(())
+    }
+}
+
+/// The numbers of a version, for comparison.
+fn numbers(text: &str) -> Vec<u64> {
+    text.split(|c: char| !c.is_ascii_digit()).filter_map(|part| part.parse().ok()).collect()
+}
+
+/// The `version` annotation of a package (MLS §18.8.2).
+fn version(definition: &ClassDefinition) -> Option<String> {
+    string(annotated(definition, "version")?)
+}
+
+/// The libraries that a package uses, with their versions (MLS §18.8.3).
+fn uses(definition: &ClassDefinition) -> Vec<(Ident, String)> {
+    let Some(uses) = annotated(definition, "uses") else { return Vec::new() };
+    let library = |argument: &Argument| {
+        let (name, modification) = named(argument)?;
+        let version = modification.arguments.iter().filter_map(named);
+        let version = version.filter(|(name, _)| *name == "version").find_map(|(_, v)| string(v));
+        Some((name, version?))
+    };
+    uses.arguments.iter().filter_map(library).collect()
+}
+
+/// What an annotation of a class says about a name.
+fn annotated<'a>(definition: &'a ClassDefinition, name: &str) -> Option<&'a Modification> {
+    let ClassSpecifier::Long(long) = &definition.specifier else { return None };
+    let annotation = |section: &'a Section| match section {
+        Section::Annotation(Annotation { arguments, .. }) => Some(arguments),
+        _ => None,
+    };
+    let mut arguments = long.sections.iter().filter_map(annotation).flatten().filter_map(named);
+    arguments.find(|(known, _)| *known == name).map(|(_, modification)| modification)
+}
+
+fn named(argument: &Argument) -> Option<(Ident, &Modification)> {
+    match argument {
+        Argument::Element(element) => {
+            Some((element.name.node.last()?, element.modification.as_ref()?))
+        }
+        Argument::Redeclaration(_) => None,
+    }
+}
+
+fn string(modification: &Modification) -> Option<String> {
+    let Some(Binding::Expression(value)) = &modification.binding else { return None };
+    match &value.kind {
+        ExpressionKind::String(text) => Some(text.to_string()),
+        _ => None,
+    }
+}

@@ -1,0 +1,116 @@
+//! The files that a model may use while it is compiled: tables above all.
+
+use crate::diag::Fault;
+use crate::external::{Provide, Resources};
+use crate::name::{Ident, Name};
+use crate::script::Session;
+use crate::script::access::files::{cannot, plain};
+use crate::script::errors::FILE_ERROR;
+use crate::script::world::{Files, normalized};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Files of a session as they are looked for in one model.
+#[derive(Debug)]
+struct ModelFiles {
+    files: Arc<dyn Files>,
+    /// Where relative paths start: the first folder that has the file.
+    folders: Vec<PathBuf>,
+    /// The file or folder of each loaded top-level class.
+    packages: BTreeMap<Ident, PathBuf>,
+}
+
+impl Session {
+    /// Files for a model: relative paths start from the working directory, the folder of the
+    /// script, the folder of the file that the model is in.
+    pub(in crate::script) fn resources_for(&self, model: &Name) -> Resources {
+        let packages = self.classes.packages();
+        let own = model.first().and_then(|top| packages.get(&top));
+        let is_file = |own: &PathBuf| own.extension().is_some_and(|e| e == "mo");
+        let folder = own.and_then(|own| if is_file(own) { own.parent() } else { Some(own) });
+        self.resources_below(folder)
+    }
+
+    /// Files for any model: relative paths start from the working directory and the folder of the
+    /// script.
+    pub(super) fn resources(&self) -> Resources {
+        self.resources_below(None)
+    }
+
+    fn resources_below(&self, folder: Option<&Path>) -> Resources {
+        let mut folders = vec![self.world.current_dir()];
+        folders.extend(self.frames.iter().rev().map(|frame| frame.folder.clone()));
+        folders.extend(folder.map(Path::to_path_buf));
+        let packages = self.classes.packages();
+        let files = self.world.files();
+        Resources::new(Arc::new(ModelFiles { files, folders, packages }))
+    }
+}
+
+impl ModelFiles {
+    fn found(&self, name: &str) -> Result<PathBuf, Fault> {
+        if let Some(uri) = name.strip_prefix("modelica://") {
+            return self.in_package(name, uri);
+        }
+        let path = plain(name.trim());
+        let candidates = || self.folders.iter().map(|folder| normalized(&folder.join(&path)));
+        let exists = |path: &PathBuf| self.files.is_file(path) || self.has_entries(path);
+        candidates().find(exists).or_else(|| candidates().next()).ok_or_else(|| missing(name))
+    }
+
+    /// `modelica://Package.Inner/path`: below the folder of the package (MLS §13.5).
+    fn in_package(&self, name: &str, uri: &str) -> Result<PathBuf, Fault> {
+        let (package, file) = uri.split_once('/').unwrap_or((uri, ""));
+        let package = Name::parse(package);
+        let top = package.first().and_then(|top| self.packages.get(&top));
+        let Some(own) = top else {
+            return Err(missing(name).help("load the package that the URI names"));
+        };
+        let root = match own.extension().is_some_and(|e| e == "mo") {
+            true => own.parent().unwrap_or(own),
+            false => own,
+        };
+        let mut folder = root.to_path_buf();
+        for part in &package.parts[1..] {
+            let inner = folder.join(part.as_str());
+            if !self.has_entries(&inner) {
+                break;
+            }
+            folder = inner;
+        }
+        Ok(normalized(&folder.join(file)))
+    }
+
+    fn has_entries(&self, path: &Path) -> bool {
+        self.files.list_dir(path).is_ok_and(|entries| !entries.is_empty())
+    }
+}
+
+fn missing(name: &str) -> Fault {
+    Fault::new(FILE_ERROR, format!("there is no file `{name}`"))
+}
+
+impl Provide for ModelFiles {
+    fn path(&self, name: &str) -> Result<String, Fault> {
+        Ok(self.found(name)?.display().to_string())
+    }
+
+    fn read(&self, name: &str) -> Result<Vec<u8>, Fault> {
+        let path = self.found(name)?;
+        if !self.files.is_file(&path) {
+            let folders = self.folders.iter().map(|f| format!("`{}`", f.display()));
+            let folders = folders.collect::<Vec<_>>().join(", ");
+            return Err(missing(name).help(format!("relative paths start from {folders}")));
+        }
+        self.files.read(&path).map_err(|error| cannot("read", &path, &error))
+    }
+
+    fn is_folder(&self, name: &str) -> Option<bool> {
+        let path = self.found(name).ok()?;
+        match self.files.is_file(&path) {
+            true => Some(false),
+            false => self.has_entries(&path).then_some(true),
+        }
+    }
+}

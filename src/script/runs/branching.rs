@@ -1,0 +1,55 @@
+//! What if: statements that change a run from one of its generations on.
+
+use crate::diag::Diagnostic;
+use crate::fault;
+use crate::script::Session;
+use crate::script::builtins::Failure;
+use crate::script::errors::CANNOT_BRANCH;
+use crate::syntax::{self, ast::Script};
+use std::sync::Arc;
+
+/// What is to be executed when, and how far the run has come.
+#[derive(Default)]
+pub(super) struct Branching {
+    pending: Option<(usize, Arc<Script>)>,
+    simulated: usize,
+}
+
+impl Session {
+    /// Executes `text` among the variables of the script as soon as `Eval` has simulated the
+    /// generation of this number, from 1: what follows in the generation uses the new values.
+    ///
+    /// # Errors
+    ///
+    /// `text` is no script.
+    pub fn branch_at(&mut self, generation: usize, text: &str) -> Result<(), Diagnostic> {
+        let source = self.sources.add("what if", text);
+        let script = syntax::parse_script(source, text)?;
+        self.extension::<Branching>().pending = Some((generation, Arc::new(script)));
+        Ok(())
+    }
+
+    /// Whether what [`Session::branch_at`] has prepared was not reached.
+    pub fn branch_is_pending(&mut self) -> bool {
+        self.extension::<Branching>().pending.is_some()
+    }
+
+    /// `Eval` has simulated a generation.
+    pub(in crate::script) fn generation_simulated(&mut self) -> Result<(), Failure> {
+        let branching = self.extension::<Branching>();
+        branching.simulated += 1;
+        let simulated = branching.simulated;
+        let Some((_, script)) = branching.pending.take_if(|(at, _)| *at == simulated) else {
+            return Ok(());
+        };
+        if self.in_function {
+            let reason = "`Eval` is called in a function, whose variables nothing else can change";
+            return Err(fault!(CANNOT_BRANCH, "{reason}";
+                help: "call `Eval` from the script itself")
+            .into());
+        }
+        let mut statements = script.statements.iter();
+        let done = statements.try_for_each(|statement| self.top_level(statement, false));
+        done.map_err(|diagnostic| Failure::Elsewhere(vec![diagnostic]))
+    }
+}

@@ -1,0 +1,320 @@
+//! Identification as scripts do it: the measured data, the evaluation of populations, and the
+//! report at the end of a run.
+
+use super::tracing;
+use crate::bail;
+use crate::diag::{Diagnostic, Fault};
+use crate::ga::Genomes;
+use crate::identify::errors::{BAD_DATA, DATA_SIZES_DIFFER};
+use crate::identify::problem::{Fingerprint, NOISE_OF_FORMULAS, Solution};
+use crate::identify::{
+    CompiledModel, Ending, Evaluator, Measurement, Question, Recorder, Simulated, Study,
+};
+use crate::mat;
+use crate::registry::BAD_OPTION;
+use crate::script::Session;
+use crate::script::builtins::Failure;
+use crate::script::models::{simulation, static_curve};
+use crate::source::Span;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Evaluators kept: a script may simulate several experiments in each generation.
+const PREPARED: usize = 40;
+
+/// What a session knows of the identification that its scripts carry out.
+#[derive(Default)]
+pub(in crate::script) struct Identification {
+    /// What was observed of the run.
+    pub(in crate::script) recorder: Recorder,
+    /// The evaluators of the last requests, for the next generation; the latest is the last.
+    prepared: Vec<Prepared>,
+    /// When the run began.
+    started: Option<f64>,
+    /// Whether measured data could not be read.
+    pub(in crate::script) data_missing: bool,
+    /// Runs reported so far.
+    reported: usize,
+}
+
+/// An evaluator that is ready for the next population.
+struct Prepared {
+    request: Request,
+    /// The revision of the classes that it was made from.
+    revision: u64,
+    evaluator: Evaluator,
+}
+
+/// The arguments of `Eval` but for the population.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::script) struct Request {
+    /// Where the model is; empty when it is loaded.
+    pub(in crate::script) path: String,
+    /// Its name, with a modification if wanted.
+    pub(in crate::script) model: String,
+    /// What varies and what is compared.
+    pub(in crate::script) question: Question,
+}
+
+impl Session {
+    /// The identification of this session; its report is made when the outermost script ends.
+    pub(in crate::script) fn identification(&mut self) -> &mut Identification {
+        let now = self.world.monotonic_seconds();
+        self.at_end(report);
+        let identification = self.extension::<Identification>();
+        identification.started.get_or_insert(now);
+        identification
+    }
+
+    /// Reads the matrices `names` of X and Y from a file.
+    pub(in crate::script) fn read_measurement(
+        &mut self,
+        file: &str,
+        names: &[String; 2],
+    ) -> Result<Measurement, Fault> {
+        let content = mat::read_named(file, &self.read_bytes(Path::new(file))?)?;
+        let [x, y] = [content.column(&names[0])?, content.column(&names[1])?];
+        let notes = [&x, &y].into_iter().flat_map(crate::mat::Column::notes);
+        let notes: Vec<String> = notes.collect();
+        let units = [x.about.unit, y.about.unit];
+        let [x, y] = [x.values, y.values];
+        if x.len() != y.len() {
+            bail!(
+                DATA_SIZES_DIFFER,
+                "`{}` of `{file}` has {} elements, but `{}` has {}",
+                names[0],
+                x.len(),
+                names[1],
+                y.len();
+                help: "name the two matrices of one experiment"
+            );
+        }
+        let pairs = x.into_iter().zip(y).filter(|(x, y)| x.is_finite() && y.is_finite());
+        let (x, y): (Vec<f64>, Vec<f64>) = pairs.unzip();
+        if x.is_empty() {
+            bail!(BAD_DATA, "`{}` of `{file}` has no elements", names[0]);
+        }
+        self.note_data(&content, notes);
+        for ((name, unit), values) in names.iter().zip(&units).zip([&x, &y]) {
+            self.column_measured((file, name), unit.as_deref(), values);
+        }
+        Ok(Measurement { file: file.to_owned(), x, y })
+    }
+
+    /// A number for the place in the scripts that a command was called from: the same whenever the
+    /// script is read again.
+    pub(in crate::script) fn site_of_call(&self) -> u64 {
+        let span = self.call_site();
+        let mut site = Fingerprint::default();
+        if let Some(source) = self.sources.get(span.source) {
+            site.add(source.name.as_bytes());
+        }
+        site.add(&span.start.to_le_bytes());
+        site.number()
+    }
+
+    /// Notes measured data. Data read after generations have been evaluated begin another run: the
+    /// one before is reported.
+    pub(in crate::script) fn measured(&mut self, measurement: Measurement) -> Result<(), Fault> {
+        if !self.identification().recorder.history.generations.is_empty() {
+            report_run(self)?;
+        }
+        let identification = self.identification();
+        identification.recorder.measured(measurement);
+        identification.data_missing = false;
+        Ok(())
+    }
+
+    /// Simulates a population; the evaluator is kept for the next one.
+    pub(in crate::script) fn evaluate_population(
+        &mut self,
+        request: Request,
+        genomes: &Genomes,
+    ) -> Result<Simulated, Failure> {
+        let revision = self.classes.revision();
+        let mut evaluator = match self.identification().take_prepared(&request, revision) {
+            Some(evaluator) => evaluator,
+            None => self.prepare(&request)?,
+        };
+        let simulated = match self.journaled(&request, &evaluator.settings_text(), genomes)? {
+            Some(known) => {
+                if self.is_to_be_checked() {
+                    check(&mut evaluator, genomes, &known)
+                        .inspect_err(|_| self.refuse_to_resume())?;
+                }
+                known
+            }
+            None => {
+                let simulated = evaluator.evaluate(genomes)?;
+                self.journal(&request, &evaluator.settings_text(), genomes, &simulated);
+                simulated
+            }
+        };
+        // Loading the model may have changed the classes.
+        let revision = self.classes.revision();
+        let identification = self.identification();
+        identification.recorder.evaluated(evaluator.study(), evaluator.x(), genomes, &simulated);
+        let (study, x) = (evaluator.study().clone(), evaluator.x().to_vec());
+        identification.prepared.push(Prepared { request, revision, evaluator });
+        self.population_simulated(&study, &x, &simulated);
+        self.trace_simulation((&study, &x), genomes, &simulated)?;
+        self.show_run(&study, genomes);
+        Ok(simulated)
+    }
+
+    /// Simulates one individual once more, with the model and at the points of the last `Eval`: Y
+    /// there, or why there is none. Nothing of it is counted or recorded.
+    pub fn simulate_again(&mut self, genes: &[f64]) -> Result<Vec<f64>, String> {
+        let Some(last) = self.extension::<Identification>().prepared.last_mut() else {
+            return Err("no model was simulated".to_owned());
+        };
+        let genomes = Genomes::new(genes.len(), genes.to_vec()).map_err(|fault| fault.message)?;
+        let simulated = last.evaluator.evaluate(&genomes).map_err(|fault| fault.message)?;
+        match simulated.failures.first() {
+            Some(Some(failed)) => Err(failed.to_string()),
+            _ => Ok(simulated.rows),
+        }
+    }
+
+    fn trace_simulation(
+        &mut self,
+        (study, x): (&Study, &[f64]),
+        genomes: &Genomes,
+        simulated: &Simulated,
+    ) -> Result<(), Fault> {
+        self.traced(|tracer, place| {
+            let failed = simulated.failures.iter().enumerate();
+            let failures =
+                failed.filter_map(|(k, why)| Some((k as u32, why.as_ref()?.to_string())));
+            let subject = tracing::subject(study);
+            tracer.simulated(place, (&subject, x), genomes.values(), failures.collect());
+        })
+    }
+
+    /// Loads the file or folder that the model of a request is in.
+    pub(super) fn load_model_of(&mut self, request: &Request) -> Result<(), Failure> {
+        let path = Path::new(&request.path);
+        if !request.path.is_empty() && !self.has_loaded(path) {
+            self.load_path(path)?;
+        }
+        Ok(())
+    }
+
+    fn prepare(&mut self, request: &Request) -> Result<Evaluator, Failure> {
+        self.load_model_of(request)?;
+        let model = self.model_of(request)?;
+        let threads = self.world.threads();
+        Ok(Evaluator::new(Arc::new(model), request.question.clone(), threads)?)
+    }
+}
+
+/// The first individual, which is the best where elites are kept, and another one are computed
+/// again: if a bit differs, the earlier run was that of another model.
+fn check(evaluator: &mut Evaluator, genomes: &Genomes, known: &Simulated) -> Result<(), Failure> {
+    let mut site = Fingerprint::default();
+    site.add_numbers(genomes.values());
+    let rows = [0, site.number() as usize % genomes.len().max(1)];
+    let points = known.rows.len() / genomes.len().max(1);
+    for row in rows.into_iter().filter(|row| *row < genomes.len()) {
+        let one = Genomes::new(genomes.row(row).len(), genomes.row(row).to_vec())?;
+        let now = evaluator.evaluate(&one)?;
+        let before = &known.rows[row * points..(row + 1) * points];
+        let differs =
+            |(a, b): (&f64, &f64)| a.to_bits() != b.to_bits() && !(a.is_nan() && b.is_nan());
+        if before.len() != now.rows.len() || before.iter().zip(&now.rows).any(differs) {
+            bail!(
+                BAD_OPTION,
+                "the run cannot be resumed: individual {} of it is simulated otherwise now", row + 1;
+                help: "restore the model, its libraries and tables, the settings of the simulation, the program and the machine, or begin anew without `--resume`"
+            );
+        }
+    }
+    Ok(())
+}
+
+impl Identification {
+    /// The evaluator of this request, if it is at hand and the classes have not changed since.
+    fn take_prepared(&mut self, request: &Request, revision: u64) -> Option<Evaluator> {
+        let known = self.prepared.iter().position(|known| known.request == *request);
+        if let Some(place) = known {
+            let known = self.prepared.remove(place);
+            return (known.revision == revision).then_some(known.evaluator);
+        }
+        if self.prepared.len() >= PREPARED {
+            self.prepared.remove(0);
+        }
+        None
+    }
+}
+
+impl Session {
+    /// The model of a request; where X is an input of it, one that is driven by the points.
+    fn model_of(&mut self, request: &Request) -> Result<CompiledModel, Failure> {
+        let Question { x_name, x, .. } = &request.question;
+        if static_curve::is_driven(self, &request.model, x_name)? {
+            let typical = static_curve::typical(x);
+            let class = static_curve::around(self, &request.model, (x_name, typical))?;
+            let translated = simulation::translated(self, &class)?;
+            return Ok(static_curve::model(&request.model, &translated, x_name)?);
+        }
+        let translated = simulation::translated(self, &request.model)?;
+        Ok(CompiledModel::new(&request.model, translated.program.clone()))
+    }
+}
+
+/// What remains to be done when the outermost script ends.
+fn report(session: &mut Session) -> Result<(), Diagnostic> {
+    report_run(session).map_err(|fault| fault.at(Span::NONE))
+}
+
+/// The report of a run: the table for people, and the files for programs. Nothing when no
+/// individual was simulated successfully.
+fn report_run(session: &mut Session) -> Result<(), Fault> {
+    let interrupted = session.is_interrupted();
+    let (threads, probe) = (session.world.threads(), session.options.probe);
+    let identification = session.extension::<Identification>();
+    let started = identification.started.take();
+    let recorder = identification.recorder.begin_next();
+    let Some(best) = &recorder.best else { return Ok(()) };
+    let compared: Vec<_> = best
+        .compared
+        .iter()
+        .filter_map(|one| Some((one.measured.clone()?, one.study.clone())))
+        .collect();
+    let mut noise = NOISE_OF_FORMULAS;
+    let mut models = Vec::new();
+    for compared in &best.compared {
+        let own = |prepared: &&mut Prepared| {
+            prepared.evaluator.study() == &compared.study && prepared.evaluator.x() == compared.x
+        };
+        let own = identification.prepared.iter_mut().rev().find(own);
+        models.push(own.map(|own| {
+            noise = noise.max(own.evaluator.noise());
+            own.evaluator.model().clone()
+        }));
+    }
+    let ending = Ending { recorder: &recorder, models, noise, threads, probe, interrupted };
+    let Some(solution) = ending.solution() else { return Ok(()) };
+    session.world.end_view();
+    for (measured, study) in compared {
+        session.compared(&measured, &study.model, &study.y);
+    }
+    session.print(&solution.text());
+    let now = session.world.monotonic_seconds();
+    let seconds = now - started.unwrap_or(now);
+    session.print(&format!("  {:<12} {seconds:.2} s\n", "time"));
+    write_files(session, &solution, seconds)
+}
+
+/// Writes the files of a run into the folder of the results; those of further runs of the session
+/// into folders within it.
+fn write_files(session: &mut Session, solution: &Solution, seconds: f64) -> Result<(), Fault> {
+    let identification = session.extension::<Identification>();
+    identification.reported += 1;
+    let run = identification.reported;
+    let mut folder = session.world.output_dir();
+    if run > 1 {
+        folder.push(format!("run-{run}"));
+    }
+    super::problem::write(session, &folder, solution, seconds)
+}

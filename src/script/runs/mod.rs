@@ -1,0 +1,12 @@
+//! Runs of identifications: evaluated populations, journals and checkpoints, the live view, and
+//! problem files.
+
+pub(in crate::script) mod branching;
+pub(in crate::script) mod checkpoint;
+pub(in crate::script) mod identification;
+pub(in crate::script) mod journal;
+pub mod problem;
+pub(in crate::script) mod refinement;
+pub(in crate::script) mod tracing;
+pub mod view;
+pub(in crate::script) mod watching;

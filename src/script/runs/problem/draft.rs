@@ -1,0 +1,385 @@
+//! A first problem file from a data file and a model: columns are matched with variables by their names,
+//! ranges are guessed from the model.
+
+use super::build;
+use super::file;
+use crate::bail;
+use crate::diag::{Diagnostic, Fault};
+use crate::flatten::FlatModel;
+use crate::mat::{self, MatFile};
+use crate::registry::BAD_OPTION;
+use crate::script::Session;
+use crate::script::models::simulation;
+use crate::script::models::simulation::Translated;
+use crate::source::Span;
+use crate::syntax::ast::CausalityPrefix;
+use crate::units::written;
+use std::fmt::Write;
+use std::path::Path;
+
+/// What a draft is made from. Paths are written as they are given.
+#[derive(Debug, Clone, Default)]
+pub struct DraftOptions {
+    /// The data file.
+    pub data: String,
+    /// The file or folder of the model; empty for a class of a library.
+    pub models: String,
+    /// The class; empty for the only one of the file.
+    pub class: String,
+}
+
+/// A draft and what is left to do.
+#[derive(Debug, Clone)]
+pub struct Draft {
+    /// The problem file.
+    pub text: String,
+    /// Why it cannot be run as it is; none where it can.
+    pub incomplete: Option<String>,
+}
+
+/// A column of the data by the name that a problem gives it.
+struct DataColumn {
+    name: String,
+    unit: Option<String>,
+    values: Vec<f64>,
+}
+
+/// Which columns mean what.
+struct Roles<'c> {
+    /// The variable and its column.
+    x: (String, &'c DataColumn),
+    outputs: Vec<(String, &'c DataColumn)>,
+    inputs: Vec<(String, &'c DataColumn)>,
+    unused: Vec<&'c DataColumn>,
+}
+
+/// Writes a problem file.
+///
+/// # Errors
+///
+/// Data or a model that cannot be read, a file with several classes of which none is named.
+pub fn draft(session: &mut Session, options: &DraftOptions) -> Result<Draft, Vec<Diagnostic>> {
+    let one = |fault: Fault| vec![fault.at(Span::NONE)];
+    let bytes = session.read_bytes(Path::new(&options.data)).map_err(one)?;
+    let table = mat::read_named(&options.data, &bytes).map_err(one)?;
+    let columns = columns(&table).map_err(one)?;
+    let loaded = match options.models.as_str() {
+        "" => Vec::new(),
+        models => session.load_path(Path::new(models))?,
+    };
+    let class = match options.class.as_str() {
+        "" => build::only_class(&loaded).map_err(one)?,
+        class => class.to_owned(),
+    };
+    let translated = simulation::translated(session, &class)?;
+    let roles = roles(&columns, &translated).map_err(one)?;
+    let mut text = head(options, &class);
+    parameters(&mut text, &translated, &roles);
+    experiment(&mut text, options, &translated.flat, &roles);
+    text.push_str(
+        "\n[stop]                       # the first that holds ends the run\n\
+         evaluations = 20000          # simulations\n\
+         stagnation = 500             # generations without a better value\n",
+    );
+    let incomplete = check(session, &text);
+    Ok(Draft { text, incomplete })
+}
+
+/// The columns of numbers by their shortest names.
+fn columns(table: &MatFile) -> Result<Vec<DataColumn>, Fault> {
+    let mut found = Vec::new();
+    for (name, matrix) in &table.arrays {
+        if matrix.as_vector().is_none_or(<[f64]>::is_empty) {
+            continue;
+        }
+        let column = table.column(name)?;
+        let name = table.short_name(name).to_owned();
+        found.push(DataColumn { name, unit: column.about.unit, values: column.values });
+    }
+    if found.len() < 2 {
+        bail!(BAD_OPTION, "`{}` has no two columns of numbers", table.file_name);
+    }
+    Ok(found)
+}
+
+fn roles<'c>(columns: &'c [DataColumn], model: &Translated) -> Result<Roles<'c>, Fault> {
+    let has_states = !model.program.sorted().states.is_empty();
+    let flat = &model.flat;
+    let matched = |column: &DataColumn| {
+        let name = variable_of(&column.name, flat)?;
+        let variable = flat.variables.get(name.as_str())?;
+        let is_input =
+            variable.causality == Some(CausalityPrefix::Input) && variable.binding.is_none();
+        let known = variable.variability < crate::flatten::Variability::Discrete;
+        (!known).then_some((name, is_input))
+    };
+    let is_time = |column: &&DataColumn| {
+        let lower = column.name.to_lowercase();
+        let named = ["time", "t", "zeit", "temps", "tempo", "tiempo"].contains(&lower.as_str());
+        named && matched(column).is_none()
+    };
+    let in_seconds = |column: &&DataColumn| {
+        let unit = column.unit.as_deref().and_then(written);
+        unit.is_some_and(|unit| unit.to(crate::units::Unit::SECOND).is_some())
+            && matched(column).is_none()
+    };
+    let driver =
+        |column: &&DataColumn| !has_states && matched(column).is_some_and(|(_, input)| input);
+    let time = || columns.iter().find(is_time).or_else(|| columns.iter().find(in_seconds));
+    let x = match (time(), columns.iter().find(driver)) {
+        (Some(time), _) => ("time".to_owned(), time),
+        (None, Some(driver)) => {
+            (matched(driver).map_or_else(String::new, |(name, _)| name), driver)
+        }
+        (None, None) => match matched(&columns[0]) {
+            Some((name, _)) => (name, &columns[0]),
+            None => ("time".to_owned(), &columns[0]),
+        },
+    };
+    let mut roles = Roles { x, outputs: Vec::new(), inputs: Vec::new(), unused: Vec::new() };
+    for column in columns.iter().filter(|column| column.name != roles.x.1.name) {
+        match matched(column) {
+            Some((name, true)) => roles.inputs.push((name, column)),
+            Some((name, false)) => roles.outputs.push((name, column)),
+            None => roles.unused.push(column),
+        }
+    }
+    Ok(roles)
+}
+
+/// The variable that a column means: of the same name, else the only one that differs in case alone.
+fn variable_of(column: &str, flat: &FlatModel) -> Option<String> {
+    if flat.variables.contains_key(column) {
+        return Some(column.to_owned());
+    }
+    let lower = column.to_lowercase();
+    let mut alike = flat.variables.keys().filter(|name| name.to_lowercase() == lower);
+    let found = alike.next()?;
+    alike.next().is_none().then(|| found.to_string())
+}
+
+fn head(options: &DraftOptions, class: &str) -> String {
+    let mut text = format!(
+        "# A problem for `gapi identify`, drafted by `gapi new`: read every line and correct what it guesses.\n\n\
+         title = {}\n\
+         model = {}          # the class, with a modification if wanted: \"Class(p = 1)\"\n",
+        quoted(&format!("{class} from {}", options.data)),
+        quoted(class),
+    );
+    if !options.models.is_empty() {
+        _ = writeln!(
+            text,
+            "files = [{}]          # Modelica files and folders to load",
+            quoted(&options.models)
+        );
+    }
+    text
+}
+
+fn quoted(text: &str) -> String {
+    format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\""))
+}
+
+fn key(name: &str) -> String {
+    let bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    if bare { name.to_owned() } else { quoted(name) }
+}
+
+/// The parameters at the top of the model, each with a range.
+fn parameters(text: &mut String, model: &Translated, roles: &Roles<'_>) {
+    text.push_str(
+        "\n# The parameters to identify. What is known is fixed, `NAME = { fixed = 1.5 }`, or deleted, so that the\n\
+         # model's value holds. Positive ranges wider than a decade are searched in logarithms.\n\
+         [parameters]\n",
+    );
+    let mut count = 0;
+    for parameter in model.program.parameters().iter().filter(|parameter| parameter.top_level) {
+        let is_number = matches!(parameter.base, crate::flatten::BaseType::Real);
+        let is_data =
+            roles.outputs.iter().chain(&roles.inputs).any(|(name, _)| **name == *parameter.name);
+        if !is_number || is_data {
+            continue;
+        }
+        count += 1;
+        let mut about = Vec::new();
+        if !parameter.unit.is_empty() {
+            about.push(parameter.unit.to_string());
+        }
+        if !parameter.description.is_empty() {
+            about.push(parameter.description.to_string());
+        }
+        let name = key(&parameter.name);
+        match range(parameter.min, parameter.max, parameter.default) {
+            Some(([min, max], why)) => {
+                about.push(why);
+                _ = writeln!(
+                    text,
+                    "{name} = {{ min = {min:?}, max = {max:?} }}          # {}",
+                    about.join("; ")
+                );
+            }
+            None => {
+                about.push(
+                    "the model gives no value: write a range and remove the first `#`".to_owned(),
+                );
+                _ = writeln!(
+                    text,
+                    "# {name} = {{ min = 0.1, max = 10.0 }}          # {}",
+                    about.join("; ")
+                );
+            }
+        }
+    }
+    if count == 0 {
+        text.push_str("# the model has no parameters at its top: name those of components, such as \"cell.R\"\n");
+    }
+}
+
+/// A range and where it comes from: the model's own, else a decade to both sides of its value.
+fn range(min: f64, max: f64, value: f64) -> Option<([f64; 2], String)> {
+    // 1e-60 and 1e60 stand for no limit in some libraries.
+    let limited = |limit: f64| limit.is_finite() && limit.abs() < 1e20;
+    if limited(min) && limited(max) && min < max {
+        return Some(([min, max], "the range of the model".to_owned()));
+    }
+    if !value.is_finite() {
+        return None;
+    }
+    let around = match value {
+        0.0 => [-1.0, 1.0],
+        value if value > 0.0 => [decimal(value / 10.0), decimal(value * 10.0)],
+        value => [decimal(value * 10.0), decimal(value / 10.0)],
+    };
+    let range = [
+        if min.is_finite() { around[0].max(min) } else { around[0] },
+        if max.is_finite() { around[1].min(max) } else { around[1] },
+    ];
+    let why = match value {
+        0.0 => "a guess: the model has 0".to_owned(),
+        value => format!("a decade around the model's {value}"),
+    };
+    (range[0] < range[1]).then_some((range, why))
+}
+
+/// A quotient or product with ten as it is written: 0.1 and not 0.09999999999999999.
+fn decimal(value: f64) -> f64 {
+    format!("{value:.12e}").parse().unwrap_or(value)
+}
+
+fn experiment(text: &mut String, options: &DraftOptions, flat: &FlatModel, roles: &Roles<'_>) {
+    _ = write!(
+        text,
+        "\n# One table `[[experiment]]` for each measurement.\n[[experiment]]\nname = \"measured\"\ndata = {}\n",
+        quoted(&options.data)
+    );
+    let (x_name, x) = &roles.x;
+    _ = writeln!(
+        text,
+        "x = {{ variable = {}, column = {} }}          # {}{}",
+        quoted(x_name),
+        quoted(&x.name),
+        span(x),
+        conversion(x, x_name, flat)
+    );
+    if roles.outputs.is_empty() {
+        text.push_str("# No column has the name of a variable: write which variable was measured in which column.\n");
+        let outputs =
+            flat.variables.values().filter(|v| v.causality == Some(CausalityPrefix::Output));
+        let output = outputs.map(|v| v.name.to_string()).next().unwrap_or_else(|| "y".to_owned());
+        let column = roles.unused.first().map_or("y", |column| column.name.as_str());
+        match roles.unused.len() {
+            1 => {
+                _ = writeln!(
+                    text,
+                    "outputs.{} = {{ column = {} }}          # a guess",
+                    key(&output),
+                    quoted(column)
+                )
+            }
+            _ => {
+                _ = writeln!(text, "# outputs.{} = {{ column = {} }}", key(&output), quoted(column))
+            }
+        }
+    } else {
+        text.push_str(
+            "# What was measured. Known errors: add `sigma = 0.01` in the unit of the variable.\n",
+        );
+    }
+    for (name, column) in &roles.outputs {
+        _ = writeln!(
+            text,
+            "outputs.{} = {{ column = {} }}          # {}{}",
+            key(name),
+            quoted(&column.name),
+            span(column),
+            conversion(column, name, flat)
+        );
+    }
+    if !roles.inputs.is_empty() {
+        text.push_str("# Inputs that follow columns: `hold` each value until the next, or join them by `linear` pieces.\n");
+    }
+    for (name, column) in &roles.inputs {
+        _ = writeln!(
+            text,
+            "inputs.{} = {{ column = {} }}          # {}{}",
+            key(name),
+            quoted(&column.name),
+            span(column),
+            conversion(column, name, flat)
+        );
+    }
+    for column in roles.unused.iter().filter(|_| !roles.outputs.is_empty()) {
+        _ = writeln!(text, "# not used: column {}, {}", quoted(&column.name), span(column));
+    }
+}
+
+/// The range of a column with its unit, and how many values are missing.
+fn span(column: &DataColumn) -> String {
+    let finite = || column.values.iter().copied().filter(|value| value.is_finite());
+    let (low, high) =
+        (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+    let unit = column.unit.as_deref().map_or(String::new(), |unit| format!(" {unit}"));
+    let missing = column.values.len() - finite().count();
+    let gaps = if missing > 0 { format!(", {missing} missing") } else { String::new() };
+    match finite().next() {
+        Some(_) => {
+            format!("{} values from {low} to {high}{unit}{gaps}", column.values.len() - missing)
+        }
+        None => "no values".to_owned(),
+    }
+}
+
+/// What happens to the unit of a column.
+fn conversion(column: &DataColumn, name: &str, flat: &FlatModel) -> String {
+    let unit = match name {
+        "time" => "s".to_owned(),
+        name => build::unit_in(flat, name),
+    };
+    match (&column.unit, unit.as_str()) {
+        (Some(given), unit) if !unit.is_empty() && given != unit => {
+            format!("; converted to {unit}")
+        }
+        (None, unit) if !unit.is_empty() => format!("; taken as {unit}: the file names no unit"),
+        _ => String::new(),
+    }
+}
+
+/// Builds the problem as `gapi identify` would; why that cannot be done.
+fn check(session: &mut Session, text: &str) -> Option<String> {
+    let source = session.sources.add("the draft", text);
+    let built = file::read(source, text).map_err(|error| vec![error]).and_then(|mut file| {
+        build::build(session, &mut file, Path::new(""), text).map(|built| built.notes)
+    });
+    match built {
+        Ok(notes) => {
+            for note in notes {
+                session.note(mat::errors::DATA_NOTE, note);
+            }
+            None
+        }
+        Err(errors) => errors.first().map(|error| {
+            let help: String = error.helps.iter().map(|help| format!("; {help}")).collect();
+            format!("{}{help}", error.message)
+        }),
+    }
+}

@@ -1,0 +1,399 @@
+//! Problems written in files: read, run with checkpoints, report.
+//!
+//! The checkpoint is the journal of the run in the folder of the results: every answer of the
+//! simulator, appended from time to time. A run that resumes asks the same questions again, is
+//! answered from the journal as far as it goes, and so ends with the same bytes as a run that was
+//! never interrupted. It is removed when the results have been written.
+
+mod build;
+mod constraint;
+mod control;
+mod data;
+mod draft;
+mod dynamics;
+mod file;
+mod inference;
+mod inputs;
+mod live;
+mod own_fitness;
+mod record;
+mod sigma;
+
+use super::checkpoint::{self, Checkpoint, keep_old};
+use crate::bail;
+use crate::diag::{Diagnostic, Fault};
+use crate::fault;
+use crate::identify::problem::{
+    self as solving, Finding, FindingKind, Importance, ModelSimulator, Origins, Run, Severity,
+    Simulate, Solution, SolvedSeries,
+};
+use crate::registry::BAD_OPTION;
+use crate::script::Session;
+use crate::script::access::policy::Grant;
+use crate::source::Span;
+use crate::value::RecordValue;
+pub use draft::{Draft, DraftOptions, draft};
+
+use build::Built;
+use control::Watched;
+use live::Live;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Files that not every run writes.
+const OPTIONAL: [&str; 4] = ["bands.csv", "bootstrap.csv", "posterior.csv", "profiles.csv"];
+/// The journal's file.
+const JOURNAL: &str = "run.journal";
+/// Seconds between two looks at the watched settings.
+const LOOK: f64 = 0.2;
+
+/// How a problem is run.
+#[derive(Debug, Clone, Default)]
+pub struct RunOptions {
+    /// Go on from the checkpoint.
+    pub resume: bool,
+    /// Discard the checkpoint of an earlier run.
+    pub fresh: bool,
+    /// A file with settings that may be changed while the run goes on.
+    pub watch: Option<PathBuf>,
+    /// Folder for the results within that of the world.
+    pub folder: PathBuf,
+    /// Profiles of the parameters after the fit.
+    pub profile: bool,
+    /// The next measurement after the fit.
+    pub design: bool,
+    /// Fits to data drawn anew after the fit.
+    pub bootstrap: bool,
+    /// Markov chains after the fit.
+    pub posterior: bool,
+    /// A sensitivity analysis before the fit, by name.
+    pub sensitivity: Option<String>,
+    /// Its base samples; 0 for the usual number.
+    pub samples: usize,
+    /// Ends the run after so many evaluations, whatever the problem says.
+    pub evaluations: Option<u64>,
+}
+
+/// The user has named this problem file: the data and the models that it names may be read.
+pub fn grant_inputs(session: &mut Session, path: &Path) {
+    session.grant_input(path);
+    let Ok(text) = session.read_text(path) else { return };
+    let source = session.sources.add(path.display().to_string(), text.as_str());
+    // What is wrong with the problem shows when it is solved.
+    let Ok(file) = file::read(source, &text) else { return };
+    let folder = path.parent().unwrap_or(Path::new(""));
+    for models in &file.files {
+        session.grant_input(&folder.join(models));
+    }
+    for experiment in &file.experiment {
+        session.world.grant(Grant::Read(&folder.join(&experiment.data)));
+    }
+}
+
+/// Solves the problem in the file `path`; writes the results into the world's folder for them.
+///
+/// # Errors
+///
+/// Everything that is wrong with the problem; a run without any success; results that cannot be
+/// written.
+pub fn solve(
+    session: &mut Session,
+    path: &Path,
+    options: &RunOptions,
+) -> Result<Solution, Vec<Diagnostic>> {
+    let one = |fault: Fault| vec![fault.at(Span::NONE)];
+    let bytes = session.read_bytes(path).map_err(one)?;
+    let text = String::from_utf8(bytes)
+        .map_err(|_| one(fault!(BAD_OPTION, "`{}` is no text", path.display())))?;
+    solve_text(session, path, text, options)
+}
+
+/// Solves the problem that a record `GAPILib.Problem` of a script holds.
+///
+/// # Errors
+///
+/// As [`solve`].
+pub(in crate::script) fn solve_record(
+    session: &mut Session,
+    record: &RecordValue,
+    options: &RunOptions,
+) -> Result<Solution, Vec<Diagnostic>> {
+    let text = record::text(record).map_err(|fault| vec![fault.at(Span::NONE)])?;
+    solve_text(session, Path::new("problem"), text, options)
+}
+
+fn solve_text(
+    session: &mut Session,
+    path: &Path,
+    text: String,
+    options: &RunOptions,
+) -> Result<Solution, Vec<Diagnostic>> {
+    let one = |fault: Fault| vec![fault.at(Span::NONE)];
+    let source = session.sources.add(path.display().to_string(), text.as_str());
+    let mut file = file::read(source, &text).map_err(|error| vec![error])?;
+    let mut built = build::build(session, &mut file, path, &text)?;
+    for note in &built.notes {
+        session.note(crate::mat::errors::DATA_NOTE, note.clone());
+    }
+    if options.design {
+        built.problem.inference.design.get_or_insert_with(inference::usual_design);
+    }
+    if options.bootstrap {
+        built.problem.inference.bootstrap.get_or_insert_with(inference::usual_bootstrap);
+    }
+    if options.posterior {
+        built.problem.inference.posterior.get_or_insert_with(inference::usual_posterior);
+    }
+    if let Some(limit) = options.evaluations {
+        built.problem.stop.evaluations = Some(limit);
+    }
+    let every =
+        (file.checkpoint.generations, file.checkpoint.seconds.unwrap_or(checkpoint::SECONDS));
+    solve_built(session, built, options, every).map_err(one)
+}
+
+/// Lets simulations end when the user asks to or the seconds of the stop conditions have passed, of
+/// which so many are over.
+fn set_timer(session: &Session, run: &mut Run, over: f64) -> Option<Arc<AtomicBool>> {
+    let left = run.problem.stop.seconds.map(|limit| limit - over);
+    let timer = left.and_then(|seconds| session.world.flag_after(seconds));
+    run.evaluation.cancel_by(timer.clone().or_else(|| session.world.interrupt_flag()));
+    timer
+}
+
+fn solve_built(
+    session: &mut Session,
+    built: Built,
+    options: &RunOptions,
+    every: (Option<u64>, f64),
+) -> Result<Solution, Fault> {
+    let Built { problem, experiments, validation, origins, notes } = built;
+    let folder = session.world.output_dir().join(&options.folder);
+    let mut run = Run::new(problem, session.world.threads())?;
+    let importance = analysed(session, &run, &folder, options)?;
+    let mut checkpoint = open(session, &mut run, &folder, &origins, options, every)?;
+    let mut watched = options.watch.clone().map(Watched::new);
+    let mut live = Live::default();
+    let before = run.seconds;
+    let mut timer = set_timer(session, &mut run, before);
+    let mut started = session.world.monotonic_seconds();
+    let mut looked = f64::NEG_INFINITY;
+    let (stop, interrupted) = loop {
+        if let Some(stop) = run.stop() {
+            break (stop, false);
+        }
+        if session.world.interrupted() {
+            break ("interrupted: these are the best values found so far".to_owned(), true);
+        }
+        let seconds = before + session.world.monotonic_seconds() - started;
+        if let Some(watched) = watched.as_mut().filter(|_| seconds - looked > LOOK) {
+            looked = seconds;
+            watched.apply(session, &mut run);
+        }
+        if session.world.wants_pause() {
+            let paused = session.world.monotonic_seconds();
+            if live::pause(session, &mut run) {
+                break ("ended by the user: these are the best values so far".to_owned(), true);
+            }
+            started += session.world.monotonic_seconds() - paused;
+            timer = set_timer(session, &mut run, seconds);
+        }
+        let Some(record) = run.step(seconds) else {
+            let is_over = timer.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed));
+            if is_over && !session.world.interrupted() {
+                break (run.end_by_time(), false);
+            }
+            continue;
+        };
+        checkpoint.note(session, &solving::encode(&record), seconds);
+        live.show(session, &run);
+    };
+    session.world.end_view();
+    run.evaluation.cancel_by(None);
+    checkpoint.flush(session, run.seconds);
+    if !interrupted {
+        solving::conclude(&mut run);
+    }
+    let solved = |run: &Run| Solution::of(run, &stop, validated(run, &validation)?);
+    let mut solution = solved(&run)?;
+    solution.importance = importance;
+    if options.profile && !interrupted {
+        solution = solution.with_profiles(&mut run, solved)?;
+    }
+    let finding = |note| Finding::new(FindingKind::Data, note).severity(Severity::Information);
+    solution.findings.extend(notes.into_iter().map(finding));
+    let mut interrupted = interrupted;
+    if !interrupted {
+        run.evaluation.cancel_by(session.world.interrupt_flag());
+        solution.add_inference(&run)?;
+        run.evaluation.cancel_by(None);
+        interrupted = session.world.interrupted();
+    }
+    solving::draw_curves(&experiments, &mut solution, &validation);
+    session.print(&solution.text());
+    write(session, &folder, &solution, run.seconds)?;
+    if let Some(why) = checkpoint.broken() {
+        session.report_fault(fault!(BAD_OPTION, "the checkpoint could not be written: {why}"));
+    }
+    if interrupted {
+        session.print("\n  the run can go on from here with --resume\n");
+    } else if session.world.exists(checkpoint.path()) {
+        // What cannot be removed does no harm.
+        let _ = session.world.remove(checkpoint.path());
+    }
+    Ok(solution)
+}
+
+/// The sensitivity analysis that was asked for, printed and written.
+fn analysed(
+    session: &mut Session,
+    run: &Run,
+    folder: &Path,
+    options: &RunOptions,
+) -> Result<Option<Importance>, Fault> {
+    let Some(name) = &options.sensitivity else { return Ok(None) };
+    let analysis = solving::analysis(name)?;
+    let found = analysis.importance(&run.problem, &run.evaluation, options.samples)?;
+    session.print(&found.text());
+    session.write_file(&folder.join("sensitivity.csv"), found.csv().as_bytes())?;
+    Ok(Some(found))
+}
+
+/// Reads the checkpoint of an earlier run, or begins one.
+fn open(
+    session: &mut Session,
+    run: &mut Run,
+    folder: &Path,
+    origins: &Origins,
+    options: &RunOptions,
+    every: (Option<u64>, f64),
+) -> Result<Checkpoint, Fault> {
+    let path = folder.join(JOURNAL);
+    let exists = session.world.exists(&path);
+    if exists && !options.resume && !options.fresh {
+        bail!(
+            BAD_OPTION,
+            "`{}` holds an earlier run that did not end", path.display();
+            help: "go on with `--resume`, or discard it with `--fresh`"
+        );
+    }
+    let mut bytes = solving::header(origins);
+    if options.resume && exists {
+        let old = session.read_bytes(&path)?;
+        let Some(journal) = solving::decode(&old) else {
+            bail!(BAD_OPTION, "`{}` is no checkpoint", path.display(); help: "start anew with `--fresh`")
+        };
+        let changed = origins.changed_since(&journal.origins);
+        if !changed.is_empty() {
+            bail!(
+                BAD_OPTION,
+                "`{}` cannot be resumed: since then changed: {}", path.display(), solving::listed(&changed);
+                help: "undo the changes, or start anew with `--fresh`"
+            );
+        }
+        run.resume(&journal.records)?;
+        let lost = match journal.lost {
+            0 => String::new(),
+            lost => {
+                format!("; {lost} bytes at its end are damaged or unfinished and computed again")
+            }
+        };
+        let text = format!(
+            "resumed after {} generations, {} evaluations{lost}\n",
+            run.generations(),
+            run.evaluations
+        );
+        session.print(&text);
+        bytes = old[..journal.whole].to_vec();
+    }
+    if exists && !options.resume {
+        keep_old(session, &path)?;
+    }
+    session.write_file(&path, &bytes)?;
+    Ok(Checkpoint::new(path, every, run.seconds).after(bytes))
+}
+
+/// The experiments kept for validation, at the best values.
+fn validated(
+    run: &Run,
+    validation: &[(solving::Experiment, Vec<solving::Series>)],
+) -> Result<Vec<SolvedSeries>, Fault> {
+    let Some(best) = &run.best else { return Ok(Vec::new()) };
+    let mut solved = Vec::new();
+    for (experiment, series) in validation {
+        let mut simulator = ModelSimulator::new(std::slice::from_ref(experiment))?;
+        let mut row = vec![f64::NAN; series.iter().map(|series| series.x.len()).sum()];
+        // A simulation that fails shows as NaN; that is the result of the validation.
+        let _ = simulator.simulate(&best.values, &mut row);
+        let mut rest = row.as_slice();
+        for series in series {
+            let (own, others) = rest.split_at(series.x.len());
+            solved.push(SolvedSeries::new(series, own));
+            rest = others;
+        }
+    }
+    Ok(solved)
+}
+
+/// Writes the files of a solution. What differs between equal runs, the time, has a file of its own.
+pub(super) fn write(
+    session: &mut Session,
+    folder: &Path,
+    solution: &Solution,
+    seconds: f64,
+) -> Result<(), Fault> {
+    let mut files: Vec<(String, String)> = [
+        ("result.json", solution.to_json()),
+        ("history.csv", solution.history_csv()),
+        ("fit.csv", solution.fit_csv()),
+        ("individuals.csv", solution.individuals_csv()),
+        ("Calibrated.mo", solution.modelica()),
+        ("calibrated.mos", solution.script()),
+        ("report.html", solution.html()),
+        ("convergence.svg", solution.convergence_figure().svg()),
+        ("timing.json", format!("{{\n  \"wall_seconds\": {seconds:.3}\n}}\n")),
+    ]
+    .map(|(name, text)| (name.to_owned(), text))
+    .into();
+    files.extend(solution.fit_figures().into_iter().map(|(name, figure)| (name, figure.svg())));
+    files
+        .extend(solution.inferred.tables().into_iter().map(|(name, text)| (name.to_owned(), text)));
+    if solution.profiles.is_some() {
+        files.push(("profiles.csv".to_owned(), solution.profiles_csv()));
+    }
+    for name in OPTIONAL.iter().filter(|name| !files.iter().any(|(own, _)| own == *name)) {
+        discard(session, &folder.join(name));
+    }
+    // What can be written is: one file that is too large must not take the others with it.
+    let (mut missing, mut why) = (Vec::new(), None);
+    for (name, text) in files {
+        if let Err(fault) = session.write_file(&folder.join(&name), text.as_bytes()) {
+            missing.push(name);
+            why.get_or_insert(fault);
+        }
+    }
+    match why {
+        None => session.print(&format!("\n  written to {}\n", folder.display())),
+        Some(mut fault) => {
+            let (missing, folder) = (missing.join(", "), folder.display());
+            fault.message =
+                format!("{missing} could not be written into `{folder}`: {}", fault.message);
+            return Err(fault.help(
+                "make room or choose another folder with `--out`; what the run has found stands above",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// A file of an earlier run that this one does not write.
+fn discard(session: &mut Session, path: &Path) {
+    if session.world.exists(path) {
+        // What cannot be removed is not read by `gapi report` either.
+        let _ = session.world.remove(path);
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,85 @@
+//! A trace of the run for learners, written while scripts run.
+
+use crate::diag::{Diagnostic, Fault};
+use crate::identify::Study;
+use crate::script::Session;
+use crate::script::access::policy::Grant;
+use crate::source::Span;
+use crate::teach::{Place, Subject, Tracer};
+use std::path::{Path, PathBuf};
+
+/// A trace that has as many bytes unwritten is written.
+const PIECE: usize = 1 << 14;
+
+/// Where the trace goes, and who writes it.
+#[derive(Default)]
+pub(super) struct Tracing {
+    active: Option<(PathBuf, Tracer)>,
+}
+
+impl Session {
+    /// Records the calls of the paper's functions from here on in a file, written anew.
+    ///
+    /// # Errors
+    ///
+    /// `file-error` when it cannot be written.
+    pub fn trace_to(&mut self, path: &Path) -> Result<(), Fault> {
+        let path = self.world.absolute(path);
+        // Whoever asks for the trace names the file: scripts do not.
+        self.world.grant(Grant::Named(&path));
+        self.write_file(&path, &[])?;
+        self.extension::<Tracing>().active = Some((path, Tracer::default()));
+        self.at_end(write_rest);
+        Ok(())
+    }
+
+    /// Tells the tracer, if there is one, what the call at hand has done.
+    pub(in crate::script) fn traced(
+        &mut self,
+        tell: impl FnOnce(&mut Tracer, Place),
+    ) -> Result<(), Fault> {
+        let Some((path, mut tracer)) = self.extension::<Tracing>().active.take() else {
+            return Ok(());
+        };
+        let place = self.place_of_call(&mut tracer);
+        tell(&mut tracer, place);
+        let written = match tracer.unwritten() {
+            size if size >= PIECE => self.append_file(&path, &tracer.take_bytes()),
+            _ => Ok(()),
+        };
+        // A trace that cannot be written ends, and says so once.
+        if written.is_ok() {
+            self.extension::<Tracing>().active = Some((path, tracer));
+        }
+        written
+    }
+
+    fn place_of_call(&self, tracer: &mut Tracer) -> Place {
+        let span = self.call_site();
+        match (self.sources.get(span.source), self.sources.line_column(span)) {
+            (Some(source), Some(at)) => {
+                tracer.place(Path::new(&*source.name), &source.text, at.line)
+            }
+            _ => Place::default(),
+        }
+    }
+}
+
+/// What is identified, as a trace tells it.
+pub(super) fn subject(study: &Study) -> Subject {
+    Subject {
+        model: study.model.clone(),
+        parameters: study.parameters.iter().map(|p| p.name.clone()).collect(),
+        units: study.parameters.iter().map(|p| p.unit.clone()).collect(),
+        x_name: study.x.name.clone(),
+        y_name: study.y.name.clone(),
+    }
+}
+
+fn write_rest(session: &mut Session) -> Result<(), Diagnostic> {
+    let Some((path, mut tracer)) = session.extension::<Tracing>().active.take() else {
+        return Ok(());
+    };
+    let bytes = tracer.take_bytes();
+    session.append_file(&path, &bytes).map_err(|fault| fault.at(Span::NONE))
+}

@@ -1,0 +1,114 @@
+//! What the user sees of the generations of a script while it runs, and the statements that he may
+//! type between two of them.
+
+use super::view::{Fitted, Spread, View, labelled};
+use crate::diag::Diagnostic;
+use crate::ga::Genomes;
+use crate::identify::{Compared, Quantity, Recorder, Study};
+use crate::script::Session;
+use crate::script::builtins::Failure;
+use crate::script::world::Progress;
+use crate::syntax;
+
+const HELP: &str = "\
+Paused. Type statements of the script's language, such as F_Mut := 0.3; they hold from this
+generation on. An empty line goes on, Ctrl-C ends the run.
+";
+const PROMPT: &str = "> ";
+
+impl Session {
+    /// How far the run is: the generations seen, of as many as the loop that the script is in has
+    /// turns.
+    pub(super) fn show_run(&mut self, study: &Study, genomes: &Genomes) {
+        let turns = match self.loop_turn() {
+            Some((_, Some(turns))) => turns as u64,
+            _ => 0,
+        };
+        let recorder = &self.identification().recorder;
+        let progress = Progress {
+            label: "generation".to_owned(),
+            done: recorder.history.generations.len() as u64,
+            total: turns,
+            best: recorder.best.as_ref().map(|best| best.fitness),
+            failures: recorder.failures,
+        };
+        self.world.progress(&progress);
+        if self.world.wants_view() {
+            let view = view(&self.identification().recorder, study, genomes, progress);
+            self.world.show_view(&view);
+        }
+    }
+
+    /// Executes what the user types where he asks for a pause, among the variables of the script;
+    /// in a run that is resumed, what he typed here before.
+    pub(in crate::script) fn pause(&mut self) -> Result<(), Failure> {
+        while let Some(line) = self.typed_before() {
+            self.typed(&line).map_err(|wrong| Failure::Elsewhere(vec![wrong]))?;
+        }
+        if !self.world.wants_pause() {
+            return Ok(());
+        }
+        if self.in_function {
+            self.world
+                .eprint("`Eval` is called in a function, whose variables cannot be changed\n");
+            return Ok(());
+        }
+        self.world.eprint(HELP);
+        while let Some(line) = self.world.ask(PROMPT).filter(|line| !line.trim().is_empty()) {
+            match self.typed(&line) {
+                Ok(()) => self.journal_typed(&line),
+                Err(diagnostic) => self.report(diagnostic),
+            }
+        }
+        Ok(())
+    }
+
+    fn typed(&mut self, line: &str) -> Result<(), Diagnostic> {
+        let source = self.sources.add("typed during a pause", line);
+        let script = syntax::parse_script(source, line)?;
+        script.statements.iter().try_for_each(|statement| self.top_level(statement, true))?;
+        let recorder = &mut self.identification().recorder;
+        let generation = recorder.history.generations.len() + 1;
+        recorder.changes.push((generation, line.trim().to_owned()));
+        Ok(())
+    }
+}
+
+fn view(recorder: &Recorder, study: &Study, genomes: &Genomes, progress: Progress) -> View {
+    let best = recorder.best.as_ref();
+    let spread = |(k, quantity): (usize, &Quantity)| {
+        let genes: Vec<f64> = genomes.rows().map(|genome| genome[k]).collect();
+        let known = recorder.ranges.as_ref();
+        let ends = known.and_then(|(low, high)| Some([*low.get(k)?, *high.get(k)?]));
+        let [low, high] = ends.unwrap_or_else(|| ends_of(&genes));
+        let fraction = |value: &f64| ((value - low) / (high - low)).clamp(0.0, 1.0);
+        let value = best.and_then(|best| best.genome.get(k)).copied().unwrap_or(f64::NAN);
+        Some(Spread {
+            name: quantity.name.clone(),
+            unit: quantity.unit.clone(),
+            value,
+            best: fraction(&value),
+            generation: Spread::of(genes.iter().map(fraction).collect())?,
+        })
+    };
+    let fitted = |compared: &Compared| Fitted {
+        y_name: labelled(&compared.study.y.name, &compared.study.y.unit),
+        x_name: labelled(&compared.study.x.name, &compared.study.x.unit),
+        x: compared.x.clone(),
+        measured: compared.measured.clone().unwrap_or_default(),
+        simulated: compared.simulated.clone(),
+    };
+    View {
+        title: format!("Identification of {}", study.model),
+        progress,
+        best: recorder.history.generations.iter().map(|generation| generation.best).collect(),
+        spreads: study.parameters.iter().enumerate().filter_map(spread).collect(),
+        fitted: best.iter().flat_map(|best| &best.compared).map(fitted).collect(),
+    }
+}
+
+fn ends_of(genes: &[f64]) -> [f64; 2] {
+    let low = genes.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = genes.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if high > low { [low, high] } else { [low - 0.5, low + 0.5] }
+}
