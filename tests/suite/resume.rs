@@ -3,6 +3,7 @@
 
 use crate::cli::{command, folder, gapi};
 use std::fs;
+use std::io::Read;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -64,7 +65,16 @@ fn started(here: &Path, (arguments, journal): (&[&str], &str)) -> Child {
 fn wait_for(journal: &Path, child: &mut Child) {
     let begun = Instant::now();
     while fs::metadata(journal).map_or(0, |found| found.len()) < 1000 {
-        assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
+        if child.try_wait().unwrap().is_some() {
+            let read = |from: Option<&mut dyn Read>| {
+                let mut text = String::new();
+                from.map(|pipe| pipe.read_to_string(&mut text));
+                text
+            };
+            let out = read(child.stdout.as_mut().map(|pipe| pipe as &mut dyn Read));
+            let errors = read(child.stderr.as_mut().map(|pipe| pipe as &mut dyn Read));
+            panic!("it ended by itself: {out}{errors}");
+        }
         assert!(begun.elapsed() < Duration::from_secs(60), "no checkpoint");
         std::thread::sleep(Duration::from_millis(5));
     }

@@ -27,6 +27,10 @@ pub(super) struct Checkpoint {
 /// Bytes of a journal that are kept besides the file.
 const KEPT: usize = 64 << 20;
 
+/// How often it is made again where somebody is removing its folder at the same moment. One attempt
+/// was too few while `rm -r` was at work.
+const ATTEMPTS: usize = 20;
+
 /// Seconds between two times that the file is made safe against a power cut.
 const SAFE: f64 = 2.0;
 
@@ -98,7 +102,15 @@ impl Checkpoint {
         if self.pending.is_empty() || self.broken.is_some() {
             return;
         }
-        match self.append(session, now) {
+        let mut written = self.append(session, now);
+        for _ in 0..ATTEMPTS {
+            let has_gone = written.as_ref().is_err_and(|e| e.kind() == io::ErrorKind::NotFound);
+            if !has_gone || self.whole.is_none() {
+                break;
+            }
+            written = self.append(session, now);
+        }
+        match written {
             Ok(()) => self.keep_pending(),
             Err(error) => {
                 // A part may have been written; what stands before it is whole.
