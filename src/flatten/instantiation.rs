@@ -159,7 +159,15 @@ impl<'a> Instantiation<'a> {
         inherited: Inherited,
     ) -> Result<NodeId, Diagnostic> {
         let text = self.text(class).clone();
-        if inherited.depth > MAX_DEPTH || self.is_inside_itself(&text, holder) {
+        if inherited.depth > MAX_DEPTH {
+            return Err(fault!(
+                TOO_LARGE,
+                "the components of the model are nested more than {MAX_DEPTH} deep: `{}`",
+                text.name
+            )
+            .at(text.span()));
+        }
+        if self.is_inside_itself(&text, holder) {
             return Err(fault!(
                 CYCLIC_CLASS,
                 "`{}` contains a component of its own class",

@@ -24,6 +24,7 @@ pub fn shaped(dims: &[usize], values: Vec<Value>) -> Result<Value, Fault> {
         }));
     };
     let (inner, mut elements) = parts(first)?;
+    element_count(&[dims, inner.as_slice()].concat())?;
     for value in values {
         let (dims, more) = parts(value)?;
         if dims != inner {

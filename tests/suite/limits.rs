@@ -353,3 +353,72 @@ fn memory_that_is_not_there_is_an_error() {
         assert!(errors.contains(slug) && errors.contains("there is no memory"), "{errors}");
     }
 }
+
+/// What grows by doubling meets the limit of its kind long before there is no memory.
+#[test]
+#[cfg(target_os = "linux")]
+fn what_is_doubled_again_and_again_meets_a_limit() {
+    let (code, _, errors) = {
+        let text = "x := {1};\nfor i in 1:60 loop x := {x, x}; end for;\n";
+        let here = folder(&[("a.mos", text)]);
+        gapi(&here, &["run", "a.mos", "--memory-limit", "1500"])
+    };
+    assert!(code == 1 && errors.contains("array-too-large"), "{errors}");
+    let text = "function g output Integer n; protected String s = \"a\"; algorithm \
+        for i in 1:100 loop s := s + s; end for; n := Modelica.Utilities.Strings.length(s); end g; \
+        model M parameter Integer n = g(); Real x = n; end M;";
+    let (code, said) = checked(text, "M", &["--memory-limit", "2500"]);
+    assert!(code == 1 && said.contains("string-too-long"), "{said}");
+}
+
+/// A name of 100,000 parts took two seconds, and four times as long for twice as many.
+#[test]
+fn names_of_many_parts_are_looked_up_once() {
+    let text = format!("x := a{}\n", ".b".repeat(300_000));
+    let here = folder(&[("n.mos", &text)]);
+    let (code, _, errors) = gapi(&here, &["run", "n.mos", "--time-limit", "10"]);
+    assert!(code == 1 && !errors.contains("limit-reached"), "{}", &errors[..500]);
+}
+
+#[test]
+fn outputs_have_a_most_number_of_points() {
+    let text = "model M Real x; equation der(x) = 1; \
+        annotation(experiment(StopTime = 1e300, Interval = 1e-300)); end M;";
+    let here = folder(&[("M.mo", text)]);
+    let (code, _, errors) = gapi(&here, &["simulate", "M.mo", "--memory-limit", "500"]);
+    assert!(code == 1 && errors.contains("intervals"), "{errors}");
+}
+
+/// Components of components are no cycle, however deep.
+#[test]
+fn deep_nesting_is_not_called_a_cycle() {
+    let classes = (1..=80).map(|n| format!("model A{n} A{} a; end A{n};\n", n - 1));
+    let text = "model A0 Real x = 1; end A0;\n".to_owned() + &classes.collect::<String>();
+    let (code, said) = checked(&text, "A80", &[]);
+    assert!(code == 0 || said.contains("nested more than"), "{said}");
+    assert!(!said.contains("cyclic"), "{said}");
+}
+
+#[test]
+fn what_a_call_says_goes_before_experiment() {
+    let model = "model M Real x; equation der(x) = 1; end M;";
+    let text = "experiment(NumberOfIntervals = 10)\n\
+        simulateModel(\"M\", stopTime = 3, outputInterval = 0.5, resultFile = \"r\")\n\
+        print(String(readTrajectorySize(\"r.mat\")))\n";
+    let here = folder(&[("M.mo", model), ("a.mos", &("openModel(\"M.mo\")\n".to_owned() + text))]);
+    let (code, out, errors) = gapi(&here, &["run", "a.mos"]);
+    assert_eq!((code, out.lines().last()), (0, Some("7")), "{errors}");
+}
+
+/// Spreadsheets compute cells that begin as formulas do.
+#[test]
+fn names_in_written_tables_are_no_formulas() {
+    let text = "writeCSVmatrix(\"o.csv\", {\"=cmd|x\", \"+1\", \"-a\", \"@b\", \"plain\"}, \
+        {{1.0, 2, 3, 4, 5}});\n";
+    let here = folder(&[("a.mos", text)]);
+    let (code, _, errors) = gapi(&here, &["run", "a.mos"]);
+    assert_eq!(code, 0, "{errors}");
+    let written = std::fs::read_to_string(here.path().join("o.csv")).unwrap();
+    let first = written.lines().next().unwrap();
+    assert_eq!(first, "\"'=cmd|x\";\"'+1\";\"'-a\";\"'@b\";\"plain\"");
+}

@@ -1,13 +1,14 @@
 //! Operators on scalars, vectors and matrices (MLS §10.6).
 
 use super::{Array, Binary, Lowered, Lowering, Target, Unary, size_fault};
-use crate::diag::Diagnostic;
+use crate::diag::{At, Diagnostic};
 use crate::fault;
 use crate::lower::build::UNKNOWN_TEXT;
 use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
 use crate::syntax::ast::{BinaryOperator, Expression};
+use crate::value::check_length;
 use std::sync::Arc;
 
 /// The greatest exponent of a matrix.
@@ -115,6 +116,7 @@ impl<T: Target> Lowering<'_, T> {
         };
         let a = &*a;
         if operator == BinaryOperator::Add {
+            check_length(a.len().saturating_add(b.len())).at(span)?;
             return Ok(Lowered::Text(format!("{a}{b}").into()));
         }
         if a.contains(UNKNOWN_TEXT) || b.contains(UNKNOWN_TEXT) {

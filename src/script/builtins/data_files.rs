@@ -151,9 +151,11 @@ fn write_csv_matrix(session: &mut Session, mut args: Args) -> Result<Value, Fail
         let (names, columns) = (headers.len(), data.columns);
         bail!(BAD_ARGUMENT, "there are {names} headers for {columns} columns");
     }
-    let quoted = |name: &String| match quotes || name.contains(separator) || name.contains('"') {
-        true => format!("\"{}\"", name.replace('"', "\"\"")),
-        false => name.clone(),
+    let quoted = |name: &String| {
+        let cell = crate::results::quoted(name);
+        // A cell that is marked as text, too.
+        let needs_quotes = cell[1..cell.len() - 1] != **name || name.contains(separator);
+        if quotes || needs_quotes { cell } else { name.clone() }
     };
     let mut lines: Vec<String> = Vec::with_capacity(data.rows + 1);
     if !headers.is_empty() {

@@ -178,11 +178,15 @@ fn experiment(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 fn wishes(session: &mut Session, args: &mut Args) -> Result<Wishes, Fault> {
     let set = session.extension::<Experiment>().0.clone();
     let method: Option<String> = args.optional("method")?;
+    // What the call itself says goes before what `experiment` has said.
+    let own = positive(args.optional("numberOfIntervals")?);
+    let interval = args.optional("outputInterval")?.filter(|interval| *interval > 0.0);
+    let intervals = if interval.is_some() { own } else { own.or(set.intervals) };
     let wishes = Wishes {
         start: args.optional("startTime")?.or(set.start),
         stop: args.optional("stopTime")?.or(set.stop),
-        intervals: positive(args.optional("numberOfIntervals")?).or(set.intervals),
-        interval: args.optional("outputInterval")?.filter(|i| *i > 0.0).or(set.interval),
+        intervals,
+        interval: interval.or(set.interval),
         method: method.filter(|method| !method.is_empty()).or(set.method),
         tolerance: args.optional("tolerance")?.or(set.tolerance),
         fixed_step: args.optional("fixedstepsize")?.or(set.fixed_step),

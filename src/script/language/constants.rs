@@ -55,11 +55,14 @@ impl Session {
 
     /// A constant that stands in a class, or a field of one: `Package.constant.field`.
     fn constant_in_package(&mut self, name: &Name) -> Result<Option<Value>, Fault> {
-        for at in (1..name.parts.len()).rev() {
-            let owner = Name::new(name.parts[..at].iter().copied());
-            if !self.class_exists(&owner) {
-                continue;
-            }
+        // A class in one that does not exist is not looked for: names may be very long.
+        let owner_at = |at: usize| Name::new(name.parts[..at].iter().copied());
+        let mut at = 0;
+        while at + 1 < name.parts.len() && self.class_exists(&owner_at(at + 1)) {
+            at += 1;
+        }
+        if at > 0 {
+            let owner = owner_at(at);
             let constant = owner.child(name.parts[at]);
             let found = match self.enumeration(&owner) {
                 Some(definition) => literal(&definition, name.parts[at]),

@@ -261,6 +261,9 @@ pub(super) fn placed(diagnostic: Diagnostic, call: Span) -> Diagnostic {
     diagnostic.helps.iter().cloned().fold(fault, Fault::help).at(call)
 }
 
+/// The most intervals of an output: its columns are arrays of scripts, which have no more elements.
+const MOST_INTERVALS: usize = crate::value::MAX_ELEMENTS - 1;
+
 /// The settings that wishes, the experiment annotation and the defaults make together.
 ///
 /// # Errors
@@ -278,6 +281,11 @@ pub fn settings(experiment: &Experiment, wishes: &Wishes) -> Result<Settings, Fa
         (None, Some(interval)) if interval > 0.0 => Some(of_interval(interval)),
         _ => None,
     };
+    if intervals.is_some_and(|intervals| intervals > MOST_INTERVALS) {
+        bail!(crate::registry::BAD_OPTION,
+            "the output from {start} to {stop} has more than {MOST_INTERVALS} intervals";
+            help: "give a longer `outputInterval` or a smaller `numberOfIntervals`");
+    }
     let tolerance = wishes.tolerance.or(experiment.tolerance).unwrap_or(defaults.tolerance);
     if !(1e-14..=0.1).contains(&tolerance) {
         bail!(crate::registry::BAD_OPTION, "`tolerance` is {tolerance}, outside 1e-14 to 0.1");
