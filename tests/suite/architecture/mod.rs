@@ -1,0 +1,319 @@
+//! The sources obey the module rules of `src/lib.rs`: who may import whom, who may touch the outside
+//! world; and the habits of CONTRIBUTING.md: no cycles of files, short functions, tables that are
+//! read.
+
+mod exceptions;
+mod sources;
+
+use exceptions::{CYCLES, LONG_FUNCTIONS};
+use gapilib::graph::strongly_connected;
+use sources::{Modules, Source, sources};
+use std::collections::BTreeSet;
+use std::sync::OnceLock;
+
+/// Module, and the modules it may name as `crate::…` (itself always).
+const MAY_IMPORT: &[(&str, &[&str])] = &[
+    ("bibliography", &[]),
+    ("source", &[]),
+    ("name", &[]),
+    ("graph", &[]),
+    ("models", &[]),
+    ("elementary", &[]),
+    ("page", &[]),
+    ("singular_values", &[]),
+    ("diag", &["source"]),
+    ("registry", &["diag"]),
+    ("symbolic", &["diag"]),
+    ("budget", &[]),
+    ("bytecode", &["budget", "external", "symbolic", "source", "diag"]),
+    ("units", &[]),
+    ("mat", &["units", "diag"]),
+    ("external", &["mat", "singular_values", "diag"]),
+    ("plot", &["diag"]),
+    ("sim", &["registry", "diag"]),
+    ("ga", &["singular_values", "registry", "diag"]),
+    ("value", &["name", "diag"]),
+    ("syntax", &["source", "name", "diag"]),
+    ("eval", &["external", "syntax", "value", "symbolic", "name", "source", "diag"]),
+    ("results", &["sim", "mat", "registry", "diag"]),
+    (
+        "flatten",
+        &[
+            "budget", "external", "syntax", "eval", "value", "symbolic", "units", "name", "source",
+            "diag",
+        ],
+    ),
+    (
+        "lower",
+        &[
+            "budget", "bytecode", "external", "flatten", "eval", "value", "syntax", "symbolic",
+            "name", "source", "diag",
+        ],
+    ),
+    ("causalize", &["lower", "flatten", "graph", "symbolic", "source", "diag"]),
+    (
+        "codegen",
+        &[
+            "bytecode",
+            "causalize",
+            "lower",
+            "flatten",
+            "syntax",
+            "symbolic",
+            "sim",
+            "source",
+            "diag",
+        ],
+    ),
+    (
+        "runtime",
+        &[
+            "codegen",
+            "bytecode",
+            "causalize",
+            "lower",
+            "flatten",
+            "value",
+            "symbolic",
+            "sim",
+            "source",
+            "diag",
+        ],
+    ),
+    ("teach", &["ga", "page", "plot", "diag"]),
+    (
+        "identify",
+        &[
+            "runtime",
+            "codegen",
+            "results",
+            "page",
+            "plot",
+            "sim",
+            "ga",
+            "singular_values",
+            "registry",
+            "name",
+            "diag",
+        ],
+    ),
+    (
+        "script",
+        &[
+            "identify",
+            "runtime",
+            "codegen",
+            "causalize",
+            "lower",
+            "external",
+            "flatten",
+            "eval",
+            "value",
+            "syntax",
+            "symbolic",
+            "teach",
+            "results",
+            "plot",
+            "mat",
+            "units",
+            "sim",
+            "ga",
+            "registry",
+            "models",
+            "name",
+            "source",
+            "diag",
+        ],
+    ),
+    (
+        "cli",
+        &[
+            "budget", "script", "identify", "teach", "runtime", "codegen", "results", "plot",
+            "sim", "models", "registry", "name", "source", "diag",
+        ],
+    ),
+];
+
+/// Macros and paths that only the outermost layer may use, because they reach the outside world.
+const OUTSIDE: &[&str] = &[
+    "println!",
+    "eprintln!",
+    "print!",
+    "eprint!",
+    "std::fs",
+    "std::env",
+    "std::process",
+    "std::net",
+    "SystemTime::now",
+    "Instant::now",
+];
+
+/// Lines of a function that reads at a glance.
+const LONGEST: usize = 60;
+/// Files of a cycle that are one concept.
+const LARGEST_CYCLE: usize = 3;
+
+fn all() -> &'static [Source] {
+    static SOURCES: OnceLock<Vec<Source>> = OnceLock::new();
+    SOURCES.get_or_init(sources)
+}
+
+fn passes(wrong: &[String]) {
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn modules_import_only_what_they_may() {
+    let modules: BTreeSet<&str> = MAY_IMPORT.iter().map(|(module, _)| *module).collect();
+    let mut wrong = Vec::new();
+    for source in all() {
+        let Some(own) = source.module.first().filter(|own| *own != "main") else { continue };
+        let Some((_, allowed)) = MAY_IMPORT.iter().find(|(name, _)| name == own) else {
+            wrong.push(format!("{}: `{own}` is not in the table", source.path.display()));
+            continue;
+        };
+        for (line, path) in &source.named {
+            let named = path.first().map_or("", String::as_str);
+            // As those of the standard library, which they replace, everyone may call them.
+            let known = named != "elementary" && modules.contains(named);
+            if known && named != own && !allowed.contains(&named) {
+                wrong.push(format!("{}:{line}: `{own}` imports `{named}`", source.path.display()));
+            }
+        }
+    }
+    passes(&wrong);
+}
+
+#[test]
+fn only_the_command_line_touches_the_outside() {
+    let mut wrong = Vec::new();
+    for source in all() {
+        let is_test = source.path.ends_with("tests.rs")
+            || source.path.to_string_lossy().contains("_tests")
+            || source.path.iter().any(|folder| folder == "tests");
+        if source.module.first().is_some_and(|own| own == "cli" || own == "main") || is_test {
+            continue;
+        }
+        for (line, used) in &source.outside {
+            let matches = |word: &&&str| used == **word || used.starts_with(&format!("{word}::"));
+            if let Some(word) = OUTSIDE.iter().find(matches) {
+                wrong.push(format!("{}:{line}: {word}", source.path.display()));
+            }
+        }
+    }
+    passes(&wrong);
+}
+
+#[test]
+fn files_of_a_cycle_are_one_concept() {
+    let modules = Modules::new(all());
+    let edges: Vec<Vec<usize>> = (0..all().len()).map(|at| modules.successors(at)).collect();
+    let mut wrong = Vec::new();
+    let mut seen = BTreeSet::new();
+    for cycle in strongly_connected(all().len(), |at| &edges[at]) {
+        if cycle.len() <= LARGEST_CYCLE {
+            continue;
+        }
+        let names: Vec<String> = cycle.iter().map(|at| all()[*at].module.join("::")).collect();
+        let folder = all()[cycle[0]].module[0].as_str();
+        seen.insert(folder);
+        let most = CYCLES.iter().find(|known| known.0 == folder).map_or(LARGEST_CYCLE, |k| k.1);
+        match cycle.len() {
+            n if n > most => wrong.push(format!("a cycle of {n} files: {}", names.join(", "))),
+            n if n < most && cycle_is_largest(&cycle, folder, &edges) => wrong.push(format!(
+                "the largest cycle of `{folder}` has {n} files only: lower its exception"
+            )),
+            _ => {}
+        }
+    }
+    let unused = CYCLES.iter().filter(|known| !seen.contains(known.0));
+    wrong.extend(unused.map(|known| format!("`{}` has no large cycle any more", known.0)));
+    passes(&wrong);
+}
+
+fn cycle_is_largest(cycle: &[usize], folder: &str, edges: &[Vec<usize>]) -> bool {
+    let components = strongly_connected(edges.len(), |at| &edges[at]);
+    let others = components
+        .iter()
+        .filter(|other| all()[other[0]].module.first().is_some_and(|f| f == folder));
+    others.map(Vec::len).max() == Some(cycle.len())
+}
+
+#[test]
+fn functions_read_at_a_glance() {
+    let mut wrong = Vec::new();
+    let mut seen = BTreeSet::new();
+    for source in all() {
+        let file = source.path.to_string_lossy().replace('\\', "/");
+        for (name, lines) in &source.functions {
+            if *lines <= LONGEST {
+                continue;
+            }
+            let known = LONG_FUNCTIONS.iter().find(|known| known.0 == file && known.1 == name);
+            match known {
+                Some(known) => _ = seen.insert((known.0, known.1)),
+                None => wrong.push(format!("{file}: `{name}` has {lines} lines")),
+            }
+        }
+    }
+    let unused = LONG_FUNCTIONS.iter().filter(|known| !seen.contains(&(known.0, known.1)));
+    wrong.extend(unused.map(|known| format!("{}: `{}` is short or gone", known.0, known.1)));
+    passes(&wrong);
+}
+
+/// A file with an entry stands in the table of its folder, and every table is read somewhere.
+#[test]
+fn tables_name_every_file_of_their_folder_and_are_read() {
+    let mut wrong = Vec::new();
+    for source in all() {
+        let Some((stem, folder)) = source.module.split_last() else { continue };
+        if source.text.contains("const ENTRY:") && !source.is_door {
+            let door = all().iter().find(|door| door.module == folder).expect("a face");
+            if !door.text.contains(&format!("{stem}::ENTRY")) {
+                wrong.push(format!("{}: not in the table of its folder", source.path.display()));
+            }
+        }
+        for table in &source.tables {
+            let uses = |other: &Source| other.identifiers.get(table).copied().unwrap_or(0);
+            let elsewhere = all().iter().filter(|other| other.path != source.path);
+            if uses(source) < 2 && elsewhere.map(uses).sum::<usize>() == 0 {
+                wrong.push(format!("{}: nobody reads `{table}`", source.path.display()));
+            }
+        }
+    }
+    passes(&wrong);
+}
+
+#[test]
+fn pest_pairs_stay_in_syntax() {
+    for source in all() {
+        if source.module.first().is_some_and(|own| own != "syntax") {
+            let found = source.outside.iter().find(|(_, used)| used.starts_with("pest::"));
+            assert!(found.is_none(), "{}: {found:?}", source.path.display());
+        }
+    }
+}
+
+#[test]
+fn every_module_begins_with_its_documentation() {
+    for Source { path, text, .. } in all() {
+        assert!(text.starts_with("//!"), "{} has no module documentation", path.display());
+    }
+}
+
+#[test]
+fn every_cited_work_is_in_the_bibliography() {
+    let bibliography = all().iter().find(|source| source.path.ends_with("bibliography.rs"));
+    let bibliography = &bibliography.expect("src/bibliography.rs").text;
+    for Source { path, text, .. } in all() {
+        for (at, _) in text.match_indices("bibliography#") {
+            let rest = &text[at + "bibliography#".len()..];
+            let key: String = rest
+                .chars()
+                .take_while(|c| c.is_alphanumeric() || matches!(c, '-' | '.'))
+                .collect();
+            let anchor = format!("id=\"{}\"", key.trim_end_matches('.'));
+            assert!(bibliography.contains(&anchor), "{}: `{key}` is not there", path.display());
+        }
+    }
+}
