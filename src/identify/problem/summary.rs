@@ -40,6 +40,10 @@ pub struct Solution {
     pub model: String,
     /// The method.
     pub method: String,
+    /// The operators that were chosen in place of the method's usual ones: kind, and name with
+    /// settings.
+    #[serde(default, skip_serializing_if = "indexmap::IndexMap::is_empty")]
+    pub operators: indexmap::IndexMap<String, String>,
     /// The first objective: its name and the smallest value found.
     pub fitness_name: String,
     /// Its smallest value.
@@ -324,6 +328,12 @@ impl Solution {
                     ""
                 }
             ),
+            operators: problem
+                .method
+                .operators()
+                .into_iter()
+                .map(|(kind, label)| (kind.to_owned(), label))
+                .collect(),
             fitness_name: problem.objectives[0].0.clone(),
             fitness: best.fitness,
             correlations: correlations(&statistics, parameters.len()),
