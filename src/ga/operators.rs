@@ -73,6 +73,9 @@ pub struct Kind {
     pub name: &'static str,
     /// What it does.
     pub summary: &'static str,
+    /// A setting that every choice of this kind has in a method, and what it says; a number in
+    /// place of a name is its value for the usual operator.
+    pub frequency: Option<(&'static str, &'static str)>,
     /// Inputs and outputs of a function that takes the place of an entry.
     pub signature: Signature,
     /// The entries of its table.
@@ -84,30 +87,38 @@ pub const KINDS: [Kind; 5] = [
     Kind {
         name: "sampling",
         summary: "draws the first generation",
+        frequency: None,
         signature: sampling::SIGNATURE,
         entries: || listed(SAMPLINGS),
     },
     Kind {
         name: "selection",
         summary: "chooses parents",
+        frequency: None,
         signature: selection::SIGNATURE,
         entries: || listed(SELECTIONS),
     },
     Kind {
         name: "crossover",
         summary: "makes two children of two parents",
+        frequency: Some(("probability", "how likely a pair is crossed")),
         signature: crossover::SIGNATURE,
         entries: || listed(CROSSOVERS),
     },
     Kind {
         name: "mutation",
         summary: "changes genes of children at random",
+        frequency: Some((
+            "rate",
+            "how likely a gene mutates; 0 is one gene in each individual in genetic and nsga2",
+        )),
         signature: mutation::SIGNATURE,
         entries: || listed(MUTATIONS),
     },
     Kind {
         name: "survival",
         summary: "chooses who makes up the next generation",
+        frequency: None,
         signature: survival::SIGNATURE,
         entries: || listed(SURVIVALS),
     },

@@ -78,8 +78,8 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
-            "budget", "script", "identify", "teach", "compile", "results", "plot", "sim", "models",
-            "registry", "name", "source", "diag",
+            "budget", "script", "identify", "teach", "compile", "results", "plot", "sim", "ga",
+            "models", "registry", "name", "source", "diag",
         ],
     ),
 ];

@@ -46,11 +46,12 @@ pub fn select_by(
     count: usize,
     rng: &mut Mrg32k3a,
 ) -> Result<Vec<usize>, Fault> {
-    let mut weights = vec![0.0; fitness.len()];
-    for (rank, k) in order(fitness).into_iter().enumerate() {
+    let order = order(fitness);
+    let mut weights = Vec::with_capacity(fitness.len());
+    for (rank, &k) in order.iter().enumerate() {
         let found = call(&[fitness[k], (rank + 1) as f64, fitness.len() as f64])?;
         match found.first() {
-            Some(&weight) if weight >= 0.0 && weight.is_finite() => weights[k] = weight,
+            Some(&weight) if weight >= 0.0 && weight.is_finite() => weights.push(weight),
             found => bail!(
                 BAD_OPERATOR,
                 "the selection gives rank {} the weight {}", rank + 1, found.unwrap_or(&f64::NAN);
@@ -62,5 +63,5 @@ pub fn select_by(
     if !(sum > 0.0 && sum.is_finite()) {
         bail!(BAD_OPERATOR, "the weights of the selection add up to {sum}"; help: "return a positive number for one rank at least");
     }
-    Ok(spun(&weights, count, rng))
+    Ok(spun(&weights, count, rng).into_iter().map(|rank| order[rank]).collect())
 }

@@ -11,6 +11,7 @@ use crate::diag::Fault;
 use crate::elementary;
 use crate::fault;
 use crate::ga::Generation;
+use crate::ga::operators::KINDS;
 use crate::identify::Uncertainty;
 use crate::registry::BAD_OPTION;
 use serde::{Deserialize, Serialize};
@@ -30,6 +31,14 @@ pub(super) const BEYOND: f64 = 2.0;
 
 /// Points beside the best at which a lack of rank is looked at.
 const ELSEWHERE: usize = 5;
+
+/// The operators that were chosen, in the order of a generation.
+fn chosen_operators(problem: &super::Problem) -> indexmap::IndexMap<String, String> {
+    let chosen = problem.method.operators();
+    let of = |kind: &'static str| chosen.iter().find(|(own, _)| *own == kind);
+    let all = KINDS.iter().filter_map(|kind| of(kind.name));
+    all.map(|(kind, label)| ((*kind).to_owned(), label.clone())).collect()
+}
 
 /// The solution of a problem.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -328,12 +337,7 @@ impl Solution {
                     ""
                 }
             ),
-            operators: problem
-                .method
-                .operators()
-                .into_iter()
-                .map(|(kind, label)| (kind.to_owned(), label))
-                .collect(),
+            operators: chosen_operators(problem),
             fitness_name: problem.objectives[0].0.clone(),
             fitness: best.fitness,
             correlations: correlations(&statistics, parameters.len()),

@@ -14,9 +14,6 @@ use crate::registry::{self, BAD_OPTION, Choice, Entry, Options};
 use crate::source::Span;
 use std::sync::Arc;
 
-/// Operators whose kind, given a number, says how often the usual one takes place.
-const FREQUENT: [&str; 2] = ["crossover", "mutation"];
-
 /// The method, and its name in the table.
 pub(super) type Named = (&'static str, Box<dyn Method>);
 
@@ -40,7 +37,9 @@ pub(super) fn method(
     for (kind, entry) in file.method.operators() {
         let place = file.operator_places.get(kind).copied().unwrap_or(Span::NONE);
         match entry {
-            OperatorEntry::Frequency(value) if FREQUENT.contains(&kind) => {
+            OperatorEntry::Frequency(value)
+                if operators::kind(kind).is_some_and(|kind| kind.frequency.is_some()) =>
+            {
                 options.set(kind, *value);
             }
             other => chosen.push((kind, place, other)),
