@@ -48,6 +48,14 @@ package Own "Operators written in Modelica; most do what one of the tables does"
     output Real key = rank;
   end best;
 
+  function offspring "as generational"
+    input Real fitness;
+    input Real rank;
+    input Real individuals;
+    input Real age;
+    output Real key = if age > 0 then individuals + rank else rank;
+  end offspring;
+
   function far "leaves every range"
     input Real first[:];
     input Real second[:];

@@ -113,7 +113,11 @@ fn a_function_of_the_user_takes_the_place_of_any_operator() {
     for (entry, own) in [
         ("sampling = \"uniform\"", "sampling = \"Own.uniformSampling\""),
         ("selection = \"linear_ranking(pressure = 2)\"", "selection = \"Own.ranking\""),
-        ("survival = \"mu_plus_lambda\"", "survival = \"Own.best\""),
+        // Ranks do not depend on the order in which survivors stand.
+        (
+            "selection = \"ranking\"\nsurvival = \"generational\"",
+            "selection = \"ranking\"\nsurvival = \"Own.offspring\"",
+        ),
     ] {
         let courses = [entry, own].map(|method| {
             let here = polarization(method, 300);
@@ -276,5 +280,30 @@ fn scripts_are_told_what_is_wrong_with_an_operator() {
     ] {
         let run = shipped::run("operators.mos", &format!("{DATA}x := {call};\n"));
         assert!(run.errors.contains(said), "{call}: {}", run.errors);
+    }
+}
+
+/// The guide has every operator with its settings and its source.
+#[test]
+fn the_guide_names_every_operator_with_its_settings_and_its_source() {
+    let chapter = fs::read_to_string(project("docs/src/operators.md")).unwrap();
+    for kind in &KINDS {
+        let title = format!("\n## {}{}\n", kind.name[..1].to_uppercase(), &kind.name[1..]);
+        let (_, section) = chapter.split_once(&title).expect("a section of each kind");
+        let section = section.split("\n## ").next().unwrap_or_default();
+        for entry in (kind.entries)() {
+            let begin = format!("| `{}` |", entry.name);
+            let row = section.lines().find(|line| line.starts_with(&begin));
+            let row = row.unwrap_or_else(|| panic!("{}: no row `{begin}`", kind.name));
+            // Keys are names and a year.
+            let source = row.rsplit('|').nth(1).unwrap_or_default().to_lowercase();
+            let source = source.replace('ä', "a").replace(' ', "-");
+            for word in entry.reference.split('-') {
+                assert!(source.contains(word), "{row}: {}", entry.reference);
+            }
+            for setting in entry.settings {
+                assert!(row.contains(&format!("`{}`", setting.name)), "{row}: {}", setting.name);
+            }
+        }
     }
 }
