@@ -9,6 +9,7 @@
 
 use super::{Brood, Survival, Survivor, Wanted};
 use crate::diag::Fault;
+use crate::ga::Gene;
 use crate::registry::Entry;
 
 /// The table entry.
@@ -69,6 +70,9 @@ fn compete(brood: &Brood<'_>, place: &mut Survivor, child: usize) {
 
 fn distance(brood: &Brood<'_>, one: Survivor, other: Survivor) -> f64 {
     let pairs = brood.genome(one).iter().zip(brood.genome(other)).zip(brood.genes);
-    let squares = pairs.map(|((a, b), gene)| (gene.fraction(*a) - gene.fraction(*b)).powi(2));
-    squares.sum::<f64>().sqrt()
+    let square = |((a, b), gene): ((&f64, &f64), &Gene)| {
+        let difference = gene.fraction(*a) - gene.fraction(*b);
+        difference * difference
+    };
+    pairs.map(square).sum::<f64>().sqrt()
 }

@@ -89,9 +89,20 @@ impl Operator {
         let span = session.call_site();
         match eval::call_function(function, arguments, span, session) {
             Ok(outputs) => {
-                let numbers: Result<Vec<Vec<f64>>, Fault> =
-                    outputs.iter().map(Value::as_vector).collect();
-                Ok(numbers?.concat())
+                let mut numbers = Vec::new();
+                for (value, (name, size)) in outputs.iter().zip(self.kind.signature.outputs) {
+                    let (own, wanted) = (value.as_vector()?, size.count(n_genes));
+                    if own.len() != wanted {
+                        let (operator, found) = (&self.choice.name, own.len());
+                        bail!(
+                            BAD_OPERATOR,
+                            "`{name}` of the {} `{operator}` has the size {found}, not {wanted}", self.kind.name;
+                            help: "return one for each gene"
+                        );
+                    }
+                    numbers.extend(own);
+                }
+                Ok(numbers)
             }
             Err(diagnostic) => {
                 let message = diagnostic.message.clone();
