@@ -291,3 +291,57 @@
 //! <a id="burnham-anderson-2002"></a>
 //! - **burnham-anderson-2002** — K. P. Burnham, D. R. Anderson: Model selection and multimodel
 //!   inference. 2nd edition, Springer, 2002.
+//!
+//! <a id="holland-1975"></a>
+//! - **holland-1975** — J. H. Holland: Adaptation in natural and artificial systems. University of
+//!   Michigan Press, 1975 (one-point crossover).
+//!
+//! <a id="de-jong-1975"></a>
+//! - **de-jong-1975** — K. A. De Jong: An analysis of the behavior of a class of genetic adaptive
+//!   systems. Doctoral dissertation, University of Michigan, 1975 (two-point crossover, generation
+//!   gap).
+//!
+//! <a id="syswerda-1989"></a>
+//! - **syswerda-1989** — G. Syswerda: Uniform crossover in genetic algorithms. Proceedings of the 3rd
+//!   International Conference on Genetic Algorithms, 1989, 2–9.
+//!
+//! <a id="eshelman-schaffer-1993"></a>
+//! - **eshelman-schaffer-1993** — L. J. Eshelman, J. D. Schaffer: Real-coded genetic algorithms and
+//!   interval-schemata. Foundations of Genetic Algorithms 2, 1993, 187–202 (BLX-α).
+//!
+//! <a id="michalewicz-1996"></a>
+//! - **michalewicz-1996** — Z. Michalewicz: Genetic algorithms + data structures = evolution
+//!   programs. 3rd edition, Springer, 1996 (arithmetical crossover, non-uniform mutation).
+//!
+//! <a id="baker-1985"></a>
+//! - **baker-1985** — J. E. Baker: Adaptive selection methods for genetic algorithms. Proceedings of
+//!   the 1st International Conference on Genetic Algorithms, 1985, 101–111 (linear ranking).
+//!
+//! <a id="baker-1987"></a>
+//! - **baker-1987** — J. E. Baker: Reducing bias and inefficiency in the selection algorithm.
+//!   Proceedings of the 2nd International Conference on Genetic Algorithms, 1987, 14–21 (stochastic
+//!   universal sampling).
+//!
+//! <a id="goldberg-deb-1991"></a>
+//! - **goldberg-deb-1991** — D. E. Goldberg, K. Deb: A comparative analysis of selection schemes
+//!   used in genetic algorithms. Foundations of Genetic Algorithms 1, 1991, 69–93.
+//!
+//! <a id="back-schwefel-1993"></a>
+//! - **back-schwefel-1993** — T. Bäck, H.-P. Schwefel: An overview of evolutionary algorithms for
+//!   parameter optimization. Evolutionary Computation 1(1), 1993, 1–23.
+//!
+//! <a id="beyer-schwefel-2002"></a>
+//! - **beyer-schwefel-2002** — H.-G. Beyer, H.-P. Schwefel: Evolution strategies, a comprehensive
+//!   introduction. Natural Computing 1, 2002, 3–52 ((μ + λ) selection).
+//!
+//! <a id="mahfoud-1995"></a>
+//! - **mahfoud-1995** — S. W. Mahfoud: Niching methods for genetic algorithms. Doctoral dissertation,
+//!   University of Illinois at Urbana-Champaign, 1995 (deterministic crowding).
+//!
+//! <a id="halton-1960"></a>
+//! - **halton-1960** — J. H. Halton: On the efficiency of certain quasi-random sequences of points
+//!   in evaluating multi-dimensional integrals. Numerische Mathematik 2, 1960, 84–90.
+//!
+//! <a id="cranley-patterson-1976"></a>
+//! - **cranley-patterson-1976** — R. Cranley, T. N. L. Patterson: Randomization of number theoretic
+//!   methods for multiple integration. SIAM Journal on Numerical Analysis 13(6), 1976, 904–914.

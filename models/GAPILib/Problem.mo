@@ -16,6 +16,11 @@ record Problem "What to identify, from which data, and how: the argument of iden
   Real seconds = 0 "Stop after so many seconds of work";
   Real target[:] = fill(0.0, 0) "Stop at this fitness, if one is given";
   Integer stagnation = 0 "Stop after so many generations without improvement";
+  String sampling = "" "How the first generation is drawn; empty for the optimizer's own, as for all operators";
+  String selection = "" "Who becomes a parent, such as \"tournament(size = 3)\"";
+  String crossover = "" "How parents make children";
+  String mutation = "" "How genes change at random";
+  String survival = "" "Who makes up the next generation";
   annotation(Documentation(info = "<html>
 <p>The same as the file of <code>gapi identify</code>, which <code>identify</code> takes, too, by
 its name. Without any stop condition a run ends after 20,000 evaluations.</p>

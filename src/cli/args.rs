@@ -1,5 +1,6 @@
 //! The command line's grammar.
 
+use crate::ga::operators;
 use crate::results::TUBE_TOLERANCE;
 use crate::script::{Dialect, Options, Permissions};
 use clap::builder::styling::{AnsiColor, Styles};
@@ -321,11 +322,13 @@ pub(super) struct HelpArgs {
     /// The declarations of all commands as a chapter of the guide
     #[arg(long, conflicts_with_all = ["name", "compat"])]
     pub reference: bool,
+    /// The operators of the genetic algorithm, their settings and sources; a KIND alone: `crossover`
+    #[arg(long, value_name = "KIND", num_args = 0..=1, conflicts_with_all = ["name", "compat", "reference"])]
+    pub operators: Option<Option<String>>,
 }
 
-/// Arguments of `gapi identify`.
-#[derive(Debug, Args)]
-#[command(after_help = "\
+/// What follows the options of `gapi identify --help`.
+const IDENTIFY_EXAMPLES: &str = "\
 Examples:
   gapi identify scripts/problems/polarization.toml
   gapi identify scripts/problems/polarization.toml --out fit1 --threads 2
@@ -342,9 +345,28 @@ A problem file:
   data = \"curve.csv\"
   x = \"i\"
   outputs = { V = \"V\" }
+  [method]
+  crossover = { name = \"sbx\", eta = 5 }
+";
 
-Exit code: 0 if all went well, 1 if an error happened, 2 for a wrong command line, 130 if
-interrupted.")]
+/// The examples, and the operators that the tables have.
+fn identify_help() -> String {
+    let list = |kind: &operators::Kind| {
+        let names: Vec<&str> = (kind.entries)().iter().map(|entry| entry.name).collect();
+        format!("  {:10} {}\n", kind.name, names.join(", "))
+    };
+    let operators: String = operators::KINDS.iter().map(list).collect();
+    format!(
+        "{IDENTIFY_EXAMPLES}\nOperators of [method], or functions in Modelica (gapi help --operators):\n\
+         {operators}\n\
+         Exit code: 0 if all went well, 1 if an error happened, 2 for a wrong command line, 130 if\n\
+         interrupted."
+    )
+}
+
+/// Arguments of `gapi identify`.
+#[derive(Debug, Args)]
+#[command(after_help = identify_help())]
 pub(super) struct IdentifyArgs {
     /// The problem (.toml)
     #[arg(value_hint = ValueHint::FilePath)]

@@ -2,6 +2,8 @@
 
 use super::args::{DialectName, HelpArgs};
 use super::terminal;
+use crate::ga::operators::{self, Kind};
+use crate::registry::Setting;
 use crate::script::builtins;
 use std::process::ExitCode;
 
@@ -21,6 +23,9 @@ pub(super) fn help(arguments: &HelpArgs) -> ExitCode {
     if arguments.reference {
         terminal::print(&builtins::reference());
         return ExitCode::SUCCESS;
+    }
+    if let Some(wanted) = &arguments.operators {
+        return operators_of(wanted.as_deref());
     }
     match &arguments.name {
         None => {
@@ -42,6 +47,42 @@ pub(super) fn help(arguments: &HelpArgs) -> ExitCode {
             }
         },
     }
+}
+
+/// The operators of one kind, or of all.
+fn operators_of(wanted: Option<&str>) -> ExitCode {
+    let kinds = operators::KINDS.iter();
+    let chosen = kinds.filter(|kind| wanted.is_none_or(|wanted| wanted == kind.name));
+    let text: Vec<String> = chosen.map(described).collect();
+    if text.is_empty() {
+        let known = operators::KINDS.iter().map(|kind| kind.name).collect::<Vec<_>>().join(", ");
+        terminal::eprint(&format!("error: there is no such kind of operator; known: {known}\n"));
+        return ExitCode::FAILURE;
+    }
+    terminal::print(&text.join("\n"));
+    ExitCode::SUCCESS
+}
+
+/// A kind of operator: its entries with their settings and sources, and the declaration of a
+/// function of the user.
+fn described(kind: &Kind) -> String {
+    let mut text = format!("{}: {}\n", kind.name, kind.summary);
+    for entry in (kind.entries)() {
+        let aliases = match entry.aliases {
+            [] => String::new(),
+            aliases => format!(" ({})", aliases.join(", ")),
+        };
+        text += &format!("  {}{aliases}: {} [{}]\n", entry.name, entry.summary, entry.reference);
+        for Setting { name, default, domain } in entry.settings {
+            let (low, high) = (domain.start(), domain.end());
+            text += &format!("    {name} = {default}, {low} to {high}\n");
+        }
+    }
+    if let Some((name, summary)) = kind.frequency {
+        text += &format!("  each of them in [method]:\n    {name}: {summary}\n");
+    }
+    let declaration = kind.declaration().replace('\n', "\n    ");
+    text + &format!("  a function of yours:\n    {}\n", declaration.trim_end())
 }
 
 /// One row a line: name, status, difference.

@@ -18,6 +18,9 @@ codes! {
     /// A crossing point outside the genome.
     BAD_CROSS_POINT = "bad-cross-point":
         "## What it means\n\nCrossover exchanges the genes behind each crossing point, so a crossing point lies from 1 to the number of genes less one (0 and the number of genes itself are accepted; they exchange all or nothing).\n\n## Example\n\n`Cross(70, 1, Pop, {9})` for genomes of 6 genes.\n\n## What to do\n\nDraw the crossing points between 1 and `N_Parameters - 1`.",
+    /// A user's operator whose outputs are no genes.
+    BAD_OPERATOR = "bad-operator":
+        "## What it means\n\nA function of yours takes the place of an operator of the genetic algorithm. It has other inputs or outputs than that kind of operator, or it failed, or it returned what cannot be used: a gene that is NaN, or probabilities that are all zero.\n\n## Example\n\n`crossover = \"mean\"` with a function that returns one child.\n\n## What to do\n\nGive the function the inputs and outputs that the message names, and return a number for every gene. `gapi help --operators` shows the declarations.",
     /// Arguments of a genetic operator whose sizes do not fit together.
     SIZE_MISMATCH = "population-size-mismatch":
         "## What it means\n\nTwo arrays that describe the same individuals, genes or points have different sizes.\n\n## Example\n\nA population of 6 genes with search ranges for 5.\n\n## What to do\n\nMake the sizes agree; the message names both arrays with their sizes.",

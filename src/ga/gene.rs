@@ -45,6 +45,12 @@ impl Gene {
     pub fn at(&self, u: f64) -> f64 {
         (self.min + (self.max - self.min) * u).min(self.max)
     }
+
+    /// Where a value lies in the range: 0 at min, 1 at max; 0 in an empty range.
+    pub fn fraction(&self, value: f64) -> f64 {
+        let width = self.max - self.min;
+        if width > 0.0 { (value - self.min) / width } else { 0.0 }
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,8 @@
 //! The genetic algorithm of GAPILib: random numbers, populations and operators on vectors of
 //! genes. Knows nothing of Modelica or of simulation.
 //!
+//! Operators are chosen from their tables, or written by the user in Modelica ([`operators`]).
+//!
 //! One generation of the paper's algorithm, on a population ordered by fitness:
 //!
 //! ```text
@@ -11,13 +13,14 @@
 //! ```
 //!
 //! Every operator is a pure function of its arguments, random numbers included, in a file of its
-//! own, with an entry in the table of its kind.
+//! own, with an entry in the table of its kind. A file with an entry and a row in the table add one.
 //!
 //! Reference: [Rubio et al. 2006](crate::bibliography#rubio-2006).
 
 pub mod crossover;
 pub mod errors;
 pub mod mutation;
+pub mod operators;
 pub mod optimizer;
 pub mod sampling;
 pub mod selection;
@@ -27,6 +30,8 @@ mod gene;
 mod history;
 mod hypervolume;
 mod individual;
+#[cfg(test)]
+mod operators_tests;
 mod population;
 mod rng;
 

@@ -54,6 +54,7 @@ mod msl;
 mod nist;
 mod nist_problems;
 mod notices;
+mod operators;
 mod page;
 mod permissions;
 mod plot;

@@ -1,20 +1,80 @@
-//! Crossover: how parents make children.
+//! Crossover (recombination): how two parents make two children.
 
+mod arithmetic;
+mod blend;
+mod fixed_points;
 mod one_point;
+mod own;
 mod sbx;
+mod two_point;
+mod uniform;
 
-pub use one_point::{check_points, cross_adjacent};
-pub use sbx::sbx;
+pub use fixed_points::{check_points, cross_adjacent};
+pub use own::{Own, SIGNATURE, cross_by};
 
-use super::Genomes;
+use super::{Gene, Genomes, Mrg32k3a};
+use crate::diag::Fault;
 use crate::registry::Entry;
+use std::sync::Arc;
 
 /// Makes children from parents.
 pub trait Crossover: Send + Sync {
-    /// One child for each parent, parents in the order in which they mate; `points` are the
-    /// crossing points of the run.
-    fn cross(&self, parents: &Genomes, points: &[usize]) -> Genomes;
+    /// Turns two parents into two children within the ranges of `genes`.
+    ///
+    /// # Errors
+    ///
+    /// A user's function that failed or returned what are no genes.
+    fn cross(
+        &self,
+        first: &mut [f64],
+        second: &mut [f64],
+        genes: &[Gene],
+        rng: &mut Mrg32k3a,
+    ) -> Result<(), Fault>;
+
+    /// The crossover of one run, for one that draws something once a run; `None` where each pair
+    /// is crossed by itself.
+    fn for_run(&self, _n_genes: usize, _rng: &mut Mrg32k3a) -> Option<Arc<dyn Crossover>> {
+        None
+    }
 }
 
 /// All ways of crossover.
-pub const CROSSOVERS: &[&Entry<dyn Crossover>] = &[&one_point::ENTRY];
+pub const CROSSOVERS: &[&Entry<dyn Crossover>] = &[
+    &sbx::ENTRY,
+    &blend::ENTRY,
+    &arithmetic::ENTRY,
+    &uniform::ENTRY,
+    &one_point::ENTRY,
+    &two_point::ENTRY,
+    &fixed_points::ENTRY,
+];
+
+/// Crosses adjacent rows: (1, 2), (3, 4), … make two children each; an odd last row mates with row
+/// 1 and makes one.
+///
+/// # Errors
+///
+/// Those of the crossover.
+pub fn cross_rows(
+    parents: &Genomes,
+    mut cross: impl FnMut(&mut [f64], &mut [f64]) -> Result<(), Fault>,
+) -> Result<Genomes, Fault> {
+    let count = parents.len();
+    let mut children = Genomes::with_capacity(parents.n_genes(), count);
+    for k in (0..count).step_by(2) {
+        let mate = if k + 1 < count { k + 1 } else { 0 };
+        let (mut first, mut second) = (parents.row(k).to_vec(), parents.row(mate).to_vec());
+        cross(&mut first, &mut second)?;
+        children.push(&first);
+        if k + 1 < count {
+            children.push(&second);
+        }
+    }
+    Ok(children)
+}
+
+/// A place from 0 to `count` − 1, each as likely as the others; `count` is at least 1.
+fn place(count: usize, rng: &mut Mrg32k3a) -> usize {
+    ((rng.uniform() * count as f64) as usize).min(count - 1)
+}

@@ -1,131 +1,37 @@
-//! Adjacent ranks mate and exchange the genes behind each crossing point.
+//! One-point crossover: the genes behind a point change places. The point is drawn anew for every
+//! pair.
 //!
-//! Ranks (1, 2), (3, 4), … make two children each. With the points c₁, …, cₖ the genes behind c₁
-//! are exchanged, then those behind c₂, and so on: with one point c the children are
-//! (a₁ … a_c b_c+1 … bₙ) and (b₁ … b_c a_c+1 … aₙ); with two points the genes between them change
-//! places. An odd last parent mates with rank 1 and gives the first child of that pair.
-//!
-//! Reference: [Rubio et al. 2006](crate::bibliography#rubio-2006), Figure 3.
+//! Reference: [Holland 1975](crate::bibliography#holland-1975).
 
-use super::Crossover;
-use crate::bail;
+use super::{Crossover, place};
 use crate::diag::Fault;
-use crate::ga::Genomes;
-use crate::ga::errors::BAD_CROSS_POINT;
+use crate::ga::{Gene, Mrg32k3a};
 use crate::registry::Entry;
 
 /// The table entry.
 pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
     name: "one_point",
-    aliases: &["points"],
-    summary: "adjacent ranks exchange the genes behind each crossing point",
-    reference: "rubio-2006",
+    aliases: &["single_point"],
+    summary: "the genes behind a random point change places",
+    reference: "holland-1975",
     make: |_| Ok(Box::new(OnePoint)),
 };
 
 struct OnePoint;
 
 impl Crossover for OnePoint {
-    fn cross(&self, parents: &Genomes, points: &[usize]) -> Genomes {
-        cross_adjacent(parents, points)
-    }
-}
-
-/// The crossing points as indices.
-///
-/// # Errors
-///
-/// `bad-cross-point` when one lies outside 0..=`n_genes`.
-pub fn check_points(points: &[i64], n_genes: usize) -> Result<Vec<usize>, Fault> {
-    let mut checked = Vec::with_capacity(points.len());
-    for &point in points {
-        match usize::try_from(point) {
-            Ok(index) if index <= n_genes => checked.push(index),
-            _ => bail!(
-                BAD_CROSS_POINT,
-                "the crossing point {point} lies outside a genome of {n_genes} genes";
-                help: "draw crossing points from 1 to {}", n_genes.saturating_sub(1).max(1)
-            ),
+    fn cross(
+        &self,
+        first: &mut [f64],
+        second: &mut [f64],
+        _: &[Gene],
+        rng: &mut Mrg32k3a,
+    ) -> Result<(), Fault> {
+        // A single gene has no point inside.
+        if first.len() > 1 {
+            let point = 1 + place(first.len() - 1, rng);
+            first[point..].swap_with_slice(&mut second[point..]);
         }
-    }
-    Ok(checked)
-}
-
-/// One child for each parent; `points` lie in 0..=n_genes.
-pub fn cross_adjacent(parents: &Genomes, points: &[usize]) -> Genomes {
-    let n_genes = parents.n_genes();
-    let exchanged: Vec<bool> = (0..n_genes)
-        .map(|gene| points.iter().filter(|&&point| gene >= point).count() % 2 == 1)
-        .collect();
-    let mut children = Genomes::with_capacity(n_genes, parents.len());
-    let mut child = vec![0.0; n_genes];
-    for k in 0..parents.len() {
-        let mate = if k % 2 == 1 {
-            k - 1
-        } else if k + 1 < parents.len() {
-            k + 1
-        } else {
-            0
-        };
-        for (j, value) in child.iter_mut().enumerate() {
-            *value = parents.row(if exchanged[j] { mate } else { k })[j];
-        }
-        children.push(&child);
-    }
-    children
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    fn parents() -> Genomes {
-        Genomes::new(4, (0..12).map(f64::from).collect()).unwrap()
-    }
-
-    #[test]
-    fn one_point_exchanges_the_tails() {
-        let children = cross_adjacent(&parents(), &[1]);
-        assert_eq!(children.row(0), [0.0, 5.0, 6.0, 7.0]);
-        assert_eq!(children.row(1), [4.0, 1.0, 2.0, 3.0]);
-        assert_eq!(children.row(2), [8.0, 1.0, 2.0, 3.0], "an odd last parent mates with rank 1");
-    }
-
-    #[test]
-    fn two_points_exchange_what_lies_between() {
-        for points in [[1, 3], [3, 1]] {
-            assert_eq!(cross_adjacent(&parents(), &points).row(0), [0.0, 5.0, 6.0, 3.0]);
-        }
-        assert_eq!(cross_adjacent(&parents(), &[2, 2]), parents(), "equal points cancel");
-    }
-
-    #[test]
-    fn points_at_the_ends_exchange_all_or_nothing() {
-        assert_eq!(cross_adjacent(&parents(), &[4]), parents());
-        assert_eq!(cross_adjacent(&parents(), &[0]).row(0), parents().row(1));
-    }
-
-    #[test]
-    fn points_outside_the_genome_are_refused() {
-        assert_eq!(check_points(&[5], 4).unwrap_err().code, BAD_CROSS_POINT);
-        assert_eq!(check_points(&[-1], 4).unwrap_err().code, BAD_CROSS_POINT);
-        assert_eq!(check_points(&[0, 4], 4), Ok(vec![0, 4]));
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(64))]
-        #[test]
-        fn a_pair_keeps_its_genes(points in prop::collection::vec(0_usize..=5, 0..4)) {
-            let parents = Genomes::new(5, (0..20).map(f64::from).collect()).unwrap();
-            let children = cross_adjacent(&parents, &points);
-            for pair in [0, 2] {
-                for j in 0..5 {
-                    let before = (parents.row(pair)[j], parents.row(pair + 1)[j]);
-                    let after = (children.row(pair)[j], children.row(pair + 1)[j]);
-                    prop_assert!(after == before || after == (before.1, before.0));
-                }
-            }
-        }
+        Ok(())
     }
 }

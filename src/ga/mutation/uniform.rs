@@ -4,11 +4,11 @@
 //!
 //! Reference: [Rubio et al. 2006](crate::bibliography#rubio-2006), Table 2.
 
-use super::Mutation;
+use super::{Course, Mutation};
 use crate::bail;
 use crate::diag::Fault;
 use crate::ga::errors::BAD_MUTATION_FACTOR;
-use crate::ga::{Gene, Genomes};
+use crate::ga::{Gene, Genomes, Mrg32k3a};
 use crate::registry::Entry;
 
 /// The table entry.
@@ -23,8 +23,25 @@ pub(super) const ENTRY: Entry<dyn Mutation> = Entry {
 struct Uniform;
 
 impl Mutation for Uniform {
-    fn mutate(&self, genomes: &mut Genomes, genes: &[Gene], factor: f64, numbers: &[f64]) {
-        mutate_uniform(genomes, 0, genes, factor, numbers);
+    fn mutate(
+        &self,
+        genome: &mut [f64],
+        genes: &[Gene],
+        rate: f64,
+        _: Course,
+        rng: &mut Mrg32k3a,
+    ) -> Result<(), Fault> {
+        for (value, gene) in genome.iter_mut().zip(genes) {
+            replace(value, gene, rate, rng.uniform());
+        }
+        Ok(())
+    }
+}
+
+/// A value uniform over the range in place of this one, where u < `factor`.
+fn replace(value: &mut f64, gene: &Gene, factor: f64, u: f64) {
+    if u < factor {
+        *value = (gene.min + (gene.max - gene.min) * u / factor).min(gene.max);
     }
 }
 
@@ -57,9 +74,7 @@ pub fn mutate_uniform(
     for k in elites..genomes.len() {
         let drawn = &numbers[k * n_genes..(k + 1) * n_genes];
         for ((value, gene), &u) in genomes.row_mut(k).iter_mut().zip(genes).zip(drawn) {
-            if u < factor {
-                *value = (gene.min + (gene.max - gene.min) * u / factor).min(gene.max);
-            }
+            replace(value, gene, factor, u);
         }
     }
 }

@@ -4,7 +4,7 @@
 //! References: [Hansen 2016](crate::bibliography#hansen-2016) (the formulas),
 //! [Auger & Hansen 2005](crate::bibliography#auger-hansen-2005) (restarts).
 
-use super::{Answers, Method, Optimizer, Setup, has_failed, whole};
+use super::{Answers, Method, Optimizer, Setup, has_failed};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::{Genomes, Mrg32k3a, order};
@@ -19,9 +19,9 @@ pub(super) const ENTRY: Entry<dyn Method> = Entry {
     reference: "hansen-2016",
     make: |options| {
         Ok(Box::new(CmaEs {
-            population: whole(options, "population", 0.0..=1e6, 0.0)?,
+            population: options.take_whole("population", 0.0..=1e6, 0.0)?,
             sigma: options.take("sigma", 1e-6..=1.0, 0.2)?,
-            restarts: whole(options, "restarts", 0.0..=100.0, 9.0)?,
+            restarts: options.take_whole("restarts", 0.0..=100.0, 9.0)?,
         }))
     },
 };

@@ -1,20 +1,23 @@
-//! A genetic algorithm with the operators that have proved themselves on real genes: Latin
-//! hypercube or Sobol start that redraws failures, binary tournament, simulated binary crossover,
-//! polynomial mutation, elites.
+//! A genetic algorithm on real genes. Its usual operators have proved themselves there: Latin
+//! hypercube, binary tournament, simulated binary crossover, polynomial mutation, elites; each can
+//! be replaced by another one of its table. Failures of the first generation are drawn again.
 //!
 //! References: [Deb & Agrawal 1995](crate::bibliography#deb-agrawal-1995),
 //! [McKay et al. 1979](crate::bibliography#mckay-1979),
 //! [Goldberg 1989](crate::bibliography#goldberg-1989).
 
-use super::{Answers, Method, Optimizer, Setup, has_failed, key, whole};
+use super::breeding::{self, Breeding, Chosen};
+use super::{Answers, Method, Optimizer, Setup, has_failed};
 use crate::diag::Fault;
 use crate::fault;
-use crate::ga::crossover::sbx;
-use crate::ga::mutation::polynomial;
-use crate::ga::sampling::{latin_hypercube, sobol};
-use crate::ga::selection::tournament;
-use crate::ga::{Genomes, Mrg32k3a, order};
-use crate::registry::{BAD_OPTION, Entry};
+use crate::ga::mutation::Course;
+use crate::ga::operators::{self, usual};
+use crate::ga::sampling::Sampling;
+use crate::ga::selection::Selection;
+use crate::ga::survival::{Brood, Rated, Survival, Survivor, Wanted};
+use crate::ga::{Gene, Genomes, Mrg32k3a};
+use crate::registry::{BAD_OPTION, Entry, Options};
+use std::sync::Arc;
 
 /// The table entry.
 pub(super) const ENTRY: Entry<dyn Method> = Entry {
@@ -22,63 +25,117 @@ pub(super) const ENTRY: Entry<dyn Method> = Entry {
     aliases: &["ga", "genetic_algorithm"],
     summary: "genetic algorithm: Latin hypercube, tournament, SBX, polynomial mutation, elites",
     reference: "deb-agrawal-1995",
-    make: |options| {
-        Ok(Box::new(Genetic {
-            population: whole(options, "population", 0.0..=1e6, 0.0)?,
-            elites: whole(options, "elites", 0.0..=1e6, 1.0)?,
-            crossover: options.take("crossover", 0.0..=1.0, 0.9)?,
-            eta_crossover: options.take("eta_crossover", 0.0..=1000.0, 15.0)?,
-            mutation: options.take("mutation", 0.0..=1.0, 0.0)?,
-            eta_mutation: options.take("eta_mutation", 0.0..=1000.0, 20.0)?,
-            sobol: whole(options, "sobol", 0.0..=1.0, 0.0)? == 1,
-        }))
-    },
+    make: |options| Ok(Box::new(Genetic::new(options)?)),
 };
 
 /// How often a failed individual of the first generation is drawn again.
 const REDRAWS: usize = 10;
 
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct Genetic {
     /// 0 for five times the number of genes, from 20 to 100.
     population: usize,
     /// Members of the old generation that compete with the offspring; as many as the population or
     /// more for all of them.
     elites: usize,
-    crossover: f64,
-    eta_crossover: f64,
-    /// 0 for one gene in each individual.
-    mutation: f64,
-    eta_mutation: f64,
-    /// Whether it starts from a Sobol sequence instead of a Latin hypercube.
-    sobol: bool,
+    sampling: Arc<dyn Sampling>,
+    /// For failed individuals of the first generation.
+    redrawing: Arc<dyn Sampling>,
+    selection: Arc<dyn Selection>,
+    breeding: Breeding,
+    survival: Arc<dyn Survival>,
+    chosen: Chosen,
+}
+
+impl Genetic {
+    fn new(options: &mut Options) -> Result<Genetic, Fault> {
+        let mut chosen = Chosen::new();
+        let population = options.take_whole("population", 0.0..=1e6, 0.0)?;
+        let redrawing = operators::sampling(usual("latin_hypercube", &[]))?;
+        let (sampling, redrawing) = match options.take_choice("sampling") {
+            Some(choice) => {
+                chosen.push(("sampling", choice.label()));
+                let sampling = operators::sampling(choice)?;
+                (sampling.clone(), sampling)
+            }
+            // The setting is older than the choice; without both it is a hypercube.
+            None if options.take_whole("sobol", 0.0..=1.0, 0.0)? == 1 => {
+                (operators::sampling(usual("sobol", &[]))?, redrawing)
+            }
+            None => (redrawing.clone(), redrawing),
+        };
+        let survival = breeding::take(options, "survival", usual("elitism", &[]), &mut chosen);
+        let survival = operators::survival(survival)?;
+        let elites = match survival.has_elites() {
+            true => options.take_whole("elites", 0.0..=1e6, 1.0)?,
+            false => 0,
+        };
+        let selection = usual(survival.usual_selection(), &[]);
+        let selection = breeding::take(options, "selection", selection, &mut chosen);
+        let selection = operators::selection(selection)?;
+        let breeding = Breeding::on_real_genes(options, &mut chosen)?;
+        Ok(Genetic {
+            population,
+            elites,
+            sampling,
+            redrawing,
+            selection,
+            breeding,
+            survival,
+            chosen,
+        })
+    }
 }
 
 impl Method for Genetic {
     fn start(&self, setup: Setup) -> Result<Box<dyn Optimizer>, Fault> {
         let n = setup.genes.len();
         let size = if self.population == 0 { (5 * n).clamp(20, 100) } else { self.population };
+        let planned = breeding::planned(&setup, size);
         let mut rng = setup.rng;
-        let mut first = if self.sobol { sobol } else { latin_hypercube }(n, size, &mut rng);
+        let genes = breeding::unit(setup.genes);
+        let breeding = self.breeding.for_run(n, &mut rng);
+        let mut first = self.sampling.sample(&genes, size, &mut rng)?;
         if let Some(start) = setup.start {
             first.row_mut(0).copy_from_slice(&start);
         }
-        let settings = Genetic { population: size, ..*self };
-        let (parents, fitness) = (Genomes::with_capacity(n, size), Vec::with_capacity(size));
-        Ok(Box::new(Search { settings, rng, pending: first, parents, fitness, redraws: REDRAWS }))
+        Ok(Box::new(Search {
+            settings: Genetic { population: size, breeding, ..self.clone() },
+            genes,
+            rng,
+            pending: first,
+            families: Vec::new(),
+            parents: Genomes::with_capacity(n, size),
+            fitness: Vec::with_capacity(size),
+            ages: Vec::new(),
+            redraws: REDRAWS,
+            course: Course { generation: 0, planned },
+            fault: None,
+        }))
+    }
+
+    fn operators(&self) -> Vec<(&'static str, String)> {
+        self.chosen.clone()
     }
 }
 
 struct Search {
     settings: Genetic,
+    genes: Vec<Gene>,
     rng: Mrg32k3a,
     /// Asked next.
     pending: Genomes,
+    /// The parents of each of these, as places in the generation.
+    families: Vec<[usize; 2]>,
     /// The generation that has been evaluated.
     parents: Genomes,
     fitness: Vec<f64>,
+    /// Generations that each of it has survived.
+    ages: Vec<u64>,
     /// Turns left to complete the first generation.
     redraws: usize,
+    course: Course,
+    fault: Option<Fault>,
 }
 
 impl Optimizer for Search {
@@ -88,12 +145,9 @@ impl Optimizer for Search {
 
     fn tell(&mut self, batch: &Genomes, answers: &Answers<'_>) {
         let fitness: Vec<f64> = (0..batch.len()).map(|k| answers.fitness(k)).collect();
-        match self.redraws {
-            0 => self.replace(batch, &fitness),
-            _ => self.complete(batch, &fitness),
-        }
-        if self.redraws == 0 {
-            self.breed();
+        if let Err(fault) = self.go_on(batch, &fitness) {
+            self.fault = Some(fault);
+            self.pending = Genomes::with_capacity(batch.n_genes(), 0);
         }
     }
 
@@ -101,14 +155,21 @@ impl Optimizer for Search {
         "search"
     }
 
+    fn fault(&self) -> Option<&Fault> {
+        self.fault.as_ref()
+    }
+
     fn change(&mut self, setting: &str, value: f64) -> Result<(), Fault> {
         let probability = (0.0..=1.0).contains(&value);
         let size = value.fract() == 0.0 && (0.0..=1e6).contains(&value);
+        let settings = &mut self.settings;
         match setting {
-            "mutation" if probability => self.settings.mutation = value,
-            "crossover" if probability => self.settings.crossover = value,
-            "elites" if size => self.settings.elites = value as usize,
-            "population" if size && value >= 4.0 => self.settings.population = value as usize,
+            "mutation" if probability => settings.breeding.rate = value,
+            "crossover" if probability => settings.breeding.probability = Some(value),
+            "elites" if size && settings.survival.has_elites() => settings.elites = value as usize,
+            "population" if size && value >= 4.0 && settings.survival.can_resize() => {
+                settings.population = value as usize;
+            }
             _ => return Err(fault!(BAD_OPTION, "`{setting}` cannot become {value}")),
         }
         Ok(())
@@ -125,8 +186,20 @@ impl Optimizer for Search {
 }
 
 impl Search {
+    fn go_on(&mut self, batch: &Genomes, fitness: &[f64]) -> Result<(), Fault> {
+        match self.redraws {
+            0 => self.replace(batch, fitness)?,
+            _ => self.complete(batch, fitness)?,
+        }
+        if self.redraws == 0 { self.breed() } else { Ok(()) }
+    }
+
+    fn wanted(&self) -> Wanted {
+        Wanted { population: self.settings.population, elites: self.settings.elites }
+    }
+
     /// The first generation: keeps what succeeded and draws the rest again.
-    fn complete(&mut self, batch: &Genomes, fitness: &[f64]) {
+    fn complete(&mut self, batch: &Genomes, fitness: &[f64]) -> Result<(), Fault> {
         self.redraws -= 1;
         let size = self.settings.population;
         let last = self.redraws == 0;
@@ -134,63 +207,71 @@ impl Search {
             if !has_failed(fitness) || last {
                 self.parents.push(batch.row(k));
                 self.fitness.push(fitness);
+                self.ages.push(0);
             }
         }
         let missing = size.saturating_sub(self.parents.len());
         if missing == 0 {
             self.redraws = 0;
         } else {
-            self.pending = latin_hypercube(batch.n_genes(), missing, &mut self.rng);
+            self.pending = self.settings.redrawing.sample(&self.genes, missing, &mut self.rng)?;
         }
+        Ok(())
     }
 
-    /// The best of the elites of the old generation and the offspring, each of them once.
-    fn replace(&mut self, offspring: &Genomes, fitness: &[f64]) {
-        let elites = order(&self.fitness).into_iter().take(self.settings.elites);
-        let mut all: Vec<(&[f64], f64)> =
-            elites.map(|k| (self.parents.row(k), self.fitness[k])).collect();
-        all.extend(offspring.rows().zip(fitness.iter().copied()));
-        all.sort_by(|a, b| key(a.1).total_cmp(&key(b.1)));
-        let mut next = Genomes::with_capacity(offspring.n_genes(), self.settings.population);
-        let mut next_fitness: Vec<f64> = Vec::with_capacity(self.settings.population);
-        for (genome, fitness) in all {
-            let is_last = |last: usize| next_fitness[last] == fitness && next.row(last) == genome;
-            let known = next.len().checked_sub(1).is_some_and(is_last);
-            if next.len() < self.settings.population && !known {
-                next.push(genome);
-                next_fitness.push(fitness);
-            }
-        }
+    /// The next generation of the old one and its offspring.
+    fn replace(&mut self, offspring: &Genomes, fitness: &[f64]) -> Result<(), Fault> {
+        let brood = Brood {
+            old: Rated { genomes: &self.parents, fitness: &self.fitness },
+            ages: &self.ages,
+            offspring: Rated { genomes: offspring, fitness },
+            parents: &self.families,
+            genes: &self.genes,
+        };
+        let survivors = self.settings.survival.survivors(&brood, self.wanted())?;
+        let mut next = Genomes::with_capacity(offspring.n_genes(), survivors.len());
+        survivors.iter().for_each(|&one| next.push(brood.genome(one)));
+        let next_fitness = survivors.iter().map(|&one| brood.fitness(one)).collect();
+        let age = |one: &Survivor| match one {
+            Survivor::Old(k) => self.ages[*k] + 1,
+            Survivor::Offspring(_) => 0,
+        };
+        self.ages = survivors.iter().map(age).collect();
         (self.parents, self.fitness) = (next, next_fitness);
+        Ok(())
     }
 
-    fn breed(&mut self) {
-        let n = self.parents.n_genes();
-        let settings = self.settings;
-        // Where all parents compete with them, there are as many offspring.
-        let kept = if settings.elites < settings.population { settings.elites } else { 0 };
-        let count = settings.population - kept;
-        let mutation = if settings.mutation > 0.0 { settings.mutation } else { 1.0 / n as f64 };
-        let better = |a: usize, b: usize, fitness: &[f64]| key(fitness[a]) <= key(fitness[b]);
-        let mut offspring = Genomes::with_capacity(n, count);
-        let (mut first, mut second) = (vec![0.0; n], vec![0.0; n]);
+    fn breed(&mut self) -> Result<(), Fault> {
+        let Genetic { selection, breeding, survival, .. } = &self.settings;
+        let count = survival.n_offspring(self.wanted());
+        let rng = &mut self.rng;
+        let drawn = match selection.draws_all_at_once() {
+            true => selection.select(&self.fitness, 2 * count.div_ceil(2), rng)?,
+            false => Vec::new(),
+        };
+        let mut drawn = drawn.chunks_exact(2);
+        let mut offspring = Genomes::with_capacity(self.genes.len(), count);
+        self.families.clear();
         while offspring.len() < count {
-            let fitness = &self.fitness;
-            let mut parent =
-                || tournament(fitness.len(), &mut self.rng, |a, b| better(a, b, fitness));
-            let (a, b) = (parent(), parent());
-            first.copy_from_slice(self.parents.row(a));
-            second.copy_from_slice(self.parents.row(b));
-            if self.rng.uniform() < settings.crossover {
-                sbx(&mut first, &mut second, settings.eta_crossover, &mut self.rng);
-            }
+            let pair = match drawn.next() {
+                Some(pair) => [pair[0], pair[1]],
+                None => {
+                    let pair = selection.select(&self.fitness, 2, rng)?;
+                    [pair[0], pair[1]]
+                }
+            };
+            let [mut first, mut second] = pair.map(|k| self.parents.row(k).to_vec());
+            breeding.cross(&mut first, &mut second, &self.genes, rng)?;
             for child in [&mut first, &mut second] {
-                polynomial(child, mutation, settings.eta_mutation, &mut self.rng);
+                breeding.mutate(child, &self.genes, self.course, rng)?;
                 if offspring.len() < count {
                     offspring.push(child);
+                    self.families.push(pair);
                 }
             }
         }
+        self.course.generation += 1;
         self.pending = offspring;
+        Ok(())
     }
 }

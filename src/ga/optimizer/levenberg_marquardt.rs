@@ -9,7 +9,7 @@
 //! [Nocedal & Wright 2006](crate::bibliography#nocedal-wright-2006), §10.3.
 
 use super::linear_model::{LinearModel, Offset, Step};
-use super::{Answers, DescentEnd, DescentReport, Method, Optimizer, Setup, Wants, whole};
+use super::{Answers, DescentEnd, DescentReport, Method, Optimizer, Setup, Wants};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::Genomes;
@@ -23,7 +23,7 @@ pub(super) const ENTRY: Entry<dyn Method> = Entry {
     summary: "least squares from one point: the middle of the ranges unless a start is given",
     reference: "more-1978",
     make: |options| {
-        Ok(Box::new(LevenbergMarquardt { steps: whole(options, "steps", 1.0..=1e6, 2000.0)? }))
+        Ok(Box::new(LevenbergMarquardt { steps: options.take_whole("steps", 1.0..=1e6, 2000.0)? }))
     },
 };
 

@@ -3,7 +3,7 @@
 //!
 //! Reference: [Tanabe & Fukunaga 2014](crate::bibliography#tanabe-fukunaga-2014).
 
-use super::{Answers, Method, Optimizer, Setup, key, whole};
+use super::{Answers, Method, Optimizer, Setup, key};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::sampling::latin_hypercube;
@@ -17,7 +17,7 @@ pub(super) const ENTRY: Entry<dyn Method> = Entry {
     summary: "differential evolution with memory of success and shrinking population",
     reference: "tanabe-fukunaga-2014",
     make: |options| {
-        Ok(Box::new(Lshade { population: whole(options, "population", 0.0..=1e6, 0.0)? }))
+        Ok(Box::new(Lshade { population: options.take_whole("population", 0.0..=1e6, 0.0)? }))
     },
 };
 

@@ -5,6 +5,7 @@
 //! Genes lie in the unit cube; what they stand for (a range, its logarithm) is the asker's
 //! business. The method of the paper alone works in the ranges of the genes.
 
+mod breeding;
 mod cma_es;
 mod descents;
 mod exchange;
@@ -28,7 +29,7 @@ pub use polish::Polished;
 use super::{Gene, Genomes, Mrg32k3a, has_failed};
 use crate::diag::Fault;
 use crate::fault;
-use crate::registry::{BAD_OPTION, Entry, Options};
+use crate::registry::{BAD_OPTION, Entry};
 
 /// A search in progress.
 pub trait Optimizer: Send {
@@ -54,6 +55,10 @@ pub trait Optimizer: Send {
     /// `bad-option` where the method has no such setting or the value is outside its domain.
     fn change(&mut self, setting: &str, value: f64) -> Result<(), Fault> {
         Err(fault!(BAD_OPTION, "`{setting}` cannot be changed to {value} during the run"))
+    }
+    /// Why the search cannot go on: an operator of the user has failed. Nothing is asked any more.
+    fn fault(&self) -> Option<&Fault> {
+        None
     }
     /// The ranges of the genes have changed by this map: a gene at u is now at `offset + scale u`.
     fn rescale(&mut self, _gene: usize, _offset: f64, _scale: f64) {}
@@ -153,6 +158,10 @@ pub trait Method: Send + Sync {
     fn can_be_polished(&self) -> bool {
         true
     }
+    /// The operators that were chosen in place of the usual ones: kinds, and names with settings.
+    fn operators(&self) -> Vec<(&'static str, String)> {
+        Vec::new()
+    }
     /// Whether it handles several objectives at once.
     fn handles_several_objectives(&self) -> bool {
         false
@@ -170,20 +179,6 @@ pub const METHODS: &[&Entry<dyn Method>] = &[
     &multistart::ENTRY,
     &nsga2::ENTRY,
 ];
-
-/// A whole number among the options.
-fn whole(
-    options: &mut Options,
-    name: &str,
-    domain: std::ops::RangeInclusive<f64>,
-    default: f64,
-) -> Result<usize, Fault> {
-    let value = options.take(name, domain, default)?;
-    if value.fract() != 0.0 {
-        return Err(fault!(BAD_OPTION, "`{name}` is {value}, which is not a whole number"));
-    }
-    Ok(value as usize)
-}
 
 /// The test of a minimum at a point of the unit cube from the weighted residuals there and their
 /// derivatives (residuals × genes); `noise` and `size` as in [`Setup`].
@@ -210,6 +205,8 @@ fn key(fitness: f64) -> f64 {
 
 #[cfg(test)]
 use super::{FAILED_FITNESS, hypervolume};
+#[cfg(test)]
+use crate::registry::Options;
 #[cfg(test)]
 pub(crate) mod problems;
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //! was reached from several starts.
 
 use super::polish::Polished;
-use super::{Method, Optimizer, Setup, whole};
+use super::{Method, Optimizer, Setup};
 use crate::diag::Fault;
 use crate::registry::Entry;
 
@@ -14,8 +14,8 @@ pub(super) const ENTRY: Entry<dyn Method> = Entry {
     reference: "boender-rinnooy-kan-1987",
     make: |options| {
         Ok(Box::new(Multistart {
-            points: whole(options, "points", 1.0..=1e6, 40.0)?,
-            starts: whole(options, "starts", 1.0..=1e4, 4.0)?,
+            points: options.take_whole("points", 1.0..=1e6, 40.0)?,
+            starts: options.take_whole("starts", 1.0..=1e4, 4.0)?,
         }))
     },
 };

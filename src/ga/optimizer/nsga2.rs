@@ -3,15 +3,17 @@
 //!
 //! Reference: [Deb et al. 2002](crate::bibliography#deb-2002).
 
-use super::{Answers, Method, Optimizer, Setup, key, whole};
+use super::breeding::{self, Breeding, Chosen};
+use super::{Answers, Method, Optimizer, Setup, key};
 use crate::diag::Fault;
-use crate::ga::crossover::sbx;
-use crate::ga::mutation::polynomial;
-use crate::ga::sampling::latin_hypercube;
+use crate::ga::mutation::Course;
+use crate::ga::operators::{self, usual};
+use crate::ga::sampling::Sampling;
 use crate::ga::selection::tournament;
-use crate::ga::{Genomes, Mrg32k3a};
+use crate::ga::{Gene, Genomes, Mrg32k3a};
 use crate::registry::Entry;
 use std::cmp::Ordering;
+use std::sync::Arc;
 
 /// The table entry.
 pub(super) const ENTRY: Entry<dyn Method> = Entry {
@@ -20,45 +22,54 @@ pub(super) const ENTRY: Entry<dyn Method> = Entry {
     summary: "several fitness functions at once: a front of the best compromises",
     reference: "deb-2002",
     make: |options| {
-        Ok(Box::new(Nsga2 {
-            population: whole(options, "population", 4.0..=1e5, 100.0)?,
-            crossover: options.take("crossover", 0.0..=1.0, 0.9)?,
-            eta_crossover: options.take("eta_crossover", 0.0..=1000.0, 15.0)?,
-            mutation: options.take("mutation", 0.0..=1.0, 0.0)?,
-            eta_mutation: options.take("eta_mutation", 0.0..=1000.0, 20.0)?,
-        }))
+        let mut chosen = Chosen::new();
+        let population = options.take_whole("population", 4.0..=1e5, 100.0)?;
+        let sampling =
+            breeding::take(options, "sampling", usual("latin_hypercube", &[]), &mut chosen);
+        let sampling = operators::sampling(sampling)?;
+        let breeding = Breeding::on_real_genes(options, &mut chosen)?;
+        Ok(Box::new(Nsga2 { population, sampling, breeding, chosen }))
     },
 };
 
-#[derive(Clone, Copy)]
+/// Selection (binary tournaments of rank and distance) and survival are what the method is.
+#[derive(Clone)]
 struct Nsga2 {
     population: usize,
-    crossover: f64,
-    eta_crossover: f64,
-    /// 0 for one gene in each individual.
-    mutation: f64,
-    eta_mutation: f64,
+    sampling: Arc<dyn Sampling>,
+    breeding: Breeding,
+    chosen: Chosen,
 }
 
 impl Method for Nsga2 {
     fn start(&self, setup: Setup) -> Result<Box<dyn Optimizer>, Fault> {
         let n = setup.genes.len();
+        let planned = breeding::planned(&setup, self.population);
         let mut rng = setup.rng;
-        let mut pending = latin_hypercube(n, self.population, &mut rng);
+        let genes = breeding::unit(setup.genes);
+        let breeding = self.breeding.for_run(n, &mut rng);
+        let mut pending = self.sampling.sample(&genes, self.population, &mut rng)?;
         if let Some(start) = setup.start {
             pending.row_mut(0).copy_from_slice(&start);
         }
-        let settings = *self;
+        let settings = Nsga2 { breeding, ..self.clone() };
         let (genomes, objectives) = (Genomes::with_capacity(n, 0), Vec::new());
         Ok(Box::new(Search {
             settings,
+            genes,
             rng,
             pending,
             genomes,
             objectives,
             rank: Vec::new(),
             distance: Vec::new(),
+            course: Course { generation: 0, planned },
+            fault: None,
         }))
+    }
+
+    fn operators(&self) -> Vec<(&'static str, String)> {
+        self.chosen.clone()
     }
 
     fn can_be_polished(&self) -> bool {
@@ -72,12 +83,15 @@ impl Method for Nsga2 {
 
 struct Search {
     settings: Nsga2,
+    genes: Vec<Gene>,
     rng: Mrg32k3a,
     pending: Genomes,
     genomes: Genomes,
     objectives: Vec<f64>,
     rank: Vec<usize>,
     distance: Vec<f64>,
+    course: Course,
+    fault: Option<Fault>,
 }
 
 impl Optimizer for Search {
@@ -89,7 +103,14 @@ impl Optimizer for Search {
         batch.rows().for_each(|genome| self.genomes.push(genome));
         self.objectives.extend(answers.objectives.iter().copied().map(key));
         self.survive(answers.n_objectives);
-        self.breed();
+        if let Err(fault) = self.breed() {
+            self.fault = Some(fault);
+            self.pending = Genomes::with_capacity(batch.n_genes(), 0);
+        }
+    }
+
+    fn fault(&self) -> Option<&Fault> {
+        self.fault.as_ref()
     }
 
     fn phase(&self) -> &'static str {
@@ -118,33 +139,29 @@ impl Search {
         self.genomes = next;
     }
 
-    fn breed(&mut self) {
-        let n = self.genomes.n_genes();
-        let settings = self.settings;
-        let mutation = if settings.mutation > 0.0 { settings.mutation } else { 1.0 / n as f64 };
-        let mut offspring = Genomes::with_capacity(n, settings.population);
-        let (mut first, mut second) = (vec![0.0; n], vec![0.0; n]);
+    fn breed(&mut self) -> Result<(), Fault> {
+        let Nsga2 { population, breeding, .. } = &self.settings;
+        let mut offspring = Genomes::with_capacity(self.genes.len(), *population);
         let count = self.genomes.len();
-        while offspring.len() < settings.population {
-            let (rank, distance) = (&self.rank, &self.distance);
-            let better = |a: usize, b: usize| (rank[a], -distance[a]) <= (rank[b], -distance[b]);
-            let mut parent = || tournament(count, &mut self.rng, better);
-            let (a, b) = (parent(), parent());
-            first.copy_from_slice(self.genomes.row(a));
-            second.copy_from_slice(self.genomes.row(b));
-            if self.rng.uniform() < settings.crossover {
-                sbx(&mut first, &mut second, settings.eta_crossover, &mut self.rng);
-            }
+        let (rank, distance) = (&self.rank, &self.distance);
+        let better = |a: usize, b: usize| (rank[a], -distance[a]) <= (rank[b], -distance[b]);
+        while offspring.len() < *population {
+            let mut parent = || tournament(count, 2, &mut self.rng, better);
+            let pair = [parent(), parent()];
+            let [mut first, mut second] = pair.map(|k| self.genomes.row(k).to_vec());
+            breeding.cross(&mut first, &mut second, &self.genes, &mut self.rng)?;
             for child in [&mut first, &mut second] {
-                polynomial(child, mutation, settings.eta_mutation, &mut self.rng);
+                breeding.mutate(child, &self.genes, self.course, &mut self.rng)?;
                 let known =
                     self.genomes.rows().chain(offspring.rows()).any(|genome| genome == &child[..]);
-                if offspring.len() < settings.population && (!known || self.rng.uniform() < 0.05) {
+                if offspring.len() < *population && (!known || self.rng.uniform() < 0.05) {
                     offspring.push(child);
                 }
             }
         }
+        self.course.generation += 1;
         self.pending = offspring;
+        Ok(())
     }
 }
 

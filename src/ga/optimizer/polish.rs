@@ -235,6 +235,10 @@ impl Optimizer for Polished {
         }
     }
 
+    fn fault(&self) -> Option<&Fault> {
+        self.search.as_ref()?.fault()
+    }
+
     fn descents(&self) -> Vec<DescentReport> {
         self.pool.reports()
     }

@@ -3,7 +3,8 @@
 //!
 //! Reference: [McKay et al. 1979](crate::bibliography#mckay-1979).
 
-use super::Sampling;
+use super::{Sampling, scaled};
+use crate::diag::Fault;
 use crate::ga::{Gene, Genomes, Mrg32k3a};
 use crate::registry::Entry;
 
@@ -19,14 +20,8 @@ pub(super) const ENTRY: Entry<dyn Sampling> = Entry {
 struct LatinHypercube;
 
 impl Sampling for LatinHypercube {
-    fn sample(&self, genes: &[Gene], count: usize, rng: &mut Mrg32k3a) -> Genomes {
-        let mut genomes = latin_hypercube(genes.len(), count, rng);
-        for k in 0..genomes.len() {
-            for (value, gene) in genomes.row_mut(k).iter_mut().zip(genes) {
-                *value = gene.at(*value);
-            }
-        }
-        genomes
+    fn sample(&self, genes: &[Gene], count: usize, rng: &mut Mrg32k3a) -> Result<Genomes, Fault> {
+        Ok(scaled(latin_hypercube(genes.len(), count, rng), genes))
     }
 }
 

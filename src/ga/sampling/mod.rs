@@ -1,22 +1,40 @@
-//! Sampling: how random individuals are made.
+//! Sampling: how the first generation is drawn, and other random individuals.
 
+mod halton;
 mod latin_hypercube;
+mod own;
 mod sobol;
 mod uniform;
 
 pub use latin_hypercube::latin_hypercube;
+pub use own::{Own, SIGNATURE, sample_by};
 pub use sobol::{SOBOL_GENES, sobol};
 pub use uniform::sample_uniform;
 
 use super::{Gene, Genomes, Mrg32k3a};
+use crate::diag::Fault;
 use crate::registry::Entry;
 
 /// Makes random individuals.
 pub trait Sampling: Send + Sync {
     /// `count` random individuals within the ranges of `genes`.
-    fn sample(&self, genes: &[Gene], count: usize, rng: &mut Mrg32k3a) -> Genomes;
+    ///
+    /// # Errors
+    ///
+    /// A user's function that failed or returned what are no genes.
+    fn sample(&self, genes: &[Gene], count: usize, rng: &mut Mrg32k3a) -> Result<Genomes, Fault>;
 }
 
 /// All ways of sampling.
 pub const SAMPLINGS: &[&Entry<dyn Sampling>] =
-    &[&uniform::ENTRY, &latin_hypercube::ENTRY, &sobol::ENTRY];
+    &[&latin_hypercube::ENTRY, &uniform::ENTRY, &sobol::ENTRY, &halton::ENTRY];
+
+/// Individuals of the unit cube in the ranges of the genes.
+fn scaled(mut genomes: Genomes, genes: &[Gene]) -> Genomes {
+    for k in 0..genomes.len() {
+        for (value, gene) in genomes.row_mut(k).iter_mut().zip(genes) {
+            *value = gene.at(*value);
+        }
+    }
+    genomes
+}

@@ -4,7 +4,8 @@
 //! References: [Sobol 1967](crate::bibliography#sobol-1967),
 //! [Joe & Kuo 2008](crate::bibliography#joe-kuo-2008) (direction numbers).
 
-use super::{Sampling, latin_hypercube};
+use super::{Sampling, latin_hypercube, scaled};
+use crate::diag::Fault;
 use crate::ga::{Gene, Genomes, Mrg32k3a};
 use crate::registry::Entry;
 
@@ -48,14 +49,8 @@ const POLYNOMIALS: [(u32, u32, &[u32]); 20] = [
 struct Sobol;
 
 impl Sampling for Sobol {
-    fn sample(&self, genes: &[Gene], count: usize, rng: &mut Mrg32k3a) -> Genomes {
-        let mut genomes = sobol(genes.len(), count, rng);
-        for k in 0..genomes.len() {
-            for (value, gene) in genomes.row_mut(k).iter_mut().zip(genes) {
-                *value = gene.at(*value);
-            }
-        }
-        genomes
+    fn sample(&self, genes: &[Gene], count: usize, rng: &mut Mrg32k3a) -> Result<Genomes, Fault> {
+        Ok(scaled(sobol(genes.len(), count, rng), genes))
     }
 }
 

@@ -3,6 +3,7 @@
 //! Reference: [Rubio et al. 2006](crate::bibliography#rubio-2006), §3.1.
 
 use super::Sampling;
+use crate::diag::Fault;
 use crate::ga::{Gene, Genomes, Mrg32k3a};
 use crate::registry::Entry;
 
@@ -18,8 +19,8 @@ pub(super) const ENTRY: Entry<dyn Sampling> = Entry {
 struct Uniform;
 
 impl Sampling for Uniform {
-    fn sample(&self, genes: &[Gene], count: usize, rng: &mut Mrg32k3a) -> Genomes {
-        sample_uniform(genes, count, rng)
+    fn sample(&self, genes: &[Gene], count: usize, rng: &mut Mrg32k3a) -> Result<Genomes, Fault> {
+        Ok(sample_uniform(genes, count, rng))
     }
 }
 

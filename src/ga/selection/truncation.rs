@@ -5,24 +5,33 @@
 use super::Selection;
 use crate::bail;
 use crate::diag::Fault;
-use crate::ga::Mrg32k3a;
 use crate::ga::errors::BAD_POPULATION;
+use crate::ga::{Mrg32k3a, order};
 use crate::registry::Entry;
 
 /// The table entry.
 pub(super) const ENTRY: Entry<dyn Selection> = Entry {
     name: "truncation",
     aliases: &["best"],
-    summary: "the best individuals become parents, adjacent ranks mate",
+    summary: "the best individuals become parents, at most the fraction `share`; adjacent ranks mate",
     reference: "rubio-2006",
-    make: |_| Ok(Box::new(Truncation)),
+    make: |options| Ok(Box::new(Truncation { share: options.take("share", 0.0..=1.0, 0.7)? })),
 };
 
-struct Truncation;
+struct Truncation {
+    /// The paper's first case has 70 parents of 100 individuals.
+    share: f64,
+}
 
 impl Selection for Truncation {
-    fn select(&self, n_individuals: usize, n_parents: usize, _: &mut Mrg32k3a) -> Vec<usize> {
-        (0..n_parents.min(n_individuals)).collect()
+    fn select(&self, fitness: &[f64], count: usize, _: &mut Mrg32k3a) -> Result<Vec<usize>, Fault> {
+        let best = ((self.share * fitness.len() as f64).ceil() as usize).clamp(1, count.max(1));
+        // Where more parents are needed, the best mate again.
+        Ok(order(fitness).into_iter().take(best).cycle().take(count).collect())
+    }
+
+    fn draws_all_at_once(&self) -> bool {
+        true
     }
 }
 
@@ -77,6 +86,11 @@ mod tests {
     #[test]
     fn the_best_are_selected() {
         let mut rng = Mrg32k3a::new(&Mrg32k3a::DEFAULT_SEED).unwrap();
-        assert_eq!(Truncation.select(5, 3, &mut rng), [0, 1, 2]);
+        let mut selected = |share: f64, count: usize| {
+            Truncation { share }.select(&[3.0, 1.0, 5.0, 2.0, 4.0], count, &mut rng).unwrap()
+        };
+        assert_eq!(selected(1.0, 3), [1, 3, 0]);
+        assert_eq!(selected(0.4, 5), [1, 3, 1, 3, 1]);
+        assert_eq!(selected(0.0, 2), [1, 1]);
     }
 }

@@ -1,16 +1,22 @@
-//! The best individuals pass on unaltered and stand before the offspring.
+//! Elitism: the best individuals pass on unaltered.
+//!
+//! In the paper's generation the elites stand before the offspring ([`elites_first`]). As a way of
+//! survival, the elites of the old generation and the offspring stand in order of their fitness; an
+//! elite that a child has met bit by bit counts once. Without limit to the elites (as many as the
+//! population, or more) all parents compete with as many offspring.
 //!
 //! Reference: [Rubio et al. 2006](crate::bibliography#rubio-2006), §2.
 
-use super::Survival;
-use crate::ga::Genomes;
+use super::{Brood, Survival, Survivor, Wanted};
+use crate::diag::Fault;
+use crate::ga::{Genomes, order};
 use crate::registry::Entry;
 
 /// The table entry.
 pub(super) const ENTRY: Entry<dyn Survival> = Entry {
     name: "elitism",
     aliases: &["elites"],
-    summary: "the best individuals pass on unaltered",
+    summary: "the best `elites` of the method pass on, offspring replace the others",
     reference: "rubio-2006",
     make: |_| Ok(Box::new(Elitism)),
 };
@@ -18,8 +24,18 @@ pub(super) const ENTRY: Entry<dyn Survival> = Entry {
 struct Elitism;
 
 impl Survival for Elitism {
-    fn survive(&self, ordered: &Genomes, elites: usize, offspring: &Genomes) -> Genomes {
-        elites_first(ordered, elites, offspring)
+    fn n_offspring(&self, Wanted { population, elites }: Wanted) -> usize {
+        // Where all parents compete with them, there are as many offspring.
+        if elites < population { population - elites } else { population }
+    }
+
+    fn survivors(&self, brood: &Brood<'_>, wanted: Wanted) -> Result<Vec<Survivor>, Fault> {
+        let elites = order(brood.old.fitness).into_iter().take(wanted.elites).map(Survivor::Old);
+        Ok(brood.best(elites.chain(brood.offspring()).collect(), wanted.population))
+    }
+
+    fn has_elites(&self) -> bool {
+        true
     }
 }
 

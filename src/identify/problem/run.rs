@@ -134,6 +134,11 @@ impl Run {
         self.optimizer.phase()
     }
 
+    /// Why the run cannot go on: an operator of the user has failed.
+    pub fn fault(&self) -> Option<Fault> {
+        self.optimizer.fault().cloned()
+    }
+
     /// Why the run is over, in words; `None` while it is not.
     pub fn stop(&mut self) -> Option<String> {
         let condition = self.condition();

@@ -11,6 +11,7 @@ use crate::diag::Fault;
 use crate::elementary;
 use crate::fault;
 use crate::ga::Generation;
+use crate::ga::operators::KINDS;
 use crate::identify::Uncertainty;
 use crate::registry::BAD_OPTION;
 use serde::{Deserialize, Serialize};
@@ -31,6 +32,14 @@ pub(super) const BEYOND: f64 = 2.0;
 /// Points beside the best at which a lack of rank is looked at.
 const ELSEWHERE: usize = 5;
 
+/// The operators that were chosen, in the order of a generation.
+fn chosen_operators(problem: &super::Problem) -> indexmap::IndexMap<String, String> {
+    let chosen = problem.method.operators();
+    let of = |kind: &'static str| chosen.iter().find(|(own, _)| *own == kind);
+    let all = KINDS.iter().filter_map(|kind| of(kind.name));
+    all.map(|(kind, label)| ((*kind).to_owned(), label.clone())).collect()
+}
+
 /// The solution of a problem.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Solution {
@@ -40,6 +49,10 @@ pub struct Solution {
     pub model: String,
     /// The method.
     pub method: String,
+    /// The operators that were chosen in place of the method's usual ones: kind, and name with
+    /// settings.
+    #[serde(default, skip_serializing_if = "indexmap::IndexMap::is_empty")]
+    pub operators: indexmap::IndexMap<String, String>,
     /// The first objective: its name and the smallest value found.
     pub fitness_name: String,
     /// Its smallest value.
@@ -324,6 +337,7 @@ impl Solution {
                     ""
                 }
             ),
+            operators: chosen_operators(problem),
             fitness_name: problem.objectives[0].0.clone(),
             fitness: best.fitness,
             correlations: correlations(&statistics, parameters.len()),

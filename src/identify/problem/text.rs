@@ -67,6 +67,11 @@ impl Solution {
             facts.push(("front", format!("{} points{knee}{volume}", self.front.len())));
         }
         facts.push(("method", self.method.clone()));
+        let operator = |(kind, label): (&String, &String)| format!("{kind} {label}");
+        let operators: Vec<String> = self.operators.iter().map(operator).collect();
+        if !operators.is_empty() {
+            facts.push(("operators", operators.join(", ")));
+        }
         facts.push(("stopped", self.stop.clone()));
         if self.ending.kind == EndingKind::Minimum {
             facts.push(("ending", self.ending.words.clone()));

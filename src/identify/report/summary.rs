@@ -20,6 +20,10 @@ pub(super) fn head(view: &View) -> Markup {
                     dd { (number(test.value, 4)) " (" (number(test.freedom, 4)) "), probability " (number(test.probability, 2)) } }
             }
             div { dt { "Method" } dd { (solution.method) } }
+            @if !solution.operators.is_empty() {
+                div { dt { "Operators" }
+                    dd { @for (kind, label) in &solution.operators { (kind) " " (label) "; " } } }
+            }
             div { dt { "Stopped" } dd { (solution.stop) } }
         }
         @if !view.notes.is_empty() {

@@ -42,7 +42,7 @@ const MOST_NUMBERS: i64 = 100_000_000;
 struct Rows(RealMatrix);
 
 /// Whole numbers: one, or a vector of them, also as Reals.
-struct WholeNumbers(Vec<i64>);
+pub(super) struct WholeNumbers(pub(super) Vec<i64>);
 
 impl FromValue for Rows {
     fn from_value(value: Value) -> Result<Rows, Fault> {
@@ -66,16 +66,16 @@ impl FromValue for WholeNumbers {
     }
 }
 
-fn row(elements: Vec<f64>) -> Value {
+pub(super) fn row(elements: Vec<f64>) -> Value {
     RealMatrix { rows: 1, columns: elements.len(), elements }.into()
 }
 
-fn genomes_value(genomes: Genomes) -> Value {
+pub(super) fn genomes_value(genomes: Genomes) -> Value {
     let (rows, columns) = (genomes.len(), genomes.n_genes());
     RealMatrix { rows, columns, elements: genomes.into_values() }.into()
 }
 
-fn take_genomes(args: &mut Args, name: &str) -> Result<Genomes, Fault> {
+pub(super) fn take_genomes(args: &mut Args, name: &str) -> Result<Genomes, Fault> {
     let Rows(matrix) = args.take(name)?;
     if matrix.columns == 0 {
         bail!(SIZE_MISMATCH, "`{name}` has no columns, but an individual has genes");
@@ -84,7 +84,7 @@ fn take_genomes(args: &mut Args, name: &str) -> Result<Genomes, Fault> {
 }
 
 /// Whether `name` has as many elements as `of` says.
-fn check_size(name: &str, size: usize, expected: usize, of: &str) -> Result<(), Fault> {
+pub(super) fn check_size(name: &str, size: usize, expected: usize, of: &str) -> Result<(), Fault> {
     if size == expected {
         return Ok(());
     }
@@ -334,7 +334,7 @@ fn extremes(genomes: &Genomes, extreme: fn(f64, f64) -> f64) -> Vec<f64> {
     rows.fold(first, |sofar, row| sofar.iter().zip(row).map(|(a, b)| extreme(*a, *b)).collect())
 }
 
-fn genes(minima: &[f64], maxima: &[f64], n_genes: usize) -> Result<Vec<Gene>, Fault> {
+pub(super) fn genes(minima: &[f64], maxima: &[f64], n_genes: usize) -> Result<Vec<Gene>, Fault> {
     check_size("Param_Min", minima.len(), n_genes, "the columns of the population number")?;
     check_size("Param_Max", maxima.len(), n_genes, "the columns of the population number")?;
     let ranges = minima.iter().zip(maxima).enumerate();

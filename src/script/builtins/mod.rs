@@ -21,6 +21,7 @@ mod matrices;
 mod messages;
 mod methods;
 mod openmodelica;
+mod operators;
 mod output;
 mod plotting;
 mod problem;
@@ -117,6 +118,7 @@ pub static FAMILIES: &[&Family] = &[
     &files::FAMILY,
     &files::OPENMODELICA,
     &gapilib::FAMILY,
+    &operators::FAMILY,
     &problem::FAMILY,
     &initial::FAMILY,
     &installation::FAMILY,

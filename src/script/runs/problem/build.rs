@@ -5,6 +5,7 @@
 
 use super::data::{self, Notes};
 use super::file::{ColumnEntry, ExperimentEntry, OneOrMany, ProblemFile, Role};
+use super::operators::{self, Named};
 use super::{dynamics, inputs, own_fitness, sigma};
 use crate::bail;
 use crate::diag::{Diagnostic, Fault, visible_line};
@@ -115,8 +116,10 @@ pub(super) fn build(
     let fitted = experiments.clone();
     let inference = super::inference::inference(file, &experiments).map_err(one)?;
     let simulator = move || Ok(Box::new(ModelSimulator::new(&experiments)?) as Box<dyn Simulate>);
+    let usual = if objectives.len() > 1 { "nsga2" } else { METHODS[0].name };
+    let method = operators::method(session, file, usual, parameters.len())?;
     let parts = (parameters, series, objectives);
-    let mut problem = assemble(file, parts, noise, Box::new(simulator)).map_err(one)?;
+    let mut problem = assemble(file, parts, method, noise, Box::new(simulator)).map_err(one)?;
     problem.inference = inference;
     let adjustments = super::inference::adjustments(file, &problem.parameters).map_err(one)?;
     adjust(&mut problem, adjustments).map_err(one)?;
@@ -212,18 +215,11 @@ type Objective = (String, Box<dyn Fitness>);
 fn assemble(
     file: &ProblemFile,
     (parameters, series, objectives): (Vec<Free>, Vec<Series>, Vec<Objective>),
+    (name, method): Named,
     noise: f64,
     simulator: Box<dyn Fn() -> Result<Box<dyn Simulate>, Fault> + Send + Sync>,
 ) -> Result<Problem, Fault> {
-    let several = objectives.len() > 1;
-    let default = if several { "nsga2" } else { METHODS[0].name };
-    let wanted = file.method.name.as_deref().unwrap_or(default);
-    let entry = registry::find("method", METHODS, wanted)?;
-    let mut options = Options::default();
-    file.method.settings.iter().for_each(|(name, value)| options.set(name, *value));
-    let method = (entry.make)(&mut options)?;
-    options.finish()?;
-    let parameters = on_its_scale(file, entry.name, method.in_natural_units(), parameters)?;
+    let parameters = on_its_scale(file, name, method.in_natural_units(), parameters)?;
     let stop = &file.stop;
     let stop = Stop {
         generations: stop.generations,
@@ -239,7 +235,7 @@ fn assemble(
         parameters,
         series,
         objectives,
-        method_name: entry.name.to_owned(),
+        method_name: name.to_owned(),
         method,
         polish: file.method.polish.unwrap_or(true),
         seed: file.seed.unwrap_or([12345.0; 6]),

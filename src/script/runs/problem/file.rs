@@ -5,8 +5,11 @@ use crate::diag::Diagnostic;
 use crate::registry::BAD_OPTION;
 use crate::source::{SourceId, Span};
 use indexmap::IndexMap;
-use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{IgnoredAny, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
 use std::path::PathBuf;
+use toml::Spanned;
 
 /// A problem as the file says it.
 #[derive(Debug, Deserialize)]
@@ -40,6 +43,9 @@ pub(super) struct ProblemFile {
     pub bootstrap: Option<BootstrapEntry>,
     /// Markov chains.
     pub posterior: Option<PosteriorEntry>,
+    /// Where the operators of the method are written.
+    #[serde(skip)]
+    pub operator_places: IndexMap<&'static str, Span>,
 }
 
 /// A parameter: free within a range, or fixed, or tied to others.
@@ -156,8 +162,8 @@ pub(super) enum OneOrMany {
     Set(FitnessEntry),
 }
 
-/// A fitness function with its settings.
-#[derive(Debug, Deserialize)]
+/// A fitness function or an operator with its settings.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub(super) struct FitnessEntry {
     pub name: String,
     #[serde(flatten)]
@@ -170,8 +176,88 @@ pub(super) struct MethodEntry {
     pub name: Option<String>,
     /// Whether least squares refine the result.
     pub polish: Option<bool>,
+    pub sampling: Option<OperatorEntry>,
+    pub selection: Option<OperatorEntry>,
+    pub crossover: Option<OperatorEntry>,
+    pub mutation: Option<OperatorEntry>,
+    pub survival: Option<OperatorEntry>,
     #[serde(flatten)]
     pub settings: IndexMap<String, f64>,
+}
+
+/// An operator of the genetic algorithm.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum OperatorEntry {
+    /// How often the usual one takes place.
+    Frequency(f64),
+    /// A name, which may have settings behind it: `sbx(eta = 5)`.
+    Name(String),
+    /// `{ name = "sbx", eta = 5 }`.
+    Set(FitnessEntry),
+}
+
+impl<'de> Deserialize<'de> for OperatorEntry {
+    fn deserialize<D: Deserializer<'de>>(reader: D) -> Result<OperatorEntry, D::Error> {
+        reader.deserialize_any(OperatorVisitor)
+    }
+}
+
+struct OperatorVisitor;
+
+impl<'de> Visitor<'de> for OperatorVisitor {
+    type Value = OperatorEntry;
+
+    fn expecting(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter
+            .write_str("an operator, such as \"sbx\" or { name = \"sbx\", eta = 5 }, or a number")
+    }
+
+    fn visit_f64<E>(self, value: f64) -> Result<OperatorEntry, E> {
+        Ok(OperatorEntry::Frequency(value))
+    }
+
+    fn visit_i64<E>(self, value: i64) -> Result<OperatorEntry, E> {
+        Ok(OperatorEntry::Frequency(value as f64))
+    }
+
+    fn visit_str<E>(self, name: &str) -> Result<OperatorEntry, E> {
+        Ok(OperatorEntry::Name(name.to_owned()))
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<OperatorEntry, A::Error> {
+        FitnessEntry::deserialize(MapAccessDeserializer::new(map)).map(OperatorEntry::Set)
+    }
+}
+
+/// Where the operators of the method are written. Apart from the entries, because what is collected
+/// by `flatten` has lost its places.
+#[derive(Debug, Default, Deserialize)]
+struct Places {
+    #[serde(default)]
+    method: MethodPlaces,
+}
+
+#[derive(Debug, Default, Deserialize)]
+struct MethodPlaces {
+    sampling: Option<Spanned<IgnoredAny>>,
+    selection: Option<Spanned<IgnoredAny>>,
+    crossover: Option<Spanned<IgnoredAny>>,
+    mutation: Option<Spanned<IgnoredAny>>,
+    survival: Option<Spanned<IgnoredAny>>,
+}
+
+impl MethodEntry {
+    /// The operators that were chosen, with their kinds, in the order of a generation.
+    pub(super) fn operators(&self) -> impl Iterator<Item = (&'static str, &OperatorEntry)> {
+        let all = [
+            ("sampling", &self.sampling),
+            ("selection", &self.selection),
+            ("crossover", &self.crossover),
+            ("mutation", &self.mutation),
+            ("survival", &self.survival),
+        ];
+        all.into_iter().filter_map(|(kind, entry)| Some((kind, entry.as_ref()?)))
+    }
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -251,12 +337,28 @@ pub(super) struct PosteriorEntry {
 ///
 /// What is wrong with the text, at its place.
 pub(super) fn read(source: SourceId, text: &str) -> Result<ProblemFile, Diagnostic> {
-    toml::from_str(text).map_err(|error| {
+    let mut file: ProblemFile = toml::from_str(text).map_err(|error| {
         let range = error.span().unwrap_or(0..0);
         let span = Span { source, start: range.start as u32, end: range.end as u32 };
         let message = error.message().lines().collect::<Vec<_>>().join("; ");
         crate::fault!(BAD_OPTION, "{}", message.trim_end_matches('.')).at(span)
-    })
+    })?;
+    // What could be read once can be read again.
+    let Places { method } = toml::from_str(text).unwrap_or_default();
+    let all = [
+        ("sampling", method.sampling),
+        ("selection", method.selection),
+        ("crossover", method.crossover),
+        ("mutation", method.mutation),
+        ("survival", method.survival),
+    ];
+    for (kind, place) in all {
+        if let Some(range) = place.map(|place| place.span()) {
+            let span = Span { source, start: range.start as u32, end: range.end as u32 };
+            file.operator_places.insert(kind, span);
+        }
+    }
+    Ok(file)
 }
 
 impl ColumnEntry {

@@ -15,7 +15,9 @@ mod file;
 mod inference;
 mod inputs;
 mod live;
+pub(in crate::script) mod operators;
 mod own_fitness;
+pub(in crate::script) mod own_function;
 mod record;
 mod sigma;
 
@@ -180,6 +182,12 @@ fn solve_built(
     let mut started = session.world.monotonic_seconds();
     let mut looked = f64::NEG_INFINITY;
     let (stop, interrupted) = loop {
+        if let Some(fault) = run.fault() {
+            session.world.end_view();
+            // It would fail again in the same way.
+            let _ = session.world.remove(checkpoint.path());
+            return Err(fault);
+        }
         if let Some(stop) = run.stop() {
             break (stop, false);
         }

@@ -1,45 +1,24 @@
 //! Fitness functions that are written in Modelica: any function of the simulated and the measured
 //! points, and of their weights if it wants them.
-//!
-//! A function is compiled as part of a model whose parameters are the simulated points, so that it
-//! may use whatever functions of models may use, and runs on every thread.
 
-use crate::bail;
+use super::own_function::{Around, OwnFunction, function};
 use crate::diag::{Diagnostic, Fault};
-use crate::eval::{Callee, Host};
 use crate::ga::FAILED_FITNESS;
 use crate::identify::fitness::Fitness;
 use crate::identify::problem::Series;
-use crate::identify::{CompiledModel, Instance, Model};
-use crate::name::Name;
-use crate::registry::BAD_OPTION;
+use crate::registry::{BAD_OPTION, UserFunction};
 use crate::script::Session;
-use crate::script::models::simulation;
-use crate::sim::{Settings, Simulator, Trajectory};
 use crate::source::Span;
-use std::sync::{Mutex, PoisonError};
 
 /// The output of the model around the function.
 const OUTPUT: &str = "gapi_fitness";
 
 /// A compiled function.
-pub(super) struct OwnFitness {
-    model: CompiledModel,
-    varied: Vec<String>,
-    settings: Settings,
-    /// Those that nobody uses now.
-    idle: Mutex<Vec<Worker>>,
-}
-
-struct Worker {
-    instance: Box<dyn Instance>,
-    simulator: Simulator,
-    trajectory: Trajectory,
-}
+pub(super) struct OwnFitness(OwnFunction);
 
 /// Whether a function of this name is loaded.
 pub(super) fn is_function(session: &mut Session, name: &str) -> bool {
-    matches!(session.callee(&Name::parse(name)), Ok(Some(Callee::Function(_))))
+    matches!(function(session, name), Ok(Some(_)))
 }
 
 /// Compiles the function `name` for the measured points of `series`.
@@ -53,11 +32,8 @@ pub(super) fn compiled(
     series: &[Series],
 ) -> Result<OwnFitness, Vec<Diagnostic>> {
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
-    let inputs = match session.callee(&Name::parse(name)) {
-        Ok(Some(Callee::Function(function))) => function.inputs.len(),
-        Ok(_) => 0,
-        Err(diagnostic) => return Err(vec![diagnostic]),
-    };
+    let found = function(session, name).map_err(|diagnostic| vec![diagnostic])?;
+    let inputs = found.map_or(0, |function| function.inputs.len());
     let list = |values: &mut dyn Iterator<Item = f64>| {
         values.map(|value| format!("{value:e}")).collect::<Vec<_>>().join(", ")
     };
@@ -69,20 +45,13 @@ pub(super) fn compiled(
         _ => return Err(one(wrong_inputs(name, inputs))),
     };
     let n: usize = series.iter().map(|series| series.y.len()).sum();
-    let class = format!("GAPILibFitness_{}", name.replace('.', "_"));
-    let text = format!(
-        "model {class}\n  parameter Real gapi_simulated[{n}] = zeros({n});\n  output Real {OUTPUT} = {name}({arguments});\nend {class};\n"
+    let body = format!(
+        "  parameter Real gapi_simulated[{n}] = zeros({n});\n  output Real {OUTPUT} = {name}({arguments});\n"
     );
-    session.load_text(&format!("fitness function {name}"), &text)?;
-    let translated = simulation::translated(session, &class)?;
-    let model = CompiledModel::new(name, translated.program.clone());
-    let varied = (1..=n).map(|k| format!("gapi_simulated[{k}]")).collect();
-    let settings = Settings { start: 0.0, stop: 0.0, ..Settings::default() };
-    let own = OwnFitness { model, varied, settings, idle: Mutex::new(Vec::new()) };
-    // What is wrong shows before the run.
-    let worker = own.worker().map_err(one)?;
-    own.give_back(worker);
-    Ok(own)
+    let inputs = (1..=n).map(|k| format!("gapi_simulated[{k}]")).collect();
+    let outputs = vec![OUTPUT.to_owned()];
+    let around = Around { purpose: "fitness", name, body, inputs, outputs };
+    OwnFunction::compiled(session, around).map(OwnFitness)
 }
 
 fn wrong_inputs(name: &str, inputs: usize) -> Fault {
@@ -91,43 +60,14 @@ fn wrong_inputs(name: &str, inputs: usize) -> Fault {
     fault.help("give it `input Real simulated[:]`, `input Real measured[:]` and, if wanted, `input Real weights[:]`")
 }
 
-impl OwnFitness {
-    fn worker(&self) -> Result<Worker, Fault> {
-        let idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        match idle {
-            Some(worker) => Ok(worker),
-            None => Ok(Worker {
-                instance: self.model.instance(&self.varied, &[OUTPUT.to_owned()])?,
-                simulator: Simulator::new(),
-                trajectory: Trajectory::default(),
-            }),
-        }
-    }
-
-    fn give_back(&self, worker: Worker) {
-        self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(worker);
-    }
-
-    fn value(&self, worker: &mut Worker, simulated: &[f64]) -> Result<f64, Fault> {
-        let Worker { instance, simulator, trajectory } = worker;
-        instance.set(simulated)?;
-        if let Err(error) = simulator.run(instance.system(), &self.settings, trajectory) {
-            bail!(BAD_OPTION, "{}", instance.explain(&error));
-        }
-        Ok(trajectory.column(0).first().copied().unwrap_or(f64::NAN))
-    }
-}
-
 impl Fitness for OwnFitness {
     fn fitness(&self, simulated: &[f64], _measured: &[f64], _weights: &[f64]) -> f64 {
         if simulated.iter().any(|value| !value.is_finite()) {
             return FAILED_FITNESS;
         }
-        let Ok(mut worker) = self.worker() else { return FAILED_FITNESS };
-        let value = self.value(&mut worker, simulated);
-        self.give_back(worker);
         // A function that fails has rated nothing; it counts as a failed simulation.
-        value.ok().filter(|value| *value < FAILED_FITNESS).unwrap_or(FAILED_FITNESS)
+        let value = self.0.call(simulated).ok().map(|outputs| outputs[0]);
+        value.filter(|value| *value < FAILED_FITNESS).unwrap_or(FAILED_FITNESS)
     }
 
     fn least_squares(&self, _measured: &[f64], _weights: &[f64]) -> Option<Vec<f64>> {

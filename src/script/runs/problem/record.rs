@@ -3,6 +3,7 @@
 
 use crate::bail;
 use crate::diag::Fault;
+use crate::ga::operators::KINDS;
 use crate::registry::BAD_OPTION;
 use crate::value::{ArrayValue, Elements, FromValue, RecordValue, Value};
 use toml::{Table, Value as Entry};
@@ -38,6 +39,9 @@ pub(super) fn text(record: &RecordValue) -> Result<String, Fault> {
     let mut method = fields.pairs("settings", "settingValues")?;
     put_text(&mut method, "name", fields.text("method")?);
     put(&mut method, "polish", fields.get::<bool>("polish")?);
+    for kind in KINDS {
+        put_text(&mut method, kind.name, fields.text(kind.name)?);
+    }
     put(&mut file, "method", method);
     put(&mut file, "stop", stop(&fields)?);
     Ok(file.to_string())

@@ -147,8 +147,41 @@ fn what_is_wrong_is_told() {
 
 #[test]
 fn an_unfinished_run_is_never_overwritten_and_resumes_to_the_same_end() {
+    resumes_to_the_same_end(SIMPLE);
+}
+
+/// The same with operators that depend on the course of the run, and on functions in Modelica.
+#[test]
+fn a_run_with_chosen_operators_resumes_to_the_same_end() {
+    let text = MEAN.to_owned();
+    let problem = SIMPLE.replace("[\"tank.mo\"]", "[\"tank.mo\", \"mean.mo\"]");
+    for operators in [
+        "crossover = \"mean\"\nmutation = \"non_uniform\"\nselection = \"sus\"\nsampling = \"halton\"",
+        "survival = \"crowding\"\ncrossover = \"blend\"\nmutation = \"gaussian\"",
+        "name = \"gapilib2006\"\npopulation = 40\nparents = 30\nselection = \"roulette\"\ncrossover = \"mean\"",
+    ] {
+        let method = format!("[method]\n{operators}\npolish = false\n[stop]");
+        resumes_with(&problem.replace("[stop]", &method), ("mean.mo", text.clone()));
+    }
+}
+
+const MEAN: &str = "function mean
+  input Real first[:];
+  input Real second[:];
+  input Real minimum[:];
+  input Real maximum[:];
+  input Real random[:,3];
+  output Real child1[size(first, 1)] = (first + second)/2;
+  output Real child2[size(first, 1)] = first + random[:,2].*(second - first);
+end mean;";
+
+fn resumes_to_the_same_end(problem: &str) {
+    resumes_with(problem, ("other.mo", String::new()));
+}
+
+fn resumes_with(problem: &str, other: (&str, String)) {
     let data = table("time,q", |t| (3.0 * (-t).exp() + 0.01 * (7.0 * t).sin()).to_string());
-    let files = [("p.toml", SIMPLE.to_owned()), ("d.csv", data)];
+    let files = [("p.toml", problem.to_owned()), ("d.csv", data), other];
     let run = |world: MemoryWorld, options: &RunOptions| {
         let mut session = Session::new(Box::new(world));
         let solution = solve(&mut session, Path::new("p.toml"), options);

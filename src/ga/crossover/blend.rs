@@ -1,0 +1,43 @@
+//! Blend crossover, BLX-α: each gene of a child is uniform over the interval of the parents'
+//! values, widened at both ends by `alpha` times its width and cut at the range of the gene. With
+//! `alpha` = 0.5 the spread of a population stays, on average, as it is.
+//!
+//! Reference: [Eshelman & Schaffer 1993](crate::bibliography#eshelman-schaffer-1993).
+
+use super::Crossover;
+use crate::diag::Fault;
+use crate::ga::{Gene, Mrg32k3a};
+use crate::registry::Entry;
+
+/// The table entry.
+pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
+    name: "blend",
+    aliases: &["blx", "blx_alpha"],
+    summary: "genes uniform between the parents and `alpha` times their distance beyond",
+    reference: "eshelman-schaffer-1993",
+    make: |options| Ok(Box::new(Blend { alpha: options.take("alpha", 0.0..=10.0, 0.5)? })),
+};
+
+struct Blend {
+    alpha: f64,
+}
+
+impl Crossover for Blend {
+    fn cross(
+        &self,
+        first: &mut [f64],
+        second: &mut [f64],
+        genes: &[Gene],
+        rng: &mut Mrg32k3a,
+    ) -> Result<(), Fault> {
+        for ((a, b), gene) in first.iter_mut().zip(second).zip(genes) {
+            let beyond = self.alpha * (*a - *b).abs();
+            let low = (a.min(*b) - beyond).max(gene.min);
+            let high = (a.max(*b) + beyond).min(gene.max);
+            for value in [a, b] {
+                *value = (low + (high - low) * rng.uniform()).min(high);
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,39 @@
+//! Two-point crossover: the genes between two different points of the ring of genes change places,
+//! so that the last gene is a neighbour of the first.
+//!
+//! Reference: [De Jong 1975](crate::bibliography#de-jong-1975).
+
+use super::{Crossover, place};
+use crate::diag::Fault;
+use crate::ga::{Gene, Mrg32k3a};
+use crate::registry::Entry;
+
+/// The table entry.
+pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
+    name: "two_point",
+    aliases: &["double_point"],
+    summary: "the genes between two random points change places",
+    reference: "de-jong-1975",
+    make: |_| Ok(Box::new(TwoPoint)),
+};
+
+struct TwoPoint;
+
+impl Crossover for TwoPoint {
+    fn cross(
+        &self,
+        first: &mut [f64],
+        second: &mut [f64],
+        _: &[Gene],
+        rng: &mut Mrg32k3a,
+    ) -> Result<(), Fault> {
+        let n = first.len();
+        if n > 1 {
+            let one = place(n, rng);
+            let other = (one + 1 + place(n - 1, rng)) % n;
+            let between = one.min(other)..one.max(other);
+            first[between.clone()].swap_with_slice(&mut second[between]);
+        }
+        Ok(())
+    }
+}

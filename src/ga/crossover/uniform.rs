@@ -1,0 +1,38 @@
+//! Uniform crossover: each gene changes places with the probability `swap`.
+//!
+//! Reference: [Syswerda 1989](crate::bibliography#syswerda-1989).
+
+use super::Crossover;
+use crate::diag::Fault;
+use crate::ga::{Gene, Mrg32k3a};
+use crate::registry::Entry;
+
+/// The table entry.
+pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
+    name: "uniform",
+    aliases: &["discrete"],
+    summary: "each gene changes places with the probability `swap`",
+    reference: "syswerda-1989",
+    make: |options| Ok(Box::new(Uniform { swap: options.take("swap", 0.0..=1.0, 0.5)? })),
+};
+
+struct Uniform {
+    swap: f64,
+}
+
+impl Crossover for Uniform {
+    fn cross(
+        &self,
+        first: &mut [f64],
+        second: &mut [f64],
+        _: &[Gene],
+        rng: &mut Mrg32k3a,
+    ) -> Result<(), Fault> {
+        for (a, b) in first.iter_mut().zip(second) {
+            if rng.uniform() < self.swap {
+                std::mem::swap(a, b);
+            }
+        }
+        Ok(())
+    }
+}

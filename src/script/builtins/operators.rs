@@ -1,0 +1,397 @@
+//! The operators of the genetic algorithm by name (package `GAPILib.Operators`), for scripts that
+//! put a generation together themselves: an entry of a table, or a function of the script.
+//!
+//! Each takes its random numbers from the generator behind `Ram_Gen_ARENA`, starts it from `Seed`
+//! and returns the seed that goes on.
+
+use super::gapilib::{WholeNumbers, check_size, genes, genomes_value, row, take_genomes};
+use super::{Args, Builtin, Failure, Family};
+use crate::diag::{Diagnostic, Fault};
+use crate::eval;
+use crate::ga::errors::{BAD_OPERATOR, BAD_POPULATION, SIZE_MISMATCH};
+use crate::ga::mutation::Course;
+use crate::ga::operators::{self, Kind, Size};
+use crate::ga::survival::{Brood, Rated, Wanted};
+use crate::ga::{Genomes, Mrg32k3a, crossover, mutation, sampling, selection, survival};
+use crate::registry::{BAD_OPTION, Choice};
+use crate::script::Session;
+use crate::script::runs::problem::{operators as chosen, own_function};
+use crate::value::{RealMatrix, Value};
+use crate::{bail, fault};
+use std::sync::Arc;
+
+/// The operators by name.
+pub(super) const FAMILY: Family = Family {
+    packages: &["GAPILib.Operators"],
+    dialect: None,
+    builtins: &[
+        Builtin { header: SAMPLING, run: sample },
+        Builtin { header: SELECTION, run: select },
+        Builtin { header: CROSSOVER, run: cross },
+        Builtin { header: MUTATION, run: mutate },
+        Builtin { header: SURVIVAL, run: survive },
+    ],
+};
+
+/// More individuals than this in one call are a mistake.
+const MOST: i64 = 1_000_000;
+
+/// An operator that a script names.
+struct Operator {
+    choice: Choice,
+    /// The script's function of that name.
+    function: Option<Arc<eval::Function>>,
+    kind: &'static Kind,
+    /// What the function has said when it failed.
+    error: Option<Diagnostic>,
+}
+
+impl Operator {
+    fn take(session: &mut Session, args: &mut Args, kind: &str) -> Result<Operator, Failure> {
+        let text: String = args.take("Operator")?;
+        let choice = Choice::parse(&text)?;
+        let Some(kind) = operators::kind(kind) else {
+            unreachable!("the commands of this file are named after the kinds")
+        };
+        let mut function = None;
+        if !kind.has(&choice.name)
+            && let Some(found) = own_function::function(session, &choice.name)?
+        {
+            chosen::check(kind, &choice.name, &found)?;
+            choice.options.clone().finish()?;
+            function = Some(found);
+        }
+        Ok(Operator { choice, function, kind, error: None })
+    }
+
+    /// Calls the script's function with the numbers of its inputs.
+    fn call(
+        &mut self,
+        session: &mut Session,
+        function: &Arc<eval::Function>,
+        n_genes: usize,
+        inputs: &[f64],
+    ) -> Result<Vec<f64>, Fault> {
+        let mut rest = inputs;
+        let values = self.kind.signature.inputs.iter().map(|(_, size)| {
+            let (own, others) = rest.split_at(size.count(n_genes));
+            rest = others;
+            match size {
+                Size::One => Value::Real(own[0]),
+                Size::Genes => own.to_vec().into(),
+                Size::Random => {
+                    let columns = operators::NUMBERS;
+                    RealMatrix { rows: n_genes, columns, elements: own.to_vec() }.into()
+                }
+            }
+        });
+        let arguments = values.collect::<Vec<_>>().into();
+        let span = session.call_site();
+        match eval::call_function(function, arguments, span, session) {
+            Ok(outputs) => {
+                let mut numbers = Vec::new();
+                for (value, (name, size)) in outputs.iter().zip(self.kind.signature.outputs) {
+                    let (own, wanted) = (value.as_vector()?, size.count(n_genes));
+                    if own.len() != wanted {
+                        let (operator, found) = (&self.choice.name, own.len());
+                        bail!(
+                            BAD_OPERATOR,
+                            "`{name}` of the {} `{operator}` has the size {found}, not {wanted}", self.kind.name;
+                            help: "return one for each gene"
+                        );
+                    }
+                    numbers.extend(own);
+                }
+                Ok(numbers)
+            }
+            Err(diagnostic) => {
+                let message = diagnostic.message.clone();
+                self.error = Some(diagnostic);
+                Err(Fault::new(BAD_OPERATOR, message))
+            }
+        }
+    }
+
+    /// What a function has said itself comes before what was made of it.
+    fn failure(&mut self, fault: Fault) -> Failure {
+        match self.error.take() {
+            Some(diagnostic) => diagnostic.into(),
+            None => fault.into(),
+        }
+    }
+}
+
+/// The generator of a call.
+fn generator(args: &mut Args) -> Result<Mrg32k3a, Fault> {
+    let seed: Vec<f64> = args.take("Seed")?;
+    Mrg32k3a::new(&seed)
+}
+
+/// The outputs of a call that has drawn numbers.
+fn drawn(session: &mut Session, value: Value, before: [f64; 6], rng: &Mrg32k3a) -> Value {
+    let site = session.site_of_call();
+    session.identification().recorder.seeded(before, rng.state(), site);
+    Value::Tuple(vec![value, row(rng.state().to_vec())])
+}
+
+fn count(args: &mut Args, name: &str) -> Result<usize, Fault> {
+    let count: i64 = args.take(name)?;
+    match usize::try_from(count).ok().filter(|_| count <= MOST) {
+        Some(count) => Ok(count),
+        None => bail!(BAD_POPULATION, "`{name}` is {count}, it must lie between 0 and {MOST}"),
+    }
+}
+
+const SAMPLING: &str = r#"
+function Op_Sampling "Random individuals, as the first generation is drawn."
+  input String Operator "name with settings, such as \"latin_hypercube\", or a function of yours";
+  input Integer N_Individuals "number of individuals";
+  input Real Param_Min[:] "lower ends of the search ranges";
+  input Real Param_Max[:] "upper ends of the search ranges";
+  input Any Seed "Real[1,6]: seed as that of Ram_Gen_ARENA";
+  output Real Population[:,:] "one individual in each row";
+  output Real Seed_Next[:,:] "Real[1,6]: seed to feed to the next call";
+end Op_Sampling;
+"#;
+
+fn sample(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let mut operator = Operator::take(session, &mut args, "sampling")?;
+    let individuals = count(&mut args, "N_Individuals")?;
+    let minima: Vec<f64> = args.take("Param_Min")?;
+    let maxima: Vec<f64> = args.take("Param_Max")?;
+    let genes = genes(&minima, &maxima, minima.len())?;
+    if genes.is_empty() {
+        return Err(Fault::new(SIZE_MISMATCH, "there are no search ranges").into());
+    }
+    session.identification().recorder.searched(&minima, &maxima);
+    let mut rng = generator(&mut args)?;
+    let before = rng.state();
+    let genomes = match operator.function.clone() {
+        None => operators::sampling(operator.choice.clone())
+            .and_then(|own| own.sample(&genes, individuals, &mut rng)),
+        Some(function) => sampling::sample_by(
+            &mut |inputs| operator.call(session, &function, genes.len(), inputs),
+            &genes,
+            individuals,
+            &mut rng,
+        ),
+    };
+    let genomes = genomes.map_err(|fault| operator.failure(fault))?;
+    Ok(drawn(session, genomes_value(genomes), before, &rng))
+}
+
+const SELECTION: &str = r#"
+function Op_Selection "Chooses parents by their fitness."
+  input String Operator "name with settings, such as \"tournament(size = 3)\", or a function of yours";
+  input Any Fit "Real[:]: fitness of all individuals, in any order; the smallest is the best";
+  input Integer Parents "number of parents";
+  input Any Seed "Real[1,6]: seed as that of Ram_Gen_ARENA";
+  output Integer Places[:] "the parents as rows of the population: the first mates with the second, and so on";
+  output Real Seed_Next[:,:] "Real[1,6]: seed to feed to the next call";
+end Op_Selection;
+"#;
+
+fn select(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let mut operator = Operator::take(session, &mut args, "selection")?;
+    let fitness: Vec<f64> = args.take("Fit")?;
+    let parents = count(&mut args, "Parents")?;
+    if fitness.is_empty() {
+        return Err(Fault::new(SIZE_MISMATCH, "`Fit` is empty: there is nobody to choose").into());
+    }
+    let mut rng = generator(&mut args)?;
+    let before = rng.state();
+    let places = match operator.function.clone() {
+        None => operators::selection(operator.choice.clone())
+            .and_then(|own| own.select(&fitness, parents, &mut rng)),
+        Some(function) => selection::select_by(
+            &mut |inputs| operator.call(session, &function, 0, inputs),
+            &fitness,
+            parents,
+            &mut rng,
+        ),
+    };
+    let places = places.map_err(|fault| operator.failure(fault))?;
+    let places: Vec<i64> = places.into_iter().map(|k| k as i64 + 1).collect();
+    Ok(drawn(session, places.into(), before, &rng))
+}
+
+const CROSSOVER: &str = r#"
+function Op_Crossover "Children of parents that stand side by side: one child for each parent."
+  input String Operator "name with settings, such as \"sbx(eta = 5)\" or \"blend(probability = 0.9)\", or a function of yours";
+  input Any Parents "Real[:,:]: rows 1 and 2 mate, rows 3 and 4, and so on; an odd last row mates with row 1";
+  input Real Param_Min[:] "lower ends of the search ranges";
+  input Real Param_Max[:] "upper ends of the search ranges";
+  input Any Seed "Real[1,6]: seed as that of Ram_Gen_ARENA";
+  output Real Children[:,:] "one child in each row";
+  output Real Seed_Next[:,:] "Real[1,6]: seed to feed to the next call";
+end Op_Crossover;
+"#;
+
+fn cross(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let mut operator = Operator::take(session, &mut args, "crossover")?;
+    let parents = take_genomes(&mut args, "Parents")?;
+    let n_genes = parents.n_genes();
+    let genes =
+        genes(&args.take::<Vec<f64>>("Param_Min")?, &args.take::<Vec<f64>>("Param_Max")?, n_genes)?;
+    let mut rng = generator(&mut args)?;
+    let before = rng.state();
+    let children = match operator.function.clone() {
+        None => {
+            let mut choice = operator.choice.clone();
+            let probability = choice.options.take("probability", 0.0..=1.0, 1.0)?;
+            let own = operators::crossover(choice)?;
+            let own = own.for_run(n_genes, &mut rng).unwrap_or(own);
+            crossover::cross_rows(&parents, |first, second| {
+                if probability == 1.0 || rng.uniform() < probability {
+                    own.cross(first, second, &genes, &mut rng)?;
+                }
+                Ok(())
+            })
+        }
+        Some(function) => crossover::cross_rows(&parents, |first, second| {
+            let mut call = |inputs: &[f64]| operator.call(session, &function, n_genes, inputs);
+            crossover::cross_by(&mut call, first, second, &genes, &mut rng)
+        }),
+    };
+    let children = children.map_err(|fault| operator.failure(fault))?;
+    Ok(drawn(session, genomes_value(children), before, &rng))
+}
+
+const MUTATION: &str = r#"
+function Op_Mutation "Changes genes at random, each with the probability F_Mut."
+  input String Operator "name with settings, such as \"gaussian(sigma = 0.05)\", or a function of yours";
+  input Any Nparameters "Real[:,:]: individuals, one in each row";
+  input Real F_Mut "mutation factor, 0 to 1";
+  input Real Param_Min[:] "lower ends of the search ranges";
+  input Real Param_Max[:] "upper ends of the search ranges";
+  input Any Seed "Real[1,6]: seed as that of Ram_Gen_ARENA";
+  input Integer Elitism = 0 "rows at the top that stay";
+  input Integer Cycle = 1 "number of the generation, from 1, for operators that change with it";
+  input Integer N_Cycles = 100 "number of generations of the run";
+  output Real Mutated[:,:] "the individuals after mutation";
+  output Real Seed_Next[:,:] "Real[1,6]: seed to feed to the next call";
+end Op_Mutation;
+"#;
+
+fn mutate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let mut operator = Operator::take(session, &mut args, "mutation")?;
+    let mut genomes = take_genomes(&mut args, "Nparameters")?;
+    let rate: f64 = args.take("F_Mut")?;
+    mutation::check_factor(rate)?;
+    let n_genes = genomes.n_genes();
+    let minima: Vec<f64> = args.take("Param_Min")?;
+    let maxima: Vec<f64> = args.take("Param_Max")?;
+    let genes = genes(&minima, &maxima, n_genes)?;
+    session.identification().recorder.searched(&minima, &maxima);
+    let mut rng = generator(&mut args)?;
+    let before = rng.state();
+    let elites = count(&mut args, "Elitism")?;
+    let (cycle, cycles) = (count(&mut args, "Cycle")?, count(&mut args, "N_Cycles")?);
+    let generation = cycle.saturating_sub(1) as u64;
+    let course = Course { generation, planned: Some(cycles as f64) };
+    let own = match operator.function {
+        None => Some(operators::mutation(operator.choice.clone())?),
+        Some(_) => None,
+    };
+    for k in elites..genomes.len() {
+        let genome = genomes.row_mut(k);
+        let mutated = match (&own, operator.function.clone()) {
+            (Some(own), _) => own.mutate(genome, &genes, rate, course, &mut rng),
+            (None, Some(function)) => mutation::mutate_by(
+                &mut |inputs| operator.call(session, &function, n_genes, inputs),
+                genome,
+                &genes,
+                [rate, course.fraction()],
+                &mut rng,
+            ),
+            (None, None) => Ok(()),
+        };
+        mutated.map_err(|fault| operator.failure(fault))?;
+    }
+    Ok(drawn(session, genomes_value(genomes), before, &rng))
+}
+
+const SURVIVAL: &str = r#"
+function Op_Survival "The next generation of an old one and its offspring."
+  input String Operator "name with settings, such as \"mu_plus_lambda\", or a function of yours";
+  input Any Pop "Real[:,:]: the old generation, one individual in each row";
+  input Any Fit "Real[:]: its fitness";
+  input Any Offspring "Real[:,:]: the offspring, one individual in each row";
+  input Any Fit_Offspring "Real[:]: their fitness";
+  input Integer Population "number of individuals wanted";
+  input Integer Elitism = 1 "number of elites, for elitism";
+  input Integer Places[:] = fill(0, 0) "the parents as Op_Selection returned them, for crowding" annotation(optional = true);
+  input Real Param_Min[:] = fill(0.0, 0) "lower ends of the search ranges, for crowding" annotation(optional = true);
+  input Real Param_Max[:] = fill(1.0, 0) "upper ends of the search ranges, for crowding" annotation(optional = true);
+  output Real Pop_Next[:,:] "the next generation";
+  output Real Fit_Next[:] "its fitness";
+end Op_Survival;
+"#;
+
+fn survive(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
+    let mut operator = Operator::take(session, &mut args, "survival")?;
+    let (old, offspring) = (take_genomes(&mut args, "Pop")?, take_genomes(&mut args, "Offspring")?);
+    let fitness: Vec<f64> = args.take("Fit")?;
+    let young: Vec<f64> = args.take("Fit_Offspring")?;
+    check_size("Fit", fitness.len(), old.len(), "`Pop` has rows:")?;
+    check_size("Fit_Offspring", young.len(), offspring.len(), "`Offspring` has rows:")?;
+    check_size("Offspring", offspring.n_genes(), old.n_genes(), "the columns of `Pop` number")?;
+    let wanted = Wanted {
+        population: count(&mut args, "Population")?,
+        elites: count(&mut args, "Elitism")?,
+    };
+    let own = match operator.function {
+        None => Some(operators::survival(operator.choice.clone())?),
+        Some(_) => None,
+    };
+    let parents = match args.optional::<WholeNumbers>("Places")? {
+        Some(WholeNumbers(places)) => families(&places, old.len(), offspring.len())?,
+        None if own.as_ref().is_some_and(|own| own.needs_parents()) => {
+            let name = &operator.choice.name;
+            return Err(fault!(BAD_OPTION, "`{name}` needs the parents of the offspring")
+                .help("pass `Places` of `Op_Selection`, `Param_Min` and `Param_Max`")
+                .into());
+        }
+        None => Vec::new(),
+    };
+    let minima: Option<Vec<f64>> = args.optional("Param_Min")?;
+    let maxima: Option<Vec<f64>> = args.optional("Param_Max")?;
+    let minima = minima.unwrap_or_else(|| vec![0.0; old.n_genes()]);
+    let maxima = maxima.unwrap_or_else(|| vec![1.0; old.n_genes()]);
+    let brood = Brood {
+        old: Rated { genomes: &old, fitness: &fitness },
+        ages: &vec![0; old.len()],
+        offspring: Rated { genomes: &offspring, fitness: &young },
+        parents: &parents,
+        genes: &genes(&minima, &maxima, old.n_genes())?,
+    };
+    let survivors = match (own, operator.function.clone()) {
+        (Some(own), _) => own.survivors(&brood, wanted),
+        (None, Some(function)) => survival::survivors_by(
+            &mut |inputs| operator.call(session, &function, 0, inputs),
+            &brood,
+            wanted,
+        ),
+        (None, None) => Ok(Vec::new()),
+    };
+    let survivors = survivors.map_err(|fault| operator.failure(fault))?;
+    let mut next = Genomes::with_capacity(old.n_genes(), survivors.len());
+    survivors.iter().for_each(|&one| next.push(brood.genome(one)));
+    let next_fitness: Vec<f64> = survivors.iter().map(|&one| brood.fitness(one)).collect();
+    Ok(Value::Tuple(vec![genomes_value(next), next_fitness.into()]))
+}
+
+/// The parents of each child, from rows in the order of `Op_Selection`: the children of a pair stand
+/// side by side, an odd last parent has mated with the first.
+fn families(places: &[i64], old: usize, offspring: usize) -> Result<Vec<[usize; 2]>, Fault> {
+    check_size("Places", places.len(), offspring, "`Offspring` has rows:")?;
+    let mut rows = Vec::with_capacity(places.len());
+    for &place in places {
+        match usize::try_from(place).ok().filter(|row| (1..=old).contains(row)) {
+            Some(row) => rows.push(row - 1),
+            None => bail!(SIZE_MISMATCH, "`Places` names row {place} of a population of {old}"),
+        }
+    }
+    let pair = |k: usize| [rows[k & !1], rows.get(k | 1).copied().unwrap_or(rows[0])];
+    Ok((0..rows.len()).map(pair).collect())
+}
