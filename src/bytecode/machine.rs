@@ -3,7 +3,7 @@
 use super::code::{Code, Derivative, Functions, Instruction};
 use super::external::{Externals, RunExternal};
 use super::failure::{Failure, Reason};
-use super::number::{Dual, Number};
+use super::number::{Dual, Number, Stacks};
 use crate::budget::instruction_limit;
 use crate::external::Journal;
 
@@ -23,14 +23,6 @@ pub struct Machine {
     slopes: Vec<f64>,
     externals: Externals,
     budget: u64,
-}
-
-/// Frames of all calls, for each kind of number.
-#[derive(Debug, Clone, Default)]
-pub struct Stacks {
-    pub(super) values: Vec<f64>,
-    pub(super) first: Vec<Dual<f64>>,
-    pub(super) second: Vec<Dual<Dual<f64>>>,
 }
 
 /// Where to go on when a function ends.

@@ -1,7 +1,6 @@
 //! Numbers that instructions compute with.
 
 use super::elementary::Elementary;
-use super::machine::Stacks;
 use crate::elementary;
 
 /// A number with its derivatives, or without.
@@ -30,6 +29,14 @@ pub trait Number: Copy {
     fn binary(self, b: Self, function: &Elementary) -> Self;
     /// The stack of a machine for such numbers.
     fn stack(stacks: &mut Stacks) -> &mut Vec<Self>;
+}
+
+/// Frames of all calls, for each kind of number.
+#[derive(Debug, Clone, Default)]
+pub struct Stacks {
+    pub(super) values: Vec<f64>,
+    pub(super) first: Vec<Dual<f64>>,
+    pub(super) second: Vec<Dual<Dual<f64>>>,
 }
 
 impl Number for f64 {

@@ -1,12 +1,51 @@
 //! `gapi check` and `gapi flatten`: models without running them.
 
-use super::args::{CheckArgs, FlattenArgs, Global};
+use super::args::{Global, Limits};
 use super::{limits, session};
 use crate::diag::Diagnostic;
 use crate::name::Name;
 use crate::script::Session;
 use crate::script::models::{checking, simulation};
+use clap::{Args, ValueHint};
+use std::path::PathBuf;
 use std::process::ExitCode;
+
+/// Arguments of `gapi check`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi check models/CaseStudies
+  gapi check models --model CaseStudies.PolarizationCurve
+  gapi check --library ~/libraries Modelica.Blocks.Examples.PID_Controller")]
+pub(super) struct CheckArgs {
+    /// Modelica files, or folders with packages; or the class
+    #[arg(required_unless_present = "model", value_name = "FILE|CLASS", value_hint = ValueHint::AnyPath)]
+    pub files: Vec<PathBuf>,
+    /// The class to check as a model
+    #[arg(long, value_name = "CLASS")]
+    pub model: Option<String>,
+    /// When to stop
+    #[command(flatten)]
+    pub limits: Limits,
+}
+
+/// Arguments of `gapi flatten`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Example:
+  gapi flatten models --model CaseStudies.PolarizationCurve")]
+pub(super) struct FlattenArgs {
+    /// Modelica files, or folders with packages, and the class: what is found by name need not be
+    /// given
+    #[arg(required_unless_present = "model", value_name = "FILE|CLASS", value_hint = ValueHint::AnyPath)]
+    pub files: Vec<PathBuf>,
+    /// The class to flatten
+    #[arg(long, value_name = "CLASS")]
+    pub model: Option<String>,
+    /// When to stop
+    #[command(flatten)]
+    pub limits: Limits,
+}
 
 /// Checks all models of the files, or one down to its sorted equations.
 pub(super) fn check(arguments: &CheckArgs, global: &Global) -> ExitCode {

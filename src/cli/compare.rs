@@ -1,14 +1,42 @@
 //! `gapi compare`: results against reference results.
 
-use super::args::{CompareArgs, Global};
+use super::args::Global;
 use super::session;
 use crate::diag::{Diagnostic, Fault};
 use crate::results::{self, Agreement, Compared, ResultTable};
 use crate::script::Session;
 use crate::script::access::policy::Grant;
 use crate::source::Span;
+use clap::{Args, ValueHint};
 use std::path::Path;
+use std::path::PathBuf;
 use std::process::ExitCode;
+
+/// Arguments of `gapi compare`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi compare result.mat reference.csv
+  gapi compare result.csv reference.csv --signals comparisonSignals.txt --tolerance 0.001
+
+A signal agrees where it stays inside the tube that a rectangle sweeps along the reference. Half of
+its sides are the tolerance times the reference's extent in time and in value.
+
+Exit code: 0 if all signals agree, 1 if one does not or a file cannot be read.")]
+pub(super) struct CompareArgs {
+    /// The results (.mat or .csv)
+    #[arg(value_name = "RESULT", value_hint = ValueHint::FilePath)]
+    pub result: PathBuf,
+    /// The reference results (.mat or .csv)
+    #[arg(value_name = "REFERENCE", value_hint = ValueHint::FilePath)]
+    pub reference: PathBuf,
+    /// A file that names the signals to compare, one a line [default: all of the reference]
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub signals: Option<PathBuf>,
+    /// Half width and half height of the tube, relative to the reference's extent
+    #[arg(long, value_name = "E", default_value_t = crate::results::TUBE_TOLERANCE)]
+    pub tolerance: f64,
+}
 
 /// Compares signal by signal; succeeds if all agree.
 pub(super) fn compare(arguments: &CompareArgs, global: &Global) -> ExitCode {

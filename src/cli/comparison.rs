@@ -1,7 +1,8 @@
 //! `gapi identify a.toml b.toml`: solves several problems of the same data and compares the models.
 
-use super::args::{Global, IdentifyArgs};
+use super::args::Global;
 use super::disk::write_atomically;
+use super::identify::IdentifyArgs;
 use super::identify::{Ended, solve_one};
 use super::output::RESULTS;
 use super::terminal;

@@ -1,10 +1,21 @@
 //! `gapi explain CODE`: what a diagnostic's code means.
 
-use super::args::ExplainArgs;
 use super::terminal;
 use crate::diag::suggest;
 use crate::script::codes;
+use clap::Args;
 use std::process::ExitCode;
+
+/// Arguments of `gapi explain`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi explain unknown-class
+  gapi explain")]
+pub(super) struct ExplainArgs {
+    /// The code, as it stands in brackets behind `error`; without it, all codes are listed
+    pub code: Option<String>,
+}
 
 /// Prints the explanation of one code, or the list of all.
 pub(super) fn explain(arguments: &ExplainArgs) -> ExitCode {

@@ -1,11 +1,33 @@
 //! `gapi help`: the commands of scripts, and the ledger of compatibility.
 
-use super::args::{DialectName, HelpArgs};
+use super::args::DialectName;
 use super::terminal;
 use crate::ga::operators::{self, Kind};
 use crate::registry::Setting;
 use crate::script::builtins;
+use clap::Args;
 use std::process::ExitCode;
+
+/// Arguments of `gapi help`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi help simulateModel
+  gapi help --compat
+  gapi help --compat dymola")]
+pub(super) struct HelpArgs {
+    /// A command of scripts; without it, all are listed
+    pub name: Option<String>,
+    /// What other tools' scripts may expect: supported, partial, absent, and the difference
+    #[arg(long, value_enum, value_name = "DIALECT", num_args = 0..=1)]
+    pub compat: Option<Option<DialectName>>,
+    /// The declarations of all commands as a chapter of the guide
+    #[arg(long, conflicts_with_all = ["name", "compat"])]
+    pub reference: bool,
+    /// The operators of the genetic algorithm, their settings and sources; a KIND alone: `crossover`
+    #[arg(long, value_name = "KIND", num_args = 0..=1, conflicts_with_all = ["name", "compat", "reference"])]
+    pub operators: Option<Option<String>>,
+}
 
 /// The ledgers, as they are in the repository.
 const LEDGERS: [(DialectName, &str, &str); 2] = [

@@ -1,17 +1,116 @@
 //! `gapi identify`: solves a problem that is written in a file.
 
-use super::args::{Global, IdentifyArgs};
+use super::args::{Global, Limits};
 use super::comparison;
 use super::output::Output;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, session};
+use crate::ga::operators;
 use crate::identify::problem::Solution;
 use crate::script::access::policy::Grant;
 use crate::script::runs::problem::{RunOptions, grant_inputs, solve};
+use clap::{Args, ValueHint};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
+
+/// What follows the options of `gapi identify --help`.
+const IDENTIFY_EXAMPLES: &str = "\
+Examples:
+  gapi identify scripts/problems/polarization.toml
+  gapi identify scripts/problems/polarization.toml --out fit1 --threads 2
+  gapi identify one.toml two.toml              compare two models of the same data
+  gapi identify my.toml --resume               go on after Ctrl-C, a crash or a power cut
+  gapi identify my.toml --watch settings.toml  change settings while it runs
+
+A problem file:
+  model = \"CaseStudies.PolarizationCurve(i_max = 1.46)\"
+  [parameters]
+  A = { min = 0.01, max = 0.1 }
+  R = { min = 0.01, max = 1, scale = \"log\" }
+  [[experiment]]
+  data = \"curve.csv\"
+  x = \"i\"
+  outputs = { V = \"V\" }
+  [method]
+  crossover = { name = \"sbx\", eta = 5 }
+";
+
+/// The examples, and the operators that the tables have.
+fn identify_help() -> String {
+    let list = |kind: &operators::Kind| {
+        let names: Vec<&str> = (kind.entries)().iter().map(|entry| entry.name).collect();
+        format!("  {:10} {}\n", kind.name, names.join(", "))
+    };
+    let operators: String = operators::KINDS.iter().map(list).collect();
+    format!(
+        "{IDENTIFY_EXAMPLES}\nOperators of [method], or functions in Modelica (gapi help --operators):\n\
+         {operators}\n\
+         Exit code: 0 if all went well, 1 if an error happened, 2 for a wrong command line, 130 if\n\
+         interrupted."
+    )
+}
+
+/// Arguments of `gapi identify`.
+#[derive(Debug, Args)]
+#[command(after_help = identify_help())]
+pub(super) struct IdentifyArgs {
+    /// The problem (.toml)
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub problem: PathBuf,
+    /// Further problems of the same data: the models are compared
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub others: Vec<PathBuf>,
+    /// Folder for results, figures and the checkpoint [default: one for each problem below `results`]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Replace the results of another problem in that folder
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Threads to use [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Go on from the checkpoint in the folder
+    #[arg(long, conflicts_with = "fresh")]
+    pub resume: bool,
+    /// Discard the checkpoint in the folder
+    #[arg(long)]
+    pub fresh: bool,
+    /// End after so many evaluations
+    #[arg(long, value_name = "N")]
+    pub evaluations: Option<u64>,
+    /// Profile likelihoods of the parameters after the fit
+    #[arg(long)]
+    pub profile: bool,
+    /// After the fit, which further measurements would shrink the intervals most
+    #[arg(long)]
+    pub design: bool,
+    /// After the fit, intervals by fits to data drawn anew
+    #[arg(long)]
+    pub bootstrap: bool,
+    /// After the fit, the posterior distribution by Markov chains
+    #[arg(long)]
+    pub posterior: bool,
+    /// First analyse how much each parameter matters: `morris` or `sobol`
+    #[arg(long, value_name = "WAY")]
+    pub sensitivity: Option<String>,
+    /// Base samples of that analysis [default: 20 for morris, 512 for sobol]
+    #[arg(long, value_name = "N", requires = "sensitivity", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub samples: Option<u32>,
+    /// A file with settings (name = number) that may change while it runs
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub watch: Option<PathBuf>,
+    /// A progress bar only, no live view of the run (shown on a terminal after a second)
+    #[arg(long)]
+    pub plain: bool,
+    /// Show errors only
+    #[arg(long, short)]
+    pub quiet: bool,
+    /// When to stop
+    #[command(flatten)]
+    pub limits: Limits,
+}
 
 /// How a run ended.
 pub(super) enum Ended {

@@ -1,14 +1,33 @@
 //! `gapi lesson N`: short scripts that teach one thing each.
 
-use super::args::{Global, LessonArgs};
+use super::args::Global;
 use super::disk;
 use super::output::{Output, RESULTS};
 use super::session;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use crate::script::{Echo, Options};
+use clap::{Args, ValueHint};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+
+/// Arguments of `gapi lesson`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi lesson
+  gapi lesson 1
+
+Each lesson is a script of a page, with its text in the comments. It is copied into the folder
+`lessons`, shown, and run. Change the copy and give the command again: your copy is run then.")]
+pub(super) struct LessonArgs {
+    /// The number of the lesson; without it all are listed
+    #[arg(value_name = "N")]
+    pub number: Option<usize>,
+    /// Folder for the copies and what they write
+    #[arg(long, default_value = "lessons", value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub folder: PathBuf,
+}
 
 /// Name and text of each lesson.
 const LESSONS: &[(&str, &str)] = &[

@@ -1,6 +1,6 @@
 //! `gapi new`: a first problem file from a data file and a model.
 
-use super::args::{Global, NewArgs};
+use super::args::Global;
 use super::session;
 use crate::diag::Fault;
 use crate::registry::BAD_OPTION;
@@ -8,8 +8,35 @@ use crate::script::Session;
 use crate::script::access::policy::Grant;
 use crate::script::runs::problem::{Draft, DraftOptions, draft};
 use crate::source::Span;
+use clap::{Args, ValueHint};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+
+/// Arguments of `gapi new`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Columns are matched with variables of the model by their names; ranges of parameters are those of the
+model, or a decade around its values. Every guess is a commented line of the file.
+
+Examples:
+  gapi new curve.csv --model Curve.mo
+  gapi new curve.csv --model models --class CaseStudies.PolarizationCurve --output fit.toml
+
+Exit code: 0 if the file was written, 1 if an error happened, 2 for a wrong command line.")]
+pub(super) struct NewArgs {
+    /// The measured data (CSV, text of an instrument, MAT, XLSX)
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub data: PathBuf,
+    /// The Modelica file or folder, or a class of a library
+    #[arg(long, value_name = "FILE|CLASS", value_hint = ValueHint::AnyPath)]
+    pub model: PathBuf,
+    /// The class, if the file holds several
+    #[arg(long, value_name = "CLASS")]
+    pub class: Option<String>,
+    /// The problem file to write [default: the name of the data with .toml]
+    #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+}
 
 /// Writes the problem file.
 pub(super) fn new(arguments: &NewArgs, global: &Global) -> ExitCode {

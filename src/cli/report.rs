@@ -1,14 +1,36 @@
 //! `gapi report`: draws the report of a run again from its files.
 
-use super::args::{Global, ReportArgs};
+use super::args::Global;
 use super::{output, session};
 use crate::diag::Fault;
 use crate::identify::problem::Solution;
 use crate::script::Session;
 use crate::script::access::policy::Grant;
 use crate::source::Span;
+use clap::{Args, ValueHint};
 use std::path::Path;
+use std::path::PathBuf;
 use std::process::ExitCode;
+
+/// Arguments of `gapi report`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi report results
+  gapi report results --output fit.html
+
+It reads result.json, history.csv and individuals.csv, as `gapi run` and `gapi identify` have
+written them; in a folder of several problems those that were written last.
+
+Exit code: 0 if the report was written, 1 if a file is missing or damaged.")]
+pub(super) struct ReportArgs {
+    /// The folder with the results of `gapi run` or `gapi identify`
+    #[arg(value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub folder: PathBuf,
+    /// The page [default: report.html in the folder]
+    #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+}
 
 /// Reads the folder and writes the page.
 pub(super) fn report(arguments: &ReportArgs, global: &Global) -> ExitCode {

@@ -1,6 +1,6 @@
 //! `gapi run SCRIPT`: runs a script.
 
-use super::args::{Global, RunArgs};
+use super::args::{Freedom, Global, seconds};
 use super::output::Output;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
@@ -9,9 +9,77 @@ use crate::identify::Probe;
 use crate::script::access::policy::Grant;
 use crate::script::{Echo, Journaling, Options, Session, Strictness, Transcript};
 use crate::source::Span;
+use clap::{Args, ValueHint};
 use std::path::Path;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
+
+/// Arguments of `gapi run`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi run scripts/GAPILib.mos
+  gapi run scripts/twin/GAPILib.mos --out twin --threads 1
+  gapi run my.mos --transcript my.txt --quiet --strict
+  gapi run my.mos --resume              go on after Ctrl-C, a crash or a power cut
+  gapi run --parse-only scripts
+
+Exit code: 0 if all went well, 1 if an error happened that the script did not read,
+2 for a wrong command line, 130 if interrupted.")]
+pub(super) struct RunArgs {
+    /// The script (.mos)
+    #[arg(value_hint = ValueHint::FilePath, required_unless_present = "parse_only")]
+    pub script: Option<PathBuf>,
+    /// Folder for results and figures [default: one for each script below `results`]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Replace the results of another problem in that folder
+    #[arg(long)]
+    pub overwrite: bool,
+    /// Threads to use [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Write every statement with its answer to a file
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub transcript: Option<PathBuf>,
+    /// Go on with a run that was killed, from the checkpoint in the output folder
+    #[arg(long)]
+    pub resume: bool,
+    /// Seconds between two checkpoints
+    #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = seconds)]
+    pub checkpoint: f64,
+    /// A progress bar only, no live view of the run (shown on a terminal after a second)
+    #[arg(long)]
+    pub plain: bool,
+    /// Record what the genetic algorithm did, for `gapi teach`
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub trace: Option<PathBuf>,
+    /// Leave out the least squares that end an identification, from its best individual
+    #[arg(long)]
+    pub no_probe: bool,
+    /// Profile likelihoods from there, intervals that are right for strongly curved models, too
+    #[arg(long, conflicts_with = "no_probe")]
+    pub profile: bool,
+    /// Show errors only
+    #[arg(long, short)]
+    pub quiet: bool,
+    /// Show statements and answers as the dialect's tool does
+    #[arg(long, conflicts_with = "quiet")]
+    pub echo: bool,
+    /// Stop at the first error
+    #[arg(long, conflicts_with = "lenient")]
+    pub strict: bool,
+    /// End with exit code 0 whatever happened
+    #[arg(long)]
+    pub lenient: bool,
+    /// Read the scripts in these files and folders without running them
+    #[arg(long, value_name = "PATH", num_args = 1.., conflicts_with = "script")]
+    pub parse_only: Vec<PathBuf>,
+    /// What scripts may do
+    #[command(flatten)]
+    pub freedom: Freedom,
+}
 
 /// Runs the script and returns its exit code.
 pub(super) fn run(arguments: &RunArgs, global: &Global) -> ExitCode {

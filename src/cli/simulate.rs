@@ -1,6 +1,6 @@
 //! `gapi simulate`: one simulation of one model.
 
-use super::args::{Global, SimulateArgs};
+use super::args::{Global, Limits};
 use super::terminal::Terminal;
 use super::{limits, session};
 use crate::diag::{Diagnostic, Fault};
@@ -16,12 +16,98 @@ use crate::script::models::simulation::{Simulated, Translated, Wishes};
 use crate::script::world::Progress;
 use crate::sim::Statistics;
 use crate::source::Span;
+use clap::{Args, ValueHint};
 use regex::{Regex, RegexBuilder};
 use std::path::Path;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, mpsc};
 use std::time::Duration;
+
+/// Arguments of `gapi simulate`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi simulate models --model CaseStudies.PolarizationCurve --output curve.csv
+  gapi simulate Decay.mo --model Decay --stop-time 5 --intervals 50 --set k=2
+  gapi simulate Decay.mo --model Decay --stats --plot x --figure x.svg
+  gapi simulate Decay.mo --model Decay --from first.mat --stop-time 10 --output second.mat
+  gapi simulate Decay.mo --model Decay --dump eliminate_aliases
+
+What the command line does not say comes from the model's experiment annotation.")]
+pub(super) struct SimulateArgs {
+    /// Modelica files, or folders with packages, and the class: what is found by name need not be
+    /// given
+    #[arg(required_unless_present = "model", value_name = "FILE|CLASS", value_hint = ValueHint::AnyPath)]
+    pub files: Vec<PathBuf>,
+    /// The class to simulate; it may carry a modification: 'M(p = 2)'
+    #[arg(long, value_name = "CLASS")]
+    pub model: Option<String>,
+    /// Start of the simulation in seconds
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub start_time: Option<f64>,
+    /// End of the simulation in seconds
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub stop_time: Option<f64>,
+    /// Number of output intervals
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub intervals: Option<u32>,
+    /// Relative tolerance
+    #[arg(long, value_name = "E")]
+    pub tolerance: Option<f64>,
+    /// Integration method
+    #[arg(long, value_name = "M")]
+    pub method: Option<String>,
+    /// Give a parameter a value (repeatable)
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = name_and_value)]
+    pub set: Vec<(String, f64)>,
+    /// Begin with the states and parameters at the end of these results, or at --start-time
+    #[arg(long, value_name = "FILE.mat|.csv", value_hint = ValueHint::FilePath)]
+    pub from: Option<PathBuf>,
+    /// Where the trajectories go; the ending decides the format
+    #[arg(long, short, value_name = "FILE.mat|.csv", value_hint = ValueHint::FilePath)]
+    pub output: Option<PathBuf>,
+    /// Keep only the variables whose whole names match
+    #[arg(long, value_name = "REGEX")]
+    pub variable_filter: Option<String>,
+    /// Print the system after a pass instead of simulating it
+    #[arg(long, value_name = "PASS", value_parser = pass_names())]
+    pub dump: Option<String>,
+    /// Print what the simulation cost
+    #[arg(long)]
+    pub stats: bool,
+    /// Stop where events would follow each other without end, instead of sliding or resting there
+    #[arg(long)]
+    pub no_sliding: bool,
+    /// Draw a variable over time, in the terminal or as --figure says (repeatable)
+    #[arg(long, value_name = "VARIABLE")]
+    pub plot: Vec<String>,
+    /// Where the drawing of --plot goes: a file that ends in .svg, .png or .pdf
+    #[arg(long, value_name = "FILE", requires = "plot", value_hint = ValueHint::FilePath)]
+    pub figure: Option<PathBuf>,
+    /// When to stop
+    #[command(flatten)]
+    pub limits: Limits,
+}
+
+/// The passes whose system can be shown, the flat model as the first.
+fn pass_names() -> clap::builder::PossibleValuesParser {
+    let value = |name, what| clap::builder::PossibleValue::new(name).help(what);
+    let passes =
+        crate::script::models::simulation::PASSES.iter().map(|pass| value(pass.name, pass.what));
+    std::iter::once(value("flatten", "the flat model")).chain(passes).collect::<Vec<_>>().into()
+}
+
+fn name_and_value(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("expected NAME=VALUE")?;
+    let value = match value.trim() {
+        "true" => 1.0,
+        "false" => 0.0,
+        number => number.parse().map_err(|_| format!("`{number}` is not a number"))?,
+    };
+    Ok((name.trim().to_owned(), value))
+}
 
 /// Most variables whose last values are shown when no file is asked for.
 const SHOWN: usize = 30;
@@ -269,4 +355,17 @@ fn last_values(table: &ResultTable) -> Result<String, Fault> {
         ));
     }
     Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_names_with_numbers() {
+        assert_eq!(name_and_value("a.b = -1e3"), Ok(("a.b".to_owned(), -1e3)));
+        assert_eq!(name_and_value("on=true"), Ok(("on".to_owned(), 1.0)));
+        assert!(name_and_value("a").is_err());
+        assert!(name_and_value("a=x").is_err());
+    }
 }

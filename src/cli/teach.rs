@@ -1,6 +1,6 @@
 //! `gapi teach SCRIPT`: a run of the genetic algorithm, step by step.
 
-use super::args::{Global, TeachArgs};
+use super::args::{Global, at_least_one};
 use super::disk;
 use super::output::{Output, RESULTS, latest_of, shown};
 use super::session;
@@ -13,9 +13,53 @@ use crate::teach::branches::Branches;
 use crate::teach::quiz::{self, Score};
 use crate::teach::screen::Screen;
 use crate::teach::{Trace, Walk, page, picture, plain};
+use clap::{Args, ValueHint};
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+
+/// Arguments of `gapi teach`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi teach scripts/GAPILib.mos
+  gapi teach scripts/GAPILib.mos --generation 100 --count 2
+  gapi teach scripts/twin/GAPILib.mos --html steps.html
+  gapi teach scripts/lessons/07_elites.mos --quiz
+  gapi teach scripts/twin/GAPILib.mos --what-if \"F_Mut := 0.5\" --generation 10
+  gapi run my.mos --trace my.trace && gapi teach my.trace")]
+pub(super) struct TeachArgs {
+    /// A script (.mos), which is run first, or a trace that `gapi run --trace` has written
+    #[arg(value_name = "SCRIPT|TRACE", value_hint = ValueHint::FilePath)]
+    pub input: PathBuf,
+    /// Print the steps as text, also on a terminal
+    #[arg(long)]
+    pub plain: bool,
+    /// Ask what will happen before it is told, and count the right answers
+    #[arg(long, conflicts_with = "html")]
+    pub quiz: bool,
+    /// Run once more with this statement carried out at the generation to begin with, and compare
+    #[arg(long, value_name = "STATEMENT", conflicts_with_all = ["html", "quiz"])]
+    pub what_if: Option<String>,
+    /// The generation to begin with
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
+    pub generation: usize,
+    /// How many generations to print as text
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
+    pub count: usize,
+    /// Write a picture of the generation to begin with and the next one (SVG), in place of the text
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["html", "quiz", "what_if"], value_hint = ValueHint::FilePath)]
+    pub svg: Option<PathBuf>,
+    /// Write one page with all steps, for any browser, in place of the text
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub html: Option<PathBuf>,
+    /// Folder for the results and the trace of the run [default: one for each script below `results`]
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: Option<PathBuf>,
+    /// Replace the results of another problem in that folder
+    #[arg(long)]
+    pub overwrite: bool,
+}
 
 /// What changes a run: from which generation on, counted from 1, and the statement.
 type Change<'a> = (usize, &'a str);

@@ -8,21 +8,13 @@ use super::ast::{ClassDefinition, ClassSpecifier, Element, Section, StoredDefini
 use super::lower;
 use super::outline::Outline;
 use super::parser::{self, Rule};
-use super::place::{Excerpt, Place};
+use super::place::{Excerpt, OutlinedText, Place};
 use super::scan::Dialect;
 use crate::diag::Diagnostic;
-use crate::source::SourceId;
+use crate::source::{SourceId, Span};
 use std::fmt;
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, OnceLock};
-
-/// A text with its outline.
-#[derive(Debug)]
-pub(super) struct OutlinedText {
-    source: SourceId,
-    text: Arc<str>,
-    pub(super) outline: Outline,
-}
 
 /// The sections of a long class. Those of a class of a lazily read file are read at the first
 /// access; they are empty if they cannot be read, which [`Sections::error`] tells.
@@ -63,6 +55,16 @@ pub(super) fn errors(class: &ClassDefinition) -> Vec<Diagnostic> {
         }
     }
     errors
+}
+
+impl Place {
+    /// The sections of a class whose body was cut out.
+    pub(super) fn unread(&self, name: Span) -> Option<Sections> {
+        let (text, own) = self.unread.as_ref()?;
+        let class = text.outline.at(name.start as usize)?;
+        let is_cut = text.outline.classes[class].body.is_some() && *own != Some(class);
+        is_cut.then(|| Sections::unread(text.clone(), class))
+    }
 }
 
 impl OutlinedText {

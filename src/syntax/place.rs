@@ -1,6 +1,6 @@
 //! Places in a text of which parts were cut out, and their places in the original.
 
-use super::lazy::{OutlinedText, Sections};
+use super::outline::Outline;
 use crate::diag::Diagnostic;
 use crate::source::{SourceId, Span};
 use std::ops::Range;
@@ -16,6 +16,14 @@ pub(super) struct Place {
     /// The outline of the original, and which of its classes this text is (`None`: all of it), if
     /// the bodies of the classes in it were cut out.
     pub(super) unread: Option<(Arc<OutlinedText>, Option<usize>)>,
+}
+
+/// A text with its outline.
+#[derive(Debug)]
+pub(super) struct OutlinedText {
+    pub(super) source: SourceId,
+    pub(super) text: Arc<str>,
+    pub(super) outline: Outline,
 }
 
 /// A part of a text, to be parsed.
@@ -50,14 +58,6 @@ impl Place {
         let later = self.pieces.partition_point(|(here, _)| *here <= at);
         let (here, there) = self.pieces[later.saturating_sub(1)];
         there + at.saturating_sub(here)
-    }
-
-    /// The sections of a class whose body was cut out.
-    pub(super) fn unread(&self, name: Span) -> Option<Sections> {
-        let (text, own) = self.unread.as_ref()?;
-        let class = text.outline.at(name.start as usize)?;
-        let is_cut = text.outline.classes[class].body.is_some() && *own != Some(class);
-        is_cut.then(|| Sections::unread(text.clone(), class))
     }
 
     /// A diagnostic about the text as one about the original.

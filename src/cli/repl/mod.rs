@@ -3,13 +3,14 @@
 mod assistance;
 mod commands;
 
-use super::args::{Global, Limits, ReplArgs};
+use super::args::{Freedom, Global, Limits};
 use super::limits::Stopping;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, session};
 use crate::script::{Dialect, Echo, Options, Session};
 use assistance::Assistance;
+use clap::{Args, ValueHint};
 use rustyline::error::ReadlineError;
 use rustyline::history::FileHistory;
 use rustyline::{CompletionType, Config, Editor};
@@ -17,6 +18,26 @@ use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
+
+/// Arguments of `gapi repl`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi repl
+  gapi repl --dialect openmodelica --library ~/libraries
+
+`:help` lists the commands of the prompt.")]
+pub(in crate::cli) struct ReplArgs {
+    /// Folder for results and figures
+    #[arg(long, default_value = "results/repl", value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub out: PathBuf,
+    /// A script to run first
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub script: Option<PathBuf>,
+    /// What scripts may do
+    #[command(flatten)]
+    pub freedom: Freedom,
+}
 
 /// What the prompt begins with.
 const BANNER: &str =

@@ -4,7 +4,7 @@ mod judgement;
 mod junit;
 mod wording;
 
-use super::args::{Freedom, Global, TestArgs};
+use super::args::{Freedom, Global};
 use super::disk;
 use super::parsing::scripts;
 use super::run::without_folders;
@@ -14,11 +14,44 @@ use super::world::SystemWorld;
 use super::{limits, session};
 use crate::script::language::expectation::{Line, Tolerance, difference, embedded, shown};
 use crate::script::{Dialect, Echo, Exchange, Options, Transcript};
+use clap::{Args, ValueHint};
 use judgement::{Counts, Judged, judged, summary};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
+
+/// Arguments of `gapi test`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+A script is compared with the transcript NAME.mos.snap beside it, or with the lines between
+`// Result:` and `// endResult` in it. Files that it writes are kept in memory.
+
+Examples:
+  gapi test scripts
+  gapi test tests/my.mos --accept
+  gapi test --review
+  gapi test --junit report.xml
+
+Exit code: 0 if all agree, 1 if one does not or has nothing to be compared with, 2 for a wrong
+command line.")]
+pub(in crate::cli) struct TestArgs {
+    /// Scripts, and folders that hold scripts
+    #[arg(default_value = ".", value_hint = ValueHint::AnyPath)]
+    pub paths: Vec<PathBuf>,
+    /// Write the transcripts anew
+    #[arg(long, conflicts_with = "review")]
+    pub accept: bool,
+    /// Ask for each difference whether the new transcript is right
+    #[arg(long)]
+    pub review: bool,
+    /// Write a report that build servers read
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub junit: Option<PathBuf>,
+    /// What scripts may do
+    #[command(flatten)]
+    pub freedom: Freedom,
+}
 
 /// How a path in the folder of the script begins, which embedded results leave out.
 const START: &str = "<start>/";

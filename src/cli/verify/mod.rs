@@ -4,7 +4,7 @@ mod cases;
 mod pool;
 mod report;
 
-use super::args::{Global, VerifyArgs};
+use super::args::{Global, seconds};
 use super::session;
 use super::terminal::{self, Terminal};
 use crate::diag::Fault;
@@ -17,12 +17,49 @@ use crate::script::models::verification::{Reference, Stage, Stuck};
 use crate::script::world::Progress;
 use crate::source::Span;
 use cases::Case;
+use clap::{Args, ValueHint};
 use pool::{Ended, Watch};
 use report::{Outcome, Row};
 use std::path::Path;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Mutex;
 use std::time::Duration;
+
+/// Arguments of `gapi verify`.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  gapi verify --library ~/libraries --references ~/references
+  gapi verify Decay.mo --references references --filter Decay --output table.json
+
+A case is a folder of the collection that holds NAME.csv with the folder's own name, and perhaps
+comparisonSignals.txt; its path below the collection is the name of the model.
+
+Exit code: 0 if every case that has a reference agrees, 1 otherwise.")]
+pub(in crate::cli) struct VerifyArgs {
+    /// Modelica files, or folders with packages, beside those of --library
+    #[arg(value_name = "FILE", value_hint = ValueHint::AnyPath)]
+    pub files: Vec<PathBuf>,
+    /// The collection of reference results
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    pub references: PathBuf,
+    /// Only models whose names contain this text
+    #[arg(long, value_name = "TEXT")]
+    pub filter: Option<String>,
+    /// Half width and half height of the tubes, relative to the reference's extent
+    #[arg(long, value_name = "E", default_value_t = crate::results::TUBE_TOLERANCE)]
+    pub tolerance: f64,
+    /// Seconds that a case may take
+    #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
+    pub budget: f64,
+    /// Threads to use [default: all cores]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    pub threads: Option<u16>,
+    /// Where the table goes besides (repeatable); the ending decides the format
+    #[arg(long, short, value_name = "FILE.json|.csv", value_hint = ValueHint::FilePath)]
+    pub output: Vec<PathBuf>,
+}
 
 /// Verifies all cases; succeeds if every one that has a reference agrees.
 pub(super) fn verify(arguments: &VerifyArgs, global: &Global) -> ExitCode {

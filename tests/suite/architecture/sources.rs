@@ -61,10 +61,12 @@ fn read(root: &Path, path: &Path) -> Source {
     let path = path.strip_prefix(root).expect("below the root").to_owned();
     let mut module: Names =
         path.with_extension("").iter().map(|name| name.to_string_lossy().into_owned()).collect();
-    let is_door = module.last().is_some_and(|last| last == "mod");
-    if is_door || module == ["lib"] {
+    let is_mod = module.last().is_some_and(|last| last == "mod");
+    if is_mod || module == ["lib"] {
         module.pop();
     }
+    // `library.rs` is the face of the folder `library`.
+    let is_door = is_mod || root.join(path.with_extension("")).is_dir();
     let mut reader = Reader {
         here: module.clone(),
         source: Source {
