@@ -1,6 +1,6 @@
 //! `gapi check` and `gapi flatten`: models without running them.
 
-use super::args::{Global, Limits};
+use super::options::{Global, Limits};
 use super::{limits, session};
 use crate::diag::Diagnostic;
 use crate::name::Name;

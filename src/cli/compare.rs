@@ -1,6 +1,6 @@
 //! `gapi compare`: results against reference results.
 
-use super::args::Global;
+use super::options::Global;
 use super::session;
 use crate::diag::{Diagnostic, Fault};
 use crate::results::{self, Agreement, Compared, ResultTable};

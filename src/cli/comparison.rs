@@ -1,9 +1,9 @@
 //! `gapi identify a.toml b.toml`: solves several problems of the same data and compares the models.
 
-use super::args::Global;
 use super::disk::write_atomically;
 use super::identify::IdentifyArgs;
 use super::identify::{Ended, solve_one};
+use super::options::Global;
 use super::output::RESULTS;
 use super::terminal;
 use crate::identify::problem::Solution;

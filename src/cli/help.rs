@@ -1,6 +1,6 @@
 //! `gapi help`: the commands of scripts, and the ledger of compatibility.
 
-use super::args::DialectName;
+use super::options::DialectName;
 use super::terminal;
 use crate::ga::operators::{self, Kind};
 use crate::registry::Setting;

@@ -1,7 +1,7 @@
 //! `gapi identify`: solves a problem that is written in a file.
 
-use super::args::{Global, Limits};
 use super::comparison;
+use super::options::{Global, Limits};
 use super::output::Output;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;

@@ -1,7 +1,7 @@
 //! `gapi lesson N`: short scripts that teach one thing each.
 
-use super::args::Global;
 use super::disk;
+use super::options::Global;
 use super::output::{Output, RESULTS};
 use super::session;
 use super::terminal::{self, Terminal};

@@ -1,9 +1,9 @@
 //! Limits of time and memory: a thread that watches the process, asks the run to stop, and ends the
 //! process where nobody listens, as in the loops of loading, flattening and compiling.
 
-use super::args::Limits;
 use super::live;
 use super::memory;
+use super::options::Limits;
 use super::terminal;
 use crate::budget::limit_instructions;
 use crate::script::errors::LIMIT_REACHED;

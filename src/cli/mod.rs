@@ -17,6 +17,7 @@ mod lock;
 mod memory;
 mod named;
 mod new;
+mod options;
 mod output;
 mod parsing;
 mod repl;

@@ -1,6 +1,6 @@
 //! `gapi new`: a first problem file from a data file and a model.
 
-use super::args::Global;
+use super::options::Global;
 use super::session;
 use crate::diag::Fault;
 use crate::registry::BAD_OPTION;

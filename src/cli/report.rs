@@ -1,6 +1,6 @@
 //! `gapi report`: draws the report of a run again from its files.
 
-use super::args::Global;
+use super::options::Global;
 use super::{output, session};
 use crate::diag::Fault;
 use crate::identify::problem::Solution;

@@ -1,6 +1,6 @@
 //! `gapi run SCRIPT`: runs a script.
 
-use super::args::{Freedom, Global, seconds};
+use super::options::{Freedom, Global, seconds};
 use super::output::Output;
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;

@@ -1,6 +1,6 @@
 //! A session for the commands that work on models, and how they tell what is wrong.
 
-use super::args::{EVERYWHERE, Global};
+use super::options::{EVERYWHERE, Global};
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use crate::diag::{Diagnostic, Fault};

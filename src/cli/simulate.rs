@@ -1,6 +1,6 @@
 //! `gapi simulate`: one simulation of one model.
 
-use super::args::{Global, Limits};
+use super::options::{Global, Limits};
 use super::terminal::Terminal;
 use super::{limits, session};
 use crate::diag::{Diagnostic, Fault};

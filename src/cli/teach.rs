@@ -1,7 +1,7 @@
 //! `gapi teach SCRIPT`: a run of the genetic algorithm, step by step.
 
-use super::args::{Global, at_least_one};
 use super::disk;
+use super::options::{Global, at_least_one};
 use super::output::{Output, RESULTS, latest_of, shown};
 use super::session;
 use super::teach_screen;

@@ -1,8 +1,8 @@
 //! The terminal: the only place that prints.
 #![allow(clippy::print_stdout, clippy::print_stderr, reason = "this is where printing happens")]
 
-use super::args::Colour;
 use super::live::Live;
+use super::options::Colour;
 use crate::diag::visible;
 use crate::script::runs::view::View;
 use crate::script::world::Progress;

@@ -3,8 +3,8 @@
 mod assistance;
 mod commands;
 
-use super::args::{Freedom, Global, Limits};
 use super::limits::Stopping;
+use super::options::{Freedom, Global, Limits};
 use super::terminal::{self, Terminal};
 use super::world::SystemWorld;
 use super::{limits, session};

@@ -4,8 +4,8 @@ mod judgement;
 mod junit;
 mod wording;
 
-use super::args::{Freedom, Global};
 use super::disk;
+use super::options::{Freedom, Global};
 use super::parsing::scripts;
 use super::run::without_folders;
 use super::scratch::{Output, ScratchWorld};

@@ -4,7 +4,7 @@ mod cases;
 mod pool;
 mod report;
 
-use super::args::{Global, seconds};
+use super::options::{Global, seconds};
 use super::session;
 use super::terminal::{self, Terminal};
 use crate::diag::Fault;
