@@ -9,6 +9,8 @@ mod architecture;
 mod assertions;
 mod bad_input;
 mod chattering;
+mod displacement;
+mod moving_surfaces;
 mod checks;
 mod cli;
 mod compat;
