@@ -159,15 +159,15 @@ impl CrossingSearch {
         problem.system.crossings(b, y, &mut self.right)?;
         self.is_near.fill(true);
         self.note_lasting();
-        if !self.changed(&self.right) {
-            match self.turning_point(problem, integrator, (a, b), y)? {
-                Some(vertex) => b = vertex,
-                None => {
-                    std::mem::swap(&mut self.earlier, &mut self.left);
-                    std::mem::swap(&mut self.left, &mut self.right);
-                    self.earlier_time = Some(a);
-                    return Ok(None);
-                }
+        // Also before a change of sign at b: another function may have turned twice until there.
+        match self.turning_point(problem, integrator, (a, b), y)? {
+            Some(vertex) => b = vertex,
+            None if self.changed(&self.right) => {}
+            None => {
+                std::mem::swap(&mut self.earlier, &mut self.left);
+                std::mem::swap(&mut self.left, &mut self.right);
+                self.earlier_time = Some(a);
+                return Ok(None);
             }
         }
         for at in 0..self.signs.len() {
@@ -250,9 +250,13 @@ impl CrossingSearch {
         Ok(None)
     }
 
-    /// Whether a function is within its margin where the search begins.
+    /// Whether a function is at zero where the search begins behind an event: within its margin, or
+    /// as near as the event was located. The latter is more than the margin where steps are long and
+    /// the tolerance is tight, as for a ball with `radau5` at the tolerance 1e-8, which is below its floor
+    /// at both ends of a step that is as long as a flight.
     fn is_at_zero(&self, at: usize) -> bool {
-        self.uncertainty[at] > 0.0 && self.left[at].abs() <= self.margin(at)
+        let is_within = self.uncertainty[at] > 0.0 && self.left[at].abs() <= self.margin(at);
+        is_within || self.switched.contains(&at)
     }
 
     /// Where the first of the functions turns at zero or beyond, as far as parabolas tell.
