@@ -16,7 +16,7 @@
 use super::accumulation::Switches;
 use super::event::sign;
 use super::simulator::Run;
-use super::sliding::{Contact, MOST_SURFACES, Surface, balanced};
+use super::sliding::{Contact, MOST_SURFACES, Surface, attract, balanced};
 use super::{DaeSystem, Side, SimErrorKind, Treatment};
 
 /// Length of a row that is chattering. A relation that is reached and left again at once, such as
@@ -240,16 +240,23 @@ impl Run<'_> {
         }
         let distinct = self.distinct(chattering);
         let opposing = match distinct.len() + sliding.len() {
-            1 => distinct,
+            1 => distinct.clone(),
             _ => self.opposing(&distinct),
         };
         let mut surfaces = sliding.clone();
         surfaces.extend(opposing.iter().filter(|at| !sliding.contains(at)));
         let is_larger = surfaces.len() > sliding.len();
-        let slides = is_larger && self.slide(&surfaces, contacts.clone())?
+        let mut slides = is_larger && self.slide(&surfaces, contacts.clone())?
             || !sliding.is_empty()
                 && !opposing.is_empty()
                 && self.slide(&opposing, contacts.clone())?;
+        let others = distinct.iter().filter(|at| !surfaces.contains(at));
+        let others: Vec<usize> = others.copied().collect();
+        if !slides && !others.is_empty() {
+            // No surface attracts by itself, but all of them may together.
+            surfaces.extend(others);
+            slides = self.slide(&surfaces, contacts.clone())?;
+        }
         if slides {
             self.problem.statistics.slides += 1;
             return Ok(true);
@@ -433,7 +440,9 @@ impl Run<'_> {
         }
         let rates = self.rates_of_modes(crossings)?;
         let shares = balanced(&rates, crossings.len())?;
-        shares.iter().all(|share| *share > 0.0 && *share < 1.0).then_some(shares)
+        let widths: Vec<f64> = crossings.iter().map(|at| self.crossings.uncertainty[*at]).collect();
+        let is_inside = shares.iter().all(|share| *share > 0.0 && *share < 1.0);
+        (is_inside && attract(&rates, &shares, &widths)).then_some(shares)
     }
 
     /// The rates of change of crossing functions in every mode, one mode after the other; `None`

@@ -62,3 +62,60 @@ fn a_slide_is_left_at_the_time_when_a_field_turns() {
         }
     }
 }
+
+/// Fields that lead round a corner: no surface attracts by itself.
+fn spiral(force: &str) -> String {
+    format!(
+        "model C Real x(start = 1, fixed = true); Real y(start = 1, fixed = true);
+        Real w(start = 0, fixed = true);
+        Real sx = if x > 0 then 1 else -1; Real sy = if y > 0 then 1 else -1;
+        equation der(x) = -sx + 2*sy + {force}; der(y) = -2*sx - sy; der(w) = 3 + sx; end C;"
+    )
+}
+
+#[test]
+fn a_spiral_into_a_corner_comes_to_rest_there() {
+    for method in METHODS {
+        for tolerance in [1e-4, 1e-6, 1e-8] {
+            let run = run(&spiral("0"), method, tolerance, 10.0);
+            let cost = run.cost();
+            near(run.at("x", 10.0), 0.0, tolerance);
+            near(run.at("y", 10.0), 0.0, tolerance);
+            // With the integrals A and B of sx and sy: -1 = -A + 2 B, -1 = -2 A - B.
+            near(run.at("w", 10.0), 30.0 + 3.0 / 5.0, tolerance);
+            assert!(cost.slides == 1 && cost.state_events < 30, "{method}, {tolerance}: {cost:?}");
+        }
+    }
+}
+
+#[test]
+fn a_corner_is_left_along_one_of_its_surfaces() {
+    // sx = t/10 and sy = -t/5 until t = 5; then sx = t/2 - 2 on x = 0 below y = 0 until t = 6.
+    for method in METHODS {
+        for tolerance in [1e-4, 1e-6, 1e-8] {
+            let run = run(&spiral("time/2"), method, tolerance, 8.0);
+            let cost = run.cost();
+            let accuracy = 100.0 * tolerance;
+            near(run.at("y", 4.9), 0.0, accuracy);
+            near(run.at("x", 5.9), 0.0, accuracy);
+            near(run.at("y", 6.0), -0.5, accuracy);
+            near(run.at("x", 8.0), 1.0, accuracy);
+            near(run.at("y", 8.0), -2.5, accuracy);
+            assert!(cost.state_events < 60, "{method}, {tolerance}: {cost:?}");
+        }
+    }
+}
+
+#[test]
+fn a_corner_that_repels_is_not_held() {
+    // Round the other way in growing turns: the solution stays outside.
+    let text = "model C Real x(start = 0.01, fixed = true); Real y(start = 0.01, fixed = true);
+        Real sx = if x > 0 then 1 else -1; Real sy = if y > 0 then 1 else -1;
+        equation der(x) = 0.5*sx + 2*sy; der(y) = -2*sx + 0.5*sy; end C;";
+    for method in METHODS {
+        let run = run(text, method, 1e-6, 1.0);
+        assert_eq!(run.cost().slides, 0);
+        // The distance |x| + |y| grows on average.
+        assert!(run.at("x", 1.0).abs() + run.at("y", 1.0).abs() > 0.1);
+    }
+}

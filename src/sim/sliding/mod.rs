@@ -39,7 +39,7 @@ use self::bordered::bordered;
 use self::slide::{Slide, nearest_mode};
 use super::{DaeSystem, Failure};
 
-pub(super) use self::shares::balanced;
+pub(super) use self::shares::{attract, balanced};
 pub(super) use self::slide::{Contact, Surface};
 
 /// The most surfaces at once: every one doubles the number of fields.

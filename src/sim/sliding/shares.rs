@@ -18,6 +18,8 @@ const MAX_ITERATIONS: usize = 50;
 /// Changes of the shares that end the iteration, and those that are no solution.
 const CONVERGED: f64 = 1e-12;
 const FAR: f64 = 1e6;
+/// Iterations for the eigenvalues of a matrix of at most five rows, some of each are needed.
+const MAX_ROTATIONS: usize = 1000;
 /// Length of the difference that gives the rate of z, relative to the time in which y changes.
 const DIFFERENCE: f64 = 1e-7;
 
@@ -51,6 +53,23 @@ pub(in crate::sim) fn balanced(rates: &[f64], k: usize) -> Option<Vec<f64>> {
         }
     }
     Some(shares)
+}
+
+/// Whether solutions around the intersection of surfaces go to it: with layers as wide as `widths`,
+/// shares around the balanced ones return to these, dλ/dt = (∂ż/∂λ)/ε. Fields that lead from one surface
+/// to the next, none of which attracts by itself, may do so in a spiral.
+pub(in crate::sim) fn attract(rates: &[f64], shares: &[f64], widths: &[f64]) -> bool {
+    let k = shares.len();
+    let jacobian = nalgebra::DMatrix::from_fn(k, k, |i, j| {
+        let parts = rates.chunks_exact(k).enumerate();
+        let slope = parts.map(|(mode, rates)| weight_by_share(mode, shares, j) * rates[i]);
+        slope.sum::<f64>() / widths[i]
+    });
+    if !jacobian.iter().all(|entry| entry.is_finite()) {
+        return false;
+    }
+    let schur = nalgebra::Schur::try_new(jacobian, f64::EPSILON, MAX_ROTATIONS);
+    schur.is_some_and(|schur| schur.complex_eigenvalues().iter().all(|value| value.re < 0.0))
 }
 
 impl Sliding<'_> {
