@@ -16,6 +16,9 @@ use super::{DaeSystem, EventOutcome, Failure, SimErrorKind};
 const DISPLACED: f64 = 2.0;
 /// A flight is over if it would be so high, relative to the uncertainty of z.
 pub(super) const HEIGHT: f64 = 1.0;
+/// How far a solution that rests may be from where it began to without being moved, relative to the
+/// uncertainty.
+const MOVED: f64 = 0.1;
 /// How far a solution is moved off a surface, relative to the uncertainty: more than the margin of
 /// events.
 const LIFT: f64 = 1e-2;
@@ -78,6 +81,11 @@ impl Run<'_> {
         let [before, behind] = [&contacts[..at], &contacts[at + 1..]];
         let others = [before, behind].concat();
         let system = &mut *self.problem.system;
+        let moved = (self.crossings.left[contact.crossing] - contact.value).abs();
+        if moved > MOVED * contact.uncertainty {
+            // The surface was moved by less than errors: back to it, without a flight.
+            system.lift(&contact, contact.gap(contact.value), self.t, self.y)?;
+        }
         let (gap, rest) = system.look_at_gap(&contact, &others, self.t, self.y)?;
         if !gap.is_held() || gap.height() > HEIGHT * contact.uncertainty {
             return Ok(None);

@@ -54,6 +54,8 @@ pub(super) struct CrossingSearch {
     /// The functions before `left`, and when; none behind an event.
     earlier: Vec<f64>,
     earlier_time: Option<f64>,
+    /// The functions at the point looked at before, behind an event.
+    farther: Vec<f64>,
     /// y at the end of the step, while a vertex is looked at.
     kept: Vec<f64>,
     /// The functions that changed their signs at the last event.
@@ -63,6 +65,13 @@ pub(super) struct CrossingSearch {
 /// Vertices nearer to zero than this part of the values at both ends are looked at: a parabola is
 /// not quite the function.
 const NEAR_ZERO: f64 = 0.05;
+
+/// The shortest part of a step that is looked at behind an event, as a power of 1/2: a flight may be a
+/// small part of a step where the solution is smooth without its surface.
+const MOST_HALVINGS: i32 = 17;
+/// Mean slopes from the beginning of a step to two points within it that differ by no more than this
+/// part tell the slope there.
+const SLOPE_CHANGE: f64 = 0.25;
 
 /// The vertex of the parabola through three points, if it lies between the last two.
 fn vertex([t0, a, b]: [f64; 3], [z0, left, right]: [f64; 3]) -> Option<(f64, f64)> {
@@ -86,7 +95,7 @@ impl CrossingSearch {
             flags.resize(n_crossings, false);
         }
         let vectors = [&mut self.left, &mut self.right, &mut self.trial, &mut self.uncertainty];
-        for vector in vectors.into_iter().chain([&mut self.earlier]) {
+        for vector in vectors.into_iter().chain([&mut self.earlier, &mut self.farther]) {
             vector.resize(n_crossings, 0.0);
         }
         self.lasting.clear();
@@ -229,12 +238,10 @@ impl CrossingSearch {
     ) -> Result<Option<f64>, Failure> {
         self.kept.clear();
         self.kept.extend_from_slice(y);
-        if self.earlier_time.is_none() && (0..self.signs.len()).any(|at| self.is_at_zero(at)) {
-            // Behind an event: a function that has left zero may be back beyond it.
-            let middle = 0.5 * (a + b);
-            integrator.interpolate(middle, y);
-            problem.system.crossings(middle, y, &mut self.earlier)?;
-            self.earlier_time = Some(middle);
+        if self.earlier_time.is_none()
+            && let Some(found) = self.look_behind_event(problem, integrator, (a, b), y)?
+        {
+            return Ok(Some(found));
         }
         let Some(vertex) = self.earliest_vertex(a, b) else {
             y.copy_from_slice(&self.kept);
@@ -247,6 +254,49 @@ impl CrossingSearch {
             return Ok(Some(vertex));
         }
         y.copy_from_slice(&self.kept);
+        Ok(None)
+    }
+
+    /// Behind an event: a function that has left zero may be back beyond it. Looks at the middle of
+    /// the step, and nearer to its beginning as long as it is not clear in which direction the functions
+    /// go from there; `earlier` has the functions in the middle then. A time at which a sign has
+    /// changed, with the functions there in `right`.
+    fn look_behind_event(
+        &mut self,
+        problem: &mut Problem,
+        integrator: &dyn Integrator,
+        (a, b): (f64, f64),
+        y: &mut [f64],
+    ) -> Result<Option<f64>, Failure> {
+        if !(0..self.signs.len()).any(|at| self.is_at_zero(at)) {
+            return Ok(None);
+        }
+        let mut farther = b - a;
+        self.farther.copy_from_slice(&self.right);
+        for halvings in (1..=MOST_HALVINGS).step_by(2) {
+            let distance = 0.5f64.powi(halvings) * (b - a);
+            integrator.interpolate(a + distance, y);
+            problem.system.crossings(a + distance, y, &mut self.trial)?;
+            if self.changed(&self.trial) {
+                std::mem::swap(&mut self.right, &mut self.trial);
+                return Ok(Some(a + distance));
+            }
+            let is_clear = (0..self.signs.len()).all(|at| {
+                let slope = |distance: f64, z: f64| (z - self.left[at]) / distance;
+                let (far, near) =
+                    (slope(farther, self.farther[at]), slope(distance, self.trial[at]));
+                !self.is_at_zero(at) || (far - near).abs() <= SLOPE_CHANGE * near.abs()
+            });
+            if halvings == 1 {
+                self.earlier.copy_from_slice(&self.trial);
+                self.earlier_time = Some(a + distance);
+            }
+            if is_clear {
+                break;
+            }
+            farther = distance;
+            self.farther.copy_from_slice(&self.trial);
+        }
         Ok(None)
     }
 

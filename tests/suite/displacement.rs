@@ -173,3 +173,26 @@ fn a_ball_rests_on_a_ball_that_rests() {
         assert!(run.treatments().contains(&Treatment::Rests));
     }
 }
+
+#[test]
+fn a_ball_is_noticed_below_its_floor_however_long_the_step() {
+    // Thrown up at t = 9 with 10 m/s against a gravity of about 7160 m/s2: a flight of 2.8 ms.
+    let text = "model B Real h(start = 1, fixed = true); Real v(start = 0, fixed = true);
+        equation der(h) = v; der(v) = -9.81*(1 + time^3);
+        when h < 0 then reinit(v, -0.5*pre(v)); end when;
+        when time >= 9 then reinit(v, 10); end when; end B;";
+    check(text, &[("h", 8.9, 0.0), ("h", 10.0, 0.0), ("v", 10.0, 0.0)]);
+}
+
+#[test]
+fn a_ball_follows_a_floor_that_sinks_in_small_steps() {
+    for (tolerance, step) in [(1e-4, 1e-5), (1e-6, 1e-7)] {
+        let down = format!("when sample(5, 0.01) then f = pre(f) - {step}; end when;");
+        for method in METHODS {
+            let run = run(&ball(&down), method, tolerance, 10.0);
+            let cost = run.cost();
+            near(run.at("h", 9.995), -500.0 * step, 2.0 * tolerance);
+            assert!(cost.steps + cost.error_failures < 2000, "{method}, {tolerance}: {cost:?}");
+        }
+    }
+}
