@@ -5,13 +5,14 @@
 //!
 //! ```text
 //! both point at the surface             the solution slides (`sliding`)
+//! they lead into a corner of surfaces   the solution slides along all of them
 //! else                                  the relation is followed: it is evaluated between steps,
 //!                                       without events, until it has been quiet
 //! values of events remember the side    events go on, and end with an error if the row goes on
 //! ```
 //!
-//! Following is exact up to the tolerance: a function that is larger than its uncertainty has events
-//! as every other one.
+//! An event ends a slide that it has displaced (`displacement`). Following is exact up to the
+//! tolerance: a function that is larger than its uncertainty has events as every other one.
 
 use super::accumulation::Switches;
 use super::event::sign;

@@ -10,6 +10,8 @@
 //! tried a little beyond and a little before, and halved every third time. A function that changes
 //! its sign twice within one step, or within one part of it where functions vary in time, is noticed
 //! where the parabola through its last three values does: the step is searched at its vertex then.
+//! Behind an event a function that is at zero has no such values: it is looked at nearer and nearer to
+//! the event, until its slope there is clear.
 
 use super::{DaeSystem, Failure, Integrator, Problem};
 
@@ -66,9 +68,10 @@ pub(super) struct CrossingSearch {
 /// not quite the function.
 const NEAR_ZERO: f64 = 0.05;
 
-/// The shortest part of a step that is looked at behind an event, as a power of 1/2: a flight may be a
-/// small part of a step where the solution is smooth without its surface.
-const MOST_HALVINGS: i32 = 17;
+/// Points that are looked at behind an event, and how much nearer to it each is than the one before: a
+/// flight may be a small part of a step where the solution is smooth without its surface.
+const MOST_POINTS: u32 = 9;
+const NEARER: f64 = 0.25;
 /// Mean slopes from the beginning of a step to two points within it that differ by no more than this
 /// part tell the slope there.
 const SLOPE_CHANGE: f64 = 0.25;
@@ -273,8 +276,8 @@ impl CrossingSearch {
         }
         let mut farther = b - a;
         self.farther.copy_from_slice(&self.right);
-        for halvings in (1..=MOST_HALVINGS).step_by(2) {
-            let distance = 0.5f64.powi(halvings) * (b - a);
+        let mut distance = 0.5 * (b - a);
+        for point in 0..MOST_POINTS {
             integrator.interpolate(a + distance, y);
             problem.system.crossings(a + distance, y, &mut self.trial)?;
             if self.changed(&self.trial) {
@@ -287,7 +290,7 @@ impl CrossingSearch {
                     (slope(farther, self.farther[at]), slope(distance, self.trial[at]));
                 !self.is_at_zero(at) || (far - near).abs() <= SLOPE_CHANGE * near.abs()
             });
-            if halvings == 1 {
+            if point == 0 {
                 self.earlier.copy_from_slice(&self.trial);
                 self.earlier_time = Some(a + distance);
             }
@@ -295,6 +298,7 @@ impl CrossingSearch {
                 break;
             }
             farther = distance;
+            distance *= NEARER;
             self.farther.copy_from_slice(&self.trial);
         }
         Ok(None)
