@@ -24,8 +24,9 @@ const DIFFERENCE: f64 = 1e-4;
 /// the tolerance is tighter than this: differences of differences are as inexact.
 const COARSEST: f64 = 1e-6;
 /// τ relative to the simulated interval. A force μ keeps the solution ω τ μ away from where it rested
-/// first: with 1e-2 a force that has grown three hundred times made that two hundred tolerances.
-const RETURN: f64 = 1e-4;
+/// first. Errors of z are errors of the force, divided by ω τ: with 1e-4 a ball on a plate that shakes
+/// takes 18,952 steps at the tolerance 1e-6 instead of 406.
+const RETURN: f64 = 1e-2;
 /// Ratios of intervals in a row that are steady before events accumulate.
 const STEADY_RATIOS: u32 = 12;
 /// Intervals have become shorter by this factor by then. Together with [`BAND`] it tells a geometric
