@@ -9,7 +9,8 @@
 //! ```
 //!
 //! The closed forms are taken where the divisor cannot vanish. Where it can, elimination finds out
-//! whether there is a solution; of many it takes the smallest.
+//! whether there is a solution; of many it takes the smallest. So that it is the smallest in all
+//! unknowns of the loop, one that is singular with the default parameters is solved without tearing.
 
 use super::blt::is_safe;
 use super::causalized::{Assignment, LinearLoop, Loop};
@@ -21,6 +22,9 @@ use rustc_hash::{FxHashMap, FxHashSet};
 const MOST_NODES: usize = 200_000;
 /// Unknowns beyond which a loop is left to the integrator, which knows sparse matrices.
 const MOST_UNKNOWNS: usize = 120;
+/// A matrix of rows and columns of size one is singular if one of its singular values is a smaller part
+/// of the largest.
+const SMALLEST: f64 = 1e-13;
 
 /// The solution of a torn loop, if it is linear.
 pub(super) fn solve_linear(dae: &mut Dae, torn: &Loop) -> Option<LinearLoop> {
@@ -33,7 +37,15 @@ pub(super) fn solve_linear(dae: &mut Dae, torn: &Loop) -> Option<LinearLoop> {
     }
     let values = match closed_form(dae, &torn.iteration, &residuals) {
         Some(values) => values,
-        None => by_elimination(&mut dae.pool, &torn.iteration, &residuals),
+        None => {
+            let values = by_elimination(&mut dae.pool, &torn.iteration, &residuals);
+            if is_singular(dae, &values)
+                && let Some(whole) = untorn(torn, &mut dae.pool)
+            {
+                return solve_linear(dae, &whole);
+            }
+            values
+        }
     };
     let solved = torn.iteration.iter().zip(values).zip(&torn.residuals);
     let mut assignments: Vec<Assignment> = solved
@@ -46,6 +58,63 @@ pub(super) fn solve_linear(dae: &mut Dae, torn: &Loop) -> Option<LinearLoop> {
     assignments.extend(&torn.assignments);
     let (unknowns, residuals) = (torn.iteration.clone(), torn.residuals.clone());
     Some(LinearLoop { unknowns, assignments, residuals })
+}
+
+/// Whether a matrix has a value with the default parameters, and is singular then. Lines that are zero
+/// because parameters are so are left to `vanishing_coefficients`.
+fn is_singular(dae: &Dae, solutions: &[Expr]) -> bool {
+    let Some(Node::Solution { matrix, .. }) = solutions.first().map(|e| dae.pool.node(*e)) else {
+        return false;
+    };
+    let n = solutions.len();
+    let entries = dae.pool.entries(*matrix);
+    let values: Vec<f64> = entries.iter().map(|e| dae.defaults.of(dae, *e)).collect();
+    if values.iter().any(|value| !value.is_finite()) {
+        return false;
+    }
+    let vanishes = |at: usize| values[at] == 0.0 && dae.pool.as_constant(entries[at]).is_none();
+    let is_zero = |line: &dyn Fn(usize) -> usize| (0..n).all(|i| values[line(i)] == 0.0);
+    for line in 0..n {
+        let (row, column) = (|i: usize| line * n + i, |i: usize| i * n + line);
+        let vanish = [
+            is_zero(&row) && (0..n).any(|i| vanishes(row(i))),
+            is_zero(&column) && (0..n).any(|i| vanishes(column(i))),
+        ];
+        if vanish.contains(&true) {
+            return false;
+        }
+    }
+    let mut matrix = nalgebra::DMatrix::from_row_slice(n, n, &values);
+    matrix.row_iter_mut().for_each(|mut row| scale(row.amax(), |factor| row *= factor));
+    matrix.column_iter_mut().for_each(|mut column| scale(column.amax(), |factor| column *= factor));
+    let singular_values = matrix.singular_values();
+    singular_values.min() <= SMALLEST * singular_values.max()
+}
+
+/// Divides by what is not zero.
+fn scale(largest: f64, multiply: impl FnOnce(f64)) {
+    if largest > 0.0 {
+        multiply(largest.recip());
+    }
+}
+
+/// A loop that is solved for all of its unknowns at once; `None` if it is so already.
+fn untorn(torn: &Loop, pool: &mut Pool) -> Option<Loop> {
+    if torn.assignments.is_empty() {
+        return None;
+    }
+    let mut iteration = torn.iteration.clone();
+    let mut residuals = torn.residuals.clone();
+    for assignment in &torn.assignments {
+        let variable = pool.variable(assignment.variable);
+        iteration.push(assignment.variable);
+        residuals.push((pool.sub(variable, assignment.value), assignment.equation));
+    }
+    (iteration.len() <= MOST_UNKNOWNS).then(|| Loop {
+        iteration,
+        assignments: Vec::new(),
+        residuals,
+    })
 }
 
 /// The residuals as expressions of the iteration variables.

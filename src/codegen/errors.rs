@@ -28,7 +28,7 @@ crate::codes! {
          ## What to do\nGive the variables named `start` values near the solution.",
     /// Equations that depend on each other and leave unknowns open.
     UNDETERMINED = "undetermined":
-        "## What it means\nThe model has as many equations as unknowns, but some of the equations follow from others, so that they do not determine the unknowns named. They agree with each other, and the simulation goes on: of all solutions of a linear loop it takes the one of least norm in the unknowns that the loop is solved for (its tearing variables), of a nonlinear loop at the start the one near the start values.\n\n\
+        "## What it means\nThe model has as many equations as unknowns, but some of the equations follow from others, so that they do not determine the unknowns named. They agree with each other, and the simulation goes on: of all solutions of a linear loop it takes the one of least norm (in all of its unknowns, of which those that are equal count once, if the loop is singular with the default parameters and not only at times, else in its tearing variables), of a nonlinear loop at the start the one near the start values.\n\n\
          ## Example\n`a + b = 1; 2*a + 2*b = 2;` holds for any `a`.\n\n\
          ## What to do\nReplace the redundant equation by one that determines the unknowns: a ground, a reference value, another load path. Values of the unknowns named mean nothing before that, and what depends on them neither.",
     /// A variable that the model does not have.

@@ -4,8 +4,9 @@
 //! regular     P A = L U, rows scaled by their largest entry
 //! up to 2     x = b / a; by determinants where the determinant is no small difference
 //! up to 6     the same factors without a workspace where no pivot is small
-//! singular    A V = W with orthogonal columns wⱼ; x = Σ vⱼ (wⱼ·b)/(wⱼ·wⱼ) over those that are not
-//!             zero: of all solutions the one of least norm; the other vⱼ span the null space
+//! singular    A S V = W with orthogonal columns wⱼ; x = S Σ vⱼ (wⱼ·b)/(wⱼ·wⱼ) over those that are not
+//!             zero, less its part in the null space, which the other S vⱼ span: of all solutions
+//!             the one of least norm; S makes the largest entry of every column of A one
 //! ```
 //!
 //! A singular system without a solution fails, unless its pivots are more than rounding errors:
@@ -76,6 +77,8 @@ pub(crate) struct LinearSystem {
     /// V and W by columns.
     v: Vec<f64>,
     w: Vec<f64>,
+    /// An orthonormal basis of the null space of A, one vector after the other.
+    null: Vec<f64>,
 }
 
 impl LinearSystem {
@@ -96,6 +99,7 @@ impl LinearSystem {
             has_factors: true,
             v: square.clone(),
             w: square,
+            null: Vec::new(),
         }
     }
 
@@ -235,6 +239,28 @@ impl LinearSystem {
                 break;
             }
         }
+        self.find_null_space();
+    }
+
+    /// Makes the vectors of the null space orthogonal in the unknowns as they are.
+    fn find_null_space(&mut self) {
+        let n = self.n;
+        let shortest = shortest_column(&self.w, n);
+        self.null.clear();
+        let columns = self.w.chunks_exact(n).zip(self.v.chunks_exact(n));
+        for (_, v) in columns.filter(|(w, _)| dot(w, w) <= shortest) {
+            let begin = self.null.len();
+            self.null.extend(v.iter().zip(&self.column_scale).map(|(v, scale)| v * scale));
+            let (known, new) = self.null.split_at_mut(begin);
+            // Twice is enough: Parlett's rule.
+            for _ in 0..2 {
+                let length = dot(new, new).sqrt();
+                new.iter_mut().for_each(|entry| *entry /= length);
+                known.chunks_exact(n).for_each(|other| remove_part(new, other));
+            }
+            let length = dot(new, new).sqrt();
+            new.iter_mut().for_each(|entry| *entry /= length);
+        }
     }
 
     /// Makes columns i < j of W orthogonal; whether they were not.
@@ -293,6 +319,7 @@ impl LinearSystem {
             }
         }
         self.x.iter_mut().zip(&self.column_scale).for_each(|(x, scale)| *x *= scale);
+        self.null.chunks_exact(n).for_each(|null| remove_part(&mut self.x, null));
         if is_slope || is_solved(&self.matrix, &self.x, b) {
             self.is_one_of_many = rank < n && !is_slope;
             return Ok(());
@@ -356,6 +383,12 @@ pub(super) fn eliminate(a: &mut [f64], b: &mut [f64]) -> bool {
     b.iter().all(|x| x.is_finite())
 }
 
+/// Removes the part of x along a unit vector.
+fn remove_part(x: &mut [f64], unit: &[f64]) {
+    let part = dot(x, unit);
+    x.iter_mut().zip(unit).for_each(|(x, unit)| *x -= part * unit);
+}
+
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
@@ -385,6 +418,13 @@ mod tests {
         let x = solve(&[2.0, 0.0, 0.0, 0.0], &[3.0, 0.0], false).unwrap();
         assert!((x[0] - 1.5).abs() < 1e-12 && x[1] == 0.0);
         assert_eq!(solve(&[0.0], &[0.0], false), Some(vec![0.0]));
+        // Whatever the coefficients: a + 2 b = 5 is nearest to the origin at (1, 2).
+        let x = solve(&[1.0, 2.0, 2.0, 4.0], &[5.0, 10.0], false).unwrap();
+        assert!((x[0] - 1.0).abs() < 1e-12 && (x[1] - 2.0).abs() < 1e-12, "{x:?}");
+        // A plane: x + 2 y + 3 z = 14.
+        let plane = [1.0, 2.0, 3.0, 2.0, 4.0, 6.0, 3.0, 6.0, 9.0];
+        let x = solve(&plane, &[14.0, 28.0, 42.0], false).unwrap();
+        x.iter().zip(1..).for_each(|(x, k)| assert!((x - f64::from(k)).abs() < 1e-12, "{x}"));
     }
 
     #[test]

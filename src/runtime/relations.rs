@@ -89,6 +89,10 @@ impl System {
         }
         let [a, b] = [sides.outputs[0], sides.outputs[1]];
         let (a, b) = (self.registers[a as usize], self.registers[b as usize]);
+        let mut kept = self.kept.iter().filter(|(relation, _)| *relation == at);
+        if kept.any(|(_, limit)| (a - b).abs() <= *limit) {
+            return before;
+        }
         let exact = operator.holds(a, b);
         let may_keep = self.has_changed[at] || (self.keeps_held && self.held[at]);
         if exact == before || !may_keep {

@@ -119,6 +119,13 @@ impl System {
         }
     }
 
+    pub(super) fn keep_relations_of(&mut self, crossings: &[(usize, f64)]) {
+        self.kept.clear();
+        for (crossing, limit) in crossings {
+            self.kept.extend(self.relation_of(*crossing).map(|at| (at, *limit)));
+        }
+    }
+
     pub(super) fn note_treated(&mut self, time: f64, crossing: usize, treatment: Treatment) {
         let Some(relation) = self.relation_of(crossing) else { return };
         let span = self.program.sorted().dae.relations[relation].span;

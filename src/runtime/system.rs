@@ -53,6 +53,8 @@ pub struct System {
     pub(super) uncertainty: Vec<f64>,
     pub(super) is_lenient: bool,
     pub(super) excused: Vec<f64>,
+    /// Relations that events keep as they are, as long as their sides differ by no more.
+    pub(super) kept: Vec<(usize, f64)>,
     nominal: Vec<f64>,
     /// One for every loop of the initial system, of the system, and of that at events, in order.
     pub(super) initial_solvers: Vec<LoopSolver>,
@@ -114,6 +116,7 @@ impl System {
             uncertainty: vec![0.0; program.relations.len()],
             is_lenient: false,
             excused: vec![0.0; program.relations.len()],
+            kept: Vec::new(),
             nominal: vec![1.0; n],
             initial_solvers: Vec::new(),
             solvers: Vec::new(),
@@ -526,6 +529,7 @@ impl DaeSystem for System {
     fn initialize(&mut self, t: f64, y: &mut [f64]) -> Result<(), Failure> {
         self.forget_notices();
         self.treated.clear();
+        self.kept.clear();
         self.solve_initial_system(t)?;
         self.note_open_at_start(t);
         self.check_initial_values()?;
@@ -586,6 +590,10 @@ impl DaeSystem for System {
         self.leave_event(outcome)?;
         self.unload(y);
         Ok(outcome)
+    }
+
+    fn keep_relations(&mut self, crossings: &[(usize, f64)]) {
+        self.keep_relations_of(crossings);
     }
 
     fn remembers(&self) -> bool {

@@ -5,19 +5,20 @@
 //!
 //! ```text
 //! both point at the surface             the solution slides (`sliding`)
+//! they lead into a corner of surfaces   the solution slides along all of them
 //! else                                  the relation is followed: it is evaluated between steps,
 //!                                       without events, until it has been quiet
 //! values of events remember the side    events go on, and end with an error if the row goes on
 //! ```
 //!
-//! Following is exact up to the tolerance: a function that is larger than its uncertainty has events
-//! as every other one.
+//! An event ends a slide that it has displaced (`displacement`). Following is exact up to the
+//! tolerance: a function that is larger than its uncertainty has events as every other one.
 
 use super::accumulation::Switches;
 use super::event::sign;
 use super::simulator::Run;
-use super::sliding::{Contact, MOST_SURFACES, Surface, weight, weight_by_share};
-use super::{DaeSystem, DenseLu, Side, SimErrorKind, Treatment};
+use super::sliding::{Contact, MOST_SURFACES, Surface, attract, balanced};
+use super::{DaeSystem, Side, SimErrorKind, Treatment};
 
 /// Length of a row that is chattering. A relation that is reached and left again at once, such as
 /// the limit of a two-point controller, switches twice.
@@ -32,14 +33,12 @@ const QUIET: u32 = 20;
 /// Width of a layer relative to z where the tolerance is tighter: what rounding makes of z must be
 /// a small part of it.
 const NARROWEST: f64 = 1e-9;
-/// The shares are computed from differences of z, which the narrowest layer makes so inexact.
+/// The integrator computes the shares from differences of z, which the narrowest layer makes so inexact.
 const SHARE_NOISE: f64 = 1e-6;
 /// Length of the difference that gives the rate of z, relative to the time in which y changes.
 const DIFFERENCE: f64 = 1e-7;
 /// Rounding of z relative to the error that a change of y by its own size makes.
 const ROUNDING: f64 = 1e-13;
-/// Iterations for the shares; where one surface is concerned or the effects add up, one is enough.
-const MAX_ITERATIONS: usize = 50;
 
 /// The switches of a crossing function one after the other, between which it stayed small.
 #[derive(Debug, Clone, Copy, Default)]
@@ -90,8 +89,11 @@ pub(super) struct Watch {
     sides: Vec<(usize, bool)>,
     z: Vec<f64>,
     y: Vec<f64>,
-    /// The states before the event at hand.
-    pub(super) before: Vec<f64>,
+    /// The states before the event at hand, and by how much it has changed those that it has.
+    before: Vec<f64>,
+    pub(super) jump: Vec<(usize, f64)>,
+    /// The crossing functions that led to it, but for those of contacts, which tell of forces.
+    pub(super) impacts: Vec<usize>,
 }
 
 impl Watch {
@@ -105,11 +107,22 @@ impl Watch {
         self.is_alert = false;
         self.z.resize(n_crossings, 0.0);
     }
+
+    /// Notes by how much an event that a crossing function led to has changed the states.
+    pub(super) fn note_jump(&mut self, y: &[f64]) {
+        self.jump.clear();
+        let changes = y.iter().zip(&self.before).map(|(y, before)| y - before).enumerate();
+        self.jump.extend(changes.filter(|(_, change)| *change != 0.0));
+    }
 }
 
-/// The nominal value of a share.
+/// The nominal value of a share. Along a surface that moves or is curved the integrator's error of a
+/// share is that of y, divided by the width of the layer and by the step: with an accuracy as that
+/// of y, tests of the error would make steps shorter and this error larger until the steps are used up
+/// (`der(x) = if x > 0.3*sin(3*time) then -2 else 2` at the tolerance 1e-6). What y does follows from
+/// the mean of the shares over time, and their values are computed anew where they are asked for.
 pub(super) fn nominal_share(tolerance: f64) -> f64 {
-    (SHARE_NOISE / tolerance).max(1.0)
+    (SHARE_NOISE / tolerance).max(1.0 / tolerance.sqrt())
 }
 
 impl Run<'_> {
@@ -131,9 +144,14 @@ impl Run<'_> {
         let n = self.problem.system.n_differential();
         self.watch.before.clear();
         self.watch.before.extend_from_slice(&self.y[..n]);
+        self.watch.impacts.clear();
         for (at, z) in self.crossings.at_event().iter().enumerate() {
+            if self.problem.system.rests_at(at) {
+                continue;
+            }
             if self.crossings.switched.contains(&at) {
                 self.watch.rows[at].lengthen(event);
+                self.watch.impacts.push(at);
                 self.watch.is_alert = true;
                 let was_above = match self.crossings.signs[at] {
                     0 => *z < 0.0,
@@ -223,16 +241,23 @@ impl Run<'_> {
         }
         let distinct = self.distinct(chattering);
         let opposing = match distinct.len() + sliding.len() {
-            1 => distinct,
+            1 => distinct.clone(),
             _ => self.opposing(&distinct),
         };
         let mut surfaces = sliding.clone();
         surfaces.extend(opposing.iter().filter(|at| !sliding.contains(at)));
         let is_larger = surfaces.len() > sliding.len();
-        let slides = is_larger && self.slide(&surfaces, contacts.clone())?
+        let mut slides = is_larger && self.slide(&surfaces, contacts.clone())?
             || !sliding.is_empty()
                 && !opposing.is_empty()
                 && self.slide(&opposing, contacts.clone())?;
+        let others = distinct.iter().filter(|at| !surfaces.contains(at));
+        let others: Vec<usize> = others.copied().collect();
+        if !slides && !others.is_empty() {
+            // No surface attracts by itself, but all of them may together.
+            surfaces.extend(others);
+            slides = self.slide(&surfaces, contacts.clone())?;
+        }
         if slides {
             self.problem.statistics.slides += 1;
             return Ok(true);
@@ -335,7 +360,8 @@ impl Run<'_> {
         let sides = self.sides(crossings);
         let system = &mut *self.problem.system;
         system.crossings(self.t, self.y, &mut self.watch.z).map_err(SimErrorKind::Evaluation)?;
-        let widen = (NARROWEST / self.problem.settings.tolerance).max(1.0);
+        let widen = self.widening();
+        let system = &mut *self.problem.system;
         let surfaces = crossings.iter().zip(&shares).map(|(crossing, share)| Surface {
             crossing: *crossing,
             share: *share,
@@ -351,7 +377,8 @@ impl Run<'_> {
         let place = system.place_of_shares();
         let forces = contacts.iter().map(|contact| contact.force);
         let inserted: Vec<f64> = shares.iter().copied().chain(forces).collect();
-        system.begin(surfaces, contacts, self.nominals.plain());
+        let span = self.problem.settings.stop - self.problem.settings.start;
+        system.begin(surfaces, contacts, self.nominals.plain(), span);
         self.y.splice(place..place, inserted.iter().copied());
         self.problem.nominal = self.nominals.with_shares(place, inserted.len());
         if self.is_explicit {
@@ -364,6 +391,11 @@ impl Run<'_> {
         self.record()?;
         self.restart()?;
         Ok(true)
+    }
+
+    /// The width of layers relative to the uncertainty of z.
+    pub(super) fn widening(&self) -> f64 {
+        (NARROWEST / self.problem.settings.tolerance).max(1.0)
     }
 
     /// Implicit methods alone know shares; where an explicit one was asked for, one of them goes on
@@ -384,7 +416,7 @@ impl Run<'_> {
         if !self.problem.system.is_constrained() {
             return Default::default();
         }
-        let left = self.problem.system.end(self.y);
+        let left = self.problem.system.end(self.t, self.y);
         self.problem.nominal = self.nominals.plain();
         if self.is_explicit {
             std::mem::swap(&mut self.integrator, &mut self.implicit);
@@ -408,34 +440,10 @@ impl Run<'_> {
             return None;
         }
         let rates = self.rates_of_modes(crossings)?;
-        let k = crossings.len();
-        let mut shares = vec![0.5; k];
-        for _ in 0..MAX_ITERATIONS {
-            let (mut lu, mut residuals) = (DenseLu::new(k), vec![0.0; k]);
-            let matrix = lu.matrix();
-            for (mode, rates) in rates.chunks_exact(k).enumerate() {
-                for (i, rate) in rates.iter().enumerate() {
-                    residuals[i] += weight(mode, &shares) * rate;
-                    for j in 0..k {
-                        matrix[j * k + i] += weight_by_share(mode, &shares, j) * rate;
-                    }
-                }
-            }
-            if (0..k).any(|i| matrix[i * k + i] >= 0.0) {
-                return None;
-            }
-            lu.factorize().ok()?;
-            lu.solve(&mut residuals);
-            let change = residuals.iter().fold(0.0, |largest: f64, r| largest.max(r.abs()));
-            shares.iter_mut().zip(&residuals).for_each(|(share, change)| *share -= change);
-            if !change.is_finite() || change > 1e6 {
-                return None;
-            }
-            if change < 1e-12 {
-                break;
-            }
-        }
-        shares.iter().all(|share| *share > 0.0 && *share < 1.0).then_some(shares)
+        let shares = balanced(&rates, crossings.len())?;
+        let widths: Vec<f64> = crossings.iter().map(|at| self.crossings.uncertainty[*at]).collect();
+        let is_inside = shares.iter().all(|share| *share > 0.0 && *share < 1.0);
+        (is_inside && attract(&rates, &shares, &widths)).then_some(shares)
     }
 
     /// The rates of change of crossing functions in every mode, one mode after the other; `None`

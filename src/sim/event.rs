@@ -10,6 +10,8 @@
 //! tried a little beyond and a little before, and halved every third time. A function that changes
 //! its sign twice within one step, or within one part of it where functions vary in time, is noticed
 //! where the parabola through its last three values does: the step is searched at its vertex then.
+//! Behind an event a function that is at zero has no such values: it is looked at nearer and nearer to
+//! the event, until its slope there is clear.
 
 use super::{DaeSystem, Failure, Integrator, Problem};
 
@@ -54,6 +56,8 @@ pub(super) struct CrossingSearch {
     /// The functions before `left`, and when; none behind an event.
     earlier: Vec<f64>,
     earlier_time: Option<f64>,
+    /// The functions at the point looked at before, behind an event.
+    farther: Vec<f64>,
     /// y at the end of the step, while a vertex is looked at.
     kept: Vec<f64>,
     /// The functions that changed their signs at the last event.
@@ -63,6 +67,14 @@ pub(super) struct CrossingSearch {
 /// Vertices nearer to zero than this part of the values at both ends are looked at: a parabola is
 /// not quite the function.
 const NEAR_ZERO: f64 = 0.05;
+
+/// Points that are looked at behind an event, and how much nearer to it each is than the one before: a
+/// flight may be a small part of a step where the solution is smooth without its surface.
+const MOST_POINTS: u32 = 9;
+const NEARER: f64 = 0.25;
+/// Mean slopes from the beginning of a step to two points within it that differ by no more than this
+/// part tell the slope there.
+const SLOPE_CHANGE: f64 = 0.25;
 
 /// The vertex of the parabola through three points, if it lies between the last two.
 fn vertex([t0, a, b]: [f64; 3], [z0, left, right]: [f64; 3]) -> Option<(f64, f64)> {
@@ -86,7 +98,7 @@ impl CrossingSearch {
             flags.resize(n_crossings, false);
         }
         let vectors = [&mut self.left, &mut self.right, &mut self.trial, &mut self.uncertainty];
-        for vector in vectors.into_iter().chain([&mut self.earlier]) {
+        for vector in vectors.into_iter().chain([&mut self.earlier, &mut self.farther]) {
             vector.resize(n_crossings, 0.0);
         }
         self.lasting.clear();
@@ -159,15 +171,15 @@ impl CrossingSearch {
         problem.system.crossings(b, y, &mut self.right)?;
         self.is_near.fill(true);
         self.note_lasting();
-        if !self.changed(&self.right) {
-            match self.turning_point(problem, integrator, (a, b), y)? {
-                Some(vertex) => b = vertex,
-                None => {
-                    std::mem::swap(&mut self.earlier, &mut self.left);
-                    std::mem::swap(&mut self.left, &mut self.right);
-                    self.earlier_time = Some(a);
-                    return Ok(None);
-                }
+        // Also before a change of sign at b: another function may have turned twice until there.
+        match self.turning_point(problem, integrator, (a, b), y)? {
+            Some(vertex) => b = vertex,
+            None if self.changed(&self.right) => {}
+            None => {
+                std::mem::swap(&mut self.earlier, &mut self.left);
+                std::mem::swap(&mut self.left, &mut self.right);
+                self.earlier_time = Some(a);
+                return Ok(None);
             }
         }
         for at in 0..self.signs.len() {
@@ -229,12 +241,10 @@ impl CrossingSearch {
     ) -> Result<Option<f64>, Failure> {
         self.kept.clear();
         self.kept.extend_from_slice(y);
-        if self.earlier_time.is_none() && (0..self.signs.len()).any(|at| self.is_at_zero(at)) {
-            // Behind an event: a function that has left zero may be back beyond it.
-            let middle = 0.5 * (a + b);
-            integrator.interpolate(middle, y);
-            problem.system.crossings(middle, y, &mut self.earlier)?;
-            self.earlier_time = Some(middle);
+        if self.earlier_time.is_none()
+            && let Some(found) = self.look_behind_event(problem, integrator, (a, b), y)?
+        {
+            return Ok(Some(found));
         }
         let Some(vertex) = self.earliest_vertex(a, b) else {
             y.copy_from_slice(&self.kept);
@@ -250,9 +260,57 @@ impl CrossingSearch {
         Ok(None)
     }
 
-    /// Whether a function is within its margin where the search begins.
+    /// Behind an event: a function that has left zero may be back beyond it. Looks at the middle of
+    /// the step, and nearer to its beginning as long as it is not clear in which direction the functions
+    /// go from there; `earlier` has the functions in the middle then. A time at which a sign has
+    /// changed, with the functions there in `right`.
+    fn look_behind_event(
+        &mut self,
+        problem: &mut Problem,
+        integrator: &dyn Integrator,
+        (a, b): (f64, f64),
+        y: &mut [f64],
+    ) -> Result<Option<f64>, Failure> {
+        if !(0..self.signs.len()).any(|at| self.is_at_zero(at)) {
+            return Ok(None);
+        }
+        let mut farther = b - a;
+        self.farther.copy_from_slice(&self.right);
+        let mut distance = 0.5 * (b - a);
+        for point in 0..MOST_POINTS {
+            integrator.interpolate(a + distance, y);
+            problem.system.crossings(a + distance, y, &mut self.trial)?;
+            if self.changed(&self.trial) {
+                std::mem::swap(&mut self.right, &mut self.trial);
+                return Ok(Some(a + distance));
+            }
+            let is_clear = (0..self.signs.len()).all(|at| {
+                let slope = |distance: f64, z: f64| (z - self.left[at]) / distance;
+                let (far, near) =
+                    (slope(farther, self.farther[at]), slope(distance, self.trial[at]));
+                !self.is_at_zero(at) || (far - near).abs() <= SLOPE_CHANGE * near.abs()
+            });
+            if point == 0 {
+                self.earlier.copy_from_slice(&self.trial);
+                self.earlier_time = Some(a + distance);
+            }
+            if is_clear {
+                break;
+            }
+            farther = distance;
+            distance *= NEARER;
+            self.farther.copy_from_slice(&self.trial);
+        }
+        Ok(None)
+    }
+
+    /// Whether a function is at zero where the search begins behind an event: within its margin, or
+    /// as near as the event was located. The latter is more than the margin where steps are long and
+    /// the tolerance is tight, as for a ball with `radau5` at the tolerance 1e-8, which is below its floor
+    /// at both ends of a step that is as long as a flight.
     fn is_at_zero(&self, at: usize) -> bool {
-        self.uncertainty[at] > 0.0 && self.left[at].abs() <= self.margin(at)
+        let is_within = self.uncertainty[at] > 0.0 && self.left[at].abs() <= self.margin(at);
+        is_within || self.switched.contains(&at)
     }
 
     /// Where the first of the functions turns at zero or beyond, as far as parabolas tell.

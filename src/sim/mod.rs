@@ -54,6 +54,7 @@
 
 mod accumulation;
 mod chattering;
+mod displacement;
 mod error;
 mod event;
 mod integrators;

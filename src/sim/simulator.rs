@@ -571,13 +571,19 @@ impl Run<'_> {
         let crossing = if told_by_sign { self.crossings.last() } else { None };
         let span = self.problem.settings.stop - self.problem.settings.start;
         self.problem.system.crossed(crossing, span);
-        let outcome = self.whole_event(t)?;
+        let mut outcome = self.event_with_contacts(&contacts)?;
+        if told_by_sign {
+            self.watch.note_jump(self.y);
+        }
+        if was_constrained && outcome != EventOutcome::Terminate {
+            outcome = self.go_on_behind_event(surfaces, contacts)?;
+        }
         while self.next_output.is_some_and(|point| point <= t) {
             self.advance_output();
         }
         match outcome {
             EventOutcome::Terminate => return Ok(After::Terminated),
-            _ if was_constrained => self.go_on_constrained(&surfaces, contacts)?,
+            _ if was_constrained => {}
             EventOutcome::Continue { y_changed: true } | EventOutcome::Again => self.restart()?,
             EventOutcome::Continue { y_changed: false } => {
                 let confirmed = self.start_crossings()?;
@@ -591,7 +597,7 @@ impl Run<'_> {
     }
 
     /// Lets the system handle an event and those that follow it at the same time.
-    fn whole_event(&mut self, t: f64) -> Result<EventOutcome, SimErrorKind> {
+    pub(super) fn whole_event(&mut self, t: f64) -> Result<EventOutcome, SimErrorKind> {
         let mut outcome = self.event(t)?;
         while outcome == EventOutcome::Again {
             outcome = match self.event(t)? {

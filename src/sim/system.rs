@@ -81,6 +81,9 @@ pub trait DaeSystem {
     fn handle_event(&mut self, _t: f64, _y: &mut [f64]) -> Result<EventOutcome, Failure> {
         Ok(EventOutcome::Continue { y_changed: false })
     }
+    /// Asks events from here on to keep the relations of these crossing functions as they are, as long as
+    /// the function is not larger than the number beside it.
+    fn keep_relations(&mut self, _crossings: &[(usize, f64)]) {}
     /// Whether it needs to see its past: then it is shown every step by [`DaeSystem::remember`].
     fn remembers(&self) -> bool {
         false

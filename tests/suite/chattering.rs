@@ -11,14 +11,14 @@ use std::process::Command;
 use std::sync::Arc;
 
 /// A simulation, with what it cost.
-struct Run {
+pub(super) struct Run {
     program: Arc<Program>,
     system: System,
     rows: Trajectory,
-    ended: Result<Statistics, SimError>,
+    pub(super) ended: Result<Statistics, SimError>,
 }
 
-fn run(text: &str, method: &str, tolerance: f64, stop: f64) -> Run {
+pub(super) fn run(text: &str, method: &str, tolerance: f64, stop: f64) -> Run {
     let program = compiled(text).unwrap_or_else(|d| panic!("{}: {}", d.code.slug, d.message));
     let mut system = program.system();
     let settings = Settings {
@@ -34,7 +34,7 @@ fn run(text: &str, method: &str, tolerance: f64, stop: f64) -> Run {
 }
 
 impl Run {
-    fn cost(&self) -> Statistics {
+    pub(super) fn cost(&self) -> Statistics {
         match self.ended {
             Ok(statistics) => statistics,
             Err(error) => panic!("{}", self.program.explain(&error).message),
@@ -42,7 +42,7 @@ impl Run {
     }
 
     /// The value behind all events at a time, linear between output points.
-    fn at(&self, name: &str, time: f64) -> f64 {
+    pub(super) fn at(&self, name: &str, time: f64) -> f64 {
         let at = self.program.find_variable(name).expect("the variable exists");
         match self.program.variables()[at].access {
             Access::Observed { column, negated } => {
@@ -53,12 +53,12 @@ impl Run {
         }
     }
 
-    fn treatments(&self) -> Vec<Treatment> {
+    pub(super) fn treatments(&self) -> Vec<Treatment> {
         self.system.treated().iter().map(|Treated { treatment, .. }| *treatment).collect()
     }
 }
 
-const METHODS: [&str; 4] = ["dassl", "rodas4", "radau5", "dopri5"];
+pub(super) const METHODS: [&str; 4] = ["dassl", "rodas4", "radau5", "dopri5"];
 
 #[test]
 fn a_solution_slides_with_the_mean_of_both_fields_and_leaves_again() {

@@ -16,6 +16,7 @@ mod compliance;
 mod conformance;
 mod diagnostics;
 mod digits;
+mod displacement;
 mod every_element;
 mod external;
 mod faults;
@@ -49,6 +50,7 @@ mod model_files;
 mod modelica;
 mod modelica_models;
 mod models;
+mod moving_surfaces;
 mod msl;
 #[path = "../nist/mod.rs"]
 mod nist;

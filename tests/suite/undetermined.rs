@@ -1,8 +1,11 @@
 //! Systems that are structurally regular and yet singular: one of many solutions is not taken
 //! without a word, and contradictions are errors.
 
+use super::hybrid::{compiled, near};
+use gapilib::compile::Access;
 use gapilib::script::Session;
 use gapilib::script::world::MemoryWorld;
+use gapilib::sim::{Settings, simulate};
 
 /// Exit code, and what was reported, after simulating a model of these declarations and equations.
 fn simulated(text: &str) -> (u8, String) {
@@ -38,6 +41,49 @@ fn redundant_equations_are_reported_with_their_unknowns() {
            (2 + time)*a[3] + a[1] + a[2] - a[4] = 2; a[4]*(3 + time) + a[3] = a[4] + k*a[3];",
         "do not determine `a[1]`, `a[2]`",
     );
+}
+
+/// The value at the end of a simulation of 1 s.
+fn last(text: &str, name: &str) -> f64 {
+    let program = compiled(&format!("model M {text} end M;")).expect("compiles");
+    let mut system = program.system();
+    let settings = Settings { stop: 1.0, ..Settings::default() };
+    let (rows, _) = simulate(&mut system, &settings).expect("runs");
+    let at = program.find_variable(name).expect("the variable exists");
+    match program.variables()[at].access {
+        Access::Observed { column, negated } => {
+            let value = *rows.column(column).last().expect("a row");
+            if negated { -value } else { value }
+        }
+        _ => system.value(at).expect("a parameter"),
+    }
+}
+
+#[test]
+fn the_solution_of_least_norm_is_taken() {
+    let constant = "Real a, b; equation a + b = 1; 2*a + 2*b = 2;";
+    let oblique = "Real a, b; equation a + 2*b = 5; 2*a + 4*b = 10;";
+    let moving = "Real x(start = 0, fixed = true); Real a, b;
+        equation der(x) = a; a + b = time; 3*a + 3*b = 3*time;";
+    let by_parameter = "parameter Real k = 2; Real a, b; equation a + b = 1; k*a + 2*b = 2;";
+    let parameters = "parameter Real a(fixed = false); parameter Real b(fixed = false);
+        initial equation a + b = 1; 2*a + 2*b = 2;";
+    let three = "Real a, b, c; equation a + b + c = 1; a - b = 0; 2*a + c = 1;";
+    let cases: [(&str, &[(&str, f64)]); 6] = [
+        (constant, &[("a", 0.5), ("b", 0.5)]),
+        (oblique, &[("a", 1.0), ("b", 2.0)]),
+        (moving, &[("a", 0.5), ("b", 0.5), ("x", 0.25)]),
+        (by_parameter, &[("a", 0.5), ("b", 0.5)]),
+        (parameters, &[("a", 0.5), ("b", 0.5)]),
+        // a and b are one unknown: of 2 a + c = 1 the point nearest to the origin.
+        (three, &[("a", 0.4), ("b", 0.4), ("c", 0.2)]),
+    ];
+    for (text, expected) in cases {
+        for (name, value) in expected {
+            near(last(text, name), *value, 1e-5);
+        }
+        warns(text, "one of many solutions is taken");
+    }
 }
 
 #[test]

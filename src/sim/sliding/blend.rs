@@ -1,8 +1,7 @@
 //! The blended right-hand side and its observed variables.
 
-use super::slide::{Contact, Slide, weight};
+use super::slide::{Slide, nearest_mode, weight};
 use super::{Evaluated, Sliding};
-use crate::sim::Failure;
 
 impl Sliding<'_> {
     /// Without surfaces there is but one mode, the one at hand.
@@ -61,35 +60,10 @@ impl Sliding<'_> {
             for (state, effect) in &contact.direction {
                 out[*state] += force * effect;
             }
-            let speed = self.speed(contact, t, &inner);
+            let speed = self.speed_towards_rest(contact, t, &inner);
             out[first + i] = speed.unwrap_or(f64::NAN) / contact.width + force - 1.0;
         }
         self.y = inner;
-    }
-
-    /// The rate of change of the crossing function of a contact without its force, at (t, y) of the
-    /// system within, positive away from the surface.
-    pub(in crate::sim) fn speed(
-        &mut self,
-        contact: &Contact,
-        t: f64,
-        y: &[f64],
-    ) -> Result<f64, Failure> {
-        let n = self.inner.n_differential();
-        let mut f = vec![0.0; y.len()];
-        let mut z = vec![0.0; self.inner.n_crossings()];
-        self.inner.rhs(t, y, &mut f)?;
-        let mut moved = y.to_vec();
-        let mut ends = [0.0; 2];
-        for (end, sign) in ends.iter_mut().zip([1.0, -1.0]) {
-            let ahead = sign * contact.ahead;
-            let points = moved.iter_mut().zip(y).zip(&f).take(n);
-            points.for_each(|((moved, y), f)| *moved = y + ahead * f);
-            self.inner.crossings(t + ahead, &moved, &mut z)?;
-            *end = z[contact.crossing];
-        }
-        let speed = (ends[0] - ends[1]) / (2.0 * contact.ahead);
-        Ok(if contact.is_free_above { speed } else { -speed })
     }
 
     pub(super) fn blended_observation(
@@ -99,13 +73,14 @@ impl Sliding<'_> {
         y: &[f64],
         out: &mut [f64],
     ) -> Evaluated {
-        let nearest = slide.nearest_mode(y);
+        let shares = self.exact_shares(slide, t, y);
+        let nearest = nearest_mode(&shares);
         let mut values = vec![0.0; out.len()];
         out.fill(0.0);
         for mode in 0..slide.n_modes() {
             self.enter(slide, mode);
             self.inner.observe(t, &self.y, &mut values)?;
-            let weight = weight(mode, slide.shares(y));
+            let weight = weight(mode, &shares);
             for (column, (out, value)) in out.iter_mut().zip(&values).enumerate() {
                 match self.inner.has_means(column) {
                     true => *out += weight * value,

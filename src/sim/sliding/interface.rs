@@ -1,6 +1,7 @@
 //! What the integrators see of a system that may slide.
 
 use super::Sliding;
+use super::slide::nearest_mode;
 use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
 
 /// How far a share may be outside 0 … 1: more than rounding.
@@ -86,9 +87,10 @@ impl DaeSystem for Sliding<'_> {
     /// Those of the surfaces are positive as long as their shares are between 0 and 1.
     fn crossings(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
         sliding!(self, y, slide, self.inner.crossings(t, y, out));
-        self.enter(&slide, slide.nearest_mode(y));
+        let shares = self.exact_shares(&slide, t, y);
+        self.enter(&slide, nearest_mode(&shares));
         let evaluated = self.inner.crossings(t, &self.y, out);
-        for (surface, share) in slide.surfaces.iter().zip(slide.shares(y)) {
+        for (surface, share) in slide.surfaces.iter().zip(&shares) {
             out[surface.crossing] = share.min(1.0 - share) + OUTSIDE;
             surface.companions.iter().for_each(|companion| out[*companion] = 1.0);
         }
@@ -109,6 +111,10 @@ impl DaeSystem for Sliding<'_> {
 
     fn handle_event(&mut self, t: f64, y: &mut [f64]) -> Result<EventOutcome, Failure> {
         self.inner.handle_event(t, y)
+    }
+
+    fn keep_relations(&mut self, crossings: &[(usize, f64)]) {
+        self.inner.keep_relations(crossings);
     }
 
     fn remembers(&self) -> bool {

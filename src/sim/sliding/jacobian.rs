@@ -122,7 +122,7 @@ impl Sliding<'_> {
         let first = slide.at + slide.surfaces.len();
         let mut inner = self.y.clone();
         for (place, contact) in (first..).zip(&slide.contacts) {
-            let speed = self.speed(contact, t, &inner)?;
+            let speed = self.speed_towards_rest(contact, t, &inner)?;
             for column in 0..y.len() {
                 let entries = &mut values[slide.pattern.column(column)];
                 let rows = &slide.pattern.rows[slide.pattern.column(column)];
@@ -157,7 +157,7 @@ impl Sliding<'_> {
         let kept = y[at];
         y[at] = kept + SPEED_INCREMENT * kept.abs().max(nominal);
         let increment = y[at] - kept;
-        let moved = self.speed(contact, t, y);
+        let moved = self.speed_towards_rest(contact, t, y);
         y[at] = kept;
         Ok((moved? - speed) / increment)
     }

@@ -18,25 +18,29 @@
 //! kept at zero by a force μ along the direction d in which the impacts changed the states:
 //!
 //! ```text
-//! F = … + μ m d,    0 = w(t, y)/ω + (μ − 1)
+//! F = … + μ m d,    0 = (w(t, y) + (z − z⁰)/τ)/ω + (μ − 1)
 //! ```
 //!
-//! It ends where the force would have to pull.
+//! It ends where the force would have to pull, or where an event displaces the states or the surface
+//! (`contact`).
 //!
 //! References: [Filippov 1988](crate::bibliography#filippov-1988);
 //! [Piiroinen & Kuznetsov 2008](crate::bibliography#piiroinen-kuznetsov-2008).
 
 mod blend;
 mod bordered;
+mod contact;
 mod interface;
 mod jacobian;
+mod shares;
 mod slide;
 
 use self::bordered::bordered;
-use self::slide::Slide;
+use self::slide::{Slide, nearest_mode};
 use super::{DaeSystem, Failure};
 
-pub(super) use self::slide::{Contact, Surface, weight, weight_by_share};
+pub(super) use self::shares::{attract, balanced};
+pub(super) use self::slide::{Contact, Surface};
 
 /// The most surfaces at once: every one doubles the number of fields.
 pub(super) const MOST_SURFACES: usize = 5;
@@ -73,6 +77,12 @@ impl<'a> Sliding<'a> {
         self.slide.is_some()
     }
 
+    /// Whether it rests at a crossing function.
+    pub(super) fn rests_at(&self, crossing: usize) -> bool {
+        let mut contacts = self.slide.iter().flat_map(|slide| &slide.contacts);
+        contacts.any(|contact| contact.crossing == crossing)
+    }
+
     /// Number of shares and forces in y.
     fn n_shares(&self) -> usize {
         self.slide.as_ref().map_or(0, Slide::k)
@@ -85,12 +95,13 @@ impl<'a> Sliding<'a> {
     }
 
     /// Slides from here on; the modes of these surfaces are prepared. `nominal` are those of the y
-    /// within.
+    /// within, `span` the length of the simulation.
     pub(super) fn begin(
         &mut self,
         surfaces: Vec<Surface>,
         contacts: Vec<Contact>,
         nominal: &[f64],
+        span: f64,
     ) {
         let at = self.place_of_shares();
         let k = surfaces.len() + contacts.len();
@@ -100,24 +111,25 @@ impl<'a> Sliding<'a> {
         self.z.resize(self.inner.n_crossings(), 0.0);
         self.z_moved.resize(self.inner.n_crossings(), 0.0);
         let pattern = bordered(self.inner.pattern(), at, k);
-        self.slide = Some(Slide { surfaces, contacts, at, pattern, nominal: nominal.to_vec() });
+        let nominal = nominal.to_vec();
+        self.slide = Some(Slide { surfaces, contacts, at, pattern, nominal, span });
     }
 
     /// Ends sliding and takes the shares out of y: the system within is in the mode that they are
-    /// nearest to. What the solution has not left: crossing functions of surfaces, and contacts.
-    pub(super) fn end(&mut self, y: &mut Vec<f64>) -> (Vec<usize>, Vec<Contact>) {
+    /// nearest to. The crossing functions of surfaces that the solution has not left, and all
+    /// contacts with their forces.
+    pub(super) fn end(&mut self, t: f64, y: &mut Vec<f64>) -> (Vec<usize>, Vec<Contact>) {
         let Some(mut slide) = self.slide.take() else { return Default::default() };
-        if !slide.surfaces.is_empty() {
-            self.inner.enter_mode(slide.nearest_mode(y));
-        }
+        slide.unwrap(y, &mut self.y);
+        let shares = self.exact_shares(&slide, t, y);
+        self.enter(&slide, nearest_mode(&shares));
         let forces = slide.forces(y).to_vec();
         for (contact, force) in slide.contacts.iter_mut().zip(forces) {
             contact.force = force;
         }
-        let shares = slide.shares(y).iter().zip(&slide.surfaces);
+        let shares = shares.iter().zip(&slide.surfaces);
         let inside = shares.filter(|(share, _)| (0.0..=1.0).contains(*share));
         let surfaces = inside.map(|(_, surface)| surface.crossing).collect();
-        slide.contacts.retain(|contact| contact.force > 0.0);
         y.drain(slide.at..slide.at + slide.k());
         (surfaces, slide.contacts)
     }

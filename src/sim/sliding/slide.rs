@@ -30,6 +30,12 @@ pub(in crate::sim) struct Contact {
     pub(in crate::sim) force: f64,
     /// ω.
     pub(in crate::sim) width: f64,
+    /// z⁰.
+    pub(in crate::sim) value: f64,
+    /// τ, seconds.
+    pub(in crate::sim) return_time: f64,
+    /// The uncertainty of z.
+    pub(in crate::sim) uncertainty: f64,
     /// Half the length of the difference that gives the rate, seconds.
     pub(in crate::sim) ahead: f64,
 }
@@ -43,6 +49,8 @@ pub(super) struct Slide {
     pub(super) pattern: Pattern,
     /// Nominal values of the y within.
     pub(super) nominal: Vec<f64>,
+    /// The length of the simulation.
+    pub(super) span: f64,
 }
 
 impl Slide {
@@ -63,8 +71,7 @@ impl Slide {
     }
 
     pub(super) fn nearest_mode(&self, y: &[f64]) -> usize {
-        let sides = self.shares(y).iter().enumerate();
-        sides.filter(|(_, share)| **share > 0.5).map(|(bit, _)| 1 << bit).sum()
+        nearest_mode(self.shares(y))
     }
 
     /// Writes the y within.
@@ -75,8 +82,14 @@ impl Slide {
     }
 }
 
+/// The mode with the largest weight.
+pub(super) fn nearest_mode(shares: &[f64]) -> usize {
+    let sides = shares.iter().enumerate();
+    sides.filter(|(_, share)| **share > 0.5).map(|(bit, _)| 1 << bit).sum()
+}
+
 /// The weight of a mode.
-pub(in crate::sim) fn weight(mode: usize, shares: &[f64]) -> f64 {
+pub(super) fn weight(mode: usize, shares: &[f64]) -> f64 {
     let factor = |(bit, share): (usize, &f64)| match mode >> bit & 1 {
         1 => *share,
         _ => 1.0 - share,
@@ -85,7 +98,7 @@ pub(in crate::sim) fn weight(mode: usize, shares: &[f64]) -> f64 {
 }
 
 /// The derivative of a weight by a share.
-pub(in crate::sim) fn weight_by_share(mode: usize, shares: &[f64], by: usize) -> f64 {
+pub(super) fn weight_by_share(mode: usize, shares: &[f64], by: usize) -> f64 {
     let factor = |(bit, share): (usize, &f64)| match (bit == by, mode >> bit & 1) {
         (true, 1) => 1.0,
         (true, _) => -1.0,
