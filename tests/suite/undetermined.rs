@@ -2,7 +2,7 @@
 //! without a word, and contradictions are errors.
 
 use super::hybrid::{compiled, near};
-use gapilib::compile::Access;
+use gapilib::codegen::Access;
 use gapilib::script::Session;
 use gapilib::script::world::MemoryWorld;
 use gapilib::sim::{Settings, simulate};
