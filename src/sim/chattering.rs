@@ -14,20 +14,12 @@
 //! An event ends a slide that it has displaced (`displacement`). Following is exact up to the
 //! tolerance: a function that is larger than its uncertainty has events as every other one.
 
-use super::accumulation::Switches;
 use super::event::sign;
 use super::simulator::Run;
 use super::sliding::{Contact, MOST_SURFACES, Surface, attract, balanced};
+use super::switches::ROW;
 use super::{DaeSystem, Side, SimErrorKind, Treatment};
 
-/// Length of a row that is chattering. A relation that is reached and left again at once, such as
-/// the limit of a two-point controller, switches twice.
-pub(super) const ROW: u32 = 4;
-/// Events of a row whose density tells whether the simulation gets on.
-const LONG_ROW: u32 = 200;
-/// The most events of a row in a whole simulation. Switching that noise causes stays far below it, and
-/// a relay that remembers its side, which switches at both margins of its crossing, far above.
-const MOST_EVENTS: f64 = 1e6;
 /// Steps without a switch after which a relation is not followed any more.
 const QUIET: u32 = 20;
 /// Width of a layer relative to z where the tolerance is tighter: what rounding makes of z must be
@@ -39,82 +31,6 @@ const SHARE_NOISE: f64 = 1e-6;
 const DIFFERENCE: f64 = 1e-7;
 /// Rounding of z relative to the error that a change of y by its own size makes.
 const ROUNDING: f64 = 1e-13;
-
-/// The switches of a crossing function one after the other, between which it stayed small.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Row {
-    pub(super) length: u32,
-    /// When the first switch happened, and every further [`LONG_ROW`]th.
-    mark: f64,
-    /// The time that the last [`LONG_ROW`] switches took.
-    duration: Option<f64>,
-}
-
-impl Row {
-    pub(super) fn end(&mut self) {
-        *self = Row::default();
-    }
-
-    fn lengthen(&mut self, t: f64) {
-        if self.length > 0 && self.length.is_multiple_of(LONG_ROW) {
-            self.duration = Some(t - self.mark);
-        }
-        if self.length.is_multiple_of(LONG_ROW) {
-            self.mark = t;
-        }
-        self.length += 1;
-    }
-
-    /// Whether it would need too many switches for a time as long as `span`.
-    fn is_endless(&self, span: f64) -> bool {
-        let switches = |duration: f64| f64::from(LONG_ROW) * span / duration;
-        self.duration.is_some_and(|duration| switches(duration) > MOST_EVENTS)
-    }
-
-    fn is_due(&self) -> bool {
-        self.length >= ROW && self.length.is_multiple_of(ROW)
-    }
-}
-
-/// What is known of the switches of crossing functions.
-#[derive(Debug, Default)]
-pub(super) struct Watch {
-    /// For every crossing function its row.
-    pub(super) rows: Vec<Row>,
-    pub(super) switches: Vec<Switches>,
-    /// Steps since a function that is followed has changed its sign.
-    quiet: Vec<u32>,
-    /// Whether a row has begun.
-    is_alert: bool,
-    sides: Vec<(usize, bool)>,
-    z: Vec<f64>,
-    y: Vec<f64>,
-    /// The states before the event at hand, and by how much it has changed those that it has.
-    before: Vec<f64>,
-    pub(super) jump: Vec<(usize, f64)>,
-    /// The crossing functions that led to it, but for those of contacts, which tell of forces.
-    pub(super) impacts: Vec<usize>,
-}
-
-impl Watch {
-    pub(super) fn resize(&mut self, n_crossings: usize) {
-        self.rows.clear();
-        self.rows.resize(n_crossings, Row::default());
-        self.quiet.clear();
-        self.quiet.resize(n_crossings, 0);
-        self.switches.clear();
-        self.switches.resize(n_crossings, Switches::default());
-        self.is_alert = false;
-        self.z.resize(n_crossings, 0.0);
-    }
-
-    /// Notes by how much an event that a crossing function led to has changed the states.
-    pub(super) fn note_jump(&mut self, y: &[f64]) {
-        self.jump.clear();
-        let changes = y.iter().zip(&self.before).map(|(y, before)| y - before).enumerate();
-        self.jump.extend(changes.filter(|(_, change)| *change != 0.0));
-    }
-}
 
 /// The nominal value of a share. Along a surface that moves or is curved the integrator's error of a
 /// share is that of y, divided by the width of the layer and by the step: with an accuracy as that

@@ -59,6 +59,7 @@ mod error;
 mod event;
 mod integrators;
 mod linear;
+mod literal_relations;
 mod newton;
 mod norm;
 #[cfg(test)]
@@ -68,6 +69,7 @@ mod settings;
 mod simulator;
 mod sliding;
 mod statistics;
+mod switches;
 mod system;
 #[cfg(test)]
 mod tests;

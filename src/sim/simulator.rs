@@ -1,10 +1,11 @@
 //! The loop of a simulation.
 
-use super::chattering::{Watch, nominal_share};
+use super::chattering::nominal_share;
 use super::event::CrossingSearch;
 use super::integrators::{Integrator, Problem, WithoutUnknowns, bdf};
 use super::progress::Progress;
 use super::sliding::{MOST_SURFACES, Sliding};
+use super::switches::Watch;
 use super::{
     Culprit, DaeSystem, EventOutcome, Failure, Settings, SimError, SimErrorKind, Statistics,
     Trajectory,
