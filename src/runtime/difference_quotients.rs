@@ -2,8 +2,7 @@
 //! whose symbolic derivative there is 0/0. The functions themselves have values, and a quotient over
 //! a short way is a slope that Newton's method goes on with.
 
-use super::system::System;
-use crate::sim::{DaeSystem, Failure};
+use crate::sim::Failure;
 
 /// Length of the way relative to the size of the variable: between rounding errors of the function
 /// and its curvature.
@@ -32,34 +31,5 @@ pub(super) fn quotient(
     match column.iter().all(|slope| slope.is_finite()) {
         true => Ok(()),
         false => Err(Failure::Domain { place: u32::MAX }),
-    }
-}
-
-impl System {
-    /// The Jacobian of the right-hand side by difference quotients.
-    pub(super) fn difference_jacobian(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        values: &mut [f64],
-    ) -> Result<(), Failure> {
-        let n = y.len();
-        let (mut before, mut column) = (vec![0.0; n], vec![0.0; n]);
-        let (mut moved, mut nominal) = (y.to_vec(), vec![1.0; n]);
-        self.nominal(&mut nominal);
-        self.rhs(t, y, &mut before)?;
-        let program = self.program.clone();
-        for j in 0..n {
-            quotient(y[j], nominal[j], &before, &mut column, |x, out| {
-                moved[j] = x;
-                self.rhs(t, &moved, out)
-            })?;
-            moved[j] = y[j];
-            for at in program.pattern.column(j) {
-                values[at] = column[program.pattern.rows[at]];
-            }
-        }
-        self.load(t, y);
-        Ok(())
     }
 }

@@ -13,8 +13,9 @@
 //! Samples are true in all rounds of their event; behind it the iteration is done once more with
 //! all of them false, as an event of its own if the model shows them.
 
-use super::relations::Change;
-use super::system::{System, run};
+use super::execution::run;
+use super::instants::{AT_ONCE, Change, Clock, Stage, either};
+use super::system::System;
 use crate::sim::{EventOutcome, Failure};
 use crate::symbolic::VarId;
 use rustc_hash::FxHashSet;
@@ -27,27 +28,8 @@ const MOST_ROUNDS: usize = 10_000;
 const MAX_PASSES: usize = 60;
 /// Passes in which all relations may change; from then on one after the other.
 const PASSES_AT_ONCE: usize = 10;
-/// Relative distance of times that are one.
-const AT_ONCE: f64 = 1e-12;
-
 /// Relative difference of Reals that solving a loop again may make.
 const ROUNDING: f64 = 1e-10;
-
-/// Whether two times are the same but for rounding.
-pub(super) fn same_time(a: f64, b: f64) -> bool {
-    (a - b).abs() <= AT_ONCE * a.abs().max(b.abs())
-}
-
-/// Which blocks are solved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Stage {
-    /// Those of the initial system.
-    Initial,
-    /// Those of events.
-    Event,
-    /// Those between events.
-    Continuous,
-}
 
 /// What a pass changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,46 +38,6 @@ enum Moved {
     Relation,
     /// Variables of discrete loops alone.
     Lagged,
-}
-
-/// The times of a `sample`.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Clock {
-    start: f64,
-    interval: f64,
-    /// Number of the next time.
-    next: f64,
-}
-
-impl Clock {
-    /// From the first time that is not before `t`.
-    fn at(start: f64, interval: f64, t: f64) -> Clock {
-        let mut clock = Clock { start, interval, next: 0.0 };
-        if interval > 0.0 && t > start {
-            clock.next = ((t - start) / interval).floor();
-            if clock.time() < t && !same_time(clock.time(), t) {
-                clock.next += 1.0;
-            }
-        }
-        clock
-    }
-
-    /// The next time.
-    pub(super) fn time(&self) -> f64 {
-        match self.interval > 0.0 {
-            true => self.start + self.next * self.interval,
-            false => f64::INFINITY,
-        }
-    }
-
-    /// Whether its next time has come; then the one after it is next.
-    fn is_due(&mut self, t: f64) -> bool {
-        let due = self.time() <= t || same_time(self.time(), t);
-        if due {
-            self.next = (self.next + 1.0).max(((t - self.start) / self.interval).floor());
-        }
-        due
-    }
 }
 
 impl System {
@@ -473,14 +415,4 @@ fn rounded_in_time(value: f64, slope: f64) -> f64 {
         return value.floor();
     }
     if slope > 0.0 { nearest } else { nearest - 1.0 }
-}
-
-/// What two parts of one event did together.
-pub(super) fn either(a: EventOutcome, b: EventOutcome) -> EventOutcome {
-    match (a, b) {
-        (EventOutcome::Continue { y_changed: a }, EventOutcome::Continue { y_changed: b }) => {
-            EventOutcome::Continue { y_changed: a || b }
-        }
-        _ => EventOutcome::Terminate,
-    }
 }

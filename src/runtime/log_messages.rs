@@ -1,59 +1,16 @@
 //! What a model tells while it is simulated: warnings, and texts that it prints (MLS §8.3.7). Only
 //! systems that somebody listens to look after them.
 
-use super::singular_systems::Open;
+use super::execution::run;
+use super::simulation_log::{Notices, Recorded, Told};
 use super::system::System;
 use crate::bytecode::Journal;
 use crate::codegen::Program;
 use crate::codegen::program::Notice;
 use crate::lower::{Assertion, Level, Part};
 use crate::sim::Failure;
-use crate::source::Span;
 use crate::value::Value;
 use crate::value::format::text;
-
-/// More are counted only.
-const MOST: usize = 200;
-
-/// What was told in a simulation.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Notices {
-    told: Vec<Recorded>,
-    omitted: u64,
-    /// Which warnings hold now, so that each is told when it begins.
-    active: Vec<bool>,
-    /// What the equations left open.
-    pub(super) open: Vec<Open>,
-}
-
-#[derive(Debug, Clone)]
-struct Recorded {
-    time: f64,
-    assertion: u32,
-    values: Vec<f64>,
-}
-
-/// A text that a model has told.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Told {
-    /// When, seconds.
-    pub time: f64,
-    /// The text.
-    pub text: String,
-    /// Whether it is a warning, and not something printed.
-    pub is_warning: bool,
-    /// Where it is written.
-    pub span: Span,
-}
-
-impl Notices {
-    fn record(&mut self, time: f64, assertion: u32, values: Vec<f64>) {
-        match self.told.len() < MOST {
-            true => self.told.push(Recorded { time, assertion, values }),
-            false => self.omitted += 1,
-        }
-    }
-}
 
 impl System {
     /// From now on what the model tells is kept.
@@ -115,7 +72,7 @@ impl System {
 
     /// The numbers of a text whose condition does not hold.
     fn noticed(&mut self, notice: &Notice) -> Result<Option<Vec<f64>>, Failure> {
-        super::system::run(&notice.code.tape, &mut self.registers)?;
+        run(&notice.code.tape, &mut self.registers)?;
         let mut values = notice.code.outputs.iter().map(|at| self.registers[*at as usize]);
         let holds = values.next() != Some(0.0);
         Ok((!holds).then(|| values.collect()))

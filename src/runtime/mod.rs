@@ -13,24 +13,30 @@
 //! ```
 
 mod delay_buffer;
+mod delays;
 mod difference_quotients;
 mod event_iteration;
+mod execution;
 mod failure_messages;
 mod global_newton;
+mod instants;
 mod levenberg_marquardt;
 mod linearization;
 mod log_messages;
 mod mode_search;
+mod modes;
 mod newton;
 mod noevent_relations;
 mod relations;
 mod sensitivity;
+mod sensitivity_state;
+mod simulation_log;
 mod singular_systems;
 mod sliding;
 mod state_selection;
 mod system;
 
-pub use log_messages::Told;
+pub use modes::Treated;
+pub use simulation_log::Told;
 pub use singular_systems::Undetermined;
-pub use sliding::Treated;
 pub use system::System;

@@ -6,7 +6,7 @@
 //! then together with what other relations want to change, and with those of the same blocks; of
 //! combinations that hold, that with the fewest changes is taken.
 
-use super::event_iteration::Stage;
+use super::instants::Stage;
 use super::system::System;
 
 /// The most relations that are tried in all combinations.

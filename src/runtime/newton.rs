@@ -13,9 +13,9 @@
 //! nearest to the start values is taken, with a warning; later it is an error.
 
 use super::difference_quotients::quotient;
+use super::execution::run;
 use super::global_newton::Continuation;
 use super::levenberg_marquardt::LeastSquares;
-use super::system::run;
 use crate::codegen::memory::Memory;
 use crate::codegen::program::CompiledLoop;
 use crate::sim::{Equations, Failure, Newton, NewtonFailure};

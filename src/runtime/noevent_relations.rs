@@ -1,21 +1,13 @@
 //! Relations inside `noEvent` that have events after all, once the integrator cannot go on: the
 //! system replaces its program by one in which they are relations as all others.
 
-use super::system::{System, run};
+use super::execution::run;
+use super::system::System;
 use crate::codegen::memory::Memory;
 use crate::codegen::noevent_relations::Differences;
 use crate::codegen::program::Program;
 use crate::sim::{DaeSystem, Failure};
 use std::sync::Arc;
-
-/// A system whose relations inside `noEvent` are looked at, or have events.
-#[derive(Debug, Clone, Default)]
-pub(super) struct LiteralRelations {
-    /// Where differences are computed.
-    memory: Option<Box<Memory>>,
-    /// The system as it was before they had events.
-    plain: Option<Box<System>>,
-}
 
 impl System {
     /// Writes left − right of every relation inside `noEvent`; y is loaded and solved.

@@ -17,8 +17,9 @@
 //! that decides which equations hold, and that they bring to its very limit (a friction element
 //! that just begins to slide), would depend on rounding errors and never come to rest.
 
-use super::event_iteration::same_time;
-use super::system::{System, run};
+use super::execution::run;
+use super::instants::{Change, same_time};
+use super::system::System;
 use crate::sim::Failure;
 use crate::symbolic::RelationOperator;
 
@@ -26,15 +27,6 @@ use crate::symbolic::RelationOperator;
 const RELATIVE: f64 = 1e-12;
 /// ε of sides that are zero.
 const ABSOLUTE: f64 = 1e-13;
-
-/// Which relations may change.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Change {
-    /// All.
-    All,
-    /// The first that does not have its value, as in Murty's method for complementary variables.
-    First,
-}
 
 /// How far a relation is from having another value, given the one it has; negative beyond that.
 fn distance(operator: RelationOperator, holds: bool, (a, b): (f64, f64), excused: f64) -> f64 {

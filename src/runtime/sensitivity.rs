@@ -1,7 +1,9 @@
 //! Sensitivities of a running system: at its start, between events, and across them.
 
-use super::event_iteration::{Stage, same_time};
-use super::system::{System, read, run};
+use super::execution::{read, run};
+use super::instants::{Stage, same_time};
+use super::sensitivity_state::Sensitivity;
+use super::system::System;
 use crate::codegen::program::Outputs;
 use crate::codegen::sensitivity::SensitivityCode;
 use crate::codegen::tape::Register;
@@ -12,23 +14,6 @@ use std::sync::Arc;
 /// by its own size does not cross zero but touches it: where φ grows with the cube of time and is
 /// located to 1e-10 of a step, it moves by some 1e15 of them; with a tenth of the speed, by 10.
 const FARTHEST: f64 = 1e6;
-
-/// What a system that carries sensitivities needs besides its registers.
-#[derive(Debug, Clone)]
-pub(super) struct Sensitivity {
-    pub(super) code: Arc<SensitivityCode>,
-    /// What led to the event at hand: a crossing function, or its time. `None` where the event was
-    /// entered before.
-    cause: Option<Option<usize>>,
-    /// The length of the simulation.
-    span: f64,
-    /// Whether the time of the event has derivatives.
-    is_smooth: bool,
-    /// Derivatives of the states by time before the event, and behind it.
-    before: Vec<f64>,
-    behind: Vec<f64>,
-    refusal: Option<&'static str>,
-}
 
 impl System {
     /// Carries sensitivities from the next initialization on, or none any more. The code must be

@@ -1,7 +1,7 @@
 //! Systems that are structurally regular and yet singular: equations that depend on each other leave
 //! unknowns open. Who listens to a simulation is told of them, once for each loop.
 
-use super::log_messages::Notices;
+use super::simulation_log::OpenLoop;
 use super::system::System;
 use crate::causalize::{Block, LinearLoop, Loop};
 use crate::codegen::program::{Program, Step};
@@ -10,22 +10,6 @@ use crate::symbolic::{Node, VarId};
 
 /// More names are counted only.
 const MOST_NAMES: usize = 6;
-
-/// What a loop left open when it was noticed first.
-#[derive(Debug, Clone)]
-pub(super) struct Open {
-    time: f64,
-    what: OpenLoop,
-}
-
-/// The loop.
-#[derive(Debug, Clone, PartialEq)]
-enum OpenLoop {
-    /// A linear system by its workspace, with the places of the unknowns.
-    Linear { system: u32, places: Vec<usize> },
-    /// A torn loop of the initial system.
-    Initial { block: u32 },
-}
 
 /// Unknowns that equations which depend on each other do not determine.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,18 +24,6 @@ pub struct Undetermined {
     pub is_linear: bool,
     /// Where one of the equations is written.
     pub span: Span,
-}
-
-impl Notices {
-    fn note_open(&mut self, time: f64, what: OpenLoop) {
-        let is_same = |known: &Open| match (&known.what, &what) {
-            (OpenLoop::Linear { system: a, .. }, OpenLoop::Linear { system: b, .. }) => a == b,
-            (a, b) => a == b,
-        };
-        if !self.open.iter().any(is_same) {
-            self.open.push(Open { time, what });
-        }
-    }
 }
 
 impl System {

@@ -4,34 +4,13 @@
 //! It is a function of the combination alone where no value of events remembers another one: no
 //! `pre`, no when-clause and no `reinit` depends on the relations.
 
-use super::event_iteration::Stage;
+use super::instants::Stage;
+use super::modes::Treated;
 use super::system::System;
-use crate::codegen::tape::Register;
 use crate::sim::{Failure, Side, Treatment};
-use crate::source::Span;
 
 /// Passes in which the values of events of a mode must come to rest.
 const PASSES: usize = 10;
-
-/// The modes prepared last.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Modes {
-    /// Relations and values of events.
-    registers: Vec<Register>,
-    /// Their values, one mode after the other.
-    values: Vec<f64>,
-}
-
-/// What was done about a relation, once for each.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Treated {
-    /// When it was done first, seconds.
-    pub time: f64,
-    /// What.
-    pub treatment: Treatment,
-    /// Where the relation is written.
-    pub span: Span,
-}
 
 impl System {
     /// The relation of a crossing function.

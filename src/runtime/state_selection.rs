@@ -8,7 +8,7 @@
 //!
 //! Reference: [Mattsson & Söderlind 1993](crate::bibliography#mattsson-soderlind-1993), section 4.
 
-use super::system::run;
+use super::execution::run;
 use crate::codegen::memory::Memory;
 use crate::codegen::program::CompiledSelection;
 use crate::sim::{DenseLu, Failure};

@@ -1,24 +1,22 @@
 //! One running instance of a program: its registers, parameter values and frozen relations.
 
 use super::delay_buffer::History;
-use super::event_iteration::{Clock, Stage, either, same_time};
-use super::log_messages::Notices;
+use super::execution::{read, run};
+use super::instants::{Change, Clock, Stage, either, same_time};
+use super::modes::{Modes, Treated};
 use super::newton::LoopSolver;
-use super::noevent_relations::LiteralRelations;
-use super::relations::Change;
-use super::sensitivity::Sensitivity;
-use super::sliding::{Modes, Treated};
+use super::sensitivity_state::Sensitivity;
+use super::simulation_log::Notices;
 use super::state_selection::Choice;
 use crate::codegen::memory::Memory;
 use crate::codegen::program::{Access, Outputs, Program, Step};
 use crate::codegen::sequence::{expressions, observing};
-use crate::codegen::tape::{Instruction, Tape};
 use crate::diag::Fault;
 use crate::fault;
 use crate::flatten::BaseType;
 use crate::lower::Homotopy;
 use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
-use crate::symbolic::{VarId, function};
+use crate::symbolic::VarId;
 use std::sync::Arc;
 
 /// How far, relative to their size or 1, the sides of a redundant initial equation may differ.
@@ -27,6 +25,15 @@ const CONSISTENT: f64 = 1e-6;
 /// Parts of the way from simplified to actual expressions.
 const FIRST_HOMOTOPY_STEP: f64 = 0.1;
 const SMALLEST_HOMOTOPY_STEP: f64 = 1e-5;
+
+/// A system whose relations inside `noEvent` are looked at, or have events.
+#[derive(Debug, Clone, Default)]
+pub(super) struct LiteralRelations {
+    /// Where differences are computed.
+    pub(super) memory: Option<Box<Memory>>,
+    /// The system as it was before they had events.
+    pub(super) plain: Option<Box<System>>,
+}
 
 /// A system that one thread simulates.
 #[derive(Debug, Clone)]
@@ -711,48 +718,4 @@ impl DaeSystem for System {
         self.note_open(t);
         Ok(())
     }
-}
-
-/// Computes the outputs of code that computes nothing else.
-pub(super) fn read(code: &Outputs, registers: &mut Memory, out: &mut [f64]) -> Result<(), Failure> {
-    if code.machine_code.run(code, registers, out) {
-        return Ok(());
-    }
-    run(&code.tape, registers)?;
-    for (value, register) in out.iter_mut().zip(&code.outputs) {
-        *value = registers[*register as usize];
-    }
-    Ok(())
-}
-
-/// Runs a tape; a failure says which operation of which equation.
-pub(super) fn run(tape: &Tape, registers: &mut Memory) -> Result<(), Failure> {
-    tape.run(registers).map_err(|at| {
-        let code = match tape.code[at as usize] {
-            Instruction::Unary { id, .. } | Instruction::Binary { id, .. } => {
-                function::functions().position(|(known, _)| known == id).map_or(0xff, |n| n + 2)
-            }
-            Instruction::Call { .. } => {
-                if let Some(failure) = registers.calls.failure {
-                    return Failure::Function {
-                        function: failure.function,
-                        at: failure.at,
-                        reason: failure.reason as u8,
-                    };
-                }
-                0
-            }
-            Instruction::Given { function, .. } => {
-                return Failure::Function {
-                    function,
-                    at: registers.calls.end_of(function),
-                    reason: crate::bytecode::Reason::Unassigned as u8,
-                };
-            }
-            Instruction::Pow { .. } => 1,
-            _ => 0,
-        };
-        let origin = tape.origin(at).min(u32::MAX >> 8);
-        Failure::Domain { place: (origin << 8) | code.min(0xff) as u32 }
-    })
 }

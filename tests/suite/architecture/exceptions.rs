@@ -23,7 +23,6 @@ pub(super) const CYCLES: &[(&str, &[usize], &str)] = &[
         &[20],
         "`Builder` is the target of all lowering, and lowers functions through itself",
     ),
-    ("runtime", &[12], "`System` has the state of all its parts in one structure"),
     ("script", &[11], "`Session` has the state of all its parts in one structure"),
 ];
 

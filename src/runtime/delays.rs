@@ -1,0 +1,66 @@
+//! `delay` in a running system: the expressions that it delays are recorded step by step.
+
+use super::execution::run;
+use super::system::System;
+use crate::codegen::event_code::CompiledDelay;
+use crate::sim::Failure;
+
+impl System {
+    /// Sets the delayed values at `t`.
+    pub(super) fn load_delayed(&mut self, t: f64) {
+        let delays = &self.program.events.delays;
+        for ((history, delay), time) in self.histories.iter().zip(delays).zip(&self.delay_times) {
+            self.registers[delay.register as usize] = history.value(t - time);
+        }
+    }
+
+    /// Starts the histories with the values at `t`, all variables being known; whether one of them
+    /// began with another value.
+    pub(super) fn start_histories(&mut self, t: f64) -> Result<bool, Failure> {
+        let program = self.program.clone();
+        let mut changed = false;
+        for (at, delay) in program.events.delays.iter().enumerate() {
+            let value = self.delayed_expression(delay)?;
+            changed |= self.histories[at].values.front() != Some(&value);
+            self.histories[at].start(t, value);
+            run(&delay.time.tape, &mut self.registers)?;
+            self.delay_times[at] = self.registers[delay.time.outputs[0] as usize];
+        }
+        Ok(changed)
+    }
+
+    /// Adds the values at `t`, all registers of states and events being loaded.
+    pub(super) fn remember_values(&mut self, t: f64) -> Result<(), Failure> {
+        let program = self.program.clone();
+        for (at, delay) in program.events.delays.iter().enumerate() {
+            let value = self.delayed_expression(delay)?;
+            self.histories[at].push(t, value);
+        }
+        Ok(())
+    }
+
+    /// Goes beyond the jumps that arrive at `t`.
+    pub(super) fn advance_histories(&mut self, t: f64) -> bool {
+        let mut any = false;
+        for (history, time) in self.histories.iter_mut().zip(&self.delay_times) {
+            let before = history.next_jump();
+            history.advance(t - time);
+            any |= history.next_jump() != before;
+        }
+        if any {
+            self.load_delayed(t);
+        }
+        any
+    }
+
+    /// When jumps arrive.
+    pub(super) fn arriving_jumps(&self) -> impl Iterator<Item = f64> {
+        let pairs = self.histories.iter().zip(&self.delay_times);
+        pairs.filter_map(|(history, time)| Some(history.next_jump()? + time))
+    }
+
+    fn delayed_expression(&mut self, delay: &CompiledDelay) -> Result<f64, Failure> {
+        run(&delay.value.tape, &mut self.registers)?;
+        Ok(self.registers[delay.value.outputs[0] as usize])
+    }
+}

@@ -1,0 +1,75 @@
+//! What is kept of a simulation for the user: warnings and printed strings, and unknowns that equations
+//! left open.
+
+use crate::source::Span;
+
+/// More are counted only.
+const MOST: usize = 200;
+
+/// What was told in a simulation.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Notices {
+    pub(super) told: Vec<Recorded>,
+    pub(super) omitted: u64,
+    /// Which warnings hold now, so that each is told when it begins.
+    pub(super) active: Vec<bool>,
+    /// What the equations left open.
+    pub(super) open: Vec<Open>,
+}
+
+#[derive(Debug, Clone)]
+pub(super) struct Recorded {
+    pub(super) time: f64,
+    pub(super) assertion: u32,
+    pub(super) values: Vec<f64>,
+}
+
+/// A text that a model has told.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Told {
+    /// When, seconds.
+    pub time: f64,
+    /// The text.
+    pub text: String,
+    /// Whether it is a warning, and not something printed.
+    pub is_warning: bool,
+    /// Where it is written.
+    pub span: Span,
+}
+
+impl Notices {
+    pub(super) fn record(&mut self, time: f64, assertion: u32, values: Vec<f64>) {
+        match self.told.len() < MOST {
+            true => self.told.push(Recorded { time, assertion, values }),
+            false => self.omitted += 1,
+        }
+    }
+}
+
+/// What a loop left open when it was noticed first.
+#[derive(Debug, Clone)]
+pub(super) struct Open {
+    pub(super) time: f64,
+    pub(super) what: OpenLoop,
+}
+
+/// The loop.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum OpenLoop {
+    /// A linear system by its workspace, with the places of the unknowns.
+    Linear { system: u32, places: Vec<usize> },
+    /// A torn loop of the initial system.
+    Initial { block: u32 },
+}
+
+impl Notices {
+    pub(super) fn note_open(&mut self, time: f64, what: OpenLoop) {
+        let is_same = |known: &Open| match (&known.what, &what) {
+            (OpenLoop::Linear { system: a, .. }, OpenLoop::Linear { system: b, .. }) => a == b,
+            (a, b) => a == b,
+        };
+        if !self.open.iter().any(is_same) {
+            self.open.push(Open { time, what });
+        }
+    }
+}
