@@ -84,6 +84,16 @@ impl Generalized {
         write(call, argument + 1, &column(&part(|alpha| alpha.im)));
         write(call, argument + 2, &column(&self.beta));
     }
+
+    /// Writes left vectors to an argument and right ones to that after its leading dimension, where
+    /// the jobs, the first of which is named, want them.
+    fn write_vectors(&self, call: &mut Call<'_>, job: usize, argument: usize) {
+        for (at, vectors) in [&self.left, &self.right].into_iter().enumerate() {
+            if wants(call, job + at) {
+                write(call, argument + 2 * at, vectors);
+            }
+        }
+    }
 }
 
 /// B⁻¹ without a shift, or μ and (A − μB)⁻¹: the one of the best condition.
@@ -122,12 +132,7 @@ fn dggev(call: &mut Call<'_>) -> Result<(), Fault> {
     let (a, b) = (leading(call, 3, 2)?, leading(call, 5, 2)?);
     let all = Generalized::of(call, &a, &b)?;
     all.write_values(call, 7);
-    if wants(call, 0) {
-        write(call, 10, &all.left);
-    }
-    if wants(call, 1) {
-        write(call, 12, &all.right);
-    }
+    all.write_vectors(call, 0, 10);
     call.set(16, 0.0);
     Ok(())
 }
@@ -140,12 +145,7 @@ fn dggevx(call: &mut Call<'_>) -> Result<(), Fault> {
     let n = a.nrows();
     let all = Generalized::of(call, &a, &b)?;
     all.write_values(call, 9);
-    if wants(call, 1) {
-        write(call, 12, &all.left);
-    }
-    if wants(call, 2) {
-        write(call, 14, &all.right);
-    }
+    all.write_vectors(call, 1, 12);
     call.set(16, 1.0);
     call.set(17, n as f64);
     write(call, 18, &DMatrix::repeat(n, 1, 1.0));

@@ -28,9 +28,12 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("dtrsm", "ttttnnnanAn", dtrsm),
 ];
 
+/// L below the diagonal and U, pivots, and the first zero pivot.
+type Factors = (DMatrix<f64>, Vec<f64>, f64);
+
 /// P A = L U by partial pivoting, L below the diagonal; pivots from 1, and the first zero pivot from
 /// 1, 0 without.
-fn factorize(a: DMatrix<f64>) -> (DMatrix<f64>, Vec<f64>, f64) {
+fn factorize(a: DMatrix<f64>) -> Factors {
     let rows = a.nrows();
     let lu = a.lu();
     let mut order = DVector::from_iterator(rows, 0..rows);
@@ -88,15 +91,25 @@ fn same_rows(call: &Call<'_>, a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<(), 
     }
 }
 
-/// `(n, nrhs, A, lda, ipiv, B, ldb, info)`
-fn dgesv(call: &mut Call<'_>) -> Result<(), Fault> {
-    let (a, mut b) = (square(call, 2)?, matrix(call, 5)?);
+/// Solves A X = B and writes X in the place of the argument B, if A is regular; the factors.
+fn replace_by_solution(
+    call: &mut Call<'_>,
+    a: DMatrix<f64>,
+    argument: usize,
+) -> Result<Factors, Fault> {
+    let mut b = matrix(call, argument)?;
     same_rows(call, &a, &b)?;
     let (lu, pivots, info) = factorize(a);
     if info == 0.0 {
         solve(&lu, &pivots, &mut b, false);
-        write(call, 5, &b);
+        write(call, argument, &b);
     }
+    Ok((lu, pivots, info))
+}
+
+/// `(n, nrhs, A, lda, ipiv, B, ldb, info)`
+fn dgesv(call: &mut Call<'_>) -> Result<(), Fault> {
+    let (lu, pivots, info) = replace_by_solution(call, square(call, 2)?, 5)?;
     write(call, 2, &lu);
     write(call, 4, &column(&pivots));
     call.set(7, info);
@@ -159,8 +172,7 @@ fn dgetri(call: &mut Call<'_>) -> Result<(), Fault> {
 /// `(n, nrhs, dl, d, du, B, ldb, info)`: a tridiagonal matrix.
 fn dgtsv(call: &mut Call<'_>) -> Result<(), Fault> {
     let (lower, diagonal, upper) = (matrix(call, 2)?, matrix(call, 3)?, matrix(call, 4)?);
-    let (n, mut b) = (diagonal.nrows(), matrix(call, 5)?);
-    same_rows(call, &diagonal, &b)?;
+    let n = diagonal.nrows();
     if lower.nrows() + 1 != n || upper.nrows() + 1 != n {
         return Err(call.fault("the diagonals do not fit each other"));
     }
@@ -172,11 +184,7 @@ fn dgtsv(call: &mut Call<'_>) -> Result<(), Fault> {
             a[(i, i + 1)] = upper[i];
         }
     }
-    let (lu, pivots, info) = factorize(a);
-    if info == 0.0 {
-        solve(&lu, &pivots, &mut b, false);
-        write(call, 5, &b);
-    }
+    let (_, _, info) = replace_by_solution(call, a, 5)?;
     call.set(7, info);
     Ok(())
 }
@@ -208,10 +216,10 @@ fn dpotrf(call: &mut Call<'_>) -> Result<(), Fault> {
 
 /// `(n, kl, ku, nrhs, AB, ldab, ipiv, B, ldb, info)`: A(i, j) stands in row kl + ku + i − j.
 fn dgbsv(call: &mut Call<'_>) -> Result<(), Fault> {
-    let (band, mut b) = (matrix(call, 4)?, matrix(call, 7)?);
+    let band = matrix(call, 4)?;
     let (n, lower, upper) = (band.ncols(), call.number(1) as usize, call.number(2) as usize);
-    if b.nrows() != n || band.nrows() < 2 * lower + upper + 1 {
-        return Err(call.fault("the band and the right side do not fit"));
+    if band.nrows() < 2 * lower + upper + 1 {
+        return Err(call.fault("the band has fewer rows than diagonals"));
     }
     let mut a = DMatrix::zeros(n, n);
     for j in 0..n {
@@ -219,11 +227,7 @@ fn dgbsv(call: &mut Call<'_>) -> Result<(), Fault> {
             a[(i, j)] = band[(lower + upper + i - j, j)];
         }
     }
-    let (lu, pivots, info) = factorize(a);
-    if info == 0.0 {
-        solve(&lu, &pivots, &mut b, false);
-        write(call, 7, &b);
-    }
+    let (_, _, info) = replace_by_solution(call, a, 7)?;
     call.set(9, info);
     Ok(())
 }

@@ -145,6 +145,8 @@ fn error(case: &Case) -> Result<f64, String> {
     let a = case.a.matrix();
     match case.routine.as_str() {
         "dgesv" => linear_system(case, a),
+        "dgtsv" => tridiagonal(case, a),
+        "dgbsv" => band(case, a),
         "dgetrf" => factors(case, a),
         "dgetrs" | "dgetri" | "dgecon" => from_factors(case, &a),
         "dgeqrf" | "dgeqp3" | "dgehrd" => reflections(case, a),
@@ -165,6 +167,36 @@ fn linear_system(case: &Case, a: Matrix) -> Result<f64, String> {
     let done = run("dgesv", &args)?;
     equal("info", &[done[7][0]], &[case.info])?;
     Ok(if case.info == 0.0 { of_norm(&flat(&done[5]), &case.exact) } else { 0.0 })
+}
+
+fn tridiagonal(case: &Case, a: Matrix) -> Result<f64, String> {
+    let k = a.nrows();
+    let diagonal = |below: usize, beside: usize| {
+        let size = k - below.max(beside);
+        Given::Values((0..size).map(|i| a[(i + below, i + beside)]).collect())
+    };
+    let (lower, main, upper) = (diagonal(1, 0), diagonal(0, 0), diagonal(0, 1));
+    let args = [n(k), n(1), lower, main, upper, m(case.b()), n(k), n(0)];
+    let done = run("dgtsv", &args)?;
+    equal("info", &[done[7][0]], &[0.0])?;
+    Ok(of_norm(&flat(&done[5]), &case.exact))
+}
+
+fn band(case: &Case, a: Matrix) -> Result<f64, String> {
+    let k = a.nrows();
+    let (below, above) = (case.pivots[0] as usize, case.pivots[1] as usize);
+    let rows = 2 * below + above + 1;
+    let mut band = Matrix::zeros(rows, k);
+    for j in 0..k {
+        for i in j.saturating_sub(above)..k.min(j + below + 1) {
+            band[(below + above + i - j, j)] = a[(i, j)];
+        }
+    }
+    let sizes = [n(k), n(below), n(above), n(1)];
+    let args = sizes.into_iter().chain([m(band), n(rows), Vector(k), m(case.b()), n(k), n(0)]);
+    let done = run("dgbsv", &args.collect::<Vec<_>>())?;
+    equal("info", &[done[9][0]], &[0.0])?;
+    Ok(of_norm(&flat(&done[7]), &case.exact))
 }
 
 fn factors(case: &Case, a: Matrix) -> Result<f64, String> {
