@@ -29,6 +29,10 @@
 //! <a id="anderson-1999"></a>
 //! - **anderson-1999** — E. Anderson et al.: LAPACK users' guide. 3rd edition, SIAM, 1999.
 //!
+//! <a id="james-2014"></a>
+//! - **james-2014** — R. James, J. Langou, B. R. Lowery: On matrix balancing and eigenvector
+//!   computation. arXiv:1401.5766, 2014.
+//!
 //! <a id="cooley-tukey-1965"></a>
 //! - **cooley-tukey-1965** — J. W. Cooley, J. W. Tukey: An algorithm for the machine calculation of
 //!   complex Fourier series. Mathematics of Computation 19(90), 1965, 297–301.

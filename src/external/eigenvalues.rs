@@ -2,10 +2,12 @@
 //! 1999](crate::bibliography#anderson-1999)): `dgeev`, `dgeevx`, `dgees`, `dhseqr`, `dtrevc`,
 //! `dtrsen`, `dtrsyl`.
 //!
-//! Matrices are not balanced. The order of eigenvalues is that of the Schur form found, which LAPACK
+//! `dgeev` balances, `dgeevx` as it is asked to. nalgebra's Schur form is made standard; it has no
+//! eigenvectors, no balancing of its own and no exceptional shifts. The order of eigenvalues is that of the Schur form found, which LAPACK
 //! does not specify.
 
 use super::Entry;
+use super::balancing::Balanced;
 use super::call::Call;
 use super::eigenvectors::{Scale, left_eigenvectors, right_eigenvectors, scale};
 use super::matrices::{column, is_transposed, matrix, norm, square, wants, write};
@@ -36,28 +38,47 @@ fn write_values(call: &mut Call<'_>, argument: usize, values: &[Complex<f64>]) {
     write(call, argument + 1, &part(|value| value.im));
 }
 
-/// The left or right eigenvectors of Q T Qᵀ, of norm 1.
-fn eigenvectors(
-    form: &RealSchur,
-    values: &[Complex<f64>],
-    of: fn(&DMatrix<f64>) -> DMatrix<f64>,
-) -> DMatrix<f64> {
-    let mut vectors = &form.q * of(&form.t);
-    scale(&mut vectors, |at| values[at].im != 0.0, Scale::Norm);
-    vectors
+/// A matrix, balanced, with its Schur form and eigenvalues.
+struct Decomposed {
+    balanced: Balanced,
+    form: RealSchur,
+    values: Vec<Complex<f64>>,
+}
+
+impl Decomposed {
+    fn of(call: &Call<'_>, balanced: Balanced) -> Result<Decomposed, Fault> {
+        let form = schur(call, &balanced.matrix)?;
+        let values = form.eigenvalues();
+        Ok(Decomposed { balanced, form, values })
+    }
+
+    /// The left eigenvectors, of norm 1.
+    fn left(&self) -> DMatrix<f64> {
+        let mut vectors = &self.form.q * left_eigenvectors(&self.form.t);
+        self.balanced.left(&mut vectors);
+        scale(&mut vectors, |at| self.values[at].im != 0.0, Scale::Norm);
+        vectors
+    }
+
+    /// The right eigenvectors, of norm 1.
+    fn right(&self) -> DMatrix<f64> {
+        let mut vectors = &self.form.q * right_eigenvectors(&self.form.t);
+        self.balanced.right(&mut vectors);
+        scale(&mut vectors, |at| self.values[at].im != 0.0, Scale::Norm);
+        vectors
+    }
 }
 
 /// `(jobvl, jobvr, n, A, lda, wr, wi, VL, ldvl, VR, ldvr, work, lwork, info)`
 fn dgeev(call: &mut Call<'_>) -> Result<(), Fault> {
-    let form = schur(call, &square(call, 3)?)?;
-    let values = form.eigenvalues();
+    let found = Decomposed::of(call, Balanced::of(square(call, 3)?))?;
     if wants(call, 0) {
-        write(call, 7, &eigenvectors(&form, &values, left_eigenvectors));
+        write(call, 7, &found.left());
     }
     if wants(call, 1) {
-        write(call, 9, &eigenvectors(&form, &values, right_eigenvectors));
+        write(call, 9, &found.right());
     }
-    write_values(call, 5, &values);
+    write_values(call, 5, &found.values);
     call.set(13, 0.0);
     Ok(())
 }
@@ -68,30 +89,45 @@ fn dgeevx(call: &mut Call<'_>) -> Result<(), Fault> {
     if matches!(call.text(3), "V" | "v" | "B" | "b") {
         return Err(call.fault("condition numbers of eigenvectors are not computed"));
     }
-    let a = square(call, 5)?;
-    let n = a.nrows();
-    let form = schur(call, &a)?;
-    let values = form.eigenvalues();
-    let left = eigenvectors(&form, &values, left_eigenvectors);
-    let right = eigenvectors(&form, &values, right_eigenvectors);
-    write(call, 5, &form.t);
-    write_values(call, 7, &values);
+    let found = Decomposed::of(call, balanced(call, square(call, 5)?)?)?;
+    let (left, right) = (found.left(), found.right());
+    write(call, 5, &found.form.t);
+    write_values(call, 7, &found.values);
     if wants(call, 1) {
         write(call, 9, &left);
     }
     if wants(call, 2) {
         write(call, 11, &right);
     }
-    call.set(13, 1.0);
-    call.set(14, n as f64);
-    write(call, 15, &DMatrix::repeat(n, 1, 1.0));
-    let size = norm(call, "1", &a)?;
+    let Balanced { matrix, active, scale } = found.balanced;
+    call.set(13, (active.start + 1) as f64);
+    call.set(14, active.end as f64);
+    // Rows are counted from 1 where they were interchanged.
+    let from_one = |(k, x): (usize, &f64)| if active.contains(&k) { *x } else { x + 1.0 };
+    write(call, 15, &column(&scale.iter().enumerate().map(from_one).collect::<Vec<_>>()));
+    let size = norm(call, "1", &matrix)?;
     call.set(16, size);
     if wants(call, 3) {
-        write(call, 17, &column(&conditions(&values, &left, &right)));
+        write(call, 17, &column(&conditions(&found.values, &left, &right)));
     }
     call.set(22, 0.0);
     Ok(())
+}
+
+/// Balanced as the first argument says.
+fn balanced(call: &Call<'_>, a: DMatrix<f64>) -> Result<Balanced, Fault> {
+    let mut balanced = Balanced::unchanged(a);
+    match call.text(0).to_ascii_uppercase().as_str() {
+        "N" => {}
+        "P" => balanced.permute(),
+        "S" => balanced.scale(),
+        "B" => {
+            balanced.permute();
+            balanced.scale();
+        }
+        other => return Err(call.fault(format!("there is no balancing `{other}`"))),
+    }
+    Ok(balanced)
 }
 
 /// |yᴴ x| for left and right eigenvectors of norm 1.

@@ -1,5 +1,6 @@
 //! Eigenvectors of upper quasi-triangular matrices, in LAPACK's form.
 
+use super::matrices::power_of_two;
 use super::schur::{block_size, modulus};
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -9,6 +10,8 @@ type C = Complex<f64>;
 /// imaginary parts of that with positive imaginary part for a pair.
 pub(super) fn right_eigenvectors(t: &DMatrix<f64>) -> DMatrix<f64> {
     let n = t.nrows();
+    // The vectors are those of any multiple; products must not overflow.
+    let t = &(t / power_of_two(t.amax()));
     let mut all = DMatrix::zeros(n, n);
     let mut at = 0;
     while at < n {

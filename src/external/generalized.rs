@@ -1,11 +1,12 @@
 //! LAPACK's generalized eigenvalues, A x = λ B x ([Anderson et al.
 //! 1999](crate::bibliography#anderson-1999)): `dggev`, `dggevx`, `dhgeqz`.
 //!
-//! They are those of (A − μB)⁻¹ B = ν, λ = μ + 1/ν, with a μ that makes A − μB as regular as can be
-//! ([Golub & Van Loan 2013](crate::bibliography#golub-van-loan-2013), §7.7): finite ones are ratios
-//! of α and β, infinite ones have β = 0.
+//! They are those of B⁻¹ A, or of (A − μB)⁻¹ B = ν, λ = μ + 1/ν, whichever is the most regular to
+//! invert ([Golub & Van Loan 2013](crate::bibliography#golub-van-loan-2013), §7.7): finite ones are
+//! ratios of α and β, infinite ones have β = 0.
 
 use super::Entry;
+use super::balancing::Balanced;
 use super::call::Call;
 use super::eigenvectors::{Scale, left_eigenvectors, right_eigenvectors, scale};
 use super::matrices::{column, norm, square, wants, write};
@@ -37,29 +38,36 @@ impl Generalized {
         }
         let (size_a, size_b) = (a.norm(), b.norm());
         let ratio = if size_b > 0.0 && size_a > 0.0 { size_a / size_b } else { 1.0 };
-        let (shift, inverse) = regular_shift(a, b, ratio)
+        let (shift, inverse) = most_regular(a, b, ratio)
             .ok_or_else(|| call.fault("every number is an eigenvalue: the pencil is singular"))?;
-        let form = RealSchur::of(&(&inverse * b))
+        let balanced = Balanced::of(&inverse * if shift.is_some() { b } else { a });
+        let form = RealSchur::of(&balanced.matrix)
             .ok_or_else(|| call.fault("the Schur form was not found"))?;
         let least = f64::EPSILON * a.nrows() as f64 * form.t.norm();
-        let mut all = Generalized {
-            alpha: Vec::new(),
-            beta: Vec::new(),
-            left: inverse.transpose() * &form.q * left_eigenvectors(&form.t),
-            right: &form.q * right_eigenvectors(&form.t),
-        };
+        let mut left = &form.q * left_eigenvectors(&form.t);
+        let mut right = &form.q * right_eigenvectors(&form.t);
+        balanced.left(&mut left);
+        balanced.right(&mut right);
+        let left = inverse.transpose() * left;
+        let mut all = Generalized { alpha: Vec::new(), beta: Vec::new(), left, right };
         for nu in form.eigenvalues() {
+            let Some(shift) = shift else {
+                all.alpha.push(nu);
+                all.beta.push(1.0);
+                continue;
+            };
             let nu = if modulus(nu) <= least { Complex::new(0.0, 0.0) } else { nu };
             // The factor makes β real and positive.
             let factor = match modulus(nu) {
                 0.0 => Complex::new(1.0, 0.0),
                 size => nu.conj() / size,
             };
-            // 1/ν has the imaginary part of the other sign.
             all.alpha.push(((nu * shift + 1.0) * factor).conj());
             all.beta.push(modulus(nu));
         }
-        for at in (0..all.alpha.len()).filter(|at| all.alpha[*at].im < 0.0) {
+        // 1/ν has the imaginary part of the other sign: its vector is the conjugate one.
+        let conjugate = |at: &usize| shift.is_some() && all.alpha[*at].im < 0.0;
+        for at in (0..all.alpha.len()).filter(conjugate).collect::<Vec<_>>() {
             all.left.column_mut(at).neg_mut();
             all.right.column_mut(at).neg_mut();
         }
@@ -76,14 +84,28 @@ impl Generalized {
         write(call, argument + 1, &column(&part(|alpha| alpha.im)));
         write(call, argument + 2, &column(&self.beta));
     }
+
+    /// Writes left vectors to an argument and right ones to that after its leading dimension, where
+    /// the jobs, the first of which is named, want them.
+    fn write_vectors(&self, call: &mut Call<'_>, job: usize, argument: usize) {
+        for (at, vectors) in [&self.left, &self.right].into_iter().enumerate() {
+            if wants(call, job + at) {
+                write(call, argument + 2 * at, vectors);
+            }
+        }
+    }
 }
 
-/// μ and (A − μB)⁻¹ of the best condition.
-fn regular_shift(a: &DMatrix<f64>, b: &DMatrix<f64>, ratio: f64) -> Option<(f64, DMatrix<f64>)> {
-    let mut best: Option<(f64, f64, DMatrix<f64>)> = None;
-    for factor in SHIFTS {
-        let shift = factor * ratio;
-        let matrix = a - b * shift;
+/// B⁻¹ without a shift, or μ and (A − μB)⁻¹: the one of the best condition.
+fn most_regular(
+    a: &DMatrix<f64>,
+    b: &DMatrix<f64>,
+    ratio: f64,
+) -> Option<(Option<f64>, DMatrix<f64>)> {
+    let mut best: Option<(f64, Option<f64>, DMatrix<f64>)> = None;
+    let shifts = SHIFTS.map(|factor| Some(factor * ratio));
+    for shift in [None].into_iter().chain(shifts) {
+        let matrix = shift.map_or_else(|| b.clone(), |shift| a - b * shift);
         let Some(inverse) = matrix.clone().try_inverse() else { continue };
         let condition = matrix.norm() * inverse.norm();
         let limit = best.as_ref().map_or(0.1 / f64::EPSILON, |(condition, ..)| *condition);
@@ -110,12 +132,7 @@ fn dggev(call: &mut Call<'_>) -> Result<(), Fault> {
     let (a, b) = (leading(call, 3, 2)?, leading(call, 5, 2)?);
     let all = Generalized::of(call, &a, &b)?;
     all.write_values(call, 7);
-    if wants(call, 0) {
-        write(call, 10, &all.left);
-    }
-    if wants(call, 1) {
-        write(call, 12, &all.right);
-    }
+    all.write_vectors(call, 0, 10);
     call.set(16, 0.0);
     Ok(())
 }
@@ -128,12 +145,7 @@ fn dggevx(call: &mut Call<'_>) -> Result<(), Fault> {
     let n = a.nrows();
     let all = Generalized::of(call, &a, &b)?;
     all.write_values(call, 9);
-    if wants(call, 1) {
-        write(call, 12, &all.left);
-    }
-    if wants(call, 2) {
-        write(call, 14, &all.right);
-    }
+    all.write_vectors(call, 1, 12);
     call.set(16, 1.0);
     call.set(17, n as f64);
     write(call, 18, &DMatrix::repeat(n, 1, 1.0));

@@ -2,13 +2,17 @@
 //! `dormhr` ([Anderson et al. 1999](crate::bibliography#anderson-1999)).
 //!
 //! A reflection is I − τ v vᵀ with v = (1, …); below the result stand the other elements of v.
+//! nalgebra's factorizations are not used: they scale v to norm 1 and reflect columns that are zero
+//! already, so neither τ nor the signs of R are LAPACK's, they pivot for the largest element instead
+//! of the longest column, and their norms overflow from 1e154 on.
 
 use super::Entry;
 use super::call::Call;
-use super::matrices::{column, is_transposed, matrix, square, write};
+use super::matrices::{column, is_transposed, matrix, power_of_two, square, write};
 use crate::diag::Fault;
 use crate::elementary;
 use nalgebra::DMatrix;
+use std::ops::Range;
 
 pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("dgeqp3", "nnAnAAAnN", dgeqp3),
@@ -20,14 +24,25 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("dormhr", "ttnnnnanaAnAnN", dormhr),
 ];
 
+/// The Euclidean norm of a part of a column; squares neither overflow nor underflow.
+fn length(a: &DMatrix<f64>, rows: Range<usize>, column: usize) -> f64 {
+    let part = a.view((rows.start, column), (rows.len(), 1));
+    let size = part.amax();
+    if size == 0.0 {
+        return 0.0;
+    }
+    let size = power_of_two(size);
+    let squares = part.iter().map(|x| elementary::powi(x / size, 2)).sum::<f64>();
+    size * squares.sqrt()
+}
+
 /// Makes the elements of a column below `row` zero by a reflection, of which v stays there; its τ.
 fn reflect(a: &mut DMatrix<f64>, row: usize, column: usize) -> f64 {
     let first = a[(row, column)];
-    let below = (row + 1..a.nrows()).map(|i| elementary::powi(a[(i, column)], 2)).sum::<f64>();
-    if below == 0.0 {
+    if a.view((row + 1, column), (a.nrows() - row - 1, 1)).iter().all(|x| *x == 0.0) {
         return 0.0;
     }
-    let beta = -first.signum() * (first * first + below).sqrt();
+    let beta = -first.signum() * length(a, row..a.nrows(), column);
     for i in row + 1..a.nrows() {
         a[(i, column)] /= first - beta;
     }
@@ -65,8 +80,7 @@ fn qr(a: &mut DMatrix<f64>, mut pivots: Option<&mut [usize]>) -> Vec<f64> {
     let mut taus = Vec::new();
     for k in 0..a.nrows().min(a.ncols()) {
         if let Some(pivots) = pivots.as_deref_mut() {
-            let rest =
-                |j: usize| (k..a.nrows()).map(|i| elementary::powi(a[(i, j)], 2)).sum::<f64>();
+            let rest = |j: usize| length(a, k..a.nrows(), j);
             let mut greatest = k;
             for j in k + 1..a.ncols() {
                 // Norms that differ by rounding are equal: the first comes first.

@@ -1,6 +1,10 @@
 //! LAPACK's least squares and singular values ([Anderson et al.
 //! 1999](crate::bibliography#anderson-1999)): `dgels`, `dgelsy`, `dgglse`, `dgesvd`, `dgesdd`.
 //!
+//! `dgels` solves by orthogonal triangularisation. Singular values are found by one-sided Jacobi
+//! rotations: nalgebra's are wrong for some matrices of deficient rank
+//! ([`singular_values`](crate::singular_values)).
+//!
 //! Signs of singular vectors are not specified, and the rank of `dgelsy` counts the singular values
 //! above `rcond` times the largest.
 
@@ -44,14 +48,44 @@ fn least_squares(
 fn dgels(call: &mut Call<'_>) -> Result<(), Fault> {
     let a = matrix(call, 4)?;
     let a = if call.text(0).eq_ignore_ascii_case("N") { a } else { a.transpose() };
-    let full = a.nrows().min(a.ncols()) as f64;
     let b = matrix(call, 6)?;
-    let (x, rank) = least_squares(call, a, &b, 0.0)?;
-    if rank == full {
-        write(call, 6, &x);
+    if b.nrows() < a.nrows() {
+        return Err(call.fault("the right side has another number of rows"));
     }
-    call.set(10, if rank == full { 0.0 } else { rank + 1.0 });
+    let b = b.rows(0, a.nrows()).into_owned();
+    let info = match full_rank(&a, &b) {
+        Ok(x) => {
+            write(call, 6, &x);
+            0.0
+        }
+        Err(dependent) => (dependent + 1) as f64,
+    };
+    call.set(10, info);
     Ok(())
+}
+
+/// The least squares solution of a matrix of full rank, by Q R = A; of smallest norm, by Q R = Aᵀ,
+/// where there are fewer rows than columns. Else the first column, or row, that depends on those
+/// before it. How columns are scaled plays no part.
+fn full_rank(a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<DMatrix<f64>, usize> {
+    let is_wide = a.nrows() < a.ncols();
+    let (q, r) = full_qr(if is_wide { a.transpose() } else { a.clone() });
+    let k = r.ncols();
+    let (q, r) = (q.columns(0, k), r.rows(0, k));
+    let negligible = f64::EPSILON * q.nrows() as f64;
+    let depends = |at: &usize| r[(*at, *at)].abs() <= negligible * r.column(*at).norm();
+    if let Some(dependent) = (0..k).find(depends) {
+        return Err(dependent);
+    }
+    Ok(if is_wide {
+        let mut x = b.clone();
+        r.tr_solve_upper_triangular_unchecked_mut(&mut x);
+        q * x
+    } else {
+        let mut x = q.tr_mul(b);
+        r.solve_upper_triangular_unchecked_mut(&mut x);
+        x
+    })
 }
 
 /// `(m, n, nrhs, A, lda, B, ldb, jpvt, rcond, rank, work, lwork, info)`

@@ -1,6 +1,10 @@
 //! LAPACK's systems of linear equations ([Anderson et al.
 //! 1999](crate::bibliography#anderson-1999)), on row-major arrays.
 //!
+//! The dense LU with partial pivoting and the triangular solutions are nalgebra's; pivots are given as
+//! LAPACK's interchanges. Cholesky is written out: that of nalgebra does not say which leading minor
+//! is not positive, LAPACK's `info`.
+//!
 //! Arguments are those of LAPACK; leading dimensions and workspaces are not looked at. Conditions
 //! are exact, not estimates. Routines and jobs that are not here are refused by name.
 
@@ -8,7 +12,7 @@ use super::Entry;
 use super::call::Call;
 use super::matrices::{column, is_transposed, matrix, norm, square, write};
 use crate::diag::Fault;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("dgesv", "nnAnAAnN", dgesv),
@@ -24,65 +28,60 @@ pub(super) const ENTRIES: &[Entry] = &[
     Entry::pure("dtrsm", "ttttnnnanAn", dtrsm),
 ];
 
-/// P A = L U in place by partial pivoting; pivots from 1, and the first zero pivot from 1, 0
-/// without.
-fn factorize(a: &mut DMatrix<f64>) -> (Vec<f64>, f64) {
-    let (rows, columns) = a.shape();
-    let (mut pivots, mut singular) = (Vec::new(), 0.0);
-    for k in 0..rows.min(columns) {
-        let mut pivot = k;
-        for row in k + 1..rows {
-            if a[(row, k)].abs() > a[(pivot, k)].abs() {
-                pivot = row;
-            }
-        }
-        pivots.push((pivot + 1) as f64);
-        a.swap_rows(k, pivot);
-        if a[(k, k)] == 0.0 {
-            singular = if singular == 0.0 { (k + 1) as f64 } else { singular };
-            continue;
-        }
-        for row in k + 1..rows {
-            let factor = a[(row, k)] / a[(k, k)];
-            a[(row, k)] = factor;
-            for column in k + 1..columns {
-                a[(row, column)] -= factor * a[(k, column)];
-            }
-        }
+/// L below the diagonal and U, pivots, and the first zero pivot.
+type Factors = (DMatrix<f64>, Vec<f64>, f64);
+
+/// P A = L U by partial pivoting, L below the diagonal; pivots from 1, and the first zero pivot from
+/// 1, 0 without.
+fn factorize(a: DMatrix<f64>) -> Factors {
+    let rows = a.nrows();
+    let lu = a.lu();
+    let mut order = DVector::from_iterator(rows, 0..rows);
+    lu.p().permute_rows(&mut order);
+    let (_, mut factors, upper) = lu.unpack();
+    factors.resize_mut(rows, upper.ncols(), 0.0);
+    for column in 0..upper.ncols() {
+        let above = upper.nrows().min(column + 1);
+        factors.view_mut((0, column), (above, 1)).copy_from(&upper.view((0, column), (above, 1)));
     }
-    (pivots, singular)
+    // The interchanges of LAPACK, one a step, that lead to this order.
+    let mut places: Vec<usize> = (0..rows).collect();
+    let mut pivots = Vec::new();
+    for k in 0..upper.nrows() {
+        let pivot = (k..rows).find(|at| places[*at] == order[k]).unwrap_or(k);
+        places.swap(k, pivot);
+        pivots.push((pivot + 1) as f64);
+    }
+    let zero = upper.diagonal().iter().position(|pivot| *pivot == 0.0);
+    (factors, pivots, zero.map_or(0.0, |at| (at + 1) as f64))
 }
 
-/// Solves A X = B, or Aᵀ X = B, with the factors of A.
+/// Solves A X = B, or Aᵀ X = B, with the factors of a regular A.
 fn solve(lu: &DMatrix<f64>, pivots: &[f64], b: &mut DMatrix<f64>, transposed: bool) {
     let n = lu.nrows();
-    let swaps: Vec<usize> = pivots.iter().map(|p| (*p as usize).clamp(1, n) - 1).collect();
-    if transposed {
-        // Uᵀ, then Lᵀ, then the permutation backwards.
-        for column in 0..b.ncols() {
-            for i in 0..n {
-                let sum: f64 = (0..i).map(|k| lu[(k, i)] * b[(k, column)]).sum();
-                b[(i, column)] = (b[(i, column)] - sum) / lu[(i, i)];
-            }
-            for i in (0..n).rev() {
-                let sum: f64 = (i + 1..n).map(|k| lu[(k, i)] * b[(k, column)]).sum();
-                b[(i, column)] -= sum;
-            }
-        }
-        swaps.iter().enumerate().rev().for_each(|(k, pivot)| b.swap_rows(k, *pivot));
+    if n == 0 {
         return;
     }
-    swaps.iter().enumerate().for_each(|(k, pivot)| b.swap_rows(k, *pivot));
-    for column in 0..b.ncols() {
-        for i in 0..n {
-            let sum: f64 = (0..i).map(|k| lu[(i, k)] * b[(k, column)]).sum();
-            b[(i, column)] -= sum;
-        }
-        for i in (0..n).rev() {
-            let sum: f64 = (i + 1..n).map(|k| lu[(i, k)] * b[(k, column)]).sum();
-            b[(i, column)] = (b[(i, column)] - sum) / lu[(i, i)];
-        }
+    let swaps = pivots.iter().map(|p| (*p as usize).clamp(1, n) - 1).enumerate();
+    if transposed {
+        // Uᵀ, then Lᵀ, then the permutation backwards.
+        lu.tr_solve_upper_triangular_unchecked_mut(b);
+        let mut lower = lu.clone();
+        lower.fill_diagonal(1.0);
+        lower.tr_solve_lower_triangular_unchecked_mut(b);
+        swaps.rev().for_each(|(k, pivot)| b.swap_rows(k, pivot));
+    } else {
+        swaps.for_each(|(k, pivot)| b.swap_rows(k, pivot));
+        lu.solve_lower_triangular_with_diag_unchecked_mut(b, 1.0);
+        lu.solve_upper_triangular_unchecked_mut(b);
     }
+}
+
+/// A⁻¹ = U⁻¹ L⁻¹ P in LAPACK's order, U first.
+fn inverse(lu: &DMatrix<f64>, pivots: &[f64]) -> DMatrix<f64> {
+    let mut transposed = DMatrix::identity(lu.nrows(), lu.nrows());
+    solve(lu, pivots, &mut transposed, true);
+    transposed.transpose()
 }
 
 fn same_rows(call: &Call<'_>, a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<(), Fault> {
@@ -92,16 +91,26 @@ fn same_rows(call: &Call<'_>, a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<(), 
     }
 }
 
+/// Solves A X = B and writes X in the place of the argument B, if A is regular; the factors.
+fn replace_by_solution(
+    call: &mut Call<'_>,
+    a: DMatrix<f64>,
+    argument: usize,
+) -> Result<Factors, Fault> {
+    let mut b = matrix(call, argument)?;
+    same_rows(call, &a, &b)?;
+    let (lu, pivots, info) = factorize(a);
+    if info == 0.0 {
+        solve(&lu, &pivots, &mut b, false);
+        write(call, argument, &b);
+    }
+    Ok((lu, pivots, info))
+}
+
 /// `(n, nrhs, A, lda, ipiv, B, ldb, info)`
 fn dgesv(call: &mut Call<'_>) -> Result<(), Fault> {
-    let (mut a, mut b) = (square(call, 2)?, matrix(call, 5)?);
-    same_rows(call, &a, &b)?;
-    let (pivots, info) = factorize(&mut a);
-    if info == 0.0 {
-        solve(&a, &pivots, &mut b, false);
-        write(call, 5, &b);
-    }
-    write(call, 2, &a);
+    let (lu, pivots, info) = replace_by_solution(call, square(call, 2)?, 5)?;
+    write(call, 2, &lu);
     write(call, 4, &column(&pivots));
     call.set(7, info);
     Ok(())
@@ -109,9 +118,8 @@ fn dgesv(call: &mut Call<'_>) -> Result<(), Fault> {
 
 /// `(m, n, A, lda, ipiv, info)`
 fn dgetrf(call: &mut Call<'_>) -> Result<(), Fault> {
-    let mut a = matrix(call, 2)?;
-    let (pivots, info) = factorize(&mut a);
-    write(call, 2, &a);
+    let (lu, pivots, info) = factorize(matrix(call, 2)?);
+    write(call, 2, &lu);
     write(call, 4, &column(&pivots));
     call.set(5, info);
     Ok(())
@@ -155,9 +163,7 @@ fn dgetri(call: &mut Call<'_>) -> Result<(), Fault> {
     let pivots = pivots(call, 3, n)?;
     let zero = lu.diagonal().iter().position(|pivot| *pivot == 0.0);
     if zero.is_none() {
-        let mut inverse = DMatrix::identity(n, n);
-        solve(&lu, &pivots, &mut inverse, false);
-        write(call, 1, &inverse);
+        write(call, 1, &inverse(&lu, &pivots));
     }
     call.set(6, zero.map_or(0.0, |at| (at + 1) as f64));
     Ok(())
@@ -166,8 +172,7 @@ fn dgetri(call: &mut Call<'_>) -> Result<(), Fault> {
 /// `(n, nrhs, dl, d, du, B, ldb, info)`: a tridiagonal matrix.
 fn dgtsv(call: &mut Call<'_>) -> Result<(), Fault> {
     let (lower, diagonal, upper) = (matrix(call, 2)?, matrix(call, 3)?, matrix(call, 4)?);
-    let (n, mut b) = (diagonal.nrows(), matrix(call, 5)?);
-    same_rows(call, &diagonal, &b)?;
+    let n = diagonal.nrows();
     if lower.nrows() + 1 != n || upper.nrows() + 1 != n {
         return Err(call.fault("the diagonals do not fit each other"));
     }
@@ -179,11 +184,7 @@ fn dgtsv(call: &mut Call<'_>) -> Result<(), Fault> {
             a[(i, i + 1)] = upper[i];
         }
     }
-    let (pivots, info) = factorize(&mut a);
-    if info == 0.0 {
-        solve(&a, &pivots, &mut b, false);
-        write(call, 5, &b);
-    }
+    let (_, _, info) = replace_by_solution(call, a, 5)?;
     call.set(7, info);
     Ok(())
 }
@@ -215,10 +216,10 @@ fn dpotrf(call: &mut Call<'_>) -> Result<(), Fault> {
 
 /// `(n, kl, ku, nrhs, AB, ldab, ipiv, B, ldb, info)`: A(i, j) stands in row kl + ku + i − j.
 fn dgbsv(call: &mut Call<'_>) -> Result<(), Fault> {
-    let (band, mut b) = (matrix(call, 4)?, matrix(call, 7)?);
+    let band = matrix(call, 4)?;
     let (n, lower, upper) = (band.ncols(), call.number(1) as usize, call.number(2) as usize);
-    if b.nrows() != n || band.nrows() < 2 * lower + upper + 1 {
-        return Err(call.fault("the band and the right side do not fit"));
+    if band.nrows() < 2 * lower + upper + 1 {
+        return Err(call.fault("the band has fewer rows than diagonals"));
     }
     let mut a = DMatrix::zeros(n, n);
     for j in 0..n {
@@ -226,11 +227,7 @@ fn dgbsv(call: &mut Call<'_>) -> Result<(), Fault> {
             a[(i, j)] = band[(lower + upper + i - j, j)];
         }
     }
-    let (pivots, info) = factorize(&mut a);
-    if info == 0.0 {
-        solve(&a, &pivots, &mut b, false);
-        write(call, 7, &b);
-    }
+    let (_, _, info) = replace_by_solution(call, a, 7)?;
     call.set(9, info);
     Ok(())
 }
@@ -263,9 +260,7 @@ fn reciprocal_condition(
         return Ok(0.0);
     }
     let pivots: Vec<f64> = (1..=n).map(|k| k as f64).collect();
-    let mut inverse = DMatrix::identity(n, n);
-    solve(lu, &pivots, &mut inverse, false);
-    Ok(1.0 / (size * norm(call, letter, &inverse)?))
+    Ok(1.0 / (size * norm(call, letter, &inverse(lu, &pivots))?))
 }
 
 /// `(fact, trans, n, nrhs, A, lda, AF, ldaf, ipiv, equed, R, C, B, ldb, X, ldx, rcond, ferr, berr,
@@ -279,8 +274,7 @@ fn dgesvx(call: &mut Call<'_>) -> Result<(), Fault> {
     let transposed = is_transposed(call, 1);
     let letter = if transposed { "I" } else { "1" };
     let size = norm(call, letter, &a)?;
-    let mut lu = a;
-    let (pivots, mut info) = factorize(&mut lu);
+    let (lu, pivots, mut info) = factorize(a);
     let rcond = reciprocal_condition(call, &lu, letter, size)?;
     if info == 0.0 {
         solve(&lu, &pivots, &mut b, transposed);

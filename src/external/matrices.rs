@@ -38,6 +38,13 @@ pub(super) fn write(call: &mut Call<'_>, argument: usize, matrix: &DMatrix<f64>)
     }
 }
 
+/// The power of two at or below a size: division by it rounds nothing. 1 for nothing and for what is
+/// below normal numbers.
+pub(super) fn power_of_two(size: f64) -> f64 {
+    const EXPONENT: u64 = 0x7ff << 52;
+    if size.is_normal() { f64::from_bits(size.to_bits() & EXPONENT) } else { 1.0 }
+}
+
 /// A matrix of one column.
 pub(super) fn column(values: &[f64]) -> DMatrix<f64> {
     DMatrix::from_column_slice(values.len(), 1, values)

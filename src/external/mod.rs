@@ -9,9 +9,16 @@
 //!
 //! Numbers are `f64` (Integers exact up to 2⁵³, Booleans 0 and 1), arrays row-major whatever the
 //! language of the call says. External objects (MLS §12.9.7) are values of this module, named by
-//! handles; they do not change once they are made. The one hidden state is that of [`Random`]. An external name that is not here is refused by
-//! whoever calls it.
+//! handles; they do not change once they are made. The one hidden state is that of [`Random`]. An
+//! external name that is not here is refused by whoever calls it.
+//!
+//! LAPACK's routines use the LU, the triangular solutions, the balancing and the Schur iteration of
+//! nalgebra, which is built without SIMD kernels and threads, with elementary functions in Rust: the
+//! same bits on every machine. faer is not used: it chooses its kernels by the features of the
+//! processor while the program runs. What nalgebra does not have, or has less accurately, is
+//! written here; each module says why. `tests/suite/lapack_accuracy.rs` compares all with LAPACK.
 
+mod balancing;
 mod call;
 mod eigenvalues;
 mod eigenvectors;

@@ -3,9 +3,10 @@
 //!
 //! Blocks are in LAPACK's standard form: equal diagonal elements, the other two of opposite signs.
 
+use super::matrices::power_of_two;
 use super::sylvester::sylvester;
 use crate::elementary;
-use nalgebra::{Complex, DMatrix, Schur};
+use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 /// Absolute value of a complex number.
 pub(super) fn modulus(z: Complex<f64>) -> f64 {
@@ -30,19 +31,35 @@ impl RealSchur {
         if a.nrows() < 2 {
             return Some(RealSchur { q: DMatrix::identity(a.nrows(), a.nrows()), t: a.clone() });
         }
-        let (q, t) = Schur::try_new(a.clone(), f64::EPSILON, MAX_SWEEPS)?.unpack();
-        let mut form = RealSchur { q, t };
-        let least = f64::EPSILON * form.t.norm();
-        let n = a.nrows();
-        for row in 0..n {
-            for column in 0..row {
-                if column + 1 < row || form.t[(row, column)].abs() <= least {
-                    form.t[(row, column)] = 0.0;
-                }
+        let size = power_of_two(a.amax());
+        let a = a / size;
+        let mut form = RealSchur::iterated(&a).or_else(|| RealSchur::reflected(&a))?;
+        for row in 1..a.nrows() {
+            form.t.view_mut((row, 0), (1, row - 1)).fill(0.0);
+            let beside = form.t[(row - 1, row - 1)].abs() + form.t[(row, row)].abs();
+            if form.t[(row, row - 1)].abs() <= f64::EPSILON * beside {
+                form.t[(row, row - 1)] = 0.0;
             }
         }
-        (0..n - 1).for_each(|k| form.standardize(k));
+        (0..a.nrows() - 1).for_each(|k| form.standardize(k));
+        form.t *= size;
         Some(form)
+    }
+
+    fn iterated(a: &DMatrix<f64>) -> Option<RealSchur> {
+        let (q, t) = Schur::try_new(a.clone(), f64::EPSILON, MAX_SWEEPS)?.unpack();
+        Some(RealSchur { q, t })
+    }
+
+    /// Of a matrix that the iteration leaves as it is, as it does cyclic permutations: by way of one
+    /// that is similar by a reflection.
+    fn reflected(a: &DMatrix<f64>) -> Option<RealSchur> {
+        let n = a.nrows();
+        // Any direction that no symmetry of the matrix keeps.
+        let axis = DVector::from_fn(n, |k, _| 1.0 / (k + 1) as f64).normalize();
+        let reflection = DMatrix::identity(n, n) - 2.0 * &axis * axis.transpose();
+        let RealSchur { q, t } = RealSchur::iterated(&(&reflection * a * &reflection))?;
+        Some(RealSchur { q: reflection * q, t })
     }
 
     /// Turns the block of rows `k` and `k + 1`, if there is one, to standard form, or splits it if
@@ -52,6 +69,9 @@ impl RealSchur {
             return;
         }
         let [[a, b], [c, d]] = block(&self.t, k);
+        // Products must not overflow.
+        let size = power_of_two([a, b, c, d].map(f64::abs).into_iter().fold(0.0, f64::max));
+        let [a, b, c, d] = [a, b, c, d].map(|element| element / size);
         let half = (a - d) / 2.0;
         let discriminant = half * half + b * c;
         let is_real = discriminant >= 0.0;
@@ -176,6 +196,6 @@ fn eigenvalue(t: &DMatrix<f64>, row: usize) -> Complex<f64> {
         return Complex::new(t[(row, row)], 0.0);
     }
     let [[a, b], [c, d]] = block(t, row);
-    let half = (a - d) / 2.0;
-    Complex::new((a + d) / 2.0, (-half * half - b * c).max(0.0).sqrt())
+    // In standard form a is d, and b and c are of opposite signs.
+    Complex::new((a + d) / 2.0, b.abs().sqrt() * c.abs().sqrt())
 }

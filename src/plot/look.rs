@@ -8,7 +8,7 @@ use std::borrow::Cow;
 
 /// What letters are drawn as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Letters {
+pub(crate) enum Letters {
     /// Text, in a face of the viewer.
     Text,
     /// Outlines of a face that comes with the program: the same in every viewer.

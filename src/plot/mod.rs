@@ -18,5 +18,7 @@ mod ticks;
 
 pub use draw::{power, shown_unit};
 pub use figure::{Axis, Figure, Mark, Panel, Scale, Series};
+pub(crate) use look::Letters;
 pub use picture::Picture;
 pub use ready::{Comparison, convergence, fit};
+pub(crate) use svg::{Anchor, Svg, Writing};

@@ -1,32 +1,33 @@
-//! The few SVG elements that figures need, with numbers rounded to hundredths of a pixel.
+//! The few SVG elements that drawings need, with numbers rounded to hundredths of a pixel.
 
 use super::look::Letters;
 use super::outline;
+use maud::Render;
 use std::fmt::Write;
 
 /// Where text stands relative to its place.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Anchor {
+pub(crate) enum Anchor {
     Start,
     Middle,
     End,
 }
 
 /// A picture under construction.
-pub(super) struct Svg {
+pub(crate) struct Svg {
     text: String,
     letters: Letters,
 }
 
 /// How a piece of text looks.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Writing {
+pub(crate) struct Writing {
     /// Height of the font in pixels.
-    pub(super) size: f64,
-    pub(super) bold: bool,
+    pub(crate) size: f64,
+    pub(crate) bold: bool,
     /// From bottom to top instead of from left to right.
-    pub(super) upright: bool,
-    pub(super) colour: &'static str,
+    pub(crate) upright: bool,
+    pub(crate) colour: &'static str,
 }
 
 const FACES: &str =
@@ -34,7 +35,7 @@ const FACES: &str =
 
 impl Svg {
     /// A picture of its own file.
-    pub(super) fn new(width: f64, height: f64, title: &str, letters: Letters) -> Svg {
+    pub(crate) fn new(width: f64, height: f64, title: &str, letters: Letters) -> Svg {
         let (width, height, title) = (number(width), number(height), escape(title));
         Svg {
             text: format!(
@@ -58,13 +59,13 @@ impl Svg {
         }
     }
 
-    pub(super) fn finish(mut self) -> String {
+    pub(crate) fn finish(mut self) -> String {
         self.text.push_str("</svg>\n");
         self.text
     }
 
     /// A line through points; `style` are further attributes.
-    pub(super) fn polyline(&mut self, points: &[(f64, f64)], style: &str) {
+    pub(crate) fn polyline(&mut self, points: &[(f64, f64)], style: &str) {
         let places = places(points);
         self.put(format_args!("<polyline points=\"{places}\" fill=\"none\" {style}/>"));
     }
@@ -89,12 +90,12 @@ impl Svg {
         self.put(format_args!("<path d=\"{path}\" {style}/>"));
     }
 
-    pub(super) fn circle(&mut self, (x, y): (f64, f64), radius: f64, style: &str) {
+    pub(crate) fn circle(&mut self, (x, y): (f64, f64), radius: f64, style: &str) {
         let (x, y, r) = (number(x), number(y), number(radius));
         self.put(format_args!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{r}\" {style}/>"));
     }
 
-    pub(super) fn rectangle(&mut self, [x, y, width, height]: [f64; 4], style: &str) {
+    pub(crate) fn rectangle(&mut self, [x, y, width, height]: [f64; 4], style: &str) {
         let [x, y, width, height] = [x, y, width, height].map(number);
         self.put(format_args!(
             "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" {style}/>"
@@ -102,7 +103,7 @@ impl Svg {
     }
 
     /// Text; `^{…}` in it is raised.
-    pub(super) fn text(&mut self, at: (f64, f64), anchor: Anchor, writing: Writing, text: &str) {
+    pub(crate) fn text(&mut self, at: (f64, f64), anchor: Anchor, writing: Writing, text: &str) {
         match self.letters {
             Letters::Text => self.letters(at, anchor, writing, text),
             Letters::Outlines => self.outlines(at, anchor, writing, text),
@@ -158,19 +159,10 @@ pub(super) fn number(value: f64) -> String {
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
+/// Text as SVG holds it, without what XML does not allow.
 fn escape(text: &str) -> String {
     let allowed = text.chars().filter(|c| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}'));
-    let mut out = String::with_capacity(text.len());
-    for letter in allowed {
-        match letter {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            _ => out.push(letter),
-        }
-    }
-    out
+    allowed.collect::<String>().render().into_string()
 }
 
 /// Writes `10^{-3}` with raised digits. They are letters of their own, not shifted parts: viewers

@@ -1,4 +1,4 @@
-//! A trace as one page that needs nothing else: the data as JSON, the drawing as a script of the
+//! A trace as one [`Page`] that needs nothing else: the data as JSON, the drawing as a script of the
 //! page's own.
 //!
 //! A long run would make a page that no browser opens: the page has the steps of the first
@@ -11,9 +11,10 @@ use super::plain::title;
 use super::step::Step;
 use super::trace::Trace;
 use super::walk::Walk;
+use crate::page::Page;
+use maud::{Markup, html};
 use serde_json::{Value, json};
 
-const PAGE: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/style.css");
 const SCRIPT: &str = include_str!("page/page.js");
 const PANELS: &str = include_str!("page/panels.js");
@@ -26,15 +27,136 @@ const CURVE_POINTS: usize = 1000;
 /// The page of a trace; `result` is the content of the run's `result.json`, if there is one.
 pub fn page(trace: Trace, result: Option<&str>) -> String {
     let result = result.and_then(|text| serde_json::from_str(text).ok()).unwrap_or(Value::Null);
-    let title = escaped(&trace.subject.model);
-    let data = data(trace, result).to_string();
-    // Within a script element no text may look like its end.
-    let data = data.replace("</", "<\\/").replace("<!--", "<\\!--");
-    let script = format!("(() => {{\n{SCRIPT}\n{PANELS}\n{CHARTS}\n}})();");
-    PAGE.replace("{{title}}", &title)
-        .replace("{{style}}", STYLE)
-        .replace("{{script}}", &script)
-        .replacen("{{data}}", &data, 1)
+    let page = Page {
+        title: &format!("{} - step by step", trace.subject.model),
+        style: STYLE,
+        scripts: &[&format!("(() => {{\n{SCRIPT}\n{PANELS}\n{CHARTS}\n}})();")],
+        data: &[("data", data(trace, result).to_string())],
+        body: body(),
+    };
+    page.document()
+}
+
+fn body() -> Markup {
+    html! {
+        header {
+            h1 { "A genetic algorithm, step by step" }
+            p id="subject" {}
+        }
+        nav aria-label="Steps" { (controls()) }
+        section id="story" aria-live="polite" {
+            h2 id="title" {}
+            p id="text" {}
+        }
+        main {
+            div.column {
+                section id="script-panel" {
+                    h3 { "The script" }
+                    p id="script-name" {}
+                    pre id="script" tabindex="0" {}
+                }
+                (panel("drawing", "This step"))
+                (panel("fit", "Measured and simulated"))
+                section id="landscape-panel" {
+                    h3 { "The landscape of the fitness" }
+                    p {
+                        label { "across " select id="across" {} } " "
+                        label { "up " select id="up" {} }
+                    }
+                    div id="landscape" {}
+                }
+            }
+            div.column {
+                section id="population-panel" {
+                    h3 { "The population" }
+                    div id="population" {}
+                    p.legend { (LEGEND) }
+                    p id="individual" aria-live="polite" { "\u{a0}" }
+                }
+                (panel("curve", "Best fitness over the generations"))
+                section id="family-panel" {
+                    h3 { "The family of the best" }
+                    p {
+                        label {
+                            "of "
+                            select id="whose" {
+                                option value="now" { "this generation" }
+                                option value="winner" { "the whole run" }
+                            }
+                        }
+                    }
+                    div id="family" {}
+                }
+                (panel("tell", "Can the data tell?"))
+            }
+        }
+    }
+}
+
+const LEGEND: &str = "Each row is one individual, each column one gene: dark is the lower end of its \
+    range, light the upper. \u{265b} elite, \u{2715} failed simulation, \u{25cf} changed by mutation; \
+    below the dashed line of the selection there are no parents. Point at a row to read its numbers, \
+    or reach the rows with the tab key and go through them with the arrows up and down.";
+
+/// A section that the script fills.
+fn panel(id: &str, heading: &str) -> Markup {
+    html! {
+        section id={ (id) "-panel" } {
+            h3 { (heading) }
+            div id=(id) {}
+        }
+    }
+}
+
+/// Buttons and sliders that choose the step.
+fn controls() -> Markup {
+    let button = |id: &str, title: &str, label: &str, sign: &str| {
+        html! { button id=(id) title=(title) aria-label=(label) { (sign) } }
+    };
+    html! {
+        (button("first", "First step (Home)", "First step", "|\u{25c0}"))
+        (button(
+            "previous-generation",
+            "Previous generation (Page Up)",
+            "Previous generation",
+            "\u{25c0}\u{25c0}",
+        ))
+        (button("back", "Back (left arrow)", "One step back", "\u{25c0}"))
+        button id="play" title="Play or pause (space)" aria-pressed="false" { "Play" }
+        (button("next", "Next (right arrow)", "One step on", "\u{25b6}"))
+        (button(
+            "next-generation",
+            "Next generation (Page Down)",
+            "Next generation",
+            "\u{25b6}\u{25b6}",
+        ))
+        (button("last", "Last step (End)", "Last step", "\u{25b6}|"))
+        label {
+            "Play "
+            select id="pace" {
+                option value="1" { "every step" }
+                option value="2" { "every part" }
+                option value="3" { "every generation" }
+            }
+        }
+        a id="link" href="#" { "link to this step" }
+        div.sliders {
+            label.slide {
+                "Generation "
+                input id="generations" type="range" min="1" value="1" aria-label="Generation";
+                " "
+                input id="generation" type="number" min="1" value="1"
+                    aria-label="Number of the generation";
+            }
+            label.slide {
+                "Step "
+                input id="slider" type="range" min="1" value="1"
+                    aria-label="Step of this generation";
+                " "
+                output id="step" {}
+            }
+        }
+    }
 }
 
 /// Whether `result`, the content of a `result.json`, reports the run of this trace: model, number of
@@ -46,10 +168,6 @@ pub fn belongs(trace: &Trace, result: &str) -> bool {
     result["model"] == json!(trace.subject.model)
         && result["generations"] == json!(trace.generations.len())
         && best.is_some_and(|best| result["script"]["fitness"] == json!(best))
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 fn data(trace: Trace, result: Value) -> Value {

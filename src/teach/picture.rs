@@ -3,7 +3,7 @@
 
 use super::generation::{Generation, Origin};
 use super::trace::Trace;
-use std::fmt::Write as _;
+use crate::plot::{Anchor, Letters, Svg, Writing};
 
 const WIDTH: usize = 640;
 /// Where the two populations stand, and how wide they are.
@@ -36,13 +36,8 @@ pub fn picture(trace: &Trace, number: usize) -> String {
     let rows = order.len().max(next.map_or(0, |next| next.len().min(MOST)));
     let high = (420 / rows.max(1)).clamp(6, 24);
     let height = TOP + rows * high + 12;
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" \
-         width=\"{WIDTH}\" height=\"{height}\" role=\"img\" font-family=\"sans-serif\" \
-         font-size=\"12\">\n<title>Generation {}</title>\n\
-         <rect width=\"{WIDTH}\" height=\"{height}\" fill=\"#ffffff\"/>\n",
-        number + 1
-    );
+    let title = format!("Generation {}", number + 1);
+    let mut svg = Svg::new(WIDTH as f64, height as f64, &title, Letters::Text);
     let ranges = ranges(generation, next);
     heading(&mut svg, trace, LEFT, &format!("generation {}, best first", number + 1));
     if let Some(next) = next {
@@ -52,11 +47,20 @@ pub fn picture(trace: &Trace, number: usize) -> String {
             individual(&mut svg, next, k, &ranges, (RIGHT, TOP + k * high, high));
         }
     }
-    for (place, &k) in order.iter().enumerate() {
-        individual(&mut svg, generation, k, &ranges, (LEFT, TOP + place * high, high));
+    for (row, &k) in order.iter().enumerate() {
+        individual(&mut svg, generation, k, &ranges, (LEFT, TOP + row * high, high));
     }
-    svg.push_str("</svg>\n");
-    svg
+    svg.finish()
+}
+
+/// Writing from left to right.
+fn writing(size: usize, colour: &'static str) -> Writing {
+    Writing { size: size as f64, bold: false, upright: false, colour }
+}
+
+/// A place of the picture.
+fn place(x: usize, y: usize) -> (f64, f64) {
+    (x as f64, y as f64)
 }
 
 /// The least and the greatest of each gene in both generations.
@@ -69,19 +73,19 @@ fn ranges(generation: &Generation, next: Option<&Generation>) -> Vec<(f64, f64)>
     (0..generation.n_genes).map(range).collect()
 }
 
-fn heading(svg: &mut String, trace: &Trace, x: usize, title: &str) {
+fn heading(svg: &mut Svg, trace: &Trace, x: usize, title: &str) {
     let names = &trace.subject.parameters;
-    let _ = writeln!(svg, "<text x=\"{x}\" y=\"16\" font-weight=\"bold\">{title}</text>");
+    let bold = Writing { bold: true, ..writing(12, "#000000") };
+    svg.text(place(x, 16), Anchor::Start, bold, title);
     for (j, name) in names.iter().enumerate() {
         let x = x + (2 * j + 1) * BLOCK / (2 * names.len());
-        let name = name.replace('&', "&amp;").replace('<', "&lt;");
-        let _ = writeln!(svg, "<text x=\"{x}\" y=\"36\" text-anchor=\"middle\">{name}</text>");
+        svg.text(place(x, 36), Anchor::Middle, writing(12, "#000000"), name);
     }
 }
 
 /// From each parent to its children: solid from the one before the crossing point, dashed from the
 /// other; black from an elite to its copy.
-fn lines(svg: &mut String, order: &[usize], next: &Generation, high: usize) {
+fn lines(svg: &mut Svg, order: &[usize], next: &Generation, high: usize) {
     let middle = |row: usize| TOP + row * high + high / 2;
     for (row, origin) in next.origins.iter().enumerate().take(MOST) {
         let (from, styles) = match origin {
@@ -92,23 +96,16 @@ fn lines(svg: &mut String, order: &[usize], next: &Generation, high: usize) {
             Origin::Random | Origin::Script => continue,
         };
         for (k, (colour, dashes)) in from.into_iter().zip(styles) {
-            let Some(place) = order.iter().position(|&at| at == k) else { continue };
-            let _ = writeln!(
-                svg,
-                "<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" stroke=\"{colour}\" \
-                 stroke-dasharray=\"{dashes}\"/>",
-                LEFT + BLOCK + 4,
-                middle(place),
-                RIGHT - 40,
-                middle(row)
-            );
+            let Some(before) = order.iter().position(|&at| at == k) else { continue };
+            let ends = [place(LEFT + BLOCK + 4, middle(before)), place(RIGHT - 40, middle(row))];
+            svg.polyline(&ends, &format!("stroke=\"{colour}\" stroke-dasharray=\"{dashes}\""));
         }
     }
 }
 
 /// One row: its number and mark, and a box for each gene.
 fn individual(
-    svg: &mut String,
+    svg: &mut Svg,
     generation: &Generation,
     k: usize,
     ranges: &[(f64, f64)],
@@ -123,32 +120,19 @@ fn individual(
         Some(Origin::Random) => ("?", "#000000"),
         _ => ("", "#000000"),
     };
-    let size = high.min(12);
-    let _ = writeln!(
-        svg,
-        "<text x=\"{}\" y=\"{}\" text-anchor=\"end\" font-size=\"{size}\" fill=\"{ink}\">{mark} \
-         {}</text>",
-        x - 6,
-        y + high * 3 / 4,
-        k + 1
-    );
+    let number = format!("{mark} {}", k + 1);
+    let writing = writing(high.min(12), ink);
+    svg.text(place(x - 6, y + high * 3 / 4), Anchor::End, writing, &number);
     for (j, (gene, (low, top))) in generation.genome(k).iter().zip(ranges).enumerate() {
         let part = if top > low { (gene - low) / (top - low) } else { 0.5 };
-        let (x, tall) = (x + j * wide, high - 1);
+        let x = x + j * wide;
         let [r, g, b] = shade(part);
-        let _ = writeln!(
-            svg,
-            "<rect x=\"{x}\" y=\"{y}\" width=\"{}\" height=\"{tall}\" fill=\"rgb({r},{g},{b})\"/>",
-            wide - 1
-        );
+        let sizes = [x, y, wide.saturating_sub(1), high - 1].map(|length| length as f64);
+        svg.rectangle(sizes, &format!("fill=\"rgb({r},{g},{b})\""));
         if matches!(origin, Some(Origin::Child { mutated, .. }) if mutated.contains(&j)) {
-            let _ = writeln!(
-                svg,
-                "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"#ffffff\" stroke=\"#000000\"/>",
-                x + wide / 2,
-                y + high / 2,
-                (high / 3).min(4)
-            );
+            let radius = (high / 3).min(4) as f64;
+            let middle = place(x + wide / 2, y + high / 2);
+            svg.circle(middle, radius, "fill=\"#ffffff\" stroke=\"#000000\"");
         }
     }
 }
@@ -169,10 +153,10 @@ mod tests {
         let count = |part: &str| svg.matches(part).count();
         // Two genes of six individuals twice, and the paper; an elite and two parents of four.
         assert_eq!(count("<rect"), 2 * 6 * 2 + 1);
-        assert_eq!(count("<line"), 1 + 2 * 4);
+        assert_eq!(count("<polyline"), 1 + 2 * 4);
         assert_eq!(count("<circle"), 3);
         assert_eq!((count("\u{265b}"), count("generation 2")), (1, 1));
         // The last generation stands alone.
-        assert_eq!(super::picture(sample::walk().trace(), 2).matches("<line").count(), 0);
+        assert_eq!(super::picture(sample::walk().trace(), 2).matches("<polyline").count(), 0);
     }
 }

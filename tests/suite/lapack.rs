@@ -5,15 +5,17 @@ use super::external::Arg::{self, Array, Number, Text};
 use super::external::call;
 use nalgebra::{Complex, DMatrix};
 
-type Matrix = DMatrix<f64>;
+pub(super) type Matrix = DMatrix<f64>;
 
 /// An argument of a call.
-enum Given {
+pub(super) enum Given {
     Number(f64),
     Text(&'static str),
     Matrix(Matrix),
     /// A vector of zeros.
     Vector(usize),
+    /// A vector.
+    Values(Vec<f64>),
 }
 
 use Given::Vector;
@@ -27,7 +29,7 @@ fn zeros(rows: usize, columns: usize) -> Given {
 }
 
 /// The arguments after a call: vectors as columns, numbers as matrices of one element.
-fn run(name: &str, given: &[Given]) -> Result<Vec<Matrix>, String> {
+pub(super) fn run(name: &str, given: &[Given]) -> Result<Vec<Matrix>, String> {
     let rows: Vec<(Vec<usize>, Vec<f64>)> = given
         .iter()
         .map(|given| match given {
@@ -35,6 +37,7 @@ fn run(name: &str, given: &[Given]) -> Result<Vec<Matrix>, String> {
             Given::Text(_) => (vec![], vec![]),
             Given::Matrix(m) => (vec![m.nrows(), m.ncols()], m.transpose().as_slice().to_vec()),
             Vector(n) => (vec![*n], vec![0.0; *n]),
+            Given::Values(values) => (vec![values.len()], values.clone()),
         })
         .collect();
     let args: Vec<Arg<'_>> = given
@@ -43,7 +46,7 @@ fn run(name: &str, given: &[Given]) -> Result<Vec<Matrix>, String> {
         .map(|(given, (dims, values))| match given {
             Given::Text(text) => Text(text),
             Given::Number(value) => Number(*value),
-            Given::Matrix(_) | Vector(_) => Array(dims, values),
+            Given::Matrix(_) | Vector(_) | Given::Values(_) => Array(dims, values),
         })
         .collect();
     let done = call(name, &args).map_err(|fault| fault.message)?;
@@ -106,7 +109,7 @@ fn is_standard(t: &Matrix) {
     }
 }
 
-fn text(text: &'static str) -> Given {
+pub(super) fn text(text: &'static str) -> Given {
     Given::Text(text)
 }
 
@@ -364,6 +367,14 @@ fn generalized_eigenvectors_belong_to_their_eigenvalues() {
         let values = [&results[7], &results[8], &results[9]];
         let infinite = results[9].iter().filter(|beta| **beta == 0.0).count();
         assert_eq!(infinite, seed % 2, "{}", results[9]);
+        eigenvectors_fit(&a, &b, &results[10], values, true);
+        eigenvectors_fit(&a, &b, &results[12], values, false);
+    }
+    // Where B is the most regular to invert.
+    for a in squares() {
+        let b = Matrix::identity(a.nrows(), a.nrows()) * 2.0;
+        let results = generalized(&a, &b).expect("eigenvalues");
+        let values = [&results[7], &results[8], &results[9]];
         eigenvectors_fit(&a, &b, &results[10], values, true);
         eigenvectors_fit(&a, &b, &results[12], values, false);
     }

@@ -39,6 +39,7 @@ mod index_reduction;
 mod initialization;
 mod laboratory;
 mod lapack;
+mod lapack_accuracy;
 mod lazy_reading;
 mod lessons;
 mod libraries;

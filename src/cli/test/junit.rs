@@ -3,6 +3,7 @@
 use super::Verdict;
 use super::judgement::{Judged, Judgement};
 use crate::script::language::expectation::shown;
+use maud::Render;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -76,17 +77,6 @@ impl Junit {
 
 /// Text as XML holds it; control characters cannot stand in it.
 fn escaped(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\n' | '\t' => escaped.push(character),
-            control if control.is_control() => escaped.push('?'),
-            other => escaped.push(other),
-        }
-    }
-    escaped
+    let allowed = |c: char| if c.is_control() && !matches!(c, '\n' | '\t') { '?' } else { c };
+    text.chars().map(allowed).collect::<String>().render().into_string()
 }

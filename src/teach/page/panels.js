@@ -158,7 +158,7 @@ function individual({ number, values, text, failed, crown, changed, fitness }, x
     stroke: failed ? "var(--red)" : "none", "stroke-width": Math.min(2.5, height / 8) }));
   const size = Math.min(12, height);
   const mark = failed ? "\u2715" : crown ? "\u265B" : "";
-  const colours = failed ? { style: "fill: var(--red)" } : {};
+  const colours = failed ? { class: "failed" } : {};
   group.append(label(x - 6, y + height * 0.75, mark + " " + (number + 1), Object.assign({ "text-anchor": "end", "font-size": size }, colours)));
   if (fitness) group.append(label(x + width + 8, y + height * 0.75, fitness, Object.assign({ "font-size": size }, colours)));
   const tell = () => { at("individual").textContent = text; };
@@ -203,7 +203,7 @@ function crossover(step, generation) {
     const x = 90 + point * cell - 1;
     rows.push(svg("line", { x1: x, y1: 20, x2: x, y2: pair ? 186 : 150, stroke: "var(--ink)", "stroke-width": 2, "stroke-dasharray": "5 4" }));
   }
-  rows.push(label(90, 107, "exchanged behind a dashed line", { style: "fill: var(--soft)" }));
+  rows.push(label(90, 107, "exchanged behind a dashed line", { class: "remark" }));
   return { rows, height: pair ? 192 : 156 };
 }
 function mutation(step, generation) {
