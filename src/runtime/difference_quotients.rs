@@ -2,6 +2,7 @@
 //! whose symbolic derivative there is 0/0. The functions themselves have values, and a quotient over
 //! a short way is a slope that Newton's method goes on with.
 
+use super::execution::Operation;
 use crate::sim::Failure;
 
 /// Length of the way relative to the size of the variable: between rounding errors of the function
@@ -30,6 +31,6 @@ pub(super) fn quotient(
     column.iter_mut().zip(before).for_each(|(after, before)| *after = (*after - before) / step);
     match column.iter().all(|slope| slope.is_finite()) {
         true => Ok(()),
-        false => Err(Failure::Domain { place: u32::MAX }),
+        false => Err(Failure::Domain { origin: u32::MAX, operation: Operation::OTHER }),
     }
 }

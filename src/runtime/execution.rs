@@ -5,7 +5,7 @@ use crate::codegen::memory::Memory;
 use crate::codegen::program::Outputs;
 use crate::codegen::tape::{Instruction, Tape};
 use crate::sim::Failure;
-use crate::symbolic::function;
+use crate::symbolic::function::{self, Function, FunctionId};
 
 /// Computes the outputs of code that computes nothing else.
 pub(super) fn read(code: &Outputs, registers: &mut Memory, out: &mut [f64]) -> Result<(), Failure> {
@@ -19,13 +19,49 @@ pub(super) fn read(code: &Outputs, registers: &mut Memory, out: &mut [f64]) -> R
     Ok(())
 }
 
+/// The operation that had no value, and its number in a [`Failure::Domain`].
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Operation {
+    /// A division, or another operation that overflowed.
+    Division,
+    /// A power.
+    Power,
+    /// A function of the table.
+    Function(&'static Function),
+    /// Another one.
+    Other,
+}
+
+impl Operation {
+    pub(super) const DIVISION: u32 = 0;
+    pub(super) const POWER: u32 = 1;
+    pub(super) const OTHER: u32 = u32::MAX;
+    /// The number of the first function.
+    const FUNCTIONS: u32 = 2;
+
+    /// The number of a function of the table.
+    fn number(id: FunctionId) -> u32 {
+        let at = function::functions().position(|(known, _)| known == id);
+        at.map_or(Operation::OTHER, |at| Operation::FUNCTIONS + at as u32)
+    }
+
+    /// The operation of a number.
+    pub(super) fn of(number: u32) -> Operation {
+        match number {
+            Operation::DIVISION => Operation::Division,
+            Operation::POWER => Operation::Power,
+            _ => function::functions()
+                .nth((number - Operation::FUNCTIONS) as usize)
+                .map_or(Operation::Other, |(_, function)| Operation::Function(function)),
+        }
+    }
+}
+
 /// Runs a tape; a failure says which operation of which equation.
 pub(super) fn run(tape: &Tape, registers: &mut Memory) -> Result<(), Failure> {
     tape.run(registers).map_err(|at| {
-        let code = match tape.code[at as usize] {
-            Instruction::Unary { id, .. } | Instruction::Binary { id, .. } => {
-                function::functions().position(|(known, _)| known == id).map_or(0xff, |n| n + 2)
-            }
+        let operation = match tape.code[at as usize] {
+            Instruction::Unary { id, .. } | Instruction::Binary { id, .. } => Operation::number(id),
             Instruction::Call { .. } => {
                 if let Some(failure) = registers.calls.failure {
                     return Failure::Function {
@@ -34,7 +70,7 @@ pub(super) fn run(tape: &Tape, registers: &mut Memory) -> Result<(), Failure> {
                         reason: failure.reason as u8,
                     };
                 }
-                0
+                Operation::DIVISION
             }
             Instruction::Given { function, .. } => {
                 return Failure::Function {
@@ -43,10 +79,9 @@ pub(super) fn run(tape: &Tape, registers: &mut Memory) -> Result<(), Failure> {
                     reason: crate::bytecode::Reason::Unassigned as u8,
                 };
             }
-            Instruction::Pow { .. } => 1,
-            _ => 0,
+            Instruction::Pow { .. } => Operation::POWER,
+            _ => Operation::DIVISION,
         };
-        let origin = tape.origin(at).min(u32::MAX >> 8);
-        Failure::Domain { place: (origin << 8) | code.min(0xff) as u32 }
+        Failure::Domain { origin: tape.origin(at), operation }
     })
 }

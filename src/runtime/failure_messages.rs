@@ -1,5 +1,6 @@
 //! Failures of simulations in the model's words: time, variables and places.
 
+use super::execution::Operation;
 use crate::bytecode::{self, Reason};
 use crate::causalize::Block;
 use crate::codegen::errors::{
@@ -11,7 +12,7 @@ use crate::diag::{Code, Diagnostic};
 use crate::fault;
 use crate::sim::{Culprit, Failure, SimError, SimErrorKind};
 use crate::source::Span;
-use crate::symbolic::{VarId, function};
+use crate::symbolic::VarId;
 
 impl Program {
     /// A failed simulation in the model's words.
@@ -67,31 +68,30 @@ impl Program {
         self.sorted.dae.equations.first().map_or(Span::NONE, |equation| equation.span)
     }
 
+    fn without_value(&self, origin: u32, operation: u32, when: &str) -> Diagnostic {
+        let what = match Operation::of(operation) {
+            Operation::Division => "a division by zero or an overflow of a division".to_owned(),
+            Operation::Power => "a power without a finite value".to_owned(),
+            Operation::Function(function) => format!(
+                "`{}` has no value: {}",
+                function.name,
+                function.domain.map_or("the result is not finite", |d| d.words)
+            ),
+            Operation::Other => "an operation without a finite value".to_owned(),
+        };
+        match self.linear_loop(origin) {
+            Some(names) => fault!(
+                SIMULATION_FAILED,
+                "the linear algebraic loop of {names} has no unique solution {when}"
+            )
+            .at(self.place(origin)),
+            None => fault!(DOMAIN_ERROR, "{what} {when}").at(self.place(origin)),
+        }
+    }
+
     fn explain_failure(&self, failure: Failure, when: &str) -> Diagnostic {
         match failure {
-            Failure::Domain { place } => {
-                let what = match (place & 0xff) as usize {
-                    0 => "a division by zero or an overflow of a division".to_owned(),
-                    1 => "a power without a finite value".to_owned(),
-                    code => match function::functions().nth(code - 2) {
-                        Some((_, function)) => format!(
-                            "`{}` has no value: {}",
-                            function.name,
-                            function.domain.map_or("the result is not finite", |d| d.words)
-                        ),
-                        None => "an operation without a finite value".to_owned(),
-                    },
-                };
-                let place = place >> 8;
-                match self.linear_loop(place) {
-                    Some(names) => fault!(
-                        SIMULATION_FAILED,
-                        "the linear algebraic loop of {names} has no unique solution {when}"
-                    )
-                    .at(self.place(place)),
-                    None => fault!(DOMAIN_ERROR, "{what} {when}").at(self.place(place)),
-                }
-            }
+            Failure::Domain { origin, operation } => self.without_value(origin, operation, when),
             Failure::Function { function, at, reason } => {
                 let reason = Reason::ALL.get(usize::from(reason)).copied();
                 let reason = reason.unwrap_or(Reason::NotFinite);

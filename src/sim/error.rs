@@ -3,11 +3,13 @@
 /// Why one evaluation of a system failed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Failure {
-    /// An argument outside a function's domain, a division by zero, or an overflow: `place` is a
-    /// number that the system can explain.
+    /// An argument outside a function's domain, a division by zero, or an overflow: numbers that the
+    /// system can explain.
     Domain {
-        /// What the system can explain.
-        place: u32,
+        /// Which equation.
+        origin: u32,
+        /// Which operation in it.
+        operation: u32,
     },
     /// A function of the model failed: numbers that the system can explain.
     Function {

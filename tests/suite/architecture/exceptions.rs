@@ -57,7 +57,6 @@ pub(super) const LONG_FUNCTIONS: &[(&str, &str, &str)] = &[
     ("lower/expressions/calls.rs", "array_function", ONE_TABLE),
     ("lower/expressions/expression.rs", "lower_kind", PER_CASE),
     ("mat/v73.rs", "dataset", IN_ORDER),
-    ("runtime/failure_messages.rs", "explain_failure", PER_CASE),
     ("script/runs/problem/build.rs", "build", IN_ORDER),
     ("script/runs/problem/build.rs", "experiment", IN_ORDER),
     ("script/runs/problem/draft.rs", "experiment", IN_ORDER),
