@@ -88,7 +88,7 @@ fn solve(lu: &DMatrix<f64>, pivots: &[f64], b: &mut DMatrix<f64>, transposed: bo
 fn same_rows(call: &Call<'_>, a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<(), Fault> {
     match a.nrows() == b.nrows() {
         true => Ok(()),
-        false => Err(call.fault("the right side has another number of rows")),
+        false => Err(call.fault("the right-hand side has a different number of rows")),
     }
 }
 
@@ -123,7 +123,7 @@ fn pivots(call: &Call<'_>, argument: usize, n: usize) -> Result<Vec<f64>, Fault>
     let fits = |pivot: &f64| (1.0..=n as f64).contains(pivot);
     match pivots.len() == n && pivots.iter().all(fits) {
         true => Ok(pivots),
-        false => Err(call.fault("the pivots are not those of a factorization")),
+        false => Err(call.fault("the pivots do not belong to a factorization")),
     }
 }
 
@@ -169,7 +169,7 @@ fn dgtsv(call: &mut Call<'_>) -> Result<(), Fault> {
     let (n, mut b) = (diagonal.nrows(), matrix(call, 5)?);
     same_rows(call, &diagonal, &b)?;
     if lower.nrows() + 1 != n || upper.nrows() + 1 != n {
-        return Err(call.fault("the diagonals do not fit each other"));
+        return Err(call.fault("the sizes of the diagonals do not match"));
     }
     let mut a = DMatrix::zeros(n, n);
     for i in 0..n {
@@ -218,7 +218,7 @@ fn dgbsv(call: &mut Call<'_>) -> Result<(), Fault> {
     let (band, mut b) = (matrix(call, 4)?, matrix(call, 7)?);
     let (n, lower, upper) = (band.ncols(), call.number(1) as usize, call.number(2) as usize);
     if b.nrows() != n || band.nrows() < 2 * lower + upper + 1 {
-        return Err(call.fault("the band and the right side do not fit"));
+        return Err(call.fault("the sizes of the band matrix and the right-hand side do not match"));
     }
     let mut a = DMatrix::zeros(n, n);
     for j in 0..n {
@@ -272,7 +272,7 @@ fn reciprocal_condition(
 /// work, iwork, info)`; without equilibration and bounds of errors.
 fn dgesvx(call: &mut Call<'_>) -> Result<(), Fault> {
     if !call.text(0).eq_ignore_ascii_case("N") {
-        return Err(call.fault("equilibration and given factors are not supported"));
+        return Err(call.fault("equilibration and prior factorizations are not supported"));
     }
     let (a, mut b) = (square(call, 4)?, matrix(call, 12)?);
     same_rows(call, &a, &b)?;

@@ -84,3 +84,4 @@ mod terminal;
 mod transcripts;
 mod undetermined;
 mod watching;
+mod words;
