@@ -148,7 +148,7 @@ fn what_grows_exponentially_says_what_and_where() {
         "{said}"
     );
     assert!(said.contains("`P.M19` alone would contain"), "{said}");
-    assert!(said.contains("help: each of its classes holds several components"), "{said}");
+    assert!(said.contains("help: each of its classes contains several components"), "{said}");
 }
 
 #[test]

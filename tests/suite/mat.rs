@@ -274,7 +274,7 @@ fn malformed_text_matrices_are_answered_with_line_and_column() {
     let refused = |text: &str| message(mat::read(text.as_bytes()));
     assert_eq!(refused("#1\ndouble x(1,2)\n1 two\n"), "line 3, column 3: `two` is not a number");
     assert_eq!(refused("#1\ndouble x(1,1)\n1 2\n"), "line 3, column 3: `x` has only 1 numbers");
-    assert_eq!(refused("#1\ndouble x(2,2)\n1 2\n"), "`x` has 2 numbers, 4 are declared in line 2");
+    assert_eq!(refused("#1\ndouble x(2,2)\n1 2\n"), "`x` has 2 numbers, but 4 are declared in line 2");
     assert_eq!(refused("#1\nreal x\n"), "line 2, column 1: `real x` does not declare a matrix");
     assert!(refused("#1\ndouble x(18446744073709551615,2)\n1\n").contains("claims"));
 }

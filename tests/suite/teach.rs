@@ -25,7 +25,7 @@ fn a_recorded_run_is_walked_through() {
         "Fit is the sum of squared residuals",
         "Ranks 1 and 2 have two children",
         "below F_Mut = 0.5",
-        "Individual 9 of the next generation is drawn at random",
+        "Individual 9 of the next generation is sampled at random",
     ] {
         assert!(out.contains(part), "`{part}` is missing:\n{out}");
     }

@@ -54,8 +54,6 @@ const GONE: &[(&str, &str)] = &[
     ("gapi lets it", "gapi permits"),
     ("step became too small", "step size became too small"),
     ("which is no", "which is not a"),
-    ("that is no", "that is not a"),
-    ("it is no", "it is not a"),
     ("this is no", "this is not a"),
     ("equations of texts", "equations of Strings"),
     ("turns of a loop", "iterations"),
@@ -74,6 +72,11 @@ struct Literals {
 
 impl Literals {
     fn tokens(&mut self, tokens: TokenStream) {
+        // Comments for documentation in the arguments of a macro.
+        let mut first = tokens.clone().into_iter();
+        if matches!(first.next(), Some(TokenTree::Ident(name)) if name == "doc") {
+            return;
+        }
         for tree in tokens {
             match tree {
                 TokenTree::Group(group) => self.tokens(group.stream()),
