@@ -33,7 +33,7 @@ pub(crate) fn exceeded() -> String {
 
 /// What can be done about it.
 pub(crate) const REMEDY: &str =
-    "check what ends its loops and its recursion, or allow more with `--instruction-limit`";
+    "check the end conditions of its loops and its recursion, or raise `--instruction-limit`";
 
 /// A number in words where it is a whole number of millions.
 pub(crate) fn in_millions(number: u64) -> String {

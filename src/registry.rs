@@ -10,10 +10,10 @@ use std::sync::Arc;
 codes! {
     /// A name that is not in its table.
     UNKNOWN_CHOICE = "unknown-choice":
-        "## What it means\n\nA method, operator or format was asked for by a name that is not in its table.\n\n## Example\n\n`simulateModel(\"M\", method=\"dasl\")`\n\n## What to do\n\nUse one of the names that the message lists.",
+        "## What it means\n\nThe name of a method, operator or format is unknown.\n\n## Example\n\n`simulateModel(\"M\", method=\"dasl\")`\n\n## What to do\n\nUse one of the names that the message lists.",
     /// An option that its choice does not have, or a value outside its domain.
     BAD_OPTION = "bad-option":
-        "## What it means\n\nAn option is not known to what it was given to, or its value is outside the domain named in the message.\n\n## Example\n\n`tolerance = -1`\n\n## What to do\n\nCorrect the name or the value.",
+        "## What it means\n\nAn option is unknown, or its value is outside the range given in the message.\n\n## Example\n\n`tolerance = -1`\n\n## What to do\n\nCorrect the name or the value.",
 }
 
 /// One named choice: what the user writes, what it means, and how to make it.
@@ -86,7 +86,7 @@ impl Choice {
         };
         let wrong = || {
             fault!(BAD_OPTION, "`{text}` is not a name with settings")
-                .help("write for example `sbx` or `sbx(eta = 5)`")
+                .help("write, for example, `sbx` or `sbx(eta = 5)`")
         };
         let settings = settings.trim_end().strip_suffix(')').ok_or_else(wrong)?;
         let mut choice = Choice::named(name.trim());

@@ -55,10 +55,10 @@ impl Reason {
             Reason::NotFinite => "an operation has no finite value",
             Reason::Unassigned => "a variable has no value",
             Reason::Subscript => "a subscript lies outside its array",
-            Reason::Assertion => "an assertion does not hold",
-            Reason::Range => "the range of a loop has no end",
+            Reason::Assertion => "an assertion failed",
+            Reason::Range => "the range of a loop never ends",
             Reason::Budget => "too many instructions",
-            Reason::Depth => "calls are nested too deep",
+            Reason::Depth => "calls are nested too deeply",
             Reason::External => "an external function has no result",
             Reason::Derivative => "the derivative is not finite",
         }

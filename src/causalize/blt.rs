@@ -68,7 +68,7 @@ pub(super) fn solve_block(
     if let Some(discrete) = members.iter().find(is_discrete) {
         return Err(fault!(
             NOT_SUPPORTED,
-            "`{}` is discrete and stands in an algebraic loop",
+            "`{}` is discrete and belongs to an algebraic loop",
             dae.variable(*discrete).name
         )
         .at(equations[block[0]].span));
@@ -202,9 +202,9 @@ pub(super) fn report(
     }
     if !parts.over_equations.is_empty() {
         fault = fault.help(match parts.over_unknowns.is_empty() {
-            true => "remove one of the equations marked: it contains no unknown".to_owned(),
+            true => "remove one of the marked equations: it contains no unknown".to_owned(),
             false => format!(
-                "remove one of the equations marked: they determine {} more than once",
+                "remove one of the marked equations: they determine {} more than once",
                 names(&parts.over_unknowns)
             ),
         });
@@ -220,7 +220,7 @@ pub(super) fn report(
     };
     let mut diagnostic = fault.labelled(first, text);
     for (span, whose) in places.take(6) {
-        diagnostic = diagnostic.related(span, format!("one of too many equations{whose}"));
+        diagnostic = diagnostic.related(span, format!("one of the redundant equations{whose}"));
     }
     diagnostic
 }

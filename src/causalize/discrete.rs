@@ -89,7 +89,7 @@ fn check_constant_between_events(
         true => Err(fault!(NOT_SUPPORTED,
             "`{}` is discrete, but its equation may change between events",
             dae.variable(variable).name;
-            help: "write relations outside `noEvent` and outside functions")
+            help: "do not use relations inside `noEvent` or inside functions")
         .at(equation.span)),
     }
 }

@@ -152,7 +152,7 @@ fn word(kind: Kind) -> &'static str {
         Kind::Time => "time",
         Kind::Constant(_) => "constant",
         Kind::Parameter { tunable: true } => "parameter",
-        Kind::Parameter { tunable: false } => "settled parameter",
+        Kind::Parameter { tunable: false } => "evaluated parameter",
         Kind::Solved => "parameter solved for",
         Kind::Unknown => "unknown",
         Kind::Derivative(_) => "derivative",

@@ -149,7 +149,7 @@ fn cut(
     for (row, choices) in values.iter().enumerate() {
         let Some(unknown) = matching.equation_to_unknown[row] else {
             return Err(fault!(NOT_SUPPORTED,
-                "this equation stands in a loop of discrete variables and gives none of them a value";
+                "this equation belongs to a loop of discrete variables but determines none of them";
                 help: "write it as `variable = expression`")
             .at(local[row].span));
         };

@@ -222,7 +222,8 @@ impl Continuous {
             if [left, right].iter().any(|side| dae.pool.any_variable(*side, delayed)) {
                 return Err(fault!(
                     crate::lower::errors::NOT_SUPPORTED,
-                    "this equation constrains states, but what it delays cannot be differentiated"
+                    "this equation constrains states (index reduction), but its delayed \
+                     expression cannot be differentiated"
                 )
                 .at(span));
             }

@@ -190,10 +190,11 @@ fn warn_of_start_values(dae: &mut Dae, held: &[VarId]) {
     let more = if held.len() > 6 { ", …" } else { "" };
     let warning = fault!(
         crate::lower::errors::MISSING_INITIAL_CONDITION,
-        "the initial equations of `{}` leave states free; the start values of {}{more} are taken as fixed",
+        "the initial equations of `{}` do not determine all states; the start values of {}{more} \
+         are used as fixed",
         dae.name,
         shown.join(", ");
-        help: "give these variables `fixed = true`, or write initial equations for them"
+        help: "set `fixed = true` for these variables, or write initial equations for them"
     );
     let span = dae.variable(*first).span;
     dae.warnings.push(warning.at(span).warning());

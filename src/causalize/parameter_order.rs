@@ -24,7 +24,7 @@ pub(super) fn order_parameters(dae: &mut Dae) -> Result<Vec<VarId>, Diagnostic> 
             dae.warnings.push(
                 fault!(
                     PARAMETER_WITHOUT_VALUE,
-                    "the parameter `{}` has no value; its start value is taken",
+                    "the parameter `{}` has no value; its start value is used",
                     variable.name
                 )
                 .at(variable.span)

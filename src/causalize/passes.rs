@@ -45,30 +45,34 @@ impl Pass {
 
 /// The passes, in order.
 pub const PASSES: &[Pass] = &[
-    pass("build", "every variable a scalar, relations outside `noEvent` frozen", |system| {
-        system.lower()
-    }),
-    pass("order_parameters", "bindings of parameters in order of dependence", |system| {
+    pass(
+        "build",
+        "scalarization: every variable a scalar, relations outside `noEvent` frozen between events",
+        |system| system.lower(),
+    ),
+    pass("order_parameters", "parameter bindings in order of dependence", |system| {
         system.order_parameters()
     }),
-    pass("fold_parameters", "parameters that cannot be set become numbers", |system| {
+    pass("fold_parameters", "evaluated parameters replaced by numbers", |system| {
         system.fold_parameters()
     }),
-    pass("eliminate_aliases", "`a = b` and `a = -b` become names", |system| {
+    pass("eliminate_aliases", "alias elimination: `a = b` and `a = -b`", |system| {
         system.eliminate_aliases()
     }),
-    pass("drop_vanishing", "derivatives with coefficients of zero are dropped", |system| {
+    pass("drop_vanishing", "derivatives with zero coefficients removed", |system| {
         system.drop_zero_derivatives()
     }),
     pass(
         "separate_discrete",
-        "equations of discrete variables become assignments at events",
+        "equations of discrete variables turned into assignments at events",
         |system| system.separate_discrete(),
     ),
-    pass("reduce_index", "constraints between states differentiated, states chosen", |system| {
-        system.reduce_index()
-    }),
-    pass("sort_blocks", "matching, strongly connected components, tearing", |system| {
+    pass(
+        "reduce_index",
+        "index reduction: constraints between states differentiated, states selected",
+        |system| system.reduce_index(),
+    ),
+    pass("sort_blocks", "BLT: matching, strongly connected components, tearing", |system| {
         system.sort_blocks()
     })
     .writing(report::write_blocks),
@@ -78,7 +82,7 @@ pub const PASSES: &[Pass] = &[
         |system| system.sort_events(),
     )
     .writing(report::write_event_blocks),
-    pass("sort_initial", "the same for the system at the start", |system| system.sort_initial())
+    pass("sort_initial", "the same for the initialization problem", |system| system.sort_initial())
         .writing(report::write_initial_blocks),
 ];
 

@@ -19,8 +19,8 @@ pub(super) fn check_reinits(
         let chosen = selections.iter().any(|s| s.states.contains(&state));
         if states.binary_search(&state).is_err() || chosen {
             let name = &dae.variable(reinit.state).name;
-            return Err(fault!(NOT_SUPPORTED, "`reinit` of `{name}`, which is no state";
-                help: "give `{name}` the attribute `stateSelect = StateSelect.always`")
+            return Err(fault!(NOT_SUPPORTED, "`reinit` of `{name}`, which is not a state";
+                help: "set `stateSelect = StateSelect.always` for `{name}`")
             .at(reinit.span));
         }
     }

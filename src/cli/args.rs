@@ -40,10 +40,10 @@ Examples:
 #[command(propagate_version = true, subcommand_required = true, arg_required_else_help = true)]
 #[command(disable_help_subcommand = true)]
 pub(super) struct Cli {
-    /// What to do
+    /// The command to run
     #[command(subcommand)]
     pub command: Command,
-    /// Settings of every command
+    /// Options common to all commands
     #[command(flatten)]
     pub global: Global,
 }
@@ -53,33 +53,33 @@ pub(super) struct Cli {
 pub(super) enum Command {
     /// Run a script
     Run(RunArgs),
-    /// Watch the genetic algorithm of a script step by step
+    /// Step through the genetic algorithm of a script
     Teach(TeachArgs),
     /// Learn how the genetic algorithm works, in twelve short lessons
     Lesson(LessonArgs),
-    /// Identify parameters as a problem file says
+    /// Estimate the parameters of a problem file
     Identify(IdentifyArgs),
-    /// Write a first problem file from a data file and a model
+    /// Draft a problem file from a data file and a model
     New(NewArgs),
-    /// Run scripts and compare what they answer with what is recorded
+    /// Run scripts and compare their output with recorded transcripts
     Test(TestArgs),
-    /// Type statements and see their answers
+    /// Execute statements interactively
     Repl(ReplArgs),
-    /// Explain a command of scripts, or print the ledger of compatibility
+    /// Show the documentation of a script command, or the compatibility table
     Help(HelpArgs),
     /// Simulate a model
     Simulate(SimulateArgs),
-    /// Check Modelica files, or one model down to its sorted equations
+    /// Check Modelica files, or one model including its causalization (BLT)
     Check(CheckArgs),
     /// Print a model as flat Modelica
     Flatten(FlattenArgs),
-    /// Draw the report of an identification again from its files
+    /// Recreate the report of an identification from its files
     Report(ReportArgs),
     /// Compare results with reference results
     Compare(CompareArgs),
     /// Check a library against a collection of reference results
     Verify(VerifyArgs),
-    /// Explain a diagnostic's code
+    /// Explain a diagnostic code
     Explain(ExplainArgs),
     /// Print shell completions
     Completions(CompletionsArgs),

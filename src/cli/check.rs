@@ -18,13 +18,13 @@ Examples:
   gapi check models --model CaseStudies.PolarizationCurve
   gapi check --library ~/libraries Modelica.Blocks.Examples.PID_Controller")]
 pub(super) struct CheckArgs {
-    /// Modelica files, or folders with packages; or the class
+    /// Modelica files or package folders, or the class
     #[arg(required_unless_present = "model", value_name = "FILE|CLASS", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
     /// The class to check as a model
     #[arg(long, value_name = "CLASS")]
     pub model: Option<String>,
-    /// When to stop
+    /// Limits
     #[command(flatten)]
     pub limits: Limits,
 }
@@ -35,14 +35,14 @@ pub(super) struct CheckArgs {
 Example:
   gapi flatten models --model CaseStudies.PolarizationCurve")]
 pub(super) struct FlattenArgs {
-    /// Modelica files, or folders with packages, and the class: what is found by name need not be
-    /// given
+    /// Modelica files or package folders, and the class; files that are found by name can be
+    /// omitted
     #[arg(required_unless_present = "model", value_name = "FILE|CLASS", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
     /// The class to flatten
     #[arg(long, value_name = "CLASS")]
     pub model: Option<String>,
-    /// When to stop
+    /// Limits
     #[command(flatten)]
     pub limits: Limits,
 }
@@ -111,8 +111,15 @@ fn check_all(session: &mut Session, loaded: &[Name]) -> ExitCode {
             }
         }
     }
-    let count = models.len();
-    session.print(&format!("{classes} classes, {count} models, {wrong} with errors\n"));
+    let classes = match classes {
+        1 => "1 class".to_owned(),
+        n => format!("{n} classes"),
+    };
+    let models = match models.len() {
+        1 => "1 model".to_owned(),
+        n => format!("{n} models"),
+    };
+    session.print(&format!("{classes}, {models}, {wrong} with errors\n"));
     if wrong > 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }
 
@@ -120,7 +127,7 @@ fn check_all(session: &mut Session, loaded: &[Name]) -> ExitCode {
 fn values_left_open(errors: &[Diagnostic]) -> Option<String> {
     let is_open = |error: &Diagnostic| error.code.slug == "parameter-without-value";
     let first = errors.first().filter(|_| errors.iter().all(is_open))?;
-    Some(first.message.replace("has no value", "must be given a value"))
+    Some(first.message.replace("has no value", "must have a value"))
 }
 
 /// Prints a model as flat Modelica.

@@ -19,8 +19,9 @@ Examples:
   gapi compare result.mat reference.csv
   gapi compare result.csv reference.csv --signals comparisonSignals.txt --tolerance 0.001
 
-A signal agrees where it stays inside the tube that a rectangle sweeps along the reference. Half of
-its sides are the tolerance times the reference's extent in time and in value.
+A signal agrees where it stays inside the tube that a rectangle sweeps along the reference. The \
+                        half sides of the rectangle are the tolerance times the reference's \
+                        range in time and in value.
 
 Exit code: 0 if all signals agree, 1 if one does not or a file cannot be read.")]
 pub(super) struct CompareArgs {
@@ -30,10 +31,10 @@ pub(super) struct CompareArgs {
     /// The reference results (.mat or .csv)
     #[arg(value_name = "REFERENCE", value_hint = ValueHint::FilePath)]
     pub reference: PathBuf,
-    /// A file that names the signals to compare, one a line [default: all of the reference]
+    /// A file with the signals to compare, one per line [default: all of the reference]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub signals: Option<PathBuf>,
-    /// Half width and half height of the tube, relative to the reference's extent
+    /// Half width and half height of the tube, relative to the range of the reference
     #[arg(long, value_name = "E", default_value_t = crate::results::TUBE_TOLERANCE)]
     pub tolerance: f64,
 }
@@ -104,10 +105,10 @@ pub(super) fn verdict(agreement: &Agreement) -> String {
             six_digits(*distance)
         ),
         Agreement::Incomplete { covered: Some((first, last)) } => {
-            format!("incomplete: the result covers {first} s to {last} s only")
+            format!("incomplete: the result covers only {first} s to {last} s")
         }
         Agreement::Incomplete { covered: None } => {
-            "incomplete: the result has no points in time".to_owned()
+            "incomplete: the result has no time points".to_owned()
         }
         Agreement::Missing => "missing from the result".to_owned(),
     }

@@ -22,7 +22,7 @@ pub(super) fn identify_all(arguments: &IdentifyArgs, global: &Global) -> ExitCod
     let names: Vec<String> = problems.iter().map(|problem| name(problem)).collect();
     if let Some(twice) = (1..names.len()).find(|&k| names[..k].contains(&names[k])) {
         terminal::eprint(&format!(
-            "error: two of the problems are called `{}`, and so would be their folders\n",
+            "error: two problems are called `{}`, so their output folders would coincide\n",
             names[twice]
         ));
         return ExitCode::from(2);

@@ -13,7 +13,7 @@ Examples:
   gapi explain unknown-class
   gapi explain")]
 pub(super) struct ExplainArgs {
-    /// The code, as it stands in brackets behind `error`; without it, all codes are listed
+    /// The code in brackets after `error`; if omitted, all codes are listed
     pub code: Option<String>,
 }
 
@@ -31,6 +31,6 @@ pub(super) fn explain(arguments: &ExplainArgs) -> ExitCode {
     let slugs: Vec<&str> = codes::all().iter().map(|code| code.slug).collect();
     let hint = suggest::did_you_mean(wanted, slugs)
         .unwrap_or_else(|| "`gapi explain` lists all codes".to_owned());
-    terminal::eprint(&format!("error: no code is named `{wanted}`\nhelp: {hint}\n"));
+    terminal::eprint(&format!("error: there is no code `{wanted}`\nhelp: {hint}\n"));
     ExitCode::from(2)
 }

@@ -16,15 +16,15 @@ Examples:
   gapi help --compat
   gapi help --compat dymola")]
 pub(super) struct HelpArgs {
-    /// A command of scripts; without it, all are listed
+    /// A script command; if omitted, all commands are listed
     pub name: Option<String>,
-    /// What other tools' scripts may expect: supported, partial, absent, and the difference
+    /// Compatibility with other tools: supported, partial, absent, and the differences
     #[arg(long, value_enum, value_name = "DIALECT", num_args = 0..=1)]
     pub compat: Option<Option<DialectName>>,
-    /// The declarations of all commands as a chapter of the guide
+    /// Declarations of all commands, as a chapter of the guide
     #[arg(long, conflicts_with_all = ["name", "compat"])]
     pub reference: bool,
-    /// The operators of the genetic algorithm, their settings and sources; a KIND alone: `crossover`
+    /// Operators of the genetic algorithm, with settings and sources; optionally one KIND: `crossover`
     #[arg(long, value_name = "KIND", num_args = 0..=1, conflicts_with_all = ["name", "compat", "reference"])]
     pub operators: Option<Option<String>>,
 }
@@ -104,7 +104,7 @@ fn described(kind: &Kind) -> String {
         text += &format!("  each of them in [method]:\n    {name}: {summary}\n");
     }
     let declaration = kind.declaration().replace('\n', "\n    ");
-    text + &format!("  a function of yours:\n    {}\n", declaration.trim_end())
+    text + &format!("  your own function:\n    {}\n", declaration.trim_end())
 }
 
 /// One row a line: name, status, difference.

@@ -21,7 +21,7 @@ Examples:
   gapi identify scripts/problems/polarization.toml
   gapi identify scripts/problems/polarization.toml --out fit1 --threads 2
   gapi identify one.toml two.toml              compare two models of the same data
-  gapi identify my.toml --resume               go on after Ctrl-C, a crash or a power cut
+  gapi identify my.toml --resume               resume after Ctrl-C, a crash or a power failure
   gapi identify my.toml --watch settings.toml  change settings while it runs
 
 A problem file:
@@ -47,7 +47,7 @@ fn identify_help() -> String {
     format!(
         "{IDENTIFY_EXAMPLES}\nOperators of [method], or functions in Modelica (gapi help --operators):\n\
          {operators}\n\
-         Exit code: 0 if all went well, 1 if an error happened, 2 for a wrong command line, 130 if\n\
+         Exit code: 0 on success, 1 on an error, 2 for an invalid command line, 130 if\n\
          interrupted."
     )
 }
@@ -56,58 +56,58 @@ fn identify_help() -> String {
 #[derive(Debug, Args)]
 #[command(after_help = identify_help())]
 pub(super) struct IdentifyArgs {
-    /// The problem (.toml)
+    /// The problem file (.toml)
     #[arg(value_hint = ValueHint::FilePath)]
     pub problem: PathBuf,
-    /// Further problems of the same data: the models are compared
+    /// Further problems with the same data: compares the models
     #[arg(value_hint = ValueHint::FilePath)]
     pub others: Vec<PathBuf>,
-    /// Folder for results, figures and the checkpoint [default: one for each problem below `results`]
+    /// Folder for results, figures and the checkpoint [default: one per problem in `results`]
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,
-    /// Replace the results of another problem in that folder
+    /// Overwrite the results of another problem in that folder
     #[arg(long)]
     pub overwrite: bool,
-    /// Threads to use [default: all cores]
+    /// Number of threads [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
-    /// Go on from the checkpoint in the folder
+    /// Resume from the checkpoint in the folder
     #[arg(long, conflicts_with = "fresh")]
     pub resume: bool,
     /// Discard the checkpoint in the folder
     #[arg(long)]
     pub fresh: bool,
-    /// End after so many evaluations
+    /// Stop after this number of evaluations
     #[arg(long, value_name = "N")]
     pub evaluations: Option<u64>,
-    /// Profile likelihoods of the parameters after the fit
+    /// Compute profile likelihoods of the parameters after the fit
     #[arg(long)]
     pub profile: bool,
-    /// After the fit, which further measurements would shrink the intervals most
+    /// After the fit, find the further measurements that would shrink the intervals most (optimal design)
     #[arg(long)]
     pub design: bool,
-    /// After the fit, intervals by fits to data drawn anew
+    /// After the fit, compute intervals by fits to resampled data (bootstrap)
     #[arg(long)]
     pub bootstrap: bool,
-    /// After the fit, the posterior distribution by Markov chains
+    /// After the fit, compute the posterior distribution by Markov chain Monte Carlo
     #[arg(long)]
     pub posterior: bool,
-    /// First analyse how much each parameter matters: `morris` or `sobol`
+    /// Global sensitivity analysis before the fit: `morris` or `sobol`
     #[arg(long, value_name = "WAY")]
     pub sensitivity: Option<String>,
     /// Base samples of that analysis [default: 20 for morris, 512 for sobol]
     #[arg(long, value_name = "N", requires = "sensitivity", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
     pub samples: Option<u32>,
-    /// A file with settings (name = number) that may change while it runs
+    /// A file with settings (name = number) that can be changed during the run
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub watch: Option<PathBuf>,
-    /// A progress bar only, no live view of the run (shown on a terminal after a second)
+    /// Show only a progress bar, no live view (which a terminal shows after one second)
     #[arg(long)]
     pub plain: bool,
-    /// Show errors only
+    /// Show only errors
     #[arg(long, short)]
     pub quiet: bool,
-    /// When to stop
+    /// Limits
     #[command(flatten)]
     pub limits: Limits,
 }

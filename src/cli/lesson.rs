@@ -18,13 +18,14 @@ Examples:
   gapi lesson
   gapi lesson 1
 
-Each lesson is a script of a page, with its text in the comments. It is copied into the folder
-`lessons`, shown, and run. Change the copy and give the command again: your copy is run then.")]
+Each lesson is a script of about one page; its comments explain it. The command copies it to the \
+                        folder `lessons`, shows it and runs it. Edit the copy and repeat the \
+                        command: it then runs your copy.")]
 pub(super) struct LessonArgs {
-    /// The number of the lesson; without it all are listed
+    /// The number of the lesson; if omitted, all lessons are listed
     #[arg(value_name = "N")]
     pub number: Option<usize>,
-    /// Folder for the copies and what they write
+    /// Folder for the copies and their output
     #[arg(long, default_value = "lessons", value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub folder: PathBuf,
 }
@@ -82,7 +83,7 @@ pub(super) fn lesson(arguments: &LessonArgs, global: &Global) -> ExitCode {
 /// How to go on.
 fn ending(file: &Path, text: &str, number: usize) -> String {
     let file = file.display();
-    let mut told = format!("\nTo try something, change {file} and give the command again.\n");
+    let mut told = format!("\nTo experiment, edit {file} and repeat the command.\n");
     if text.contains("Cross(") && text.contains("Eval(") {
         told.push_str(&format!("Step by step: gapi teach {file}\n"));
     }
@@ -97,7 +98,7 @@ fn list() {
         let title = text.lines().next().unwrap_or_default();
         terminal::print(&format!("{}\n", title.trim_start_matches("// ")));
     }
-    terminal::print("\n`gapi lesson 1` shows the first and runs it.\n");
+    terminal::print("\n`gapi lesson 1` shows and runs the first lesson.\n");
 }
 
 /// The learner's copy and its text; made where there is none.

@@ -22,7 +22,7 @@ const ENDING: Duration = Duration::from_secs(60);
 /// A process that has grown to this multiple of its limit is not waited for.
 const GROWTH: u64 = 2;
 /// What is said of the default limit.
-const DEFAULT: &str = ", three quarters of what there is (`--memory-limit` changes it)";
+const DEFAULT: &str = ", three quarters of the available memory (change it with `--memory-limit`)";
 
 /// How a run is asked to stop.
 #[derive(Debug, Clone, Default)]
@@ -130,7 +130,7 @@ fn spawn(
     let thread = std::thread::Builder::new().name("limits".to_owned());
     match thread.spawn(move || work(limits, &over)) {
         Ok(_) => Ok(watch),
-        Err(error) => Err(refused(&format!("the limits cannot be watched: {error}"))),
+        Err(error) => Err(refused(&format!("the limits cannot be monitored: {error}"))),
     }
 }
 
@@ -141,13 +141,13 @@ fn wait(watched: &Watched, started: Instant, over: &AtomicBool) -> Option<String
         if let Some(seconds) = limits.time_limit
             && started.elapsed().as_secs_f64() > seconds
         {
-            return Some(format!("the limit of time is reached: {seconds} s"));
+            return Some(format!("the time limit is reached: {seconds} s"));
         }
         if let Some(mebibytes) = limits.memory_limit
             && watched.memory_beyond(1)
         {
             let whose = if watched.is_default { DEFAULT } else { "" };
-            return Some(format!("the limit of memory is reached: {mebibytes} MiB{whose}"));
+            return Some(format!("the memory limit is reached: {mebibytes} MiB{whose}"));
         }
         std::thread::sleep(INTERVAL);
     }
@@ -204,7 +204,7 @@ mod tests {
         // A process that has more than such a limit is told that it was nobody's wish.
         let reached = Watched { limits: limits(Some(1)), is_default: true };
         let message = wait(&reached, Instant::now(), &AtomicBool::new(false)).expect("reached");
-        assert!(message.contains("1 MiB, three quarters of what there is"), "{message}");
+        assert!(message.contains("1 MiB, three quarters of the available memory"), "{message}");
         let asked = Watched::of(&limits(Some(1)));
         let message = wait(&asked, Instant::now(), &AtomicBool::new(false)).expect("reached");
         assert!(message.ends_with("1 MiB"), "{message}");

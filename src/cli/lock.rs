@@ -61,7 +61,8 @@ fn held(file: &mut File, folder: &Path) -> io::Error {
     io::Error::new(
         io::ErrorKind::ResourceBusy,
         format!(
-            "another run{holder} is writing into `{}`; wait for its end, or choose another folder with `--out`",
+            "another run{holder} is writing to `{}`; wait until it finishes, or choose another \
+             folder with `--out`",
             folder.display()
         ),
     )

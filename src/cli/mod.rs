@@ -58,7 +58,7 @@ pub fn main() -> ExitCode {
         // The panic has said what happened.
         Ok(Err(_)) => ExitCode::from(101),
         Err(error) => {
-            terminal::eprint(&format!("error: no thread could be started: {error}\n"));
+            terminal::eprint(&format!("error: cannot start a thread: {error}\n"));
             ExitCode::FAILURE
         }
     }

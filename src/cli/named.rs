@@ -46,12 +46,12 @@ fn read_device(path: &Path, patience: Duration, longest: usize) -> io::Result<Ve
             Ok(piece) => bytes.extend(piece?),
             Err(RecvTimeoutError::Disconnected) => return Ok(bytes),
             Err(RecvTimeoutError::Timeout) => {
-                let message = format!("nothing came from it for {} s", patience.as_secs_f64());
+                let message = format!("no data arrived for {} s", patience.as_secs_f64());
                 return Err(io::Error::new(io::ErrorKind::TimedOut, message));
             }
         }
         if bytes.len() > longest {
-            let message = format!("more than {} MiB came from it", longest >> 20);
+            let message = format!("it delivered more than {} MiB", longest >> 20);
             return Err(io::Error::new(io::ErrorKind::FileTooLarge, message));
         }
     }
@@ -87,13 +87,13 @@ mod tests {
     fn endless_and_silent_devices_end() {
         let short = Duration::from_millis(50);
         let endless = read_device(Path::new("/dev/zero"), short, 1 << 20).unwrap_err();
-        assert_eq!(endless.to_string(), "more than 1 MiB came from it");
+        assert_eq!(endless.to_string(), "it delivered more than 1 MiB");
         assert_eq!(read_device(Path::new("/dev/null"), short, 10).unwrap(), Vec::<u8>::new());
         let folder = tempfile::tempdir().unwrap();
         let pipe = folder.path().join("pipe");
         let made = std::process::Command::new("mkfifo").arg(&pipe).status().unwrap();
         assert!(made.success());
         let silent = read_device(&pipe, short, 10).unwrap_err();
-        assert_eq!(silent.to_string(), "nothing came from it for 0.05 s");
+        assert_eq!(silent.to_string(), "no data arrived for 0.05 s");
     }
 }

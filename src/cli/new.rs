@@ -15,25 +15,25 @@ use std::process::ExitCode;
 /// Arguments of `gapi new`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-Columns are matched with variables of the model by their names; ranges of parameters are those of the
-model, or a decade around its values. Every guess is a commented line of the file.
+Columns are matched with model variables by name; parameter ranges are those of the model, or \
+                        one decade around its values. Each guess is a commented line of the file.
 
 Examples:
   gapi new curve.csv --model Curve.mo
   gapi new curve.csv --model models --class CaseStudies.PolarizationCurve --output fit.toml
 
-Exit code: 0 if the file was written, 1 if an error happened, 2 for a wrong command line.")]
+Exit code: 0 if the file was written, 1 on an error, 2 for an invalid command line.")]
 pub(super) struct NewArgs {
-    /// The measured data (CSV, text of an instrument, MAT, XLSX)
+    /// The measured data (CSV, instrument text file, MAT, XLSX)
     #[arg(value_hint = ValueHint::FilePath)]
     pub data: PathBuf,
-    /// The Modelica file or folder, or a class of a library
+    /// The Modelica file or folder, or a library class
     #[arg(long, value_name = "FILE|CLASS", value_hint = ValueHint::AnyPath)]
     pub model: PathBuf,
-    /// The class, if the file holds several
+    /// The class, if the file contains several
     #[arg(long, value_name = "CLASS")]
     pub class: Option<String>,
-    /// The problem file to write [default: the name of the data with .toml]
+    /// The problem file to write [default: the name of the data file with .toml]
     #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
 }
@@ -46,7 +46,7 @@ pub(super) fn new(arguments: &NewArgs, global: &Global) -> ExitCode {
     };
     let output = output(arguments);
     if session.world.exists(&output) {
-        let fault = Fault::new(BAD_OPTION, format!("`{}` exists already", output.display()))
+        let fault = Fault::new(BAD_OPTION, format!("`{}` already exists", output.display()))
             .help("choose another name with `--output`, or remove it");
         return session::failed(&mut session, vec![fault.at(Span::NONE)]);
     }
@@ -98,10 +98,9 @@ fn write(
     let name = output.display();
     session.print(&format!("written to {name}\n"));
     match draft.incomplete {
-        None => {
-            session.print(&format!("read it, correct the ranges, then: gapi identify {name}\n"))
-        }
-        Some(why) => session.print(&format!("it cannot be run yet: {why}\n")),
+        None => session
+            .print(&format!("check it, correct the ranges, then run: gapi identify {name}\n")),
+        Some(why) => session.print(&format!("it cannot run yet: {why}\n")),
     }
     Ok(())
 }

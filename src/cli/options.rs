@@ -10,14 +10,15 @@ pub(super) struct Global {
     /// When to use colours
     #[arg(long, value_enum, default_value_t = Colour::Auto, global = true, value_name = "WHEN")]
     pub color: Colour,
-    /// A folder with Modelica packages, loadable by name (repeatable; also MODELICAPATH)
+    /// A folder with Modelica packages to load by name (repeatable; also MODELICAPATH)
     #[arg(long, global = true, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub library: Vec<PathBuf>,
-    /// Let scripts and models read files in this folder; without DIR, everywhere (repeatable)
+    /// Allow scripts and models to read files in this folder; without DIR, everywhere (repeatable)
     #[arg(long, global = true, value_name = "DIR", num_args = 0..=1, require_equals = true)]
     #[arg(default_missing_value = EVERYWHERE, value_hint = ValueHint::DirPath, help_heading = ALLOWED)]
     pub allow_read: Vec<PathBuf>,
-    /// Let scripts and models write everywhere, and replace and remove files that they have not made
+    /// Allow scripts and models to write everywhere, and to replace and remove files that they did
+    /// not create
     #[arg(long, global = true, help_heading = ALLOWED)]
     pub allow_write: bool,
 }
@@ -26,8 +27,9 @@ pub(super) struct Global {
 pub(super) const EVERYWHERE: &str = "/";
 
 /// The heading of the permissions, with what holds without them.
-const ALLOWED: &str = "What scripts and models may do. They read the folder of the script, the \
-working folder and libraries, and write the output folder and new files";
+const ALLOWED: &str = "Permissions of scripts and models. They can read the folder of the \
+                       script, the working folder and libraries, and write to the output folder \
+                       and to new files";
 
 /// When to use colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -43,13 +45,13 @@ pub(super) enum Colour {
 /// How scripts are read, and what they may do.
 #[derive(Debug, Args, Clone)]
 pub(super) struct Freedom {
-    /// Whose habits scripts follow [default: recognised from the script]
+    /// The dialect of scripts [default: detected from the script]
     #[arg(long, value_enum, value_name = "NAME")]
     pub dialect: Option<DialectName>,
-    /// Let scripts run programs and read all environment variables
+    /// Allow scripts to run programs and to read all environment variables
     #[arg(long, help_heading = ALLOWED)]
     pub allow_system: bool,
-    /// When to stop
+    /// Limits
     #[command(flatten)]
     pub limits: Limits,
 }
@@ -57,17 +59,17 @@ pub(super) struct Freedom {
 /// What a command may take.
 #[derive(Debug, Args, Clone)]
 pub(super) struct Limits {
-    /// Stop after so many seconds
+    /// Stop after this number of seconds
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     pub time_limit: Option<f64>,
-    /// Stop when the program takes more memory (MiB); Linux only [default: three quarters of what
-    /// the machine or its control group has]
+    /// Stop when the program uses more memory (MiB); Linux only [default: three quarters of the
+    /// memory of the machine or its control group]
     #[arg(long, value_name = "MIB", value_parser = clap::value_parser!(u32).range(1..))]
     pub memory_limit: Option<u32>,
-    /// Evaluate models without machine code: slower, with the same digits
+    /// Evaluate models without machine code: slower, with identical results
     #[arg(long)]
     pub interpret: bool,
-    /// Most instructions that one call of a function may take, in millions [default: 20]
+    /// Maximum number of instructions of one function call, in millions [default: 20]
     #[arg(long, value_name = "MILLIONS", value_parser = clap::value_parser!(u32).range(1..))]
     pub instruction_limit: Option<u32>,
 }

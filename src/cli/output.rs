@@ -52,13 +52,15 @@ impl Output {
                 let output = Output::at(folder, command, &input);
                 if !overwrite && output.is_of_old_version() {
                     terminal::eprint(&format!(
-                        "warning: `{}` does not say whose results it holds; they are replaced\n",
+                        "warning: `{}` does not record which problem its results belong to; they \
+                         are replaced\n",
                         output.folder.display()
                     ));
                 }
                 match output.holder() {
                     Some(other) if other != output.origin && !overwrite => Err(format!(
-                        "`{}` holds the results of another problem: {}\n = help: choose another folder with `--out`, or replace them with `--overwrite`",
+                        "`{}` contains the results of another problem: {}\n = help: choose \
+                         another folder with `--out`, or replace them with `--overwrite`",
                         output.folder.display(),
                         named(&other)
                     )),
@@ -88,7 +90,8 @@ impl Output {
             Some(origin) => origin == output.origin,
             None => is_free(&output.folder),
         });
-        let own = own.ok_or_else(|| format!("`{}` has no room for `{stem}`", all.display()))?;
+        let own =
+            own.ok_or_else(|| format!("`{}` has no free name for `{stem}`", all.display()))?;
         Ok(Output { latest: Some(all.join(LATEST)), ..own })
     }
 

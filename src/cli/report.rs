@@ -19,8 +19,8 @@ Examples:
   gapi report results
   gapi report results --output fit.html
 
-It reads result.json, history.csv and individuals.csv, as `gapi run` and `gapi identify` have
-written them; in a folder of several problems those that were written last.
+It reads result.json, history.csv and individuals.csv, as written by `gapi run` and `gapi \
+                        identify`; in a folder with several problems, the files written last.
 
 Exit code: 0 if the report was written, 1 if a file is missing or damaged.")]
 pub(super) struct ReportArgs {

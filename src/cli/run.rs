@@ -22,61 +22,61 @@ Examples:
   gapi run scripts/GAPILib.mos
   gapi run scripts/twin/GAPILib.mos --out twin --threads 1
   gapi run my.mos --transcript my.txt --quiet --strict
-  gapi run my.mos --resume              go on after Ctrl-C, a crash or a power cut
+  gapi run my.mos --resume              resume after Ctrl-C, a crash or a power failure
   gapi run --parse-only scripts
 
-Exit code: 0 if all went well, 1 if an error happened that the script did not read,
-2 for a wrong command line, 130 if interrupted.")]
+Exit code: 0 on success, 1 on an error that the script did not read, 2 for an invalid command \
+                        line, 130 if interrupted.")]
 pub(super) struct RunArgs {
     /// The script (.mos)
     #[arg(value_hint = ValueHint::FilePath, required_unless_present = "parse_only")]
     pub script: Option<PathBuf>,
-    /// Folder for results and figures [default: one for each script below `results`]
+    /// Folder for results and figures [default: one per script in `results`]
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,
-    /// Replace the results of another problem in that folder
+    /// Overwrite the results of another problem in that folder
     #[arg(long)]
     pub overwrite: bool,
-    /// Threads to use [default: all cores]
+    /// Number of threads [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
-    /// Write every statement with its answer to a file
+    /// Write each statement with its result to a file
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub transcript: Option<PathBuf>,
-    /// Go on with a run that was killed, from the checkpoint in the output folder
+    /// Resume an interrupted run from the checkpoint in the output folder
     #[arg(long)]
     pub resume: bool,
     /// Seconds between two checkpoints
     #[arg(long, value_name = "SECONDS", default_value = "2", value_parser = seconds)]
     pub checkpoint: f64,
-    /// A progress bar only, no live view of the run (shown on a terminal after a second)
+    /// Show only a progress bar, no live view (which a terminal shows after one second)
     #[arg(long)]
     pub plain: bool,
-    /// Record what the genetic algorithm did, for `gapi teach`
+    /// Record the steps of the genetic algorithm, for `gapi teach`
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub trace: Option<PathBuf>,
-    /// Leave out the least squares that end an identification, from its best individual
+    /// Skip the final least-squares fit that starts from the best individual
     #[arg(long)]
     pub no_probe: bool,
-    /// Profile likelihoods from there, intervals that are right for strongly curved models, too
+    /// Compute profile likelihoods from there: intervals that are also valid for strongly nonlinear models
     #[arg(long, conflicts_with = "no_probe")]
     pub profile: bool,
-    /// Show errors only
+    /// Show only errors
     #[arg(long, short)]
     pub quiet: bool,
-    /// Show statements and answers as the dialect's tool does
+    /// Show statements and results in the format of the dialect's tool
     #[arg(long, conflicts_with = "quiet")]
     pub echo: bool,
     /// Stop at the first error
     #[arg(long, conflicts_with = "lenient")]
     pub strict: bool,
-    /// End with exit code 0 whatever happened
+    /// Always exit with code 0
     #[arg(long)]
     pub lenient: bool,
-    /// Read the scripts in these files and folders without running them
+    /// Only parse the scripts in these files and folders
     #[arg(long, value_name = "PATH", num_args = 1.., conflicts_with = "script")]
     pub parse_only: Vec<PathBuf>,
-    /// What scripts may do
+    /// Permissions of scripts
     #[command(flatten)]
     pub freedom: Freedom,
 }

@@ -35,13 +35,13 @@ Examples:
   gapi simulate Decay.mo --model Decay --from first.mat --stop-time 10 --output second.mat
   gapi simulate Decay.mo --model Decay --dump eliminate_aliases
 
-What the command line does not say comes from the model's experiment annotation.")]
+Defaults come from the model's experiment annotation.")]
 pub(super) struct SimulateArgs {
-    /// Modelica files, or folders with packages, and the class: what is found by name need not be
-    /// given
+    /// Modelica files or package folders, and the class; files that are found by name can be
+    /// omitted
     #[arg(required_unless_present = "model", value_name = "FILE|CLASS", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
-    /// The class to simulate; it may carry a modification: 'M(p = 2)'
+    /// The class to simulate, optionally with a modification: 'M(p = 2)'
     #[arg(long, value_name = "CLASS")]
     pub model: Option<String>,
     /// Start of the simulation in seconds
@@ -59,34 +59,34 @@ pub(super) struct SimulateArgs {
     /// Integration method
     #[arg(long, value_name = "M")]
     pub method: Option<String>,
-    /// Give a parameter a value (repeatable)
+    /// Set a parameter (repeatable)
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = name_and_value)]
     pub set: Vec<(String, f64)>,
-    /// Begin with the states and parameters at the end of these results, or at --start-time
+    /// Start from the states and parameters at the end of these results, or at --start-time
     #[arg(long, value_name = "FILE.mat|.csv", value_hint = ValueHint::FilePath)]
     pub from: Option<PathBuf>,
-    /// Where the trajectories go; the ending decides the format
+    /// Output file of the trajectories; the extension selects the format
     #[arg(long, short, value_name = "FILE.mat|.csv", value_hint = ValueHint::FilePath)]
     pub output: Option<PathBuf>,
-    /// Keep only the variables whose whole names match
+    /// Store only the variables whose complete names match this regular expression
     #[arg(long, value_name = "REGEX")]
     pub variable_filter: Option<String>,
-    /// Print the system after a pass instead of simulating it
+    /// Print the system after a compiler pass instead of simulating it
     #[arg(long, value_name = "PASS", value_parser = pass_names())]
     pub dump: Option<String>,
-    /// Print what the simulation cost
+    /// Print statistics of the simulation
     #[arg(long)]
     pub stats: bool,
-    /// Stop where events would follow each other without end, instead of sliding or resting there
+    /// Stop at chattering and Zeno behaviour, instead of sliding or resting there
     #[arg(long)]
     pub no_sliding: bool,
-    /// Draw a variable over time, in the terminal or as --figure says (repeatable)
+    /// Plot a variable over time, in the terminal or to --figure (repeatable)
     #[arg(long, value_name = "VARIABLE")]
     pub plot: Vec<String>,
-    /// Where the drawing of --plot goes: a file that ends in .svg, .png or .pdf
+    /// Output file of --plot, with extension .svg, .png or .pdf
     #[arg(long, value_name = "FILE", requires = "plot", value_hint = ValueHint::FilePath)]
     pub figure: Option<PathBuf>,
-    /// When to stop
+    /// Limits
     #[command(flatten)]
     pub limits: Limits,
 }
@@ -196,7 +196,7 @@ fn run(
 fn filter(expression: &str) -> Result<Regex, Fault> {
     let whole = format!("^(?:{expression})$");
     RegexBuilder::new(&whole).size_limit(1 << 20).build().map_err(|_| {
-        fault!(BAD_OPTION, "`--variable-filter` is no regular expression: `{expression}`")
+        fault!(BAD_OPTION, "`--variable-filter` is not a valid regular expression: `{expression}`")
     })
 }
 
@@ -288,9 +288,9 @@ fn statistics(s: &Statistics) -> String {
         ("factorizations", s.factorizations),
         ("state events", s.state_events),
         ("time events", s.time_events),
-        ("chattering relations followed", s.followed),
-        ("slides along discontinuities", s.slides),
-        ("accumulations of impacts", s.accumulations),
+        ("chattering relations", s.followed),
+        ("sliding modes", s.slides),
+        ("accumulations of impacts (Zeno)", s.accumulations),
     ];
     rows.iter().map(|(name, count)| format!("  {name:34}{count:>10}\n")).collect()
 }

@@ -29,34 +29,34 @@ Examples:
   gapi teach scripts/twin/GAPILib.mos --what-if \"F_Mut := 0.5\" --generation 10
   gapi run my.mos --trace my.trace && gapi teach my.trace")]
 pub(super) struct TeachArgs {
-    /// A script (.mos), which is run first, or a trace that `gapi run --trace` has written
+    /// A script (.mos), which is run first, or a trace written by `gapi run --trace`
     #[arg(value_name = "SCRIPT|TRACE", value_hint = ValueHint::FilePath)]
     pub input: PathBuf,
-    /// Print the steps as text, also on a terminal
+    /// Print the steps as text, even on a terminal
     #[arg(long)]
     pub plain: bool,
-    /// Ask what will happen before it is told, and count the right answers
+    /// Quiz: ask for the outcome of each step first, and count the correct answers
     #[arg(long, conflicts_with = "html")]
     pub quiz: bool,
-    /// Run once more with this statement carried out at the generation to begin with, and compare
+    /// Run again with this statement executed at the first generation shown, and compare
     #[arg(long, value_name = "STATEMENT", conflicts_with_all = ["html", "quiz"])]
     pub what_if: Option<String>,
-    /// The generation to begin with
+    /// The first generation to show
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
     pub generation: usize,
-    /// How many generations to print as text
+    /// Number of generations to print as text
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = at_least_one)]
     pub count: usize,
-    /// Write a picture of the generation to begin with and the next one (SVG), in place of the text
+    /// Write a figure of the first generation shown and the next one (SVG), instead of text
     #[arg(long, value_name = "FILE", conflicts_with_all = ["html", "quiz", "what_if"], value_hint = ValueHint::FilePath)]
     pub svg: Option<PathBuf>,
-    /// Write one page with all steps, for any browser, in place of the text
+    /// Write an HTML page with all steps, instead of text
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub html: Option<PathBuf>,
-    /// Folder for the results and the trace of the run [default: one for each script below `results`]
+    /// Folder for the results and the trace of the run [default: one per script in `results`]
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: Option<PathBuf>,
-    /// Replace the results of another problem in that folder
+    /// Overwrite the results of another problem in that folder
     #[arg(long)]
     pub overwrite: bool,
 }
@@ -180,7 +180,7 @@ fn compare(
 /// The run with a change.
 fn branch(arguments: &TeachArgs, global: &Global, change: Change<'_>) -> Result<Trace, Trouble> {
     if arguments.input.extension().is_none_or(|extension| extension != "mos") {
-        let message = "a recorded run cannot be changed; give the script in its place";
+        let message = "a recorded run cannot be changed; give the script instead";
         return Err(Trouble::Message(message.to_owned()));
     }
     recorded(arguments, global, Some(change)).map(|(trace, _)| trace)
@@ -235,20 +235,22 @@ fn show(
     let colour = Terminal::new(global.color, true).colour();
     let run_again = |generation, statement: &str| {
         branch(arguments, global, (generation, statement)).map_err(|trouble| match trouble {
-            Trouble::Told(_) => "the changed run failed; why stands behind this screen".to_owned(),
+            Trouble::Told(_) => {
+                "the changed run failed; the reason is printed after this screen closes".to_owned()
+            }
             Trouble::Message(message) => message,
         })
     };
     let simulate = |genes: &[f64]| match &mut session {
         Some(session) => session.simulate_again(genes),
-        None => Err("a trace keeps the curve of the best of each generation; give the script in \
-                     its place to see all"
+        None => Err("a trace contains only the curve of the best of each generation; give the \
+                     script instead to see all curves"
             .to_owned()),
     };
     let screen = Screen::new(walk, colour);
     let screen = if arguments.quiz { screen.with_quiz() } else { screen };
     let score = teach_screen::walk_through(screen, run_again, simulate)
-        .map_err(|error| Trouble::Message(format!("the terminal cannot be drawn on: {error}")))?;
+        .map_err(|error| Trouble::Message(format!("cannot draw on the terminal: {error}")))?;
     if let Some(score) = score {
         terminal::print(&format!("{score}\n"));
     }

@@ -35,7 +35,7 @@ impl Branches {
     }
 
     fn current(&self) -> Branch {
-        *self.open.last().expect("what stands in no branch is open")
+        *self.open.last().expect("an entry outside any branch is open")
     }
 
     fn fresh(&mut self) -> Branch {

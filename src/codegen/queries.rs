@@ -59,7 +59,7 @@ impl Program {
         let exists = self.variables.iter().find(|v| &*v.name == name);
         if exists.is_some_and(|v| v.variability <= Variability::Parameter) {
             return Err(fault!(STRUCTURAL_PARAMETER,
-                "`{name}` cannot be set: it is constant, final, or shaped the compiled model";
+                "`{name}` cannot be set: it is constant, final, or a structural parameter";
                 help: "change it with a modification when translating the model"));
         }
         let known = self.parameters.iter().map(|p| &*p.name);

@@ -160,7 +160,7 @@ impl<'f> Binding<'f> {
             }
             None => Err(fault!(
                 WRONG_ARGUMENTS,
-                "`{}` takes {} arguments at most", self.function.name, self.taken.len();
+                "`{}` takes at most {} arguments", self.function.name, self.taken.len();
                 help: "its inputs are {}", self.inputs()
             )),
         }
@@ -177,7 +177,7 @@ impl<'f> Binding<'f> {
         if self.taken[at] {
             return Err(fault!(
                 WRONG_ARGUMENTS,
-                "the input `{name}` of `{}` is given twice",
+                "the input `{name}` of `{}` is specified twice",
                 self.function.name
             ));
         }
@@ -196,7 +196,7 @@ impl<'f> Binding<'f> {
             None => Ok(self.values),
             Some((input, _)) => Err(fault!(
                 WRONG_ARGUMENTS,
-                "the input `{}` of `{}` is not given and has no default",
+                "the input `{}` of `{}` is missing and has no default",
                 input.name, self.function.name;
                 help: "its inputs are {}", self.inputs()
             )),

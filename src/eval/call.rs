@@ -155,8 +155,8 @@ impl Evaluator<'_> {
         }
         Err(fault!(
             UNKNOWN_FUNCTION,
-            "`{}` takes no iterators", function.name();
-            help: "`sum`, `product`, `min`, `max` and `array` do"
+            "`{}` does not accept iterators", function.name();
+            help: "iterators are accepted by `sum`, `product`, `min`, `max` and `array`"
         )
         .at(span))
     }
@@ -219,8 +219,8 @@ impl Evaluator<'_> {
         if let Some(named) = arguments.named.first() {
             let fault = fault!(
                 WRONG_ARGUMENTS,
-                "`{}` takes positional arguments only", entry.name;
-                help: "leave out `{} =`", named.name.node
+                "`{}` accepts only positional arguments", entry.name;
+                help: "remove `{} =`", named.name.node
             );
             return Err(fault.at(named.name.span));
         }

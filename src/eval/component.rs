@@ -59,7 +59,8 @@ impl Evaluator<'_> {
         is_input: bool,
     ) -> Result<(), Diagnostic> {
         if self.scope.in_progress.contains(&component.name) {
-            let fault = fault!(MISPLACED, "the declaration of `{}` needs itself", component.name);
+            let fault =
+                fault!(MISPLACED, "the declaration of `{}` depends on itself", component.name);
             return Err(fault.at(component.span));
         }
         self.scope.in_progress.push(component.name);

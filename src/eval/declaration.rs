@@ -47,8 +47,9 @@ pub fn declare(
         return scope.declare(name, value_type, dims, None).at(span);
     };
     if !components.is_empty() && !dims.is_empty() {
-        let fault = fault!(TYPE_MISMATCH, "the components of an array of records are not given here";
-            help: "assign them behind the declaration: `{name}[1].x := 2`");
+        let fault = fault!(TYPE_MISMATCH, "the components of an array of records cannot be set \
+            here";
+            help: "assign them after the declaration: `{name}[1].x := 2`");
         return Err(fault.at(span));
     }
     let call_span = std::mem::replace(&mut scope.call_span, span);

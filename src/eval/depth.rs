@@ -61,7 +61,7 @@ impl Call {
         if calls >= MAX_CALLS || !has_room(BYTES.get() / 8 * 7) {
             return Err(fault!(
                 RECURSION_LIMIT,
-                "`{name}` is called inside too many other calls";
+                "the calls of `{name}` are nested too deeply";
                 help: "check the condition that ends the recursion"
             ));
         }

@@ -5,38 +5,38 @@ use crate::codes;
 codes! {
     /// A name that stands for no variable.
     UNKNOWN_VARIABLE = "unknown-variable":
-        "## What it means\n\nA name stands for no variable, constant or parameter where it is used.\n\n## Example\n\n`y := X + 1` where only `x` was declared.\n\n## What to do\n\nCorrect the name, or declare or assign the variable first. Functions see their own variables and constants of packages, not the variables of the script that calls them.",
+        "## What it means\n\nA name does not refer to a variable, constant or parameter in the scope where it is used.\n\n## Example\n\n`y := X + 1` where only `x` was declared.\n\n## What to do\n\nCorrect the name, or declare or assign the variable first. Functions can access their own variables and constants of packages, but not the variables of the calling script.",
     /// A name that stands for no function.
     UNKNOWN_FUNCTION = "unknown-function":
         "## What it means\n\nA call names a function that is neither built in nor loaded.\n\n## Example\n\n`simulateModle(\"M\")`\n\n## What to do\n\nCorrect the name, or load the file that defines the function first.",
     /// Arguments that do not fit the inputs of a function.
     WRONG_ARGUMENTS = "wrong-arguments":
-        "## What it means\n\nA call gives too many arguments, leaves out one that has no default, names an input that the function does not have, or gives one twice (MLS §12.4.1).\n\n## Example\n\n`sin(1, 2)`\n\n## What to do\n\nCompare the call with the inputs of the function, which the message names.",
+        "## What it means\n\nA call has too many arguments, omits one without default, names an input that does not exist, or specifies one twice (MLS §12.4.1).\n\n## Example\n\n`sin(1, 2)`\n\n## What to do\n\nCompare the call with the inputs of the function, which the message names.",
     /// A variable or output that is read before anything was assigned to it.
     NO_VALUE_YET = "no-value-yet":
-        "## What it means\n\nA variable, an element of an array or an output is used before it has a value. It is never replaced by zero. A record that was assigned in part can be read as a whole: its Real elements without a value are NaN.\n\n## Example\n\n`function f output Real y; algorithm end f;` never assigns `y`.\n\n## What to do\n\nAssign the variable on every way through the function, or give it a binding in its declaration.",
+        "## What it means\n\nA variable, an element of an array or an output is used before it has a value. It is never replaced by zero. A partially assigned record can be read as a whole: its Real elements without a value are NaN.\n\n## Example\n\n`function f output Real y; algorithm end f;` never assigns `y`.\n\n## What to do\n\nAssign the variable on every path through the function, or give it a binding in its declaration.",
     /// An assignment to what cannot be assigned.
     NOT_ASSIGNABLE = "not-assignable":
-        "## What it means\n\nThe left side of an assignment is an input of the function, a constant, a loop variable, or nothing that can hold a value.\n\n## Example\n\n`u := 2` where `u` is declared `input Real u`.\n\n## What to do\n\nAssign to a protected variable or an output instead.",
+        "## What it means\n\nThe left side of an assignment is an input of the function, a constant, a loop variable, or not an assignable variable.\n\n## Example\n\n`u := 2` where `u` is declared `input Real u`.\n\n## What to do\n\nAssign to a protected variable or an output instead.",
     /// Calls nested too deeply.
     RECURSION_LIMIT = "recursion-limit":
-        "## What it means\n\nFunctions call each other, or expressions are nested, more deeply than the program can follow.\n\n## Example\n\n`function f … y := f(x); end f;` without an end.\n\n## What to do\n\nCheck the condition that ends the recursion; a loop needs no depth.",
+        "## What it means\n\nFunctions call each other, or expressions are nested, more deeply than the program can follow.\n\n## Example\n\n`function f … y := f(x); end f;` without a terminating condition.\n\n## What to do\n\nCheck the condition that ends the recursion; a loop needs no nesting.",
     /// `assert` with a false condition.
     ASSERTION_FAILED = "assertion-failed":
-        "## What it means\n\nThe condition of an `assert` is false; the text is the one given there (MLS §8.3.7).\n\n## Example\n\n`assert(T > 0, \"temperature must be positive\")`\n\n## What to do\n\nLook at the values that the condition compares.",
+        "## What it means\n\nThe condition of an `assert` is false; the message is the text of the `assert` (MLS §8.3.7).\n\n## Example\n\n`assert(T > 0, \"temperature must be positive\")`\n\n## What to do\n\nCheck the values that the condition compares.",
     /// `terminate` outside of a simulation.
     TERMINATED = "terminated":
-        "## What it means\n\n`terminate` was called outside of a simulation; it ends the evaluation with its text (MLS §8.3.8).\n\n## Example\n\n`terminate(\"done\")`\n\n## What to do\n\nUse `return` in functions and `exit` in scripts.",
+        "## What it means\n\n`terminate` was called outside a simulation; it ends the evaluation with its message (MLS §8.3.8).\n\n## Example\n\n`terminate(\"done\")`\n\n## What to do\n\nUse `return` in functions and `exit` in scripts.",
     /// What has a meaning in the equations of a model only.
     MODEL_ONLY = "model-only":
-        "## What it means\n\nAn operator or a statement has a meaning in a model that is simulated, not in a script or function.\n\n## Example\n\n`der(x)` in a script.\n\n## What to do\n\nMove it into a model, or compute the value another way.",
+        "## What it means\n\nAn operator or a statement is meaningful only in a simulated model, not in a script or function.\n\n## Example\n\n`der(x)` in a script.\n\n## What to do\n\nMove it into a model, or compute the value another way.",
     /// Too few or too many outputs.
     WRONG_OUTPUTS = "wrong-outputs":
-        "## What it means\n\nMore results are asked for than a function has outputs, or a value is wanted from what has none.\n\n## Example\n\n`(a, b) := sin(1)`\n\n## What to do\n\nCompare the left side with the outputs of the function.",
+        "## What it means\n\nA call requests more results than the function has outputs, or uses the value of a function without outputs.\n\n## Example\n\n`(a, b) := sin(1)`\n\n## What to do\n\nCompare the left side with the outputs of the function.",
     /// `end` outside of subscripts, a loop without a range, `break` outside of a loop.
     MISPLACED = "misplaced":
-        "## What it means\n\n`end` is used outside of subscripts, `break` outside of a loop, or a loop has no range and none can be deduced from the subscripts in its body (MLS §11.2.2.1).\n\n## Example\n\n`x := end;`\n\n## What to do\n\nMove it to where it has a meaning; write the range of the loop.",
+        "## What it means\n\n`end` is used outside of subscripts, `break` outside a loop, or a loop has no range and none can be deduced from the subscripts in its body (MLS §11.2.2.1).\n\n## Example\n\n`x := end;`\n\n## What to do\n\nMove it to a place where it is allowed; write the range of the loop.",
     /// A function that is not written in Modelica.
     EXTERNAL_FUNCTION = "external-function":
-        "## What it means\n\nThe function is implemented outside of Modelica (`external`), and the program has no implementation of it.\n\n## Example\n\n`external \"C\" y = my_function(x);`\n\n## What to do\n\nWrite its algorithm in Modelica.",
+        "## What it means\n\nThe function is implemented outside Modelica (`external`), and this program does not implement it.\n\n## Example\n\n`external \"C\" y = my_function(x);`\n\n## What to do\n\nWrite its algorithm in Modelica.",
 }

@@ -109,7 +109,7 @@ impl Evaluator<'_> {
         }
         let mut outputs = self.outputs(call)?;
         if outputs.is_empty() {
-            let message = "a value is wanted here, but the function called has no output";
+            let message = "expected a value, but the called function has no output";
             return Err(Fault::new(WRONG_OUTPUTS, message).at(call.span));
         }
         Ok(outputs.swap_remove(0))
@@ -133,9 +133,7 @@ impl Evaluator<'_> {
     fn end(&mut self, span: Span) -> Result<Value, Diagnostic> {
         match self.scope.ends.last() {
             Some(size) => Ok(Value::Integer(*size as i64)),
-            None => {
-                Err(Fault::new(MISPLACED, "`end` has a meaning inside of subscripts only").at(span))
-            }
+            None => Err(Fault::new(MISPLACED, "`end` is allowed only inside subscripts").at(span)),
         }
     }
 
@@ -204,7 +202,7 @@ impl Evaluator<'_> {
 
     fn tuple(&mut self, elements: &[Option<Expression>], span: Span) -> Result<Value, Diagnostic> {
         let missing =
-            || Fault::new(WRONG_OUTPUTS, "an output list with a gap is no value").at(span);
+            || Fault::new(WRONG_OUTPUTS, "an output list with a gap is not a value").at(span);
         let values = elements
             .iter()
             .map(|element| self.expression(element.as_ref().ok_or_else(missing)?))
@@ -237,7 +235,7 @@ fn real(value: f64) -> Result<Value, Fault> {
     match value.is_finite() {
         true => Ok(Value::Real(value)),
         false => Err(fault!(REAL_OVERFLOW, "the number exceeds the largest Real, 1.8e308";
-            help: "`Modelica.Constants.inf` stands for a limit that is never reached")),
+            help: "use `Modelica.Constants.inf` for a limit that is never reached")),
     }
 }
 

@@ -106,7 +106,7 @@ impl Evaluator<'_> {
         let Some(entry) = intrinsics::find(name) else {
             return Err(fault!(
                 EXTERNAL_FUNCTION,
-                "`{}` calls the external function `{name}`, which this program does not have",
+                "`{}` calls the external function `{name}`, which this program does not implement",
                 function.name;
                 help: "write its algorithm in Modelica"
             )
@@ -167,7 +167,7 @@ impl Memory {
                         self.numbers.extend(values.iter().map(|value| value.ordinal as f64));
                     }
                     Elements::String(_) | Elements::Record(_) => {
-                        return Err(refused("an array of texts or records"));
+                        return Err(refused("an array of Strings or records"));
                     }
                 }
                 Slot { kind: Kind::Number, first, dims }
@@ -253,5 +253,5 @@ fn number(value: i64) -> Result<f64, Fault> {
 }
 
 fn refused(what: &str) -> Fault {
-    fault!(EXTERNAL_FUNCTION, "external functions do not take {what}")
+    fault!(EXTERNAL_FUNCTION, "external functions do not accept {what}")
 }

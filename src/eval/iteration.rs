@@ -67,7 +67,7 @@ impl Evaluator<'_> {
         let Some((size, _)) = sizes.first().copied() else {
             let fault = fault!(
                 MISPLACED,
-                "the range of `{name}` is not written and cannot be deduced";
+                "the range of `{name}` is missing and cannot be deduced";
                 help: "write `{name} in 1:n`, or use `{name}` as the subscript of an array"
             );
             return Err(fault.at(index.name.span));
@@ -75,7 +75,8 @@ impl Evaluator<'_> {
         if let Some((other, span)) = sizes.iter().find(|(other, _)| *other != size) {
             let fault = fault!(
                 MISPLACED,
-                "`{name}` is the subscript of dimensions with the sizes {size} and {other}";
+                "the range of `{name}` is ambiguous: it is the subscript of dimensions of \
+                 different sizes, {size} and {other}";
                 help: "write the range of `{name}`"
             );
             return Err(fault.at(index.name.span).related(*span, "a different size"));
@@ -126,7 +127,7 @@ impl Evaluator<'_> {
             if name == "product" && value.rank() > 0 {
                 return Err(fault!(
                     TYPE_MISMATCH,
-                    "`product` multiplies scalars, not values of type {}",
+                    "`product` needs scalars, not values of type {}",
                     value.type_name()
                 ));
             }
@@ -142,7 +143,7 @@ impl Evaluator<'_> {
         match name {
             "sum" => Ok(Some(Value::Integer(0))),
             "product" => Ok(Some(Value::Integer(1))),
-            _ => Err(fault!(DOMAIN_ERROR, "`{name}` of no element has no value").at(span)),
+            _ => Err(fault!(DOMAIN_ERROR, "`{name}` without elements has no value").at(span)),
         }
     }
 

@@ -109,7 +109,7 @@ impl Evaluator<'_> {
                 Err(Fault::new(TERMINATED, text).at(span))
             }
             Special::ModelOnly(name) => {
-                let message = format!("`{name}` has a meaning in models only");
+                let message = format!("`{name}` is allowed only in models");
                 Err(Fault::new(MODEL_ONLY, message).at(span))
             }
         }
@@ -237,7 +237,7 @@ fn taken<'a, const N: usize>(
 ) -> Result<[Option<&'a Expression>; N], Diagnostic> {
     let mut found = [None; N];
     if arguments.positional.len() > N {
-        let fault = fault!(WRONG_ARGUMENTS, "{N} arguments are expected at most");
+        let fault = fault!(WRONG_ARGUMENTS, "expected at most {N} arguments");
         return Err(fault.at(arguments.positional[N].span));
     }
     for (slot, argument) in found.iter_mut().zip(&arguments.positional) {
@@ -250,13 +250,13 @@ fn taken<'a, const N: usize>(
             _ => {
                 let name = argument.name.node;
                 let fault =
-                    fault!(WRONG_ARGUMENTS, "the argument `{name}` is unknown or given twice");
+                    fault!(WRONG_ARGUMENTS, "the argument `{name}` is unknown or specified twice");
                 return Err(fault.at(argument.name.span));
             }
         }
     }
     if found[..required].iter().any(Option::is_none) {
-        return Err(fault!(WRONG_ARGUMENTS, "{required} arguments are needed").at(span));
+        return Err(fault!(WRONG_ARGUMENTS, "expected {required} arguments").at(span));
     }
     Ok(found)
 }

@@ -48,11 +48,11 @@ impl Evaluator<'_> {
                 return self.if_statement(branches, &[]);
             }
             StatementKind::When { .. } => {
-                let message = "a `when` has a meaning in models and scripts only";
+                let message = "`when` is allowed only in models and scripts";
                 return Err(Fault::new(MODEL_ONLY, message).at(statement.span));
             }
             StatementKind::Break if self.scope.loops == 0 => {
-                return Err(Fault::new(MISPLACED, "`break` outside of a loop").at(statement.span));
+                return Err(Fault::new(MISPLACED, "`break` outside a loop").at(statement.span));
             }
             StatementKind::Break => return Ok(Flow::Break),
             StatementKind::Return => return Ok(Flow::Return),
@@ -74,7 +74,7 @@ impl Evaluator<'_> {
         if outputs.len() < targets.len() {
             let fault = fault!(
                 WRONG_OUTPUTS,
-                "{} results are wanted, but the function has {}",
+                "the call requests {} results, but the function has {}",
                 targets.len(),
                 count(outputs.len())
             );

@@ -195,7 +195,7 @@ impl ValueType {
 
     fn refuse(&self, got: &str, got_real: bool) -> Fault {
         let message = format!("expected a value of type {}, got {got}", self.name());
-        let rounding = "`integer(x)` gives the largest Integer not above `x`";
+        let rounding = "use `integer(x)` for the largest Integer not above `x`";
         let help = (got_real && matches!(self, ValueType::Integer)).then(|| rounding.to_owned());
         Fault::new(TYPE_MISMATCH, message).help_if(help)
     }

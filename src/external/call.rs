@@ -87,17 +87,17 @@ pub trait Outside {
 
     /// Whether a path is a file (`Some(false)`) or a folder (`Some(true)`), if it exists.
     fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {
-        Err(refused(&format!("to look for `{path}`")))
+        Err(refused(&format!("to check whether `{path}` exists")))
     }
 
     /// Seconds since 1970-01-01 00:00 UTC.
     fn unix_seconds(&mut self) -> Result<u64, Fault> {
-        Err(refused("to know the time"))
+        Err(refused("to read the clock"))
     }
 
     /// The hidden state of the random numbers.
     fn random(&mut self) -> Result<&mut Random, Fault> {
-        Err(refused("to remember a random number"))
+        Err(refused("to store a random number"))
     }
 }
 
@@ -105,7 +105,7 @@ pub trait Outside {
 impl Outside for () {}
 
 fn refused(what: &str) -> Fault {
-    fault!(EXTERNAL_OUTSIDE, "an external function wants {what}, which is not granted here")
+    fault!(EXTERNAL_OUTSIDE, "an external function needs {what}, which is not allowed here")
 }
 
 /// A call: positions of its arguments and what stands there.
@@ -182,7 +182,7 @@ impl Call<'_> {
         };
         object
             .and_then(|object| object.downcast_ref())
-            .ok_or_else(|| self.fault("the object is none that this function takes"))
+            .ok_or_else(|| self.fault("the object has the wrong type for this function"))
     }
 
     /// Writes a number.

@@ -28,7 +28,7 @@ pub(super) const ENTRIES: &[Entry] = &[
 ];
 
 fn schur(call: &Call<'_>, a: &DMatrix<f64>) -> Result<RealSchur, Fault> {
-    RealSchur::of(a).ok_or_else(|| call.fault("the Schur form was not found"))
+    RealSchur::of(a).ok_or_else(|| call.fault("the Schur decomposition did not converge"))
 }
 
 /// Writes real and imaginary parts.
@@ -87,7 +87,7 @@ fn dgeev(call: &mut Call<'_>) -> Result<(), Fault> {
 /// rconde, rcondv, work, lwork, iwork, info)`; without condition numbers of the vectors.
 fn dgeevx(call: &mut Call<'_>) -> Result<(), Fault> {
     if matches!(call.text(3), "V" | "v" | "B" | "b") {
-        return Err(call.fault("condition numbers of eigenvectors are not computed"));
+        return Err(call.fault("condition numbers of eigenvectors are not supported"));
     }
     let found = Decomposed::of(call, balanced(call, square(call, 5)?)?)?;
     let (left, right) = (found.left(), found.right());
@@ -147,7 +147,7 @@ fn conditions(values: &[Complex<f64>], left: &DMatrix<f64>, right: &DMatrix<f64>
 /// order.
 fn dgees(call: &mut Call<'_>) -> Result<(), Fault> {
     if wants(call, 1) {
-        return Err(call.fault("eigenvalues chosen by a function are not supported"));
+        return Err(call.fault("selecting eigenvalues by a function is not supported"));
     }
     let form = schur(call, &square(call, 4)?)?;
     write(call, 4, &form.t);
@@ -197,7 +197,7 @@ fn same_size(call: &Call<'_>, argument: usize, n: usize) -> Result<DMatrix<f64>,
     let matrix = square(call, argument)?;
     match matrix.nrows() == n {
         true => Ok(matrix),
-        false => Err(call.fault("the matrices are of different sizes")),
+        false => Err(call.fault("the matrices have different sizes")),
     }
 }
 
@@ -227,7 +227,7 @@ fn given(call: &Call<'_>, t: usize, q: Option<usize>) -> Result<RealSchur, Fault
 fn dtrevc(call: &mut Call<'_>) -> Result<(), Fault> {
     let how = call.text(1).to_ascii_uppercase();
     if how == "S" {
-        return Err(call.fault("a choice of eigenvectors is not supported"));
+        return Err(call.fault("selecting eigenvectors is not supported"));
     }
     let side = call.text(0).to_ascii_uppercase();
     for (letter, argument, of) in [
@@ -253,14 +253,14 @@ fn dtrevc(call: &mut Call<'_>) -> Result<(), Fault> {
 /// without `sep`.
 fn dtrsen(call: &mut Call<'_>) -> Result<(), Fault> {
     if matches!(call.text(0), "V" | "v" | "B" | "b") {
-        return Err(call.fault("the separation of invariant subspaces is not computed"));
+        return Err(call.fault("the separation of invariant subspaces is not supported"));
     }
     let updates = call.text(1).eq_ignore_ascii_case("V");
     let mut form = given(call, 4, updates.then_some(6))?;
     let n = form.t.nrows();
     let chosen: Vec<bool> = call.array(2).iter().map(|value| *value != 0.0).collect();
     if chosen.len() != n {
-        return Err(call.fault("the choice is of another size than the matrix"));
+        return Err(call.fault("the selection and the matrix have different sizes"));
     }
     let m = form.reorder(&chosen);
     write(call, 4, &form.t);
@@ -286,7 +286,7 @@ fn dtrsyl(call: &mut Call<'_>) -> Result<(), Fault> {
     let (a, b) = (quasi_triangular(call, 5)?, quasi_triangular(call, 7)?);
     let c = matrix(call, 9)?;
     if c.shape() != (a.nrows(), b.nrows()) {
-        return Err(call.fault("the right side is of another size"));
+        return Err(call.fault("the right-hand side has a different size"));
     }
     let sign = call.number(2).signum();
     let transposed = (is_transposed(call, 0), is_transposed(call, 1));

@@ -34,15 +34,16 @@ struct Generalized {
 impl Generalized {
     fn of(call: &Call<'_>, a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<Generalized, Fault> {
         if a.shape() != b.shape() {
-            return Err(call.fault("the matrices are of different sizes"));
+            return Err(call.fault("the matrices have different sizes"));
         }
         let (size_a, size_b) = (a.norm(), b.norm());
         let ratio = if size_b > 0.0 && size_a > 0.0 { size_a / size_b } else { 1.0 };
-        let (shift, inverse) = most_regular(a, b, ratio)
-            .ok_or_else(|| call.fault("every number is an eigenvalue: the pencil is singular"))?;
+        let (shift, inverse) = most_regular(a, b, ratio).ok_or_else(|| {
+            call.fault("the matrix pencil is singular: every number is an eigenvalue")
+        })?;
         let balanced = Balanced::of(&inverse * if shift.is_some() { b } else { a });
         let form = RealSchur::of(&balanced.matrix)
-            .ok_or_else(|| call.fault("the Schur form was not found"))?;
+            .ok_or_else(|| call.fault("the Schur decomposition did not converge"))?;
         let least = f64::EPSILON * a.nrows() as f64 * form.t.norm();
         let mut left = &form.q * left_eigenvectors(&form.t);
         let mut right = &form.q * right_eigenvectors(&form.t);
@@ -161,7 +162,7 @@ fn dggevx(call: &mut Call<'_>) -> Result<(), Fault> {
 /// lwork, info)`; eigenvalues only.
 fn dhgeqz(call: &mut Call<'_>) -> Result<(), Fault> {
     if !call.text(0).eq_ignore_ascii_case("E") {
-        return Err(call.fault("the generalized Schur form is not computed"));
+        return Err(call.fault("the generalized Schur form is not supported"));
     }
     let (mut h, t) = (leading(call, 6, 3)?, leading(call, 8, 3)?.upper_triangle());
     if call.number(4) != 1.0 || call.number(5) != h.nrows() as f64 {

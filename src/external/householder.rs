@@ -205,7 +205,7 @@ fn multiply(call: &mut Call<'_>, q: DMatrix<f64>, argument: usize) -> Result<(),
     let c = matrix(call, argument)?;
     let is_left = call.text(0).eq_ignore_ascii_case("L");
     if q.nrows() != if is_left { c.nrows() } else { c.ncols() } {
-        return Err(call.fault("the matrices do not fit each other"));
+        return Err(call.fault("the matrix sizes do not match"));
     }
     let q = if is_transposed(call, 1) { q.transpose() } else { q };
     write(call, argument, &if is_left { q * c } else { c * q });

@@ -72,7 +72,7 @@ impl Journal {
         if self.bytes > MOST_BYTES {
             return Err(crate::fault!(
                 super::errors::EXTERNAL_OUTSIDE,
-                "a simulation may write {MOST_BYTES} bytes, and this one writes more"
+                "a simulation must not write more than {MOST_BYTES} bytes"
             ));
         }
         self.deeds.push(deed);

@@ -33,7 +33,7 @@ fn least_squares(
 ) -> Result<(DMatrix<f64>, f64), Fault> {
     let (rows, columns) = a.shape();
     if b.nrows() < rows {
-        return Err(call.fault("the right side has another number of rows"));
+        return Err(call.fault("the right-hand side has a different number of rows"));
     }
     let b = b.rows(0, rows).into_owned();
     if rows == 0 || columns == 0 {
@@ -105,7 +105,7 @@ fn dgglse(call: &mut Call<'_>) -> Result<(), Fault> {
     let (c, d) = (matrix(call, 7)?, matrix(call, 8)?);
     let (p, n) = b.shape();
     if a.ncols() != n || c.nrows() != a.nrows() || d.nrows() != p || p > n || n > p + a.nrows() {
-        return Err(call.fault("the matrices do not fit each other"));
+        return Err(call.fault("the matrix sizes do not match"));
     }
     let (q, r) = full_qr(b.transpose());
     let r = r.rows(0, p).into_owned();
@@ -149,7 +149,7 @@ fn dgesvd(call: &mut Call<'_>) -> Result<(), Fault> {
     let a = matrix(call, 4)?;
     let jobs = [call.text(0), call.text(1)].map(str::to_ascii_uppercase);
     if jobs.iter().any(|job| job == "O") {
-        return Err(call.fault("vectors in place of the matrix are not supported"));
+        return Err(call.fault("vectors instead of the matrix are not supported"));
     }
     let (u, values, v_t) = singular_values(call, a)?;
     write(call, 6, &values);
@@ -166,7 +166,7 @@ fn dgesvd(call: &mut Call<'_>) -> Result<(), Fault> {
 /// `(jobz, m, n, A, lda, s, U, ldu, VT, ldvt, work, lwork, iwork, info)`
 fn dgesdd(call: &mut Call<'_>) -> Result<(), Fault> {
     if call.text(0).eq_ignore_ascii_case("O") {
-        return Err(call.fault("vectors in place of the matrix are not supported"));
+        return Err(call.fault("vectors instead of the matrix are not supported"));
     }
     let (u, values, v_t) = singular_values(call, matrix(call, 3)?)?;
     write(call, 5, &values);

@@ -87,7 +87,7 @@ fn inverse(lu: &DMatrix<f64>, pivots: &[f64]) -> DMatrix<f64> {
 fn same_rows(call: &Call<'_>, a: &DMatrix<f64>, b: &DMatrix<f64>) -> Result<(), Fault> {
     match a.nrows() == b.nrows() {
         true => Ok(()),
-        false => Err(call.fault("the right side has another number of rows")),
+        false => Err(call.fault("the right-hand side has a different number of rows")),
     }
 }
 
@@ -131,7 +131,7 @@ fn pivots(call: &Call<'_>, argument: usize, n: usize) -> Result<Vec<f64>, Fault>
     let fits = |pivot: &f64| (1.0..=n as f64).contains(pivot);
     match pivots.len() == n && pivots.iter().all(fits) {
         true => Ok(pivots),
-        false => Err(call.fault("the pivots are not those of a factorization")),
+        false => Err(call.fault("the pivots do not belong to a factorization")),
     }
 }
 
@@ -174,7 +174,7 @@ fn dgtsv(call: &mut Call<'_>) -> Result<(), Fault> {
     let (lower, diagonal, upper) = (matrix(call, 2)?, matrix(call, 3)?, matrix(call, 4)?);
     let n = diagonal.nrows();
     if lower.nrows() + 1 != n || upper.nrows() + 1 != n {
-        return Err(call.fault("the diagonals do not fit each other"));
+        return Err(call.fault("the sizes of the diagonals do not match"));
     }
     let mut a = DMatrix::zeros(n, n);
     for i in 0..n {
@@ -267,7 +267,7 @@ fn reciprocal_condition(
 /// work, iwork, info)`; without equilibration and bounds of errors.
 fn dgesvx(call: &mut Call<'_>) -> Result<(), Fault> {
     if !call.text(0).eq_ignore_ascii_case("N") {
-        return Err(call.fault("equilibration and given factors are not supported"));
+        return Err(call.fault("equilibration and prior factorizations are not supported"));
     }
     let (a, mut b) = (square(call, 4)?, matrix(call, 12)?);
     same_rows(call, &a, &b)?;

@@ -14,7 +14,7 @@ pub(super) fn matrix(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, F
     let values = call.array(argument);
     match values.iter().all(|value| value.is_finite()) {
         true => Ok(DMatrix::from_row_slice(rows, columns, values)),
-        false => Err(call.fault("a matrix holds a number that is not finite")),
+        false => Err(call.fault("a matrix contains a number that is not finite")),
     }
 }
 

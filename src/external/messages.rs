@@ -157,7 +157,7 @@ fn real_matrix(call: &mut Call<'_>) -> Result<(), Fault> {
 fn write_matrix(call: &mut Call<'_>) -> Result<(), Fault> {
     let (path, name) = (call.text(0).to_owned(), call.text(1).to_owned());
     let [rows, columns] = *call.dims(2) else {
-        return Err(call.fault("what is written is a matrix"));
+        return Err(call.fault("expected a matrix to write"));
     };
     let values = call.array(2).to_vec();
     let columns_first = (0..values.len()).map(|at| {

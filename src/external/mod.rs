@@ -139,7 +139,7 @@ impl Entry {
             if !slot.fits(letter) {
                 return Err(crate::fault!(
                     EXTERNAL_CALL,
-                    "argument {} of the external function `{}` is of another kind",
+                    "argument {} of the external function `{}` has a different type",
                     position + 1,
                     self.name
                 ));
@@ -148,7 +148,7 @@ impl Entry {
         match (wanted_result, result) {
             (Some(letter), Some(slot)) if !slot.fits(letter) => Err(crate::fault!(
                 EXTERNAL_CALL,
-                "the result of the external function `{}` is of another kind",
+                "the result of the external function `{}` has a different type",
                 self.name
             )),
             _ => Ok(()),

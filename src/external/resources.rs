@@ -45,7 +45,10 @@ impl Resources {
 
     fn provider(&self, name: &str) -> Result<&dyn Provide, Fault> {
         self.0.as_deref().ok_or_else(|| {
-            fault!(EXTERNAL_OUTSIDE, "the model wants the file `{name}`, and there are no files")
+            fault!(
+                EXTERNAL_OUTSIDE,
+                "the model needs the file `{name}`, but there is no file access"
+            )
         })
     }
 }

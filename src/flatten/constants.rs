@@ -101,7 +101,7 @@ impl Instantiation<'_> {
         let dims = declared.dims.clone();
         if declared.variability > Variability::Parameter {
             return Err(fault!(NOT_CONSTANT, "`{name}` is not known at translation";
-                help: "only constants and parameters are")
+                help: "only constants and parameters are known at translation")
             .at(span));
         }
         let NodeKind::Variable(leaf) = &self.nodes[node.0].kind else {
@@ -109,9 +109,11 @@ impl Instantiation<'_> {
         };
         let bound = leaf.modifier.binding.clone();
         let Some((Some(value), bound)) = bound.map(|b| (b.value.clone(), b)) else {
-            return Err(fault!(NOT_CONSTANT, "`{name}` has no value, and one is needed here";
-                help: "give it one where it is declared or by a modifier")
-            .at(span));
+            return Err(
+                fault!(NOT_CONSTANT, "`{name}` has no value, but its value is needed here";
+                help: "give it a value in its declaration or by a modifier")
+                .at(span),
+            );
         };
         let value = picked(value, &bound.indices);
         let found = self.known_value(&value, bound.context)?;
@@ -169,7 +171,7 @@ impl Instantiation<'_> {
         let class = &self.text(scope).name;
         Err(fault!(
             NOT_CONSTANT,
-            "`{first}` is a component of the enclosing class `{class}` and no constant";
+            "`{first}` is a component of the enclosing class `{class}`, not a constant";
             help: "only constants of enclosing classes can be used (MLS §5.3.1)")
         .at(reference.span))
     }
@@ -300,14 +302,14 @@ fn fitting(value: Value, base: &BaseType, dims: &[usize], each: bool) -> Result<
         Value::Array(array) if array.dims == dims => Ok(value),
         Value::Array(array) => Err(fault!(
             super::errors::SIZE_MISMATCH,
-            "the value has the sizes {:?}, the declaration {dims:?}",
+            "the value has the sizes {:?}, but the declaration has {dims:?}",
             array.dims
         )),
         _ if dims.is_empty() => Ok(value),
         _ if each => ArrayValue::filled(dims.to_vec(), &value).map(Value::Array),
         _ => Err(fault!(
             super::errors::SIZE_MISMATCH,
-            "the value is a scalar, the declaration has the sizes {dims:?}"
+            "the value is a scalar, but the declaration has the sizes {dims:?}"
         )),
     }
 }
@@ -328,7 +330,7 @@ fn check_type(value: &Value, base: &BaseType) -> Result<(), Fault> {
     if found == wanted || empty {
         return Ok(());
     }
-    Err(fault!(TYPE_MISMATCH, "the value is {found}, and {wanted} is needed"))
+    Err(fault!(TYPE_MISMATCH, "the value is {found}, expected {wanted}"))
 }
 
 /// Answers calls of functions while constants are evaluated; variables are values already.
@@ -345,15 +347,15 @@ impl Host for Functions<'_, '_> {
         _arguments: Vec<Value>,
         span: Span,
     ) -> Result<Vec<Value>, Diagnostic> {
-        Err(fault!(NOT_CONSTANT, "`{}` is a command, not a function of values", header.name)
-            .at(span))
+        Err(fault!(NOT_CONSTANT, "`{}` is a command, not a function", header.name).at(span))
     }
 
     fn interrupted(&mut self) -> Option<Fault> {
         self.0.steps += 1;
         let limit = budget::step_limit();
         (self.0.steps > limit).then(|| {
-            fault!(TOO_LARGE, "the values needed at translation take more than {} steps",
+            fault!(TOO_LARGE, "evaluating the values needed at translation takes more than {} \
+                               steps",
                 budget::in_millions(limit); help: "{}", budget::REMEDY)
         })
     }

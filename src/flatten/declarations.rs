@@ -136,7 +136,7 @@ impl Instantiation<'_> {
                     let class = &self.text(id).name;
                     return Err(fault!(
                         super::errors::UNKNOWN_ELEMENT,
-                        "`{class}` inherits no component `{name}` to redeclare"
+                        "`{class}` does not inherit a component `{name}` to redeclare"
                     )
                     .at(component.name.span));
                 }
@@ -170,7 +170,7 @@ impl Instantiation<'_> {
         }
         Err(fault!(
             TYPE_MISMATCH,
-            "`{}` cannot extend `{}`, which is another kind of class",
+            "`{}` cannot extend `{}`, which is a different kind of class",
             own.name,
             inherited.name
         )
@@ -348,7 +348,7 @@ impl Instantiation<'_> {
                 }
             }
         }
-        Err(fault!(CYCLIC_CLASS, "type `{}` is defined by itself", specifier.name)
+        Err(fault!(CYCLIC_CLASS, "type `{}` is defined in terms of itself", specifier.name)
             .at(specifier.span))
     }
 
@@ -542,7 +542,7 @@ fn enumeration_of(
         })),
         None => Err(fault!(
             NOT_SUPPORTED,
-            "`{name}` is an enumeration without literals: it can only be replaced"
+            "`{name}` is an enumeration without literals: it can only be redeclared"
         )
         .at(span)),
     }

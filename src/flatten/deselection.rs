@@ -50,7 +50,7 @@ impl Instantiation<'_> {
                     if !self.has_connection(base, left, right)? {
                         return Err(fault!(
                             UNKNOWN_ELEMENT,
-                            "`{}` has no `connect({}, {})` that `{}` could leave out",
+                            "`{}` has no `connect({}, {})` that `{}` can remove",
                             self.text(base).name,
                             print::reference(left),
                             print::reference(right),
@@ -73,7 +73,7 @@ impl Instantiation<'_> {
             let class = &self.text(base).name;
             return Err(fault!(
                 UNKNOWN_ELEMENT,
-                "`{class}` has no component `{}` to leave out",
+                "`{class}` has no component `{}` to remove",
                 name.node
             )
             .help_if(suggest::did_you_mean(name.node.as_str(), known))
@@ -84,7 +84,7 @@ impl Instantiation<'_> {
         }
         Err(fault!(
             TYPE_MISMATCH,
-            "`{}` is no model, block or connector and cannot be left out",
+            "`{}` is not a model, block or connector and cannot be removed",
             name.node
         )
         .at(name.span)

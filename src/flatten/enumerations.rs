@@ -88,9 +88,9 @@ impl Instantiation<'_> {
             {
                 return Err(fault!(
                     TYPE_MISMATCH,
-                    "`{}` has the values of a type as subscripts, not numbers",
+                    "`{}` has enumeration or Boolean subscripts, not Integer ones",
                     part.name;
-                    help: "write a literal of the type that its declaration names")
+                    help: "write a literal of the index type in its declaration")
                 .at(index.span));
             }
         }
@@ -167,7 +167,7 @@ impl Instantiation<'_> {
                 match value.kind {
                     ExpressionKind::Integer(n) if !(1..=count).contains(&n) => Err(fault!(
                         TYPE_MISMATCH,
-                        "`{}` has {count} literals, not one number {n}",
+                        "`{}` has {count} literals; there is no literal number {n}",
                         definition.name
                     )
                     .at(span)),

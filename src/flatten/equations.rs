@@ -106,9 +106,11 @@ impl Instantiation<'_> {
                 }
             }
             Section::External(external) => {
-                return Err(
-                    fault!(NOT_SUPPORTED, "only functions can be external").at(external.span)
-                );
+                return Err(fault!(
+                    NOT_SUPPORTED,
+                    "only functions can have an external implementation"
+                )
+                .at(external.span));
             }
             Section::Elements { .. } | Section::Annotation(_) => {}
         }
@@ -319,7 +321,7 @@ impl Instantiation<'_> {
         };
         let span = index.name.span;
         let range = index.range.as_ref().ok_or_else(|| {
-            fault!(NOT_SUPPORTED, "the range of `{}` is not known", index.name.node;
+            fault!(NOT_SUPPORTED, "the range of `{}` is unknown", index.name.node;
                 help: "write the range of the loop, such as `1:n`")
             .at(span)
         })?;
@@ -333,7 +335,7 @@ impl Instantiation<'_> {
             self.turns(inner, context, &turn, out)?;
             if out.len() > MAX_EQUATIONS {
                 return Err(
-                    fault!(super::errors::TOO_LARGE, "the loop has too many turns").at(span)
+                    fault!(super::errors::TOO_LARGE, "the loop has too many iterations").at(span)
                 );
             }
         }
@@ -347,7 +349,8 @@ impl Instantiation<'_> {
             }
             other => {
                 let found = other.type_name();
-                Err(fault!(TYPE_MISMATCH, "a loop runs over a vector, not {found}").at(range.span))
+                Err(fault!(TYPE_MISMATCH, "a loop needs a vector as its range, got {found}")
+                    .at(range.span))
             }
         }
     }
@@ -401,8 +404,11 @@ impl Instantiation<'_> {
                 Value::Boolean(false) => {}
                 other => {
                     let found = other.type_name();
-                    return Err(fault!(TYPE_MISMATCH, "a condition must be Boolean, not {found}")
-                        .at(condition.span));
+                    return Err(fault!(
+                        TYPE_MISMATCH,
+                        "a condition must be Boolean, but this is {found}"
+                    )
+                    .at(condition.span));
                 }
             }
         }

@@ -152,8 +152,8 @@ impl Instantiation<'_> {
         if let ClassSpecifier::Derivative(derivative) = &self.text(class).definition.specifier {
             let (name, span) = (self.text(id).name.clone(), derivative.target.span);
             return Err(fault!(NOT_SUPPORTED,
-                "`{name}` is a partial derivative of a function, which is not translated yet";
-                help: "write the derivative as a function of its own")
+                "`{name}` is a partial derivative of a function, which is not supported yet";
+                help: "write the derivative as a separate function")
             .at(span));
         }
         // Known by name before its body is read, which may call the function itself.
@@ -401,9 +401,9 @@ impl Instantiation<'_> {
             if is_function && !declared.protected && causality.is_none() {
                 return Err(fault!(
                     TYPE_MISMATCH,
-                    "`{}` is public in a function and neither input nor output",
+                    "`{}` is public in a function but neither input nor output",
                     declared.name;
-                    help: "declare it `input` or `output`, or behind `protected`")
+                    help: "declare it `input` or `output`, or move it after `protected`")
                 .at(declared.span));
             }
             components.push(Declared {
@@ -498,7 +498,7 @@ impl Instantiation<'_> {
                         let name = &text.name;
                         return Err(fault!(
                             TYPE_MISMATCH,
-                            "function `{name}` has equations; a function has one algorithm"
+                            "function `{name}` has equations; write an algorithm"
                         )
                         .at(*span));
                     }

@@ -91,11 +91,11 @@ impl Instantiation<'_> {
         let class = self.scope_of(holder).map(|scope| self.text(scope).name.clone());
         fault!(
             TOO_LARGE,
-            "the model has more than {MAX_INSTANCES} components: `{}` alone would hold {}",
+            "the model has more than {MAX_INSTANCES} components: `{}` alone would contain {}",
             class.unwrap_or_default(),
             expected.known.max(expected.likely);
-            help: "each of its classes holds several components of the next one: use fewer of them, \
-                   or fewer levels")
+            help: "each of its classes contains several components of the next one: use fewer \
+                   components or fewer levels")
         .at(span)
     }
 

@@ -100,7 +100,7 @@ impl Instantiation<'_> {
             if known.as_ref().is_some_and(|known| *known != extent) {
                 return Err(fault!(
                     SIZE_MISMATCH,
-                    "`{name}` runs over arrays of different sizes";
+                    "the deduced range of `{name}` is ambiguous: the arrays have different sizes";
                     help: "write the range: `for {name} in 1:n loop`")
                 .at(span));
             }
@@ -121,8 +121,8 @@ impl Instantiation<'_> {
             (None, None) => {
                 return Err(fault!(
                     NOT_CONSTANT,
-                    "the range of `{name}` is not written, and `{name}` alone is the subscript of \
-                     no array";
+                    "the range of `{name}` is missing and cannot be deduced: `{name}` alone is \
+                     not a subscript of any array";
                     help: "write the range: `for {name} in 1:n loop`")
                 .at(span));
             }

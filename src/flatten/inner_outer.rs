@@ -69,7 +69,7 @@ impl Instantiation<'_> {
         if is_same && same_sizes {
             return Ok(());
         }
-        let reason = if is_same { "has other dimensions" } else { "is of another type" };
+        let reason = if is_same { "has different dimensions" } else { "has a different type" };
         Err(fault!(TYPE_MISMATCH, "the inner `{}` {reason} than the outer one", outer.name)
             .at(outer.span)
             .related(variable.span, "the inner one"))
@@ -91,7 +91,7 @@ impl Instantiation<'_> {
         }
         let class = &self.text(class).name;
         Err(fault!(UNKNOWN_NAME, "`{class}`, the class of the outer `{outer}`, has no component `{element}`";
-            help: "declare the outer component with the class of the inner one")
+            help: "declare the outer component with the class of the inner component")
         .at(span))
     }
 
@@ -114,7 +114,8 @@ impl Instantiation<'_> {
                 "" => "the model".to_owned(),
                 path => format!("`{path}`"),
             };
-            fault!(UNKNOWN_NAME, "no `inner` component `{name}` encloses the `outer` one in {holder}";
+            fault!(UNKNOWN_NAME, "there is no enclosing `inner` component for the `outer` \
+                                  component `{name}` in {holder}";
                 help: "declare `inner {} {name};` in the model", declared.type_specifier.name)
             .at(declared.span)
         };

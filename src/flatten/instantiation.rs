@@ -302,8 +302,8 @@ impl<'a> Instantiation<'a> {
         let Some(value) = &binding.value else { return Ok(()) };
         if !self.is_record(class) {
             let name = &self.text(class).name;
-            return Err(fault!(TYPE_MISMATCH, "a component of `{name}` cannot be given a value";
-                help: "only records and variables have values")
+            return Err(fault!(TYPE_MISMATCH, "a component of type `{name}` cannot have a value";
+                help: "only records and variables can have values")
             .at(value.span));
         }
         let picked = picked(value.clone(), &binding.indices);
@@ -383,8 +383,11 @@ impl<'a> Instantiation<'a> {
                 Value::Boolean(false) => return Ok(MemberState::Absent),
                 other => {
                     let found = other.type_name();
-                    return Err(fault!(TYPE_MISMATCH, "a condition must be Boolean, not {found}")
-                        .at(condition.span));
+                    return Err(fault!(
+                        TYPE_MISMATCH,
+                        "a condition must be Boolean, but this is {found}"
+                    )
+                    .at(condition.span));
                 }
             }
         }
@@ -437,7 +440,7 @@ impl<'a> Instantiation<'a> {
                     let size = sizes.get(at).copied().ok_or_else(|| {
                         fault!(
                             SIZE_MISMATCH,
-                            "`{}` has {rank} dimensions, its value {}",
+                            "`{}` has {rank} dimensions, but its value has {}",
                             declared.name,
                             sizes.len()
                         )
@@ -457,11 +460,11 @@ impl<'a> Instantiation<'a> {
         match self.structural_value(size, context)? {
             Value::Integer(n) if n >= 0 => Ok(n as usize),
             Value::Integer(n) => {
-                Err(fault!(SIZE_MISMATCH, "an array cannot have the size {n}").at(size.span))
+                Err(fault!(SIZE_MISMATCH, "{n} is not a valid array size").at(size.span))
             }
             other => {
                 let found = other.type_name();
-                Err(fault!(TYPE_MISMATCH, "an array size must be Integer, not {found}")
+                Err(fault!(TYPE_MISMATCH, "an array size must be Integer, but this is {found}")
                     .at(size.span))
             }
         }
@@ -476,8 +479,8 @@ impl<'a> Instantiation<'a> {
     ) -> Result<Vec<usize>, Diagnostic> {
         let bound = expanded.modifier.binding.as_ref();
         let Some((Some(value), bound)) = bound.map(|b| (b.value.clone(), b)) else {
-            return Err(fault!(NOT_CONSTANT, "the size of `{}` is not given", declared.name;
-                help: "write its size, or give it a value")
+            return Err(fault!(NOT_CONSTANT, "the size of `{}` is unknown", declared.name;
+                help: "declare its size, or give it a value")
             .at(span));
         };
         if let Some(dims) = self.bound_shape(&bound.clone())? {
@@ -530,7 +533,7 @@ impl<'a> Instantiation<'a> {
         let Shape::Class(class) = expanded.shape else {
             return Err(fault!(
                 TYPE_MISMATCH,
-                "`{}` is a function, and only an input of a function can be one",
+                "`{}` is a function; only an input of a function can have a function type",
                 declared.name
             )
             .at(declared.span));
@@ -568,9 +571,11 @@ impl<'a> Instantiation<'a> {
     pub(super) fn check_complete(&self, class: ScopeId, span: Span) -> Result<(), Diagnostic> {
         let found = self.text(class);
         if found.definition.partial {
-            return Err(fault!(PARTIAL_CLASS, "`{}` is partial and has no instances", found.name;
+            return Err(
+                fault!(PARTIAL_CLASS, "`{}` is partial and cannot be instantiated", found.name;
                 help: "use a class that extends it")
-            .at(span));
+                .at(span),
+            );
         }
         Ok(())
     }

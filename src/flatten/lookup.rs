@@ -361,7 +361,7 @@ impl Instantiation<'_> {
     /// The diagnostic for a class that is not there.
     pub(super) fn unknown_class(&mut self, scope: ScopeId, name: &Name, span: Span) -> Diagnostic {
         let suggestion = self.suggestion(scope, name);
-        fault!(UNKNOWN_CLASS, "no class named `{name}`").help_if(suggestion).at(span)
+        fault!(UNKNOWN_CLASS, "there is no class `{name}`").help_if(suggestion).at(span)
     }
 
     /// The diagnostic for a function that is not there.

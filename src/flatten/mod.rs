@@ -113,9 +113,7 @@ fn on_deep_stack<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Diagnost
         match thread.map(std::thread::ScopedJoinHandle::join) {
             Ok(Ok(result)) => Ok(result),
             Ok(Err(panic)) => std::panic::resume_unwind(panic),
-            Err(error) => {
-                Err(fault!(TOO_LARGE, "no thread could be started: {error}").at(Span::NONE))
-            }
+            Err(error) => Err(fault!(TOO_LARGE, "cannot start a thread: {error}").at(Span::NONE)),
         }
     })
 }

@@ -23,7 +23,7 @@ impl Instantiation<'_> {
         if !matches!(argument.kind, ExpressionKind::Array(_)) {
             return Err(fault!(
                 TYPE_MISMATCH,
-                "the sum of an array of `{record}` whose elements are not known at translation"
+                "the sum of an array of `{record}` whose elements are unknown at translation"
             )
             .at(span));
         }

@@ -86,7 +86,7 @@ impl Instantiation<'_> {
             }
             MemberState::Absent => Err(fault!(
                 UNKNOWN_NAME,
-                "`{}` does not exist, because its condition is false or it has an error",
+                "`{}` does not exist: its condition is false or its declaration has an error",
                 part.name
             )
             .at(whole.span)),
@@ -95,7 +95,7 @@ impl Instantiation<'_> {
             }
             MemberState::Outer(_) | MemberState::Both { .. } => Err(fault!(
                 NOT_CONSTANT,
-                "`{}` is an outer component of one that is outer itself",
+                "`{}` is an outer component inside another outer component",
                 part.name
             )
             .at(whole.span)),
@@ -138,8 +138,11 @@ impl Instantiation<'_> {
         };
         let checked = |index: i64| match usize::try_from(index) {
             Ok(index) if (1..=size).contains(&index) => Ok(index),
-            _ => Err(fault!(SIZE_MISMATCH, "`{name}` has {size} elements, not one number {index}")
-                .at(e.span)),
+            _ => Err(fault!(
+                SIZE_MISMATCH,
+                "`{name}` has {size} elements; index {index} is out of range"
+            )
+            .at(e.span)),
         };
         match value {
             Value::Integer(index) => Ok((vec![checked(index)?], false)),
@@ -149,7 +152,7 @@ impl Instantiation<'_> {
                         Value::Integer(index) => checked(index),
                         other => Err(fault!(
                             SIZE_MISMATCH,
-                            "an index must be Integer, not {}",
+                            "an index must be Integer, but this is {}",
                             other.type_name()
                         )
                         .at(e.span)),
@@ -157,10 +160,12 @@ impl Instantiation<'_> {
                     .collect();
                 Ok((all?, true))
             }
-            other => {
-                Err(fault!(SIZE_MISMATCH, "an index must be Integer, not {}", other.type_name())
-                    .at(e.span))
-            }
+            other => Err(fault!(
+                SIZE_MISMATCH,
+                "an index must be Integer, but this is {}",
+                other.type_name()
+            )
+            .at(e.span)),
         }
     }
 
@@ -204,7 +209,7 @@ impl Instantiation<'_> {
         if !self.is_record(class) {
             let path = &self.nodes[node.0].path;
             return Err(
-                fault!(NOT_SUPPORTED, "`{path}` is no record and has no value").at(whole.span)
+                fault!(NOT_SUPPORTED, "`{path}` is not a record and has no value").at(whole.span)
             );
         }
         let members = self.members(node)?;

@@ -334,8 +334,9 @@ impl Instantiation<'_> {
             self.functions.get(&name).is_some_and(|f| f.as_ref().is_some_and(|f| f.impure));
         if impure && !local.impure && in_model {
             return Err(
-                fault!(NOT_SUPPORTED, "`{name}` is impure and cannot be called in a model yet";
-                help: "declare it `pure` if equal arguments always give equal values")
+                fault!(NOT_SUPPORTED, "`{name}` is impure; calls of impure functions in models \
+                                       are not supported yet";
+                help: "declare it `pure` if it always returns equal values for equal arguments")
                 .at(span),
             );
         }

@@ -158,7 +158,7 @@ impl Instantiation<'_> {
     ) -> Result<ScopeId, Diagnostic> {
         if self.scopes.len() > MAX_SCOPES {
             return Err(
-                fault!(TOO_LARGE, "the model needs too many instances of classes").at(text.span())
+                fault!(TOO_LARGE, "the model needs too many class instances").at(text.span())
             );
         }
         let id = ScopeId(self.scopes.len() as u32);
@@ -237,7 +237,7 @@ impl Instantiation<'_> {
             return Ok(None);
         }
         let cycle = || {
-            fault!(CYCLIC_CLASS, "`{}` is defined by itself", nested.text.name)
+            fault!(CYCLIC_CLASS, "`{}` is defined in terms of itself", nested.text.name)
                 .at(nested.text.span())
         };
         if self.renaming > MAX_RENAMINGS {
@@ -415,7 +415,9 @@ impl Instantiation<'_> {
             Stage::Failed(error) => return Err((**error).clone()),
             Stage::Busy => {
                 let text = self.text(id);
-                return Err(fault!(CYCLIC_CLASS, "`{}` needs itself", text.name).at(text.span()));
+                return Err(
+                    fault!(CYCLIC_CLASS, "`{}` depends on itself", text.name).at(text.span())
+                );
             }
             Stage::Pending => {}
         }

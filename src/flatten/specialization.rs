@@ -99,9 +99,8 @@ impl Instantiation<'_> {
                 (function.clone(), named.clone())
             }
             _ => {
-                return Err(
-                    fault!(TYPE_MISMATCH, "a function is needed for `{input}`").at(value.span)
-                );
+                return Err(fault!(TYPE_MISMATCH, "expected a function for the input `{input}`")
+                    .at(value.span));
             }
         };
         if !self.functions.contains_key(&function) {
@@ -165,7 +164,11 @@ impl Instantiation<'_> {
             return Ok(copy);
         }
         if depth > MAX_DEPTH {
-            return Err(fault!(TYPE_MISMATCH, "`{name}` passes functions without end").at(span));
+            return Err(fault!(
+                TYPE_MISMATCH,
+                "`{name}` passes functions in an infinite recursion"
+            )
+            .at(span));
         }
         self.functions.insert(copy.clone(), None);
         let mut made = function.clone();

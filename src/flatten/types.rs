@@ -38,7 +38,7 @@ impl Instantiation<'_> {
         {
             let (wanted, found) = (type_name(&variable.base), type_name(&found));
             return Err(
-                fault!(TYPE_MISMATCH, "`{name}` is {wanted}, its value is {found}").at(e.span)
+                fault!(TYPE_MISMATCH, "`{name}` is {wanted}, but its value is {found}").at(e.span)
             );
         }
         let wanted = if each { 0 } else { variable.dims.len() };
@@ -49,7 +49,7 @@ impl Instantiation<'_> {
                 let help = (found == 0).then_some(help);
                 return Err(fault!(
                     SIZE_MISMATCH,
-                    "`{name}` has {wanted} dimensions, its value has {found}"
+                    "`{name}` has {wanted} dimensions, but its value has {found}"
                 )
                 .help_if(help.map(str::to_owned))
                 .at(e.span));
@@ -71,7 +71,7 @@ impl Instantiation<'_> {
             return Ok(());
         }
         let (a, b) = (type_name(&a), type_name(&b));
-        Err(fault!(TYPE_MISMATCH, "the left side is {a}, the right side {b}").at(span))
+        Err(fault!(TYPE_MISMATCH, "the left side is {a}, but the right side is {b}").at(span))
     }
 
     fn check_variability(&self, e: &Expression, variable: &Variable) -> Result<(), Diagnostic> {
@@ -89,7 +89,7 @@ impl Instantiation<'_> {
         };
         Err(fault!(
             NOT_CONSTANT,
-            "`{}` is {}, and its value needs `{name}`, which is {}",
+            "`{}` is {}, but its value depends on `{name}`, which is {}",
             variable.name,
             what(variable.variability),
             what(found)

@@ -126,8 +126,8 @@ impl Instantiation<'_> {
         match self.rank_of(&whole) {
             Some(found) if found < wanted => Err(fault!(
                 SIZE_MISMATCH,
-                "a modifier of an array of components needs a value with {wanted} dimensions at \
-                 least, not {found}";
+                "a modifier of an array of components needs a value with at least {wanted} \
+                 dimensions, not {found}";
                 help: "write `each` before the modifier to give every element the same value")
             .at(value.span)),
             _ => Ok(()),
@@ -171,7 +171,9 @@ fn check_literal(e: &Expression, base: &BaseType, variable: &Variable) -> Result
     if !fits {
         let wanted = type_name(base);
         let name = &variable.name;
-        return Err(fault!(TYPE_MISMATCH, "`{name}` is {wanted}, its value is {found}").at(e.span));
+        return Err(
+            fault!(TYPE_MISMATCH, "`{name}` is {wanted}, but its value is {found}").at(e.span)
+        );
     }
     Ok(())
 }
@@ -185,9 +187,11 @@ fn check_array(
 ) -> Result<(), Diagnostic> {
     let name = &variable.name;
     let Some((size, inner)) = dims.split_first() else {
-        return Err(
-            fault!(SIZE_MISMATCH, "the value of `{name}` has more dimensions than it").at(e.span)
-        );
+        return Err(fault!(
+            SIZE_MISMATCH,
+            "the value of `{name}` has more dimensions than its declaration"
+        )
+        .at(e.span));
     };
     if elements.len() != *size {
         let count = elements.len();

@@ -49,7 +49,11 @@ impl Instantiation<'_> {
         let Some(dims) = dims else { return Ok(None) };
         let count: usize = dims.iter().product();
         if count > MAX_CALLS {
-            return Err(fault!(SIZE_MISMATCH, "`{name}` would be called {count} times").at(span));
+            return Err(fault!(
+                SIZE_MISMATCH,
+                "`{name}` would be called {count} times, which is too many, which is too many"
+            )
+            .at(span));
         }
         let calls = (0..count).map(|at| {
             let element = |value: &Expression, is_spread: bool| match is_spread {

@@ -93,7 +93,7 @@ pub const KINDS: [Kind; 5] = [
     },
     Kind {
         name: "selection",
-        summary: "chooses parents",
+        summary: "selects the parents",
         frequency: None,
         signature: selection::SIGNATURE,
         entries: || listed(SELECTIONS),
@@ -101,7 +101,7 @@ pub const KINDS: [Kind; 5] = [
     Kind {
         name: "crossover",
         summary: "makes two children of two parents",
-        frequency: Some(("probability", "how likely a pair is crossed")),
+        frequency: Some(("probability", "probability that a pair is crossed")),
         signature: crossover::SIGNATURE,
         entries: || listed(CROSSOVERS),
     },
@@ -110,14 +110,15 @@ pub const KINDS: [Kind; 5] = [
         summary: "changes genes of children at random",
         frequency: Some((
             "rate",
-            "how likely a gene mutates; 0 is one gene in each individual in genetic and nsga2",
+            "probability that a gene mutates; 0 means one gene per individual on average in \
+             genetic and nsga2",
         )),
         signature: mutation::SIGNATURE,
         entries: || listed(MUTATIONS),
     },
     Kind {
         name: "survival",
-        summary: "chooses who makes up the next generation",
+        summary: "selects the individuals of the next generation",
         frequency: None,
         signature: survival::SIGNATURE,
         entries: || listed(SURVIVALS),
@@ -271,13 +272,13 @@ pub(super) fn usual(name: &str, settings: &[(&str, f64)]) -> Choice {
 pub(super) fn within(kind: &str, values: &[f64], genes: &[Gene]) -> Result<Vec<f64>, Fault> {
     if values.len() != genes.len() {
         let (found, wanted) = (values.len(), genes.len());
-        bail!(BAD_OPERATOR, "the {kind} returns {found} genes, not {wanted}");
+        bail!(BAD_OPERATOR, "the {kind} returns {found} genes instead of {wanted}");
     }
     if let Some(k) = values.iter().position(|value| value.is_nan()) {
         bail!(
             BAD_OPERATOR,
-            "the {kind} gives the gene {} the value NaN", genes[k].name;
-            help: "return numbers for all arguments; those outside the range are set to its ends"
+            "the {kind} returns NaN for the gene {}", genes[k].name;
+            help: "return a number for every gene; numbers outside the range are clipped to it"
         );
     }
     Ok(values.iter().zip(genes).map(|(value, gene)| value.clamp(gene.min, gene.max)).collect())

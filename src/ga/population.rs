@@ -98,7 +98,7 @@ pub fn sort_by_fitness(genomes: &Genomes, fitness: &[f64]) -> Result<(Genomes, V
             "the population has {} individuals but there are {} fitness values",
             genomes.len(),
             fitness.len();
-            help: "pass the fitness of this population, one value for each of its rows"
+            help: "pass the fitness of this population, one value per row"
         );
     }
     let mut ordered = Genomes::with_capacity(genomes.n_genes(), genomes.len());

@@ -28,8 +28,8 @@ const M2: i64 = 4_294_944_443;
 const NORM: f64 = 2.328306549295728e-10;
 
 /// The remedy for a bad seed.
-const USUAL: &str = "use whole numbers such as [12345, 12345, 12345, 12345, 12345, 12345], or `Seed_Next` of the \
-     call before";
+const USUAL: &str = "use whole numbers such as [12345, 12345, 12345, 12345, 12345, 12345], or \
+                     `Seed_Next` of the previous call";
 
 type Matrix = [[u64; 3]; 3];
 
@@ -82,7 +82,8 @@ impl Mrg32k3a {
     /// recurrence are all zero; the message names the entry.
     pub fn new(seed: &[f64]) -> Result<Mrg32k3a, Fault> {
         if seed.len() != 6 {
-            bail!(BAD_SEED, "a seed has six entries, this one has {}", seed.len(); help: "{USUAL}");
+            bail!(BAD_SEED, "a seed has six entries, but this one has \
+                             {}", seed.len(); help: "{USUAL}");
         }
         let mut entries = [0_i64; 6];
         for (k, (&value, entry)) in seed.iter().zip(&mut entries).enumerate() {
@@ -90,7 +91,7 @@ impl Mrg32k3a {
             if value.fract() != 0.0 || !(0.0..modulus as f64).contains(&value) {
                 bail!(
                     BAD_SEED,
-                    "entry {} of the seed is {value}, which is no whole number from 0 to {}",
+                    "entry {} of the seed is {value}, which is not a whole number from 0 to {}",
                     k + 1,
                     modulus - 1;
                     help: "{USUAL}"

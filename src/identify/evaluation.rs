@@ -223,9 +223,9 @@ impl Evaluator {
             let names: Vec<&str> = self.parameters.iter().map(|p| p.name.as_str()).collect();
             bail!(
                 SIZE_MISMATCH,
-                "the population has {genes} columns, but {parameters} parameters are identified: {}",
+                "the population has {genes} columns, but {parameters} parameters are estimated: {}",
                 names.join(", ");
-                help: "give one search range and one column for each of them"
+                help: "use one search range and one column per parameter"
             );
         }
         for (individual, genome) in genomes.rows().enumerate() {
@@ -265,7 +265,7 @@ fn check_points(x: &[f64]) -> Result<(), Fault> {
     }
     match x.iter().position(|value| !value.is_finite()) {
         Some(k) => {
-            bail!(BAD_DATA, "measured X number {} is {}", k + 1, x[k]; help: "remove this point")
+            bail!(BAD_DATA, "measured X value {} is {}", k + 1, x[k]; help: "remove this point")
         }
         None => Ok(()),
     }
@@ -278,8 +278,8 @@ fn identified_parameters(model: &dyn Model, names: &[String]) -> Result<Vec<Para
         if found.is_empty() {
             bail!(
                 NO_PARAMETERS,
-                "`{}` has no tunable parameters at its top level", model.name();
-                help: "name the parameters to identify with `Parameter_Names`"
+                "`{}` has no tunable top-level parameters", model.name();
+                help: "give the parameters to be estimated with `Parameter_Names`"
             );
         }
         return Ok(found);
@@ -289,7 +289,7 @@ fn identified_parameters(model: &dyn Model, names: &[String]) -> Result<Vec<Para
         Some(parameter) if parameter.tunable => Ok(parameter.clone()),
         Some(_) => Err(fault!(
             FIXED_PARAMETER,
-            "`{name}` is fixed when `{}` is translated, it cannot be identified", model.name();
+            "`{name}` is fixed when `{}` is translated and cannot be estimated", model.name();
             help: "set it by a modification of the model's name, such as `M({name} = 1)`"
         )),
         None => Err(fault!(PARAMETER_NOT_FOUND, "`{}` has no parameter `{name}`", model.name())
@@ -314,13 +314,13 @@ fn y_quantity(model: &dyn Model, name: &str) -> Result<Quantity, Fault> {
         [output] => quantity(model, output),
         [] => bail!(
             AMBIGUOUS_OUTPUT,
-            "`{}` has no output at its top level", model.name();
-            help: "name the measured variable with `Y_Name`"
+            "`{}` has no top-level output", model.name();
+            help: "give the measured variable with `Y_Name`"
         ),
         several => bail!(
             AMBIGUOUS_OUTPUT,
             "`{}` has several outputs: {}", model.name(), several.join(", ");
-            help: "name the measured one with `Y_Name`"
+            help: "give the measured one with `Y_Name`"
         ),
     }
 }

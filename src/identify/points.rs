@@ -32,11 +32,11 @@ impl Path<'_> {
             if a == b || (found.is_some() && !(touches && self.turns_on(k, target))) {
                 bail!(
                     NOT_MONOTONE,
-                    "`{name}` takes the measured value {target} at more than one time, such as {} s \
+                    "`{name}` takes the measured value {target} at several times, such as {} s \
                      and {} s",
                     self.times[found.unwrap_or(k)],
                     self.times[k + 1];
-                    help: "use `time` as X, or an experiment in which `{name}` only rises or only falls"
+                    help: "use `time` as X, or an experiment in which `{name}` is monotonic"
                 );
             }
             found = found.or(Some(k));
@@ -59,9 +59,9 @@ impl Path<'_> {
         let more = if points.len() > named.len() { ", …" } else { "" };
         fault!(
             POINTS_OUTSIDE,
-            "measured at `{name}` = {}{more}, but simulated from {low} to {high} only",
+            "measured at `{name}` = {}{more}, but simulated only from {low} to {high}",
             named.join(", ");
-            help: "simulate `{name}` as far as it was measured, or leave those points out"
+            help: "extend the simulation of `{name}` to the measured range, or remove those points"
         )
     }
 

@@ -104,8 +104,8 @@ impl Ending<'_> {
             }
         }
         Err(format!(
-            "it leads away from the individuals of the script, beyond {WIDER} times wider ranges; \
-             name search ranges"
+            "it leads beyond {WIDER} times the range of the script's individuals; give search \
+             ranges"
         ))
     }
 
@@ -122,7 +122,7 @@ impl Ending<'_> {
             return Err("it was turned off".to_owned());
         }
         let Some(weights) = best.objective.weights(best.compared.len()) else {
-            return Err("the script minimises a function of its own, not a sum of squares".into());
+            return Err("the script minimises its own function, not a sum of squares".into());
         };
         let models: Option<Vec<Arc<dyn Model>>> = self.models.iter().cloned().collect();
         let models = models.ok_or("a model of the best individual is no longer loaded")?;
@@ -132,7 +132,7 @@ impl Ending<'_> {
             .enumerate()
             .map(|(k, ((compared, weight), _))| series(compared, weight.sqrt(), name(best, k)))
             .collect();
-        let series = series.ok_or("the measured values are not known")?;
+        let series = series.ok_or("the measured values are unknown")?;
         let experiments: Vec<Experiment> = used()
             .enumerate()
             .map(|(k, ((compared, _), model))| experiment(compared, model, name(best, k)))
@@ -183,7 +183,7 @@ impl Ending<'_> {
     fn parameters(&self, best: &Best, ranges: &[[f64; 2]]) -> Result<Vec<Free>, Fault> {
         let quantities = &best.compared[0].study.parameters;
         if best.compared.iter().any(|compared| compared.study.parameters != *quantities) {
-            return Err(fault!(BAD_OPTION, "its experiments identify different parameters"));
+            return Err(fault!(BAD_OPTION, "its experiments have different parameters"));
         }
         let one = |(k, quantity): (usize, &super::Quantity)| {
             let value = best.genome[k];
@@ -226,7 +226,7 @@ impl Ending<'_> {
         best: &Best,
         (problem, experiments): (Problem, Vec<Experiment>),
     ) -> Result<Solution, String> {
-        let before = best.sum_of_squares().ok_or("the measured values are not known")?;
+        let before = best.sum_of_squares().ok_or("the measured values are unknown")?;
         let mut run = Run::new(problem, self.threads).map_err(|fault| fault.message)?;
         let stop = loop {
             if let Some(stop) = run.stop() {
@@ -285,8 +285,9 @@ impl Ending<'_> {
                 .map(|series| SolvedSeries::new(&series, &compared.simulated))
         };
         let probe = format!(
-            "No least squares behind the script's search: {why}. So whether this is a minimum is \
-             not known, and there are neither standard errors nor verdicts."
+            "No least squares after the script's search: {why}. It is therefore unknown whether \
+             this is a minimum, and there are no standard errors and no statements on \
+             identifiability."
         );
         Solution {
             title: self.title(best),
@@ -313,8 +314,8 @@ impl Ending<'_> {
         let mut findings = vec![search(script.probe.clone())];
         if recorder.ranges.is_none() {
             findings.push(search(
-                "The ranges in the table are what the individuals of the script span, widened \
-                 where the minimum lies beyond.",
+                "The ranges in the table are those of the script's individuals, extended where \
+                 the minimum lies outside.",
             ));
         }
         let (method, stop) = match (self.interrupted, script.probed) {
@@ -452,14 +453,16 @@ fn sentence(
             "{who} ended at {own}; least squares from there reaches {after} ({much}) at {values}."
         )
     } else {
-        format!("{who} ended at {own}; least squares from there finds nothing better.")
+        format!("{who} ended at {own}; least squares from there finds no improvement.")
     };
     match at_minimum {
         true => format!(
-            "{reached} This is a minimum; standard errors and verdicts are those of this minimum."
+            "{reached} This is a minimum; standard errors and statements on identifiability \
+             refer to this minimum."
         ),
         false => format!(
-            "{reached} This is not a minimum ({}), so there are neither standard errors nor verdicts.",
+            "{reached} This is not a minimum ({}), so there are no standard errors and no \
+             statements on identifiability.",
             solution.stop
         ),
     }

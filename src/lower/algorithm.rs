@@ -100,8 +100,8 @@ impl Builder<'_> {
         }
         if !in_when && self.varies(equation.right) {
             return Err(fault!(NOT_SUPPORTED,
-                "`{name}` is discrete, but its value may change between events";
-                help: "write relations outside `noEvent` and outside functions")
+                "`{name}` is discrete, but its value can change between events";
+                help: "do not use relations inside `noEvent` or inside functions")
             .at(equation.span));
         }
         self.dae.events.equations.push(equation);
@@ -149,7 +149,7 @@ impl Builder<'_> {
     fn count_statement(&mut self, span: Span) -> Result<(), Diagnostic> {
         self.statements = self.statements.saturating_sub(1);
         match self.statements {
-            0 => Err(fault!(NOT_SUPPORTED, "the statements of this model are too many").at(span)),
+            0 => Err(fault!(NOT_SUPPORTED, "this model has too many statements").at(span)),
             _ => Ok(()),
         }
     }
@@ -301,7 +301,11 @@ impl Builder<'_> {
         loops: &Loops,
     ) -> Result<(), Diagnostic> {
         let ExpressionKind::Call { function, arguments } = &value.kind else {
-            return Err(fault!(NOT_SUPPORTED, "several variables need a call").at(value.span));
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "a list of variables on the left side needs a function call on the right side"
+            )
+            .at(value.span));
         };
         let name = function.name();
         let Some(user) = Target::function(self, &name) else {

@@ -128,7 +128,7 @@ impl Builder<'_> {
         if self.varies(subscript) {
             return Err(fault!(
                 NO_CONSTANT_VALUE,
-                "the subscript of an assignment must be known, or be discrete"
+                "the subscript of an assignment must be discrete or known at translation"
             )
             .at(span));
         }

@@ -284,7 +284,11 @@ impl<'a> Builder<'a> {
                     _ => match known {
                         Some(value) => scalar.fixed = value != 0.0,
                         None => {
-                            return Err(fault!(NOT_SUPPORTED, "`fixed` must be known").at(e.span));
+                            return Err(fault!(
+                                NOT_SUPPORTED,
+                                "`fixed` must be known at translation"
+                            )
+                            .at(e.span));
                         }
                     },
                 }
@@ -313,7 +317,7 @@ impl<'a> Builder<'a> {
                     let name = &scalar.name;
                     return Err(fault!(
                         NOT_SUPPORTED,
-                        "`{name}` shaped the model and cannot have `fixed = false`"
+                        "`{name}` is a structural parameter and cannot have `fixed = false`"
                     )
                     .at(span));
                 }
@@ -515,7 +519,7 @@ impl<'a> Builder<'a> {
         if first.len() != second.len() {
             return Err(fault!(
                 super::errors::UNBALANCED_MODEL,
-                "the branches of this if-equation have {} and {} equations",
+                "the branches of this if-equation have different numbers of equations, {} and {}",
                 first.len(),
                 second.len()
             )
@@ -568,7 +572,7 @@ impl<'a> Builder<'a> {
         loops: &[(crate::name::Ident, Expr)],
     ) -> Result<(), Diagnostic> {
         let ExpressionKind::Call { function, arguments } = &call.kind else {
-            return Err(fault!(NOT_SUPPORTED, "this is no equation").at(call.span));
+            return Err(fault!(NOT_SUPPORTED, "this is not an equation").at(call.span));
         };
         let name = function.name().to_string();
         match name.as_str() {
@@ -639,15 +643,15 @@ pub(super) fn message_text<T: Target>(
 /// Scalar equations of two values of one shape.
 fn pairs(a: &Lowered<Expr>, b: &Lowered<Expr>, span: Span) -> Result<Vec<Equation>, Diagnostic> {
     let (Some(x), Some(y)) = (a.shape(), b.shape()) else {
-        return Err(fault!(NOT_SUPPORTED, "equations of texts are not supported").at(span));
+        return Err(fault!(NOT_SUPPORTED, "equations of Strings are not supported").at(span));
     };
     if x.holds_text() || y.holds_text() {
-        return Err(fault!(NOT_SUPPORTED, "equations of texts are not supported").at(span));
+        return Err(fault!(NOT_SUPPORTED, "equations of Strings are not supported").at(span));
     }
     if x.len() != y.len() || std::mem::discriminant(&x) != std::mem::discriminant(&y) {
         return Err(fault!(
             ARRAY_MISMATCH,
-            "the sides of this equation have {} and {} elements",
+            "the sides of this equation have different numbers of elements, {} and {}",
             x.len(),
             y.len()
         )
@@ -710,7 +714,7 @@ fn state_select(ordinal: Option<f64>, span: Span) -> Result<StateSelect, Diagnos
         Some(3.0) => Ok(StateSelect::Default),
         Some(4.0) => Ok(StateSelect::Prefer),
         Some(5.0) => Ok(StateSelect::Always),
-        _ => Err(fault!(NOT_SUPPORTED, "`stateSelect` must be known").at(span)),
+        _ => Err(fault!(NOT_SUPPORTED, "`stateSelect` must be known at translation").at(span)),
     }
 }
 

@@ -88,7 +88,7 @@ impl<T: Target> Declaration<'_, '_, T> {
             ValueType::String => Ok(text(value)),
             ValueType::Function => Err(fault!(
                 NOT_SUPPORTED,
-                "`{}` is of a type that functions in equations cannot have",
+                "`{}` has a type that is not supported in functions used in equations",
                 component.name
             )
             .at(component.span)),
@@ -154,7 +154,7 @@ impl<T: Target> Declaration<'_, '_, T> {
             let declared = match unknown {
                 Some(unknown) if own.is_none() => Err(fault!(
                     NOT_SUPPORTED,
-                    "the size of `{name}` depends on `{unknown}`, which has no value when compiling"
+                    "the size of `{name}` depends on `{unknown}`, which has no value at translation"
                 )
                 .at(field.span)),
                 _ => self.component(field, own, dims),
@@ -247,7 +247,7 @@ fn elements<S: Copy>(
             let span = component.binding.as_ref().map_or(component.span, |binding| binding.span);
             return Err(fault!(
                 ARRAY_MISMATCH,
-                "the value of `{}` has another size",
+                "the value of `{}` has a different size",
                 component.name
             )
             .at(span));

@@ -61,7 +61,7 @@ pub(super) fn inline(
     }
     if builder.calls >= MAX_CALLS {
         builder.inlined = 0;
-        return refuse("calls itself without an end that is known when compiling");
+        return refuse("calls itself without an end that is known at translation");
     }
     builder.calls += 1;
     let mut call =
@@ -117,7 +117,7 @@ impl Call<'_, '_> {
         if self.unassigned || scalars.iter().any(|e| undefined.contains(&dae.pool, *e)) {
             return Err(fault!(
                 NOT_SUPPORTED,
-                "the function `{}` uses or returns a variable that it does not always assign",
+                "the function `{}` uses or returns a variable that is not assigned on every path",
                 function.name
             )
             .at(function.span)
@@ -148,7 +148,7 @@ impl Call<'_, '_> {
         if self.builder.inlined == 0 {
             return Err(fault!(
                 NOT_SUPPORTED,
-                "functions in equations run more than {MAX_STATEMENTS} statements"
+                "functions in equations execute more than {MAX_STATEMENTS} statements"
             )
             .at(s.span));
         }
@@ -159,7 +159,12 @@ impl Call<'_, '_> {
             }
             StatementKind::MultiAssign { targets, value } => {
                 let ExpressionKind::Call { function, arguments } = &value.kind else {
-                    return Err(fault!(NOT_SUPPORTED, "several variables need a call").at(s.span));
+                    return Err(fault!(
+                        NOT_SUPPORTED,
+                        "a list of variables on the left side needs \
+                        a function call on the right side"
+                    )
+                    .at(s.span));
                 };
                 let name = function.name();
                 let Some(user) = self.function(&name) else {
@@ -186,7 +191,7 @@ impl Call<'_, '_> {
                     }
                     self.builder.inlined = self.builder.inlined.saturating_sub(1);
                     if self.builder.inlined == 0 {
-                        return Err(fault!(NOT_SUPPORTED, "this loop has no end").at(s.span));
+                        return Err(fault!(NOT_SUPPORTED, "this loop does not end").at(s.span));
                     }
                 }
             }
@@ -332,7 +337,7 @@ impl Call<'_, '_> {
             if !place.fits(&value) {
                 return Err(fault!(
                     ARRAY_MISMATCH,
-                    "the value of `{}` has another size",
+                    "the value of `{}` has a different size",
                     target.name()
                 )
                 .at(target.span));
@@ -437,10 +442,13 @@ fn check_rank(
             input.dims.len()
         )
         .at(span)),
-        Lowered::Text(_) | Lowered::Numbered(_) => {
-            Err(fault!(NOT_SUPPORTED, "the text argument `{}` of `{}`", input.name, function.name)
-                .at(span))
-        }
+        Lowered::Text(_) | Lowered::Numbered(_) => Err(fault!(
+            NOT_SUPPORTED,
+            "the String argument `{}` of `{}`",
+            input.name,
+            function.name
+        )
+        .at(span)),
         _ => Ok(()),
     }
 }

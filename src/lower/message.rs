@@ -92,7 +92,7 @@ impl Builder<'_> {
         acts: bool,
     ) -> Result<(), Diagnostic> {
         let ExpressionKind::Call { function, arguments } = &call.kind else {
-            return Err(fault!(NOT_SUPPORTED, "this is no call").at(call.span));
+            return Err(fault!(NOT_SUPPORTED, "this is not a call").at(call.span));
         };
         if acts && self.printing(call, loops)?.is_some() {
             return Ok(());

@@ -58,7 +58,7 @@ impl Builder<'_> {
             let reference = reference_to(Ident::new(path), s.span);
             let value = Target::reference(self, path, &reference)?;
             let Lowered::Array(array) = &value else {
-                return Err(fault!(NOT_SUPPORTED, "`{path}` in a statement like this").at(s.span));
+                return Err(fault!(NOT_SUPPORTED, "`{path}` in this kind of statement").at(s.span));
             };
             let input = match assigned.contains(name) {
                 true => Ident::new(&format!("{name} before")),
@@ -165,7 +165,7 @@ fn iterators(statement: &Statement) -> Result<FxHashSet<Ident>, Diagnostic> {
     let mut search = Iterators { names: FxHashSet::default(), alien: None };
     search.statement(statement);
     match search.alien {
-        Some(span) => Err(fault!(NOT_SUPPORTED, "this statement in a loop like this").at(span)),
+        Some(span) => Err(fault!(NOT_SUPPORTED, "this statement in this kind of loop").at(span)),
         None => Ok(search.names),
     }
 }

@@ -130,7 +130,7 @@ impl Target for Builder<'_> {
     ) -> Result<Expr, Diagnostic> {
         if self.varies(position) || elements.is_empty() {
             return Err(fault!(NO_CONSTANT_VALUE,
-                "this subscript must be known when the model is compiled, or be discrete";
+                "this subscript must be known at translation, or be discrete";
                 help: "use a constant, or a parameter that is `final` or has `annotation(Evaluate = true)`")
             .at(span));
         }
@@ -366,9 +366,12 @@ impl Builder<'_> {
                     return Err(fault!(NOT_SUPPORTED, "the derivative of a delayed value").at(span));
                 }
                 Kind::Derivative(_) => {
-                    return Err(fault!(NOT_SUPPORTED, "second derivatives need a variable";
-                        help: "give the first derivative a name: `v = der(x)`, then `der(v)`")
-                    .at(span));
+                    return Err(
+                        fault!(NOT_SUPPORTED, "second derivatives need a variable for the \
+                        first derivative";
+                        help: "name the first derivative: `v = der(x)`, then `der(v)`")
+                        .at(span),
+                    );
                 }
                 _ => continue,
             };

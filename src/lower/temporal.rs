@@ -104,8 +104,8 @@ impl Builder<'_> {
                 let previous = self.previous_variable(v);
                 Ok(self.dae.pool.variable(previous))
             }
-            _ => Err(fault!(NOT_SUPPORTED, "`pre` of something that is no variable";
-                help: "give the expression a name and use `pre` of that variable")
+            _ => Err(fault!(NOT_SUPPORTED, "`pre` of an expression that is not a variable";
+                help: "declare a variable for the expression and use `pre` of that variable")
             .at(span)),
         }
     }
@@ -164,8 +164,8 @@ impl Builder<'_> {
             return Ok(self.dae.pool.variable(*variable));
         }
         if self.varies(b) {
-            return Err(fault!(NOT_SUPPORTED, "this condition may change between events";
-                help: "write relations outside `noEvent` and outside functions")
+            return Err(fault!(NOT_SUPPORTED, "this condition can change between events";
+                help: "do not use relations inside `noEvent` or inside functions")
             .at(span));
         }
         let name = format!("$condition[{}]", self.conditions.len() + 1);
@@ -209,8 +209,8 @@ impl Builder<'_> {
         if !self.is_parametric(start) || !self.is_parametric(interval) {
             return Err(fault!(
                 NOT_SUPPORTED,
-                "`sample` of a variable: clocks are not supported, \
-                 start and interval are made of parameters"
+                "`sample` of a variable: clocks are not supported; start and interval must \
+                 depend only on parameters"
             )
             .at(span));
         }
@@ -230,7 +230,7 @@ impl Builder<'_> {
     fn delay(&mut self, argument: Expr, time: Expr, span: Span) -> Result<Expr, Diagnostic> {
         if !self.is_parametric(time) {
             return Err(
-                fault!(NOT_SUPPORTED, "`delay` by a time that varies is not supported").at(span)
+                fault!(NOT_SUPPORTED, "`delay` by a variable time is not supported").at(span)
             );
         }
         if self.is_parametric(argument) {
@@ -242,7 +242,7 @@ impl Builder<'_> {
         }
         let zero = self.dae.pool.constant(0.0);
         let condition = self.dae.pool.relation(RelationOperator::Greater, time, zero);
-        let message = "the time of `delay` must be positive".into();
+        let message = "the delay time of `delay` must be positive".into();
         let parts = vec![Part::Text(message)];
         self.dae.assertions.push(Assertion::new(condition, parts, Level::Error, span));
         let name = format!("$delay[{}]", self.dae.events.delays.len() + 1);

@@ -39,8 +39,8 @@ impl Builder<'_> {
             return Err(fault!(NOT_SUPPORTED, "`when` among the initial equations").at(span));
         }
         if self.branches > 0 {
-            return Err(fault!(NOT_SUPPORTED, "`when` under a condition that may change";
-                help: "write the condition into that of the when-clause")
+            return Err(fault!(NOT_SUPPORTED, "`when` under a condition that can change";
+                help: "move the condition into the condition of the when-clause")
             .at(span));
         }
         let mut assigned = Assigned::new();
@@ -152,7 +152,7 @@ impl Builder<'_> {
                     for pair in self.equal(left, right, equation.span, loops)? {
                         let Some(variable) = self.dae.pool.as_variable(pair.left) else {
                             return Err(fault!(NOT_SUPPORTED,
-                                "an equation in a when-clause gives a variable its value";
+                                "an equation in a when-clause must determine a variable";
                                 help: "write `variable = expression`")
                             .at(equation.span));
                         };
@@ -234,7 +234,7 @@ impl Builder<'_> {
         loops: &Loops,
     ) -> Result<(), Diagnostic> {
         let ExpressionKind::Call { function, arguments } = &call.kind else {
-            return Err(fault!(NOT_SUPPORTED, "this is no equation").at(call.span));
+            return Err(fault!(NOT_SUPPORTED, "this is not an equation").at(call.span));
         };
         match (function.name().to_string().as_str(), arguments.positional.as_slice()) {
             ("assert", _) => self.assertion(arguments, call.span, loops),
@@ -295,7 +295,7 @@ impl Builder<'_> {
             let Some(state) = variable.filter(|v| self.dae.variable(*v).kind == Kind::Unknown)
             else {
                 return Err(
-                    fault!(NOT_SUPPORTED, "`reinit` of something that is no state").at(span)
+                    fault!(NOT_SUPPORTED, "`reinit` of a variable that is not a state").at(span)
                 );
             };
             self.dae.events.reinits.push(Reinit { state, condition: guard, value: *value, span });

@@ -232,7 +232,7 @@ impl MatFile {
             Some((matrix, j)) if !self.arrays.contains_key(name) => {
                 let (found, columns) = (self.matrix(matrix)?, self.matrix(matrix)?.columns);
                 if !(1..=columns).contains(&j) {
-                    bail!(UNKNOWN_MATRIX, "`{matrix}` has no column {j}, but {columns}");
+                    bail!(UNKNOWN_MATRIX, "`{matrix}` has no column {j}; it has {columns}");
                 }
                 (found.column(j - 1).to_vec(), About::default())
             }
@@ -295,7 +295,7 @@ impl MatFile {
             Some(several) => bail!(
                 UNKNOWN_MATRIX,
                 "{} has several columns `{name}`: {}", self.file(), listed(several);
-                help: "write the name with its unit, as the head has it"
+                help: "write the name with its unit, as in the header"
             ),
         }
     }
@@ -303,20 +303,20 @@ impl MatFile {
     fn inventory(&self) -> String {
         const SHOWN: usize = 12;
         if self.arrays.is_empty() {
-            return "the file holds no matrix".to_owned();
+            return "the file contains no matrix".to_owned();
         }
         let names: Vec<String> = self.arrays.keys().take(SHOWN).cloned().collect();
         let more = match self.arrays.len().saturating_sub(SHOWN) {
             0 => String::new(),
             more => format!(" and {more} more"),
         };
-        format!("the file holds {}{more}", listed(&names))
+        format!("the file contains {}{more}", listed(&names))
     }
 
     pub(super) fn insert(&mut self, name: String, matrix: Matrix) {
         self.failed.shift_remove(&name);
         if self.arrays.contains_key(&name) {
-            self.warnings.push(format!("`{name}` occurs twice; the last one counts"));
+            self.warnings.push(format!("`{name}` occurs twice; the last one is used"));
         }
         self.arrays.insert(name, matrix);
     }
@@ -371,9 +371,11 @@ impl Column {
         let rises = known.windows(2).any(|pair| pair[1].1 > pair[0].1);
         if let Some([before, after]) = falling.filter(|_| rises) {
             notes.push(format!(
-                "`{name}` falls from {} to {} at {}: all rows are taken as points of one experiment; \
-                 runs that were made one after the other belong into files of their own",
-                before.1, after.1, self.place(after.0)
+                "`{name}` decreases from {} to {} at {}: all rows are treated as points of one \
+                 experiment; write consecutive runs to separate files",
+                before.1,
+                after.1,
+                self.place(after.0)
             ));
         }
         let mut sorted: Vec<f64> = known.iter().map(|(_, value)| *value).collect();
@@ -383,7 +385,8 @@ impl Column {
             let first =
                 sorted.windows(2).find(|pair| pair[0] == pair[1]).map_or(0.0, |pair| pair[0]);
             notes.push(format!(
-                "{twice} values of `{name}` repeat an earlier one, such as {first}: each row counts as a point"
+                "{twice} values of `{name}` repeat an earlier one, such as {first}: each row \
+                 counts as one point"
             ));
         }
         notes

@@ -54,13 +54,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
         rows.entry(row).or_default().entry(column).or_insert_with(|| "=".to_owned());
     }
     if rows.is_empty() {
-        bail!(BAD_TABLE, "the sheet `{sheet}` is empty"; help: "put the table on the first sheet");
+        bail!(BAD_TABLE, "the sheet `{sheet}` is empty"; help: "move the table to the first sheet");
     }
     let mut file = table::read_rows(filled(rows, sheet)?)?;
     if let [_, others @ ..] = &sheets[..]
         && !others.is_empty()
     {
-        file.warnings.push(format!("the first sheet `{sheet}` is read, not {}", others.join(", ")));
+        file.warnings
+            .push(format!("only the first sheet `{sheet}` is read, not {}", others.join(", ")));
     }
     Ok(file)
 }

@@ -27,8 +27,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
             continue;
         }
         let declaration = declaration(line).ok_or_else(|| {
-            fault!(BAD_TABLE, "line {number}, column 1: `{}` declares no matrix", shorten(line))
-                .help("write `double name(rows, columns)`")
+            fault!(
+                BAD_TABLE,
+                "line {number}, column 1: `{}` does not declare a matrix",
+                shorten(line)
+            )
+            .help("write `double name(rows, columns)`")
         })?;
         let matrix = match declaration.is_text {
             true => read_lines(&declaration, &mut lines)?,
@@ -81,7 +85,7 @@ fn read_numbers<'a>(
             let found = values.len();
             bail!(
                 BAD_TABLE,
-                "`{name}` has {found} numbers, {size} are declared in line {declared_at}"
+                "`{name}` has {found} numbers, but {size} are declared in line {declared_at}"
             );
         };
         for (column, word) in words(without_comment(line)) {
@@ -119,7 +123,7 @@ fn read_lines<'a>(
     for _ in 0..rows {
         let Some((number, line)) = lines.next() else {
             let found = texts.len();
-            bail!(BAD_TABLE, "`{name}` has {found} lines, {rows} are declared");
+            bail!(BAD_TABLE, "`{name}` has {found} lines, but {rows} are declared");
         };
         let line = line.trim_end();
         if line.chars().count() > columns {
@@ -135,7 +139,7 @@ fn read_lines<'a>(
     if longest.saturating_mul(rows) > MAX_CHARACTERS {
         bail!(
             BAD_TABLE,
-            "`{name}` has {rows} rows of up to {longest} characters, which is too much"
+            "`{name}` has {rows} rows of up to {longest} characters, which is too large"
         );
     }
     Ok(Matrix::from_text(&texts))

@@ -50,8 +50,8 @@ fn read_record(reader: &mut Reader, file: &mut MatFile) -> Result<(), Fault> {
     };
     let data = reader.take(bytes, &format!("matrix `{name}`"))?;
     match header.kind {
-        2 => file.skip(name, "it is a sparse matrix; save `full` of it"),
-        _ if header.is_complex => file.skip(name, "it is complex; save its real part"),
+        2 => file.skip(name, "it is a sparse matrix; convert it with `full` before saving"),
+        _ if header.is_complex => file.skip(name, "it is complex; save only its real part"),
         _ => {
             let values = header.storage.decode(&data[..size * header.storage.size()], header.order);
             file.insert(name, header.matrix(values));
@@ -79,8 +79,8 @@ fn read_header(reader: &mut Reader) -> Result<Header, Fault> {
         _ => (ByteOrder::Big, ByteOrder::Big.u32(start)),
     };
     if code >= 5000 {
-        return Err(fault!(BAD_MAT_FILE, "the file is no MAT file")
-            .help("give a file saved with `save -v4`, `-v6` or `-v7`, or a CSV file"));
+        return Err(fault!(BAD_MAT_FILE, "the file is not a MAT file")
+            .help("use a file saved with `save -v4`, `-v6` or `-v7`, or a CSV file"));
     }
     check_number_format(code / 1000, order)?;
     let (by_rows, storage, kind) = (code / 100 % 10, (code / 10 % 10) as usize, code % 10);
@@ -114,7 +114,7 @@ fn check_number_format(format: u32, order: ByteOrder) -> Result<(), Fault> {
     match (format, order) {
         (0, ByteOrder::Little) | (1, ByteOrder::Big) => Ok(()),
         (0 | 1, _) => bail!(BAD_MAT_FILE, "a matrix header contradicts its own byte order"),
-        _ => bail!(UNSUPPORTED_MAT_FILE, "the numbers are in a VAX or Cray format"),
+        _ => bail!(UNSUPPORTED_MAT_FILE, "the numbers are in VAX or Cray format"),
     }
 }
 

@@ -87,7 +87,7 @@ impl File {
             bail!(
                 BAD_MAT_FILE,
                 "the compressed data inflate to more than {} MiB", MAX_INFLATED >> 20;
-                help: "save the matrices that are needed, without the others"
+                help: "save only the matrices that are needed"
             );
         }
         self.inflatable -= used;
@@ -96,7 +96,7 @@ impl File {
 
     fn read_variable(&mut self, element: Element, order: ByteOrder) -> Result<(), Fault> {
         if element.kind != MI_MATRIX {
-            bail!(BAD_MAT_FILE, "an element has type {}, a matrix was expected", element.kind);
+            bail!(BAD_MAT_FILE, "expected a matrix, got an element of type {}", element.kind);
         }
         self.read_matrix(element.data, order, "", 0)
     }
@@ -147,7 +147,7 @@ impl File {
             let field = String::from_utf8_lossy(&field[..end]);
             let element = read_element(reader)?;
             if element.kind != MI_MATRIX {
-                bail!(BAD_MAT_FILE, "field `{name}.{field}` is no matrix");
+                bail!(BAD_MAT_FILE, "field `{name}.{field}` is not a matrix");
             }
             self.read_matrix(element.data, reader.order, &format!("{name}.{field}"), depth + 1)?;
         }
@@ -169,7 +169,8 @@ impl File {
                 let (kind, bytes) = (element.kind, element.data.len());
                 fault!(
                     BAD_MAT_FILE,
-                    "matrix `{name}` is {rows} by {columns}, its data are {bytes} bytes of type {kind}"
+                    "matrix `{name}` is {rows} by {columns}, but its data are {bytes} bytes of \
+                     type {kind}"
                 )
             })?;
         let rounded = values.iter().any(|value| value.abs() >= (1_u64 << 53) as f64);
@@ -232,14 +233,18 @@ impl Flags {
         Some(match self.class {
             Class::Cell => "it is a cell array; save its elements as matrices",
             Class::Object => "it is an object; save its data as matrices",
-            Class::Sparse => "it is a sparse matrix; save `full` of it",
+            Class::Sparse => "it is a sparse matrix; convert it with `full` before saving",
             Class::Function => "it is a function handle",
             Class::Opaque => {
                 "it is an object of a class (such as a table or a string array); save its data as matrices"
             }
-            Class::Structure if sizes != [1, 1] => "it is an array of structures; save one of them",
-            _ if self.is_complex => "it is complex; save its real part",
-            _ if sizes.len() != 2 => "it has more than two dimensions; save a slice of it",
+            Class::Structure if sizes != [1, 1] => {
+                "it is an array of structures; save a single structure"
+            }
+            _ if self.is_complex => "it is complex; save only its real part",
+            _ if sizes.len() != 2 => {
+                "it has more than two dimensions; save a two-dimensional slice"
+            }
             _ => return None,
         })
     }
@@ -312,7 +317,7 @@ fn integers(element: &Element, order: ByteOrder) -> Result<Vec<i32>, Fault> {
             let values = kind.decode(element.data, order);
             Ok(values.into_iter().map(|value| value as i32).collect())
         }
-        _ => bail!(BAD_MAT_FILE, "sizes are of type {}, integers were expected", element.kind),
+        _ => bail!(BAD_MAT_FILE, "expected integers as sizes, got type {}", element.kind),
     }
 }
 

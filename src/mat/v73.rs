@@ -58,7 +58,7 @@ struct Reader {
 impl Reader {
     fn count(&mut self) -> Result<(), Fault> {
         self.objects = self.objects.checked_sub(1).ok_or_else(|| {
-            fault!(BAD_MAT_FILE, "the file holds more than {MAX_OBJECTS} variables")
+            fault!(BAD_MAT_FILE, "the file contains more than {MAX_OBJECTS} variables")
         })?;
         Ok(())
     }
@@ -96,7 +96,8 @@ impl Reader {
                     .help("save it with `save -v7 file.mat`"));
             }
             if attributes.contains_key("MATLAB_sparse") {
-                self.found.skip(full, "it is a sparse matrix; save `full` of it");
+                self.found
+                    .skip(full, "it is a sparse matrix; convert it with `full` before saving");
                 continue;
             }
             self.group(&inner, &full, depth + 1)?;
@@ -131,8 +132,9 @@ impl Reader {
         if needed > self.bytes {
             bail!(
                 BAD_MAT_FILE,
-                "`{name}` is {rows} by {columns}: the file holds more than {} MiB", MAX_INFLATED >> 20;
-                help: "save the matrices that are needed, without the others"
+                "`{name}` is {rows} by {columns}: the file contains more than {} \
+                 MiB", MAX_INFLATED >> 20;
+                help: "save only the matrices that are needed"
             );
         }
         self.bytes -= needed;
@@ -177,7 +179,7 @@ impl Reader {
             [rows] => Some((size(*rows)?, 1)),
             [columns, rows] => Some((size(*rows)?, size(*columns)?)),
             _ => {
-                let reason = "it has more than two dimensions; save a slice of it";
+                let reason = "it has more than two dimensions; save a two-dimensional slice";
                 self.found.skip(name.to_owned(), reason);
                 None
             }
@@ -202,10 +204,10 @@ fn word(attributes: &Attributes, name: &str) -> Option<String> {
 fn unreadable(class: &str, kind: &DType, shape: &[u64]) -> Option<&'static str> {
     Some(match (class, kind) {
         ("cell", _) => "it is a cell array; save its elements as matrices",
-        ("struct", _) => "it is an array of structures; save one of them",
+        ("struct", _) => "it is an array of structures; save a single structure",
         ("function_handle", _) => "it is a function handle",
         (_, DType::Compound(fields)) if fields.iter().any(|(name, _)| name == "imag") => {
-            "it is complex; save its real part"
+            "it is complex; save only its real part"
         }
         (
             _,
@@ -220,7 +222,9 @@ fn unreadable(class: &str, kind: &DType, shape: &[u64]) -> Option<&'static str> 
             | DType::U32
             | DType::U64,
         ) if shape.len() <= 2 => return None,
-        (_, DType::F64 | DType::F32) => "it has more than two dimensions; save a slice of it",
+        (_, DType::F64 | DType::F32) => {
+            "it has more than two dimensions; save a two-dimensional slice"
+        }
         _ => "it is not a matrix of numbers",
     })
 }

@@ -109,7 +109,7 @@ fn check_name(name: &str) -> Result<(), Fault> {
     }
     bail!(
         UNWRITABLE_MATRIX,
-        "`{name}` cannot be the name of a matrix in a MAT file";
+        "`{name}` is not a valid matrix name in a MAT file";
         help: "use a letter followed by at most 62 letters, digits and underscores"
     )
 }
@@ -124,7 +124,7 @@ fn check_values(name: &str, matrix: &Matrix, storage: Storage) -> Result<(), Fau
     };
     let fits = |value: &f64| value.fract() == 0.0 && (low..=high).contains(value);
     match matrix.values.iter().find(|value| !fits(value)) {
-        Some(value) => bail!(UNWRITABLE_MATRIX, "`{name}` cannot hold the value {value}"),
+        Some(value) => bail!(UNWRITABLE_MATRIX, "`{name}` cannot store the value {value}"),
         None => Ok(()),
     }
 }

@@ -5,5 +5,5 @@ use crate::codes;
 codes! {
     /// A picture in a format that is not written.
     UNKNOWN_PICTURE = "unknown-picture":
-        "## What it means\n\nPictures are written as SVG, PNG or PDF, and the ending of the file name says which. This name has another ending, or none.\n\n## Example\n\n`gapi simulate M.mo --plot x --figure x.jpg`\n\n## What to do\n\nEnd the name in `.svg`, `.png` or `.pdf`.",
+        "## What it means\n\nFigures are written as SVG, PNG or PDF, selected by the file extension. This name has a different extension, or none.\n\n## Example\n\n`gapi simulate M.mo --plot x --figure x.jpg`\n\n## What to do\n\nUse the extension `.svg`, `.png` or `.pdf`.",
 }

@@ -38,8 +38,8 @@ impl Picture {
             Some("pdf") => Ok(Picture::Pdf),
             _ => Err(fault!(
                 UNKNOWN_PICTURE,
-                "`{}` does not end in `.svg`, `.png` or `.pdf`", path.display();
-                help: "pictures are written as SVG, PNG or PDF, by the ending of the file name"
+                "the extension of `{}` is not `.svg`, `.png` or `.pdf`", path.display();
+                help: "the file extension selects SVG, PNG or PDF"
             )),
         }
     }
@@ -56,7 +56,7 @@ impl Figure {
             return Ok(self.svg().into_bytes());
         }
         let failed = |why: &dyn std::fmt::Display| {
-            fault!(UNKNOWN_PICTURE, "the picture cannot be drawn: {why}")
+            fault!(UNKNOWN_PICTURE, "the figure cannot be drawn: {why}")
         };
         let tree = usvg::Tree::from_str(&self.outlined(), &usvg::Options::default());
         let tree = tree.map_err(|error| failed(&error))?;

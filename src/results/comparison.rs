@@ -58,7 +58,7 @@ pub fn compare(
         bail!(crate::registry::BAD_OPTION, "the tolerance is {tolerance}, outside ]0, 1[");
     }
     if reference.time.is_empty() {
-        bail!(BAD_REFERENCE, "the reference has no points in time");
+        bail!(BAD_REFERENCE, "the reference has no time points");
     }
     signals.iter().map(|signal| compare_signal(result, reference, signal, tolerance)).collect()
 }

@@ -13,7 +13,7 @@ use std::io;
 pub(super) const ENTRY: Entry<dyn Format> = Entry {
     name: "csv",
     aliases: &[],
-    summary: "text with a header line, one line per point in time",
+    summary: "text with a header line and one line per time point",
     reference: "",
     make: |_| Ok(Box::new(Csv)),
 };
@@ -81,7 +81,7 @@ impl Column<'_> {
         match self.values {
             Values::Constant(value) => self.sign * value,
             Values::Trajectory(values) => self.sign * values[row],
-            Values::Alias { .. } => unreachable!("`resolve` ends at a series that is no alias"),
+            Values::Alias { .. } => unreachable!("`resolve` ends at a series that is not an alias"),
         }
     }
 }

@@ -66,7 +66,7 @@ impl Format for Mat {
             bail!(BAD_RESULT_FILE, "`name`, `description` and `dataInfo` differ in size");
         }
         if data[1].columns == 0 {
-            bail!(BAD_RESULT_FILE, "`data_2` holds no time");
+            bail!(BAD_RESULT_FILE, "`data_2` contains no time");
         }
         Reading { info, data, by_source: HashMap::new(), interpolated: 0 }
             .table(&names, &descriptions)
@@ -160,17 +160,17 @@ fn is_transposed(file: &MatFile) -> Result<bool, Fault> {
         Some(class) => class.text_rows(),
         None => bail!(
             BAD_RESULT_FILE,
-            "the file holds no results of a simulation: it has no matrix `Aclass`";
+            "the file contains no simulation results: it has no matrix `Aclass`";
             help: "read plain matrices with `readMatrix`"
         ),
     };
     if class.first().map(String::as_str) != Some("Atrajectory") {
-        bail!(BAD_RESULT_FILE, "`Aclass` does not say `Atrajectory`");
+        bail!(BAD_RESULT_FILE, "`Aclass` does not contain `Atrajectory`");
     }
     match class.get(3).map(String::as_str) {
         Some("binTrans") => Ok(true),
         Some("binNormal") => Ok(false),
-        _ => bail!(BAD_RESULT_FILE, "`Aclass` says neither `binTrans` nor `binNormal`"),
+        _ => bail!(BAD_RESULT_FILE, "`Aclass` contains neither `binTrans` nor `binNormal`"),
     }
 }
 
@@ -220,13 +220,13 @@ impl Reading {
         let matrix = match matrix {
             1.0 => 1,
             0.0 | 2.0 => 2,
-            _ => bail!(BAD_RESULT_FILE, "`{name}` is in `data_{matrix}`, which is not read"),
+            _ => bail!(BAD_RESULT_FILE, "`{name}` is in `data_{matrix}`, which is not supported"),
         };
         let columns = self.data[matrix - 1].columns;
         if !(1.0..=columns as f64).contains(&column.abs()) {
             bail!(
                 BAD_RESULT_FILE,
-                "`{name}` is in column {column} of {columns} in `data_{matrix}`"
+                "`{name}` is in column {column} of `data_{matrix}`, which has {columns}"
             );
         }
         Ok((matrix, column.abs() as usize - 1, column < 0.0))
@@ -250,12 +250,12 @@ impl Reading {
             [first, .., last] if first != last && !(first.is_nan() && last.is_nan()) => {
                 self.interpolated += table.time.len();
                 if self.interpolated > MAX_INTERPOLATED {
-                    bail!(BAD_RESULT_FILE, "`data_1` holds too many values that change");
+                    bail!(BAD_RESULT_FILE, "`data_1` contains too many values that change");
                 }
                 Values::Trajectory(line(&table.time, sign * first, sign * last))
             }
             [first, ..] => Values::Constant(sign * first),
-            [] => bail!(BAD_RESULT_FILE, "`data_1` holds no values"),
+            [] => bail!(BAD_RESULT_FILE, "`data_1` contains no values"),
         })
     }
 }

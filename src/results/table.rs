@@ -87,7 +87,7 @@ impl ResultTable {
         if name == self.time_name || name == "time" || name == "Time" {
             return Ok(self.time.clone());
         }
-        Err(fault!(UNKNOWN_RESULT_VARIABLE, "the results hold no variable `{name}`")
+        Err(fault!(UNKNOWN_RESULT_VARIABLE, "the results contain no variable `{name}`")
             .help_if(suggest::did_you_mean(name, self.names())))
     }
 
@@ -108,7 +108,7 @@ impl ResultTable {
         match &self.series[target].values {
             Values::Constant(value) => vec![sign * value; self.time.len()],
             Values::Trajectory(values) => values.iter().map(|value| sign * value).collect(),
-            Values::Alias { .. } => unreachable!("`resolve` ends at a series that is no alias"),
+            Values::Alias { .. } => unreachable!("`resolve` ends at a series that is not an alias"),
         }
     }
 
@@ -201,14 +201,11 @@ impl ResultTable {
             match &series.values {
                 Values::Trajectory(values) if values.len() != points => {
                     let found = values.len();
-                    bail!(
-                        BAD_RESULT_TABLE,
-                        "`{name}` has {found} values at {points} points in time"
-                    );
+                    bail!(BAD_RESULT_TABLE, "`{name}` has {found} values at {points} time points");
                 }
                 Values::Alias { of, .. } => match self.series.get(*of) {
                     Some(Series { values: Values::Alias { .. }, .. }) | None => {
-                        bail!(BAD_RESULT_TABLE, "`{name}` is an alias of no values")
+                        bail!(BAD_RESULT_TABLE, "`{name}` is an alias of a variable without values")
                     }
                     Some(_) => {}
                 },

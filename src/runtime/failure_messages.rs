@@ -31,13 +31,14 @@ impl Program {
     /// A simulation that ended where nothing failed by itself.
     fn explain_end(&self, kind: SimErrorKind, culprit: Option<Culprit>, when: &str) -> Diagnostic {
         let reason = match kind {
-            SimErrorKind::StepSize => "the step became too small",
-            SimErrorKind::StepBudget => "the number of steps is used up",
-            SimErrorKind::TimeBudget => "the time allowed is used up",
+            SimErrorKind::StepSize => "the step size became too small",
+            SimErrorKind::StepBudget => "the limit on the number of steps was reached",
+            SimErrorKind::TimeBudget => "the time limit was reached",
             SimErrorKind::Singular => "the Jacobian is singular",
-            SimErrorKind::Chattering => "events follow each other without end",
+            SimErrorKind::Chattering => "events follow each other without end (chattering)",
             SimErrorKind::Accumulation => {
-                "events accumulate, infinitely many up to this time, and there is no solution beyond"
+                "events accumulate, infinitely many up to this time (Zeno behaviour), and there \
+                 is no solution beyond"
             }
             _ => "a value is not finite",
         };
@@ -59,7 +60,7 @@ impl Program {
             }
             Culprit::Crossing(at) => {
                 let relation = dae.relations.get(*self.crossing_relations.get(at as usize)?)?;
-                Some(("this relation switches again and again".to_owned(), relation.span))
+                Some(("this relation switches repeatedly".to_owned(), relation.span))
             }
         }
     }
@@ -71,13 +72,13 @@ impl Program {
     fn without_value(&self, origin: u32, operation: u32, when: &str) -> Diagnostic {
         let what = match Operation::of(operation) {
             Operation::Division => "a division by zero or an overflow of a division".to_owned(),
-            Operation::Power => "a power without a finite value".to_owned(),
+            Operation::Power => "a power without a finite result".to_owned(),
             Operation::Function(function) => format!(
                 "`{}` has no value: {}",
                 function.name,
                 function.domain.map_or("the result is not finite", |d| d.words)
             ),
-            Operation::Other => "an operation without a finite value".to_owned(),
+            Operation::Other => "an operation without a finite result".to_owned(),
         };
         match self.linear_loop(origin) {
             Some(names) => fault!(
@@ -129,7 +130,7 @@ impl Program {
             Failure::Inconsistent { check } => {
                 let place = self.sorted.initial_checks.get(check as usize).map(|e| e.span);
                 fault!(INITIALIZATION_FAILED,
-                    "the initial values of `{}` contradict each other: this does not hold {when}",
+                    "the initial values of `{}` are inconsistent: this does not hold {when}",
                     self.name(); help: "remove this initial equation or `fixed` start value, or change its value")
                 .at(place.unwrap_or(Span::NONE))
             }
@@ -164,8 +165,8 @@ impl Program {
             (None, Some(v)) => (format!("`{}`", v.name), v.span),
             (None, None) => ("a discrete variable".to_owned(), self.first_span()),
         };
-        fault!(SIMULATION_FAILED, "event iteration does not end {when}: {what} keeps changing";
-            help: "use `pre(…)` where a variable depends on itself, or a hysteresis")
+        fault!(SIMULATION_FAILED, "event iteration does not converge {when}: {what} keeps changing";
+            help: "use `pre(…)` where a variable depends on itself, or add a hysteresis")
         .labelled(span, "keeps changing")
     }
 

@@ -167,7 +167,8 @@ impl System {
             (Some(_), Some(name)) if is_fraction => Err(fault!(
                 crate::codegen::errors::UNKNOWN_PARAMETER,
                 "`{name}` takes whole numbers only";
-                help: "in an identification, compare the fits of several values that are set"
+                help: "in an identification, run once for each of several fixed values and \
+                       compare the results"
             )),
             (Some(slot), _) => {
                 *slot = Some(value);

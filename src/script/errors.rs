@@ -16,7 +16,7 @@ pub const OUT_OF_REACH: &[Code] = &[
 codes! {
     /// A script to run does not exist.
     SCRIPT_NOT_FOUND = "script-not-found":
-        "## What it means\n\n`RunScript` or the command line names a script that is in none of the places searched: the folder of the calling script, then the working directory, each with and without the ending `.mos`.\n\n## Example\n\n`RunScript(\"GAPILib_INT.mos\")`\n\n## What to do\n\nCorrect the name, or write the path from the folder of the script that calls.",
+        "## What it means\n\n`RunScript` or the command line names a script that was not found. The search covers the folder of the calling script, then the working directory, each with and without the extension `.mos`.\n\n## Example\n\n`RunScript(\"GAPILib_INT.mos\")`\n\n## What to do\n\nCorrect the name, or write the path relative to the folder of the calling script.",
     /// A file cannot be read or written.
     FILE_ERROR = "file-error":
         "## What it means\n\nA file is missing, or the system refuses to read or write it.\n\n## Example\n\n`readMatrix(\"missing.mat\", \"A\", 3, 3)`\n\n## What to do\n\nCorrect the path. Relative paths start from the working directory, which `cd()` shows.",
@@ -25,10 +25,10 @@ codes! {
         "## What it means\n\nScripts call each other (or themselves) more than 64 levels deep.\n\n## Example\n\nA script `a.mos` that holds `RunScript(\"a.mos\");`\n\n## What to do\n\nEnd the recursion with a condition, or use a loop.",
     /// An assignment to a name of the model before any model was translated.
     NO_TRANSLATED_MODEL = "no-translated-model":
-        "## What it means\n\nA dotted name was assigned or read, which stands for a parameter or variable of the model translated last; but no model has been translated yet.\n\n## Example\n\n`RL1.R = 0.5;` as the first statement\n\n## What to do\n\nLoad and translate the model first: `openModel(\"file.mo\"); translateModel(\"Package.Model\");`.",
+        "## What it means\n\nA dotted name was assigned or read, which stands for a parameter or variable of the last translated model; but no model has been translated yet.\n\n## Example\n\n`RL1.R = 0.5;` as the first statement\n\n## What to do\n\nLoad and translate the model first: `openModel(\"file.mo\"); translateModel(\"Package.Model\");`.",
     /// What is to be changed in the middle of a run cannot be changed there.
     CANNOT_BRANCH = "cannot-branch":
-        "## What it means\n\n`gapi teach --what-if` changes variables of the script as soon as `Eval` has simulated a generation. Here `Eval` is called in a function, whose variables nothing else can change.\n\n## Example\n\n`gapi teach my.mos --what-if \"F_Mut := 0.5\"` where a function of `my.mos` calls `Eval`\n\n## What to do\n\nCall `Eval` from the script itself, or change the function.",
+        "## What it means\n\n`gapi teach --what-if` changes variables of the script as soon as `Eval` has simulated a generation. Here `Eval` is called in a function, whose variables cannot be changed from outside.\n\n## Example\n\n`gapi teach my.mos --what-if \"F_Mut := 0.5\"` where a function of `my.mos` calls `Eval`\n\n## What to do\n\nCall `Eval` from the script itself, or change the function.",
     /// A name that the translated model does not have, or that is not a parameter.
     UNKNOWN_PARAMETER = "unknown-parameter":
         "## What it means\n\nThe model translated last has no parameter or start value of this name.\n\n## Example\n\n`Decay.k = 2;` where the model declares `rate`\n\n## What to do\n\nUse a name of the model as its flat form shows it (`gapi flatten FILE --model CLASS`).",
@@ -40,35 +40,35 @@ codes! {
         "## What it means\n\nThe value of an argument has the right type but is outside what the command accepts.\n\n## Example\n\n`Modelica.Utilities.Strings.substring(\"abc\", 3, 9)`\n\n## What to do\n\nCorrect the value; the message names the argument and what is accepted.",
     /// A script variable with the name of a parameter.
     SHARED_NAME = "shared-name":
-        "## What it means\n\nA script variable was assigned whose name is also that of a parameter at the top level of the model translated last. Both get the value, as in Dymola. Said once for each name.\n\n## Example\n\n`translateModel(\"Decay\"); k = 2;` where `Decay` has a parameter `k`\n\n## What to do\n\nNothing if the parameter was meant; else give the variable another name.",
+        "## What it means\n\nA script variable was assigned whose name is also that of a parameter at the top level of the last translated model. Both get the value, as in Dymola. Reported once for each name.\n\n## Example\n\n`translateModel(\"Decay\"); k = 2;` where `Decay` has a parameter `k`\n\n## What to do\n\nNothing, if you meant the parameter; otherwise rename the variable.",
     /// A command that the program does not carry out.
     REFUSED = "refused-command":
-        "## What it means\n\nThe command exists in other tools but is not carried out here, for the reason given in the message.\n\n## Example\n\n`system(\"rm -rf results\")`\n\n## What to do\n\nRemove the call, or do what it did outside of the script.",
+        "## What it means\n\nThe command exists in other tools but is not supported here, for the reason given in the message.\n\n## Example\n\n`system(\"rm -rf results\")`\n\n## What to do\n\nRemove the call, or do its work outside the script.",
     /// A command that only concerns a graphical window.
     NO_WINDOW = "no-window":
-        "## What it means\n\nThe command concerns a window of a graphical tool. There is none here, so it has no effect. Said once per command.\n\n## Example\n\n`animationSetup()`\n\n## What to do\n\nNothing; results are not affected.",
+        "## What it means\n\nThe command concerns a window of a graphical tool, so it has no effect here. Reported once per command.\n\n## Example\n\n`animationSetup()`\n\n## What to do\n\nNothing; the results are not affected.",
     /// An integration method of another tool, in whose place one of this program is taken.
     METHOD_REPLACED = "method-replaced":
-        "## What it means\n\nThe script asks for an integration method of OpenModelica that is not here. `dassl` is taken with the same tolerance. Said once for each method.\n\n## Example\n\n`simulate(M, method = \"gbode\");`\n\n## What to do\n\nNothing where the tolerance is what matters; else name `dassl`, `radau`, `rodas4`, `dopri5`, `rungekutta` or `euler`.",
+        "## What it means\n\nThe script selects an integration method of OpenModelica that is not available. `dassl` is used with the same tolerance. Reported once for each method.\n\n## Example\n\n`simulate(M, method = \"gbode\");`\n\n## What to do\n\nNothing, if only the tolerance matters; otherwise select `dassl`, `radau`, `rodas4`, `dopri5`, `rungekutta` or `euler`.",
     /// A statement that could not be done because an earlier one failed.
     FOLLOW_UP = "follow-up":
-        "## What it means\n\nA statement uses a variable that has no value because the statement that should have given it one failed before. The cause is reported where it happened; later consequences are not reported one by one.\n\n## Example\n\n`a = 1/\"x\"; b = a + 1;`\n\n## What to do\n\nCorrect the first error.",
+        "## What it means\n\nA statement uses a variable that has no value because an earlier statement that assigns it failed. The cause is reported at that statement; its consequences are not reported one by one.\n\n## Example\n\n`a = 1/\"x\"; b = a + 1;`\n\n## What to do\n\nCorrect the first error.",
     /// The user stopped the script.
     INTERRUPTED = "interrupted":
-        "## What it means\n\nThe script was stopped with Ctrl-C.\n\n## Example\n\nCtrl-C during a long run\n\n## What to do\n\nNothing; what had been written until then is kept.",
+        "## What it means\n\nThe script was stopped with Ctrl-C.\n\n## Example\n\nCtrl-C during a long run\n\n## What to do\n\nNothing; files written up to that point are kept.",
     /// A script took more time or memory than it was allowed.
     LIMIT_REACHED = "limit-reached":
-        "## What it means\n\nThe script took more time or memory than `--time-limit` or `--memory-limit` allow, and was stopped.\n\n## Example\n\n`while true loop end while;` with `--time-limit 1`\n\n## What to do\n\nRaise the limit, or let the script do less. What had been written until then is kept.",
+        "## What it means\n\nThe script took more time or memory than `--time-limit` or `--memory-limit` allow, and was stopped.\n\n## Example\n\n`while true loop end while;` with `--time-limit 1`\n\n## What to do\n\nRaise the limit, or reduce the work of the script. Files written up to that point are kept.",
     /// A script raised an error by itself.
     SCRIPT_ERROR = "script-error":
-        "## What it means\n\nThe script or a function called `Modelica.Utilities.Streams.error` (or `error`).\n\n## Example\n\n`Modelica.Utilities.Streams.error(\"no data\")`\n\n## What to do\n\nThe message is the author's; it says what is wrong.",
+        "## What it means\n\nThe script or a function called `Modelica.Utilities.Streams.error` (or `error`).\n\n## Example\n\n`Modelica.Utilities.Streams.error(\"no data\")`\n\n## What to do\n\nThe message comes from the author of the script; it says what is wrong.",
     /// A structural parameter was given a value (a note).
     TRANSLATED_AGAIN = "translated-again":
-        "## What it means\n\nA script gave a value to a parameter whose value shapes the equations of the model, such as an array size. It has no slot in the translated model, which is therefore translated again before the next simulation. Said once for each name.\n\n## Example\n\n`n = 5;` for a model with `parameter Integer n = 3; Real x[n];`\n\n## What to do\n\nNothing; in a loop over many values each of them costs a translation.",
+        "## What it means\n\nA script sets a structural parameter, whose value determines the equations of the model, such as an array size. The translated model has no slot for it, so the model is translated again before the next simulation. Reported once for each name.\n\n## Example\n\n`n = 5;` for a model with `parameter Integer n = 3; Real x[n];`\n\n## What to do\n\nNothing; in a loop over many values, each value costs one translation.",
     /// An import that names nothing.
     BAD_IMPORT = "bad-import":
-        "## What it means\n\nAn import clause of a script names a package or class that is not loaded and is no package of built-in commands.\n\n## Example\n\n`import Modelica.Utilties.Streams;`\n\n## What to do\n\nCorrect the name, or load the library first.",
+        "## What it means\n\nAn import clause in a script names a package or class that is neither loaded nor a package of built-in commands.\n\n## Example\n\n`import Modelica.Utilties.Streams;`\n\n## What to do\n\nCorrect the name, or load the library first.",
     /// A library of another version than the one asked for (a warning).
     OTHER_VERSION = "other-version":
-        "## What it means\n\nA package says in its annotation `uses` which version of a library it needs (MLS §18.8.3). No folder of that version was found, and the one that was found is older or has another main version. It is used as it is.\n\n## Example\n\n`annotation(uses(Modelica(version = \"3.2.3\")));` with `Modelica 4.0.0` as the only one in `MODELICAPATH`\n\n## What to do\n\nName the folder that has the version with `--library`, or convert the package.",
+        "## What it means\n\nThe `uses` annotation of a package states the library version that it needs (MLS §18.8.3). That version was not found; the version that was found is older or has another major version. It is used without conversion.\n\n## Example\n\n`annotation(uses(Modelica(version = \"3.2.3\")));` where `MODELICAPATH` contains only `Modelica 4.0.0`\n\n## What to do\n\nGive the folder of the required version with `--library`, or convert the package.",
 }

@@ -135,7 +135,10 @@ pub trait World {
         _command: &str,
         _environment: &BTreeMap<String, String>,
     ) -> io::Result<(i32, Vec<u8>)> {
-        Err(io::Error::new(io::ErrorKind::Unsupported, "there is no operating system here"))
+        Err(io::Error::new(
+            io::ErrorKind::Unsupported,
+            "there is no operating system in this environment",
+        ))
     }
     /// Number of threads to use, at least 1.
     fn threads(&self) -> usize;

@@ -81,7 +81,7 @@ impl Pool {
     /// If the table has no such name, or another number of arguments: for names written in this
     /// program; names that users write go through [`function::find`].
     pub fn function(&mut self, name: &str, arguments: &[Expr]) -> Expr {
-        let id: FunctionId = function::find(name).expect("the name stands in the function table");
+        let id: FunctionId = function::find(name).expect("the name is in the function table");
         self.apply(id, arguments)
     }
 

@@ -29,7 +29,7 @@ pub(super) fn explain(
     if let ErrorVariant::CustomError { .. } = error.variant {
         // Only the parser's own guard of the stack ends here.
         return fault!(NESTING_TOO_DEEP, "this is nested too deeply for the memory available")
-            .help("split it: give parts of the expression a name")
+            .help("split it: assign parts of the expression to variables")
             .at(stop.found);
     }
     stop.misspelt_keyword()
@@ -153,12 +153,12 @@ impl<'t> Stop<'t> {
         match (repair.found, wanted) {
             ("", ";") => fault!(MISSING_SEMICOLON, "a `;` is missing")
                 .help("write `;` here")
-                .labelled(gap, "nothing closes what ends here"),
+                .labelled(gap, "the construct that ends here is not closed"),
             ("", _) => fault!(SYNTAX_ERROR, "`{wanted}` is missing")
                 .help(format!("write `{wanted}` here"))
                 .labelled(gap, format!("expected `{wanted}`")),
             (found, _) => self
-                .fault(&format!("`{found}` cannot stand here"))
+                .fault(&format!("unexpected `{found}`"))
                 .help(format!("write `{wanted}`{}", repair.because))
                 .at(self.found),
         }
@@ -176,13 +176,13 @@ impl<'t> Stop<'t> {
             text => format!("`{text}`"),
         };
         let expected = expected(error);
-        let fault = fault!(SYNTAX_ERROR, "{found} cannot stand here");
+        let fault = fault!(SYNTAX_ERROR, "unexpected {found}");
         let fault = match expected.as_str() {
             "" => fault,
-            words => fault.help(format!("what may stand here: {words}")),
+            words => fault.help(format!("expected: {words}")),
         };
         match KEYWORDS.contains(&self.found_text()) && expected.contains("identifier") {
-            true => fault.help("a keyword is no name; quote it to use it as one: `'...'`"),
+            true => fault.help("a keyword is not a name; quote it to use it as one: `'...'`"),
             false => fault,
         }
         .at(self.found)
@@ -198,9 +198,9 @@ struct Repair {
 
 /// In order of preference where several bring the grammar equally far.
 const REPAIRS: &[Repair] = &[
-    Repair { found: "=", write: ":=", because: ": `=` is no assignment inside an algorithm" },
-    Repair { found: ":=", write: "=", because: ": `:=` assigns, an equation has `=`" },
-    Repair { found: "==", write: "=", because: ": `==` compares, an equation has `=`" },
+    Repair { found: "=", write: ":=", because: ": `=` is not an assignment inside an algorithm" },
+    Repair { found: ":=", write: "=", because: ": `:=` assigns; use `=` in an equation" },
+    Repair { found: "==", write: "=", because: ": `==` compares; use `=` in an equation" },
     Repair { found: "=", write: "==", because: " to compare" },
     Repair { found: "", write: ";", because: "" },
     Repair { found: "", write: ",", because: "" },

@@ -36,7 +36,7 @@ impl Branches<'_> {
                 height: 330.0,
                 zero_line: false,
                 series: vec![
-                    series("as the script has it".to_owned(), self.original, 1),
+                    series("original script".to_owned(), self.original, 1),
                     series(self.change.to_owned(), self.changed, 2),
                 ],
             }],
@@ -56,7 +56,7 @@ impl Branches<'_> {
     pub fn summary(&self) -> String {
         let (original, changed) = (best(self.original), best(self.changed));
         let mut text = format!("What if {} from generation {}?\n", self.change, self.generation);
-        text.push_str("  generation   as the script has it   changed\n");
+        text.push_str("  generation   original script   changed\n");
         let last = original.len().max(changed.len());
         for number in shown(self.generation, last) {
             let of = |fitness: &[Option<f64>]| match fitness.get(number - 1) {
@@ -104,15 +104,23 @@ fn shown(first: usize, last: usize) -> Vec<usize> {
 fn verdict(original: Option<f64>, changed: Option<f64>) -> String {
     match (original, changed) {
         (Some(original), Some(changed)) if changed < original => {
-            format!("The change is better at the end: {} < {}.", short(changed), short(original))
+            format!(
+                "The changed run ends with a better fitness: {} < {}.",
+                short(changed),
+                short(original)
+            )
         }
         (Some(original), Some(changed)) if changed > original => {
-            format!("The change is worse at the end: {} > {}.", short(changed), short(original))
+            format!(
+                "The changed run ends with a worse fitness: {} > {}.",
+                short(changed),
+                short(original)
+            )
         }
-        (Some(_), Some(_)) => "Both end with the same best fitness.".to_owned(),
+        (Some(_), Some(_)) => "Both runs end with the same best fitness.".to_owned(),
         (None, Some(_)) => "Only the changed run has a result.".to_owned(),
-        (Some(_), None) => "Only the run as the script has it has a result.".to_owned(),
-        (None, None) => "Neither has a result.".to_owned(),
+        (Some(_), None) => "Only the original run has a result.".to_owned(),
+        (None, None) => "Neither run has a result.".to_owned(),
     }
 }
 
@@ -134,7 +142,7 @@ mod tests {
         assert_eq!(series[0].x, [1.0, 2.0, 3.0, 4.0]);
         assert_ne!(series[0].y, series[1].y);
         let same = Branches { changed: &original, ..branches };
-        assert!(same.summary().ends_with("Both end with the same best fitness."));
+        assert!(same.summary().ends_with("Both runs end with the same best fitness."));
     }
 
     #[test]

@@ -46,8 +46,9 @@ fn counted(count: usize, what: &str) -> String {
 fn draw(generation: &Generation) -> String {
     let numbers: usize = generation.drawn.iter().map(|drawn| drawn.numbers.len()).sum();
     format!(
-        "The first population (N_Population = {}) is drawn: Ram_Gen_ARENA has given {} between 0 and \
-         1. One number u places one gene in its range, at Param_Min + (Param_Max - Param_Min) u.",
+        "The first population (N_Population = {}) is sampled: Ram_Gen_ARENA returned {} between \
+         0 and 1. Each number u sets one gene within its range, to Param_Min + (Param_Max - \
+         Param_Min) u.",
         generation.len(),
         counted(numbers, "random number"),
     )
@@ -57,16 +58,16 @@ fn simulate(walk: &Walk) -> String {
     let generation = walk.generation();
     let (individuals, failed) = (generation.len(), generation.failures.len());
     let subject = &walk.trace().subject;
-    let told = format!(
-        "Eval simulates `{}` once for each of {}; each row of genes is one choice of {}.",
+    let shown = format!(
+        "Eval simulates `{}` once for each of {}; each row of genes is one set of values of {}.",
         subject.model,
         counted(individuals, "individual"),
         subject.parameters.join(", "),
     );
     match generation.failures.first() {
-        None => told,
+        None => shown,
         Some((k, cause)) => format!(
-            "{told} {failed} of them cannot be simulated, the first is individual {}: {cause}.",
+            "{shown} {failed} of them cannot be simulated, the first is individual {}: {cause}.",
             k + 1
         ),
     }
@@ -78,28 +79,28 @@ fn rate(walk: &Walk) -> String {
     match generation.best() {
         Some((k, fitness)) if !has_failed(fitness) && generation.best_simulated.is_empty() => {
             format!(
-                "The fitness tells how far simulation and measurement are apart: the smaller, the \
-                 fitter. The best of this generation is individual {} with {}.",
+                "The fitness measures the distance between simulation and measurement: smaller \
+                 is better. The best of the generation is individual {} with {}.",
                 k + 1,
                 short(fitness)
             )
         }
         Some((k, fitness)) if !has_failed(fitness) => format!(
-            "Fit adds up the squared differences between simulation and measurement over {}: the \
-             smaller the sum, the fitter. The best of this generation is individual {} with {}.",
+            "Fit is the sum of squared residuals, measurement minus simulation, over {}: smaller \
+             is better. The best of the generation is individual {} with {}.",
             counted(points, "point"),
             k + 1,
             short(fitness)
         ),
-        _ => "No individual could be simulated, so none is fitter than another.".to_owned(),
+        _ => "No individual could be simulated, so there is no best one.".to_owned(),
     }
 }
 
 fn sort(generation: &Generation) -> String {
     let Some(sorted) = &generation.sorted else { return String::new() };
     format!(
-        "Fit_Order sorts them, best first. The best {} (N_Parents) will have children, the other {} \
-         are forgotten.",
+        "Fit_Order sorts them by fitness, best first. The best {} (N_Parents) will be parents, \
+         the other {} are discarded (truncation selection).",
         sorted.parents,
         generation.len().saturating_sub(sorted.parents)
     )
@@ -109,9 +110,10 @@ fn elite(generation: &Generation) -> String {
     let Some(crossed) = &generation.crossed else { return String::new() };
     let best = generation.best().map_or(f64::NAN, |(_, fitness)| fitness);
     format!(
-        "The best {} (N_Elitism) {} unaltered, so that the best fitness, {}, can never get worse.",
+        "The best {} (N_Elitism) {} unchanged (elitism), so the best fitness, {}, never gets \
+         worse.",
         crossed.elites,
-        if crossed.elites == 1 { "passes on" } else { "pass on" },
+        if crossed.elites == 1 { "survives" } else { "survive" },
         short(best)
     )
 }
@@ -122,10 +124,10 @@ fn cross(generation: &Generation, rank: usize) -> String {
     let points: Vec<String> = crossed.points.iter().map(usize::to_string).collect();
     let children = if mate < rank { "a child" } else { "two children" };
     format!(
-        "Ranks {} and {} have {children}: they exchange the genes behind gene {} (Cross_Point).",
+        "Ranks {} and {} have {children}: they exchange the genes after gene {} (Cross_Point).",
         rank + 1,
         mate + 1,
-        points.join(" and behind gene ")
+        points.join(" and after gene ")
     )
 }
 
@@ -173,8 +175,8 @@ fn complete(walk: &Walk, row: usize) -> String {
         false => format!(" (u = {})", numbers.join(", ")),
     };
     format!(
-        "Individual {} of the next generation is drawn at random between Param_Min and \
-         Param_Max{drawn}: new blood, so that the search does not end where it happens to be.",
+        "Individual {} of the next generation is sampled at random between Param_Min and \
+         Param_Max{drawn}. Such immigrants maintain diversity and prevent premature convergence.",
         row + 1
     )
 }
@@ -182,17 +184,17 @@ fn complete(walk: &Walk, row: usize) -> String {
 fn renew(walk: &Walk) -> String {
     let next = walk.next_generation().map_or(0, Generation::len);
     format!(
-        "Elites, children and random individuals are the next generation: {}. The stop condition does \
-         not hold yet.",
+        "Elites, children and random individuals form the next generation: {}. The stop \
+         condition is not yet met.",
         counted(next, "individual")
     )
 }
 
 fn stop(walk: &Walk) -> String {
     let why = match (walk.trace().full, walk.trace().cut) {
-        (true, _) => "The trace has reached its largest size and ends here; the run went on",
+        (true, _) => "The trace reached its maximum size and ends here; the run continued",
         (_, true) => "The run was interrupted here",
-        _ => "The stop condition holds: the run ends",
+        _ => "The stop condition is met: the run ends",
     };
     let generations = walk.trace().generations.len();
     match walk.generation().best() {

@@ -39,7 +39,7 @@ pub(super) fn push(frames: &mut Vec<u8>, event: &Event) {
 pub(super) fn read(bytes: &[u8]) -> Result<(Vec<Event>, bool), Fault> {
     let Some(mut rest) = bytes.strip_prefix(MAGIC) else {
         bail!(
-            BAD_TRACE, "this is no trace of gapilib, or one of another version";
+            BAD_TRACE, "this is not a trace of gapilib, or one of another version";
             help: "record the run with `gapi run SCRIPT --trace FILE`"
         );
     };

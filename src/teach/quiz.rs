@@ -56,7 +56,7 @@ impl std::fmt::Display for Score {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self.asked {
             0 => write!(f, "No question was answered."),
-            asked => write!(f, "{} of {asked} answers were right.", self.right),
+            asked => write!(f, "{} of {asked} answers were correct.", self.right),
         }
     }
 }
@@ -115,7 +115,7 @@ fn selection(generation: &Generation) -> Option<Question> {
         let mut expected: Vec<usize> = parents.iter().map(|k| k + 1).collect();
         expected.sort_unstable();
         let text = format!(
-            "Which {} individuals become parents? Their numbers (the smaller the fitness, the fitter):",
+            "Which {} individuals become parents? Enter their numbers (smaller fitness is better):",
             parents.len()
         );
         return Some(Question { text, answer: Answer::Individuals(expected) });
@@ -124,8 +124,8 @@ fn selection(generation: &Generation) -> Option<Question> {
     let fitter =
         (0..generation.len()).filter(|&k| generation.fitness[k] < generation.fitness[asked]);
     let text = format!(
-        "Individual {} has the fitness {}; {} of {} are fitter. {} become parents (N_Parents): does \
-         it? (y/n)",
+        "Individual {} has the fitness {}; {} of {} are better. {} become parents (N_Parents): \
+         does it become one? (y/n)",
         asked + 1,
         short(generation.fitness[asked]),
         fitter.count(),
@@ -150,12 +150,12 @@ fn crossover(walk: &Walk) -> Option<Question> {
         genes.collect::<Vec<_>>().join("  ")
     };
     let text = format!(
-        "Parent a, rank 1, has the genes  {}\nParent b, rank 2, has the genes  {}\nThey exchange the \
-         genes behind gene {}. Whose are the genes of the first child? One letter for each gene, such \
-         as {}:",
+        "Parent a, rank 1, has the genes  {}\nParent b, rank 2, has the genes  {}\nThey exchange \
+         the genes after gene {}. From which parent is each gene of the first child? One letter \
+         per gene, such as {}:",
         genes(a),
         genes(b),
-        points.join(" and behind gene "),
+        points.join(" and after gene "),
         "ab".repeat(generation.n_genes.div_ceil(2))[..generation.n_genes].to_owned()
     );
     Some(Question { text, answer: Answer::Letters((0..generation.n_genes).map(letter).collect()) })
@@ -199,7 +199,7 @@ mod tests {
     fn right_answers_count() {
         let (texts, score) = answered(["6 3 4, 5", "AB", "no"]);
         assert_eq!(score, Score { asked: 3, right: 3 }, "{texts:?}");
-        assert_eq!(score.to_string(), "3 of 3 answers were right.");
+        assert_eq!(score.to_string(), "3 of 3 answers were correct.");
     }
 
     #[test]

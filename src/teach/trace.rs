@@ -49,7 +49,7 @@ impl Trace {
         trace.cut = !whole;
         if trace.generations.iter().all(Generation::is_empty) {
             bail!(
-                BAD_TRACE, "the trace holds no generation: nothing was simulated";
+                BAD_TRACE, "the trace contains no generation: no individual was simulated";
                 help: "trace a script that calls `Eval`, such as `scripts/GAPILib.mos`"
             );
         }

@@ -298,7 +298,7 @@ impl Elements {
             (elements, more) => {
                 return Err(fault!(
                     TYPE_MISMATCH,
-                    "elements of type {} and of type {} cannot stand in one array",
+                    "elements of types {} and {} cannot be mixed in an array",
                     elements.type_name(),
                     more.type_name()
                 ));

@@ -213,7 +213,7 @@ impl FromValue for usize {
     fn from_value(value: Value) -> Result<usize, Fault> {
         match &value {
             Value::Integer(count) => usize::try_from(*count).map_err(|_| {
-                let message = format!("expected an Integer that is not negative, got {count}");
+                let message = format!("expected a nonnegative Integer, got {count}");
                 Fault::new(super::errors::DOMAIN_ERROR, message)
             }),
             other => Err(mismatch("an Integer", other)),

@@ -30,7 +30,7 @@ pub fn shaped(dims: &[usize], values: Vec<Value>) -> Result<Value, Fault> {
         if dims != inner {
             bail!(
                 SIZE_MISMATCH,
-                "the elements of an array differ in size: {} and {}",
+                "the elements of an array have different sizes: {} and {}",
                 shape(&inner),
                 shape(&dims)
             );
@@ -232,7 +232,10 @@ impl Range {
             return Err(zero_step());
         }
         if !(start.is_finite() && step.is_finite() && stop.is_finite()) {
-            bail!(DOMAIN_ERROR, "the range {start:?}:{step:?}:{stop:?} has no definite end");
+            bail!(
+                DOMAIN_ERROR,
+                "the range {start:?}:{step:?}:{stop:?} does not have a finite length"
+            );
         }
         let quotient = (stop - start) / step;
         let rounding = 4.0 * f64::EPSILON * ((start.abs() + stop.abs()) / step.abs() + 1.0);
@@ -250,8 +253,8 @@ impl Range {
             }
             other => bail!(
                 TYPE_MISMATCH,
-                "a loop needs a vector to go through, not a value of type {}", other.type_name();
-                help: "`1:n` counts from 1 to n"
+                "a loop needs a vector as its range, not a value of type {}", other.type_name();
+                help: "use `1:n` to count from 1 to n"
             ),
         }
     }

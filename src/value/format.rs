@@ -19,7 +19,10 @@ pub fn text(
     let plain = match value {
         Value::Real(value) => {
             let Ok(digits @ 1..) = bounded(significant_digits) else {
-                bail!(DOMAIN_ERROR, "{significant_digits} is no number of significant digits")
+                bail!(
+                    DOMAIN_ERROR,
+                    "{significant_digits} is not a valid number of significant digits"
+                )
             };
             general(*value, digits, false, false)
         }
@@ -30,7 +33,7 @@ pub fn text(
         other => bail!(TYPE_MISMATCH, "`String` is not defined for {}", other.type_name()),
     };
     let Ok(width) = bounded(minimum_length) else {
-        bail!(DOMAIN_ERROR, "{minimum_length} is no length of a text")
+        bail!(DOMAIN_ERROR, "{minimum_length} is not a valid string length")
     };
     Ok(padded(plain, width, left_justified).into())
 }

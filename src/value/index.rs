@@ -37,13 +37,13 @@ impl Index {
                 other => bail!(
                     TYPE_MISMATCH,
                     "a subscript must be an Integer, not a {}", other.type_name();
-                    help: "`integer(x)` gives the largest Integer not above `x`"
+                    help: "use `integer(x)` for the largest Integer not above `x`"
                 ),
             },
             other => bail!(
                 TYPE_MISMATCH,
                 "a subscript must be an Integer, not a {}", other.type_name();
-                help: "`integer(x)` gives the largest Integer not above `x`"
+                help: "use `integer(x)` for the largest Integer not above `x`"
             ),
         })
     }
@@ -106,7 +106,7 @@ impl ArrayValue {
                 SIZE_MISMATCH,
                 "cannot assign a single {} to a slice with the sizes {}",
                 scalar.type_name(), sizes(&selection.dims);
-                help: "`fill(x, n)` makes an array with the same value everywhere"
+                help: "use `fill(x, n)` for an array with equal elements"
             ),
         }
     }

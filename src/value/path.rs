@@ -160,7 +160,7 @@ fn no_such_part(step: &Step, value: &Value) -> Fault {
 pub(super) fn wrong_share(dims: &[usize], value: &Value) -> Fault {
     fault!(
         SIZE_MISMATCH,
-        "cannot share a value of type {} among records with the sizes {}",
+        "cannot distribute a value of type {} over records with the sizes {}",
         value.type_name(),
         sizes(dims)
     )

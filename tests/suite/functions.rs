@@ -193,7 +193,7 @@ impl Host for Functions {
         _: Vec<Value>,
         _: Span,
     ) -> Result<Vec<Value>, Diagnostic> {
-        panic!("`{}` is no command", header.name)
+        panic!("`{}` is not a command", header.name)
     }
 
     fn variable(&mut self, _: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
@@ -211,7 +211,7 @@ fn interpreted(library: &Library, u: f64, n: i64) -> f64 {
     let outputs = call_function(&function, arguments, Span::NONE, &mut Functions(functions));
     match outputs.expect("a value").as_slice() {
         [Value::Real(value), ..] => *value,
-        other => panic!("{other:?} is no number"),
+        other => panic!("{other:?} is not a number"),
     }
 }
 
@@ -220,7 +220,7 @@ fn values_and_slopes_are_those_of_the_interpreter() {
     for (what, functions) in CORPUS {
         let library = library(functions);
         let program = compiled(&library).unwrap_or_else(|e| panic!("{what}: {e}"));
-        assert!(!program.sorted().dae.functions.codes.is_empty(), "{what} is no bytecode");
+        assert!(!program.sorted().dae.functions.codes.is_empty(), "{what} is not a bytecode");
         let mut system = program.system();
         for n in 0..5 {
             for u in [-1.7, -0.6, 0.37, 0.9, 2.3] {
@@ -305,7 +305,7 @@ fn failures_inside_functions_say_why() {
         ),
         (
             "function f {h} algorithm y := f(u, n + 1); end f;",
-            "domain-error: calls are nested too deep in the function `P.f` (at t = 0)",
+            "domain-error: calls are nested too deeply in the function `P.f` (at t = 0)",
         ),
         (
             "function f {h} algorithm y := u; while y > 0 loop y := y + 1; end while; end f;",

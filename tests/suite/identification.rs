@@ -345,7 +345,7 @@ fn own_fitness_and_own_stop_condition_replace_those_of_the_library() {
     assert!(result["generations"].as_u64().unwrap() < 200, "the stop condition ended it");
     assert_eq!(result["script"]["fitness_name"], "function of the script");
     let probe = result["script"]["probe"].as_str().unwrap();
-    assert!(probe.contains("a function of its own, not a sum of squares"), "{probe}");
+    assert!(probe.contains("its own function, not a sum of squares"), "{probe}");
     assert!(result["parameters"][0]["deviation"].is_null());
 }
 

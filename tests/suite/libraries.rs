@@ -149,7 +149,7 @@ fn check_tells_the_errors_of_all_files_and_classes() {
     assert_eq!(found.len(), codes.len(), "{errors}");
     assert_eq!(errors.matches("error[").count(), codes.len(), "{errors}");
     let (code, out, _) = gapi(here.path(), "", &["check", "good.mo"]);
-    assert!(code == 0 && out.ends_with("1 classes, 1 models, 0 with errors\n"), "{out}");
+    assert!(code == 0 && out.ends_with("1 class, 1 model, 0 with errors\n"), "{out}");
 }
 
 /// A file inside a package is checked as a part of it.

@@ -59,7 +59,7 @@ const COMMANDS: [&[&str]; 5] = [
 #[test]
 fn what_does_not_listen_ends_with_the_process() {
     for command in COMMANDS {
-        ends(command, ["--time-limit", "0.3"], "limit of time is reached: 0.3 s");
+        ends(command, ["--time-limit", "0.3"], "time limit is reached: 0.3 s");
     }
 }
 
@@ -67,13 +67,13 @@ fn what_does_not_listen_ends_with_the_process() {
 #[cfg(target_os = "linux")]
 fn what_takes_too_much_memory_ends() {
     for command in COMMANDS {
-        ends(command, ["--memory-limit", "120"], "limit of memory is reached: 120 MiB");
+        ends(command, ["--memory-limit", "120"], "memory limit is reached: 120 MiB");
     }
 }
 
 #[test]
 fn simulations_end() {
-    ends(&["simulate", "Slow.mo"], ["--time-limit", "0.3"], "limit of time");
+    ends(&["simulate", "Slow.mo"], ["--time-limit", "0.3"], "time limit");
 }
 
 #[test]
@@ -147,8 +147,8 @@ fn what_grows_exponentially_says_what_and_where() {
         said.contains("error[too-large]: the model has more than 1000000 components"),
         "{said}"
     );
-    assert!(said.contains("`P.M19` alone would hold"), "{said}");
-    assert!(said.contains("help: each of its classes holds several components"), "{said}");
+    assert!(said.contains("`P.M19` alone would contain"), "{said}");
+    assert!(said.contains("help: each of its classes contains several components"), "{said}");
 }
 
 #[test]

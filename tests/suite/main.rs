@@ -85,3 +85,4 @@ mod terminal;
 mod transcripts;
 mod undetermined;
 mod watching;
+mod words;

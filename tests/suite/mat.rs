@@ -60,7 +60,7 @@ fn reads_every_number_type_of_version_4() {
     is_a(&file, "u1", |a| a.abs().trunc());
     assert_eq!(file.matrix("names").unwrap().text_rows(), ["one", "three"]);
     assert_eq!(file.matrix("z").unwrap_err().code, mat::errors::UNREADABLE_MATRIX);
-    assert_eq!(file.warnings, ["`z` is skipped: it is complex; save its real part"]);
+    assert_eq!(file.warnings, ["`z` is skipped: it is complex; save only its real part"]);
 }
 
 #[test]
@@ -143,12 +143,9 @@ fn refuses_what_it_does_not_read_and_says_what_to_do() {
         assert_eq!(fault.code, mat::errors::UNSUPPORTED_MAT_FILE);
         assert_eq!(fault.helps, ["save it with `save -v7 file.mat`"]);
     }
-    assert_eq!(
-        message(mat::read(&2000u32.to_le_bytes())),
-        "the numbers are in a VAX or Cray format"
-    );
+    assert_eq!(message(mat::read(&2000u32.to_le_bytes())), "the numbers are in VAX or Cray format");
     assert_eq!(message(mat::read(b"")), "the file is empty");
-    assert_eq!(message(mat::read(b"model M end M;")), "the file is no MAT file");
+    assert_eq!(message(mat::read(b"model M end M;")), "the file is not a MAT file");
 }
 
 #[test]
@@ -197,7 +194,7 @@ fn unknown_matrix_is_answered_with_the_nearest_name() {
     let fault = open("scipy_v4.mat").matrix("scaler").unwrap_err();
     assert_eq!(fault.code, mat::errors::UNKNOWN_MATRIX);
     assert_eq!(fault.helps[0], "did you mean `scalar`?");
-    assert_eq!(fault.helps[1], "the file holds `A`, `x`, `scalar`, `empty`, `text`");
+    assert_eq!(fault.helps[1], "the file contains `A`, `x`, `scalar`, `empty`, `text`");
 }
 
 #[test]
@@ -277,8 +274,11 @@ fn malformed_text_matrices_are_answered_with_line_and_column() {
     let refused = |text: &str| message(mat::read(text.as_bytes()));
     assert_eq!(refused("#1\ndouble x(1,2)\n1 two\n"), "line 3, column 3: `two` is not a number");
     assert_eq!(refused("#1\ndouble x(1,1)\n1 2\n"), "line 3, column 3: `x` has only 1 numbers");
-    assert_eq!(refused("#1\ndouble x(2,2)\n1 2\n"), "`x` has 2 numbers, 4 are declared in line 2");
-    assert_eq!(refused("#1\nreal x\n"), "line 2, column 1: `real x` declares no matrix");
+    assert_eq!(
+        refused("#1\ndouble x(2,2)\n1 2\n"),
+        "`x` has 2 numbers, but 4 are declared in line 2"
+    );
+    assert_eq!(refused("#1\nreal x\n"), "line 2, column 1: `real x` does not declare a matrix");
     assert!(refused("#1\ndouble x(18446744073709551615,2)\n1\n").contains("claims"));
 }
 
@@ -308,11 +308,11 @@ fn malformed_tables_are_answered_with_line_and_column() {
     assert_eq!(refused("x,\n1,2\n"), "line 2, column 2: 2 cells where the header has 1");
     assert_eq!(
         refused("1,2\n3,4\n"),
-        "line 1, column 1: the first line holds numbers, not the names of the columns"
+        "line 1, column 1: the first line contains numbers instead of column names"
     );
     assert_eq!(
         refused("i;V\n0,1;1\n0.2;2\n"),
-        "line 3, column 1: `0.2` in `i` has another decimal mark than `0,1` in line 2"
+        "line 3, column 1: `0.2` in `i` has a different decimal separator from `0,1` in line 2"
     );
     assert_eq!(refused(""), "the file is empty");
 }
@@ -357,7 +357,7 @@ fn what_a_format_cannot_hold_is_refused() {
     }
     let mut out = Vec::new();
     let fault = mat::append_v4(&mut out, "x", &x, Storage::I32).unwrap_err();
-    assert_eq!(fault.message, "`x` cannot hold the value 0.5");
+    assert_eq!(fault.message, "`x` cannot store the value 0.5");
     assert!(mat::append_v4(&mut out, "x", &x, Storage::U64).is_err());
     assert!(out.is_empty());
 }

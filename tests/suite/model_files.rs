@@ -30,7 +30,7 @@ fn run(world: MemoryWorld, script: &str) -> (Session, String) {
 
 fn number(session: &Session, name: &str) -> f64 {
     let value = session.variable(name).unwrap_or_else(|| panic!("{name} is not assigned"));
-    value.as_real().unwrap_or_else(|| panic!("{name} is no number"))
+    value.as_real().unwrap_or_else(|| panic!("{name} is not a number"))
 }
 
 #[test]

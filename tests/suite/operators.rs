@@ -187,7 +187,7 @@ fn what_is_wrong_with_a_choice_is_said_with_its_place() {
         ("survival = \"crowding\"\nelites = 2", "unknown option `elites`"),
         (
             "name = \"cma_es\"\ncrossover = \"sbx\"",
-            "`cma_es` has no crossover to choose|genetic, gapilib2006, nsga2",
+            "`cma_es` has no selectable crossover|genetic, gapilib2006, nsga2",
         ),
         ("name = \"gapilib2006\"\nsurvival = \"plus\"", "`gapilib2006` keeps its elites"),
         (

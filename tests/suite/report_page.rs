@@ -157,9 +157,7 @@ fn what_is_missing_is_left_out() {
     }
     let result = between(&page, "id=\"result\"", "</table>");
     assert!(!result.contains("identifiable"), "{result}");
-    assert!(
-        between(&page, "<header>", "</header>").contains("nothing is said about identifiability")
-    );
+    assert!(between(&page, "<header>", "</header>").contains("no statement on identifiability"));
 }
 
 /// The page after all that its scripts do, as the browser has it then; and what its console said.

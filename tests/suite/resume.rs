@@ -75,7 +75,7 @@ fn wait_for(journal: &Path, child: &mut Child) {
             let errors = read(child.stderr.as_mut().map(|pipe| pipe as &mut dyn Read));
             panic!("it ended by itself: {out}{errors}");
         }
-        assert!(begun.elapsed() < Duration::from_secs(60), "no checkpoint");
+        assert!(begun.elapsed() < Duration::from_secs(60), "not a checkpoint");
         std::thread::sleep(Duration::from_millis(5));
     }
 }
@@ -106,7 +106,7 @@ fn a_run_does_not_go_on_with_another_model() {
         assert_eq!(code, 1, "{errors}");
         assert!(errors.contains("Growth.mo") && errors.contains("changed"), "{errors}");
         assert!(
-            !errors.contains("`--resume` to") && !errors.contains("go on from here"),
+            !errors.contains("`--resume` to") && !errors.contains("resume the run from here"),
             "{errors}"
         );
         assert_eq!(fs::read(&journal).unwrap(), kept, "the checkpoint stays as it was");

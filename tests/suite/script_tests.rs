@@ -111,7 +111,7 @@ fn a_script_is_stopped_at_its_limits() {
     if cfg!(target_os = "linux") {
         let (code, _, errors) = gapi(&here, &["run", "large.mos", "--memory-limit", "200"]);
         assert_eq!(code, 1);
-        assert!(errors.contains("limit of memory"), "{errors}");
+        assert!(errors.contains("memory limit"), "{errors}");
     }
 }
 

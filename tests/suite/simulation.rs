@@ -318,7 +318,7 @@ fn functions_in_equations_are_carried_out() {
     // What depends on the argument is known when the function runs.
     for (call, words) in [
         ("unassigned(time - 1)", "a variable has no value in the function `unassigned`"),
-        ("endless(time)", "calls are nested too deep in the function `endless`"),
+        ("endless(time)", "calls are nested too deeply in the function `endless`"),
     ] {
         let program = compiled(&model(&format!("Real y = {call};")));
         let error = simulate(&mut program.system(), &Settings::default()).expect_err(call);

@@ -80,7 +80,7 @@ fn parameters_that_chose_equations_or_sizes_cannot_be_set() {
     ] {
         let program = compiled(text);
         let fault = program.find_parameter("p").expect_err(text);
-        assert!(fault.to_string().contains("shaped"), "{text}: {fault}");
+        assert!(fault.to_string().contains("structural"), "{text}: {fault}");
     }
 }
 
@@ -98,7 +98,7 @@ impl Host for Functions {
         _: Vec<Value>,
         _: Span,
     ) -> Result<Vec<Value>, gapilib::diag::Diagnostic> {
-        panic!("`{}` is no command", header.name)
+        panic!("`{}` is not a command", header.name)
     }
 
     fn variable(
@@ -121,7 +121,7 @@ fn interpreted(text: &str, u: f64) -> f64 {
     let outputs = call_function(&function, arguments, Span::NONE, &mut Functions(functions));
     match outputs.expect("a value").as_slice() {
         [Value::Real(value), ..] => *value,
-        other => panic!("{other:?} is no number"),
+        other => panic!("{other:?} is not a number"),
     }
 }
 

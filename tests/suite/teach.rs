@@ -22,10 +22,10 @@ fn a_recorded_run_is_walked_through() {
     for part in [
         "Generation 1, step 1 of",
         "search.mos:38  ",
-        "Fit adds up the squared differences",
+        "Fit is the sum of squared residuals",
         "Ranks 1 and 2 have two children",
         "below F_Mut = 0.5",
-        "Individual 9 of the next generation is drawn at random",
+        "Individual 9 of the next generation is sampled at random",
     ] {
         assert!(out.contains(part), "`{part}` is missing:\n{out}");
     }
@@ -55,9 +55,9 @@ fn a_script_becomes_a_page() {
 fn what_is_no_trace_is_refused() {
     let here = folder(&[("notes.txt", "hello"), ("nothing.mos", "// t\nx := 1;\n")]);
     let (code, _, errors) = gapi(&here, &["teach", "notes.txt"]);
-    assert!(code == 1 && errors.contains("this is no trace of gapilib"), "{errors}");
+    assert!(code == 1 && errors.contains("this is not a trace of gapilib"), "{errors}");
     let (code, _, errors) = gapi(&here, &["teach", "nothing.mos"]);
-    assert!(code == 1 && errors.contains("the trace holds no generation"), "{errors}");
+    assert!(code == 1 && errors.contains("the trace contains no generation"), "{errors}");
 }
 
 #[test]

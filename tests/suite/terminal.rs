@@ -25,7 +25,7 @@ impl Prompt {
         command.env("GAPI_HISTORY", "").env("TERM", "xterm").env("NO_COLOR", "1");
         let session = spawn_command(command, Some(PATIENCE)).expect("a terminal");
         let mut prompt = Prompt { session, here };
-        prompt.expect(":help lists what can be typed");
+        prompt.expect(":help lists the commands");
         prompt.expect("> ");
         prompt
     }

@@ -82,7 +82,7 @@ fn the_solution_of_least_norm_is_taken() {
         for (name, value) in expected {
             near(last(text, name), *value, 1e-5);
         }
-        warns(text, "one of many solutions is taken");
+        warns(text, "one of many solutions is used");
     }
 }
 
@@ -92,7 +92,8 @@ fn a_coefficient_of_zero_leaves_its_unknown_open() {
     // For a while only.
     warns(
         "Real x; equation (if time < 0.5 then 1 else 0)*x = 0;",
-        "do not determine `x`: their system is singular, and one of many solutions is taken (from t = 0.5",
+        "do not determine `x`: their system is singular, and one of many solutions is used (from \
+         t = 0.5",
     );
 }
 

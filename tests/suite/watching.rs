@@ -60,7 +60,7 @@ fn scripts_that_are_interrupted_resume_to_the_same_end() {
             let world = MemoryWorld::new().with_file(journal(&cut), kept);
             let (code, text, resumed) = run(world, Journaling::Resume(2.0));
             assert_eq!(code, 0, "{text}");
-            assert!(text.contains("calls of Eval are answered"), "{text}");
+            assert!(text.contains("calls of Eval are replayed"), "{text}");
             assert_eq!(resumed.variable("pop"), whole.variable("pop"));
             assert_eq!(result(&resumed), result(&whole));
             assert!(!resumed.world.exists(&journal(&resumed)));
@@ -105,9 +105,9 @@ fn another_script_does_not_go_on_with_the_journal() {
     };
     let other = SCRIPT.replace("{0.1}", "{0.2}");
     let (code, text, _) = resumed(bytes.clone(), &other, Journaling::Resume(2.0));
-    assert!(code == 1 && text.contains("asks something else"), "{text}");
+    assert!(code == 1 && text.contains("requests other simulations"), "{text}");
     let (code, text, _) = resumed(b"something".to_vec(), SCRIPT, Journaling::Resume(2.0));
-    assert!(code == 1 && text.contains("no checkpoint"), "{text}");
+    assert!(code == 1 && text.contains("not a checkpoint"), "{text}");
     // Beginning anew, the old one is kept.
     let (code, text, session) = resumed(bytes.clone(), SCRIPT, Journaling::Fresh(2.0));
     let old = journal(&session).with_file_name("script.journal.1");

@@ -9,7 +9,7 @@ use ratatui::symbols::Marker;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Axis, Block, Borders, Chart, Dataset, Gauge, GraphType, Paragraph};
 
-const KEYS: &str = "p pause and change settings   Ctrl-C end with what is found so far";
+const KEYS: &str = "p pause and change settings   Ctrl-C stop and keep the results so far";
 /// Columns of a gene's name, value and unit beside its bar.
 const LABEL: usize = 34;
 /// Series drawn beside each other.

@@ -7,15 +7,15 @@ use std::path::Path;
 use std::time::Instant;
 
 const HELP: &str = "\
-Statements are executed and answered; an open bracket or a `for` goes on in the next line, and
-two empty lines end it.
+Each statement is executed and its result is shown. An open bracket or a `for` continues on the \
+                    next line; two empty lines end it.
   :help [NAME]   this text, or the declaration of a command or a function
   :vars          the variables
   :type EXPR     the type of an expression's value
   :load FILE     run a script, or load a Modelica file
-  :dump [CLASS]  a model, or the one translated last, sorted
-  :time STMT     execute a statement and say how long it took
-  :dialect [D]   whose commands are meant: dymola or openmodelica
+  :dump [CLASS]  a model, or the last translated one, after causalization (BLT)
+  :time STMT     execute a statement and show the time it took
+  :dialect [D]   the dialect of the commands: dymola or openmodelica
   :quit          leave (also Ctrl-D); Ctrl-C stops what is running
 ";
 
@@ -106,7 +106,7 @@ fn dump(session: &mut Session, class: &str) {
     let found = match session.last_model().filter(|_| class.is_empty()) {
         Some(last) => Ok(last),
         None if class.is_empty() => {
-            return terminal::eprint("error: no model is translated; write `:dump CLASS`\n");
+            return terminal::eprint("error: no model has been translated; write `:dump CLASS`\n");
         }
         None => simulation::translated(session, class),
     };

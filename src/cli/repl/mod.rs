@@ -34,14 +34,14 @@ pub(in crate::cli) struct ReplArgs {
     /// A script to run first
     #[arg(value_hint = ValueHint::FilePath)]
     pub script: Option<PathBuf>,
-    /// What scripts may do
+    /// Permissions of scripts
     #[command(flatten)]
     pub freedom: Freedom,
 }
 
 /// What the prompt begins with.
 const BANNER: &str =
-    concat!("gapilib ", env!("CARGO_PKG_VERSION"), "; :help lists what can be typed, :quit leaves");
+    concat!("gapilib ", env!("CARGO_PKG_VERSION"), "; :help lists the commands, :quit exits");
 
 /// Reads statements and shows their answers until the input ends.
 pub(super) fn repl(arguments: &ReplArgs, global: &Global) -> ExitCode {

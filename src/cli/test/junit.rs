@@ -59,7 +59,7 @@ impl Junit {
         let name = format!("{number}: {first}");
         match judged.judgement {
             Judgement::Agrees => self.case(script, &name, None),
-            Judgement::Differs => self.failure(script, &name, "prints something else"),
+            Judgement::Differs => self.failure(script, &name, "the output differs"),
             Judgement::Unsupported(code) => {
                 self.skipped += 1;
                 self.case(script, &name, Some(format!("<skipped message=\"{}\"/>", code.slug)));

@@ -24,8 +24,8 @@ use std::time::Instant;
 /// Arguments of `gapi test`.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-A script is compared with the transcript NAME.mos.snap beside it, or with the lines between
-`// Result:` and `// endResult` in it. Files that it writes are kept in memory.
+A script is compared with the transcript NAME.mos.snap next to it, or with the lines between `// \
+                        Result:` and `// endResult` in it. Files that it writes are kept in memory.
 
 Examples:
   gapi test scripts
@@ -33,22 +33,21 @@ Examples:
   gapi test --review
   gapi test --junit report.xml
 
-Exit code: 0 if all agree, 1 if one does not or has nothing to be compared with, 2 for a wrong
-command line.")]
+Exit code: 0 if all agree, 1 if one does not or has no reference, 2 for an invalid command line.")]
 pub(in crate::cli) struct TestArgs {
-    /// Scripts, and folders that hold scripts
+    /// Scripts, or folders with scripts
     #[arg(default_value = ".", value_hint = ValueHint::AnyPath)]
     pub paths: Vec<PathBuf>,
-    /// Write the transcripts anew
+    /// Overwrite the transcripts
     #[arg(long, conflicts_with = "review")]
     pub accept: bool,
-    /// Ask for each difference whether the new transcript is right
+    /// Ask for each difference whether to accept the new transcript
     #[arg(long)]
     pub review: bool,
-    /// Write a report that build servers read
+    /// Write a JUnit report for build servers
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub junit: Option<PathBuf>,
-    /// What scripts may do
+    /// Permissions of scripts
     #[command(flatten)]
     pub freedom: Freedom,
 }

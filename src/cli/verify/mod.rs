@@ -38,25 +38,25 @@ comparisonSignals.txt; its path below the collection is the name of the model.
 
 Exit code: 0 if every case that has a reference agrees, 1 otherwise.")]
 pub(in crate::cli) struct VerifyArgs {
-    /// Modelica files, or folders with packages, beside those of --library
+    /// Modelica files or package folders, in addition to those of --library
     #[arg(value_name = "FILE", value_hint = ValueHint::AnyPath)]
     pub files: Vec<PathBuf>,
     /// The collection of reference results
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub references: PathBuf,
-    /// Only models whose names contain this text
+    /// Only models whose names contain this string
     #[arg(long, value_name = "TEXT")]
     pub filter: Option<String>,
-    /// Half width and half height of the tubes, relative to the reference's extent
+    /// Half width and half height of the tubes, relative to the range of the reference
     #[arg(long, value_name = "E", default_value_t = crate::results::TUBE_TOLERANCE)]
     pub tolerance: f64,
-    /// Seconds that a case may take
+    /// Time limit per case in seconds
     #[arg(long, value_name = "S", default_value_t = 60.0, value_parser = seconds)]
     pub budget: f64,
-    /// Threads to use [default: all cores]
+    /// Number of threads [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub threads: Option<u16>,
-    /// Where the table goes besides (repeatable); the ending decides the format
+    /// Additional output file of the table (repeatable); the extension selects the format
     #[arg(long, short, value_name = "FILE.json|.csv", value_hint = ValueHint::FilePath)]
     pub output: Vec<PathBuf>,
 }

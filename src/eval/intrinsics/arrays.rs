@@ -98,7 +98,7 @@ fn matrix(arguments: &[Value]) -> Result<Value, Fault> {
             if array.dims[2..].iter().any(|size| *size != 1) {
                 return Err(unsuitable(
                     "matrix",
-                    "dimensions of size 1 behind the first two",
+                    "dimensions of size 1 after the first two",
                     &arguments[0],
                 ));
             }

@@ -16,7 +16,7 @@ fn ordinal(arguments: &[Value]) -> Result<Value, Fault> {
         other => bail!(
             TYPE_MISMATCH,
             "`Integer` is not defined for {}", other.type_name();
-            help: "`integer(x)` gives the largest Integer not above `x`"
+            help: "use `integer(x)` for the largest Integer not above `x`"
         ),
     }
 }

@@ -39,7 +39,7 @@ fn of_none(name: &str, array: &ArrayValue, better: Ordering) -> Result<Value, Fa
         Elements::Real(_) => Ok(Value::Real(if is_min { f64::MAX } else { f64::MIN })),
         Elements::Integer(_) => Ok(Value::Integer(if is_min { i64::MAX } else { i64::MIN })),
         Elements::Boolean(_) => Ok(Value::Boolean(is_min)),
-        _ => Err(fault!(DOMAIN_ERROR, "`{name}` of an array without elements has no value")),
+        _ => Err(fault!(DOMAIN_ERROR, "`{name}` of an empty array has no value")),
     }
 }
 

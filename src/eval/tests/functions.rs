@@ -28,13 +28,10 @@ fn arguments_go_to_inputs_by_place_and_by_name() {
 #[test]
 fn wrong_calls_say_what_is_wrong() {
     let with = |call: &str| run_fails(&format!("{QUADRATIC} y := {call};"));
-    assert_eq!(with("f(1, 2, 3)"), "wrong-arguments: `f` takes 2 arguments at most");
-    assert_eq!(
-        with("f()"),
-        "wrong-arguments: the input `x` of `f` is not given and has no default"
-    );
+    assert_eq!(with("f(1, 2, 3)"), "wrong-arguments: `f` takes at most 2 arguments");
+    assert_eq!(with("f()"), "wrong-arguments: the input `x` of `f` is missing and has no default");
     assert_eq!(with("f(1, v=2)"), "wrong-arguments: `f` has no input `v`");
-    assert_eq!(with("f(1, x=2)"), "wrong-arguments: the input `x` of `f` is given twice");
+    assert_eq!(with("f(1, x=2)"), "wrong-arguments: the input `x` of `f` is specified twice");
     assert_eq!(with("f(\"a\")"), "type-mismatch: `x`: expected a value of type Real, got String");
     assert_eq!(with("g(1)"), "unknown-function: there is no function `g`");
     assert!(with("sin(1, 2)").starts_with("wrong-arguments"));

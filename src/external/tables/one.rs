@@ -65,7 +65,7 @@ impl Table1D {
         }
         place(&self.x, self.extrapolation, u).ok_or_else(|| {
             let (first, last) = (self.x[0], self.x[self.x.len() - 1]);
-            call.fault(format!("{u} lies outside {first} to {last}, where the table ends"))
+            call.fault(format!("{u} is outside the table range {first} to {last}"))
         })
     }
 }

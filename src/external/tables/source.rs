@@ -44,12 +44,12 @@ impl Source {
         };
         if matrix.rows == 0 || matrix.columns < 2 {
             return Err(call.fault(format!(
-                "a table needs at least one row and two columns, this one has {} and {}",
+                "a table needs at least one row and two columns, but this one has {} and {}",
                 matrix.rows, matrix.columns
             )));
         }
         match matrix.values.iter().find(|value| !value.is_finite()) {
-            Some(value) => Err(call.fault(format!("the table holds {value}"))),
+            Some(value) => Err(call.fault(format!("the table contains {value}"))),
             None => Ok(matrix),
         }
     }
@@ -66,7 +66,7 @@ impl Source {
                 columns: columns as usize,
                 values: call.array(self.matrix).to_vec(),
             }),
-            _ => Err(call.fault("the table is no matrix")),
+            _ => Err(call.fault("the table is not a matrix")),
         }
     }
 
@@ -103,7 +103,10 @@ fn csv(text: &str, delimiter: char, skipped: usize) -> Result<Matrix, String> {
         }
         let width = values.len() - before;
         if rows > 0 && width != columns {
-            return Err(format!("has {width} numbers in line {}, {columns} above", number + 1));
+            return Err(format!(
+                "has {width} numbers in line {}, but {columns} in the lines above",
+                number + 1
+            ));
         }
         (rows, columns) = (rows + 1, width);
     }

@@ -56,7 +56,7 @@ fn events(call: &Call<'_>) -> Result<TimeEvents, Fault> {
         1 => Ok(TimeEvents::Always),
         2 => Ok(TimeEvents::AtDiscontinuities),
         3 => Ok(TimeEvents::Never),
-        other => Err(call.fault(format!("there is no handling of time events {other}"))),
+        other => Err(call.fault(format!("there is no time event option {other}"))),
     }
 }
 

@@ -52,7 +52,7 @@ fn make(call: &mut Call<'_>, source: Source, extrapolation: i64) -> Result<(), F
     let extrapolation = Extrapolation::from_ordinal(extrapolation)
         .ok_or_else(|| call.fault(format!("there is no extrapolation {extrapolation}")))?;
     if matrix.rows < 2 {
-        return Err(call.fault("a table of two variables needs at least two rows"));
+        return Err(call.fault("a two-dimensional table needs at least two rows"));
     }
     let x: Vec<f64> = matrix.column(0)[1..].to_vec();
     let y: Vec<f64> = matrix.values[1..matrix.columns].to_vec();
@@ -65,7 +65,9 @@ fn make(call: &mut Call<'_>, source: Source, extrapolation: i64) -> Result<(), F
         Some(Smoothness::Linear) => Shape::Bilinear,
         Some(Smoothness::Spline(Spline::Akima)) => Shape::Smooth(Surface::new(&x, &y, &z)),
         Some(Smoothness::Spline(_)) => {
-            return Err(call.fault("of all splines, a table of two variables takes only Akima's"));
+            return Err(
+                call.fault("for a table of two variables, only Akima splines are supported")
+            );
         }
         None => return Err(call.fault(format!("there is no smoothness {}", call.whole(5)))),
     };
@@ -90,7 +92,7 @@ impl Table2D {
             return Err(call.fault("an abscissa is not a number"));
         }
         let place = place(x, self.extrapolation, u).ok_or_else(|| {
-            call.fault(format!("{u} lies outside {} to {}, where the table ends", x[0], x[n - 1]))
+            call.fault(format!("{u} is outside the table range {} to {}", x[0], x[n - 1]))
         })?;
         let (interval, end) = match place {
             Place::Inside(interval, u) => {

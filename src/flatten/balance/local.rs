@@ -94,7 +94,7 @@ impl LocalBalance {
     /// What is wrong with the class.
     pub(super) fn finding(&self) -> String {
         let (few, many) = (plural(self.unknowns, "unknown"), plural(self.equations, "equation"));
-        format!("`{}` by itself has {few} but {many}", self.class)
+        format!("`{}` is not locally balanced: it has {few} but {many}", self.class)
     }
 }
 

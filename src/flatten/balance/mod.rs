@@ -57,10 +57,10 @@ pub(super) fn check(model: &FlatModel, classes: &[LocalBalance]) -> Result<(), D
     let (few, many) = (plural(unknowns, "unknown"), plural(equations, "equation"));
     let fault = if equations < unknowns {
         fault!(UNBALANCED_MODEL, "`{name}` has {few} but {many}";
-            help: "add the equations that are missing, or give variables a binding")
+            help: "add the missing equations, or give variables a binding")
     } else {
         fault!(UNBALANCED_MODEL, "`{name}` has {few} but {many}";
-            help: "remove equations, or declare the unknowns that they determine")
+            help: "remove redundant equations, or declare the unknowns that they determine")
     };
     let mut error = fault.at(model.span.unwrap_or(Span::NONE));
     for class in unbalanced(classes).filter(|class| !class.path.is_empty()).take(MAX_CLASSES) {

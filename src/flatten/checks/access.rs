@@ -41,7 +41,7 @@ fn unqualified(class: Scope<'_>, name: &Name, span: Span) -> Option<Diagnostic> 
                 return Some(
                     fault!(ILLEGAL_IMPORT, "`{first}` is imported from both `{}` and `{}`",
                         a.name(), b.name();
-                        help: "import the one that is meant by its name")
+                        help: "import the intended one by name")
                     .at(span),
                 );
             }
@@ -58,7 +58,7 @@ fn unqualified(class: Scope<'_>, name: &Name, span: Span) -> Option<Diagnostic> 
 /// The diagnostic for a protected element of a class.
 pub(super) fn protected(name: Ident, class: Scope<'_>, span: Span) -> Diagnostic {
     fault!(PROTECTED_ACCESS, "`{name}` is protected in `{}`", class.name();
-        help: "move the declaration in front of `protected`")
+        help: "move the declaration before `protected`")
     .at(span)
 }
 
@@ -78,8 +78,9 @@ fn path(class: Scope<'_>, written: &names::Written) -> Option<Diagnostic> {
         // of that package becomes part of a model.
         if inside.definition().partial && !class.definition().partial && !written.is_base {
             return Some(
-                fault!(ILLEGAL_ACCESS, "`{name}` looks into `{}`, which is partial", inside.name();
-                    help: "extend it, and look into the class that extends it")
+                fault!(ILLEGAL_ACCESS, "`{name}` accesses an element of `{}`, which is \
+                    partial", inside.name();
+                    help: "extend it and access the class that extends it")
                 .at(span),
             );
         }
@@ -91,7 +92,8 @@ fn path(class: Scope<'_>, written: &names::Written) -> Option<Diagnostic> {
         }
         if !found.encapsulated && !is_package_like(inside) {
             return Some(
-                fault!(ILLEGAL_ACCESS, "`{name}` looks into `{}`, which is no package",
+                fault!(ILLEGAL_ACCESS, "`{name}` accesses an element of `{}`, which is not a \
+                    package",
                     inside.name();
                     help: "declare `{part}` encapsulated, or move it into a package")
                 .at(span),

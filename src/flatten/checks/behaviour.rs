@@ -42,13 +42,17 @@ pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
         match section {
             Section::Equations { initial, equations, span } => {
                 if is_function {
-                    walk.wrong(*span, "equations cannot stand in a function", "write an algorithm");
+                    walk.wrong(
+                        *span,
+                        "equations are not allowed in a function",
+                        "write an algorithm",
+                    );
                 }
                 walk.equations(equations, &Around { initial: *initial, ..Around::default() });
             }
             Section::Algorithm { initial, statements, span } => {
                 if is_function && *initial {
-                    let message = "an initial algorithm cannot stand in a function";
+                    let message = "an initial algorithm is not allowed in a function";
                     walk.wrong(*span, message, "write an algorithm");
                 }
                 let around = Around {
@@ -140,12 +144,8 @@ impl Walk<'_, '_> {
         };
         if is_discrete(last) && before.iter().any(is_model) {
             let message =
-                format!("the discrete variable `{}` is assigned outside of its class", last.name());
-            self.wrong(
-                target.span,
-                &message,
-                "write the when-clause in the class that declares it",
-            );
+                format!("the discrete variable `{}` is assigned outside its class", last.name());
+            self.wrong(target.span, &message, "move the when-clause to the class that declares it");
         }
     }
 
@@ -160,7 +160,7 @@ impl Walk<'_, '_> {
                 component.name()
             );
             let span = component.declaration.name.span;
-            self.wrong(span, &message, "remove the prefix, or give the value as `start`");
+            self.wrong(span, &message, "remove the prefix, or set the value with `start`");
         }
     }
 
@@ -169,8 +169,7 @@ impl Walk<'_, '_> {
             if let Subscript::Index(index) = subscript
                 && !self.is_fixed(index)
             {
-                let message =
-                    "a connector is chosen by a subscript that changes during the simulation";
+                let message = "the subscript of a connector changes during the simulation";
                 self.wrong(index.span, message, "use a parameter, a constant or a loop variable");
             }
         }
@@ -182,7 +181,7 @@ impl Walk<'_, '_> {
         if around.function || around.initial || !component.is_fixed() {
             return;
         }
-        let message = format!("`{}` is no variable and cannot be assigned to", component.name());
+        let message = format!("`{}` is not a variable and cannot be assigned to", component.name());
         self.wrong(
             target.span,
             &message,
@@ -192,17 +191,17 @@ impl Walk<'_, '_> {
 
     fn when(&mut self, span: Span, around: &Around) {
         let found = if around.function {
-            Some(("a when-statement cannot stand in a function", "write if"))
+            Some(("a when-statement is not allowed in a function", "write if"))
         } else if around.when {
             Some(("when-clauses cannot be nested", "combine the conditions: `when {a, b} then`"))
         } else if around.initial {
             Some((
-                "a when-clause cannot stand in an initial section",
+                "a when-clause is not allowed in an initial section",
                 "write `when initial() then` in an equation section",
             ))
         } else if around.algorithm && (around.looped || around.varying) {
             Some((
-                "a when-statement cannot stand in another statement",
+                "a when-statement is not allowed inside another statement",
                 "move it to the top of the algorithm",
             ))
         } else {
@@ -224,8 +223,9 @@ impl Walk<'_, '_> {
             }
             _ => return,
         };
-        let help = "write it in an equation section, under conditions made of parameters at most";
-        self.wrong(span, &format!("`{what}` cannot stand {place}"), help);
+        let help = "write it in an equation section, under no condition or under conditions that \
+                    contain only parameters";
+        self.wrong(span, &format!("`{what}` is not allowed {place}"), help);
     }
 
     fn call(&mut self, call: &Expression, around: &Around) {
@@ -240,7 +240,7 @@ impl Walk<'_, '_> {
             [name] if name.name.as_str() == "reinit" && !around.when => {
                 self.wrong(
                     call.span,
-                    "`reinit` cannot stand outside of a when-clause",
+                    "`reinit` is not allowed outside a when-clause",
                     "move it into one",
                 );
             }
@@ -279,12 +279,12 @@ impl Walk<'_, '_> {
                 branches.iter().for_each(|(_, body)| self.statements(body, &inside));
             }
             StatementKind::Break if !around.looped => {
-                self.wrong(statement.span, "`break` cannot stand outside of a loop", "remove it");
+                self.wrong(statement.span, "`break` is not allowed outside a loop", "remove it");
             }
             StatementKind::Return if !around.function => {
                 self.wrong(
                     statement.span,
-                    "`return` cannot stand outside of a function",
+                    "`return` is not allowed outside a function",
                     "remove it",
                 );
             }

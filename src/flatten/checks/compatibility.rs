@@ -34,7 +34,7 @@ fn lack_within(candidate: Scope<'_>, expected: Scope<'_>, compared: &mut Compare
     }
     if let Some(kind) = expected.predefined() {
         let same = candidate.predefined() == Some(kind);
-        return (!same).then(|| Lack(format!("`{}` is of another type", candidate.name())));
+        return (!same).then(|| Lack(format!("`{}` has a different type", candidate.name())));
     }
     for wanted in expected.lineage().flat_map(Scope::components) {
         if wanted.visibility == Visibility::Public {
@@ -72,7 +72,7 @@ fn component_lack(
 }
 
 fn other_type(class: Scope<'_>, name: Ident) -> Lack {
-    Lack(format!("`{name}` of `{}` is of another type", class.name()))
+    Lack(format!("`{name}` of `{}` has a different type", class.name()))
 }
 
 /// Whether a class and all that it extends are found, and none is replaceable.

@@ -57,8 +57,8 @@ impl Walk<'_, '_> {
             ),
         };
         (!is_connector && !in_connector).then(|| {
-            fault!(INVALID_CONNECTION, "`{}` is no connector", component.name();
-                help: "connect connectors; write an equation for variables")
+            fault!(INVALID_CONNECTION, "`{}` is not a connector", component.name();
+                help: "connect connectors; for variables, write an equation")
             .at(reference.span)
         })
     }
@@ -78,14 +78,15 @@ impl Walk<'_, '_> {
         a.lineage().flat_map(Scope::components).find_map(|one| {
             let other = b.component(one.name())?;
             let reason = if fixed(&one) != fixed(&other) {
-                "one of them is fixed otherwise than the other"
+                "their variability prefixes differ"
             } else if is_variable(&one) && one.has_direction() != other.has_direction() {
                 "only one of them is input or output"
             } else {
                 return None;
             };
             Some(
-                fault!(INVALID_CONNECTION, "`{}` of both connectors cannot be connected: {reason}",
+                fault!(INVALID_CONNECTION, "`{}` of the two connectors cannot be connected: \
+                    {reason}",
                     one.name();
                     help: "connect connectors of one class, or of classes with the same prefixes")
                 .at(span),

@@ -42,14 +42,16 @@ pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     if count.stream > 0 && count.flow != 1 {
         errors.push(
             fault!(CLASS_RESTRICTION, "the connector `{name}` has stream variables and {} flow variables instead of one", count.flow;
-                help: "declare one scalar flow variable; streams are carried by it")
+                help: "declare exactly one scalar flow variable; it transports the stream \
+                       variables")
             .at(span),
         );
     } else if count.flow != count.potential && !is_simple(&count) {
         errors.push(
             fault!(CLASS_RESTRICTION, "the connector `{name}` has {} flow variables and {} potential variables",
                 count.flow, count.potential;
-                help: "declare as many of the ones as of the others, or give the rest the prefix `input` or `output`")
+                help: "declare equal numbers of both, or give the remaining variables the prefix \
+                       `input` or `output`")
             .at(span),
         );
     }

@@ -23,8 +23,9 @@ pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
                 && other != target
             {
                 errors.push(
-                    fault!(ILLEGAL_IMPORT, "`{}` imports two things as `{name}`", class.name();
-                        help: "give one of them another name, `import Other = A.B;`")
+                    fault!(ILLEGAL_IMPORT, "`{}` imports two elements under the name \
+                        `{name}`", class.name();
+                        help: "rename one of them, `import Other = A.B;`")
                     .at(import.span)
                     .related(first, "the other import"),
                 );
@@ -92,9 +93,9 @@ fn from_other_than_package(class: Scope<'_>, import: &Import) -> Option<Diagnost
     }
     let found = class.class_named(&global(&package))?;
     (!is_package(found)).then(|| {
-        fault!(ILLEGAL_IMPORT, "`{}` is a {}, and only packages can be imported from",
+        fault!(ILLEGAL_IMPORT, "cannot import from `{}`: it is a {}, not a package",
             found.name(), super::word(found.restriction());
-            help: "move what is imported into a package")
+            help: "move the imported element into a package")
         .at(import.span)
     })
 }

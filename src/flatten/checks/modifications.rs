@@ -169,8 +169,9 @@ fn incompatible(
 }
 
 fn unfit(name: Ident, expected: Scope<'_>, reason: &str, span: Span) -> Diagnostic {
-    fault!(ILLEGAL_REDECLARATION, "`{name}` does not fit its constraint `{}`: {reason}", expected.name();
-        help: "use a class that has the public components of the constraint")
+    fault!(ILLEGAL_REDECLARATION, "`{name}` does not satisfy its constraining type `{}`: \
+                                   {reason}", expected.name();
+        help: "use a class with the public components of the constraining type")
     .at(span)
 }
 
@@ -257,7 +258,7 @@ fn redeclared(
             _ => return None,
         };
         Some(
-            fault!(ILLEGAL_REDECLARATION, "`{}` is redeclared {now}, and it is {then} in `{}`",
+            fault!(ILLEGAL_REDECLARATION, "`{}` is redeclared {now}, but it is {then} in `{}`",
                 name.node, element.holder.name();
                 help: "redeclare it in a {then} section")
             .at(name.span),

@@ -53,14 +53,14 @@ fn wrong(record: Scope<'_>, operator: Ident, function: Scope<'_>) -> Option<Diag
     let gives_record = class_of(output).is_none_or(|class| is_same(class, record));
     match operator.as_str() {
         "'constructor'" | "'0'" if !gives_record || is_predefined(output) => {
-            Some(complaint(function, &format!("does not give a `{}`", record.name())))
+            Some(complaint(function, &format!("does not return a `{}`", record.name())))
         }
         "'0'" if !inputs.is_empty() => Some(complaint(function, "has inputs")),
         "'String'" if is_other_than_string(output) => {
-            Some(complaint(function, "does not give a String"))
+            Some(complaint(function, "does not return a String"))
         }
         name if BINARY.contains(&name) && inputs.len() < 2 => {
-            Some(complaint(function, "has less than two inputs"))
+            Some(complaint(function, "has fewer than two inputs"))
         }
         "'-'" | "'not'" | "'String'" if inputs.is_empty() => {
             Some(complaint(function, "has no input"))
@@ -77,7 +77,7 @@ fn ambiguous(functions: &[Scope<'_>]) -> Option<Diagnostic> {
             .iter()
             .find(|other| self::signature(**other).as_ref() == Some(&signature));
         if let Some(other) = same {
-            let message = format!("takes the same inputs as `{}`", other.definition().name.node);
+            let message = format!("has the same inputs as `{}`", other.definition().name.node);
             return Some(complaint(*function, &message));
         }
     }
@@ -101,7 +101,7 @@ fn signature(function: Scope<'_>) -> Option<Vec<(Type, usize)>> {
 
 fn complaint(function: Scope<'_>, what: &str) -> Diagnostic {
     fault!(ILLEGAL_OPERATOR, "the operator function `{}` {what}", function.name();
-        help: "correct its declaration, or declare a function that is no operator")
+        help: "correct its declaration, or declare an ordinary function")
     .at(function.definition().name.span)
 }
 

@@ -40,7 +40,7 @@ fn wrong_use(class: Scope<'_>, component: &Component<'_>) -> Option<Diagnostic> 
     let is_fixed = fixed_word(prefixes.variability);
     if let (Some(CausalityPrefix::Input), Some(variability)) = (prefixes.causality, is_fixed) {
         return Some(
-            fault!(ILLEGAL_PREFIX, "`{name}` is both `input` and `{variability}`";
+            fault!(ILLEGAL_PREFIX, "`{name}` has both prefixes `input` and `{variability}`";
                 help: "remove one of the prefixes")
             .at(span),
         );
@@ -55,7 +55,8 @@ fn wrong_use(class: Scope<'_>, component: &Component<'_>) -> Option<Diagnostic> 
         return Some(
             fault!(ILLEGAL_PREFIX, "the expandable connector `{}` has the flow variable `{name}`",
                 class.name();
-                help: "declare it in a connector of its own, and that in the expandable one")
+                help: "declare it in a separate connector, and that connector in the expandable \
+                       one")
             .at(span),
         );
     }
@@ -81,7 +82,7 @@ fn wrong_kind(component: &Component<'_>) -> Option<Diagnostic> {
         Restriction::Model | Restriction::Block | Restriction::Package => Some(
             fault!(ILLEGAL_PREFIX, "the {} `{name}` has the prefix `{word}`",
                 super::word(class.restriction());
-                help: "remove the prefix; it is for variables, records and connectors")
+                help: "remove the prefix; it is allowed only for variables, records and connectors")
             .at(span),
         ),
         Restriction::Connector if class.predefined().is_none() => {
@@ -134,7 +135,7 @@ fn no_additive_group(component: &Component<'_>) -> Option<Diagnostic> {
     Some(
         fault!(ILLEGAL_PREFIX, "the flow variable `{}` is of the operator record `{}`, which has no operator `{missing}`",
             component.name(), class.name();
-            help: "declare the operator; flows are added, negated and zero")
+            help: "declare the operator; flow variables need addition, negation and zero")
         .at(component.declaration.name.span),
     )
 }
@@ -158,7 +159,8 @@ fn conflict_with(outer: TypePrefixes, class: Scope<'_>, span: Span) -> Option<Di
     };
     let (name, inner) = prefixed_element(class, clashes)?;
     Some(
-        fault!(ILLEGAL_PREFIX, "the prefix `{word}` meets the prefix `{inner}` of the element `{name}`";
+        fault!(ILLEGAL_PREFIX, "the prefix `{word}` conflicts with the prefix `{inner}` of the \
+                                element `{name}`";
             help: "remove one of them")
         .at(span),
     )

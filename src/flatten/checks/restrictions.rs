@@ -76,7 +76,8 @@ fn package(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
         if component.clause.type_prefixes.variability != Some(VariabilityPrefix::Constant) {
             let span = component.declaration.name.span;
             errors.push(
-                fault!(CLASS_RESTRICTION, "`{}` is no constant, and the package `{}` may only contain classes and constants",
+                fault!(CLASS_RESTRICTION, "`{}` is not a constant, but the package `{}` can \
+                    contain only classes and constants",
                     component.name(), class.name();
                     help: "declare it `constant`, or move it into a model")
                 .at(span),
@@ -94,7 +95,7 @@ fn operator(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
             errors.push(
                 fault!(
                     CLASS_RESTRICTION,
-                    "`{}` is no function, and the operator `{}` may only contain functions",
+                    "`{}` is not a function, but the operator `{}` can contain only functions",
                     name.node,
                     class.name()
                 )
@@ -117,9 +118,10 @@ fn operators_lie_in_records(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
         };
         let name = nested.class.name;
         errors.push(
-            fault!(CLASS_RESTRICTION, "the {what} `{}` lies in `{}`, which is no operator record",
+            fault!(CLASS_RESTRICTION, "the {what} `{}` is declared in `{}`, which is not an \
+                                       operator record",
                 name.node, class.name();
-                help: "move it into the operator record that it is about")
+                help: "move it into the operator record that it operates on")
             .at(name.span),
         );
     }
@@ -137,7 +139,8 @@ fn block(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
             errors.push(
                 fault!(CLASS_RESTRICTION, "`{}` of the block `{}` has variables that are neither input nor output",
                     component.name(), class.name();
-                    help: "make the class a model, or give the variables of the connector a direction")
+                    help: "make the class a model, or declare the variables of the connector \
+                           `input` or `output`")
                 .at(component.declaration.name.span),
             );
         }

@@ -63,7 +63,7 @@ struct Walk<'a, 'e> {
 
 impl Walk<'_, '_> {
     fn mismatch(&mut self, expression: &Expression, expected: &str, found: Kind) {
-        let message = format!("{expected}, and this is {}", self.name(found));
+        let message = format!("{expected}, but this is {}", self.name(found));
         self.errors.push(fault!(TYPE_MISMATCH, "{message}").at(expression.span));
     }
 

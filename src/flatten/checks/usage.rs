@@ -115,7 +115,7 @@ impl<'a> Walk<'a, '_> {
             return None;
         };
         Some(
-            fault!(ILLEGAL_ARGUMENT, "`{name}` {reason} and has no derivative";
+            fault!(ILLEGAL_ARGUMENT, "`{name}` {reason}, so it has no derivative";
                 help: "differentiate a continuous-time Real variable")
             .at(argument.span),
         )
@@ -124,8 +124,9 @@ impl<'a> Walk<'a, '_> {
     fn reinitialized(&self, state: &Expression) -> Option<Diagnostic> {
         let component = self.component(state)?;
         component.is_fixed().then(|| {
-            fault!(ILLEGAL_ARGUMENT, "`{}` cannot be reinitialized: it is no variable", component.name();
-                help: "name a state")
+            fault!(ILLEGAL_ARGUMENT, "`{}` cannot be reinitialized: it is not a \
+                                      variable", component.name();
+                help: "use a state")
             .at(state.span)
         })
     }
@@ -157,7 +158,7 @@ impl<'a> Walk<'a, '_> {
         let path = self.class.path(reference)?;
         let is_stream = path.iter().any(|part| part.clause.type_prefixes.connection == stream);
         (!is_stream).then(|| {
-            fault!(ILLEGAL_ARGUMENT, "the argument of `{operator}` is no stream variable")
+            fault!(ILLEGAL_ARGUMENT, "the argument of `{operator}` is not a stream variable")
                 .at(argument.span)
         })
     }
@@ -169,7 +170,7 @@ impl<'a> Walk<'a, '_> {
             Type::Class(class) => component.owner.of(class).restriction() == Restriction::Type,
         };
         is_variable.then(|| {
-            fault!(ILLEGAL_ARGUMENT, "the argument of `cardinality` is no connector")
+            fault!(ILLEGAL_ARGUMENT, "the argument of `cardinality` is not a connector")
                 .at(argument.span)
         })
     }
@@ -214,8 +215,9 @@ impl Visit for Walk<'_, '_> {
         let is_own = component.owner.class == self.class.class;
         if is_own && component.declaration.condition.is_some() && !self.conditional {
             self.errors.push(
-                fault!(CONDITIONAL_COMPONENT, "`{name}` is declared under a condition and can only be connected or modified";
-                    help: "declare a variable without a condition, and connect it with `{name}`")
+                fault!(CONDITIONAL_COMPONENT, "`{name}` is a conditional component: it can only \
+                    be connected or modified";
+                    help: "declare an unconditional variable and connect it to `{name}`")
                 .at(reference.span),
             );
         }
@@ -285,7 +287,7 @@ fn longer(time: &Expression, most: &Expression) -> Option<Diagnostic> {
     let (a, b) = (number(time)?, number(most)?);
     (a > b || a < 0.0).then(|| {
         fault!(ILLEGAL_ARGUMENT, "the delay {a} is not between 0 and the longest delay {b}";
-            help: "exchange or correct the arguments: `delay(expression, time, longest)`")
+            help: "swap or correct the arguments: `delay(expression, time, longest)`")
         .at(time.span)
     })
 }

@@ -148,7 +148,7 @@ impl Instantiation<'_> {
                 Ok(())
             }
             EquationKind::When { .. } => {
-                Err(fault!(INVALID_CONNECTION, "connections cannot stand in a when-equation")
+                Err(fault!(INVALID_CONNECTION, "connections are not allowed in a when-equation")
                     .at(equation.span))
             }
             EquationKind::Equal { .. } => Ok(()),
@@ -243,11 +243,8 @@ impl Instantiation<'_> {
     ) -> Result<Option<NodeId>, Diagnostic> {
         let Some(argument) = arguments.positional.get(at) else { return Ok(None) };
         let ExpressionKind::Reference(reference) = &argument.kind else {
-            return Err(fault!(
-                INVALID_CONNECTION,
-                "the name of a record of a connector is needed"
-            )
-            .at(argument.span));
+            return Err(fault!(INVALID_CONNECTION, "expected the name of a record in a connector")
+                .at(argument.span));
         };
         match self.ends(reference, context, local)? {
             Some(Ends { ends, .. }) => match ends.as_slice() {

@@ -146,14 +146,15 @@ impl Instantiation<'_> {
         let Subscript::Index(index) = subscript else {
             return Err(fault!(
                 INVALID_CONNECTION,
-                "the size of a new component of an expandable connector must be known"
+                "the size of a new component of an expandable connector must be known at \
+                 translation"
             )
             .at(connect.span));
         };
         let resolved = self.resolve(index, connect.context, &connect.local)?;
         match self.flat_value(&resolved)? {
             Value::Integer(n) if n > 0 => Ok(n as usize),
-            _ => Err(fault!(INVALID_CONNECTION, "a positive Integer is needed").at(index.span)),
+            _ => Err(fault!(INVALID_CONNECTION, "expected a positive Integer").at(index.span)),
         }
     }
 

@@ -248,7 +248,7 @@ impl Instantiation<'_> {
         let span = edge.span;
         let class = self.redundant_class(edge.nodes.0).unwrap_or(ScopeId::TOP);
         let invalid = || {
-            fault!(INVALID_CONNECTION, "`{EQUALITY_CONSTRAINT}` of this record is no function")
+            fault!(INVALID_CONNECTION, "`{EQUALITY_CONSTRAINT}` of this record is not a function")
                 .at(span)
         };
         let nested = self.find_class(class, Ident::new(EQUALITY_CONSTRAINT))?;

@@ -71,8 +71,11 @@ impl Instantiation<'_> {
 
     fn known_connections(&self, span: Span) -> Result<Rc<Connections>, Diagnostic> {
         self.connections.clone().ok_or_else(|| {
-            fault!(INVALID_CONNECTION, "what shapes the model cannot depend on its connections")
-                .at(span)
+            fault!(
+                INVALID_CONNECTION,
+                "the structure of the model cannot depend on its connections"
+            )
+            .at(span)
         })
     }
 }
@@ -82,7 +85,7 @@ fn argument(arguments: &Arguments, span: Span) -> Result<&ComponentReference, Di
         Some(ExpressionKind::Reference(reference)) => Ok(reference),
         _ => Err(fault!(
             INVALID_CONNECTION,
-            "the name of a connector or of a variable of one is needed"
+            "expected the name of a connector or of a variable in a connector"
         )
         .at(span)),
     }

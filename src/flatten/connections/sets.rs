@@ -159,7 +159,7 @@ impl Instantiation<'_> {
 
     fn unlike(&self, one: End, other: End, span: Span) -> Diagnostic {
         let (a, b) = (self.end_path(one), self.end_path(other));
-        let error = fault!(INVALID_CONNECTION, "`{a}` and `{b}` are connectors of different kinds")
+        let error = fault!(INVALID_CONNECTION, "`{a}` and `{b}` are connectors of different types")
             .at(span);
         [one, other].into_iter().map(|end| (end, self.end_span(end))).fold(
             error,

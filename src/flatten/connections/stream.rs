@@ -35,11 +35,13 @@ impl Instantiation<'_> {
         let mut values = Vec::with_capacity(ends.ends.len());
         for end in &ends.ends {
             let End::Scalar(leaf, element) = *end else {
-                return Err(fault!(INVALID_CONNECTION, "a stream variable is needed").at(span));
+                return Err(fault!(INVALID_CONNECTION, "expected a stream variable").at(span));
             };
             if self.connection_of(leaf) != Some(ConnectionPrefix::Stream) {
                 let path = &self.nodes[leaf.0].path;
-                return Err(fault!(INVALID_CONNECTION, "`{path}` is no stream variable").at(span));
+                return Err(
+                    fault!(INVALID_CONNECTION, "`{path}` is not a stream variable").at(span)
+                );
             }
             let inside = self.in_stream(leaf, element, connections, span, 0)?;
             values.push(match actual {
@@ -73,7 +75,7 @@ impl Instantiation<'_> {
         let missing = || {
             fault!(
                 INVALID_CONNECTION,
-                "the connector of `{path}` has not exactly one flow variable"
+                "the connector of `{path}` does not have exactly one flow variable"
             )
             .at(span)
         };
@@ -119,9 +121,7 @@ impl Instantiation<'_> {
         level: usize,
     ) -> Result<Expression, Diagnostic> {
         if level > MAX_LEVELS {
-            return Err(
-                fault!(INVALID_CONNECTION, "the streams are connected in a circle").at(span)
-            );
+            return Err(fault!(INVALID_CONNECTION, "the stream connections form a cycle").at(span));
         }
         if let [face] = faces {
             return self.outflow(*face, connections, span, level);

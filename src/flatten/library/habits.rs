@@ -46,24 +46,24 @@ impl Habit {
                 ("files without a `within` clause", "write `within` and the package's full name")
             }
             Habit::OtherWithin => (
-                "files with another `within` clause than their folder asks for",
-                "move the file, or write the name of the package whose folder it lies in",
+                "files whose `within` clause does not match their folder",
+                "move the file, or write the name of the package of its folder",
             ),
             Habit::FolderName => {
-                ("folders named otherwise than their packages", "rename the folder")
+                ("folders whose names differ from their packages", "rename the folder")
             }
-            Habit::FileName => ("files named otherwise than their classes", "rename the file"),
+            Habit::FileName => ("files whose names differ from their classes", "rename the file"),
             Habit::AnnotationPlace => (
-                "annotations before other elements, or several in one class",
+                "annotations before other elements, or several annotations in one class",
                 "write one annotation at the end of the class",
             ),
             Habit::OldGraphics => (
                 "graphical annotations of Modelica 1 or 2, which are ignored",
-                "convert the library to Modelica 3, if it is to be drawn",
+                "to display diagrams, convert the library to Modelica 3",
             ),
             Habit::OuterValue => (
                 "`outer` components with modifiers, which are ignored",
-                "give the values to the inner components",
+                "set the values in the inner components",
             ),
         };
         Fault::new(OLD_LIBRARY, format!("library `{library}` has {what}")).help(remedy)

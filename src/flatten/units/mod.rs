@@ -103,7 +103,10 @@ impl Walk {
         if let (Some(one), Some(other)) = (one, other)
             && one != other
         {
-            self.tell(format!("`{name}` measures `{one}`, its value `{other}`"), span);
+            self.tell(
+                format!("`{name}` has the dimension of `{one}`, but its value that of `{other}`"),
+                span,
+            );
         }
     }
 
@@ -113,7 +116,10 @@ impl Walk {
         if let (Some(one), Some(other)) = both
             && one != other
         {
-            self.tell(format!("the {sides} measure `{one}` and `{other}`"), span);
+            self.tell(
+                format!("the {sides} have different dimensions, those of `{one}` and `{other}`"),
+                span,
+            );
         }
     }
 

@@ -13,7 +13,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
     name: "arithmetic",
     aliases: &["intermediate"],
-    summary: "children lie at random on the line between their parents",
+    summary: "arithmetic crossover: children at random on the line between their parents",
     reference: "michalewicz-1996",
     make: |_| Ok(Box::new(Arithmetic)),
 };

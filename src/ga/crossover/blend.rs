@@ -13,7 +13,8 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
     name: "blend",
     aliases: &["blx", "blx_alpha"],
-    summary: "genes uniform between the parents and `alpha` times their distance beyond",
+    summary: "BLX-alpha: genes uniform between the parents, extended by `alpha` times their \
+              distance",
     reference: "eshelman-schaffer-1993",
     make: |options| Ok(Box::new(Blend { alpha: options.take("alpha", 0.0..=10.0, 0.5)? })),
 };

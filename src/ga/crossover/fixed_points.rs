@@ -20,7 +20,8 @@ use std::sync::Arc;
 pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
     name: "fixed_points",
     aliases: &["gapilib2006", "points"],
-    summary: "the genes behind each of `points` points change places; points are drawn once a run",
+    summary: "n-point crossover at fixed points: genes after each of `points` points are \
+              exchanged; points are drawn once per run",
     reference: "rubio-2006",
     make: |options| {
         let count = options.take_whole("points", 0.0..=1e3, 1.0)?;
@@ -68,8 +69,8 @@ pub fn check_points(points: &[i64], n_genes: usize) -> Result<Vec<usize>, Fault>
             Ok(index) if index <= n_genes => checked.push(index),
             _ => bail!(
                 BAD_CROSS_POINT,
-                "the crossing point {point} lies outside a genome of {n_genes} genes";
-                help: "draw crossing points from 1 to {}", n_genes.saturating_sub(1).max(1)
+                "the crossing point {point} is outside a genome of {n_genes} genes";
+                help: "choose crossing points from 1 to {}", n_genes.saturating_sub(1).max(1)
             ),
         }
     }

@@ -12,7 +12,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
     name: "one_point",
     aliases: &["single_point"],
-    summary: "the genes behind a random point change places",
+    summary: "one-point crossover: the genes after a random point are exchanged",
     reference: "holland-1975",
     make: |_| Ok(Box::new(OnePoint)),
 };

@@ -14,7 +14,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
     name: "sbx",
     aliases: &["simulated_binary"],
-    summary: "genes about those of the parents, the nearer the larger `eta` is",
+    summary: "simulated binary crossover: genes near those of the parents, closer for larger `eta`",
     reference: "deb-agrawal-1995",
     make: |options| Ok(Box::new(Sbx { eta: options.take("eta", 0.0..=1000.0, 15.0)? })),
 };

@@ -12,7 +12,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
     name: "two_point",
     aliases: &["double_point"],
-    summary: "the genes between two random points change places",
+    summary: "two-point crossover: the genes between two random points are exchanged",
     reference: "de-jong-1975",
     make: |_| Ok(Box::new(TwoPoint)),
 };

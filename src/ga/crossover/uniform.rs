@@ -11,7 +11,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
     name: "uniform",
     aliases: &["discrete"],
-    summary: "each gene changes places with the probability `swap`",
+    summary: "uniform crossover: each gene is exchanged with the probability `swap`",
     reference: "syswerda-1989",
     make: |options| Ok(Box::new(Uniform { swap: options.take("swap", 0.0..=1.0, 0.5)? })),
 };

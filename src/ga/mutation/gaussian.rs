@@ -13,7 +13,8 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Mutation> = Entry {
     name: "gaussian",
     aliases: &["normal"],
-    summary: "a gene moves by a normal number, `sigma` times the width of its range",
+    summary: "Gaussian mutation: adds a normal random number of `sigma` times the width of the \
+              range",
     reference: "back-schwefel-1993",
     make: |options| Ok(Box::new(Gaussian { sigma: options.take("sigma", 1e-6..=1.0, 0.1)? })),
 };

@@ -17,7 +17,8 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Mutation> = Entry {
     name: "non_uniform",
     aliases: &["michalewicz", "nonuniform"],
-    summary: "towards an end of the range, ever less in the course of `generations`",
+    summary: "non-uniform mutation: a step towards an end of the range that decreases over \
+              `generations`",
     reference: "michalewicz-1996",
     make: |options| {
         Ok(Box::new(NonUniform {

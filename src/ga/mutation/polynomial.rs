@@ -13,7 +13,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Mutation> = Entry {
     name: "polynomial",
     aliases: &["deb"],
-    summary: "a gene moves within its range, the less the larger `eta` is",
+    summary: "polynomial mutation: a step within the range, smaller for larger `eta`",
     reference: "deb-agrawal-1999",
     make: |options| Ok(Box::new(Polynomial { eta: options.take("eta", 0.0..=1000.0, 20.0)? })),
 };

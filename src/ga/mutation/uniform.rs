@@ -15,7 +15,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Mutation> = Entry {
     name: "uniform",
     aliases: &["random"],
-    summary: "a gene is replaced by a value uniform over its range",
+    summary: "uniform mutation: a gene is replaced by a uniform random value of its range",
     reference: "rubio-2006",
     make: |_| Ok(Box::new(Uniform)),
 };
@@ -56,7 +56,7 @@ pub fn check_factor(factor: f64) -> Result<(), Fault> {
     }
     bail!(
         BAD_MUTATION_FACTOR,
-        "F_Mut is {factor}, a probability lies between 0 and 1";
+        "F_Mut is {factor}, but a probability must be between 0 and 1";
         help: "use a number from 0 to 1; the paper uses 0.25 and 0.15"
     )
 }

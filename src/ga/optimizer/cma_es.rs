@@ -15,7 +15,7 @@ use nalgebra::{DMatrix, DVector};
 pub(super) const ENTRY: Entry<dyn Method> = Entry {
     name: "cma_es",
     aliases: &["cmaes", "cma-es"],
-    summary: "covariance matrix adaptation, restarted with a larger population",
+    summary: "covariance matrix adaptation evolution strategy, restarted with a larger population",
     reference: "hansen-2016",
     make: |options| {
         Ok(Box::new(CmaEs {

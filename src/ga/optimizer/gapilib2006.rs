@@ -22,7 +22,7 @@ use std::sync::Arc;
 pub(super) const ENTRY: Entry<dyn Method> = Entry {
     name: "gapilib2006",
     aliases: &["gapilib"],
-    summary: "the paper's genetic algorithm, exactly",
+    summary: "the genetic algorithm of the paper, exactly",
     reference: "rubio-2006",
     make: |options| Ok(Box::new(Gapilib::new(options)?)),
 };
@@ -44,7 +44,8 @@ impl Gapilib {
         if let Some(choice) = options.take_choice("survival").filter(|own| own.name != "elitism") {
             bail!(
                 BAD_OPTION,
-                "`gapilib2006` keeps its elites and fills up with random individuals; `{}` cannot take the place of that", choice.name;
+                "`gapilib2006` keeps its elites and adds random individuals; `{}` cannot replace \
+                 that", choice.name;
                 help: "use the method `genetic`, or set `elites`"
             );
         }
@@ -149,7 +150,7 @@ impl Optimizer for Search {
             "parents" if size && value >= 1.0 => changed.parents = value as usize,
             "elites" if size => changed.elites = value as usize,
             "population" if size => changed.population = value as usize,
-            _ => return Err(fault!(BAD_OPTION, "`{setting}` cannot become {value}")),
+            _ => return Err(fault!(BAD_OPTION, "`{setting}` cannot be set to {value}")),
         }
         changed.check()?;
         self.settings = changed;

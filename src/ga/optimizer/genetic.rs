@@ -170,7 +170,7 @@ impl Optimizer for Search {
             "population" if size && value >= 4.0 && settings.survival.can_resize() => {
                 settings.population = value as usize;
             }
-            _ => return Err(fault!(BAD_OPTION, "`{setting}` cannot become {value}")),
+            _ => return Err(fault!(BAD_OPTION, "`{setting}` cannot be set to {value}")),
         }
         Ok(())
     }

@@ -20,7 +20,8 @@ use nalgebra::DVector;
 pub(super) const ENTRY: Entry<dyn Method> = Entry {
     name: "levenberg_marquardt",
     aliases: &["lm", "levenberg-marquardt"],
-    summary: "least squares from one point: the middle of the ranges unless a start is given",
+    summary: "nonlinear least squares from one point: the start values if given, otherwise the \
+              middle of the ranges",
     reference: "more-1978",
     make: |options| {
         Ok(Box::new(LevenbergMarquardt { steps: options.take_whole("steps", 1.0..=1e6, 2000.0)? }))

@@ -14,7 +14,8 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Method> = Entry {
     name: "lshade",
     aliases: &["l-shade", "differential_evolution"],
-    summary: "differential evolution with memory of success and shrinking population",
+    summary: "differential evolution with success-history adaptation and linear population size \
+              reduction",
     reference: "tanabe-fukunaga-2014",
     make: |options| {
         Ok(Box::new(Lshade { population: options.take_whole("population", 0.0..=1e6, 0.0)? }))

@@ -12,7 +12,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Method> = Entry {
     name: "nelder_mead",
     aliases: &["simplex", "nelder-mead"],
-    summary: "downhill simplex from one point: needs no smooth fitness",
+    summary: "downhill simplex from one point: does not need a smooth fitness",
     reference: "gao-han-2012",
     make: |options| Ok(Box::new(NelderMead { size: options.take("size", 1e-6..=1.0, 0.15)? })),
 };

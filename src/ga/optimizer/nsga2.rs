@@ -19,7 +19,7 @@ use std::sync::Arc;
 pub(super) const ENTRY: Entry<dyn Method> = Entry {
     name: "nsga2",
     aliases: &["nsga-ii"],
-    summary: "several fitness functions at once: a front of the best compromises",
+    summary: "several fitness functions: a Pareto front",
     reference: "deb-2002",
     make: |options| {
         let mut chosen = Chosen::new();

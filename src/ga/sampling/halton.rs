@@ -13,7 +13,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Sampling> = Entry {
     name: "halton",
     aliases: &[],
-    summary: "evenly filling the space of few genes, whatever their number of individuals",
+    summary: "low-discrepancy sequence for few genes and any number of individuals",
     reference: "halton-1960",
     make: |_| Ok(Box::new(Halton)),
 };

@@ -12,7 +12,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Sampling> = Entry {
     name: "latin_hypercube",
     aliases: &["lhs"],
-    summary: "each gene once in each slice of its range",
+    summary: "Latin hypercube: one value per slice of each range",
     reference: "mckay-1979",
     make: |_| Ok(Box::new(LatinHypercube)),
 };

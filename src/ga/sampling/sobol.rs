@@ -13,7 +13,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Sampling> = Entry {
     name: "sobol",
     aliases: &["quasi_random"],
-    summary: "evenly filling the space of all genes",
+    summary: "low-discrepancy sequence for any number of genes",
     reference: "sobol-1967",
     make: |_| Ok(Box::new(Sobol)),
 };

@@ -11,7 +11,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Sampling> = Entry {
     name: "uniform",
     aliases: &["random"],
-    summary: "every gene uniform over its range",
+    summary: "each gene uniform over its range",
     reference: "rubio-2006",
     make: |_| Ok(Box::new(Uniform)),
 };

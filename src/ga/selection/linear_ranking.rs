@@ -12,7 +12,8 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Selection> = Entry {
     name: "linear_ranking",
     aliases: &["ranking"],
-    summary: "the best is `pressure` times as likely as the average, falling linearly with the rank",
+    summary: "linear ranking: the best is `pressure` times as likely as the average, decreasing \
+              linearly with the rank",
     reference: "baker-1985",
     make: |options| {
         Ok(Box::new(LinearRanking { pressure: options.take("pressure", 1.0..=2.0, 1.5)? }))

@@ -54,14 +54,16 @@ pub fn select_by(
             Some(&weight) if weight >= 0.0 && weight.is_finite() => weights.push(weight),
             found => bail!(
                 BAD_OPERATOR,
-                "the selection gives rank {} the weight {}", rank + 1, found.unwrap_or(&f64::NAN);
-                help: "return a number that is not negative"
+                "the selection returns the weight {1} for rank \
+                 {0}", rank + 1, found.unwrap_or(&f64::NAN);
+                help: "return a nonnegative number"
             ),
         }
     }
     let sum: f64 = weights.iter().sum();
     if !(sum > 0.0 && sum.is_finite()) {
-        bail!(BAD_OPERATOR, "the weights of the selection add up to {sum}"; help: "return a positive number for one rank at least");
+        bail!(BAD_OPERATOR, "the weights of the selection add up to \
+                             {sum}"; help: "return a positive number for at least one rank");
     }
     Ok(spun(&weights, count, rng).into_iter().map(|rank| order[rank]).collect())
 }

@@ -14,7 +14,8 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Selection> = Entry {
     name: "roulette",
     aliases: &["proportionate", "fitness_proportionate"],
-    summary: "as likely as an individual is better than the worst, one turn of a wheel for each",
+    summary: "fitness-proportional: probability proportional to the distance from the worst \
+              fitness; one spin per parent",
     reference: "holland-1975",
     make: |_| Ok(Box::new(Roulette)),
 };

@@ -12,7 +12,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Selection> = Entry {
     name: "shuffle",
     aliases: &["random"],
-    summary: "everyone becomes a parent, in random order",
+    summary: "every individual becomes a parent, in random order",
     reference: "mahfoud-1995",
     make: |_| Ok(Box::new(Shuffle)),
 };

@@ -13,7 +13,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Selection> = Entry {
     name: "stochastic_universal",
     aliases: &["sus"],
-    summary: "as roulette, with one turn of a wheel that has a pointer for each parent",
+    summary: "as roulette, with one spin of a wheel with one pointer per parent",
     reference: "baker-1987",
     make: |_| Ok(Box::new(StochasticUniversal)),
 };

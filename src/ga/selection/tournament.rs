@@ -13,7 +13,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Selection> = Entry {
     name: "tournament",
     aliases: &["binary_tournament"],
-    summary: "the best of `size` individuals drawn at random becomes a parent",
+    summary: "the best of `size` random individuals becomes a parent",
     reference: "goldberg-deb-1991",
     make: |options| {
         Ok(Box::new(Tournament { size: options.take_whole("size", 1.0..=1000.0, 2.0)? }))

@@ -47,7 +47,7 @@ pub fn check_sizes(individuals: i64, parents: i64, elites: i64) -> Result<(), Fa
         if value < least {
             bail!(
                 BAD_POPULATION,
-                "{name} is {value}, it must be at least {least}";
+                "{name} is {value}, but it must be at least {least}";
                 help: "the paper uses 100 individuals, 70 parents and 1 elite"
             );
         }

@@ -16,7 +16,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Survival> = Entry {
     name: "crowding",
     aliases: &["deterministic_crowding"],
-    summary: "a child takes the place of the parent that it is more like, if it is better",
+    summary: "deterministic crowding: a child replaces the more similar parent if it is better",
     reference: "mahfoud-1995",
     make: |_| Ok(Box::new(Crowding)),
 };

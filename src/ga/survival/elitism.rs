@@ -16,7 +16,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Survival> = Entry {
     name: "elitism",
     aliases: &["elites"],
-    summary: "the best `elites` of the method pass on, offspring replace the others",
+    summary: "the best `elites` of the method survive, offspring replace the others",
     reference: "rubio-2006",
     make: |_| Ok(Box::new(Elitism)),
 };

@@ -10,7 +10,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Survival> = Entry {
     name: "generational",
     aliases: &["replace_all"],
-    summary: "the offspring replace everyone",
+    summary: "the offspring replace the whole population",
     reference: "de-jong-1975",
     make: |_| Ok(Box::new(Generational)),
 };

@@ -57,8 +57,8 @@ pub fn survivors_by(
             Some(&key) if !key.is_nan() => keys[k] = key,
             _ => bail!(
                 BAD_OPERATOR,
-                "the survival gives rank {} no number", rank + 1;
-                help: "return a number; the smallest survive"
+                "the survival does not return a number for rank {}", rank + 1;
+                help: "return a number; individuals with the smallest numbers survive"
             ),
         }
     }

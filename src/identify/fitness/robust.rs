@@ -37,7 +37,8 @@ const STEPS: usize = 60;
 pub(super) const HUBER_ENTRY: Entry<dyn Fitness> = Entry {
     name: "huber",
     aliases: &[],
-    summary: "squares of small and absolute values of large differences; settings `delta`, `scale`",
+    summary: "Huber loss: quadratic for small and linear for large differences; settings \
+              `delta`, `scale`",
     reference: "huber-ronchetti-2009",
     make: |options| {
         let delta = options.take("delta", 1e-3..=f64::MAX, HUBER)?;
@@ -50,7 +51,8 @@ pub(super) const HUBER_ENTRY: Entry<dyn Fitness> = Entry {
 pub(super) const TUKEY_ENTRY: Entry<dyn Fitness> = Entry {
     name: "tukey",
     aliases: &["biweight"],
-    summary: "squares of small differences, large ones do not count; settings `delta`, `scale`",
+    summary: "Tukey's biweight loss: quadratic for small differences, constant for large ones; \
+              settings `delta`, `scale`",
     reference: "huber-ronchetti-2009",
     make: |options| {
         let delta = options.take("delta", 1e-3..=f64::MAX, TUKEY)?;

@@ -166,8 +166,8 @@ fn no_noise(own: &Own<'_>) -> Finding {
     Finding::new(
         FindingKind::NoNoise,
         format!(
-            "The residuals of {} are as small as the errors of the simulation: these data have no \
-             noise, and standard errors and intervals say nothing about measured ones.",
+            "The residuals of {} are as small as the errors of the simulation: these data have \
+             no noise, so standard errors and intervals do not apply to measured data.",
             own.label
         ),
     )
@@ -183,7 +183,7 @@ fn poor_fit(problem: &Problem, k: usize, own: &Own<'_>, raw: &[f64]) -> Option<F
     let by_chance = f_upper(1.0 - r_squared, [n, n - 1.0]) >= FAMILY;
     (total > 0.0 && y.len() > 2 && r_squared < 0.0).then(|| {
         let (severity, words) = match by_chance {
-            true => (Severity::Information, "these data do not show that the model says more"),
+            true => (Severity::Information, "these data do not show that the model explains more"),
             false => (Severity::Serious, "the model does not describe these data"),
         };
         Finding::new(
@@ -297,8 +297,8 @@ fn bias(
             FindingKind::Bias,
             format!(
                 "The residuals of {} are biased: their mean is {} times {unit} ({} of {} are \
-                 positive). The simulation lies {} the data on average: an offset of the sensor, \
-                 an output that contradicts another, or a model that cannot reach the data.",
+                 positive). On average, the simulation lies {} the data. Possible causes: a \
+                 sensor offset, conflicting outputs, or a model that cannot reach the data.",
                 own.label,
                 significant(mean / size, 2),
                 positive,
@@ -315,22 +315,22 @@ fn correlated(own: &Own<'_>, test: &ResidualTest, alpha: f64) -> Finding {
     let rho = test.autocorrelation;
     let factor = significant(((1.0 + rho.abs()) / (1.0 - rho.abs()).max(0.01)).sqrt(), 2);
     let numbers = format!(
-        "correlation of neighbours {}, {} runs of equal sign where {} are expected",
+        "lag-1 autocorrelation {}, {} runs of equal sign, {} expected",
         significant(rho, 2),
         test.runs,
         significant(test.expected_runs, 3)
     );
     let sentence = if rho > 0.0 {
         format!(
-            "The residuals of {} have a pattern: {numbers}. Either the model misses something of \
-             these data (lack of fit), or their noise is autocorrelated; standard errors are too \
-             small, of slowly varying sensitivities by a factor of about {factor}.",
+            "The residuals of {} have a pattern: {numbers}. Either the model does not describe \
+             part of these data (lack of fit), or their noise is autocorrelated; standard errors \
+             are too small, by a factor of about {factor} for slowly varying sensitivities.",
             own.label
         )
     } else {
         format!(
             "The residuals of {} alternate: {numbers}. The noise is autocorrelated; standard \
-             errors are too large, of slowly varying sensitivities by a factor of about {factor}.",
+             errors are too large, by a factor of about {factor} for slowly varying sensitivities.",
             own.label
         )
     };
@@ -362,9 +362,9 @@ fn spread(
         Finding::new(
             FindingKind::UnequalVariance,
             format!(
-                "The spread of the residuals of {} {way} with {what} (rank correlation {}): their \
-                 variance is not constant, the fit and its standard errors are not the best. \
-                 {help}.",
+                "The spread of the residuals of {} {way} with {what} (rank correlation {}): \
+                 their variance is not constant (heteroscedastic), so the fit and its standard \
+                 errors are not optimal. {help}.",
                 own.label,
                 significant(rho, 2)
             ),
@@ -394,15 +394,15 @@ fn outlier(own: &Own<'_>, suspects: &[usize]) -> Option<Finding> {
         Finding::new(
             FindingKind::Outlier,
             format!(
-                "{} of {} {} far from the fit while the others agree with it: look at {}{}.",
+                "{} of {} {} far from the fit while the others agree with it: check {}{}.",
                 text.join(", "),
                 own.label,
                 if one { "is" } else { "are" },
                 if one { "this outlier" } else { "these outliers" },
                 match (own.robust, one) {
-                    (true, _) => "; the robust fitness counts little of it",
-                    (false, true) => ", or minimise `huber`, which counts it less",
-                    (false, false) => ", or minimise `huber`, which counts them less",
+                    (true, _) => "; the robust fitness gives it little weight",
+                    (false, true) => ", or minimise `huber`, which gives it less weight",
+                    (false, false) => ", or minimise `huber`, which gives them less weight",
                 },
             ),
         )
@@ -420,8 +420,8 @@ fn heavy_tails(own: &Own<'_>, p: f64, alpha: f64) -> Finding {
             own.label,
             significant(p, 2),
             match own.robust {
-                true => "The robust fitness takes account of them",
-                false => "A robust fitness such as `huber` uses such data better",
+                true => "The robust fitness accounts for them",
+                false => "A robust fitness such as `huber` is better suited to such data",
             }
         ),
     )
@@ -456,7 +456,7 @@ fn chi_square(
         problem.parameters.iter().zip(&found.standard_deviations).map(one).collect()
     });
     let what = if ratio > 1.0 {
-        "Either sigma is too small, or the model misses something of these data"
+        "Either sigma is too small, or the model does not describe part of these data"
     } else {
         "Sigma is too large: this is not a very good fit"
     };
@@ -465,8 +465,8 @@ fn chi_square(
             FindingKind::Sigma,
             format!(
                 "The residuals are {} times the given sigma (chi-square {} for {} degrees of \
-                 freedom, two-sided probability {}). {what}. The standard errors believe sigma; scaled by \
-                 the residuals they are: {}.",
+                 freedom, two-sided probability {}). {what}. The standard errors use the given \
+                 sigma; scaled by the residuals they are: {}.",
                 significant(ratio, 2),
                 significant(value, 5),
                 significant(freedom, 6),
@@ -512,8 +512,9 @@ fn unlike_series(
     let mut finding = Finding::new(
         FindingKind::ScaleOfOutputs,
         format!(
-            "The series share one variance, but their residuals differ in scale ({}): those with \
-             small ones have hardly a say. Give `sigma` for each output, or `sigma = \
+            "The series share one variance, but their residuals differ in scale ({}): series \
+             with small residuals have almost no influence. Give `sigma` for each output, or \
+             `sigma = \
              \"estimate\"`.",
             text.join(", ")
         ),

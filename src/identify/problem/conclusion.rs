@@ -72,8 +72,8 @@ fn reweigh(run: &mut Run) -> Result<(), Fault> {
         let Ok(simulated) = run.evaluation.simulate(&best.values) else { return Ok(()) };
         let weights = weights_at(&run.problem, &simulated);
         if weights.iter().any(|weight| !weight.is_finite() || *weight <= 0.0) {
-            let sentence = "The formula of a sigma has no positive value at the fit: sigma is taken \
-                            at the measured values.";
+            let sentence = "The formula of a sigma is not positive at the fit: sigma is \
+                            evaluated at the measured values instead.";
             run.conclusion.findings.push(Finding::new(FindingKind::ErrorModel, sentence));
             return Ok(());
         }
@@ -291,7 +291,7 @@ fn coarse_solver(run: &Run, first: &Best, [before, after]: [f64; 2], moved: f64)
             values(best),
             values(&first.values)
         ),
-        false => "This fitness allows no fit by least squares from there".to_owned(),
+        false => "This fitness does not allow least squares from there".to_owned(),
     };
     let trouble = match moved > PART {
         true => format!(
@@ -299,7 +299,7 @@ fn coarse_solver(run: &Run, first: &Best, [before, after]: [f64; 2], moved: f64)
              deviations of the data",
             significant(moved, 2)
         ),
-        false => "leaves errors that hide where the minimum is".to_owned(),
+        false => "causes errors that hide the minimum".to_owned(),
     };
     Finding::new(
         FindingKind::SolverTolerance,

@@ -183,12 +183,12 @@ fn otherwise(run: &Run, descents: &[DescentReport]) -> EndingKind {
 
 fn untested(problem: &Problem) -> String {
     if problem.objectives.len() > 1 {
-        return "Several objectives have a front, not a minimum: there are no intervals."
+        return "Several objectives have a Pareto front, not a minimum: there are no intervals."
             .to_owned();
     }
     format!(
-        "Whether this is a minimum cannot be tested: `{}` is not a sum of squares, or the simulation \
-         fails beside the best point. There are no intervals.",
+        "Whether this is a minimum cannot be tested: `{}` is not a sum of squares, or the \
+         simulation fails near the best point. There are no intervals.",
         problem.objectives[0].0
     )
 }
@@ -198,10 +198,10 @@ fn words(kind: EndingKind, offset: &Offset, reached: Option<[usize; 2]>) -> Stri
     let measure = match offset.relative.filter(|relative| relative.is_finite()) {
         // Noise-free data are fitted to the last digit, where the offset is one of rounding.
         Some(relative) if kind == EndingKind::Minimum && relative > OF_ROUNDING => {
-            "the residuals are those of rounding".to_owned()
+            "the residuals are at rounding level".to_owned()
         }
         Some(relative) => format!("relative offset {}", significant(relative, 2)),
-        None => format!("step of Gauss and Newton {} of the ranges", significant(offset.step, 2)),
+        None => format!("Gauss-Newton step {} of the ranges", significant(offset.step, 2)),
     };
     let why = match kind {
         EndingKind::Minimum => {
@@ -210,16 +210,16 @@ fn words(kind: EndingKind, offset: &Offset, reached: Option<[usize; 2]>) -> Stri
             });
             return format!("Minimum found ({measure}){by}.");
         }
-        EndingKind::StepLimit => "the steps of the descent are used up",
-        EndingKind::Budget => "the budget is used up",
-        EndingKind::Stopped => "the run was stopped by you",
+        EndingKind::StepLimit => "the step limit of the descent was reached",
+        EndingKind::Budget => "the budget was exhausted",
+        EndingKind::Stopped => "the user stopped the run",
         EndingKind::NoDescent | EndingKind::Untested => {
             "no step reduces the objective beyond the errors of the simulation"
         }
     };
     format!(
         "This is not a minimum: {why} ({measure}; below {limit} at a minimum). There are no \
-         intervals, and nothing is said about identifiability."
+         intervals and no statements on identifiability."
     )
 }
 
@@ -251,7 +251,7 @@ fn at_limits(
 fn by_curvature(offset: f64) -> String {
     format!(
         "Minimum found by second derivatives (a Newton step moves the parameters by {} standard \
-         errors): the first ones vanish or jump there.",
+         errors): the first derivatives vanish or jump there.",
         significant(offset, 2)
     )
 }

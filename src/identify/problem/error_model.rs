@@ -127,12 +127,11 @@ pub(super) fn decided(series: &[Series]) -> Option<Finding> {
         own.iter().map(|own| format!("{} in {}", own.label(), unit(&own.y_unit))).collect();
     let why = match own.len() == series.len() && units_differ(series) {
         true => "have different units",
-        false => "stand beside series with sigma",
+        false => "are combined with series with a given sigma",
     };
     let sentence = format!(
-        "{} {why}, and no sigma is given: a sum of their squares would mean nothing. Their standard \
-         deviations were estimated with the parameters (`sigma = \"estimate\"`), so that every \
-         output has its say; give `sigma` where it is known.",
+        "{} {why}, and no sigma is given, so a sum of their squares would be meaningless. Their \
+         standard deviations were estimated together with the parameters (`sigma = \"estimate\"`), so each output has its own weight; give `sigma` where it is known.",
         names.join(" and ")
     );
     let mut finding = Finding::new(FindingKind::ScaleOfOutputs, sentence);

@@ -68,7 +68,8 @@ impl Evaluation {
     pub fn new(problem: &Problem, threads: usize) -> Result<Evaluation, Fault> {
         let threads = threads.max(1);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let pool = pool.map_err(|error| fault!(BAD_OPTION, "no {threads} threads: {error}"))?;
+        let pool =
+            pool.map_err(|error| fault!(BAD_OPTION, "cannot start {threads} threads: {error}"))?;
         let workers = (0..threads).map(|_| Ok(Mutex::new((problem.simulator)()?)));
         let measured: Vec<f64> =
             problem.series.iter().flat_map(|series| series.y.clone()).collect();
@@ -440,7 +441,7 @@ impl Evaluation {
 }
 
 fn unrated_by(name: &str) -> Failed {
-    let cause = format!("the fitness function `{name}` gives no number");
+    let cause = format!("the fitness function `{name}` does not return a number");
     Failed { kind: super::FailureKind::Points, cause, progress: 1.0 }
 }
 

@@ -298,7 +298,9 @@ impl Stage {
         let is_static = self.instance.system().n_differential() == 0;
         let method = self.settings.method.name;
         if !is_static && method != WITH_SENSITIVITIES {
-            return Ok(Err(format!("the method `{method}` integrates no sensitivities")));
+            return Ok(Err(format!(
+                "the method `{method}` does not integrate sensitivity equations"
+            )));
         }
         if let Err(refusal) = self.instance.differentiate(true) {
             return Ok(Err(refusal));
@@ -313,7 +315,7 @@ impl Stage {
         if let Err(failed) = attempt {
             // Whether the model itself fails, a simulation without derivatives tells.
             let because =
-                |failed: Failed| format!("its equations gave no derivatives: {}", failed.cause);
+                |failed: Failed| format!("its equations have no derivatives: {}", failed.cause);
             return Ok(Err(refusal.unwrap_or_else(|| because(failed))));
         }
         self.read(trajectory, out)?;
@@ -351,7 +353,7 @@ impl Stage {
         let _ = instance.differentiate(false);
         // Whether the model itself fails, points without derivatives tell.
         solved.map_err(|cause| {
-            refusal.unwrap_or_else(|| format!("its equations gave no derivatives: {cause}"))
+            refusal.unwrap_or_else(|| format!("its equations have no derivatives: {cause}"))
         })?;
         derivatives.fill(0.0);
         let rows = derivatives.chunks_exact_mut(genes.max(1));

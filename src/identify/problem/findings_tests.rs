@@ -306,7 +306,7 @@ fn a_bound_is_contradicted_only_where_the_data_do() {
     narrow.parameters[1] = Free::new("k", "", [0.01, 0.3], Some(false), Some(0.2)).unwrap();
     let (_, solution) = solved(narrow);
     let found = solution.findings.iter().find(|f| f.kind == FindingKind::AtBound).unwrap();
-    assert!(found.sentence.contains("would go on beyond it"), "{}", found.sentence);
+    assert!(found.sentence.contains("the optimum lies beyond it"), "{}", found.sentence);
 }
 
 /// A simulator with an error that is its tolerance times a value far above the noise.

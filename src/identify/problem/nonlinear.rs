@@ -175,8 +175,9 @@ impl Solution {
         let [a, b, c, d] =
             [interval[0], interval[1], linear[0], linear[1]].map(|end| significant(end, 4));
         let sentence = format!(
-            "The model is far from linear in {name} about the fit: its 95 % interval {a} .. {b} is \
-             that of its profile. The linear one, {c} .. {d}, does not hold."
+            "The model is strongly nonlinear in {name} near the fit: its 95 % interval {a} .. \
+             {b} comes from its profile likelihood. The linearized interval, {c} .. {d}, is not \
+             valid."
         );
         // What was said of the linear interval.
         let is_about = |finding: &Finding| {

@@ -63,17 +63,18 @@ fn about_count(solution: &Solution, run: &Run, statistics: &Statistics) -> Optio
         return None;
     }
     if !few {
-        let sentence = "Standard errors could not be computed: the simulation fails beside the \
+        let sentence = "Standard errors could not be computed: the simulation fails near the \
                         best point, or its derivatives are not finite.";
         return Some(Finding::new(FindingKind::Missing, sentence));
     }
     let kind = FindingKind::TooFewPoints;
     let sentence = format!(
-        "{points} points for {parameters} parameters leave no degree of freedom: {}. Any model \
-         with so many parameters fits such data; measure more points or fix parameters.",
+        "{points} points for {parameters} parameters leave no degrees of freedom: {}. Any model \
+         with that many parameters fits such data; measure more points or fix parameters.",
         match statistics.believed && statistics.uncertainty.is_some() {
-            true => "the standard errors rest on the given sigma alone, and nothing can be tested",
-            false => "there are no standard errors, and nothing can be tested",
+            true =>
+                "the standard errors are based only on the given sigma, and no test is possible",
+            false => "there are no standard errors, and no test is possible",
         }
     );
     let finding = Finding::new(kind, sentence).severity(Severity::Serious);
@@ -97,16 +98,16 @@ fn about_effects(solution: &Solution, effects: &[(usize, Effect)]) -> Vec<Findin
                     How::Cancelling => "has a derivative that cancels with those of others",
                 };
                 let within = match finite.how {
-                    How::InSteps => " Within the step nothing is known.",
+                    How::InSteps => " Within the step, the data contain no information.",
                     How::Vanishing | How::Cancelling => "",
                 };
                 match finite.ends {
                     [Some(low), Some(high)] => (
                         FindingKind::Interval,
                         format!(
-                            "{name} {acts}, but only values from {} to {} fit these data, the \
-                             others fitted anew; intervals of the others hold for all of \
-                             them.{within}",
+                            "{name} {acts}, but only values from {} to {} fit these data when \
+                             the other parameters are refitted; the intervals of the others are \
+                             valid for all of these values.{within}",
                             end(low),
                             end(high)
                         ),
@@ -114,8 +115,9 @@ fn about_effects(solution: &Solution, effects: &[(usize, Effect)]) -> Vec<Findin
                     [low, high] => (
                         FindingKind::PracticallyNonIdentifiable,
                         format!(
-                            "{name} {acts}, and values from {} to {} fit these data, the others \
-                             fitted anew; the range ends before the data bound it.",
+                            "{name} {acts}, and values from {} to {} fit these data when the \
+                             other parameters are refitted; the range ends before the data bound \
+                             it.",
                             end(low.unwrap_or(min)),
                             end(high.unwrap_or(max))
                         ),
@@ -168,8 +170,8 @@ fn about_parameters(solution: &Solution, statistics: &Statistics) -> Vec<Finding
     let condition = solution.condition.filter(|_| statistics.inseparable.is_empty());
     if let Some(condition) = condition.filter(|condition| *condition > ILL_CONDITIONED) {
         let sentence = format!(
-            "The sensitivities are ill-conditioned ({}): small errors of the data change the \
-             parameters much.",
+            "The sensitivities are ill-conditioned ({}): small errors in the data cause large \
+             changes of the parameters.",
             significant(condition, 2)
         );
         let finding = Finding::new(FindingKind::IllConditioned, sentence);
@@ -188,15 +190,15 @@ fn at_bound(parameter: &SolvedParameter, k: usize, statistics: &Statistics) -> F
     let pull = ends.filter(|end| end.parameter == k).map(|end| end.pull).next();
     let what = match pull {
         Some(pull) if pull > BEYOND => format!(
-            "the fit would go on beyond it, by {} standard errors if it were linear, so that it has \
-             no interval, and the others' hold with {} = {end}. Widen the range, or doubt the model \
-             if the bound is one of nature",
+            "the optimum lies beyond it, by {} standard errors for a linear model, so it has no \
+             interval, and the intervals of the others are valid for {} = {end}. Widen the \
+             range, or question the model if the bound is physical",
             significant(pull, 2),
             parameter.name
         ),
-        Some(_) => "the data do not contradict that bound, and say only how far from it the value \
-                    may be"
-            .to_owned(),
+        Some(_) => {
+            "the data are consistent with that bound and limit only the distance from it".to_owned()
+        }
         None if (parameter.value - if upper { max } else { min }).abs() > 0.0 => {
             "the best value lies just inside, and the interval ends with the range".to_owned()
         }
@@ -217,8 +219,8 @@ fn several_objectives(solution: &Solution) -> Finding {
     Finding::new(
         FindingKind::Missing,
         format!(
-            "Values, intervals and tests are those of the end of the front with the smallest `{}`; \
-             other points of the front are other compromises.",
+            "Values, intervals and tests refer to the end of the Pareto front with the smallest \
+             `{}`; other points of the front are other compromises.",
             solution.fitness_name
         ),
     )
@@ -253,7 +255,7 @@ fn equal_columns(run: &Run, statistics: &Statistics) -> Vec<Finding> {
         Finding::new(
             FindingKind::ColumnsEqual,
             format!(
-                "The columns {} and {} hold the same numbers: they are {} points, not {}, and \
+                "The columns {} and {} contain the same numbers: they are {} points, not {}, and \
                  count once in the standard errors.",
                 column(a),
                 column(b),
@@ -290,18 +292,18 @@ fn dominant(run: &Run, statistics: &Statistics) -> Vec<Finding> {
             }
             let alone = match ratio.is_finite() {
                 true => format!(
-                    "the other data alone give a standard error of {}, {} times as large",
+                    "with the other data alone, its standard error is {}, {} times as large",
                     significant(without.standard_deviations[k], 3),
                     significant(ratio, 3)
                 ),
-                false => "the other data do not determine it at all".to_owned(),
+                false => "it is not identifiable from the other data".to_owned(),
             };
             findings.push(
                 Finding::new(
                     FindingKind::Dominant,
                     format!(
-                        "{} follows the single point {} of {}, as it does a prior: {alone}. \
-                         Whether that value is right these data cannot say.",
+                        "{} is determined by the single point {} of {}, as by a prior: {alone}. \
+                         These data cannot show whether that value is correct.",
                         free.name,
                         significant(series.y[0], 5),
                         series.label()
@@ -334,8 +336,8 @@ fn about_validation(own: &SolvedSeries, solution: &Solution) -> Finding {
     let ratio = own.rmse / fitted;
     if !ratio.is_finite() {
         let sentence = format!(
-            "{label}, held out for validation, has an RMSE of {} {}; there is no error of the fit \
-             of {} to compare it with.",
+            "{label}, held out for validation, has an RMSE of {} {}; the fit of {} has no error \
+             to compare it with.",
             significant(own.rmse, 3),
             own.y[1],
             own.y[0]
@@ -344,11 +346,11 @@ fn about_validation(own: &SolvedSeries, solution: &Solution) -> Finding {
         return finding.severity(Severity::Information).series(label);
     }
     let (severity, words) = if ratio <= RATIOS[0] {
-        (Severity::Information, "the model describes data that it was not fitted to as well")
+        (Severity::Information, "the model describes data that it was not fitted to equally well")
     } else if ratio <= RATIOS[1] {
-        (Severity::Warning, "the model describes data that it was not fitted to worse")
+        (Severity::Warning, "the model describes data that it was not fitted to less well")
     } else {
-        (Severity::Serious, "the model does not hold for data that it was not fitted to")
+        (Severity::Serious, "the model does not describe data that it was not fitted to")
     };
     let sentence = format!(
         "{label}, held out for validation: RMSE {} against {} of the fit, {} times; {words}.",
@@ -365,7 +367,7 @@ fn about_missing(run: &Run) -> Vec<Finding> {
         let n = series.missing.len();
         let rows: Vec<String> = series.missing.iter().take(10).map(usize::to_string).collect();
         let sentence = format!(
-            "{} of {} without a number {} left out (row{} {}{}); {} points are used.",
+            "{} of {} without a number {} omitted (row{} {}{}); {} points are used.",
             if n == 1 { "1 point".to_owned() } else { format!("{n} points") },
             series.label(),
             if n == 1 { "is" } else { "are" },
@@ -405,12 +407,14 @@ fn inseparable<'a>(group: &Inseparable, name: &impl Fn(usize) -> &'a str) -> Str
     };
     if group.form == Form::Local {
         return format!(
-            "{all} are not separately identifiable about the best values: changing {}, all at once, changes nothing. Fix {fix} of them.",
+            "{all} are not separately identifiable near the best values: changing {} \
+             simultaneously changes nothing. Fix {fix} of them.",
             combinations.join(", or ")
         );
     }
     format!(
-        "{all} are structurally non-identifiable by data of this kind: the model depends on {} alone. Fix {fix} of them.",
+        "{all} are structurally non-identifiable from data of this kind: the model depends only \
+         on {}. Fix {fix} of them.",
         combinations.join(" and ")
     )
 }
@@ -490,7 +494,8 @@ pub(super) fn undetermined(parameter: &SolvedParameter) -> String {
         None => (min, max),
     };
     format!(
-        "{} is practically non-identifiable from these data: it may be anything between {} and {}{}.",
+        "{} is practically non-identifiable from these data: it can have any value between {} \
+         and {}{}.",
         parameter.name,
         significant(low, 4),
         significant(high, 4),
@@ -506,8 +511,8 @@ pub(super) fn profile_findings(solution: &Solution, found: &Profiles) -> Vec<Fin
         let name = &parameter.name;
         if let [Some(cut), _] | [_, Some(cut)] = profile.cut {
             let sentence = format!(
-                "The profile of {name} ends at {}, without its 95 % limit: beyond it a constraint does \
-                 not hold or simulations fail, so that nothing is known there.",
+                "The profile likelihood of {name} ends at {}, before its 95 % limit: beyond it a \
+                 constraint is violated or simulations fail.",
                 significant(cut, 4)
             );
             let finding = Finding::new(FindingKind::Missing, sentence);
@@ -517,13 +522,16 @@ pub(super) fn profile_findings(solution: &Solution, found: &Profiles) -> Vec<Fin
         let sentence = match profile.interval.map(|end| end.map(|end| significant(end, 4))) {
             [Some(_), Some(_)] => continue,
             [None, None] => format!(
-                "By its profile {name} may be anything in its search range, {min} to {max}."
+                "By its profile likelihood, {name} can have any value in its search range, {min} \
+                 to {max}."
             ),
             [Some(low), None] => format!(
-                "By its profile {name} is at least {low}; up to the end {max} of its range the data do not bound it."
+                "By its profile likelihood, {name} is at least {low}; the data do not bound it \
+                 up to the end {max} of its range."
             ),
             [None, Some(high)] => format!(
-                "By its profile {name} is at most {high}; down to the end {min} of its range the data do not bound it."
+                "By its profile likelihood, {name} is at most {high}; the data do not bound it \
+                 down to the end {min} of its range."
             ),
         };
         let finding = Finding::new(FindingKind::PracticallyNonIdentifiable, sentence);
@@ -534,7 +542,8 @@ pub(super) fn profile_findings(solution: &Solution, found: &Profiles) -> Vec<Fin
         let values: Vec<String> =
             pairs.map(|(p, value)| format!("{} = {}", p.name, significant(*value, 6))).collect();
         let sentence = format!(
-            "The profiles came upon a better fit ({}): {}. Run again, with a larger budget or these starts.",
+            "The profile likelihoods found a better fit ({}): {}. Run again with a larger budget \
+             or with these start values.",
             significant(*sum, 7),
             values.join(", ")
         );

@@ -93,16 +93,20 @@ impl Solution {
     fn profiles_about_best(&self, run: &Run) -> Result<Option<Profiles>, Fault> {
         let Some(best) = &run.best else { return Ok(None) };
         if self.is_short_of_minimum(run) {
-            bail!(BAD_OPTION, "There are no profiles, because this is not known to be a minimum");
+            bail!(
+                BAD_OPTION,
+                "There are no profile likelihoods: it is unknown whether this is a minimum"
+            );
         }
         if self.findings.iter().any(|finding| finding.kind == FindingKind::NoNoise) {
             bail!(
                 BAD_OPTION,
-                "There are no profiles: the residuals are those of the simulation, which are no noise"
+                "There are no profile likelihoods: the residuals are errors of the simulation, \
+                 not noise"
             );
         }
         if super::limits::along(&run.problem, &best.values).is_some() {
-            bail!(BAD_OPTION, "There are no profiles at the limit of a constraint");
+            bail!(BAD_OPTION, "There are no profile likelihoods at the limit of a constraint");
         }
         let half = |p: &SolvedParameter| p.interval.map(|[low, high]| 0.5 * (high - low));
         let reach: Vec<Option<f64>> = self.parameters.iter().map(half).collect();
@@ -113,7 +117,10 @@ impl Solution {
         let found = found.ok_or_else(|| {
             fault!(
                 BAD_OPTION,
-                "There are no profiles of `{}` with {} points: they need a sum of squares of more points than parameters", self.fitness_name, run.problem.n_points()
+                "There are no profile likelihoods of `{}` with {} points: they need a sum of \
+                 squares and more points than parameters",
+                self.fitness_name,
+                run.problem.n_points()
             )
         })?;
         Ok(Some(found))
@@ -124,8 +131,8 @@ impl Solution {
 /// end of the search.
 fn better_than(searched: f64, solution: &Solution) -> Finding {
     let sentence = format!(
-        "Least squares and profiles behind the search came upon a better fit ({} instead of {}): \
-         everything here belongs to that one.",
+        "Least squares and profile likelihoods after the search found a better fit ({} instead \
+         of {}): all results refer to that fit.",
         significant(solution.fitness, 7),
         significant(searched, 7)
     );

@@ -229,12 +229,13 @@ impl Run {
 
     fn change_range(&mut self, setting: &str, value: f64) -> Result<(), Fault> {
         if self.problem.method.in_natural_units() {
-            bail!(BAD_OPTION, "`{}` cannot change search ranges during the run", self.problem.method_name; help: "use another method, or change them in the script's own loop");
+            bail!(BAD_OPTION, "`{}` cannot change search ranges during the \
+                               run", self.problem.method_name; help: "use another method, or change them in the loop of the script");
         }
         let (end, name) = setting.split_at(4);
         let place = self.problem.parameters.iter().position(|free| free.name == name);
         let place =
-            place.ok_or_else(|| fault!(BAD_OPTION, "no parameter `{name}` is identified"))?;
+            place.ok_or_else(|| fault!(BAD_OPTION, "there is no estimated parameter `{name}`"))?;
         let old = self.problem.parameters[place].clone();
         let range = if end == "min " { [value, old.max] } else { [old.min, value] };
         let new = super::Free::new(&old.name, &old.unit, range, Some(old.logarithmic), None)?;
@@ -325,12 +326,12 @@ impl Run {
         }
         bail!(
             BAD_OPTION,
-            "individual {} of question {} of the checkpoint has the objective {}, but now {}: what is simulated has changed",
+            "individual {} of candidate set {} of the checkpoint has the objective {}, but now {}: the simulation has changed",
             row + 1,
             self.generations() + 1,
             before.first().unwrap_or(&f64::NAN),
             now.first().unwrap_or(&f64::NAN);
-            help: "restore the model, its libraries and tables, the program and the machine, or start anew with `--fresh`"
+            help: "restore the model, its libraries and tables, the program and the machine, or start again with `--fresh`"
         );
     }
 
@@ -359,8 +360,8 @@ impl Run {
         if fingerprint(&self.batch) != record.asked || !self.is_answer(&record.answered) {
             bail!(
                 BAD_OPTION,
-                "generation {} of the checkpoint is not that of this problem", self.generations() + 1;
-                help: "start anew, or use the version of the program that wrote the checkpoint"
+                "generation {} of the checkpoint does not belong to this problem", self.generations() + 1;
+                help: "start again, or use the program version that wrote the checkpoint"
             );
         }
         Ok(())

@@ -46,8 +46,8 @@ pub(super) fn leave(run: &mut Run) -> Result<(), Fault> {
     }
     if let Some(best) = run.best.as_ref().filter(|_| left) {
         let sentence = format!(
-            "The search ended at a saddle point ({}), where derivatives depend on each other; least \
-             squares went on from beside it to {}.",
+            "The search ended at a saddle point ({}), where derivatives are linearly dependent; \
+             least squares continued from a point nearby to {}.",
             significant(first, 5),
             significant(best.fitness, 5)
         );

@@ -16,7 +16,7 @@ impl Solution {
     pub fn read(json: &str, history: &str, individuals: &str) -> Result<Solution, Fault> {
         let solution: Result<Solution, _> = serde_json::from_str(json);
         let mut solution = solution.map_err(|error| {
-            fault!(BAD_OPTION, "`result.json` is not that of `gapi identify`: {error}")
+            fault!(BAD_OPTION, "`result.json` was not written by `gapi identify`: {error}")
         })?;
         let n = solution.parameters.len();
         for row in rows("history.csv", history, 5)? {

@@ -43,7 +43,8 @@ impl Free {
         let gene = Gene::new(format!("`{}`", name.into()), min, max)?;
         let name = gene.name.trim_matches('`').to_owned();
         if min == max {
-            bail!(BAD_RANGE, "the search range of `{name}` is the one value {min}"; help: "fix it instead: `fixed = {min}`");
+            bail!(BAD_RANGE, "the search range of `{name}` is the single value \
+                              {min}"; help: "fix it instead: `fixed = {min}`");
         }
         let wide = (min > 0.0 && max > DECADE * min) || (max < 0.0 && min < DECADE * max);
         let logarithmic = logarithmic.unwrap_or(wide);
@@ -51,7 +52,7 @@ impl Free {
             bail!(
                 BAD_RANGE,
                 "`{name}` is searched on a logarithmic scale, but its range {min} to {max} reaches 0";
-                help: "give a range of one sign, or `scale = \"linear\"`"
+                help: "use a range of one sign, or `scale = \"linear\"`"
             );
         }
         if let Some(start) = start.filter(|start| !(min..=max).contains(start)) {

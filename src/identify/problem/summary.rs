@@ -293,8 +293,9 @@ impl Solution {
             if run.evaluations == 0 {
                 return Err(fault!(
                     BAD_OPTION,
-                    "the run was ended ({stop}) before a first generation was simulated: there is no result";
-                    help: "allow more time, or fewer individuals for each generation"
+                    "the run ended ({stop}) before the first generation was simulated: there is \
+                     no result";
+                    help: "allow more time, or use fewer individuals per generation"
                 ));
             }
             let most = run.causes.iter().max_by_key(|cause| cause.1);

@@ -284,7 +284,7 @@ fn series_line(series: &SolvedSeries) -> String {
     };
     let mut line = format!("{of}{}: {} points", series.y[0], series.points.len());
     if series.points.iter().all(|point| point[1].is_nan()) {
-        return line + ", whose measured values the script keeps to itself";
+        return line + ", whose measured values are known only to the script";
     }
     _ = write!(line, ", RMSE {} {}", significant(series.rmse, 4), series.y[1]);
     if let Some(sigma) = series.sigma {

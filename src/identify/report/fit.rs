@@ -37,7 +37,7 @@ fn name(series: &SolvedSeries, kind: &str) -> String {
 fn one(series: &SolvedSeries, curve: &[CurvePoint], kind: &str) -> Markup {
     let name = name(series, kind);
     if series.points.iter().any(|point| !point[2].is_finite()) {
-        return html! { p.note { (name) ": the simulation failed, there is nothing to compare." } };
+        return html! { p.note { (name) ": the simulation failed, so no comparison is possible." } };
     }
     let label = format!(
         "{name}: {} measured points and the simulated curve over {}, and the residuals below",

@@ -34,7 +34,7 @@ pub(super) fn section(view: &View) -> Option<Section> {
             (explained(&CONDITION))
         }
         @if drawn.is_empty() {
-            p { "No two estimates are correlated beyond ±0.5: there is no ellipse worth drawing." }
+            p { "No two estimates are correlated beyond ±0.5, so no ellipse is shown." }
         } @else {
             div.figures.small { @for pair in drawn { (one(view, pair)) } }
             @if view.pairs.len() > drawn.len() {

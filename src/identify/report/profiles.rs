@@ -32,7 +32,7 @@ fn one(parameter: &SolvedParameter, profile: &Profile) -> Markup {
     let caption = html! {
         strong { (profile.name) } ": 95 % interval " (low) " to " (high)
         @if profile.interval.iter().any(Option::is_none) {
-            ". " span.bad { "Open: the limit is not reached within the searched range." }
+            ". " span.bad { "Open: the limit is not reached within the search range." }
         } @else { "." }
     };
     small_figure(&drawing(parameter, profile), &label, &caption)

@@ -28,7 +28,7 @@ pub(super) fn head(view: &View) -> Markup {
         }
         @if !view.notes.is_empty() {
             section aria-labelledby="notes-heading" {
-                h2 #notes-heading { "What you must know" }
+                h2 #notes-heading { "Important remarks" }
                 ul.notes { @for note in &view.notes { li class=(note.weight) { (note.sentence) } } }
             }
         }
@@ -55,7 +55,7 @@ fn verdict(view: &View) -> Markup {
     html! {
         strong class=(view.ending.class) { (view.ending.sentence) } " "
         @if judged.is_empty() {
-            "Standard errors are not available: nothing is said about identifiability."
+            "Standard errors are not available, so there is no statement on identifiability."
         } @else if identifiable == parameters.len() {
             @if identifiable == 1 { "The parameter is identifiable from these data." }
             @else { "All " (identifiable) " parameters are identifiable from these data." }

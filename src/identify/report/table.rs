@@ -9,7 +9,7 @@ use maud::{Markup, html};
 
 /// Headings. On a phone, where each row is a block, they stand before the values.
 const COLUMNS: [&str; 6] =
-    ["Parameter", "Value", "95 % interval", "Standard error", "Verdict", "Searched range"];
+    ["Parameter", "Value", "95 % interval", "Standard error", "Verdict", "Search range"];
 
 pub(super) fn section(view: &View) -> Option<Section> {
     let content = html! {

@@ -78,7 +78,7 @@ impl<T: Target> Lowering<'_, T> {
         if subscripts.len() > dims.len() {
             return Err(fault!(
                 ARRAY_MISMATCH,
-                "{} subscripts for {} dimensions",
+                "{} subscripts for an array of {} dimensions",
                 subscripts.len(),
                 dims.len()
             )
@@ -122,8 +122,11 @@ impl<T: Target> Lowering<'_, T> {
                 None if !keeps => return Ok(Choice::Computed(*value)),
                 None => {
                     return Err(self.known(index).err().unwrap_or_else(|| {
-                        fault!(ARRAY_MISMATCH, "a vector of subscripts must be known")
-                            .at(index.span)
+                        fault!(
+                            ARRAY_MISMATCH,
+                            "a vector of subscripts must be known at translation"
+                        )
+                        .at(index.span)
                     }));
                 }
             }

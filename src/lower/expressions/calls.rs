@@ -143,7 +143,7 @@ impl<T: Target> Lowering<'_, T> {
         let argument = |position: usize| {
             arguments
                 .get(position)
-                .ok_or_else(|| fault!(ARRAY_MISMATCH, "`{name}` needs another argument").at(span))
+                .ok_or_else(|| fault!(ARRAY_MISMATCH, "`{name}` needs a further argument").at(span))
         };
         match operator {
             Operator::Temporal => {

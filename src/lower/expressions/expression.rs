@@ -65,13 +65,15 @@ impl<T: Target> Lowering<'_, T> {
             ExpressionKind::End => match self.ends.last() {
                 Some(size) => Array::scalar(self.target.constant(*size as f64)),
                 None => {
-                    return Err(fault!(ARRAY_MISMATCH, "`end` outside a subscript").at(e.span));
+                    return Err(
+                        fault!(ARRAY_MISMATCH, "`end` is used outside a subscript").at(e.span)
+                    );
                 }
             },
             ExpressionKind::TypeName(_) | ExpressionKind::Code(_) => {
                 return Err(fault!(
                     NOT_SUPPORTED,
-                    "a class or code as a value stands in scripts only"
+                    "a class or code as a value is allowed only in scripts"
                 )
                 .at(e.span));
             }
@@ -86,7 +88,7 @@ impl<T: Target> Lowering<'_, T> {
             ExpressionKind::Tuple(elements) => match elements.as_slice() {
                 [Some(only)] => return self.lower(only),
                 _ => {
-                    return Err(fault!(NOT_SUPPORTED, "an output list is no value").at(e.span));
+                    return Err(fault!(NOT_SUPPORTED, "an output list is not a value").at(e.span));
                 }
             },
             ExpressionKind::PartialApplication { function, .. } => {
@@ -187,10 +189,10 @@ impl<T: Target> Lowering<'_, T> {
             return Ok(self.choice_of_texts(condition, numbers));
         }
         let (Some(a), Some(b)) = (first.shape(), second.shape()) else {
-            return Err(fault!(NOT_SUPPORTED, "texts that depend on conditions").at(span));
+            return Err(fault!(NOT_SUPPORTED, "Strings that depend on conditions").at(span));
         };
         let Some(shape) = a.joined(&b) else {
-            return Err(fault!(ARRAY_MISMATCH, "the branches differ in size").at(span));
+            return Err(fault!(ARRAY_MISMATCH, "the branches have different sizes").at(span));
         };
         scalars.clear();
         second.append_scalars(&mut scalars);
@@ -213,7 +215,7 @@ impl<T: Target> Lowering<'_, T> {
         if step == 0.0 || !count.is_finite() || count > MAX_SCALARS as f64 {
             return Err(fault!(
                 ARRAY_MISMATCH,
-                "the range {start}:{step}:{stop} has no end that can be reached"
+                "the range {start}:{step}:{stop} never reaches its end"
             )
             .at(span));
         }
@@ -243,13 +245,13 @@ impl<T: Target> Lowering<'_, T> {
     pub(crate) fn loop_values(&mut self, index: &ForIndex) -> Result<Vec<T::Scalar>, Diagnostic> {
         let Some(range) = &index.range else {
             return Err(fault!(NOT_SUPPORTED,
-                "the range of `{}` is not written and must be deduced", index.name.node;
+                "the range of `{}` is missing and cannot be deduced", index.name.node;
                 help: "write the range")
             .at(index.name.span));
         };
         let values = self.array(range)?;
         if values.dims.len() != 1 {
-            return Err(fault!(ARRAY_MISMATCH, "a loop runs over a vector").at(range.span));
+            return Err(fault!(ARRAY_MISMATCH, "a loop needs a vector as its range").at(range.span));
         }
         Ok(values.elements)
     }
@@ -262,7 +264,8 @@ impl<T: Target> Lowering<'_, T> {
     ) -> Result<Vec<T::Scalar>, Diagnostic> {
         match self.comprehension(element, indices, element.span)? {
             Lowered::Array(array) => Ok(array.elements),
-            _ => Err(fault!(ARRAY_MISMATCH, "a reduction of what is no number").at(element.span)),
+            _ => Err(fault!(ARRAY_MISMATCH, "a reduction over elements that are not numbers")
+                .at(element.span)),
         }
     }
 

@@ -110,7 +110,7 @@ pub(crate) trait Target {
         span: Span,
     ) -> Result<Array<Self::Scalar>, Diagnostic> {
         let _ = (array, choices);
-        Err(fault!(NO_CONSTANT_VALUE, "this subscript must be known").at(span))
+        Err(fault!(NO_CONSTANT_VALUE, "this subscript must be known at translation").at(span))
     }
     /// The scalars that a reference without its last subscripts stands for.
     fn reference(
@@ -352,7 +352,7 @@ impl<'a, T: Target> Lowering<'a, T> {
             [element] if array.dims.is_empty() => Ok(*element),
             _ => Err(fault!(
                 ARRAY_MISMATCH,
-                "an array of size {} stands where a scalar is needed",
+                "expected a scalar, got an array of size {}",
                 sizes(&array.dims)
             )
             .at(e.span)),
@@ -364,10 +364,10 @@ impl<'a, T: Target> Lowering<'a, T> {
         match self.lower(e)? {
             Lowered::Array(array) => Ok(array),
             Lowered::Record(_) => {
-                Err(fault!(ARRAY_MISMATCH, "a record stands where a number is needed").at(e.span))
+                Err(fault!(ARRAY_MISMATCH, "expected a number, got a record").at(e.span))
             }
             Lowered::Text(_) | Lowered::Numbered(_) => {
-                Err(fault!(ARRAY_MISMATCH, "a text stands where a number is needed").at(e.span))
+                Err(fault!(ARRAY_MISMATCH, "expected a number, got a String").at(e.span))
             }
         }
     }
@@ -389,14 +389,14 @@ impl<'a, T: Target> Lowering<'a, T> {
     pub(crate) fn known_size(&mut self, e: &Expression) -> Result<usize, Diagnostic> {
         let value = self.shaping(e)?;
         if value < 0.0 || value > MAX_SCALARS as f64 || value.fract() != 0.0 {
-            return Err(fault!(ARRAY_MISMATCH, "{value} is no size of an array").at(e.span));
+            return Err(fault!(ARRAY_MISMATCH, "{value} is not a valid array size").at(e.span));
         }
         Ok(value as usize)
     }
 }
 
 fn not_known(span: Span) -> Diagnostic {
-    fault!(NO_CONSTANT_VALUE, "this must be known when the model is compiled";
+    fault!(NO_CONSTANT_VALUE, "this must be known at translation";
         help: "use a constant, or a parameter that is `final` or has `annotation(Evaluate = true)`")
     .at(span)
 }
@@ -412,7 +412,7 @@ pub(crate) fn sizes(dims: &[usize]) -> String {
 
 /// The fault of two sizes that differ.
 pub(crate) fn size_fault(a: &[usize], b: &[usize]) -> Fault {
-    fault!(ARRAY_MISMATCH, "sizes {} and {} do not fit", sizes(a), sizes(b))
+    fault!(ARRAY_MISMATCH, "the sizes {} and {} do not match", sizes(a), sizes(b))
 }
 
 /// Places a fault of a result.

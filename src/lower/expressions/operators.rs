@@ -56,7 +56,7 @@ impl<T: Target> Lowering<'_, T> {
             }
             BinaryOperator::Divide => {
                 return Err(fault!(ARRAY_MISMATCH, "the divisor is an array";
-                    help: "write `./` to divide element by element")
+                    help: "write `./` for element-wise division")
                 .at(span));
             }
             BinaryOperator::Power => self.power(a, b, span)?,
@@ -112,7 +112,7 @@ impl<T: Target> Lowering<'_, T> {
                 let a = self.number_of_text(Lowered::Text(a), span)?;
                 return self.compare_texts(operator, a, b, span);
             }
-            _ => return Err(fault!(ARRAY_MISMATCH, "a text and a number").at(span)),
+            _ => return Err(fault!(ARRAY_MISMATCH, "comparing a String with a number").at(span)),
         };
         let a = &*a;
         if operator == BinaryOperator::Add {
@@ -120,7 +120,7 @@ impl<T: Target> Lowering<'_, T> {
             return Ok(Lowered::Text(format!("{a}{b}").into()));
         }
         if a.contains(UNKNOWN_TEXT) || b.contains(UNKNOWN_TEXT) {
-            return Err(fault!(NOT_SUPPORTED, "a text that is not known when compiling").at(span));
+            return Err(fault!(NOT_SUPPORTED, "a text that is unknown at translation").at(span));
         }
         let holds = match operator {
             BinaryOperator::Equal => a == &*b,
@@ -130,7 +130,9 @@ impl<T: Target> Lowering<'_, T> {
             BinaryOperator::Greater => a > &*b,
             BinaryOperator::GreaterEqual => a >= &*b,
             _ => {
-                return Err(fault!(NOT_SUPPORTED, "this operator takes no texts").at(span));
+                return Err(
+                    fault!(NOT_SUPPORTED, "this operator does not support Strings").at(span)
+                );
             }
         };
         Ok(Lowered::scalar(self.target.constant(f64::from(u8::from(holds)))))
@@ -147,7 +149,7 @@ impl<T: Target> Lowering<'_, T> {
             ([], [], [a], [b]) => {
                 Ok(Array::scalar(self.target.relation(operator, *a, *b, self.live, span)))
             }
-            _ => Err(fault!(ARRAY_MISMATCH, "relations compare scalars").at(span)),
+            _ => Err(fault!(ARRAY_MISMATCH, "a relation needs scalar operands").at(span)),
         }
     }
 
@@ -234,21 +236,21 @@ impl<T: Target> Lowering<'_, T> {
         let &[n, m] = a.dims.as_slice() else {
             return Err(
                 fault!(ARRAY_MISMATCH, "`^` needs scalars, or a square matrix and a whole number";
-                help: "write `.^` for element by element")
+                help: "write `.^` for the element-wise power")
                 .at(span),
             );
         };
         let Some(exponent) = exponent else {
             return Err(fault!(
                 NOT_SUPPORTED,
-                "a matrix to a power that is not known when compiling"
+                "a matrix to a power that is unknown at translation"
             )
             .at(span));
         };
         if n != m || exponent < 0.0 || exponent.fract() != 0.0 {
             return Err(fault!(ARRAY_MISMATCH,
                 "the power of a matrix needs a square matrix and a whole number, 0 or more";
-                help: "write `.^` for element by element")
+                help: "write `.^` for the element-wise power")
             .at(span));
         }
         if exponent > MAX_POWER {

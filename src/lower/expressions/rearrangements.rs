@@ -37,7 +37,9 @@ impl<T: Target> Lowering<'_, T> {
                 self.by_fields(&parts, span, &mut |_, parts| concatenate(dimension, parts, span))?
             }
             ("fill" | "transpose" | "cat", _) => {
-                return Err(fault!(ARRAY_MISMATCH, "`{name}` needs other arguments").at(span));
+                return Err(
+                    fault!(ARRAY_MISMATCH, "the arguments of `{name}` are invalid").at(span)
+                );
             }
             _ => return Ok(None),
         };

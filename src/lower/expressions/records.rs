@@ -33,7 +33,7 @@ impl<T: Target> Lowering<'_, T> {
                 }
                 Ok(Lowered::Record(chosen))
             }
-            Lowered::Numbered(_) => Err(fault!(ARRAY_MISMATCH, "subscripts of a text").at(span)),
+            Lowered::Numbered(_) => Err(fault!(ARRAY_MISMATCH, "subscripts of a String").at(span)),
         }
     }
 
@@ -103,10 +103,10 @@ pub(super) fn arrays<S: Copy>(
     let array = |value| match value {
         Lowered::Array(array) => Ok(array),
         Lowered::Record(_) => {
-            Err(fault!(ARRAY_MISMATCH, "a record stands where a number is needed").at(span))
+            Err(fault!(ARRAY_MISMATCH, "expected a number, got a record").at(span))
         }
         Lowered::Text(_) | Lowered::Numbered(_) => {
-            Err(fault!(ARRAY_MISMATCH, "a text stands where a number is needed").at(span))
+            Err(fault!(ARRAY_MISMATCH, "expected a number, got a String").at(span))
         }
     };
     values.into_iter().map(array).collect()

@@ -43,7 +43,7 @@ impl<T: Target> Lowering<'_, T> {
                 None if gives_text => {
                     return Err(fault!(
                         NOT_SUPPORTED,
-                        "`{}` gives a text, but `{}` is not known when the model is compiled",
+                        "`{}` returns a String, but `{}` is unknown at translation",
                         function.name,
                         input.name
                     )
@@ -252,7 +252,7 @@ fn exhausted(steps: &Cell<u64>) -> Option<Fault> {
     steps.set(steps.get() + 1);
     let limit = budget::step_limit() / 2;
     (steps.get() > limit).then(|| {
-        fault!(NOT_SUPPORTED, "the functions called at translation take more than {} steps",
+        fault!(NOT_SUPPORTED, "the functions evaluated at translation take more than {} steps",
             budget::in_millions(limit); help: "{}", budget::REMEDY)
     })
 }

@@ -19,16 +19,16 @@ impl<T: Target> Lowering<'_, T> {
         match text {
             Lowered::Numbered(number) => Ok(number),
             Lowered::Text(text) if text.contains(UNKNOWN_TEXT) => {
-                Err(fault!(NOT_SUPPORTED, "a text that is made while the model is simulated";
-                    help: "choose among texts that are known when compiling")
+                Err(fault!(NOT_SUPPORTED, "a String that is computed during the simulation";
+                    help: "select among Strings that are known at translation")
                 .at(span))
             }
             Lowered::Text(text) => self
                 .target
                 .text_number(&text)
-                .ok_or_else(|| fault!(NOT_SUPPORTED, "texts that depend on conditions").at(span)),
+                .ok_or_else(|| fault!(NOT_SUPPORTED, "Strings that depend on conditions").at(span)),
             Lowered::Array(_) | Lowered::Record(_) => {
-                Err(fault!(ARRAY_MISMATCH, "a number stands where a text is needed").at(span))
+                Err(fault!(ARRAY_MISMATCH, "expected a String, got a number").at(span))
             }
         }
     }
@@ -72,9 +72,11 @@ impl<T: Target> Lowering<'_, T> {
             BinaryOperator::Equal => RelationOperator::Equal,
             BinaryOperator::NotEqual => RelationOperator::NotEqual,
             _ => {
-                return Err(
-                    fault!(NOT_SUPPORTED, "this operator takes no texts that change").at(span)
-                );
+                return Err(fault!(
+                    NOT_SUPPORTED,
+                    "this operator does not support Strings that change during the simulation"
+                )
+                .at(span));
             }
         };
         Ok(Lowered::scalar(self.target.relation(relation, a, b, self.live, span)))

@@ -23,15 +23,16 @@ pub(super) fn refusal(function: &Function) -> Option<String> {
     let FunctionBody::External(clause) = &function.body else { return None };
     let name = external_name(function, clause);
     if function.inputs.iter().any(|i| i.value_type == ValueType::String && !i.dims.is_empty()) {
-        return Some(format!("is the external function `{name}`, which takes arrays of texts"));
+        return Some(format!("is the external function `{name}`, which takes arrays of Strings"));
     }
     match external::find(&name) {
-        None => {
-            Some(format!("is the external function `{name}`, which this program does not have"))
-        }
-        Some(entry) if entry.effect == Effect::Outside => {
-            Some(format!("is the external function `{name}`, whose values change by themselves"))
-        }
+        None => Some(format!(
+            "is the external function `{name}`, which this program does not implement"
+        )),
+        Some(entry) if entry.effect == Effect::Outside => Some(format!(
+            "is the external function `{name}`, whose values change without a change of its \
+             arguments"
+        )),
         Some(_) => None,
     }
 }
@@ -125,11 +126,13 @@ impl Body<'_, '_> {
                 Ok(Slot { kind, first, dims })
             }
             Lowered::Record(_) => {
-                Err(fault!(NOT_SUPPORTED, "a record for an external function").at(span))
+                Err(fault!(NOT_SUPPORTED, "a record as argument of an external function").at(span))
             }
-            Lowered::Numbered(_) => {
-                Err(fault!(NOT_SUPPORTED, "a text that changes for an external function").at(span))
-            }
+            Lowered::Numbered(_) => Err(fault!(
+                NOT_SUPPORTED,
+                "a String that changes during the simulation, as argument of an external function"
+            )
+            .at(span)),
         }
     }
 }

@@ -112,9 +112,10 @@ impl Instances {
             result => result,
         }?;
         if found.writes && !self.may_write && self.depth == 0 {
-            return Err(fault!(NOT_SUPPORTED, "the function `{}` writes, and its value is used",
+            return Err(fault!(NOT_SUPPORTED, "the function `{}` writes output, so its value \
+                cannot be used",
                 function.name;
-                help: "call it in a when-clause without using its value")
+                help: "call it in a when-clause, without using its value")
             .at(span));
         }
         Ok(found)
@@ -144,7 +145,7 @@ impl Instances {
         if self.depth >= MAX_DEPTH || self.finished.len() >= MAX_INSTANCES {
             return Err(fault!(
                 NOT_SUPPORTED,
-                "the function `{name}` calls itself with sizes that differ without an end"
+                "the function `{name}` calls itself with ever new sizes"
             )
             .at(span));
         }
@@ -298,16 +299,20 @@ fn signature(
             {
                 return Err(fault!(
                     NOT_SUPPORTED,
-                    "the text for `{}` of `{}` must be known when the model is compiled",
+                    "the String for `{}` of `{}` must be known at translation",
                     input.name,
                     function.name
                 )
                 .at(span));
             }
             Lowered::Numbered(_) => {
-                return Err(
-                    fault!(NOT_SUPPORTED, "a text that changes for `{}`", input.name).at(span)
-                );
+                return Err(fault!(
+                    NOT_SUPPORTED,
+                    "a String that changes during the simulation, for \
+                        `{}`",
+                    input.name
+                )
+                .at(span));
             }
             Lowered::Text(text) => Argument::Text(text.clone()),
             Lowered::Array(array) => match array.elements.as_slice() {
@@ -321,7 +326,8 @@ fn signature(
                 None => {
                     return Err(fault!(
                         NOT_SUPPORTED,
-                        "the record `{}` of `{}` holds texts that change",
+                        "the record `{}` of `{}` contains Strings that change during the \
+                         simulation",
                         input.name,
                         function.name
                     )

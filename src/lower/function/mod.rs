@@ -157,7 +157,8 @@ pub(super) fn compiled_call(
             } else if n == 0 && instance.impure {
                 return Err(fault!(
                     NOT_SUPPORTED,
-                    "the impure function `{}` is called where nothing uses a value of it",
+                    "the impure function `{}` is called in a statement that does not use its \
+                     values",
                     function.name
                 )
                 .at(span));

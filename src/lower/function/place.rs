@@ -152,7 +152,7 @@ impl Body<'_, '_> {
         if !place.fits(&value) {
             return Err(fault!(
                 ARRAY_MISMATCH,
-                "the value of `{}` has another size",
+                "the value of `{}` has a different size",
                 target.name()
             )
             .at(target.span));

@@ -70,11 +70,9 @@ impl Body<'_, '_> {
         self.emitter.open();
         let file = message_text(&mut self.lowering(loops), nth(arguments, 1, "fileName"));
         if file.contains(UNKNOWN_TEXT) {
-            return Err(fault!(
-                NOT_SUPPORTED,
-                "the name of the file must be known when the model is compiled"
-            )
-            .at(span));
+            return Err(
+                fault!(NOT_SUPPORTED, "the name of the file must be known at translation").at(span)
+            );
         }
         let mut parts = vec![self.slot(Lowered::Text(file.into()), None, span)?];
         if let Some(text) = nth(arguments, 0, "string") {

@@ -155,7 +155,7 @@ impl<'a, 'f> Body<'a, 'f> {
                     breaks.push(self.emitter.jump());
                     Ok(())
                 }
-                None => Err(fault!(NOT_SUPPORTED, "`break` outside of a loop").at(s.span)),
+                None => Err(fault!(NOT_SUPPORTED, "`break` outside a loop").at(s.span)),
             },
             StatementKind::Return => {
                 self.returns.push(self.emitter.jump());
@@ -200,7 +200,11 @@ impl<'a, 'f> Body<'a, 'f> {
         loops: &Loops,
     ) -> Result<(), Diagnostic> {
         let ExpressionKind::Call { function, arguments } = &call.kind else {
-            return Err(fault!(NOT_SUPPORTED, "several variables need a call").at(call.span));
+            return Err(fault!(
+                NOT_SUPPORTED,
+                "a list of variables on the left side needs a function call on the right side"
+            )
+            .at(call.span));
         };
         let name = function.name();
         let Some(user) = self.function(&name) else {
@@ -394,7 +398,7 @@ impl<'a, 'f> Body<'a, 'f> {
 
     fn call_statement(&mut self, call: &Expression, loops: &Loops) -> Result<(), Diagnostic> {
         let ExpressionKind::Call { function, arguments } = &call.kind else {
-            return Err(fault!(NOT_SUPPORTED, "this is no statement").at(call.span));
+            return Err(fault!(NOT_SUPPORTED, "this is not a statement").at(call.span));
         };
         if function.as_ident().is_some_and(|name| name == "assert") {
             return self.assertion(arguments, call.span, loops);

@@ -53,7 +53,7 @@ impl<'r> Cells<'r, '_> {
         }
         let cell: String = cell.chars().take(40).collect();
         fault!(BAD_TABLE, "{place}: `{cell}` in `{name}` is not a number")
-            .help("correct the cell, or leave it empty where the value is missing")
+            .help("correct the cell, or leave it empty if the value is missing")
     }
 
     /// Whether all cells are empty.
@@ -83,7 +83,7 @@ impl<'r> Cells<'r, '_> {
                 let (place, name) = (self.place(line), self.name);
                 return Err(fault!(
                     BAD_TABLE,
-                    "{place}: `{}` in `{name}` is not a time as in the cells above",
+                    "{place}: `{}` in `{name}` is not in the time format of the cells above",
                     short(cell)
                 ));
             };
@@ -137,7 +137,7 @@ impl<'r> Cells<'r, '_> {
         }
         if let Some((group, line)) = grouped.filter(|(group, _)| matches!(group, '.' | ',')) {
             notes.push(format!(
-                "in `{}` the mark `{group}` stands between thousands, as in {}",
+                "in `{}` the character `{group}` is read as thousands separator, as in {}",
                 self.name,
                 self.place(line)
             ));
@@ -160,12 +160,13 @@ impl<'r> Cells<'r, '_> {
                 Some((known, at, evidence)) if known != mark => {
                     return Err(fault!(
                         BAD_TABLE,
-                        "{}: `{cell}` in `{}` has another decimal mark than `{evidence}` in {}",
+                        "{}: `{cell}` in `{}` has a different decimal separator from \
+                         `{evidence}` in {}",
                         self.place(line),
                         self.name,
                         self.places.row(at)
                     )
-                    .help("write all numbers with the same decimal mark"));
+                    .help("write all numbers with the same decimal separator"));
                 }
                 _ => _ = certain.get_or_insert((mark, line, cell)),
             }
@@ -199,11 +200,11 @@ impl<'r> Cells<'r, '_> {
         };
         fault!(
             BAD_TABLE,
-            "{}: `{cell}` in `{}` may be {point} or {joined}{why}",
+            "{}: `{cell}` in `{}` is ambiguous: {point} or {joined}{why}",
             self.place(line),
             self.name
         )
-        .help("write numbers without marks between thousands")
+        .help("write numbers without thousands separators")
     }
 }
 

@@ -32,21 +32,21 @@ fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> String {
 pub(super) fn lines_of(bytes: &[u8]) -> Result<Cow<'_, str>, Fault> {
     let text = decode(bytes);
     if text.trim().is_empty() {
-        bail!(BAD_TABLE, "the file is empty"; help: "name the columns in the first line");
+        bail!(BAD_TABLE, "the file is empty"; help: "write the column names in the first line");
     }
     let start: String = text.trim_start().chars().take(15).collect::<String>().to_lowercase();
     if start.starts_with("<!doctype html") || start.starts_with("<html") {
         bail!(
             BAD_TABLE,
-            "the file is a page of the web (html), not a table";
-            help: "download the data again; the page may ask to log in"
+            "the file is a web page (HTML), not a table";
+            help: "download the data again; the page may require a login"
         );
     }
     if let Some(at) = text.find('\0') {
         let line = text[..at].matches('\n').count() + 1;
         bail!(
             BAD_TABLE,
-            "line {line}: the file holds binary data, not a table";
+            "line {line}: the file contains binary data, not a table";
             help: "save it as CSV in UTF-8"
         );
     }

@@ -114,13 +114,13 @@ pub(super) fn layout<'a>(
                 let place = places.of(first.map_or(1, |record| record.line), 0);
                 bail!(
                     BAD_TABLE,
-                    "{place}: the first line holds numbers, not the names of the columns";
-                    help: "name the columns in the first line, such as `x,y`"
+                    "{place}: the first line contains numbers instead of column names";
+                    help: "write the column names in the first line, such as `x,y`"
                 );
             };
             let line = head.line;
             warnings.push(format!(
-                "the names of the columns are those of the comment in {}",
+                "the column names are taken from the comment in {}",
                 places.row(line)
             ));
             (head, block.start)
@@ -131,12 +131,12 @@ pub(super) fn layout<'a>(
         let last = records[data - 2].line;
         warnings.push(match places {
             Places::Lines { .. } if last == 1 => {
-                "line 1 stands before the head and is not read".to_owned()
+                "line 1 precedes the header and is ignored".to_owned()
             }
             Places::Lines { .. } => {
-                format!("lines 1 to {last} stand before the head and are not read")
+                format!("lines 1 to {last} precede the header and are ignored")
             }
-            Places::Cells => format!("rows above row {} are not read", head.line),
+            Places::Cells => format!("rows above row {} are ignored", head.line),
         });
     }
     let mut rows = records.split_off(data);
@@ -146,8 +146,8 @@ pub(super) fn layout<'a>(
     if rows.is_empty() {
         let place = places.row(head.line);
         bail!(
-            BAD_TABLE, "there are no rows below the head in {place}";
-            help: "export the measurement again with its data"
+            BAD_TABLE, "there are no rows below the header in {place}";
+            help: "export the measurement again, including its data"
         );
     }
     Ok(Layout { head, units, rows, warnings })
@@ -232,8 +232,9 @@ fn refuse_other_table(skipped: &[Record<'_>], places: Places) -> Result<(), Faul
     let Some(named) = named else { return Ok(()) };
     bail!(
         BAD_TABLE,
-        "the file holds several tables, the first one begins in {}", places.row(skipped[named].line);
-        help: "write each table into a file of its own"
+        "the file contains several tables; the first one starts in \
+         {}", places.row(skipped[named].line);
+        help: "write each table to a separate file"
     )
 }
 
@@ -269,7 +270,7 @@ fn checked<'a>(
     for row in rows {
         let repeated = row.cells[..row.width()] == head.cells[..expected];
         if repeated || units.is_some_and(|units| units.cells == row.cells) {
-            warnings.push(format!("{} repeats the head and is left out", places.row(row.line)));
+            warnings.push(format!("{} repeats the header and is skipped", places.row(row.line)));
             continue;
         }
         let width = row.width();
@@ -281,7 +282,8 @@ fn checked<'a>(
             let place = places.of(row.line, found.min(expected));
             bail!(
                 BAD_TABLE, "{place}: {found} cells where the header has {expected}";
-                help: "give every row one cell for each column; text with a separator in it belongs in double quotes, and remarks behind a `#`"
+                help: "give every row one cell per column; put text that contains a separator in \
+                       double quotes, and remarks after a `#`"
             );
         }
         kept.push(row);

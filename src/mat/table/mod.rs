@@ -139,7 +139,7 @@ fn file(layout: &Layout<'_>, places: Places, version: Version, strict: bool) -> 
         let Some(parsed) = parsed else {
             if !cells(layout, heading, places, strict).is_empty() {
                 file.warnings
-                    .push(format!("column {} has no name and is not read", heading.column + 1));
+                    .push(format!("column {} has no name and is ignored", heading.column + 1));
             }
             continue;
         };
@@ -181,7 +181,7 @@ fn two_columns(name: &str, line: usize, columns: [usize; 2], places: Places) -> 
     });
     let what = if places == Places::Cells { "cells" } else { "columns" };
     fault!(BAD_TABLE, "two columns are named `{name}`: {what} {first} and {second}")
-        .help("give every column a name of its own")
+        .help("give each column a unique name")
 }
 
 /// The only column with dates and without times of day.
@@ -240,7 +240,8 @@ pub fn read_csv(bytes: &[u8]) -> Result<MatFile, Fault> {
         return Err(fault.clone());
     }
     if let Some(warning) = file.warnings.first() {
-        bail!(BAD_TABLE, "{warning}"; help: "write a table with a head and numbers alone");
+        bail!(BAD_TABLE, "{warning}"; help: "write a table that contains only a header and \
+            numbers");
     }
     Ok(file)
 }

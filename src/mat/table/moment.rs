@@ -292,11 +292,8 @@ fn minutes(nanoseconds: i64, is_dated: bool, hint: &str) -> Result<i64, Fault> {
     if hint.contains("m:ss") {
         return Ok(nanoseconds / 60);
     }
-    Err(fault!(
-        BAD_TABLE,
-        "it is not clear whether the times are hours and minutes or minutes and seconds"
-    )
-    .help("write hh:mm:ss, or name the unit in the head: `time [hh:mm]` or `time [mm:ss]`"))
+    Err(fault!(BAD_TABLE, "the times are ambiguous: hours and minutes, or minutes and seconds")
+        .help("write hh:mm:ss, or give the unit in the header: `time [hh:mm]` or `time [mm:ss]`"))
 }
 
 /// Whether the day is first where two numbers could be it; what the dates do not show is refused
@@ -320,7 +317,7 @@ fn order(moments: &[Option<Moment>]) -> Result<bool, Fault> {
         (false, false) if !differ => Ok(true),
         _ => Err(fault!(
             BAD_TABLE,
-            "it is not clear whether `{}/{}` is a day and a month or a month and a day",
+            "the date `{}/{}` is ambiguous: day and month, or month and day",
             one.1,
             one.2
         )
@@ -373,8 +370,10 @@ mod tests {
 
     #[test]
     fn what_the_column_does_not_show_is_refused() {
-        assert!(of(&["3/4/2024 1:00:00", "3/5/2024 1:00:00"]).unwrap_err().contains("a month"));
-        assert!(of(&["13/1/2024", "1/13/2024"]).unwrap_err().contains("a month"));
+        assert!(
+            of(&["3/4/2024 1:00:00", "3/5/2024 1:00:00"]).unwrap_err().contains("day and month")
+        );
+        assert!(of(&["13/1/2024", "1/13/2024"]).unwrap_err().contains("day and month"));
         assert_eq!(of(&["3/4/2024 1:00:00", "3/4/2024 1:00:01"]).unwrap().0, [0.0, 1.0]);
         assert_eq!(of(&["31/1/2024", "1/2/2024"]).unwrap().0, [0.0, 86_400.0]);
     }

@@ -129,7 +129,7 @@ pub(in crate::script) fn cannot(verb: &str, path: &Path, error: &io::Error) -> F
         io::ErrorKind::NotFound => "it does not exist".to_owned(),
         io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
         io::ErrorKind::IsADirectory => "it is a directory".to_owned(),
-        io::ErrorKind::NotADirectory => "a part of its path is no directory".to_owned(),
+        io::ErrorKind::NotADirectory => "a part of its path is not a directory".to_owned(),
         _ => error.to_string().to_lowercase(),
     };
     Fault::new(FILE_ERROR, format!("cannot {verb} `{}`: {reason}", path.display()))
@@ -139,7 +139,7 @@ pub(in crate::script) fn cannot(verb: &str, path: &Path, error: &io::Error) -> F
 fn refused(refusal: Refusal, path: &Path) -> Fault {
     let verb = if refusal.is_of() == Access::Read { "read" } else { "changed" };
     let verb = if refusal == Refusal::System { "opened" } else { verb };
-    let message = format!("`{}` is not {verb}: {}", path.display(), refusal.reason());
+    let message = format!("`{}` cannot be {verb}: {}", path.display(), refusal.reason());
     Fault::new(REFUSED, message).help_if(refusal.help().map(str::to_owned))
 }
 

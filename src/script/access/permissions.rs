@@ -76,7 +76,7 @@ impl Session {
         if is_secretive && !self.options.permissions.system {
             bail!(
                 REFUSED,
-                "the environment variable `{name}` is not read: it might hold a secret";
+                "the environment variable `{name}` cannot be read: it may hold a secret";
                 help: "allow it with `--allow-system`"
             );
         }
@@ -91,8 +91,9 @@ impl Session {
         if !self.options.permissions.system {
             bail!(
                 REFUSED,
-                "`{command}` is not run: a script may not start programs";
-                help: "allow it with `--allow-system`, or do it before or after the script"
+                "`{command}` was not started: a script must not start programs";
+                help: "allow it with `--allow-system`, or run the command before or after the \
+                       script"
             );
         }
         let environment = self.environment.clone();

@@ -89,14 +89,14 @@ impl Refusal {
     /// Why, as the end of a sentence about the file.
     pub fn reason(self) -> &'static str {
         match self {
-            Refusal::Reading => "it lies outside of the folders that may be read",
-            Refusal::Outside => "it lies outside of the directory where the run began",
+            Refusal::Reading => "it is outside the folders that may be read",
+            Refusal::Outside => "it is outside the directory where the run started",
             Refusal::System => "it belongs to the operating system",
-            Refusal::Hidden => "its name begins with a dot",
+            Refusal::Hidden => "its name starts with a dot",
             Refusal::Source => "it is a Modelica file or a script",
-            Refusal::Existing => "this run has not made it",
-            Refusal::Shared => "it has another name elsewhere (a hard link)",
-            Refusal::Reserved => "the program keeps account in it",
+            Refusal::Existing => "this run did not create it",
+            Refusal::Shared => "it has a second name elsewhere (a hard link)",
+            Refusal::Reserved => "the program keeps its own records in it",
         }
     }
 

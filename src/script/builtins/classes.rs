@@ -59,10 +59,10 @@ pub(super) fn asked(session: &mut Session, name: &Name) -> Option<Arc<ClassDefin
 }
 
 const LIST: &str = r#"
-function list "The text of a class, or of all classes."
+function list "The source text of a class, or of all classes."
   input TypeName class_ = AllLoadedClasses;
-  input Boolean interfaceOnly = false "true is refused";
-  input Boolean shortOnly = false "true is refused";
+  input Boolean interfaceOnly = false "true is not supported";
+  input Boolean shortOnly = false "true is not supported";
   input Any exportKind = 0 "has no effect";
   output String contents;
 end list;
@@ -72,7 +72,10 @@ fn list(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let name: Name = args.take("class_")?;
     for part in ["interfaceOnly", "shortOnly"] {
         if args.take::<bool>(part)? {
-            bail!(BAD_ARGUMENT, "`list` gives the whole text: `{part} = true` is refused");
+            bail!(
+                BAD_ARGUMENT,
+                "`list` returns the complete source text: `{part} = true` is not supported"
+            );
         }
     }
     if name.last().is_none_or(|last| last == "AllLoadedClasses") {
@@ -86,7 +89,7 @@ fn list(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const GET_COMPONENTS: &str = r#"
-function getComponents "The components declared in a class: type, name, description, visibility, final, flow, stream, replaceable, variability, inner or outer, causality, sizes."
+function getComponents "Components declared in a class: type, name, description, visibility, final, flow, stream, replaceable, variability, inner or outer, causality, sizes."
   input TypeName className;
   input Boolean useQuotes = false "whether types and names are strings";
   output Any components;
@@ -115,7 +118,7 @@ fn get_nth_component(session: &mut Session, mut args: Args) -> Result<Value, Fai
     let Some(class) = asked(session, &name) else { return Ok(text(String::new())) };
     let all = components(&class);
     let Some(component) = usize::try_from(n - 1).ok().and_then(|at| all.get(at)) else {
-        bail!(BAD_ARGUMENT, "`{name}` has {} components, not {n}", all.len())
+        bail!(BAD_ARGUMENT, "`{name}` has {} components; there is no component {n}", all.len())
     };
     let (kind, own) = (&component.clause.type_specifier.name, component.one.name.node);
     let shown = format!("{{{kind},{own},{}}}", component.description());
@@ -222,7 +225,7 @@ pub(super) fn subscript(subscript: &Subscript) -> String {
 }
 
 const GET_PARAMETER_VALUE: &str = r#"
-function getParameterValue "The value that a parameter is declared with, as written."
+function getParameterValue "The declared value of a parameter, as written."
   input TypeName class_;
   input String parameterName;
   output String parameterValue "empty if it has none";
@@ -237,7 +240,7 @@ fn get_parameter_value(session: &mut Session, mut args: Args) -> Result<Value, F
     let Some(component) = all.iter().find(|component| component.one.name.node == *wanted) else {
         let known = all.iter().map(|component| component.one.name.node.as_str());
         let hint = crate::diag::suggest::did_you_mean(&wanted, known);
-        let fault = fault!(BAD_ARGUMENT, "`{name}` declares no `{wanted}`").help_if(hint);
+        let fault = fault!(BAD_ARGUMENT, "`{name}` does not declare `{wanted}`").help_if(hint);
         session.report_fault(fault);
         return Ok(text(String::new()));
     };
@@ -249,7 +252,7 @@ fn get_parameter_value(session: &mut Session, mut args: Args) -> Result<Value, F
 }
 
 const SET_PARAMETER_VALUE: &str = r#"
-function setParameterValue "Changes the value that a parameter is declared with."
+function setParameterValue "Changes the declared value of a parameter."
   input TypeName className;
   input VariableName variableName;
   input Expression value "not evaluated";
@@ -265,19 +268,19 @@ fn set_parameter_value(session: &mut Session, mut args: Args) -> Result<Value, F
 }
 
 const SET_ELEMENT_MODIFIER_VALUE: &str = r#"
-function setElementModifierValue "Changes the modifier of an element of a class, or of an element in an element."
+function setElementModifierValue "Changes the modifier of an element of a class, or of a nested element."
   input TypeName className;
-  input VariableName elementName "x, or x.start for what stands in the parentheses behind x";
-  input Expression modifier "a value, not evaluated; or $Code(= value), $Code((name = value)), $Code(()) to take it away";
+  input VariableName elementName "x, or x.start for a modifier in the parentheses after x";
+  input Expression modifier "a value, not evaluated; or $Code(= value), $Code((name = value)), $Code(()) to remove it";
   output Boolean success;
 end setElementModifierValue;
 "#;
 
 const SET_COMPONENT_MODIFIER_VALUE: &str = r#"
-function setComponentModifierValue "Changes the modifier of an element of a class, or of an element in an element."
+function setComponentModifierValue "Changes the modifier of an element of a class, or of a nested element."
   input TypeName className;
-  input VariableName elementName "x, or x.start for what stands in the parentheses behind x";
-  input Expression modifier "a value, not evaluated; or $Code(= value), $Code((name = value)), $Code(()) to take it away";
+  input VariableName elementName "x, or x.start for a modifier in the parentheses after x";
+  input Expression modifier "a value, not evaluated; or $Code(= value), $Code((name = value)), $Code(()) to remove it";
   output Boolean success;
 end setComponentModifierValue;
 "#;
@@ -337,7 +340,7 @@ fn modified(
         true
     })?
     .then_some(())
-    .ok_or_else(|| fault!(BAD_ARGUMENT, "`{shown}` declares no `{element}`").into())
+    .ok_or_else(|| fault!(BAD_ARGUMENT, "`{shown}` does not declare `{element}`").into())
 }
 
 /// Takes elements away whose modification says nothing.
@@ -359,7 +362,7 @@ fn parsed_modification(text: &str) -> Result<Modification, Fault> {
         (Some(Argument::Element(element)), true) => {
             Ok(element.modification.unwrap_or_else(no_modification))
         }
-        _ => Err(fault!(BAD_ARGUMENT, "`{text}` is no modification of one element")),
+        _ => Err(fault!(BAD_ARGUMENT, "`{text}` is not a modification of one element")),
     }
 }
 
@@ -389,7 +392,7 @@ fn edited<T>(
         let Some(inner) = class_in(current, *part) else {
             bail!(
                 BAD_ARGUMENT,
-                "`{name}` stands in a file of its own, which cannot be changed here"
+                "`{name}` is stored in a separate file, which cannot be changed here"
             )
         };
         current = inner;
@@ -413,7 +416,7 @@ fn class_in(class: &mut ClassDefinition, name: Ident) -> Option<&mut ClassDefini
 }
 
 const GET_SIMULATION_OPTIONS: &str = r#"
-function getSimulationOptions "What the experiment annotation of a model says, else the defaults."
+function getSimulationOptions "The settings of a model's experiment annotation, or the defaults."
   input TypeName name;
   input Real defaultStartTime = 0.0;
   input Real defaultStopTime = 1.0;
@@ -449,7 +452,7 @@ fn get_simulation_options(session: &mut Session, mut args: Args) -> Result<Value
 }
 
 const SAVE_MODEL: &str = r#"
-function saveModel "Writes the text of a class to a file."
+function saveModel "Writes the source text of a class to a file."
   input String fileName;
   input TypeName className;
   output Boolean success;

@@ -23,7 +23,7 @@ pub(super) const FILES: Family = Family {
 };
 
 const GET_TIME: &str = r#"
-function getTime "The date and the time of day, in UTC; the beginning of 1970 where there is no clock."
+function getTime "The date and the time of day, in UTC; the start of 1970 if no clock is available."
   output Integer ms "milliseconds, always 0";
   output Integer sec;
   output Integer min;
@@ -40,7 +40,7 @@ fn get_time(session: &mut Session, _: Args) -> Result<Value, Failure> {
 }
 
 const GET_PID: &str = r#"
-function getPid "The number of this process; 0 where there is none."
+function getPid "The ID of this process; 0 if not available."
   output Integer pid;
 end getPid;
 "#;

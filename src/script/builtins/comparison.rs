@@ -22,14 +22,14 @@ pub(super) const FAMILY: Family = Family {
 };
 
 const COMPARE_SIMULATION_RESULTS: &str = r#"
-function compareSimulationResults "Compares two result files at the times of the second; writes what differs to a log."
+function compareSimulationResults "Compares two result files at the time points of the second; writes the differences to a log."
   input String filename;
   input String reffilename;
-  input String logfilename "written anew; empty: none";
+  input String logfilename "overwritten if it exists; empty: no log";
   input Real relTol = 0.01;
   input Real absTol = 0.0001;
-  input String vars[:] = fill("", 0) "variables; none for all of the reference";
-  output String result[:] "the first line says whether files agree, then the variables that differ";
+  input String vars[:] = fill("", 0) "variables to compare; empty: all variables of the reference";
+  output String result[:] "the first line says whether the files agree; then the variables that differ";
 end compareSimulationResults;
 "#;
 
@@ -54,15 +54,15 @@ fn compare_simulation_results(session: &mut Session, mut args: Args) -> Result<V
 }
 
 const DIFF_SIMULATION_RESULTS: &str = r#"
-function diffSimulationResults "Compares two result files; the variables that differ."
+function diffSimulationResults "Compares two result files and returns the variables that differ."
   input String actualFile;
   input String expectedFile;
-  input String diffPrefix "for each variable that differs a file <prefix>.<variable>.csv is written; empty: none";
+  input String diffPrefix "for each variable that differs a file <prefix>.<variable>.csv is written; empty: no files";
   input Real relTol = 1e-3 "of the largest value of the variable";
   input Real relTolDiffMinMax = 1e-4 "of the range of the variable";
-  input Real rangeDelta = 0.002 "part of the simulated time by which values may be early or late";
-  input String vars[:] = fill("", 0) "variables; none for all of the expected file";
-  input Boolean keepEqualResults = false "whether files are written for variables that agree too";
+  input Real rangeDelta = 0.002 "tolerance in time, as a fraction of the simulated time";
+  input String vars[:] = fill("", 0) "variables to compare; empty: all variables of the expected file";
+  input Boolean keepEqualResults = false "whether files are also written for variables that agree";
   output Boolean success;
   output String failVars[:];
 end diffSimulationResults;
@@ -95,7 +95,7 @@ function filterSimulationResults "Writes some variables of a result file to anot
   input String inFile;
   input String outFile;
   input String vars[:];
-  input Integer numberOfIntervals = 0 "0: at the times of the file";
+  input Integer numberOfIntervals = 0 "0: at the time points of the file";
   input Boolean removeDescription = false;
   input Boolean hintReadAllVars = true "has no effect";
   output Boolean success;
@@ -184,7 +184,7 @@ fn differences(
     tolerance: Tolerance,
 ) -> Result<Vec<Difference>, Fault> {
     let (Some(first), Some(last)) = (actual.time.first(), actual.time.last()) else {
-        bail!(BAD_ARGUMENT, "the first file holds no results")
+        bail!(BAD_ARGUMENT, "the first file contains no results")
     };
     let inside = |time: &f64| (first..=last).contains(&time);
     let times: Vec<f64> = expected.time.iter().copied().filter(inside).collect();

@@ -17,7 +17,7 @@ pub(super) const FAMILY: Family = Family {
 };
 
 const REAL_STRING: &str = r#"
-function realString "A Real as text."
+function realString "A Real as a string."
   input Real number;
   input Integer minimumWidth = 1;
   input Integer precision = 6 "significant digits";
@@ -32,7 +32,7 @@ fn real_string(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const INTEGER_STRING: &str = r#"
-function integerString "An Integer as text."
+function integerString "An Integer as a string."
   input Integer number;
   input Integer minimumWidth = 1;
   output String result;
@@ -45,7 +45,7 @@ fn integer_string(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const BOOLEAN_STRING: &str = r#"
-function booleanString "A Boolean as text."
+function booleanString "A Boolean as a string."
   input Boolean value;
   input Integer minimumWidth = 1;
   output String result;

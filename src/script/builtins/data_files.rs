@@ -26,7 +26,7 @@ pub(super) const FAMILY: Family = Family {
 };
 
 const READ_MAT_MATRIX: &str = r#"
-function readMATmatrix "A matrix in a MAT file."
+function readMATmatrix "Reads a matrix from a MAT file."
   input String fileName;
   input String matrixName;
   output Real matrix[:, :];
@@ -62,7 +62,7 @@ function writeMATmatrix "Writes a matrix to a MAT file of version 4."
   input String fileName;
   input String matrixName;
   input Real matrix[:, :];
-  input Boolean append = false "false: the file is written anew";
+  input Boolean append = false "false: the file is overwritten";
   output Boolean ok;
 end writeMATmatrix;
 "#;
@@ -76,7 +76,7 @@ fn columns(session: &mut Session, args: &mut Args) -> Result<Vec<(String, Vec<f6
 }
 
 const READ_CSV_MATRIX: &str = r#"
-function readCSVmatrix "The numbers of a CSV file with one line of names."
+function readCSVmatrix "Reads the numbers of a CSV file with one header line."
   input String fileName;
   output Real matrix[:, :];
 end readCSVmatrix;
@@ -90,7 +90,7 @@ fn read_csv_matrix(session: &mut Session, mut args: Args) -> Result<Value, Failu
 }
 
 const READ_CSV_SIZE: &str = r#"
-function readCSVsize "Numbers of rows and columns of a CSV file with one line of names."
+function readCSVsize "Numbers of rows and columns of a CSV file with one header line."
   input String fileName;
   output Integer rows;
   output Integer columns;
@@ -115,22 +115,22 @@ fn read_csv_headers(session: &mut Session, mut args: Args) -> Result<Value, Fail
 }
 
 const WRITE_CSV_MATRIX: &str = r#"
-function writeCSVmatrix "Writes a matrix to a CSV file below a line of names."
+function writeCSVmatrix "Writes a matrix to a CSV file, below a header line."
   input String fileName;
-  input String headers[:] "one name for each column; none for no such line";
+  input String headers[:] "one name per column; empty: no header line";
   input Real data[:, :];
   input String separator = ";";
-  input Boolean quoteAllHeaders = true "false: those alone that need it";
+  input Boolean quoteAllHeaders = true "false: quote only headers that need it";
   output Boolean ok;
 end writeCSVmatrix;
 "#;
 
 const WRITE_CSV_FILE_INTERNAL: &str = r#"
-function writeCSVFileInternal "Writes a matrix to a text file below a line of names."
+function writeCSVFileInternal "Writes a matrix to a text file, below a header line."
   input String fileName;
-  input String headers[:] "one name for each column; none for no such line";
+  input String headers[:] "one name per column; empty: no header line";
   input Real data[:, :];
-  input String separator = ";" "empty: a blank";
+  input String separator = ";" "empty: a space";
   input Boolean quoteAllHeaders = false;
   output Boolean ok;
 end writeCSVFileInternal;

@@ -68,7 +68,10 @@ fn init_file(prefix: &str) -> String {
 pub(super) fn preset(session: &mut Session, flags: &mut SimulationFlags) -> Result<(), Fault> {
     let Some(file) = flags.init_file.clone() else { return Ok(()) };
     let Some(values) = session.extension::<Built>().init_files.get(&file) else {
-        bail!(BAD_ARGUMENT, "no init file `{file}` is known: `setInitXmlStartValue` makes one");
+        bail!(
+            BAD_ARGUMENT,
+            "the init file `{file}` does not exist; create it with `setInitXmlStartValue`"
+        );
     };
     flags.preset(values);
     Ok(())
@@ -133,8 +136,8 @@ fn words(command: &str) -> Option<(Vec<String>, Option<String>)> {
 }
 
 const SET_INIT_XML_START_VALUE: &str = r#"
-function setInitXmlStartValue "Gives a parameter or a start value of a model that was built another value, in its init file or a copy of it. The file is not written: the program of the model knows it."
-  input String fileName "name of the model_init.xml, or a copy made before";
+function setInitXmlStartValue "Sets a parameter or a start value of a built model, in its init file or a copy of it. The file exists only inside this session, where the model's program uses it."
+  input String fileName "name of the model_init.xml, or of an earlier copy";
   input String variableName;
   input String startValue;
   input String outputFile;
@@ -151,13 +154,12 @@ fn set_init_xml_start_value(session: &mut Session, mut args: Args) -> Result<Val
         number => number.parse(),
     };
     let Ok(number) = number else {
-        session.report_fault(fault!(BAD_ARGUMENT, "`startValue` is no number: `{value}`"));
+        session.report_fault(fault!(BAD_ARGUMENT, "`startValue` is not a number: `{value}`"));
         return Ok(false.into());
     };
     let init_files = &mut session.extension::<Built>().init_files;
     let Some(mut values) = init_files.get(&file).cloned() else {
-        session
-            .report_fault(fault!(BAD_ARGUMENT, "no model was built whose init file is `{file}`";
+        session.report_fault(fault!(BAD_ARGUMENT, "no built model has the init file `{file}`";
             help: "call `buildModel` first"));
         return Ok(false.into());
     };

@@ -39,11 +39,11 @@ macro_rules! header {
   input Real startTime = 0.0 "s" annotation(optional = true);
   input Real stopTime = 1.0 "s" annotation(optional = true);
   input Integer numberOfIntervals = 500 annotation(optional = true);
-  input Real outputInterval = 0.0 "s; counts if numberOfIntervals is 0 or not given" annotation(optional = true);
+  input Real outputInterval = 0.0 "s; used if numberOfIntervals is 0 or not given" annotation(optional = true);
   input String method = "Dassl" annotation(optional = true);
   input Real tolerance = 0.0001 "relative" annotation(optional = true);
   input Real fixedstepsize = 0.0 "s, for methods with a fixed step" annotation(optional = true);
-  input String resultFile = "dsres" "without an ending, .mat is added";
+  input String resultFile = "dsres" ".mat is added if the name has no extension";
   input String initialNames[:] = fill("", 0) "parameters, and states or variables with a start value; linearize: for the number of a file dslin<number>.mat";
 "#,
             $rest,
@@ -56,9 +56,9 @@ macro_rules! header {
 
 const SIMULATE_EXTENDED_MODEL: &str = header!(
     "simulateExtendedModel",
-    "Simulates a model with given parameter and start values and returns values at the end.",
+    "Simulates a model with given parameter and start values and returns final values.",
     r#"  input Real initialValues[:] = fill(0.0, 0) "their values";
-  input String finalNames[:] = fill("", 0) "variables whose last values are returned";
+  input String finalNames[:] = fill("", 0) "variables whose final values are returned";
   input Boolean autoLoad = true "has no effect: nothing is plotted";
   output Boolean ok;
   output Real finalValues[size(finalNames, 1)];
@@ -80,9 +80,9 @@ fn simulate_extended_model(session: &mut Session, mut args: Args) -> Result<Valu
 
 const SIMULATE_MULTI_EXTENDED_MODEL: &str = header!(
     "simulateMultiExtendedModel",
-    "Simulates a model once for each row of parameter and start values and returns values at the ends.",
+    "Simulates a model once for each row of parameter and start values and returns final values.",
     r#"  input Real initialValues[:, :] = fill(0.0, 0, 0) "one row for each simulation";
-  input String finalNames[:] = fill("", 0) "variables whose last values are returned";
+  input String finalNames[:] = fill("", 0) "variables whose final values are returned";
   output Boolean ok;
   output Real finalValues[size(initialValues, 1), size(finalNames, 1)] "NaN where a simulation failed";
 "#
@@ -142,7 +142,7 @@ fn cube(dims: [usize; 3], elements: Vec<f64>) -> Value {
 
 fn check_count(names: &[String], values: usize) -> Result<(), Fault> {
     if names.len() != values {
-        bail!(BAD_ARGUMENT, "{} names and {values} values are given", names.len());
+        bail!(BAD_ARGUMENT, "{} names, but {values} values are given", names.len());
     }
     Ok(())
 }

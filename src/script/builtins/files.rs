@@ -102,7 +102,8 @@ fn copy(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 
 fn copy_file(session: &mut Session, old: &Path, new: &Path, replace: bool) -> Result<(), Fault> {
     if session.world.exists(new) && !replace {
-        bail!(FILE_ERROR, "`{}` exists", new.display(); help: "say `replace = true` to overwrite it");
+        bail!(FILE_ERROR, "`{}` already exists", new.display(); help: "set `replace = true` to \
+            overwrite it");
     }
     let bytes = session.read_bytes(old)?;
     session.write_file(new, &bytes)
@@ -126,7 +127,7 @@ fn move_file(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const REMOVE: &str = r#"
-function remove "Removes a file, or a directory with all that is in it, if it exists; of a link the link."
+function remove "Removes a file, or a directory with its contents, if it exists; for a link, only the link."
   input String name;
 end remove;
 "#;
@@ -168,7 +169,7 @@ fn remove_file(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
 }
 
 const CREATE_DIRECTORY: &str = r#"
-function createDirectory "Makes a directory and the ones it lies in."
+function createDirectory "Creates a directory and its parent directories."
   input String directoryName;
 end createDirectory;
 "#;
@@ -194,7 +195,7 @@ fn full_path_name(session: &mut Session, mut args: Args) -> Result<Value, Failur
 const SPLIT_PATH_NAME: &str = r#"
 function splitPathName "Directory, file name and extension of a path."
   input String pathName;
-  output String directory "with its last slash";
+  output String directory "with the trailing slash";
   output String name;
   output String extension "with its dot";
 end splitPathName;
@@ -222,7 +223,7 @@ fn load_resource(session: &mut Session, mut args: Args) -> Result<Value, Failure
 }
 
 const WRITE_FILE: &str = r#"
-function writeFile "Writes a text to a file."
+function writeFile "Writes a string to a file."
   input String fileName;
   input String data;
   input Boolean append = false;
@@ -240,7 +241,7 @@ fn write_file(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const READ_FILE: &str = r#"
-function readFile "The text of a file."
+function readFile "The contents of a file."
   input String fileName;
   output String contents "empty if it cannot be read";
 end readFile;
@@ -253,7 +254,7 @@ fn read_file(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const REGULAR_FILE_EXISTS: &str = r#"
-function regularFileExists "Whether a file exists and is no directory."
+function regularFileExists "Whether a file exists and is not a directory."
   input String fileName;
   output Boolean exists;
 end regularFileExists;
@@ -301,7 +302,7 @@ fn remove_path(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
 }
 
 const MKDIR: &str = r#"
-function mkdir "Makes a directory and the ones it lies in."
+function mkdir "Creates a directory and its parent directories."
   input String newDirectory;
   output Boolean success;
 end mkdir;
@@ -313,7 +314,7 @@ fn mkdir(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const BASENAME: &str = r#"
-function basename "The part of a path behind the last slash."
+function basename "The part of a path after the last slash."
   input String path;
   output String basename;
 end basename;

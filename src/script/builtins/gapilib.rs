@@ -60,7 +60,7 @@ impl FromValue for WholeNumbers {
     fn from_value(value: Value) -> Result<WholeNumbers, Fault> {
         let numbers = value.as_vector()?;
         match numbers.iter().find(|number| number.fract() != 0.0 || number.abs() > 1e15) {
-            Some(number) => bail!(TYPE_MISMATCH, "expected whole numbers, got {number}"),
+            Some(number) => bail!(TYPE_MISMATCH, "expected integers, got {number}"),
             None => Ok(WholeNumbers(numbers.into_iter().map(|number| number as i64).collect())),
         }
     }
@@ -78,7 +78,7 @@ pub(super) fn genomes_value(genomes: Genomes) -> Value {
 pub(super) fn take_genomes(args: &mut Args, name: &str) -> Result<Genomes, Fault> {
     let Rows(matrix) = args.take(name)?;
     if matrix.columns == 0 {
-        bail!(SIZE_MISMATCH, "`{name}` has no columns, but an individual has genes");
+        bail!(SIZE_MISMATCH, "`{name}` has no columns; it needs one column per gene");
     }
     Genomes::new(matrix.columns, matrix.elements)
 }
@@ -91,7 +91,7 @@ pub(super) fn check_size(name: &str, size: usize, expected: usize, of: &str) -> 
     bail!(
         SIZE_MISMATCH,
         "`{name}` has {size} elements, but {of} {expected}";
-        help: "make the sizes agree"
+        help: "use matching sizes"
     )
 }
 
@@ -99,8 +99,8 @@ const RAM_GEN_ARENA: &str = r#"
 function Ram_Gen_ARENA "Pseudo-random numbers of the generator that Arena uses (MRG32k3a)."
   input Any Seed "Real[1,6]: seed {x(n-3), x(n-2), x(n-1), y(n-3), y(n-2), y(n-1)}";
   input Integer N_Ram "number of pseudo-random numbers to generate";
-  output Real Ram_list[:,:] "Real[1,N_Ram]: numbers uniform between 0 and 1, both excluded";
-  output Real Seed_Next[:,:] "Real[1,6]: state after N_Ram draws, to feed to the next call";
+  output Real Ram_list[:,:] "Real[1,N_Ram]: uniformly distributed numbers between 0 and 1, both excluded";
+  output Real Seed_Next[:,:] "Real[1,6]: generator state after N_Ram draws, to pass to the next call";
 end Ram_Gen_ARENA;
 "#;
 
@@ -108,7 +108,7 @@ fn ram_gen_arena(session: &mut Session, mut args: Args) -> Result<Value, Failure
     let seed: Vec<f64> = args.take("Seed")?;
     let count: i64 = args.take("N_Ram")?;
     if !(0..=MOST_NUMBERS).contains(&count) {
-        bail!(SIZE_MISMATCH, "`N_Ram` is {count}, it must lie between 0 and {MOST_NUMBERS}");
+        bail!(SIZE_MISMATCH, "`N_Ram` is {count}; it must be between 0 and {MOST_NUMBERS}");
     }
     let mut rng = Mrg32k3a::new(&seed)?;
     let first = rng.state();
@@ -121,7 +121,7 @@ fn ram_gen_arena(session: &mut Session, mut args: Args) -> Result<Value, Failure
 
 const EXP_ADQ_SISO: &str = r#"
 function Exp_Adq_SISO "Reads the measured data of one input and one output from a file."
-  input String namefile "name of the .mat file (or .csv file with a heading)";
+  input String namefile "name of the .mat file (or .csv file with a header line)";
   input String Xmatrixname "name of the matrix of X values";
   input String Ymatrixname "name of the matrix of Y values";
   output Boolean State_Exp_Adq "true when both matrices were read and their sizes agree";
@@ -154,14 +154,14 @@ fn acquired(state: bool, x: Vec<f64>, y: Vec<f64>) -> Value {
 }
 
 const EVAL: &str = r#"
-function Eval "Simulates the model with the genes of every individual, in parallel."
-  input String SimuPath "path of the model's file or package folder; empty when it is loaded already";
-  input String SimuCaseStudyName "name of the model to simulate, with a modification if wanted";
+function Eval "Simulates the model with the genes of each individual, in parallel."
+  input String SimuPath "path of the model's file or package folder; empty if the model is already loaded";
+  input String SimuCaseStudyName "name of the model to simulate, optionally with a modification";
   input Any Xexp "Real[:]: array of experimental X data";
   input Any New_Generation "Real[:,:]: complete set of population values, one individual in each row";
-  input String Parameter_Names[:] = fill("", 0) "the identified parameters, one for each column; empty: the model's top-level tunable parameters in order of declaration";
-  input String X_Name = "time" "the variable that Xexp holds values of";
-  input String Y_Name = "" "the variable that was measured; empty: the model's only top-level output";
+  input String Parameter_Names[:] = fill("", 0) "the estimated parameters, one per column; empty: the model's top-level tunable parameters in order of declaration";
+  input String X_Name = "time" "the variable whose values Xexp contains";
+  input String Y_Name = "" "the measured variable; empty: the model's only top-level output";
   output Real DATASim_Int[:,:] "Y_Name interpolated at Xexp, one individual in each row; NaN where the simulation failed";
   output String Messages[:] "empty where the simulation succeeded";
 end Eval;
@@ -172,7 +172,7 @@ fn eval(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let genomes = take_genomes(&mut args, "New_Generation")?;
     if request.question.x.is_empty() && session.identification().data_missing {
         // One cause, one error: reading the data has failed, and has said so.
-        let message = "nothing is simulated, because the measured data could not be read";
+        let message = "nothing was simulated because the measured data could not be read";
         let note = Fault::new(FOLLOW_UP, message).at(session.call_site()).note();
         return Err(note.into());
     }
@@ -211,10 +211,10 @@ fn fit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let measured: Vec<f64> = args.take("Yexp")?;
     check_size("Yexp", measured.len(), simulated.columns, "the rows of `DATASim_Int` have")?;
     if let Some(k) = measured.iter().position(|value| !value.is_finite()) {
-        bail!(BAD_DATA, "measured Y number {} is {}", k + 1, measured[k]; help: "remove this point");
+        bail!(BAD_DATA, "measured Y value {} is {}", k + 1, measured[k]; help: "remove this point");
     }
     if measured.is_empty() {
-        bail!(BAD_DATA, "`Yexp` holds no points"; help: "read them with `Exp_Adq_SISO`");
+        bail!(BAD_DATA, "`Yexp` is empty"; help: "read them with `Exp_Adq_SISO`");
     }
     let rows = (0..simulated.rows).map(|k| simulated.row(k));
     let fitness: Vec<f64> = rows.map(|row| sum_of_squares(row, &measured)).collect();
@@ -226,12 +226,12 @@ fn fit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const FIT_ORDER: &str = r#"
-function Fit_Order "Sorts the individuals by their fitness, best first."
+function Fit_Order "Sorts the individuals by fitness, best first."
   input Any Pop "Real[:,:]: population to be ordered";
   input Any Fit "Real[:]: fitness of all population";
-  input Integer Population "number of population individuals";
-  input Integer Parents "number of population parents";
-  input Integer Elitism "number of elitism individuals";
+  input Integer Population "number of individuals of the population";
+  input Integer Parents "number of parents";
+  input Integer Elitism "number of elites";
   output Real Pop_Ordered[:,:] "population sorted by fitness value; ties keep their order";
   output Real Fit_Ordered[:] "the fitness in the same order";
 end Fit_Order;
@@ -245,7 +245,8 @@ fn fit_order(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     ga::selection::check_sizes(individuals, parents, elites)?;
     if individuals != population.len() as i64 {
         let rows = population.len();
-        bail!(SIZE_MISMATCH, "`Pop` has {rows} rows, but `Population` is {individuals}"; help: "make the sizes agree");
+        bail!(SIZE_MISMATCH, "`Pop` has {rows} rows, but `Population` is \
+                              {individuals}"; help: "use matching sizes");
     }
     let (ordered, fitness_ordered) = ga::sort_by_fitness(&population, &fitness)?;
     session.identification().recorder.ordered(&population, &fitness);
@@ -255,12 +256,12 @@ fn fit_order(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const CROSS: &str = r#"
-function Cross "Elites and children: adjacent ranks exchange the genes behind each crossing point."
-  input Integer Parents "number of population parents";
-  input Integer Elitism "number of elitism individuals";
-  input Any OldGeneration "Real[:,:]: old generation of population ordered by fitness";
+function Cross "Elitism and n-point crossover: parents of adjacent rank exchange the genes after each crossing point."
+  input Integer Parents "number of parents";
+  input Integer Elitism "number of elites";
+  input Any OldGeneration "Real[:,:]: old generation, ordered by fitness";
   input Integer Cross_Point[:] = {div(size(OldGeneration, 2), 2)} "crossing points" annotation(optional = true);
-  output Real NewGeneration_Cross[:,:] "Elitism + Parents rows: elites first, unaltered, then the children";
+  output Real NewGeneration_Cross[:,:] "Elitism + Parents rows: first the unchanged elites, then the children";
 end Cross;
 "#;
 
@@ -282,14 +283,14 @@ fn cross(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const MUTATION: &str = r#"
-function Mutation "Replaces genes, each with the probability F_Mut, by random values."
-  input Any Nparameters "Real[:,:]: complete population parameters of NewGeneration_Cross";
-  input Real F_Mut "mutation factor, 0 to 1";
-  input Any RamMut "Real[:,:]: pseudo-random numbers, one for each gene, shaped like Nparameters or all in one row";
-  input Real Param_Min[:] = {min(Nparameters[:,j]) for j in 1:size(Nparameters, 2)} "lower ends of the search ranges" annotation(optional = true);
-  input Real Param_Max[:] = {max(Nparameters[:,j]) for j in 1:size(Nparameters, 2)} "upper ends of the search ranges" annotation(optional = true);
-  input Integer Elitism = 0 "rows at the top that stay";
-  output Real NewGeneration_Mut[:,:] "population obtained after elitism, crossover and mutation";
+function Mutation "Uniform mutation: replaces each gene, with probability F_Mut, by a random value."
+  input Any Nparameters "Real[:,:]: population returned by Cross";
+  input Real F_Mut "mutation probability of each gene, 0 to 1";
+  input Any RamMut "Real[:,:]: pseudo-random numbers, one per gene, in the shape of Nparameters or in one row";
+  input Real Param_Min[:] = {min(Nparameters[:,j]) for j in 1:size(Nparameters, 2)} "lower bounds of the search ranges" annotation(optional = true);
+  input Real Param_Max[:] = {max(Nparameters[:,j]) for j in 1:size(Nparameters, 2)} "upper bounds of the search ranges" annotation(optional = true);
+  input Integer Elitism = 0 "number of first rows that are not changed";
+  output Real NewGeneration_Mut[:,:] "population after elitism, crossover and mutation";
 end Mutation;
 "#;
 
@@ -342,20 +343,20 @@ pub(super) fn genes(minima: &[f64], maxima: &[f64], n_genes: usize) -> Result<Ve
 }
 
 const REFINE: &str = r#"
-function Refine "Least squares: brings individuals to the next optimum by Levenberg and Marquardt's method."
-  input String SimuPath "path of the model's file or package folder; empty when it is loaded already";
-  input String SimuCaseStudyName "name of the model to simulate, with a modification if wanted";
+function Refine "Nonlinear least squares: moves individuals to a local optimum by the Levenberg-Marquardt method."
+  input String SimuPath "path of the model's file or package folder; empty if the model is already loaded";
+  input String SimuCaseStudyName "name of the model to simulate, optionally with a modification";
   input Any Xexp "Real[:]: array of experimental X data";
   input Any Yexp "Real[:]: array of experimental Y data";
-  input Any Individuals "Real[:,:]: where to begin, one individual in each row";
+  input Any Individuals "Real[:,:]: starting points, one individual in each row";
   input Any Param_Min "Real[:]: lower bound of every parameter";
-  input Any Param_Max "Real[:]: upper bound of every parameter; a positive range wider than a decade is followed by its logarithm";
-  input String Parameter_Names[:] = fill("", 0) "the identified parameters, one for each column; empty: the model's top-level tunable parameters in order of declaration";
-  input String X_Name = "time" "the variable that Xexp holds values of";
-  input String Y_Name = "" "the variable that was measured; empty: the model's only top-level output";
+  input Any Param_Max "Real[:]: upper bound of every parameter; a positive range wider than a decade is searched on a logarithmic scale";
+  input String Parameter_Names[:] = fill("", 0) "the estimated parameters, one per column; empty: the model's top-level tunable parameters in order of declaration";
+  input String X_Name = "time" "the variable whose values Xexp contains";
+  input String Y_Name = "" "the measured variable; empty: the model's only top-level output";
   output Real Refined[:] "the best individual found";
   output Real Fit_Refined "its sum of squared differences";
-  output Integer Simulations "how many it took";
+  output Integer Simulations "number of simulations used";
 end Refine;
 "#;
 

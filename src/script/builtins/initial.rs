@@ -29,7 +29,7 @@ fn model(session: &Session, command: &str) -> Result<Arc<Translated>, Fault> {
 }
 
 const IMPORT_INITIAL: &str = r#"
-function importInitial "The next simulations begin where the last one ended, with its time and the length of its interval."
+function importInitial "The next simulations continue from the end of the last one: its states, its time and the length of its interval."
   input String dsName = "dsfinal.txt" "only this name: the end of the last simulation of this session";
   output Boolean ok;
 end importInitial;
@@ -40,13 +40,15 @@ fn import_initial(session: &mut Session, mut args: Args) -> Result<Value, Failur
     if file != "dsfinal.txt" {
         bail!(
             BAD_ARGUMENT,
-            "`importInitial` continues the last simulation of this session, `{file}` is not read";
-            help: "`importInitialResult(\"result.mat\", time)` takes the values of a result file"
+            "`importInitial` continues from the last simulation of this session; it does not \
+             read `{file}`";
+            help: "read the values of a result file with `importInitialResult(\"result.mat\", \
+                   time)`"
         );
     }
     model(session, "importInitial")?;
     let Some(end) = session.last_end().cloned() else {
-        bail!(BAD_ARGUMENT, "no model has been simulated, so there is no end to continue from")
+        bail!(BAD_ARGUMENT, "there is no final state to continue from: no model has been simulated")
     };
     session.import_states(end.states);
     let (start, stop) = end.span;
@@ -55,7 +57,7 @@ fn import_initial(session: &mut Session, mut args: Args) -> Result<Value, Failur
 }
 
 const IMPORT_INITIAL_RESULT: &str = r#"
-function importInitialResult "The next simulations begin with the states and parameters that a result file has at a time."
+function importInitialResult "The next simulations start from the states and parameters of a result file at a given time."
   input String dsResName "result file";
   input Real atTime "s";
   output Boolean ok;
@@ -72,9 +74,9 @@ fn import_initial_result(session: &mut Session, mut args: Args) -> Result<Value,
 }
 
 const INITIALIZED: &str = r#"
-function initialized "Whether the next simulations begin with the states as importInitial left them, or with the initial equations."
-  input Boolean allVars = false "whether all variables are fixed: refused, the equations determine the others";
-  input Boolean isInitialized = true "false: the initial equations count again";
+function initialized "Whether the next simulations start from the imported states or solve the initial equations."
+  input Boolean allVars = false "true is not supported: the equations determine all variables that are not states";
+  input Boolean isInitialized = true "false: the initial equations are used again";
 end initialized;
 "#;
 
@@ -84,8 +86,9 @@ fn initialized(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
     if all {
         bail!(
             BAD_ARGUMENT,
-            "`allVars = true` is refused: with the states given, the equations determine the rest";
-            help: "leave it out"
+            "`allVars = true` is not supported: given the states, the equations determine all \
+             other variables";
+            help: "omit it"
         );
     }
     if !is_initialized {

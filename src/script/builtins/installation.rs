@@ -35,7 +35,7 @@ pub(super) const DYMOLA: Family = Family {
 const DYMOLA_RELEASE: f64 = 2018.0;
 
 const GET_MODELICA_PATH: &str = r#"
-function getModelicaPath "Folders whose packages are loadable by name, separated by colons; last the one in the program."
+function getModelicaPath "Folders whose packages can be loaded by name, separated by colons; the built-in library is last."
   output String modelicaPath;
 end getModelicaPath;
 "#;
@@ -47,7 +47,7 @@ fn get_modelica_path(session: &mut Session, _: Args) -> Result<Value, Failure> {
 }
 
 const GET_TEMP_DIRECTORY_PATH: &str = r#"
-function getTempDirectoryPath "A folder for files that nobody needs later: the output folder."
+function getTempDirectoryPath "A folder for temporary files: the output folder."
   output String tempDirectoryPath;
 end getTempDirectoryPath;
 "#;
@@ -57,7 +57,7 @@ fn get_temp_directory_path(session: &mut Session, _: Args) -> Result<Value, Fail
 }
 
 const GET_INSTALLATION_DIRECTORY_PATH: &str = r#"
-function getInstallationDirectoryPath "Where the libraries of the program are: they are part of it."
+function getInstallationDirectoryPath "The location of the program's libraries, which are part of the program itself."
   output String installationDirectoryPath;
 end getInstallationDirectoryPath;
 "#;
@@ -67,7 +67,7 @@ fn get_installation_directory_path(_: &mut Session, _: Args) -> Result<Value, Fa
 }
 
 const GET_LOADED_LIBRARIES: &str = r#"
-function getLoadedLibraries "Names and folders of the loaded classes at the top level."
+function getLoadedLibraries "Names and folders of the loaded top-level classes."
   output String libraries[:, 2];
 end getLoadedLibraries;
 "#;
@@ -84,7 +84,7 @@ fn get_loaded_libraries(session: &mut Session, _: Args) -> Result<Value, Failure
 }
 
 const NUM_PROCESSORS: &str = r#"
-function numProcessors "Number of processors that work can be shared among."
+function numProcessors "Number of processors available for parallel work."
   output Integer result;
 end numProcessors;
 "#;
@@ -96,7 +96,7 @@ fn num_processors(session: &mut Session, _: Args) -> Result<Value, Failure> {
 const URI_TO_FILENAME: &str = r#"
 function uriToFilename "The path of a modelica:// URI."
   input String uri;
-  output String filename "empty if nothing is there";
+  output String filename "empty if it does not exist";
 end uriToFilename;
 "#;
 
@@ -118,7 +118,7 @@ fn type_name_string(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const DYMOLA_VERSION_NUMBER: &str = r#"
-function DymolaVersionNumber "The release of Dymola whose commands are understood, as a number."
+function DymolaVersionNumber "The Dymola release whose commands are supported, as a number."
   output Real versionNumber;
 end DymolaVersionNumber;
 "#;
@@ -128,7 +128,7 @@ fn dymola_version_number(_: &mut Session, _: Args) -> Result<Value, Failure> {
 }
 
 const DYMOLA_VERSION: &str = r#"
-function DymolaVersion "The name and version of this program, and the release of Dymola whose commands are understood."
+function DymolaVersion "The name and version of this program, and the Dymola release whose commands are supported."
   output String version;
 end DymolaVersion;
 "#;

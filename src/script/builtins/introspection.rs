@@ -19,7 +19,8 @@ macro_rules! questions {
     ($($name:literal: $what:literal, $answer:expr);* $(;)?) => {
         [$(Builtin {
             header: concat!(
-                "function ", $name, " \"Whether a class is ", $what, "; false also of a class that is not loaded.\"\n",
+                "function ", $name, " \"Whether a class is ", $what, "; false if the class is \
+                    not loaded.\"\n",
                 "  input TypeName cl;\n  output Boolean b;\nend ", $name, ";\n"
             ),
             run: |session, args| question(session, args, $answer),
@@ -102,7 +103,7 @@ fn class(session: &mut Session, args: &mut Args) -> Result<Option<Arc<ClassDefin
 }
 
 const GET_CLASS_COMMENT: &str = r#"
-function getClassComment "The string behind the name of a class."
+function getClassComment "The description string of a class."
   input TypeName cl;
   output String comment;
 end getClassComment;
@@ -126,7 +127,7 @@ fn comment(class: &ClassDefinition) -> Option<String> {
 const GET_CLASS_RESTRICTION: &str = r#"
 function getClassRestriction "The keyword of a class: model, package, function, …"
   input TypeName cl;
-  output String restriction "empty of a class that is not loaded";
+  output String restriction "empty if the class is not loaded";
 end getClassRestriction;
 "#;
 
@@ -153,7 +154,7 @@ fn restriction(class: &ClassDefinition) -> &'static str {
 }
 
 const GET_CLASS_INFORMATION: &str = r#"
-function getClassInformation "What the text of a class says about it."
+function getClassInformation "Information from the declaration of a class."
   input TypeName cl;
   output String restriction;
   output String comment;
@@ -161,12 +162,12 @@ function getClassInformation "What the text of a class says about it."
   output Boolean finalPrefix;
   output Boolean encapsulatedPrefix;
   output String fileName "empty if it was not loaded from a file";
-  output Boolean fileReadOnly "always false: files are not changed";
+  output Boolean fileReadOnly "always false";
   output Integer lineNumberStart;
   output Integer columnNumberStart;
   output Integer lineNumberEnd;
   output Integer columnNumberEnd;
-  output String dimensions[:] "of an array type";
+  output String dimensions[:] "dimensions of an array type";
   output Boolean isProtectedClass;
   output Boolean isDocumentationClass;
   output String version;
@@ -238,7 +239,7 @@ fn get_packages(session: &mut Session, mut args: Args) -> Result<Value, Failure>
 }
 
 const GET_INHERITANCE_COUNT: &str = r#"
-function getInheritanceCount "How many classes a class extends."
+function getInheritanceCount "Number of base classes of a class."
   input TypeName cl;
   output Integer count;
 end getInheritanceCount;
@@ -250,7 +251,7 @@ fn get_inheritance_count(session: &mut Session, mut args: Args) -> Result<Value,
 }
 
 const GET_NTH_INHERITED_CLASS: &str = r#"
-function getNthInheritedClass "A class that a class extends, as written."
+function getNthInheritedClass "A base class of a class, as written."
   input TypeName cl;
   input Integer n "from 1";
   output TypeName baseClass;
@@ -267,7 +268,7 @@ fn get_nth_inherited_class(session: &mut Session, mut args: Args) -> Result<Valu
 }
 
 const GET_INHERITED_CLASSES: &str = r#"
-function getInheritedClasses "The classes that a class extends, as written."
+function getInheritedClasses "The base classes of a class, as written."
   input TypeName cl;
   output TypeName inheritedClasses[:];
 end getInheritedClasses;
@@ -307,7 +308,7 @@ fn sections(class: &ClassDefinition) -> impl Iterator<Item = &Section> {
 }
 
 const GET_CONNECTION_COUNT: &str = r#"
-function getConnectionCount "How many connections a class declares."
+function getConnectionCount "Number of connect equations of a class."
   input TypeName cl;
   output Integer count;
 end getConnectionCount;
@@ -319,7 +320,7 @@ fn get_connection_count(session: &mut Session, mut args: Args) -> Result<Value, 
 }
 
 const GET_NTH_CONNECTION: &str = r#"
-function getNthConnection "The connectors of a connection, and the string behind it."
+function getNthConnection "The two connectors of a connect equation and its description string."
   input TypeName cl;
   input Integer index "from 1";
   output String result[:];
@@ -350,7 +351,7 @@ fn connection(equation: &Equation) -> Option<[String; 3]> {
 }
 
 const GET_DOCUMENTATION_ANNOTATION: &str = r#"
-function getDocumentationAnnotation "Information and revisions of a class, as its annotation has them, and the header of the information."
+function getDocumentationAnnotation "The info, revisions and info header of the Documentation annotation of a class."
   input TypeName cl;
   output String out[3];
 end getDocumentationAnnotation;
@@ -421,7 +422,7 @@ fn string(modification: &Modification) -> Option<String> {
 }
 
 const GET_COMPONENT_MODIFIER_NAMES: &str = r#"
-function getComponentModifierNames "The names of what is modified in a component, nested ones with dots."
+function getComponentModifierNames "Names of the modifiers of a component; nested names contain dots."
   input TypeName cl;
   input VariableName componentName;
   output String modifiers[:];
@@ -429,7 +430,7 @@ end getComponentModifierNames;
 "#;
 
 const GET_ELEMENT_MODIFIER_NAMES: &str = r#"
-function getElementModifierNames "The names of what is modified in a component, nested ones with dots."
+function getElementModifierNames "Names of the modifiers of a component; nested names contain dots."
   input TypeName cl;
   input VariableName componentName;
   output String modifiers[:];
@@ -444,7 +445,7 @@ fn get_component_modifier_names(session: &mut Session, mut args: Args) -> Result
 }
 
 const GET_COMPONENT_MODIFIER_VALUE: &str = r#"
-function getComponentModifierValue "What a component, or something in it, is modified by, as written."
+function getComponentModifierValue "The modifier of a component or of an element in it, as written."
   input TypeName cl;
   input VariableName modifier "component, or component.modified";
   output String value "empty if it is not modified";
@@ -452,7 +453,7 @@ end getComponentModifierValue;
 "#;
 
 const GET_ELEMENT_MODIFIER_VALUE: &str = r#"
-function getElementModifierValue "What a component, or something in it, is modified by, as written."
+function getElementModifierValue "The modifier of a component or of an element in it, as written."
   input TypeName cl;
   input VariableName modifier "component, or component.modified";
   output String value "empty if it is not modified";
@@ -503,7 +504,7 @@ fn modified_names(prefix: &str, arguments: &[Argument]) -> Vec<String> {
 }
 
 const GET_EXTENDS_MODIFIER_NAMES: &str = r#"
-function getExtendsModifierNames "The names of what is modified in a class that is extended."
+function getExtendsModifierNames "Names of the modifiers of an extends clause."
   input TypeName cl;
   input TypeName baseClass;
   input Boolean useQuotes = false "has no effect";

@@ -37,13 +37,13 @@ const LINEARIZE_MODEL: &str = r#"
 function linearizeModel "Simulates a model and linearizes it at the end; writes the matrices ABCD and nx."
   input String problem = "" "Class or Class(modification); empty: the model used last";
   input Real startTime = 0.0 "s" annotation(optional = true);
-  input Real stopTime = 0.0 "s; default: the start, without a simulation" annotation(optional = true);
+  input Real stopTime = 0.0 "s; default: the start time, without a simulation" annotation(optional = true);
   input Integer numberOfIntervals = 500 annotation(optional = true);
   input Real outputInterval = 0.0 annotation(optional = true);
   input String method = "Dassl" annotation(optional = true);
   input Real tolerance = 0.0001 "relative" annotation(optional = true);
   input Real fixedstepsize = 0.0 annotation(optional = true);
-  input String resultFile = "dslin" "without an ending, .mat is added";
+  input String resultFile = "dslin" ".mat is added if the name has no extension";
   output Boolean ok;
 end linearizeModel;
 "#;

@@ -59,8 +59,8 @@ impl Session {
 const OPEN_MODEL: &str = r#"
 function openModel "Loads a Modelica file or package."
   input String path;
-  input Boolean mustRead = true "false: a file that is loaded already is not read again";
-  input Boolean changeDirectory = true "whether the working directory becomes the file's";
+  input Boolean mustRead = true "false: a file that is already loaded is not read again";
+  input Boolean changeDirectory = true "whether to change the working directory to the folder of the file";
   output Boolean ok;
 end openModel;
 "#;
@@ -84,7 +84,7 @@ fn open_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 const OPEN_MODEL_FILE: &str = r#"
 function openModelFile "Loads the file or package of a class by its name."
   input String modelName;
-  input String path = "" "the file, where the name alone does not lead to it";
+  input String path = "" "the file, if the name alone is not sufficient to find it";
   input String version = "";
   input Boolean mustRead = false;
   input Boolean changeDirectory = false;
@@ -115,7 +115,7 @@ fn is_loaded(session: &mut Session, name: &Name) -> bool {
 }
 
 const ERASE_CLASSES: &str = r#"
-function eraseClasses "Removes classes."
+function eraseClasses "Removes loaded classes."
   input String classnames[:];
   output Boolean ok;
 end eraseClasses;
@@ -170,7 +170,7 @@ fn load_files(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 const LOAD_MODEL: &str = r#"
 function loadModel "Loads a package from the library folders."
   input TypeName className;
-  input String priorityVersion[:] = {"default"} "the most wanted first; default: the newest";
+  input String priorityVersion[:] = {"default"} "versions in order of preference; default: the newest";
   input Boolean notify = false;
   input String languageStandard = "";
   input Boolean requireExactVersion = false;
@@ -185,9 +185,9 @@ fn load_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const LOAD_STRING: &str = r#"
-function loadString "Loads the classes of a text."
+function loadString "Loads the classes of a string of Modelica source text."
   input String data;
-  input String filename = "<interactive>" "the name that stands in messages";
+  input String filename = "<interactive>" "the file name used in messages";
   input String encoding = "UTF-8" "has no effect";
   input Boolean merge = false;
   input Boolean uses = true;
@@ -217,7 +217,7 @@ fn exist_class(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
 }
 
 const DELETE_CLASS: &str = r#"
-function deleteClass "Removes a class at the top level."
+function deleteClass "Removes a top-level class."
   input TypeName className;
   output Boolean success;
 end deleteClass;
@@ -234,9 +234,9 @@ function getClassNames "Names of the classes in a class, or at the top level."
   input Boolean recursive = false;
   input Boolean qualified = false;
   input Boolean sort = false;
-  input Boolean builtin = false "true is refused: the predefined types are no classes here";
-  input Boolean showProtected = false "whether protected classes are named too";
-  input Boolean includeConstants = false "whether the constants of the class are named too";
+  input Boolean builtin = false "true is not supported: predefined types are not classes here";
+  input Boolean showProtected = false "whether to include protected classes";
+  input Boolean includeConstants = false "whether to include the constants of the class";
   output TypeName classNames[:];
 end getClassNames;
 "#;
@@ -258,7 +258,10 @@ fn get_class_names(session: &mut Session, mut args: Args) -> Result<Value, Failu
     });
     let mut found: Vec<Name> = session.or_report_all(found).unwrap_or_default();
     if args.take("builtin")? {
-        bail!(BAD_ARGUMENT, "`builtin` is refused: the predefined types are no classes here");
+        bail!(
+            BAD_ARGUMENT,
+            "`builtin = true` is not supported: predefined types are not classes here"
+        );
     }
     if !args.take::<bool>("showProtected")? {
         found.retain(|name| !is_protected(session, name));

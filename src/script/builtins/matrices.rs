@@ -64,20 +64,20 @@ fn read_matrix_size(session: &mut Session, mut args: Args) -> Result<Value, Fail
 }
 
 const READ_MATRIX: &str = r#"
-function readMatrix "A matrix in a file."
+function readMatrix "Reads a matrix from a file."
   input String fileName;
   input String matrixName;
-  input Integer rows "as readMatrixSize gives them";
+  input Integer rows "as returned by readMatrixSize";
   input Integer columns;
   output Real matrix[rows, columns];
 end readMatrix;
 "#;
 
 const READ_REAL_MATRIX: &str = r#"
-function readRealMatrix "A matrix in a file."
+function readRealMatrix "Reads a matrix from a file."
   input String fileName;
   input String matrixName;
-  input Integer nrow "as readMatrixSize gives them";
+  input Integer nrow "as returned by readMatrixSize";
   input Integer ncol;
   input Boolean verboseRead = true;
   output Real matrix[nrow, ncol];
@@ -105,9 +105,9 @@ fn checked_matrix(
     if (matrix.rows as i64, matrix.columns as i64) != (rows, columns) {
         bail!(
             BAD_ARGUMENT,
-            "`{name}` in `{file}` has {} rows and {} columns, not {rows} and {columns}",
+            "`{name}` in `{file}` has {} rows and {} columns instead of {rows} and {columns}",
             matrix.rows, matrix.columns;
-            help: "`readMatrixSize(\"{file}\", \"{name}\")` gives the sizes"
+            help: "get the sizes with `readMatrixSize(\"{file}\", \"{name}\")`"
         );
     }
     let elements = matrix.row_major();
@@ -122,7 +122,7 @@ function writeMatrix "Writes a matrix to a MAT file of version 4."
   input String fileName;
   input String matrixName;
   input Real matrix[:, :] "a vector v is written as [v]";
-  input Boolean append = false "false: the file is written anew";
+  input Boolean append = false "false: the file is overwritten";
   output Boolean ok;
 end writeMatrix;
 "#;
@@ -132,8 +132,8 @@ function writeRealMatrix "Writes a matrix to a MAT file of version 4."
   input String fileName;
   input String matrixName;
   input Real matrix[:, :];
-  input Boolean append = false "false: the file is written anew";
-  input String format = "4" "only version 4 is written";
+  input Boolean append = false "false: the file is overwritten";
+  input String format = "4" "only version 4 is supported";
   output Boolean success;
 end writeRealMatrix;
 "#;
@@ -141,7 +141,10 @@ end writeRealMatrix;
 fn write_real_matrix(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let format: String = args.take("format")?;
     if format != "4" {
-        bail!(BAD_ARGUMENT, "`format` of `writeRealMatrix` is \"{format}\": only \"4\" is written");
+        bail!(
+            BAD_ARGUMENT,
+            "`format` of `writeRealMatrix` is \"{format}\"; only \"4\" is supported"
+        );
     }
     write_matrix(session, args)
 }

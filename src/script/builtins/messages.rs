@@ -20,14 +20,14 @@ pub(super) const FAMILY: Family = Family {
 };
 
 const GET_ERROR_STRING: &str = r#"
-function getErrorString "The messages since the last call, one a line; forgets them."
-  input Boolean warningsAsErrors = false "whether warnings are called errors";
+function getErrorString "Returns the messages since the last call, one per line, and clears them."
+  input Boolean warningsAsErrors = false "whether warnings are reported as errors";
   output String errorString;
 end getErrorString;
 "#;
 
 const GET_MESSAGES_STRING: &str = r#"
-function getMessagesString "The messages since the last call, one a line; forgets them."
+function getMessagesString "Returns the messages since the last call, one per line, and clears them."
   output String messagesString;
 end getMessagesString;
 "#;
@@ -42,7 +42,7 @@ fn get_messages_string(session: &mut Session, _: Args) -> Result<Value, Failure>
 }
 
 const GET_LAST_ERROR: &str = r#"
-function getLastError "The message of the last error since the last call; empty if a command succeeded since (answered true); forgets the messages."
+function getLastError "The message of the last error since the last call; empty if a later command succeeded (returned true). Clears the messages."
   output String errorMessage;
 end getLastError;
 "#;
@@ -52,7 +52,7 @@ fn get_last_error(session: &mut Session, _: Args) -> Result<Value, Failure> {
 }
 
 const COUNT_MESSAGES: &str = r#"
-function countMessages "Numbers of messages that getErrorString would give."
+function countMessages "Numbers of messages that getErrorString would return."
   output Integer numMessages;
   output Integer numErrors;
   output Integer numWarnings;
@@ -66,13 +66,13 @@ fn count_messages(session: &mut Session, _: Args) -> Result<Value, Failure> {
 }
 
 const CLEAR_MESSAGES: &str = r#"
-function clearMessages "Forgets the messages."
+function clearMessages "Clears the messages."
   output Boolean ok;
 end clearMessages;
 "#;
 
 const CLEARLOG: &str = r#"
-function clearlog "Forgets the messages."
+function clearlog "Clears the messages."
   output Boolean ok;
 end clearlog;
 "#;

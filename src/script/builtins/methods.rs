@@ -41,7 +41,8 @@ pub(super) fn with_method_of_ours(session: &mut Session, wishes: Wishes) -> Wish
         () if is_in(EXPLICIT) => "dopri5",
         () => return wishes,
     };
-    let text = format!("the integration method `{wanted}` is not here: `{ours}` is taken");
+    let text =
+        format!("the integration method `{wanted}` is not available; `{ours}` is used instead");
     session.note(METHOD_REPLACED, text);
     Wishes { method: Some(ours.to_owned()), ..wishes }
 }

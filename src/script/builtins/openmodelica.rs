@@ -46,7 +46,7 @@ pub(super) const FAMILY: Family = Family {
 struct LastResults(Option<String>);
 
 const SIMULATE: &str = r#"
-function simulate "Simulates a model. What is not given comes from its experiment annotation."
+function simulate "Simulates a model. Defaults come from its experiment annotation."
   input TypeName className;
   input Real startTime = 0.0 "s" annotation(optional = true);
   input Real stopTime = 1.0 "s" annotation(optional = true);
@@ -56,10 +56,10 @@ function simulate "Simulates a model. What is not given comes from its experimen
   input String fileNamePrefix = "" "empty: the name of the class";
   input String options = "" "has no effect";
   input String outputFormat = "mat" "mat, csv, or empty for no file";
-  input String variableFilter = ".*" "regular expression of the names that are stored";
+  input String variableFilter = ".*" "regular expression; selects the variables to store";
   input String cflags = "" "has no effect";
   input String simflags = "" "-override=name=value,… sets parameters and start values; also -startTime, -stopTime, -stepSize, -tolerance, -s, -r";
-  input String resimulateExecutable = "" "has no effect: a model is translated once anyway";
+  input String resimulateExecutable = "" "has no effect: a model is translated only once anyway";
   output Any simulationResults "resultFile, simulationOptions, messages";
 end simulate;
 "#;
@@ -104,12 +104,12 @@ pub(super) fn simulation_result(texts: [String; 3]) -> Value {
 fn filter(expression: &str) -> Result<Regex, Fault> {
     let whole = format!("^(?:{expression})$");
     RegexBuilder::new(&whole).size_limit(1 << 20).build().map_err(|_| {
-        fault!(BAD_ARGUMENT, "`variableFilter` is no regular expression: `{expression}`")
+        fault!(BAD_ARGUMENT, "`variableFilter` is not a valid regular expression: `{expression}`")
     })
 }
 
 const BUILD_MODEL: &str = r#"
-function buildModel "Translates a model; nothing is written, it is simulated by this program."
+function buildModel "Translates a model; no files are written, this program simulates it."
   input TypeName className;
   input Real startTime = 0.0 "s" annotation(optional = true);
   input Real stopTime = 1.0 "s" annotation(optional = true);
@@ -122,7 +122,7 @@ function buildModel "Translates a model; nothing is written, it is simulated by 
   input String variableFilter = ".*";
   input String cflags = "";
   input String simflags = "";
-  output String buildModelResults[2] "the name of the program and that of its init file, which `system` and `setInitXmlStartValue` know; empty if it cannot be translated";
+  output String buildModelResults[2] "names of the program and of its init file, for use with `system` and `setInitXmlStartValue`; empty if translation fails";
 end buildModel;
 "#;
 
@@ -256,7 +256,7 @@ pub(super) fn shown(
 }
 
 const TRANSLATE_MODEL: &str = r#"
-function translateModel "Translates a model; what else is given concerns a simulation."
+function translateModel "Translates a model; the other inputs have no effect."
   input TypeName className;
   input Real startTime = 0.0 "has no effect";
   input Real stopTime = 1.0 "has no effect";
@@ -280,9 +280,9 @@ fn translate_model(session: &mut Session, mut args: Args) -> Result<Value, Failu
 }
 
 const CHECK_MODEL: &str = r#"
-function checkModel "Whether a model is balanced and can be translated, in words."
+function checkModel "Checks whether a model is balanced and can be translated; returns a text."
   input TypeName className;
-  output String result "empty if it cannot";
+  output String result "empty if the check fails";
 end checkModel;
 "#;
 
@@ -301,7 +301,7 @@ fn check_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
 }
 
 const INSTANTIATE_MODEL: &str = r#"
-function instantiateModel "A model as flat Modelica."
+function instantiateModel "The flat Modelica code of a model."
   input TypeName className;
   output String result "empty if it cannot be flattened";
 end instantiateModel;
@@ -316,9 +316,9 @@ fn instantiate_model(session: &mut Session, mut args: Args) -> Result<Value, Fai
 const VAL: &str = r#"
 function val "The value of a variable at a time of the last simulation."
   input VariableName var;
-  input Any timePoint = 0.0 "s; or a vector of points";
+  input Any timePoint = 0.0 "s; a number or a vector";
   input String fileName = "" "empty: the file of the last simulation";
-  output Any valAtTime "a Real, or a vector of the values at each point";
+  output Any valAtTime "a Real, or a vector with one value per time point";
 end val;
 "#;
 
@@ -329,7 +329,7 @@ fn val(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let file = match (file.as_str(), &session.extension::<LastResults>().0) {
         ("" | "<default>", Some(last)) => last.clone(),
         ("" | "<default>", None) => {
-            bail!(BAD_ARGUMENT, "no model has been simulated, so `{name}` has no value")
+            bail!(BAD_ARGUMENT, "`{name}` has no value: no model has been simulated")
         }
         (named, _) => named.to_owned(),
     };
@@ -359,7 +359,7 @@ fn get_parameter_names(session: &mut Session, mut args: Args) -> Result<Value, F
 }
 
 const STRING_REPLACE: &str = r#"
-function stringReplace "A string with another written in place of a third."
+function stringReplace "Replaces occurrences of one string in another."
   input String str;
   input String source;
   input String target;
@@ -379,9 +379,9 @@ fn string_replace(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const STRTOK: &str = r#"
-function strtok "The parts of a string between separators, empty ones left out."
+function strtok "The parts of a string between separators, without empty parts."
   input String string;
-  input String token "the characters that separate";
+  input String token "the separator characters";
   output String strings[:];
 end strtok;
 "#;
@@ -393,7 +393,7 @@ fn strtok(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const STRING_TYPE_NAME: &str = r#"
-function stringTypeName "A string as the name of a class."
+function stringTypeName "Converts a string to a class name."
   input String str;
   output TypeName cl;
 end stringTypeName;
@@ -404,7 +404,7 @@ fn string_type_name(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const STRING_VARIABLE_NAME: &str = r#"
-function stringVariableName "A string as the name of a variable."
+function stringVariableName "Converts a string to a variable name."
   input String str;
   output VariableName cl;
 end stringVariableName;
@@ -427,7 +427,7 @@ fn type_name_strings(_: &mut Session, mut args: Args) -> Result<Value, Failure> 
 }
 
 const SET_MODELICA_PATH: &str = r#"
-function setModelicaPath "Folders whose packages are loadable by name, separated by colons."
+function setModelicaPath "Folders whose packages can be loaded by name, separated by colons."
   input String modelicaPath;
   output Boolean success;
 end setModelicaPath;

@@ -96,8 +96,9 @@ impl Operator {
                         let (operator, found) = (&self.choice.name, own.len());
                         bail!(
                             BAD_OPERATOR,
-                            "`{name}` of the {} `{operator}` has the size {found}, not {wanted}", self.kind.name;
-                            help: "return one for each gene"
+                            "`{name}` of the {} `{operator}` has size {found} instead of \
+                             {wanted}", self.kind.name;
+                            help: "return one value per gene"
                         );
                     }
                     numbers.extend(own);
@@ -138,19 +139,19 @@ fn count(args: &mut Args, name: &str) -> Result<usize, Fault> {
     let count: i64 = args.take(name)?;
     match usize::try_from(count).ok().filter(|_| count <= MOST) {
         Some(count) => Ok(count),
-        None => bail!(BAD_POPULATION, "`{name}` is {count}, it must lie between 0 and {MOST}"),
+        None => bail!(BAD_POPULATION, "`{name}` is {count}; it must be between 0 and {MOST}"),
     }
 }
 
 const SAMPLING: &str = r#"
-function Op_Sampling "Random individuals, as the first generation is drawn."
-  input String Operator "name with settings, such as \"latin_hypercube\", or a function of yours";
+function Op_Sampling "Samples random individuals, as for the first generation."
+  input String Operator "name with settings, such as \"latin_hypercube\", or your own function";
   input Integer N_Individuals "number of individuals";
-  input Real Param_Min[:] "lower ends of the search ranges";
-  input Real Param_Max[:] "upper ends of the search ranges";
-  input Any Seed "Real[1,6]: seed as that of Ram_Gen_ARENA";
+  input Real Param_Min[:] "lower bounds of the search ranges";
+  input Real Param_Max[:] "upper bounds of the search ranges";
+  input Any Seed "Real[1,6]: seed, as for Ram_Gen_ARENA";
   output Real Population[:,:] "one individual in each row";
-  output Real Seed_Next[:,:] "Real[1,6]: seed to feed to the next call";
+  output Real Seed_Next[:,:] "Real[1,6]: generator state to pass to the next call";
 end Op_Sampling;
 "#;
 
@@ -161,7 +162,7 @@ fn sample(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let maxima: Vec<f64> = args.take("Param_Max")?;
     let genes = genes(&minima, &maxima, minima.len())?;
     if genes.is_empty() {
-        return Err(Fault::new(SIZE_MISMATCH, "there are no search ranges").into());
+        return Err(Fault::new(SIZE_MISMATCH, "the search ranges are empty").into());
     }
     session.identification().recorder.searched(&minima, &maxima);
     let mut rng = generator(&mut args)?;
@@ -181,13 +182,13 @@ fn sample(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const SELECTION: &str = r#"
-function Op_Selection "Chooses parents by their fitness."
-  input String Operator "name with settings, such as \"tournament(size = 3)\", or a function of yours";
-  input Any Fit "Real[:]: fitness of all individuals, in any order; the smallest is the best";
+function Op_Selection "Selects parents by fitness."
+  input String Operator "name with settings, such as \"tournament(size = 3)\", or your own function";
+  input Any Fit "Real[:]: fitness of all individuals, in any order; smaller is better";
   input Integer Parents "number of parents";
-  input Any Seed "Real[1,6]: seed as that of Ram_Gen_ARENA";
-  output Integer Places[:] "the parents as rows of the population: the first mates with the second, and so on";
-  output Real Seed_Next[:,:] "Real[1,6]: seed to feed to the next call";
+  input Any Seed "Real[1,6]: seed, as for Ram_Gen_ARENA";
+  output Integer Places[:] "row numbers of the parents; 1 and 2 mate, 3 and 4, and so on";
+  output Real Seed_Next[:,:] "Real[1,6]: generator state to pass to the next call";
 end Op_Selection;
 "#;
 
@@ -196,7 +197,11 @@ fn select(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let fitness: Vec<f64> = args.take("Fit")?;
     let parents = count(&mut args, "Parents")?;
     if fitness.is_empty() {
-        return Err(Fault::new(SIZE_MISMATCH, "`Fit` is empty: there is nobody to choose").into());
+        return Err(Fault::new(
+            SIZE_MISMATCH,
+            "`Fit` is empty: there are no individuals to select from",
+        )
+        .into());
     }
     let mut rng = generator(&mut args)?;
     let before = rng.state();
@@ -216,14 +221,14 @@ fn select(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const CROSSOVER: &str = r#"
-function Op_Crossover "Children of parents that stand side by side: one child for each parent."
-  input String Operator "name with settings, such as \"sbx(eta = 5)\" or \"blend(probability = 0.9)\", or a function of yours";
-  input Any Parents "Real[:,:]: rows 1 and 2 mate, rows 3 and 4, and so on; an odd last row mates with row 1";
-  input Real Param_Min[:] "lower ends of the search ranges";
-  input Real Param_Max[:] "upper ends of the search ranges";
-  input Any Seed "Real[1,6]: seed as that of Ram_Gen_ARENA";
+function Op_Crossover "Crossover of parents in adjacent rows; one child per parent."
+  input String Operator "name with settings, such as \"sbx(eta = 5)\" or \"blend(probability = 0.9)\", or your own function";
+  input Any Parents "Real[:,:]: rows 1 and 2 mate, rows 3 and 4, and so on; a last row without partner mates with row 1";
+  input Real Param_Min[:] "lower bounds of the search ranges";
+  input Real Param_Max[:] "upper bounds of the search ranges";
+  input Any Seed "Real[1,6]: seed, as for Ram_Gen_ARENA";
   output Real Children[:,:] "one child in each row";
-  output Real Seed_Next[:,:] "Real[1,6]: seed to feed to the next call";
+  output Real Seed_Next[:,:] "Real[1,6]: generator state to pass to the next call";
 end Op_Crossover;
 "#;
 
@@ -258,18 +263,18 @@ fn cross(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const MUTATION: &str = r#"
-function Op_Mutation "Changes genes at random, each with the probability F_Mut."
-  input String Operator "name with settings, such as \"gaussian(sigma = 0.05)\", or a function of yours";
+function Op_Mutation "Mutates each gene with probability F_Mut."
+  input String Operator "name with settings, such as \"gaussian(sigma = 0.05)\", or your own function";
   input Any Nparameters "Real[:,:]: individuals, one in each row";
-  input Real F_Mut "mutation factor, 0 to 1";
-  input Real Param_Min[:] "lower ends of the search ranges";
-  input Real Param_Max[:] "upper ends of the search ranges";
-  input Any Seed "Real[1,6]: seed as that of Ram_Gen_ARENA";
-  input Integer Elitism = 0 "rows at the top that stay";
-  input Integer Cycle = 1 "number of the generation, from 1, for operators that change with it";
-  input Integer N_Cycles = 100 "number of generations of the run";
+  input Real F_Mut "mutation probability of each gene, 0 to 1";
+  input Real Param_Min[:] "lower bounds of the search ranges";
+  input Real Param_Max[:] "upper bounds of the search ranges";
+  input Any Seed "Real[1,6]: seed, as for Ram_Gen_ARENA";
+  input Integer Elitism = 0 "number of first rows that are not changed";
+  input Integer Cycle = 1 "generation number, from 1, for operators that depend on it";
+  input Integer N_Cycles = 100 "total number of generations";
   output Real Mutated[:,:] "the individuals after mutation";
-  output Real Seed_Next[:,:] "Real[1,6]: seed to feed to the next call";
+  output Real Seed_Next[:,:] "Real[1,6]: generator state to pass to the next call";
 end Op_Mutation;
 "#;
 
@@ -312,17 +317,17 @@ fn mutate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const SURVIVAL: &str = r#"
-function Op_Survival "The next generation of an old one and its offspring."
-  input String Operator "name with settings, such as \"mu_plus_lambda\", or a function of yours";
+function Op_Survival "Survivor selection: forms the next generation from the old one and its offspring."
+  input String Operator "name with settings, such as \"mu_plus_lambda\", or your own function";
   input Any Pop "Real[:,:]: the old generation, one individual in each row";
   input Any Fit "Real[:]: its fitness";
   input Any Offspring "Real[:,:]: the offspring, one individual in each row";
   input Any Fit_Offspring "Real[:]: their fitness";
-  input Integer Population "number of individuals wanted";
-  input Integer Elitism = 1 "number of elites, for elitism";
-  input Integer Places[:] = fill(0, 0) "the parents as Op_Selection returned them, for crowding" annotation(optional = true);
-  input Real Param_Min[:] = fill(0.0, 0) "lower ends of the search ranges, for crowding" annotation(optional = true);
-  input Real Param_Max[:] = fill(1.0, 0) "upper ends of the search ranges, for crowding" annotation(optional = true);
+  input Integer Population "number of survivors";
+  input Integer Elitism = 1 "number of elites, for the operator elitism";
+  input Integer Places[:] = fill(0, 0) "parents as returned by Op_Selection, for crowding" annotation(optional = true);
+  input Real Param_Min[:] = fill(0.0, 0) "lower bounds of the search ranges, for crowding" annotation(optional = true);
+  input Real Param_Max[:] = fill(1.0, 0) "upper bounds of the search ranges, for crowding" annotation(optional = true);
   output Real Pop_Next[:,:] "the next generation";
   output Real Fit_Next[:] "its fitness";
 end Op_Survival;
@@ -349,7 +354,7 @@ fn survive(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         None if own.as_ref().is_some_and(|own| own.needs_parents()) => {
             let name = &operator.choice.name;
             return Err(fault!(BAD_OPTION, "`{name}` needs the parents of the offspring")
-                .help("pass `Places` of `Op_Selection`, `Param_Min` and `Param_Max`")
+                .help("pass `Places` as returned by `Op_Selection`, `Param_Min` and `Param_Max`")
                 .into());
         }
         None => Vec::new(),
@@ -389,7 +394,10 @@ fn families(places: &[i64], old: usize, offspring: usize) -> Result<Vec<[usize; 
     for &place in places {
         match usize::try_from(place).ok().filter(|row| (1..=old).contains(row)) {
             Some(row) => rows.push(row - 1),
-            None => bail!(SIZE_MISMATCH, "`Places` names row {place} of a population of {old}"),
+            None => bail!(
+                SIZE_MISMATCH,
+                "`Places` contains row {place}, but the population has {old} rows"
+            ),
         }
     }
     let pair = |k: usize| [rows[k & !1], rows.get(k | 1).copied().unwrap_or(rows[0])];

@@ -53,17 +53,17 @@ impl Default for Kinds {
 }
 
 const EXPERIMENT_SETUP_OUTPUT: &str = r#"
-function experimentSetupOutput "Which kinds of variables the result files of the next simulations hold; parameters always."
-  input Boolean textual = false "has no effect: the ending of the file decides";
-  input Boolean doublePrecision = false "has no effect: results are double";
+function experimentSetupOutput "Selects the kinds of variables in the result files of the next simulations; parameters are always included."
+  input Boolean textual = false "has no effect: the file extension selects the format";
+  input Boolean doublePrecision = false "has no effect: results are in double precision";
   input Boolean states = true;
   input Boolean derivatives = true;
   input Boolean inputs = true;
   input Boolean outputs = true;
   input Boolean auxiliaries = true;
   input Boolean equidistant = true "has no effect: results are equidistant, with events";
-  input Boolean events = true "false: the rows of the output grid alone";
-  input Boolean onlyStopTime = false "true: the values at the stop time alone";
+  input Boolean events = true "false: only the points of the output grid";
+  input Boolean onlyStopTime = false "true: only the values at the stop time";
   input Boolean debug = false "has no effect";
   output Boolean ok;
 end experimentSetupOutput;
@@ -90,7 +90,7 @@ fn experiment_setup_output(session: &mut Session, mut args: Args) -> Result<Valu
 }
 
 const EXPERIMENT_GET_OUTPUT: &str = r#"
-function experimentGetOutput "What experimentSetupOutput has set: textual, doublePrecision, states, derivatives, inputs, outputs, auxiliaries, equidistant, events, debug."
+function experimentGetOutput "The settings of experimentSetupOutput: textual, doublePrecision, states, derivatives, inputs, outputs, auxiliaries, equidistant, events, debug."
   output Boolean settings[10];
 end experimentGetOutput;
 "#;

@@ -54,7 +54,7 @@ pub(super) fn note_results(session: &mut Session, file: &str) {
 }
 
 const PLOT: &str = r#"
-function plot "Draws trajectories of the last simulation over time."
+function plot "Plots trajectories of the last simulation over time."
   input String y[:] "variables";
   input String legend[:] = fill("", 0);
   input Boolean plotInAll = false;
@@ -77,7 +77,7 @@ fn plot(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const CREATE_PLOT: &str = r#"
-function createPlot "Draws trajectories of a result file."
+function createPlot "Plots trajectories of a result file."
   input Integer id = 0;
   input Any position = {0, 0, 0, 0};
   input String x = "time";
@@ -147,7 +147,7 @@ fn create_plot(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
 }
 
 const PLOT_ARRAY: &str = r#"
-function plotArray "Draws one vector over another as a line."
+function plotArray "Plots one vector over another as a line."
   input Real x[:];
   input Real y[:];
   input Integer style = 0;
@@ -165,7 +165,7 @@ end plotArray;
 "#;
 
 const PLOT_SCATTER: &str = r#"
-function plotScatter "Draws one vector over another as points."
+function plotScatter "Plots one vector over another as points."
   input Real x[:];
   input Real y[:];
   input Any colors = 0;
@@ -188,7 +188,7 @@ fn plot_scatter(session: &mut Session, args: Args) -> Result<Value, Failure> {
 }
 
 const REMOVE_PLOTS: &str = r#"
-function removePlots "Forgets the plots; files that were drawn stay, the next ones overwrite them."
+function removePlots "Discards the plots; files that were written remain until the next plots overwrite them."
   input Boolean closeResults = true;
   output Boolean ok;
 end removePlots;
@@ -347,8 +347,8 @@ fn write(session: &mut Session, figure: &Figure) -> Result<(), Fault> {
 }
 
 const EXPORT_PLOT_AS_IMAGE: &str = r#"
-function ExportPlotAsImage "Writes the plot drawn last to a file."
-  input String fileName "ends in .svg, .png or .pdf";
+function ExportPlotAsImage "Writes the last plot to a file."
+  input String fileName "with extension .svg, .png or .pdf";
   input Integer id = -1 "has no effect: the last plot is written";
   input Boolean includeInLog = true "has no effect";
   input Boolean onlyActiveSubplot = false "has no effect";
@@ -371,7 +371,7 @@ fn export(session: &mut Session, file: &Path) -> Result<(), Fault> {
 }
 
 const PLOT_EXPRESSION: &str = r#"
-function plotExpression "Draws an expression in variables of the last simulation over time."
+function plotExpression "Plots an expression of variables of the last simulation over time."
   input Expression mapFun "the expression";
   input Boolean eraseOld = false;
   input String expressionName = "" "legend";
@@ -403,7 +403,7 @@ fn drawn_expression(session: &mut Session, mut args: Args) -> Result<(), Failure
 }
 
 const PLOT_OPENMODELICA: &str = r#"
-function plot "Draws trajectories of a result file over time."
+function plot "Plots trajectories of a result file over time."
   input VariableName vars[:] "variables, or one";
   input Boolean externalWindow = false "has no effect";
   input String fileName = "<default>" "result file; default: that of the last simulation";
@@ -444,7 +444,7 @@ fn plot_openmodelica(session: &mut Session, mut args: Args) -> Result<Value, Fai
 }
 
 const PLOT_ALL: &str = r#"
-function plotAll "Draws all trajectories of a result file over time."
+function plotAll "Plots all trajectories of a result file over time."
   input Boolean externalWindow = false "has no effect";
   input String fileName = "<default>" "result file; default: that of the last simulation";
   input String title = "";
@@ -473,7 +473,7 @@ fn plot_all(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const PLOT_PARAMETRIC: &str = r#"
-function plotParametric "Draws one variable of a result file over another."
+function plotParametric "Plots one variable of a result file over another."
   input VariableName xVariable;
   input VariableName yVariable;
   input Boolean externalWindow = false "has no effect";
@@ -512,7 +512,7 @@ fn plot_parametric(session: &mut Session, mut args: Args) -> Result<Value, Failu
 }
 
 const PLOT_PARAMETRIC_CURVE: &str = r#"
-function plotParametricCurve "Draws one vector over another, both along a third."
+function plotParametricCurve "Plots one vector over another, both functions of a third."
   input Real x[:];
   input Real y[:];
   input Real s[:] = fill(0.0, 0) "has no effect";

@@ -17,15 +17,15 @@ pub(super) const FAMILY: Family = Family {
 };
 
 const IDENTIFY: &str = r#"
-function identify "Identifies the parameters of a problem and writes a report."
-  input Any problem "record GAPILib.Problem, or the name of a problem's file (.toml)";
-  input String folder = "" "folder for the results, within that of the run";
-  input Boolean resume = false "go on from the checkpoint in that folder";
-  input Boolean profile = false "compute profile likelihoods after the fit";
-  input String sensitivity = "" "analysis before the fit: morris or sobol";
-  output Real values[:] "identified values, in the order of the free parameters";
+function identify "Estimates the parameters of a problem and writes a report."
+  input Any problem "record GAPILib.Problem, or the name of a problem file (.toml)";
+  input String folder = "" "subfolder of the output folder for the results";
+  input Boolean resume = false "resume from the checkpoint in that folder";
+  input Boolean profile = false "compute profile likelihoods after the estimation";
+  input String sensitivity = "" "global sensitivity analysis before the estimation: morris or sobol";
+  output Real values[:] "estimated values, in the order of the estimated parameters";
   output Real fitness "the smallest value of the (first) fitness function";
-  output Real deviations[:] "standard deviations; NaN where the data do not tell";
+  output Real deviations[:] "standard errors (1 sigma); NaN where they are not identifiable from the data";
 end identify;
 "#;
 
@@ -48,8 +48,8 @@ fn identify(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         Value::Record(record) => problem::solve_record(session, &record, &options)?,
         other => bail!(
             TYPE_MISMATCH,
-            "`problem` of `identify` is {}, not a problem", other.type_name();
-            help: "give a record `GAPILib.Problem(…)` or the name of a file"
+            "`problem` of `identify` is {} instead of a problem", other.type_name();
+            help: "pass a record `GAPILib.Problem(…)` or the name of a problem file"
         ),
     };
     let values = solution.parameters.iter().map(|p| p.value).collect();

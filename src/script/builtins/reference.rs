@@ -8,12 +8,13 @@ use std::fmt::Write as _;
 const BEGINNING: &str = "\
 # Reference: the commands of scripts
 
-`gapi help --reference` has written this chapter; `gapi help NAME` tells the same of one command. A
-command is declared as a Modelica function: inputs with a value after `=` need not be given. An
-input of type `TypeName` or `VariableName` is a name, written without quotation marks; one of type
-`Any` takes several types, and its comment says which. A command can be called by its bare name or
-in full, with its package before it. Where Dymola and OpenModelica have commands of the same name
-that differ, the dialect of the script decides.
+`gapi help --reference` writes this chapter; `gapi help NAME` shows one command. Each command is \
+                         declared as a Modelica function: inputs with a value after `=` are \
+                         optional. An input of type `TypeName` or `VariableName` is a name \
+                         without quotation marks; an input of type `Any` accepts several types, \
+                         which its comment lists. A command can be called by its short name or \
+                         by its full name with the package. Where Dymola and OpenModelica have \
+                         different commands of the same name, the dialect of the script decides.
 ";
 
 /// All commands by packages: those of GAPILib first, the refused last.
@@ -38,7 +39,7 @@ pub fn reference() -> String {
 fn heading(family: &'static Family) -> (u8, String) {
     let package = family.packages.first().copied().unwrap_or_default();
     if family.builtins[0].name() == refused::FAMILY.builtins[0].name() {
-        return (9, "Refused: these say why, and do nothing".to_owned());
+        return (9, "Not supported: these fail with the reason".to_owned());
     }
     match (package, family.dialect) {
         (own, _) if own.starts_with("GAPILib") => (0, format!("`{own}`")),

@@ -25,22 +25,22 @@ pub(super) const FAMILY: Family = Family {
 const MAX_SIZE: usize = 1 << 20;
 
 const REGEX: &str = r#"
-function regex "Whether a regular expression is found in a string, and the parts that it matched."
+function regex "Searches a string for a regular expression; returns the matched parts."
   input String str;
   input String re;
   input Integer maxMatches = 1 "number of strings returned: the match, then its groups";
-  input Boolean extended = true "false is refused";
+  input Boolean extended = true "false is not supported";
   input Boolean caseInsensitive = false;
-  output Integer numMatches "of the strings returned, those that are parts of str";
+  output Integer numMatches "number of returned strings that are parts of str";
   output String matchedSubstrings[maxMatches];
 end regex;
 "#;
 
 const REGEX_BOOL: &str = r#"
-function regexBool "Whether a regular expression is found in a string."
+function regexBool "Whether a regular expression matches in a string."
   input String str;
   input String re;
-  input Boolean extended = true "false is refused";
+  input Boolean extended = true "false is not supported";
   input Boolean caseInsensitive = false;
   output Boolean matches;
 end regexBool;
@@ -49,7 +49,7 @@ end regexBool;
 fn compiled(args: &mut Args) -> Result<Regex, Fault> {
     let expression: String = args.take("re")?;
     if !args.take::<bool>("extended")? {
-        bail!(BAD_ARGUMENT, "basic regular expressions are refused: leave out `extended = false`");
+        bail!(BAD_ARGUMENT, "basic regular expressions are not supported: omit `extended = false`");
     }
     RegexBuilder::new(&expression)
         .case_insensitive(args.take("caseInsensitive")?)
@@ -58,14 +58,16 @@ fn compiled(args: &mut Args) -> Result<Regex, Fault> {
         .map_err(|error| {
             let reason = error.to_string();
             let last = reason.lines().last().unwrap_or_default().trim_start_matches("error: ");
-            fault!(BAD_ARGUMENT, "`{expression}` is no regular expression: {last}")
+            fault!(BAD_ARGUMENT, "`{expression}` is not a valid regular expression: {last}")
         })
 }
 
 fn regex(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let (subject, wanted): (String, i64) = (args.take("str")?, args.take("maxMatches")?);
     let wanted = usize::try_from(wanted).ok().filter(|wanted| *wanted <= 1000);
-    let Some(wanted) = wanted else { bail!(BAD_ARGUMENT, "`maxMatches` must be 0 to 1000") };
+    let Some(wanted) = wanted else {
+        bail!(BAD_ARGUMENT, "`maxMatches` must be between 0 and 1000")
+    };
     let found = compiled(&mut args)?.captures(&subject).map_or(Vec::new(), |captures| {
         let parts = captures.iter().take(wanted);
         parts.map(|part| part.map_or(String::new(), |part| part.as_str().to_owned())).collect()
@@ -82,7 +84,7 @@ fn regex_bool(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const ICONV: &str = r#"
-function iconv "A string in another encoding: strings are Unicode here, so it stays as it is."
+function iconv "Converts the encoding of a string; strings are Unicode here, so it is returned unchanged."
   input String string;
   input String from;
   input String to = "UTF-8";
@@ -99,7 +101,7 @@ fn iconv(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
     for name in ["from", "to"] {
         let encoding: String = args.take(name)?;
         if !known(&encoding) {
-            bail!(BAD_ARGUMENT, "the encoding `{encoding}` is not known");
+            bail!(BAD_ARGUMENT, "the encoding `{encoding}` is unknown");
         }
     }
     Ok(text(args.take::<String>("string")?))

@@ -70,7 +70,7 @@ fn columns(table: &ResultTable, names: &[String]) -> Result<RealMatrix, Fault> {
 }
 
 const READ_TRAJECTORY_SIZE: &str = r#"
-function readTrajectorySize "Number of points in time in a result file."
+function readTrajectorySize "Number of time points in a result file."
   input String fileName;
   output Integer size;
 end readTrajectorySize;
@@ -96,10 +96,10 @@ fn read_trajectory_names(session: &mut Session, mut args: Args) -> Result<Value,
 }
 
 const READ_TRAJECTORY: &str = r#"
-function readTrajectory "Trajectories from a result file, one row for each signal."
+function readTrajectory "Reads trajectories from a result file, one row per signal."
   input String fileName;
   input String signals[:];
-  input Integer rows "number of points in time, as readTrajectorySize gives it";
+  input Integer rows "number of time points, as returned by readTrajectorySize";
   output Real trajectories[size(signals, 1), rows];
 end readTrajectory;
 "#;
@@ -112,15 +112,15 @@ fn read_trajectory(session: &mut Session, mut args: Args) -> Result<Value, Failu
     if rows != table.time.len() as i64 {
         bail!(
             BAD_ARGUMENT,
-            "`{file}` has {} points in time, not {rows}", table.time.len();
-            help: "`readTrajectorySize(\"{file}\")` gives the number"
+            "`{file}` has {} time points instead of {rows}", table.time.len();
+            help: "get the number with `readTrajectorySize(\"{file}\")`"
         );
     }
     Ok(columns(&table, &signals)?.into())
 }
 
 const EXIST_TRAJECTORY_NAMES: &str = r#"
-function existTrajectoryNames "Whether a result file has these variables."
+function existTrajectoryNames "Whether a result file contains the given variables."
   input String fileName;
   input String names[:];
   output Boolean result[size(names, 1)];
@@ -136,7 +136,7 @@ fn exist_trajectory_names(session: &mut Session, mut args: Args) -> Result<Value
 }
 
 const INTERPOLATE_TRAJECTORY: &str = r#"
-function interpolateTrajectory "Values of trajectories at given times, one row for each signal."
+function interpolateTrajectory "Interpolates trajectories at given times, one row per signal."
   input String fileName;
   input String signals[:];
   input Real times[:];
@@ -170,8 +170,8 @@ pub(super) fn variable_names(args: &mut Args, input: &str) -> Result<Vec<String>
 const WRITE_TRAJECTORY: &str = r#"
 function writeTrajectory "Writes trajectories to a result file."
   input String fileName;
-  input String signals[:] "the first one is Time";
-  input Real values[:, size(signals, 1)] "one column for each signal; equal times mark an event";
+  input String signals[:] "the first signal is Time";
+  input Real values[:, size(signals, 1)] "one column per signal; equal times mark an event";
   output Boolean ok;
 end writeTrajectory;
 "#;
@@ -203,10 +203,10 @@ fn write_trajectory(session: &mut Session, mut args: Args) -> Result<Value, Fail
 }
 
 const READ_SIMULATION_RESULT: &str = r#"
-function readSimulationResult "Trajectories from a result file, one row for each variable."
+function readSimulationResult "Reads trajectories from a result file, one row per variable."
   input String filename;
   input VariableName variables[:];
-  input Integer size = 0 "number of points in time; 0 for all";
+  input Integer size = 0 "number of time points; 0 for all";
   output Real result[:, :];
 end readSimulationResult;
 "#;
@@ -217,7 +217,7 @@ fn read_simulation_result(session: &mut Session, mut args: Args) -> Result<Value
     let size: i64 = args.take("size")?;
     let table = table(session, &file)?;
     if size != 0 && size != table.time.len() as i64 {
-        bail!(BAD_ARGUMENT, "`{file}` has {} points in time, not {size}", table.time.len());
+        bail!(BAD_ARGUMENT, "`{file}` has {} time points instead of {size}", table.time.len());
     }
     Ok(columns(&table, &names)?.into())
 }
@@ -245,7 +245,7 @@ fn read_simulation_result_vars(session: &mut Session, mut args: Args) -> Result<
 }
 
 const READ_SIMULATION_RESULT_SIZE: &str = r#"
-function readSimulationResultSize "Number of points in time in a result file."
+function readSimulationResultSize "Number of time points in a result file."
   input String fileName;
   output Integer sz;
 end readSimulationResultSize;
@@ -256,7 +256,7 @@ fn read_simulation_result_size(session: &mut Session, args: Args) -> Result<Valu
 }
 
 const CLOSE_SIMULATION_RESULT_FILE: &str = r#"
-function closeSimulationResultFile "Closes the result file; every file is closed after reading."
+function closeSimulationResultFile "Has no effect: each file is closed after reading."
   output Boolean success;
 end closeSimulationResultFile;
 "#;

@@ -198,7 +198,7 @@ fn scan_boolean(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const SCAN_STRING: &str = r#"
-function scanString "Reads a text in double quotes; an error if there is none."
+function scanString "Reads a string in double quotes; an error if there is none."
   input String string;
   input Integer startIndex(min = 1) = 1;
   input String message = "" "added to the error";
@@ -214,7 +214,9 @@ fn scan_string(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
         Some(('"', inner)) => inner.iter().position(|c| *c == '"'),
         _ => None,
     };
-    let Some(length) = end else { return Err(scanner.expected("a text in double quotes").into()) };
+    let Some(length) = end else {
+        return Err(scanner.expected("a string in double quotes").into());
+    };
     let found: String = rest[1..=length].iter().collect();
     scanner.at += length + 2;
     scanner.result(text(found))
@@ -263,7 +265,7 @@ fn scan_delimiter(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const SCAN_NO_TOKEN: &str = r#"
-function scanNoToken "An error unless the rest of the string is blank."
+function scanNoToken "Fails unless the rest of the string is blank."
   input String string;
   input Integer startIndex(min = 1) = 1;
   input String message = "" "added to the error";

@@ -19,9 +19,9 @@ pub(super) const OPENMODELICA: Family = Family {
 };
 
 const RUN_SCRIPT: &str = r#"
-function RunScript "Executes a script among the variables of the calling one."
-  input String script "path from the folder of the calling script, else from the working directory; the ending .mos may be left out";
-  input Boolean silent = false "true: its statements show no answers";
+function RunScript "Executes a script; it shares the variables of the calling script."
+  input String script "path relative to the folder of the calling script or to the working directory; the extension .mos is optional";
+  input Boolean silent = false "true: results of its statements are not shown";
   output Boolean ok "false if there is no such script";
 end RunScript;
 "#;
@@ -40,7 +40,7 @@ fn run_script(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const RUN_SCRIPT_OPENMODELICA: &str = r#"
-function runScript "Executes a script among the variables of the calling one."
+function runScript "Executes a script; it shares the variables of the calling script."
   input String fileName;
   output String result "empty";
 end runScript;

@@ -37,7 +37,7 @@ pub(super) const LIST_FAMILY: Family = Family {
 };
 
 const CLEAR: &str = r#"
-function clear "Forgets variables, flags, imports and classes."
+function clear "Clears variables, flags, imports and classes."
   output Boolean ok;
 end clear;
 "#;
@@ -48,7 +48,7 @@ fn clear(session: &mut Session, _: Args) -> Result<Value, Failure> {
 }
 
 const CLEAR_VARIABLES: &str = r#"
-function clearVariables "Forgets the variables."
+function clearVariables "Clears the variables."
   output Boolean ok;
 end clearVariables;
 "#;
@@ -59,7 +59,7 @@ fn clear_variables(session: &mut Session, _: Args) -> Result<Value, Failure> {
 }
 
 const ECHO: &str = r#"
-function echo "Whether answers are shown from now on."
+function echo "Turns the display of results on or off."
   input Boolean setEcho;
   output Boolean newEcho;
 end echo;
@@ -84,7 +84,7 @@ fn list_variables(session: &mut Session, _: Args) -> Result<Value, Failure> {
 
 const LIST: &str = r#"
 function list "Prints the variables with their types and values, in alphabetic order."
-  input String filename = "" "where to write them, .mos for a script that sets them; empty: the terminal";
+  input String filename = "" "output file; .mos: a script that sets the variables; empty: the terminal";
   input String variables[:] = {"*"} "patterns; * stands for any characters, ? for one";
   output Boolean ok;
 end list;
@@ -92,7 +92,7 @@ end list;
 
 const VARIABLES: &str = r#"
 function variables "Prints the variables with their types and values, in alphabetic order."
-  input String filename = "" "where to write them, .mos for a script that sets them; empty: the terminal";
+  input String filename = "" "output file; .mos: a script that sets the variables; empty: the terminal";
   input String variables[:] = {"*"} "patterns; * stands for any characters, ? for one";
   output Boolean ok;
 end variables;
@@ -113,8 +113,8 @@ fn variables(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const SAVELOG: &str = r#"
-function savelog "Writes what was said and answered so far."
-  input String logfile = "dymolalg.txt" "with the ending .mos the statements alone";
+function savelog "Writes the session so far to a file."
+  input String logfile = "dymolalg.txt" "extension .mos: only the statements";
   output Boolean ok;
 end savelog;
 "#;
@@ -144,7 +144,7 @@ end setDebugFlags;
 "#;
 
 const SET_COMPILER_FLAGS: &str = r#"
-function setCompilerFlags "Accepts flags of a C compiler; they have no effect: none is used."
+function setCompilerFlags "Accepts flags of a C compiler; they have no effect: there is no C compiler here."
   input String compilerFlags;
   output Boolean success;
 end setCompilerFlags;
@@ -194,7 +194,7 @@ fn get_version(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
 
 const HELP: &str = r#"
 function help "Prints the declaration of a command, or the names of all."
-  input VariableName name = "" "the command, quoted or not";
+  input VariableName name = "" "the command, with or without quotes";
   output Boolean ok;
 end help;
 "#;

@@ -25,12 +25,12 @@ pub(super) struct SimulationFlags {
 
 /// Flags that stand for input that is not read, with what to do instead.
 const REFUSED: &[(&str, &str)] = &[
-    ("csvInput", "inputs are not read from a file: write a model that reads a table"),
-    ("exInputFile", "inputs are not read from a file: write a model that reads a table"),
-    ("overrideFile", "values are not read from a file: name them in `-override`"),
-    ("iif", "start values are not read from a file: use `importInitialResult`"),
-    ("iim", "there is one method of initialization"),
-    ("iit", "start values are not read from a file: use `importInitialResult`"),
+    ("csvInput", "inputs cannot be read from a file: write a model that reads a table"),
+    ("exInputFile", "inputs cannot be read from a file: write a model that reads a table"),
+    ("overrideFile", "values cannot be read from a file: give them with `-override`"),
+    ("iif", "start values cannot be read from a file: use `importInitialResult`"),
+    ("iim", "there is only one initialization method"),
+    ("iit", "start values cannot be read from a file: use `importInitialResult`"),
     ("l", "use `linearize`"),
     ("steadyState", "simulate longer instead"),
 ];
@@ -49,7 +49,7 @@ impl SimulationFlags {
         let mut words = words.peekable();
         while let Some(word) = words.next() {
             let Some(flag) = word.strip_prefix('-') else {
-                bail!(BAD_ARGUMENT, "`{word}` in `simflags` is no flag: flags begin with `-`")
+                bail!(BAD_ARGUMENT, "`{word}` in `simflags` is not a flag: flags start with `-`")
             };
             let (name, value) = match flag.split_once('=') {
                 Some((name, value)) => (name, value.to_owned()),
@@ -62,7 +62,7 @@ impl SimulationFlags {
 
     fn take(&mut self, name: &str, value: String) -> Result<(), Fault> {
         if let Some((_, instead)) = REFUSED.iter().find(|(refused, _)| *refused == name) {
-            bail!(BAD_ARGUMENT, "`-{name}` in `simflags` is refused: {instead}")
+            bail!(BAD_ARGUMENT, "`-{name}` in `simflags` is not supported: {instead}")
         }
         match name {
             "override" => {

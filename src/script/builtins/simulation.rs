@@ -75,16 +75,16 @@ fn grid(model: &Translated, wishes: &Wishes) -> Result<Vec<f64>, Fault> {
 }
 
 const SIMULATE_MODEL: &str = r#"
-function simulateModel "Simulates a model; it is translated if it has not been. What is not given comes from the model's experiment annotation."
+function simulateModel "Simulates a model, after translation if necessary. Defaults come from the model's experiment annotation."
   input String problem = "" "Class or Class(modification); empty: the model used last";
   input Real startTime = 0.0 "s" annotation(optional = true);
   input Real stopTime = 1.0 "s" annotation(optional = true);
   input Integer numberOfIntervals = 500 annotation(optional = true);
-  input Real outputInterval = 0.0 "s; counts if numberOfIntervals is 0 or not given" annotation(optional = true);
+  input Real outputInterval = 0.0 "s; used if numberOfIntervals is 0 or not given" annotation(optional = true);
   input String method = "Dassl" annotation(optional = true);
   input Real tolerance = 0.0001 "relative" annotation(optional = true);
   input Real fixedstepsize = 0.0 "s, for methods with a fixed step" annotation(optional = true);
-  input String resultFile = "dsres" "without an ending, .mat is added";
+  input String resultFile = "dsres" ".mat is added if the name has no extension";
   output Boolean ok;
 end simulateModel;
 "#;
@@ -109,7 +109,7 @@ fn simulate(session: &mut Session, _: Args) -> Result<Value, Failure> {
 }
 
 const TRANSLATE_MODEL: &str = r#"
-function translateModel "Translates a model; dotted names of scripts mean its parameters from now on, which have the values of the model."
+function translateModel "Translates a model. Dotted names in the script then refer to its parameters, which have the values of the model."
   input String problem = "" "Class or Class(modification); empty: the model used last";
   output Boolean ok;
 end translateModel;
@@ -127,7 +127,7 @@ fn translate_model(session: &mut Session, mut args: Args) -> Result<Value, Failu
 const CHECK_MODEL: &str = r#"
 function checkModel "Whether a model can be translated."
   input String problem "Class or Class(modification)";
-  input Boolean simulate = false "whether it is simulated too";
+  input Boolean simulate = false "whether to simulate it as well";
   output Boolean ok;
 end checkModel;
 "#;
@@ -145,7 +145,7 @@ fn check_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
 }
 
 const EXPERIMENT: &str = r#"
-function experiment "What the next simulations take where they say nothing."
+function experiment "Sets the defaults of the next simulations."
   input Real StartTime = 0.0 "s" annotation(optional = true);
   input Real StopTime = 1.0 "s" annotation(optional = true);
   input Integer NumberOfIntervals = 0 annotation(optional = true);

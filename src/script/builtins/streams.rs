@@ -31,7 +31,7 @@ pub(super) const BARE_PRINT: Family = Family {
 };
 
 const PRINT: &str = r#"
-function print "Writes a line to the terminal or behind the end of a file."
+function print "Writes a line to the terminal or appends it to a file."
   input String string = "";
   input String fileName = "" "empty: the terminal";
 end print;
@@ -49,7 +49,7 @@ fn print(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const PRINT_BARE: &str = r#"
-function print "Writes a text to the terminal, without a line end."
+function print "Writes a string to the terminal, without a line break."
   input String str;
 end print;
 "#;
@@ -75,7 +75,7 @@ const READ_LINE: &str = r#"
 function readLine "One line of a file."
   input String fileName;
   input Integer lineNumber(min = 1) "from 1";
-  output String string "empty behind the last line";
+  output String string "empty after the last line";
   output Boolean endOfFile "whether the file has fewer lines";
 end readLine;
 "#;
@@ -84,7 +84,7 @@ fn read_line(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let lines = lines(session, &mut args)?;
     let number: i64 = args.take("lineNumber")?;
     if number < 1 {
-        bail!(BAD_ARGUMENT, "`lineNumber` of `readLine` is {number}; lines count from 1");
+        bail!(BAD_ARGUMENT, "`lineNumber` of `readLine` is {number}; line numbers start at 1");
     }
     let line = lines.into_iter().nth(number as usize - 1);
     let end_of_file = line.is_none();
@@ -108,7 +108,7 @@ fn lines(session: &mut Session, args: &mut Args) -> Result<Vec<String>, Fault> {
 }
 
 const ERROR: &str = r#"
-function error "Stops what is being done with a message."
+function error "Stops the execution with an error message."
   input String string;
 end error;
 "#;
@@ -119,7 +119,7 @@ fn error(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const CLOSE: &str = r#"
-function close "Closes a file; every file is closed after each call here, so nothing is left to do."
+function close "Has no effect: each file is closed after each call."
   input String fileName;
 end close;
 "#;

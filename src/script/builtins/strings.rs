@@ -67,7 +67,7 @@ fn substring(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const REPEAT: &str = r#"
-function repeat "A string n times, one behind the other."
+function repeat "A string repeated n times."
   input Integer n(min = 0) = 1;
   input String string = " ";
   output String repeatedString;
@@ -87,7 +87,7 @@ fn repeat(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const COMPARE: &str = r#"
-function compare "Which of two strings comes first in the order of their characters."
+function compare "Compares two strings in the order of their characters."
   input String string1;
   input String string2;
   input Boolean caseSensitive = true;
@@ -140,7 +140,7 @@ fn two(args: &mut Args) -> Result<(String, String), Fault> {
 }
 
 const IS_EMPTY: &str = r#"
-function isEmpty "Whether a string holds nothing but blanks."
+function isEmpty "Whether a string contains only blanks."
   input String string;
   output Boolean result;
 end isEmpty;
@@ -185,7 +185,7 @@ impl Search {
 }
 
 const COUNT: &str = r#"
-function count "Number of places, not overlapping, where one string occurs in another."
+function count "Number of non-overlapping occurrences of one string in another."
   input String string;
   input String searchString;
   input Integer startIndex(min = 1) = 1;
@@ -205,10 +205,10 @@ fn count(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const FIND: &str = r#"
-function find "Position of the first place where one string occurs in another, 0 if nowhere."
+function find "Position of the first occurrence of one string in another, 0 if there is none."
   input String string;
   input String searchString;
-  input Integer startIndex(min = 1) = 1 "where to begin";
+  input Integer startIndex(min = 1) = 1 "first position to search";
   input Boolean caseSensitive = true;
   output Integer index;
 end find;
@@ -220,10 +220,10 @@ fn find(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const FIND_LAST: &str = r#"
-function findLast "Position of the last place where one string occurs in another, 0 if nowhere."
+function findLast "Position of the last occurrence of one string in another, 0 if there is none."
   input String string;
   input String searchString;
-  input Integer startIndex(min = 0) = 0 "where to begin, going backwards; 0 is the end";
+  input Integer startIndex(min = 0) = 0 "first position to search, backwards; 0 is the end";
   input Boolean caseSensitive = true;
   output Integer index;
 end findLast;
@@ -237,7 +237,7 @@ fn find_last(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const REPLACE: &str = r#"
-function replace "A string with another written in place of a third."
+function replace "Replaces occurrences of one string in another."
   input String string;
   input String searchString;
   input String replaceString;
@@ -284,7 +284,7 @@ fn sort(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const HASH_STRING: &str = r#"
-function hashString "A number that two different strings rarely share (Partow's AP hash)."
+function hashString "A hash of a string (Partow's AP hash)."
   input String string;
   output Integer hash;
 end hashString;
@@ -308,9 +308,9 @@ fn ap_hash(bytes: &[u8]) -> i32 {
 }
 
 const SYNTAX_ERROR: &str = r#"
-function syntaxError "Stops with an error that shows a place in a string."
+function syntaxError "Stops with an error that shows a position in a string."
   input String string;
-  input Integer index "position of the fault, from 1";
+  input Integer index "position of the error, from 1";
   input String message = "";
 end syntaxError;
 "#;

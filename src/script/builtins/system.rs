@@ -57,29 +57,29 @@ fn exit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
 }
 
 const SYSTEM: &str = r#"
-function system "Runs a command of the operating system; refused without --allow-system."
+function system "Runs an operating-system command; requires --allow-system."
   input String command;
-  output Boolean ok "whether it ended with status 0";
+  output Boolean ok "whether its exit status is 0";
 end system;
 "#;
 
 const EXECUTE: &str = r#"
-function Execute "Runs a command of the operating system; refused without --allow-system."
+function Execute "Runs an operating-system command; requires --allow-system."
   input String file;
-  output Boolean ok "whether it ended with status 0";
+  output Boolean ok "whether its exit status is 0";
 end Execute;
 "#;
 
 const SYSTEM_OPENMODELICA: &str = r#"
-function system "Runs a command of the operating system; refused without --allow-system."
+function system "Runs an operating-system command; requires --allow-system."
   input String callStr;
-  input String outputFile = "" "where its output goes; empty: it is printed";
+  input String outputFile = "" "file for its output; empty: the output is printed";
   output Integer retval "its exit status";
 end system;
 "#;
 
 const COMMAND: &str = r#"
-function command "Runs a command of the operating system; refused without --allow-system."
+function command "Runs an operating-system command; requires --allow-system."
   input String string;
   output Integer result "its exit status";
 end command;
@@ -171,7 +171,7 @@ fn set_work_directory(session: &mut Session, mut args: Args) -> Result<Value, Fa
 }
 
 const GET_ENVIRONMENT_VARIABLE: &str = r#"
-function getEnvironmentVariable "The content of an environment variable."
+function getEnvironmentVariable "The value of an environment variable."
   input String name;
   input Boolean convertToSlash = false "whether backslashes become slashes";
   output String content "empty if it is not set";
@@ -190,8 +190,8 @@ fn get_environment_variable(session: &mut Session, mut args: Args) -> Result<Val
 }
 
 const CD: &str = r#"
-function cd "Changes the working directory and shows it."
-  input String Dir = "" "empty: only show it";
+function cd "Changes the working directory and prints it."
+  input String Dir = "" "empty: only print it";
   output Boolean ok;
 end cd;
 "#;
@@ -219,7 +219,7 @@ fn cd_openmodelica(session: &mut Session, mut args: Args) -> Result<Value, Failu
 }
 
 const GET_ENVIRONMENT_VAR: &str = r#"
-function getEnvironmentVar "The content of an environment variable."
+function getEnvironmentVar "The value of an environment variable."
   input String var;
   output String value "empty if it is not set";
 end getEnvironmentVar;

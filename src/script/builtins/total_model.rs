@@ -30,12 +30,12 @@ pub(super) const FAMILY: Family = Family {
 };
 
 const SAVE_TOTAL_MODEL: &str = r#"
-function saveTotalModel "Writes a model with all that it uses to one file."
+function saveTotalModel "Writes a model and everything it uses to one file."
   input String fileName;
   input TypeName className;
-  input Boolean stripAnnotations = false "true is refused: the simulation needs some";
-  input Boolean stripComments = false "true is refused";
-  input Boolean obfuscate = false "true is refused";
+  input Boolean stripAnnotations = false "true is not supported: the simulation needs some annotations";
+  input Boolean stripComments = false "true is not supported";
+  input Boolean obfuscate = false "true is not supported";
   output Boolean success;
 end saveTotalModel;
 "#;
@@ -44,8 +44,10 @@ fn save_total_model(session: &mut Session, mut args: Args) -> Result<Value, Fail
     let (file, name): (String, Name) = (args.take("fileName")?, args.take("className")?);
     for option in ["stripAnnotations", "stripComments", "obfuscate"] {
         if args.take::<bool>(option)? {
-            let message =
-                format!("`saveTotalModel` writes the text as it is: `{option} = true` is refused");
+            let message = format!(
+                "`saveTotalModel` writes the source text unchanged: `{option} = true` is not \
+                 supported"
+            );
             return Err(Fault::new(BAD_ARGUMENT, message).into());
         }
     }
@@ -68,8 +70,9 @@ fn total_text(session: &mut Session, file: &str, name: &Name) -> Result<String, 
     library.load(&definition).map_err(|error| vec![error])?;
     let (again, _) = flatten::flatten_unbalanced(&library, name, &[])?;
     if again.model.to_string() != original.to_string() {
-        let fault = fault!(SCRIPT_ERROR, "`{name}` is another model when it is read from one file";
-            help: "save the model with `saveModel` and load its libraries beside it");
+        let fault = fault!(SCRIPT_ERROR, "`{name}` would be a different model when read from one \
+            file";
+            help: "save the model with `saveModel` and load its libraries separately");
         return Err(vec![fault.at(session.call_site())]);
     }
     Ok(text)

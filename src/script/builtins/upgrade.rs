@@ -36,8 +36,8 @@ pub(super) const FAMILY: Family = Family {
 };
 
 const CONVERT_CLASS: &str = r#"
-function convertClass "Replaces the name of a class in the loaded classes."
-  input Any oldName "a String or several";
+function convertClass "Renames a class in all loaded classes."
+  input Any oldName "a String or an array of Strings";
   input String newName;
   output Boolean ok;
 end convertClass;
@@ -53,7 +53,7 @@ fn convert_class(session: &mut Session, mut args: Args) -> Result<Value, Failure
 }
 
 const CONVERT_CLASS_IF: &str = r#"
-function convertClassIf "Replaces the name of a class where a parameter has a value."
+function convertClassIf "Renames a class where a parameter has the given value."
   input String oldName;
   input String para "the parameter";
   input String val "its value as written";
@@ -83,8 +83,8 @@ fn convert_class_if(session: &mut Session, mut args: Args) -> Result<Value, Fail
 }
 
 const CONVERT_ELEMENT: &str = r#"
-function convertElement "Replaces the name of an element of a class in the loaded classes."
-  input Any className "a String or several";
+function convertElement "Renames an element of a class in all loaded classes."
+  input Any className "a String or an array of Strings";
   input String oldName;
   input String newName;
   output Boolean ok;
@@ -103,10 +103,10 @@ fn convert_element(session: &mut Session, mut args: Args) -> Result<Value, Failu
 }
 
 const CONVERT_MODIFIERS: &str = r#"
-function convertModifiers "Replaces modifiers of a class in the loaded classes."
-  input Any className "a String or several";
-  input String oldModifiers[:] "`p=default`: the default stands where the modifier is not given";
-  input String newModifiers[:] "`q=%p%`: %p% is the value that p had";
+function convertModifiers "Replaces modifiers of a class in all loaded classes."
+  input Any className "a String or an array of Strings";
+  input String oldModifiers[:] "`p=default`: the default is used where the modifier is missing";
+  input String newModifiers[:] "`q=%p%`: %p% is the old value of p";
   input Boolean simplify = false "has no effect";
   output Boolean ok;
 end convertModifiers;
@@ -139,8 +139,8 @@ fn convert_modifiers(session: &mut Session, mut args: Args) -> Result<Value, Fai
 }
 
 const CONVERT_MESSAGE: &str = r#"
-function convertMessage "Says that a class has no successor, if a loaded class uses it."
-  input Any className "a String or several";
+function convertMessage "Reports that a class has no replacement, if a loaded class uses it."
+  input Any className "a String or an array of Strings";
   input String failedMessage;
   output Boolean ok;
 end convertMessage;
@@ -161,7 +161,7 @@ fn convert_message(session: &mut Session, mut args: Args) -> Result<Value, Failu
 }
 
 const CONVERT_CLEAR: &str = r#"
-function convertClear "Forgets the rules of conversion: they are applied at once, so there are none."
+function convertClear "Clears the conversion rules; they are applied immediately, so there are none."
   output Boolean ok;
 end convertClear;
 "#;
@@ -188,7 +188,7 @@ fn rule(text: &str) -> (Ident, Option<String>) {
 }
 
 const RUN_CONVERSION_SCRIPT: &str = r#"
-function runConversionScript "Brings one package to another version of a library by the rules in a script."
+function runConversionScript "Converts a package to another version of a library with a conversion script."
   input TypeName packageToConvert;
   input String scriptFile;
   output Boolean success;

@@ -63,7 +63,7 @@ impl Session {
         let mut components = Vec::with_capacity(modification.arguments.len());
         for argument in &modification.arguments {
             let Argument::Element(element) = argument else {
-                let message = "a variable of a script takes values, no redeclarations";
+                let message = "a script variable accepts values, not redeclarations";
                 return Err(fault!(BAD_ARGUMENT, "{message}").at(modification.span));
             };
             let inner = element.modification.as_ref();

@@ -87,7 +87,8 @@ impl Session {
         if self.frames.len() >= MAX_DEPTH {
             bail!(
                 SCRIPTS_TOO_DEEP,
-                "scripts call each other {MAX_DEPTH} levels deep, the last one `{name}`";
+                "scripts call each other more than {MAX_DEPTH} levels deep; the last one is \
+                 `{name}`";
                 help: "end the recursion with a condition"
             );
         }
@@ -200,7 +201,7 @@ impl Session {
         }
         if self.stop.is_none() {
             self.stop = Some(Stop::Interrupt);
-            let message = "interrupted; what has been found until now is kept";
+            let message = "interrupted; results found so far are kept";
             self.report(Fault::new(INTERRUPTED, message).at(span).warning());
         }
     }
@@ -237,7 +238,8 @@ impl Session {
         let other_case = candidates().find_map(|path| self.other_case(&path));
         if let Some(path) = other_case {
             let found = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into());
-            let message = format!("`{name}` is taken to be `{found}`: letter case differs");
+            let message =
+                format!("`{name}` is interpreted as `{found}`: upper and lower case differ");
             self.note(SCRIPT_NOT_FOUND, message);
             return Ok(path);
         }
@@ -247,7 +249,7 @@ impl Session {
         let [own, working] = folders.each_ref().map(|folder| folder.display());
         let is_one = normalized(&folders[0]) == normalized(&folders[1]);
         let searched = match Path::new(name).is_absolute() {
-            true => "an absolute path is looked at as it is".to_owned(),
+            true => "an absolute path is not searched for elsewhere".to_owned(),
             false if is_one => format!("searched in the working directory `{working}`"),
             false => format!("searched in `{own}` and in the working directory `{working}`"),
         };

@@ -140,7 +140,7 @@ impl Session {
             return Ok(());
         }
         let packages = builtins::packages();
-        Err(fault!(BAD_IMPORT, "there is nothing named `{text}` to import")
+        Err(fault!(BAD_IMPORT, "cannot import `{text}`: there is no package or class of that name")
             .help_if(suggest::did_you_mean(&text, packages.iter().copied()))
             .at(span))
     }
@@ -199,7 +199,8 @@ impl Session {
             return None;
         }
         let message = format!(
-            "`{name}` has no value because an earlier statement failed; this and other consequences of it are not done"
+            "`{name}` has no value because an earlier statement failed; this statement and other \
+             dependent statements are skipped"
         );
         Some(Fault::new(FOLLOW_UP, message).at(span).note())
     }
@@ -207,7 +208,8 @@ impl Session {
     /// The fault of a dotted name while no model is translated.
     pub(in crate::script) fn nothing_translated(&self, reference: &ComponentReference) -> Fault {
         let shown = reference.name();
-        fault!(NO_TRANSLATED_MODEL, "`{shown}` names a part of a model, but no model is translated";
+        fault!(NO_TRANSLATED_MODEL, "`{shown}` refers to a component of a model, but no model \
+                                     has been translated";
             help: "call `translateModel(\"Package.Model\")` first")
     }
 }

@@ -52,7 +52,7 @@ impl Session {
             return Ok(());
         }
         Err(fault!(TYPE_MISMATCH, "`{name}` is a {old} and cannot become a {new}";
-            help: "take another name, or declare it anew: `{new} {name}`"))
+            help: "use another name, or redeclare it: `{new} {name}`"))
     }
 
     /// The variables whose names match a pattern, with values and if wanted types, in alphabetic

@@ -356,7 +356,8 @@ impl Session {
             .or_else(|| suggest::did_you_mean(&wanted, last));
         let misnamed = self.misnamed_note(name);
         fault!(UNKNOWN_CLASS, "there is no class `{wanted}`").help_if(misnamed).help_if(hint).help(
-            "load the file that defines it first, with `openModel` or `loadFile`, or name its folder with `--library`",
+            "load the file that defines it first, with `openModel` or `loadFile`, or give its \
+             folder with `--library`",
         )
     }
 
@@ -439,7 +440,7 @@ impl Session {
             return Err(self.nothing_translated(target).at(target.span));
         }
         let Some(name) = flat_name(target) else {
-            let message = "a part of a model is named with Integers as subscripts";
+            let message = "subscripts of a model component must be Integers";
             return Err(Fault::new(BAD_PARAMETER_VALUE, message).at(target.span));
         };
         let number = match value {
@@ -450,7 +451,7 @@ impl Session {
                 None => {
                     return Err(fault!(
                         BAD_PARAMETER_VALUE,
-                        "`{name}` cannot be {}", other.type_name();
+                        "`{name}` cannot be set to {}", other.type_name();
                         help: "assign a number, or the elements of an array one by one"
                     )
                     .at(span));

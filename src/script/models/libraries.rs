@@ -204,8 +204,9 @@ impl Session {
         let (asked, given) = (numbers(wanted), numbers(&loaded));
         let fits = asked.first() == given.first() && asked <= given;
         (!fits && !is_shipped).then(|| {
-            fault!(OTHER_VERSION, "version {loaded} of library `{name}` is loaded, {wanted} is asked for";
-                help: "name the folder that has the other one with `--library`, if results differ")
+            fault!(OTHER_VERSION, "version {loaded} of library `{name}` is loaded, but version \
+                                   {wanted} is required";
+                help: "if results differ, give the folder of the required version with `--library`")
         })
     }
 

@@ -76,7 +76,7 @@ fn linearized_variant(session: &mut Session, wishes: &Wishes) -> Result<Linear, 
         .map_err(|_| {
             Fault::new(
                 BAD_ARGUMENT,
-                format!("the slopes of `{}` cannot be computed there", model.problem),
+                format!("the derivatives of `{}` cannot be computed at this point", model.problem),
             )
         })
         .and_then(|slopes| {
@@ -122,7 +122,7 @@ fn with_states_for_inputs(
 
 /// The name of the slope of an input.
 fn slope_name(input: &str) -> String {
-    format!("'slope of {}'", input.replace('\'', "\""))
+    format!("'derivative of {}'", input.replace('\'', "\""))
 }
 
 /// der(u) = slope, der(slope) = 0.
@@ -238,7 +238,7 @@ impl Places {
             found.ok_or_else(|| {
                 fault!(
                     BAD_ARGUMENT,
-                    "`{}` cannot be linearized: its input `{name}` is determined by its states",
+                    "`{}` cannot be linearized: its states determine its input `{name}`",
                     model.problem
                 )
             })
@@ -259,8 +259,9 @@ impl Places {
             for (input, (column, _)) in inputs.iter().zip(&self.slopes) {
                 if slopes[(row, *column)] != 0.0 {
                     return Err(fault!(BAD_ARGUMENT,
-                        "`{problem}` depends on the derivative of its input `{input}`, so it is no linear system of its states and inputs";
-                        help: "put a first-order filter in front of the input"));
+                        "`{problem}` depends on the derivative of its input `{input}`, so it is \
+                         not a linear system of its states and inputs";
+                        help: "filter the input with a first-order block"));
                 }
             }
         }

@@ -104,17 +104,17 @@ fn sentence(column: &Column, model: &str, variable: &Quantity) -> Option<String>
     }
     let (from, to) = (written(unit)?, written(&variable.unit)?);
     let both = format!(
-        "the column `{name}` of `{file}` is in {unit}, the variable `{}` of `{model}` in {}",
+        "the column `{name}` of `{file}` is in {unit}, but the variable `{}` of `{model}` is in {}",
         variable.name, variable.unit
     );
     let Some(conversion) = from.to(to) else {
         return Some(format!(
-            "{both}, which is another quantity: the numbers are compared as they are"
+            "{both}, a different quantity: the numbers are compared without conversion"
         ));
     };
     let change = in_words(conversion)?;
     Some(format!(
-        "{both}: the numbers are compared as they are; to compare in {}, {change}",
+        "{both}: the numbers are compared without conversion; to compare in {}, {change}",
         variable.unit
     ))
 }

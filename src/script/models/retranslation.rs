@@ -110,7 +110,7 @@ impl Session {
     pub(super) fn note_structural(&mut self, name: &str, problem: &str) {
         if self.shared.insert(Ident::new(&format!("{problem}.{name}"))) {
             let message = format!(
-                "`{name}` shapes the equations of `{problem}`: the model is translated again"
+                "`{name}` is a structural parameter of `{problem}`: the model is translated again"
             );
             self.note(TRANSLATED_AGAIN, message);
         }

@@ -273,7 +273,10 @@ pub fn settings(experiment: &Experiment, wishes: &Wishes) -> Result<Settings, Fa
     let start = wishes.start.or(experiment.start_time).unwrap_or(defaults.start);
     let stop = wishes.stop.or(experiment.stop_time).unwrap_or(start + defaults.stop);
     if !(start.is_finite() && stop.is_finite() && start <= stop) {
-        bail!(crate::registry::BAD_OPTION, "the simulation from {start} to {stop} has no length");
+        bail!(
+            crate::registry::BAD_OPTION,
+            "the simulation interval from {start} to {stop} is empty"
+        );
     }
     let of_interval = |interval: f64| ((stop - start) / interval).round().max(1.0) as usize;
     let intervals = match (wishes.intervals, wishes.interval.or(experiment.interval)) {
@@ -284,7 +287,7 @@ pub fn settings(experiment: &Experiment, wishes: &Wishes) -> Result<Settings, Fa
     if intervals.is_some_and(|intervals| intervals > MOST_INTERVALS) {
         bail!(crate::registry::BAD_OPTION,
             "the output from {start} to {stop} has more than {MOST_INTERVALS} intervals";
-            help: "give a longer `outputInterval` or a smaller `numberOfIntervals`");
+            help: "use a longer `outputInterval` or a smaller `numberOfIntervals`");
     }
     let tolerance = wishes.tolerance.or(experiment.tolerance).unwrap_or(defaults.tolerance);
     if !(1e-14..=0.1).contains(&tolerance) {
@@ -350,13 +353,17 @@ fn report_treatments(session: &mut Session, system: &System) {
     for Treated { time, treatment, span } in system.treated() {
         let words = match treatment {
             Treatment::Followed => {
-                "this relation switches again and again while its sides hardly differ; it is \
-                 evaluated between steps, without events"
+                "this relation is chattering: it switches repeatedly while its sides are almost \
+                 equal; it is evaluated between steps, without events"
             }
             Treatment::Slides => {
-                "the solution slides along this relation, with the mean of both branches"
+                "sliding mode: the solution slides along this \
+                 relation, with the mean of both branches"
             }
-            Treatment::Rests => "impacts accumulate at this relation; the solution rests there",
+            Treatment::Rests => {
+                "impacts accumulate at this relation (Zeno behaviour); the solution stays at \
+                 rest there"
+            }
         };
         if session.models.told.insert((*span, words.to_owned())) {
             let message = format!("{words} (from t = {time})");
@@ -376,17 +383,17 @@ fn report_undetermined(session: &mut Session, system: &System) {
             (
                 format!(
                     "the equations do not determine {names}: their system is singular, and one \
-                     of many solutions is taken"
+                     of many solutions is used"
                 ),
                 "replace a redundant equation by one that determines these variables",
             )
         } else {
             (
                 format!(
-                    "the equations may not determine {names}: their Jacobian is singular, and the \
-                     solution near the start values is taken"
+                    "the equations may not determine {names}: their Jacobian is singular, and \
+                     the solution near the start values is used"
                 ),
-                "check that none of the equations follows from the others",
+                "check whether one of the equations follows from the others",
             )
         };
         if session.models.told.insert((span, words.clone())) {
@@ -562,7 +569,7 @@ impl Session {
         let Some(current) = &mut self.models.last else {
             bail!(
                 crate::script::errors::NO_TRANSLATED_MODEL,
-                "`{name}` names a part of a model, but no model is translated";
+                "`{name}` refers to a component of a model, but no model has been translated";
                 help: "call `translateModel(\"Package.Model\")` first"
             )
         };
@@ -668,14 +675,16 @@ impl Session {
             None => Ok(false),
         };
         let consequence = match set? {
-            true => "it is set there as well".to_owned(),
-            false => format!("there it keeps its value: {}", not_tunable(&model, name.as_str())),
+            true => "the parameter is set as well".to_owned(),
+            false => {
+                format!("the parameter keeps its value: {}", not_tunable(&model, name.as_str()))
+            }
         };
         if self.shared.insert(name) {
             let problem = &model.problem;
             self.note(
                 SHARED_NAME,
-                format!("`{name}` is a parameter of `{problem}` too: {consequence}"),
+                format!("`{name}` is also a parameter of `{problem}`: {consequence}"),
             );
         }
         Ok(())
@@ -692,7 +701,7 @@ impl Session {
 }
 
 fn no_model() -> Fault {
-    fault!(crate::script::errors::NO_TRANSLATED_MODEL, "no model is translated";
+    fault!(crate::script::errors::NO_TRANSLATED_MODEL, "no model has been translated";
         help: "call `translateModel(\"Package.Model\")` first")
 }
 
@@ -703,7 +712,7 @@ fn check_value(model: &Translated, index: usize, value: f64) -> Result<(), Fault
         bail!(BAD_PARAMETER_VALUE, "`{name}` cannot be NaN");
     }
     if value.fract() != 0.0 && parameter.base != BaseType::Real {
-        bail!(BAD_PARAMETER_VALUE, "`{name}` takes whole numbers, and {value} is none");
+        bail!(BAD_PARAMETER_VALUE, "`{name}` needs a whole number, but the value is {value}");
     }
     let domain = match (parameter.min.is_finite(), parameter.max.is_finite()) {
         (true, true) => format!("outside {} to {}", parameter.min, parameter.max),
@@ -713,7 +722,7 @@ fn check_value(model: &Translated, index: usize, value: f64) -> Result<(), Fault
     if value < parameter.min || value > parameter.max {
         bail!(
             BAD_PARAMETER_VALUE,
-            "`{name}` is {value}, {domain}, which the model excludes";
+            "`{name}` is {value}, {domain}, outside the range declared in the model";
             help: "choose another value, or change `min` and `max` in the model"
         );
     }
@@ -734,20 +743,22 @@ fn not_tunable(model: &Translated, name: &str) -> Fault {
             let reason = match () {
                 () if variable.variability == Variability::Constant => "it is a constant",
                 () if variable.is_final => "it is final",
-                () if variable.structural || variable.evaluate => "its value shaped the equations",
-                () => "it is an array or no number",
+                () if variable.structural || variable.evaluate => {
+                    "it is a structural parameter, evaluated at translation"
+                }
+                () => "it is an array or not a number",
             };
             fault!(BAD_PARAMETER_VALUE, "`{name}` of `{problem}` cannot be set: {reason}";
-                help: "give it as a modification, `{problem}({})`", nested_modification(name))
+                help: "set it by a modification, `{problem}({})`", nested_modification(name))
         }
-        Some(_) => fault!(UNKNOWN_PARAMETER, "`{name}` of `{problem}` is no parameter";
-            help: "its value comes from the equations; assign the parameters it depends on"),
+        Some(_) => fault!(UNKNOWN_PARAMETER, "`{name}` of `{problem}` is not a parameter";
+            help: "the equations determine its value; set the parameters that it depends on"),
         None => {
             let names = model.program.parameters().iter().map(|parameter| &*parameter.name);
             let own = name.strip_prefix(problem.as_str()).and_then(|rest| rest.strip_prefix('.'));
             let own = own.filter(|own| model.program.find_parameter(own).is_ok());
             fault!(UNKNOWN_PARAMETER, "`{problem}` has no parameter `{name}`")
-                .help_if(own.map(|own| format!("write `{own}`, without the model's name")))
+                .help_if(own.map(|own| format!("write `{own}`, without the name of the model")))
                 .help_if(suggest::did_you_mean(name, names))
         }
     }

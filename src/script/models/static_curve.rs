@@ -70,10 +70,12 @@ pub(in crate::script) fn model(
     if !states.is_empty() {
         return Err(fault!(
             BAD_OPTION,
-            "X is the input `{x_name}`, but `{name}` has states, so that its outputs depend on the past of `{x_name}`"
+            "X is the input `{x_name}`, but `{name}` has states, so its outputs depend on the \
+             history of `{x_name}`"
         )
         .help(format!(
-            "use `time` as X and let `{x_name}` follow a column of the data (`inputs` of a problem), or bind it in the model, as in `{x_name} = 0.1*time`"
+            "use `time` as X and read `{x_name}` from a column of the data (`inputs` of a \
+             problem), or bind it in the model, as in `{x_name} = 0.1*time`"
         )));
     }
     Ok(CompiledModel::new(name, translated.program.clone()).driven_by(x_name, DRIVER))

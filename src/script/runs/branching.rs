@@ -43,7 +43,8 @@ impl Session {
             return Ok(());
         };
         if self.in_function {
-            let reason = "`Eval` is called in a function, whose variables nothing else can change";
+            let reason =
+                "`Eval` is called in a function, whose variables cannot be changed from outside";
             return Err(fault!(CANNOT_BRANCH, "{reason}";
                 help: "call `Eval` from the script itself")
             .into());

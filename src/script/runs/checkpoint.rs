@@ -114,9 +114,10 @@ impl Checkpoint {
             Ok(()) => self.keep_pending(),
             Err(error) => {
                 // A part may have been written; what stands before it is whole.
-                self.broken = Some(format!("{error}; the run goes on without"));
+                self.broken = Some(format!("{error}; the run continues without checkpoints"));
                 let text = format!(
-                    "warning: `{}` cannot be written: {error}; the run goes on without checkpoints\n",
+                    "warning: `{}` cannot be written: {error}; the run continues without \
+                     checkpoints\n",
                     self.path.display()
                 );
                 session.world.eprint(&text);

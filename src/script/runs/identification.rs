@@ -86,7 +86,7 @@ impl Session {
                 x.len(),
                 names[1],
                 y.len();
-                help: "name the two matrices of one experiment"
+                help: "give the names of two matrices of the same experiment"
             );
         }
         let pairs = x.into_iter().zip(y).filter(|(x, y)| x.is_finite() && y.is_finite());
@@ -166,7 +166,7 @@ impl Session {
     /// there, or why there is none. Nothing of it is counted or recorded.
     pub fn simulate_again(&mut self, genes: &[f64]) -> Result<Vec<f64>, String> {
         let Some(last) = self.extension::<Identification>().prepared.last_mut() else {
-            return Err("no model was simulated".to_owned());
+            return Err("no model has been simulated".to_owned());
         };
         let genomes = Genomes::new(genes.len(), genes.to_vec()).map_err(|fault| fault.message)?;
         let simulated = last.evaluator.evaluate(&genomes).map_err(|fault| fault.message)?;
@@ -224,8 +224,10 @@ fn check(evaluator: &mut Evaluator, genomes: &Genomes, known: &Simulated) -> Res
         if before.len() != now.rows.len() || before.iter().zip(&now.rows).any(differs) {
             bail!(
                 BAD_OPTION,
-                "the run cannot be resumed: individual {} of it is simulated otherwise now", row + 1;
-                help: "restore the model, its libraries and tables, the settings of the simulation, the program and the machine, or begin anew without `--resume`"
+                "the run cannot be resumed: individual {} now gives a different simulation \
+                 result", row + 1;
+                help: "restore the model, its libraries and tables, the settings of the \
+                       simulation, the program and the machine, or start again without `--resume`"
             );
         }
     }

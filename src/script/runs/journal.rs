@@ -87,8 +87,9 @@ impl Session {
                 self.refuse_to_resume();
                 bail!(
                     BAD_OPTION,
-                    "the script asks something else here than the run that is to be resumed";
-                    help: "run the same script with the same data and settings, or begin anew without `--resume`"
+                    "the script requests other simulations here than the run to be resumed";
+                    help: "run the same script with the same data and settings, or start again \
+                           without `--resume`"
                 )
             }
         }
@@ -168,8 +169,8 @@ impl Session {
                 self.refuse_to_resume();
                 bail!(
                     BAD_OPTION,
-                    "the run cannot be resumed: since then changed: {}", listed(&changed);
-                    help: "undo the changes, or begin anew without `--resume`"
+                    "the run cannot be resumed: these have changed since: {}", listed(&changed);
+                    help: "undo the changes, or start again without `--resume`"
                 );
             }
             self.extension::<Journal>().noted = before;
@@ -212,7 +213,8 @@ impl Session {
         if exists && resumes {
             let old = self.read_bytes(&path)?;
             let Some((entries, whole)) = decode(&old) else {
-                bail!(BAD_OPTION, "`{}` is no checkpoint of a script", path.display(); help: "begin anew without `--resume`")
+                bail!(BAD_OPTION, "`{}` is not a checkpoint of a \
+                                   script", path.display(); help: "start again without `--resume`")
             };
             let generations =
                 entries.iter().filter(|entry| matches!(entry, Entry::Simulated { .. })).count();
@@ -220,14 +222,15 @@ impl Session {
             self.write_file(&path, &old[..whole])?;
             checkpoint = checkpoint.after(old[..whole].to_vec());
             self.world.eprint(&format!(
-                "resumed: {generations} calls of Eval are answered by `{}`\n",
+                "resumed: {generations} calls of Eval are replayed from `{}`\n",
                 path.display()
             ));
         } else {
             if exists {
                 let old = keep_old(self, &path)?;
                 let text = format!(
-                    "an earlier run did not end, and `--resume` would have gone on with it; its checkpoint is kept in `{}`\n",
+                    "an earlier run did not finish; `--resume` would have continued it. Its \
+                     checkpoint is kept in `{}`\n",
                     old.display()
                 );
                 self.world.eprint(&text);
@@ -250,7 +253,7 @@ fn close(session: &mut Session) -> Result<(), Diagnostic> {
     if session.is_interrupted() || (has_errors && is_written) {
         let now = session.world.monotonic_seconds();
         checkpoint.flush(session, now);
-        session.world.eprint("the run can go on from here with --resume\n");
+        session.world.eprint("resume the run from here with --resume\n");
     } else if is_written {
         // What cannot be removed does no harm.
         let _ = session.world.remove(checkpoint.path());

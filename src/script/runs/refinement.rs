@@ -58,7 +58,7 @@ impl Session {
         recorder.ordered(&done.genomes, &done.fitness);
         match best(&done.genomes, &done.fitness).filter(|found| !has_failed(found.fitness)) {
             Some(found) => Ok((found, count)),
-            None => Err(fault!(BAD_POPULATION, "none of the individuals can be simulated").into()),
+            None => Err(fault!(BAD_POPULATION, "no individual can be simulated").into()),
         }
     }
 

@@ -11,8 +11,8 @@ use crate::script::world::Progress;
 use crate::syntax;
 
 const HELP: &str = "\
-Paused. Type statements of the script's language, such as F_Mut := 0.3; they hold from this
-generation on. An empty line goes on, Ctrl-C ends the run.
+Paused. Type script statements, such as F_Mut := 0.3; they take effect from this generation on. \
+                    An empty line continues; Ctrl-C ends the run.
 ";
 const PROMPT: &str = "> ";
 

@@ -75,7 +75,7 @@ pub(super) fn type_prefixes(nodes: &mut Nodes<'_>) -> Lowered<TypePrefixes> {
         if earlier {
             return Err(fault!(
                 SYNTAX_ERROR,
-                "`{}` cannot follow another prefix of its kind",
+                "`{}` cannot follow another prefix of the same kind",
                 word.as_str()
             )
             .help("keep one of `flow`, `stream`; one of `constant`, `parameter`, `discrete`; one of `input`, `output`")

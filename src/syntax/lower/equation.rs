@@ -69,5 +69,5 @@ fn equation_or_procedure(mut inside: Nodes<'_>) -> Lowered<EquationKind> {
     };
     Err(fault!(SYNTAX_ERROR, "an equation needs `=`")
         .help(help)
-        .labelled(left.span, "this is an expression only"))
+        .labelled(left.span, "this is only an expression"))
 }

@@ -36,8 +36,8 @@ pub(super) fn expression(nodes: &mut Nodes<'_>) -> Lowered<Expression> {
 /// The error of `a < b < c`, `a ^ b ^ c` and `a:b:c:d`.
 fn unassociated<'i>(parts: &Nodes<'i>, extra: &Node<'i>) -> Diagnostic {
     let operator = extra.as_str();
-    fault!(SYNTAX_ERROR, "`{operator}` cannot follow an operator of its own kind")
-        .help("put one of the two in parentheses")
+    fault!(SYNTAX_ERROR, "`{operator}` cannot follow an operator of the same kind")
+        .help("put one of the two operations in parentheses")
         .at(parts.span(extra))
 }
 
@@ -217,7 +217,7 @@ fn reference_or_call(parts: &mut Nodes<'_>, function: ComponentReference) -> Low
         let subscripts = part.subscripts[0].span();
         return Err(fault!(
             SYNTAX_ERROR,
-            "the function called, `{}`, has subscripts",
+            "the called function `{}` has subscripts",
             function.name()
         )
         .help("subscript the result instead: `(f(x))[1]`")
@@ -244,7 +244,7 @@ fn arguments(mut inside: Nodes<'_>) -> Lowered<Arguments> {
                         SYNTAX_ERROR,
                         "a positional argument cannot follow a named one"
                     )
-                    .help("name it too, or put it first")
+                    .help("name it as well, or move it to the front")
                     .at(value.span));
                 }
                 all.positional.push(value);
@@ -286,7 +286,7 @@ fn parenthesized<'i>(parts: &mut Nodes<'i>, node: Node<'i>) -> Lowered<Expressio
         [None] => Expression::new(ExpressionKind::Tuple(Vec::new()), inside.whole),
         [Some(_)] => match outputs.pop().flatten() {
             Some(one) => Expression { span: inside.whole, ..one },
-            None => unreachable!("the list has one expression"),
+            None => unreachable!("a list of one expression"),
         },
         _ => Expression::new(ExpressionKind::Tuple(outputs), inside.whole),
     };

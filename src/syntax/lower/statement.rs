@@ -78,7 +78,7 @@ fn assignment_or_call(mut inside: Nodes<'_>) -> Lowered<StatementKind> {
     match expression::try_expression(&mut inside)? {
         Some(value) => assignment(left, value),
         None if matches!(left.kind, ExpressionKind::Call { .. }) => Ok(StatementKind::Call(left)),
-        None => Err(fault!(SYNTAX_ERROR, "this expression is no statement")
+        None => Err(fault!(SYNTAX_ERROR, "this expression is not a statement")
             .help("assign it with `:=`, or write a call")
             .at(left.span)),
     }
@@ -99,7 +99,7 @@ pub(super) fn assignment(left: Expression, value: Expression) -> Lowered<Stateme
 fn target(left: Expression) -> Lowered<ComponentReference> {
     match left.kind {
         ExpressionKind::Reference(target) => Ok(target),
-        _ => Err(fault!(SYNTAX_ERROR, "only a variable can be assigned to")
+        _ => Err(fault!(SYNTAX_ERROR, "only a variable can be assigned")
             .help("write a name, possibly with subscripts, on the left of `:=`")
             .at(left.span)),
     }

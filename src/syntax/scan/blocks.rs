@@ -173,9 +173,9 @@ impl<'t> Blocks<'t> {
     fn close(&mut self, token: &Token<'t>) -> Result<(), Problem> {
         let span = Span::new(self.source, token.start, token.end);
         let Some(block) = self.stack.pop() else {
-            let diagnostic = fault!(MISMATCHED_END, "`end {}` closes nothing", token.text)
-                .help("take it away, or write what it should close before it")
-                .labelled(span, "nothing of this name is open here");
+            let diagnostic = fault!(MISMATCHED_END, "`end {}` does not close anything", token.text)
+                .help("remove it, or write the construct that it closes before it")
+                .labelled(span, "no construct of this name is open here");
             return Err(Problem { from: token.start, diagnostic });
         };
         self.classes -= usize::from(block.keyword.is_empty());
@@ -184,7 +184,10 @@ impl<'t> Blocks<'t> {
         }
         let diagnostic =
             fault!(MISMATCHED_END, "{} is closed by `end {}`", described(&block), token.text)
-                .help(format!("write `end {}`, or close what is open in between", block.name))
+                .help(format!(
+                    "write `end {}`, or close the constructs opened in between",
+                    block.name
+                ))
                 .labelled(span, format!("expected `{}`", block.name))
                 .related(Span::new(self.source, block.start, block.end), "opened here");
         Err(Problem { from: token.start, diagnostic })
@@ -197,7 +200,7 @@ impl<'t> Blocks<'t> {
             return Some(Problem { from: end, diagnostic: else_if(inner) });
         }
         let diagnostic = fault!(MISMATCHED_END, "{} has no `end {}`", described(block), block.name)
-            .help(format!("write `end {};` where it ends", block.name))
+            .help(format!("write `end {};` at its end", block.name))
             .labelled(Span::new(self.source, block.start, block.end), "opened here");
         Some(Problem { from: end, diagnostic })
     }
@@ -205,8 +208,8 @@ impl<'t> Blocks<'t> {
 
 /// The usual cause of an `if` that stays open.
 fn else_if(inner: Span) -> Diagnostic {
-    fault!(MISMATCHED_END, "the `if` of `else if` has no `end if` of its own")
-        .help("write `elseif`, which needs none")
+    fault!(MISMATCHED_END, "the nested `if` of `else if` has no `end if`")
+        .help("write `elseif`, which does not need one")
         .at(inner)
 }
 

@@ -288,10 +288,10 @@ impl<'t> Scanner<'t> {
         let Some(bracket) = self.brackets.pop() else {
             let message =
                 fault!(UNCLOSED_BRACKET, "`{}` closes a bracket that was never opened", token.text)
-                    .help(format!("take `{}` away, or open it before", token.text));
+                    .help(format!("remove `{}`, or open it first", token.text));
             return self.report(
                 token.start,
-                message.labelled(self.span(token.start, token.end), "nothing is open here"),
+                message.labelled(self.span(token.start, token.end), "no bracket is open here"),
             );
         };
         if closing(bracket.open) != token.text {
@@ -331,7 +331,7 @@ impl<'t> Scanner<'t> {
     fn unclosed(&mut self, bracket: &Bracket, start: usize, end: usize, here: &str) {
         let open = char::from(bracket.open);
         let diagnostic = fault!(UNCLOSED_BRACKET, "`{open}` is not closed")
-            .help(format!("write `{}` where the bracket should end", closing(bracket.open)))
+            .help(format!("write `{}` at the end of the bracket", closing(bracket.open)))
             .labelled(self.span(bracket.at, bracket.at + 1), "opened here")
             .related(self.span(start, end), here);
         self.report(bracket.at, diagnostic);
@@ -367,7 +367,7 @@ impl<'t> Scanner<'t> {
 /// The error of a text nested too deeply.
 fn too_deep(span: Span) -> Diagnostic {
     fault!(NESTING_TOO_DEEP, "this is nested too deeply")
-        .help("split it: give parts of the expression a name")
+        .help("split it: assign parts of the expression to variables")
         .at(span)
 }
 

@@ -306,8 +306,8 @@ impl<'t> Tokens<'t> {
 
     fn unclosed(&self, what: &str, close: &str, length: usize) -> Diagnostic {
         fault!(UNCLOSED_STRING, "this {what} has no end")
-            .help(format!("write `{close}` where the {what} ends"))
-            .labelled(Span::new(self.source, self.at, self.at + length), "it begins here")
+            .help(format!("write `{close}` at the end of the {what}"))
+            .labelled(Span::new(self.source, self.at, self.at + length), "it starts here")
     }
 
     fn bad_character(&self) -> Diagnostic {
@@ -319,18 +319,18 @@ impl<'t> Tokens<'t> {
         let fault = if character.is_control() {
             fault!(
                 BAD_CHARACTER,
-                "the control character {} cannot stand here",
+                "the control character {} is not allowed here",
                 character.escape_unicode()
             )
         } else {
-            fault!(BAD_CHARACTER, "`{shown}` cannot stand here")
+            fault!(BAD_CHARACTER, "the character `{shown}` is not allowed here")
         };
         let help = match known {
             Some((_, remedy)) => format!("write `{remedy}`"),
             None if character.is_alphabetic() => {
-                "identifiers have the letters `a` to `z` only; quote it: `'...'`".to_owned()
+                "identifiers contain only the letters `a` to `z`; quote it: `'...'`".to_owned()
             }
-            None => "it may stand in strings, comments and quoted identifiers only".to_owned(),
+            None => "it is allowed only in strings, comments and quoted identifiers".to_owned(),
         };
         fault.help(help).at(Span::new(self.source, self.at, self.at + length))
     }

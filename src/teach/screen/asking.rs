@@ -93,7 +93,7 @@ impl Screen {
         let quiz = self.quiz.as_ref()?;
         let keys = match quiz.asking.as_ref()?.verdict {
             None => "type the answer, then Enter; Esc: no answer",
-            Some(_) => "any key shows the step",
+            Some(_) => "press any key to show the step",
         };
         let score = (quiz.score.asked > 0).then(|| format!("   {}", quiz.score));
         Some(format!("{keys}{}", score.unwrap_or_default()))

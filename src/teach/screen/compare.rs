@@ -42,7 +42,7 @@ pub(super) fn draw(screen: &Screen, frame: &mut Frame, area: Rect) {
         .x_axis(axis("generation", x, |value| format!("{value:.0}")))
         .y_axis(axis("best fitness", y, |value| short(elementary::powf(10f64, value))));
     frame.render_widget(chart, above);
-    let legend = "Line: as the script has it, o: changed.";
+    let legend = "Line: original script, o: changed.";
     frame.render_widget(Paragraph::new(format!("{legend}\n{}", branches.verdict())), below);
 }
 

@@ -14,18 +14,18 @@ const KEYS: &str =
 const HELP: &str = "\
 → space n Enter   the next step
 ← b               one step back
-Tab               the next part: from crossover to mutation, and so on
+Tab               the next phase: from crossover to mutation, and so on
 ↓ ↑ Page down, up the next generation, the one before
 Home, End         the first step, the last step
 g                 go to a generation
 f                 follow an individual through the generations
 i                 inspect the simulation of an individual
-u                 go on until something happens
+u                 continue until a condition is met
 w                 what if: run again with a change from here on, and compare
 q                 end
 
 Marks: > followed or new, ♛ elite, x failed, ? drawn at random, * mutated.
-Each block is a gene: · low, █ high among this generation.";
+Each block is a gene: · low, █ high within this generation.";
 
 /// Draws the screen.
 pub fn draw(screen: &Screen, frame: &mut Frame) {
@@ -42,8 +42,9 @@ pub fn draw(screen: &Screen, frame: &mut Frame) {
         View::Steps => step(screen, frame, body),
         View::Individual(k) => inspect::draw(screen, k, frame, body),
         View::Branches => compare::draw(screen, frame, body),
-        View::Help => frame
-            .render_widget(Paragraph::new(HELP).block(titled(" keys; any key goes back ")), body),
+        View::Help => {
+            frame.render_widget(Paragraph::new(HELP).block(titled(" keys; any key returns ")), body)
+        }
     }
     let block = Block::new().borders(Borders::TOP);
     let told = question.unwrap_or_else(|| explain(&screen.walk));

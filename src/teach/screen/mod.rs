@@ -163,8 +163,7 @@ impl Screen {
                 }
                 self.branch = Some(Branch { generation, change, trace, is_walked: false });
                 self.view = View::Branches;
-                self.message =
-                    "x walks through the changed run; any other key goes back".to_owned();
+                self.message = "x steps through the changed run; any other key returns".to_owned();
             }
             Err(why) => self.message = why,
         }
@@ -180,7 +179,7 @@ impl Screen {
         branch.is_walked = !branch.is_walked;
         self.followed = None;
         self.view = View::Steps;
-        self.message = "this is the other run; w with no statement compares again".to_owned();
+        self.message = "this is the changed run; w without a statement compares again".to_owned();
     }
 
     /// The run and the changed one.
@@ -209,12 +208,12 @@ impl Screen {
                 true
             }
             _ => {
-                self.message = "no such key; ? shows the keys".to_owned();
+                self.message = "unknown key; ? shows the keys".to_owned();
                 return;
             }
         };
         if !moved {
-            self.message = "there is nothing further".to_owned();
+            self.message = "this is the last step".to_owned();
         }
         let is_forward =
             !matches!(key, Key::Left | Key::Char('b') | Key::Up | Key::Home | Key::End);
@@ -235,7 +234,7 @@ impl Screen {
             .flatten();
         self.message = match self.followed {
             Some(k) => format!("followed on as individual {}", k + 1),
-            None => format!("individual {} has no successor here; following ends", followed + 1),
+            None => format!("individual {} has no descendant here; tracking ends", followed + 1),
         };
     }
 

@@ -55,10 +55,10 @@ pub(super) fn carry_out(screen: &mut Screen, prompt: &Prompt) -> Result<String, 
     match prompt.question {
         Question::Generation => {
             let of = screen.walk.trace().generations.len();
-            let number: usize = text.parse().map_err(|_| format!("`{text}` is no number"))?;
+            let number: usize = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
             match number.checked_sub(1).is_some_and(|number| screen.walk.go_to(number)) {
                 true => Ok(String::new()),
-                false => Err(format!("there are the generations 1 to {of}")),
+                false => Err(format!("the generations are 1 to {of}")),
             }
         }
         Question::Follow => {
@@ -82,7 +82,7 @@ pub(super) fn carry_out(screen: &mut Screen, prompt: &Prompt) -> Result<String, 
             Ok(String::new())
         }
         Question::WhatIf => {
-            Err("give a statement that changes a variable of the script".to_owned())
+            Err("enter a statement that changes a variable of the script".to_owned())
         }
     }
 }
@@ -92,13 +92,13 @@ fn individual(walk: &Walk, text: &str) -> Result<usize, String> {
     let generation = walk.generation();
     if text.is_empty() {
         let best = generation.best().map(|(k, _)| k);
-        return best.ok_or_else(|| "who is the best is not known".to_owned());
+        return best.ok_or_else(|| "the best individual is unknown".to_owned());
     }
-    let number: usize = text.parse().map_err(|_| format!("`{text}` is no number"))?;
+    let number: usize = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
     let exists = number >= 1 && number <= generation.len();
     exists
         .then(|| number - 1)
-        .ok_or_else(|| format!("there are the individuals 1 to {}", generation.len()))
+        .ok_or_else(|| format!("the individuals are 1 to {}", generation.len()))
 }
 
 fn until(walk: &mut Walk, text: &str) -> Result<String, String> {
@@ -118,8 +118,8 @@ fn until(walk: &mut Walk, text: &str) -> Result<String, String> {
             Ok(target) => {
                 walk.until(|walk| rated(walk) && !has_failed(best(walk)) && best(walk) <= target)
             }
-            Err(_) => return Err(format!("`{text}` is no condition")),
+            Err(_) => return Err(format!("`{text}` is not a condition")),
         },
     };
-    if found { Ok(String::new()) } else { Err(format!("`{text}` does not come true from here on")) }
+    if found { Ok(String::new()) } else { Err(format!("`{text}` does not occur from here on")) }
 }

@@ -134,7 +134,7 @@ fn crossover(screen: &Screen, rank: usize) -> Vec<Line<'static>> {
     let child = |row: usize, j: usize| crossed.rows.get((crossed.elites + row) * n + j).copied();
     for j in 0..n {
         if j > 0 && crossed.points.contains(&j) {
-            lines.push(Line::from("- - - - - - exchanged behind here - - -"));
+            lines.push(Line::from("- - - - - - exchanged after this gene - - -"));
         }
         let swapped = crossed.points.iter().filter(|&&point| point <= j).count() % 2;
         let cell = |value: f64, from: usize| {

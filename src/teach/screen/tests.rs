@@ -76,7 +76,7 @@ fn before_a_step_its_outcome_is_asked() {
     // Wrong, put right; then no answer to the last question, and nothing is asked twice.
     let crossed = press(&mut screen, &[&[Key::Tab][..], &answer("aa")].concat());
     assert!(crossed.contains("No: the answer is ab."), "{crossed}");
-    assert!(crossed.contains("1 of 2 answers were right."), "{crossed}");
+    assert!(crossed.contains("1 of 2 answers were correct."), "{crossed}");
     let mutation = press(&mut screen, &[Key::Right, Key::Tab]);
     assert!(mutation.contains("Does the gene"), "{mutation}");
     let skipped = press(&mut screen, &[Key::Escape, Key::Right]);
@@ -88,11 +88,11 @@ fn before_a_step_its_outcome_is_asked() {
 #[test]
 fn answers_that_do_not_fit_say_why() {
     let last = |keys: &[Key]| shown(keys).lines().last().unwrap_or_default().to_owned();
-    assert_eq!(last(&typed('g', "9")), "there are the generations 1 to 3");
-    assert_eq!(last(&typed('g', "x")), "`x` is no number");
-    assert_eq!(last(&typed('f', "7")), "there are the individuals 1 to 6");
-    assert_eq!(last(&typed('u', "soon")), "`soon` is no condition");
-    assert_eq!(last(&[Key::Left]), "there is nothing further");
+    assert_eq!(last(&typed('g', "9")), "the generations are 1 to 3");
+    assert_eq!(last(&typed('g', "x")), "`x` is not a number");
+    assert_eq!(last(&typed('f', "7")), "the individuals are 1 to 6");
+    assert_eq!(last(&typed('u', "soon")), "`soon` is not a condition");
+    assert_eq!(last(&[Key::Left]), "this is the last step");
     assert_eq!(last(&[Key::Char('g'), Key::Char('2'), Key::Backspace]), "go to generation: _");
 }
 
@@ -149,8 +149,9 @@ fn a_changed_run_is_compared_and_walked_through() {
     screen.branched(2, "F_Mut := 1".to_owned(), Ok(changed));
     let text = drawn(&screen);
     sample::snapshots().bind(|| insta::assert_snapshot!("screen_what_if", text));
-    let verdict =
-        |text: &str| text.lines().find(|line| line.contains("The change is")).map(str::to_owned);
+    let verdict = |text: &str| {
+        text.lines().find(|line| line.contains("The changed run ends")).map(str::to_owned)
+    };
     press(&mut screen, &[Key::Char('x')]);
     assert!(drawn(&screen).starts_with("Generation 2 of 3"));
     // The chart still tells which run is which.

@@ -66,7 +66,7 @@ pub fn divide(left: &Value, right: &Value) -> Result<Value, Fault> {
     match (left, right) {
         (Value::Real(a), Value::Real(b)) => real_divide(*a, *b).map(Value::Real),
         (_, Value::Array(_)) => {
-            Err(unsuitable("/", left, right).help("`./` divides by each element".to_owned()))
+            Err(unsuitable("/", left, right).help("use `./` to divide by each element".to_owned()))
         }
         _ => match scalars(left, right) {
             Some((a, b)) => real_divide(a, b).map(Value::Real),
@@ -80,9 +80,8 @@ pub fn divide(left: &Value, right: &Value) -> Result<Value, Fault> {
 pub fn power(left: &Value, right: &Value) -> Result<Value, Fault> {
     match (left, right) {
         (Value::Array(base), Value::Integer(exponent)) => matrix::power(base, *exponent),
-        (Value::Array(_), _) | (_, Value::Array(_)) => {
-            Err(unsuitable("^", left, right).help("`.^` raises each element to a power".to_owned()))
-        }
+        (Value::Array(_), _) | (_, Value::Array(_)) => Err(unsuitable("^", left, right)
+            .help("use `.^` to raise each element to a power".to_owned())),
         _ => match scalars(left, right) {
             Some((base, exponent)) => real_power(base, exponent).map(Value::Real),
             None => Err(unsuitable("^", left, right)),
@@ -168,7 +167,7 @@ fn same_rank(symbol: &str, left: &Value, right: &Value) -> Result<(), Fault> {
         return Ok(());
     }
     Err(unsuitable(symbol, left, right)
-        .help(format!("`.{symbol}` applies a scalar to each element of an array")))
+        .help(format!("use `.{symbol}` to combine a scalar with each element of an array")))
 }
 
 fn not_a_number(symbol: &str, value: &Value) -> Fault {

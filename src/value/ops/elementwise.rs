@@ -175,7 +175,7 @@ fn same_sizes(symbol: &str, left: &ArrayValue, right: &ArrayValue) -> Result<(),
     }
     Err(fault!(
         SIZE_MISMATCH,
-        "`{symbol}` needs arrays of the same sizes, not {} and {}",
+        "`{symbol}` needs arrays of equal sizes, not {} and {}",
         sizes(&left.dims),
         sizes(&right.dims)
     ))

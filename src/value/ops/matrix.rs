@@ -58,7 +58,7 @@ pub(super) fn power(base: &ArrayValue, exponent: i64) -> Result<Value, Fault> {
         _ => bail!(
             SIZE_MISMATCH,
             "`^` needs a square matrix, not {}", base.type_name();
-            help: "`.^` raises each element to a power"
+            help: "use `.^` to raise each element to a power"
         ),
     };
     let Ok(mut left) = u64::try_from(exponent) else {
@@ -158,6 +158,6 @@ fn no_product(a: &ArrayValue, b: &ArrayValue) -> Fault {
     fault!(
         SIZE_MISMATCH,
         "the sizes {} and {} cannot be multiplied", sizes(&a.dims), sizes(&b.dims);
-        help: "`.*` multiplies element by element"
+        help: "use `.*` for element-wise multiplication"
     )
 }

@@ -31,7 +31,7 @@ fn unsuitable(symbol: &str, left: &Value, right: &Value) -> Fault {
     );
     match (left.is_text(), right.is_text(), symbol) {
         (true, false, "+") | (false, true, "+") => {
-            fault.help("`String(x)` turns a number into text".to_owned())
+            fault.help("use `String(x)` to convert a number to a string".to_owned())
         }
         _ => fault,
     }

@@ -56,7 +56,7 @@ pub fn order(symbol: &str, left: &Value, right: &Value) -> Result<Option<Orderin
             Ok(Some(a.ordinal.cmp(&b.ordinal)))
         }
         (Value::Array(_), _) | (_, Value::Array(_)) => Err(unsuitable(symbol, left, right)
-            .help("relations compare scalars; compare the elements in a loop".to_owned())),
+            .help("a relation needs scalar operands; compare the elements in a loop".to_owned())),
         _ => Err(unsuitable(symbol, left, right)),
     }
 }
@@ -107,7 +107,7 @@ fn logical(
             if dims != others {
                 return Err(fault!(
                     SIZE_MISMATCH,
-                    "`{symbol}` needs arrays of the same sizes, not {} and {}",
+                    "`{symbol}` needs arrays of equal sizes, not {} and {}",
                     sizes(dims),
                     sizes(others)
                 ));

@@ -56,6 +56,8 @@ pub(super) const LONG_FUNCTIONS: &[(&str, &str, &str)] = &[
     ("lower/expressions/calls.rs", "user_call", IN_ORDER),
     ("lower/expressions/calls.rs", "array_function", ONE_TABLE),
     ("lower/expressions/expression.rs", "lower_kind", PER_CASE),
+    ("flatten/vectorization.rs", "vectorized", IN_ORDER),
+    ("lower/inline.rs", "statement", PER_CASE),
     ("mat/v73.rs", "dataset", IN_ORDER),
     ("script/runs/problem/build.rs", "build", IN_ORDER),
     ("script/runs/problem/build.rs", "experiment", IN_ORDER),

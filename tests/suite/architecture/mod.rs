@@ -270,7 +270,7 @@ fn tables_name_every_file_of_their_folder_and_are_read() {
             let door = all().iter().find(|door| door.module == folder).expect("a face");
             let table = door.text.split_once("Entry<").map_or("", |(_, table)| table);
             if !table.contains(&row) {
-                wrong.push(format!("{}: `{row}` is no row", source.path.display()));
+                wrong.push(format!("{}: `{row}` is not a row", source.path.display()));
             }
         }
         for table in &source.tables {

@@ -14,7 +14,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Analysis> = Entry {
     name: "morris",
     aliases: &["screening"],
-    summary: "screening by single changes: cheap",
+    summary: "Morris method: screening by elementary effects; cheap",
     reference: "morris-1991",
     make: |_| Ok(Box::new(Morris)),
 };

@@ -24,7 +24,7 @@ use crate::registry::Entry;
 pub(super) const ENTRY: Entry<dyn Analysis> = Entry {
     name: "sobol",
     aliases: &["variance"],
-    summary: "shares of the variance",
+    summary: "Sobol indices: shares of the variance",
     reference: "sobol-1967",
     make: |_| Ok(Box::new(Sobol)),
 };

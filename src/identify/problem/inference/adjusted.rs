@@ -89,12 +89,14 @@ pub fn adjust(problem: &mut Problem, added: Adjustments) -> Result<(), Fault> {
     if !weighed.is_empty() && ErrorModel::of(problem) != ErrorModel::Known {
         bail!(
             BAD_OPTION,
-            "a prior must be weighed against the data, but their standard deviations are not known";
-            help: "give every output its `sigma`"
+            "a prior must be weighted against the data, but the standard deviations of the data \
+             are unknown";
+            help: "give `sigma` for every output"
         );
     }
     if !weighed.is_empty() && problem.objectives[0].0 != "sum_of_squares" {
-        bail!(BAD_OPTION, "`{}` cannot be weighed against a prior", problem.objectives[0].0; help: "minimise `sum_of_squares`");
+        bail!(BAD_OPTION, "`{}` cannot be weighted against a \
+                           prior", problem.objectives[0].0; help: "minimise `sum_of_squares`");
     }
     for prior in &weighed {
         problem.series.push(pseudo_series(problem, prior)?);
@@ -130,7 +132,7 @@ fn logarithms(problem: &mut Problem, series: &[usize]) -> Result<Vec<Range<usize
             bail!(
                 BAD_OPTION,
                 "`{}` is log-normal, but {} was measured at {} = {}", own.y_name, own.y[place], own.x_name, own.x[place];
-                help: "leave such points out, or use a normal error"
+                help: "remove such points, or use a normal error"
             );
         }
         if matches!(own.sigma, Sigma::Formula(_)) {
@@ -153,7 +155,8 @@ fn pseudo_series(problem: &Problem, prior: &Prior) -> Result<Series, Fault> {
         bail!(BAD_OPTION, "the prior of `{name}` has no width or no centre"; help: "write `prior = {{ mean = 1, sd = 0.1 }}` or `prior = {{ median = 1, factor = 1.5 }}`, the factor above 1")
     };
     if logarithm && problem.parameters[prior.parameter].min <= 0.0 {
-        bail!(BAD_OPTION, "the prior of `{name}` is log-normal, but its range begins at {}", problem.parameters[prior.parameter].min; help: "give a positive minimum");
+        bail!(BAD_OPTION, "the prior of `{name}` is log-normal, but its range starts at \
+                           {}", problem.parameters[prior.parameter].min; help: "give a positive minimum");
     }
     Ok(Series {
         experiment: PRIOR.to_owned(),

@@ -119,7 +119,7 @@ pub(super) fn add(
     let failed = settings.samples - estimates.len();
     if failed as f64 > FAILED * settings.samples as f64 {
         found.refusals.push(format!(
-            "There is no bootstrap: {failed} of {} fits to data drawn anew did not reach a minimum.",
+            "There is no bootstrap: {failed} of {} fits to resampled data did not reach a minimum.",
             settings.samples
         ));
         return Ok(());
@@ -240,12 +240,12 @@ impl Bootstrap {
     /// In words.
     pub(super) fn sentences(&self) -> Vec<String> {
         let drawn = match self.resampling {
-            Resampling::Residuals => "residuals drawn anew",
-            Resampling::Parametric => "normal noise drawn anew",
-            Resampling::Cases => "points drawn anew",
+            Resampling::Residuals => "resampled residuals",
+            Resampling::Parametric => "newly drawn normal noise",
+            Resampling::Cases => "resampled points",
         };
         let kind = match self.interval {
-            IntervalKind::Bca => "bias-corrected and accelerated",
+            IntervalKind::Bca => "bias-corrected and accelerated (BCa)",
             IntervalKind::Percentile => "percentiles",
             IntervalKind::Basic => "basic",
         };

@@ -130,8 +130,9 @@ pub fn compare(solutions: &[(String, &Solution)]) -> Result<Comparison, Fault> {
         if !same_data(first, solution) {
             bail!(
                 BAD_OPTION,
-                "`{first_name}` and `{name}` are fitted to different data, so that their likelihoods cannot be compared";
-                help: "give both the same experiments, points and outputs"
+                "`{first_name}` and `{name}` are fitted to different data, so their likelihoods \
+                 cannot be compared";
+                help: "use the same experiments, points and outputs for both"
             );
         }
     }
@@ -149,7 +150,7 @@ pub fn compare(solutions: &[(String, &Solution)]) -> Result<Comparison, Fault> {
         bail!(
             BAD_OPTION,
             "the standard deviations of the measurements are given for some of the models only";
-            help: "give every output the same `sigma` in all problems, or leave it out in all"
+            help: "give every output the same `sigma` in all problems, or omit it in all"
         );
     }
     if models.iter().all(|model| model.no_minimum.is_none()) {
@@ -249,11 +250,11 @@ fn ratio(models: &[Compared], smaller: usize, larger: usize) -> Nested {
 fn sentence(models: &[Compared], nested: &[Nested]) -> String {
     let short = |model: &Compared| {
         let why = model.no_minimum.as_ref()?;
-        Some(format!("the fit of {} has not ended at a minimum ({why})", model.name))
+        Some(format!("the fit of {} did not reach a minimum ({why})", model.name))
     };
     let short: Vec<String> = models.iter().filter_map(short).collect();
     if !short.is_empty() {
-        return format!("The models cannot be judged: {}.", short.join("; "));
+        return format!("The models cannot be compared: {}.", short.join("; "));
     }
     let mut text = judgement(models);
     for pair in nested {
@@ -267,14 +268,15 @@ fn sentence(models: &[Compared], nested: &[Nested]) -> String {
                 significant(p, 2)
             ),
             Some(p) => format!(
-                " {small} is a special case of {large}, and the likelihood ratio gives no reason for the larger model (p = {}).",
+                " {small} is a special case of {large}, and the likelihood ratio does not \
+                 support the larger model (p = {}).",
                 significant(p, 2)
             ),
         };
         text += &said;
     }
     if nested.is_empty() && models.len() > 1 {
-        text += " No model is a special case of another, so that there is no likelihood ratio.";
+        text += " No model is a special case of another, so there is no likelihood-ratio test.";
     }
     text
 }
@@ -282,21 +284,21 @@ fn sentence(models: &[Compared], nested: &[Nested]) -> String {
 fn judgement(models: &[Compared]) -> String {
     let weight = |model: &&Compared| model.weight.unwrap_or(f64::NAN);
     if models.iter().any(|model| model.weight.is_none()) {
-        return "There are too few points to weigh the models.".to_owned();
+        return "There are too few points to compare the models.".to_owned();
     }
     let mut order: Vec<&Compared> = models.iter().collect();
     order.sort_by(|a, b| weight(b).total_cmp(&weight(a)));
     let best = order[0];
     if weight(&best) >= DECIDED {
         return format!(
-            "These data speak for {} (Akaike weight {}).",
+            "These data favour {} (Akaike weight {}).",
             best.name,
             significant(weight(&best), 3)
         );
     }
     let named = order.iter().map(|m| format!("{} {}", m.name, significant(weight(m), 2)));
     format!(
-        "These data do not decide between the models (Akaike weights: {}).",
+        "These data do not discriminate between the models (Akaike weights: {}).",
         named.collect::<Vec<_>>().join(", ")
     )
 }

@@ -128,7 +128,7 @@ pub(super) fn add(
             return Ok(());
         }
         Err(failed) => {
-            found.refusals.push(format!("There is no plan: {}.", failed.cause));
+            found.refusals.push(format!("There is no experiment design: {}.", failed.cause));
             return Ok(());
         }
     };
@@ -155,7 +155,7 @@ fn unbounded(problem: &Problem, plan: &Proposal) -> Option<String> {
     let names: Vec<&str> = open.map(|(free, _)| free.name.as_str()).collect();
     (!names.is_empty()).then(|| {
         format!(
-            "There is no D- or A-optimal plan: whatever is measured more of these variables leaves \
+            "There is no D- or A-optimal design: further measurements of these variables leave \
              {} unbounded.",
             names.join(", ")
         )
@@ -183,7 +183,7 @@ fn candidates(
         let mut gradients = Vec::with_capacity(own.len());
         for (x, gradient) in curve.points.iter().zip(own) {
             let noise = noise(*x).ok_or_else(|| {
-                fault!(BAD_OPTION, "nothing is known of the errors of `{}`", curve.y[0])
+                fault!(BAD_OPTION, "the measurement errors of `{}` are unknown", curve.y[0])
             })?;
             let parts = gradient.iter().zip(&search.units).map(|(g, unit)| g * unit / noise);
             gradients.push(parts.collect::<Vec<f64>>());
@@ -426,7 +426,7 @@ impl NextMeasurement {
         if !hopeless.is_empty() {
             let names: Vec<&str> = hopeless.iter().map(|&k| self.parameters[k].as_str()).collect();
             sentences.push(format!(
-                "{} more {} would not shrink the interval of {} by a tenth, wherever measured.",
+                "{} more {}, wherever measured, would not shrink the interval of {} by a tenth.",
                 capitalized(&number(self.points)),
                 if self.points == 1 { "point" } else { "points" },
                 names.join(", ")

@@ -83,7 +83,7 @@ impl Local {
         let simulated = simulated.map_err(|_| "the best point cannot be simulated")?;
         let found = Statistics::at(problem, evaluation, values, &simulated, &[]);
         if !found.repeated.is_empty() {
-            return Err("two series hold the same numbers");
+            return Err("two series contain the same numbers");
         }
         let Statistics { weights: scales, residuals, freedom, believed, variance, robust, .. } =
             found;
@@ -93,7 +93,7 @@ impl Local {
         let entry = |j: usize, k: usize| found.jacobian[k][j] * scales[j];
         let jacobian = DMatrix::from_fn(scales.len(), values.len(), entry);
         if jacobian.iter().any(|entry| !entry.is_finite()) {
-            return Err("the simulation fails beside the best point");
+            return Err("the simulation fails near the best point");
         }
         let square = residuals.iter().map(|residual| residual * residual).sum::<f64>();
         let size =
@@ -101,7 +101,8 @@ impl Local {
         let floor = elementary::powi(FROM_THE_SOLVER * problem.noise, 2) * size;
         if !believed && square <= floor {
             return Err(
-                "the residuals are as small as the errors of the simulation, so that nothing is known of the noise",
+                "the residuals are as small as the errors of the simulation, so the noise is \
+                 unknown",
             );
         }
         let gram = jacobian.tr_mul(&jacobian) / variance;
@@ -110,7 +111,7 @@ impl Local {
         let spread = if believed { variance.max(square / freedom) } else { square / freedom };
         let gradient = jacobian.tr_mul(&DVector::from_column_slice(&residuals));
         if limits::along(problem, values).is_some() {
-            return Err("the best values stand at the limit of a constraint");
+            return Err("the best values are at the limit of a constraint");
         }
         if !robust
             && offset(problem, values, &gradient, &information) / variance.sqrt()

@@ -117,7 +117,8 @@ pub fn infer(run: &Run) -> Result<Inferred, Fault> {
         found.likelihood = None;
         if wanted.bootstrap.is_some() || wanted.posterior.is_some() {
             found.refusals.push(format!(
-                "There is neither a bootstrap nor a posterior of the robust loss `{}`: minimise `sum_of_squares` for them.",
+                "There is no bootstrap and no posterior for the robust loss `{}`: minimise \
+                 `sum_of_squares` instead.",
                 run.problem.objectives[0].0
             ));
         }
@@ -143,8 +144,8 @@ impl Solution {
         if let Some(why) = self.keeps_chains().filter(|_| found.posterior.is_some()) {
             found.posterior = None;
             found.refusals.push(format!(
-                "There is no posterior: {why}, and chains that begin at the best values would not \
-                 come there."
+                "There is no posterior: {why}, and chains that start at the best values would \
+                 not reach it."
             ));
         }
         self.findings.append(&mut found.findings);

@@ -32,7 +32,8 @@ pub(super) fn compared(problem: &Problem, local: &Local) -> Vec<Finding> {
             let posterior = variance.sqrt() / unit;
             if posterior > DOMINATES * sd {
                 let sentence = format!(
-                    "What is known of {name} comes from its prior: the data bring the standard deviation of {what} from {} to {} only.",
+                    "The estimate of {name} comes mainly from its prior: the data reduce the \
+                     standard deviation of {what} only from {} to {}.",
                     significant(sd, 3),
                     significant(posterior, 3)
                 );
@@ -42,7 +43,8 @@ pub(super) fn compared(problem: &Problem, local: &Local) -> Vec<Finding> {
         let distance = (own - mean).abs() / sd;
         if distance > CONTRADICTS {
             let sentence = format!(
-                "The data contradict the prior of {name}: the estimate lies {} of its standard deviations from its centre.",
+                "The data contradict the prior of {name}: the estimate lies {} prior standard \
+                 deviations from its centre.",
                 significant(distance, 2)
             );
             remarks.push(finding(sentence, name, distance, CONTRADICTS));
@@ -57,7 +59,9 @@ pub(super) fn at_constraints(problem: &Problem, values: &[f64]) -> Vec<Finding> 
         problem.inference.constraints.iter().filter(|constraint| constraint.is_active(values));
     let remark = |text: &str| {
         let sentence = format!(
-            "The best values lie at the limit of the constraint `{text}`: a better fit may lie beyond it. On the limit there are no standard errors and intervals: along it they would be too small, as the truth may lie inside."
+            "The best values lie at the limit of the constraint `{text}`: a better fit may lie \
+             beyond it. There are no standard errors and intervals on the limit: computed along \
+             it they would be too small, because the true values may lie inside."
         );
         Finding::new(FindingKind::Constraint, sentence)
     };

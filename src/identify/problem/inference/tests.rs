@@ -336,7 +336,7 @@ fn normal_priors_of_a_straight_line_are_conjugate() {
     let remarks = &found.findings;
     let begins = |k: usize, text: &str| remarks[k].sentence.starts_with(text);
     assert!(begins(0, "The data contradict the prior of p0: the estimate lies 3."), "{remarks:?}");
-    assert!(begins(1, "What is known of p1 comes from its prior"), "{remarks:?}");
+    assert!(begins(1, "The estimate of p1 comes mainly from its prior"), "{remarks:?}");
     assert_eq!(remarks.len(), 2);
     let solution = crate::identify::problem::Solution::of(&run, "", Vec::new()).unwrap();
     assert_eq!(solution.series.len(), 1, "a prior is not data");
@@ -356,11 +356,11 @@ fn priors_need_known_deviations_and_a_width() {
     };
     let normal = |sd| Distribution::Normal { mean: 0.0, sd };
     assert!(build(normal(1.0), true).is_ok());
-    assert!(build(normal(1.0), false).unwrap_err().contains("are not known"));
+    assert!(build(normal(1.0), false).unwrap_err().contains("are unknown"));
     assert!(build(normal(0.0), true).unwrap_err().contains("no width"));
     assert!(build(Distribution::LogNormal { median: 1.0, factor: 1.0 }, true).is_err());
     let message = build(Distribution::LogNormal { median: 1.0, factor: 2.0 }, true).unwrap_err();
-    assert!(message.contains("range begins at -1"), "{message}");
+    assert!(message.contains("range starts at -1"), "{message}");
 }
 
 #[test]

@@ -198,7 +198,8 @@ fn likelihood_alone(
     if !allowed {
         bail!(
             BAD_OPTION,
-            "`sigma = \"estimate\"` minimises the negative log-likelihood, not another fitness";
+            "`sigma = \"estimate\"` minimises the negative log-likelihood and cannot be combined \
+             with another fitness";
             help: "remove `fitness`, or give sigmas as numbers"
         );
     }
@@ -260,7 +261,8 @@ fn on_its_scale(
         if entry.scale.as_deref().is_some_and(|scale| scale.starts_with("log")) {
             bail!(
                 BAD_OPTION,
-                "`{name}` has a logarithmic scale, but `{method}` searches natural units, as published";
+                "`{name}` has a logarithmic scale, but `{method}` searches on a linear scale, as \
+                 published";
                 help: "remove `scale`, or use `genetic`"
             );
         }
@@ -380,7 +382,10 @@ fn experiment(
         if measured.factor != 1.0
             && let Some(super::file::SigmaEntry::Number(sigma)) = &wanted.sigma
         {
-            notes.add(format!("the sigma {sigma} of `{y_name}` is in {}", in_words(&unit(y_name))));
+            notes.add(format!(
+                "the sigma column {sigma} of `{y_name}` is in {}",
+                in_words(&unit(y_name))
+            ));
         }
         let factor =
             data::sigma_factor(table, wanted.sigma.as_ref(), &unit(y_name), measured.factor);
@@ -395,7 +400,7 @@ fn experiment(
             if values.len() != y.len() {
                 return Err(one(fault!(
                     BAD_OPTION,
-                    "the sigma of `{y_name}` in {name} has {} rows, `{y_name}` has {}",
+                    "the sigma of `{y_name}` in {name} has {} rows, but `{y_name}` has {}",
                     values.len(),
                     y.len()
                 )));
@@ -451,7 +456,7 @@ fn limit(session: &Session, entry: &ExperimentEntry, settings: &mut Settings) ->
     }
     let Some(seconds) = entry.max_seconds else { return Ok(()) };
     if seconds.is_nan() || seconds <= 0.0 {
-        bail!(BAD_OPTION, "`max_seconds` is {seconds}, but a simulation takes some time");
+        bail!(BAD_OPTION, "`max_seconds` is {seconds}; it must be positive");
     }
     // Where there is no clock, nothing is late.
     settings.time_budget = session.world.clock().map(|clock| TimeBudget { seconds, clock });
@@ -493,7 +498,9 @@ fn settle(
                     name.clone()
                 };
                 let Some(place) = free.iter().position(|free| free.name == full) else {
-                    bail!(BAD_OPTION, "`{name}` is identified for each experiment, so that {experiment} has no value of it"; help: "fix it there with `set`")
+                    bail!(BAD_OPTION, "`{name}` is estimated separately for each experiment, but \
+                                       {experiment} has no value for \
+                                       it"; help: "fix it there with `set`")
                 };
                 if !initial && !delay {
                     places.push((place, name.clone()));
@@ -522,7 +529,8 @@ fn settle(
     }
     for (name, value) in &entry.set {
         if file.parameters.contains_key(name) {
-            bail!(BAD_OPTION, "`{name}` is set in {experiment} and among the parameters"; help: "keep one of them");
+            bail!(BAD_OPTION, "`{name}` is set both in {experiment} and in \
+                               `[parameters]`"; help: "remove one of the two");
         }
         around.modifications.push(format!("{name} = {value:e}"));
     }
@@ -582,14 +590,15 @@ pub(super) fn only_class(loaded: &[crate::name::Name]) -> Result<String, Fault> 
     match loaded {
         [only] => Ok(only.to_string()),
         [] => {
-            bail!(BAD_OPTION, "the problem names no model"; help: "write `model = \"Class\"`, and its file in `files`")
+            bail!(BAD_OPTION, "the problem does not name a \
+                               model"; help: "write `model = \"Class\"` and list its file in `files`")
         }
         several => {
             let names: Vec<String> = several.iter().map(ToString::to_string).collect();
             bail!(
                 BAD_OPTION,
-                "the files hold several classes: {}", names.join(", ");
-                help: "name the one to identify: `model = \"{}\"`", names[0]
+                "the files contain several classes: {}", names.join(", ");
+                help: "select one: `model = \"{}\"`", names[0]
             )
         }
     }

@@ -55,7 +55,7 @@ pub(super) fn constraint(text: &str, parameters: &[String]) -> Result<Constraint
         BinaryOperator::Equal => bail!(
             BAD_OPTION,
             "the constraint `{text}` is an equation";
-            help: "tie one parameter to the others: `b = {{ tied = \"2*a\" }}`"
+            help: "make one parameter depend on the others: `b = {{ tied = \"2*a\" }}`"
         ),
         _ => return Err(not_an_inequality(text)),
     };
@@ -101,7 +101,8 @@ fn term(text: &str, expression: &Expression, parameters: &[String]) -> Result<Te
             _ => Err(not_an_inequality(text)),
         },
         _ => {
-            bail!(BAD_OPTION, "the constraint `{text}` holds more than arithmetic"; help: "write one inequality for each")
+            bail!(BAD_OPTION, "the constraint `{text}` contains more than \
+                               arithmetic"; help: "write a separate inequality for each condition")
         }
     }
 }

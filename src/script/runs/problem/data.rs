@@ -89,7 +89,8 @@ pub(super) fn in_unit(
             return Err(incompatible(name, unit, given));
         }
         notes.about(table, [format!(
-            "`{own}` is in {given} and `{name}` in {unit}, which cannot be compared: nothing is converted"
+            "`{own}` is in {given} and `{name}` is in {unit}; these units are not comparable, so \
+             the values are not converted"
         )]);
         return Ok(unchanged());
     };
@@ -137,8 +138,15 @@ pub(super) fn as_time(
 }
 
 fn incompatible(name: &str, unit: &str, given: &str) -> Fault {
-    crate::fault!(BAD_OPTION, "`{name}` is in {}, but its column in {given}", in_words(unit)).help(
-        "name the right column, or give the `factor` that turns its values into the model's unit",
+    crate::fault!(
+        BAD_OPTION,
+        "`{name}` is in {}, but its column is in \
+                               {given}",
+        in_words(unit)
+    )
+    .help(
+        "select the correct column, or give the `factor` that converts its values to the unit of \
+         the model",
     )
 }
 
@@ -166,7 +174,7 @@ pub(super) fn same_length(names: [&str; 2], lengths: [usize; 2]) -> Result<(), F
         bail!(
             crate::identify::errors::DATA_SIZES_DIFFER,
             "`{}` has {} values, but `{}` has {}", names[0], lengths[0], names[1], lengths[1];
-            help: "name columns of one experiment"
+            help: "use columns of the same experiment"
         );
     }
     Ok(())

@@ -77,9 +77,9 @@ pub fn draft(session: &mut Session, options: &DraftOptions) -> Result<Draft, Vec
     parameters(&mut text, &translated, &roles);
     experiment(&mut text, options, &translated.flat, &roles);
     text.push_str(
-        "\n[stop]                       # the first that holds ends the run\n\
+        "\n[stop]                       # the first condition met ends the run\n\
          evaluations = 20000          # simulations\n\
-         stagnation = 500             # generations without a better value\n",
+         stagnation = 500             # generations without improvement\n",
     );
     let incomplete = check(session, &text);
     Ok(Draft { text, incomplete })
@@ -97,7 +97,7 @@ fn columns(table: &MatFile) -> Result<Vec<DataColumn>, Fault> {
         found.push(DataColumn { name, unit: column.about.unit, values: column.values });
     }
     if found.len() < 2 {
-        bail!(BAD_OPTION, "`{}` has no two columns of numbers", table.file_name);
+        bail!(BAD_OPTION, "`{}` has fewer than two columns of numbers", table.file_name);
     }
     Ok(found)
 }
@@ -160,9 +160,10 @@ fn variable_of(column: &str, flat: &FlatModel) -> Option<String> {
 
 fn head(options: &DraftOptions, class: &str) -> String {
     let mut text = format!(
-        "# A problem for `gapi identify`, drafted by `gapi new`: read every line and correct what it guesses.\n\n\
+        "# A problem for `gapi identify`, drafted by `gapi new`: check every line and correct \
+         the guesses.\n\n\
          title = {}\n\
-         model = {}          # the class, with a modification if wanted: \"Class(p = 1)\"\n",
+         model = {}          # the class, optionally with a modification: \"Class(p = 1)\"\n",
         quoted(&format!("{class} from {}", options.data)),
         quoted(class),
     );
@@ -188,8 +189,10 @@ fn key(name: &str) -> String {
 /// The parameters at the top of the model, each with a range.
 fn parameters(text: &mut String, model: &Translated, roles: &Roles<'_>) {
     text.push_str(
-        "\n# The parameters to identify. What is known is fixed, `NAME = { fixed = 1.5 }`, or deleted, so that the\n\
-         # model's value holds. Positive ranges wider than a decade are searched in logarithms.\n\
+        "\n# The parameters to estimate. Fix known values, `NAME = { fixed = 1.5 }`, or delete \
+         the line: then the\n\
+         # model's value is used. Positive ranges wider than a decade are searched on a \
+         logarithmic scale.\n\
          [parameters]\n",
     );
     let mut count = 0;
@@ -220,7 +223,7 @@ fn parameters(text: &mut String, model: &Translated, roles: &Roles<'_>) {
             }
             None => {
                 about.push(
-                    "the model gives no value: write a range and remove the first `#`".to_owned(),
+                    "the model has no value: write a range and remove the first `#`".to_owned(),
                 );
                 _ = writeln!(
                     text,
@@ -231,7 +234,7 @@ fn parameters(text: &mut String, model: &Translated, roles: &Roles<'_>) {
         }
     }
     if count == 0 {
-        text.push_str("# the model has no parameters at its top: name those of components, such as \"cell.R\"\n");
+        text.push_str("# the model has no top-level parameters: use those of components, such as \"cell.R\"\n");
     }
 }
 
@@ -240,7 +243,7 @@ fn range(min: f64, max: f64, value: f64) -> Option<([f64; 2], String)> {
     // 1e-60 and 1e60 stand for no limit in some libraries.
     let limited = |limit: f64| limit.is_finite() && limit.abs() < 1e20;
     if limited(min) && limited(max) && min < max {
-        return Some(([min, max], "the range of the model".to_owned()));
+        return Some(([min, max], "range declared in the model".to_owned()));
     }
     if !value.is_finite() {
         return None;
@@ -255,8 +258,8 @@ fn range(min: f64, max: f64, value: f64) -> Option<([f64; 2], String)> {
         if max.is_finite() { around[1].min(max) } else { around[1] },
     ];
     let why = match value {
-        0.0 => "a guess: the model has 0".to_owned(),
-        value => format!("a decade around the model's {value}"),
+        0.0 => "a guess: the value in the model is 0".to_owned(),
+        value => format!("one decade around the model's value {value}"),
     };
     (range[0] < range[1]).then_some((range, why))
 }
@@ -269,7 +272,7 @@ fn decimal(value: f64) -> f64 {
 fn experiment(text: &mut String, options: &DraftOptions, flat: &FlatModel, roles: &Roles<'_>) {
     _ = write!(
         text,
-        "\n# One table `[[experiment]]` for each measurement.\n[[experiment]]\nname = \"measured\"\ndata = {}\n",
+        "\n# One table `[[experiment]]` per measurement.\n[[experiment]]\nname = \"measured\"\ndata = {}\n",
         quoted(&options.data)
     );
     let (x_name, x) = &roles.x;
@@ -282,7 +285,9 @@ fn experiment(text: &mut String, options: &DraftOptions, flat: &FlatModel, roles
         conversion(x, x_name, flat)
     );
     if roles.outputs.is_empty() {
-        text.push_str("# No column has the name of a variable: write which variable was measured in which column.\n");
+        text.push_str(
+            "# No column has the name of a variable: write which column contains which variable.\n",
+        );
         let outputs =
             flat.variables.values().filter(|v| v.causality == Some(CausalityPrefix::Output));
         let output = outputs.map(|v| v.name.to_string()).next().unwrap_or_else(|| "y".to_owned());
@@ -302,7 +307,8 @@ fn experiment(text: &mut String, options: &DraftOptions, flat: &FlatModel, roles
         }
     } else {
         text.push_str(
-            "# What was measured. Known errors: add `sigma = 0.01` in the unit of the variable.\n",
+            "# Measured outputs. For known measurement errors, add `sigma = 0.01` in the unit of \
+             the variable.\n",
         );
     }
     for (name, column) in &roles.outputs {
@@ -316,7 +322,10 @@ fn experiment(text: &mut String, options: &DraftOptions, flat: &FlatModel, roles
         );
     }
     if !roles.inputs.is_empty() {
-        text.push_str("# Inputs that follow columns: `hold` each value until the next, or join them by `linear` pieces.\n");
+        text.push_str(
+            "# Inputs read from columns: `hold` keeps each value until the next, \
+                       `linear` interpolates.\n",
+        );
     }
     for (name, column) in &roles.inputs {
         _ = writeln!(
@@ -359,7 +368,9 @@ fn conversion(column: &DataColumn, name: &str, flat: &FlatModel) -> String {
         (Some(given), unit) if !unit.is_empty() && given != unit => {
             format!("; converted to {unit}")
         }
-        (None, unit) if !unit.is_empty() => format!("; taken as {unit}: the file names no unit"),
+        (None, unit) if !unit.is_empty() => {
+            format!("; assumed to be {unit}: the file gives no unit")
+        }
         _ => String::new(),
     }
 }

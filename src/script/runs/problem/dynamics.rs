@@ -37,11 +37,12 @@ pub(super) fn delayed(
 ) -> Result<String, Fault> {
     let Some(delay) = &entry.delay else { return Ok(y_name.to_owned()) };
     if x_name != "time" {
-        bail!(BAD_OPTION, "`{y_name}` is delayed, but measured over `{x_name}`"; help: "delays need `time` as X");
+        bail!(BAD_OPTION, "`{y_name}` has a delay, but it is measured over \
+                           `{x_name}`"; help: "use `time` as X");
     }
     let negative = |value: f64| {
-        Fault::new(BAD_OPTION, format!("the delay of `{y_name}` may be {value}"))
-            .help("a measurement cannot come before its cause: give a delay of 0 or more")
+        Fault::new(BAD_OPTION, format!("the delay of `{y_name}` can become {value}"))
+            .help("a delay must not be negative: use 0 or more")
     };
     let arguments = match delay {
         DelayEntry::Seconds(seconds) if seconds.is_finite() && *seconds >= 0.0 => {
@@ -50,7 +51,8 @@ pub(super) fn delayed(
         DelayEntry::Seconds(seconds) => return Err(negative(*seconds)),
         DelayEntry::Parameter(name) => {
             let Some(number) = file.parameters.get_index_of(name) else {
-                bail!(BAD_OPTION, "the delay of `{y_name}` is `{name}`, which is not among the parameters"; help: "add `{name} = {{ min = 0, max = 10 }}` to `[parameters]`")
+                bail!(BAD_OPTION, "the delay of `{y_name}` is `{name}`, which is not in \
+                                   `[parameters]`"; help: "add `{name} = {{ min = 0, max = 10 }}` to `[parameters]`")
             };
             match file.parameters[number].role(name)? {
                 Role::Free { range: [min, max], .. } if min >= 0.0 => {
@@ -60,7 +62,7 @@ pub(super) fn delayed(
                 Role::Fixed(value) if value >= 0.0 => format!("{value:e}"),
                 Role::Fixed(value) => return Err(negative(value)),
                 Role::Tied(_) => {
-                    bail!(BAD_OPTION, "the delay `{name}` is tied"; help: "give it `min` and `max`, or `fixed`")
+                    bail!(BAD_OPTION, "the delay `{name}` is tied"; help: "use `min` and `max`, or `fixed`")
                 }
             }
         }
@@ -84,10 +86,10 @@ pub(super) fn steady(
 ) -> Result<(), Fault> {
     let given = file.parameters.iter().find(|(_, parameter)| parameter.initial);
     if let Some(name) = given.map(|(name, _)| name).or_else(|| entry.start.keys().next()) {
-        bail!(BAD_OPTION, "an experiment in steady state has no initial value of `{name}` to choose"; help: "leave out `steady_state` or the initial value");
+        bail!(BAD_OPTION, "the initial value of `{name}` cannot be chosen in a steady-state experiment"; help: "remove `steady_state` or the initial value");
     }
     if model.states.is_empty() {
-        bail!(BAD_OPTION, "`{}` has no states that could be steady", file.model; help: "leave out `steady_state`");
+        bail!(BAD_OPTION, "`{}` has no states, so `steady_state` has no meaning", file.model; help: "remove `steady_state`");
     }
     let mut released: Vec<String> = Vec::new();
     around.equations.push_str("initial equation\n");
@@ -100,7 +102,7 @@ pub(super) fn steady(
                 format!("{array}(each fixed = false)")
             }
             Some(_) => {
-                bail!(BAD_OPTION, "the state `{name}` lies within an array of components, which `steady_state` does not support"; help: "write an `initial equation` into the model")
+                bail!(BAD_OPTION, "the state `{name}` belongs to an array of components, which `steady_state` does not support"; help: "write an `initial equation` in the model")
             }
         };
         if !released.contains(&released_name) {

@@ -61,7 +61,8 @@ pub(super) fn adjustments(file: &ProblemFile, free: &[Free]) -> Result<Adjustmen
         let places: Vec<usize> =
             free.iter().enumerate().filter(|(_, free)| own(free)).map(|(k, _)| k).collect();
         if places.is_empty() {
-            bail!(BAD_OPTION, "`{name}` has a prior, but it is not estimated"; help: "give it `min` and `max`");
+            bail!(BAD_OPTION, "`{name}` has a prior but is not \
+                               estimated"; help: "add `min` and `max`");
         }
         priors.extend(places.into_iter().map(|parameter| Prior { parameter, distribution }));
     }
@@ -171,7 +172,8 @@ fn design(entry: &DesignEntry, experiments: &[Experiment]) -> Result<DesignSetti
     if let Some([low, high]) =
         entry.range.filter(|[low, high]| !(low.is_finite() && low < high && high.is_finite()))
     {
-        bail!(BAD_OPTION, "the `range` of `design` goes from {low} to {high}"; help: "write the smaller end first");
+        bail!(BAD_OPTION, "the `range` of `design` goes from {low} to \
+                           {high}"; help: "write the lower limit first");
     }
     for (name, sigma) in &entry.outputs {
         known("design", name, experiments)?;

@@ -72,9 +72,9 @@ pub(super) fn inputs(
         if let Some(row) = pairs.windows(2).position(|pair| pair[1].0 < pair[0].0) {
             bail!(
                 BAD_OPTION,
-                "the times of the input `{name}` fall from {} to {} at {}",
+                "the time values of the input `{name}` decrease from {} to {} at {}",
                 pairs[row].0, pairs[row + 1].0, column.place(row + 1);
-                help: "sort the rows, or write runs made one after the other into files of their own"
+                help: "sort the rows, or write consecutive runs to separate files"
             );
         }
         let between = between(name, &wanted, &pairs, notes)?;
@@ -111,7 +111,7 @@ fn between(
         Some(other) => bail!(
             BAD_OPTION,
             "the interpolation of the input `{name}` is `{other}`";
-            help: "write \"hold\" where each value holds until the next, \"linear\" for straight lines"
+            help: "write \"hold\" (zero-order hold) or \"linear\" (linear interpolation)"
         ),
         None => {}
     }
@@ -120,12 +120,14 @@ fn between(
     }
     if moves_in_steps(pairs) {
         notes.add(format!(
-            "the input `{name}` moves in steps: each value holds until the next sample; write `interpolation = \"linear\"` if it went in straight lines"
+            "the input `{name}` is piecewise constant: each value is held until the next sample; \
+             for linear interpolation write `interpolation = \"linear\"`"
         ));
         return Ok(Between::Held);
     }
     notes.add(format!(
-        "the input `{name}` is joined by straight lines between its samples; write `interpolation = \"hold\"` if each value held until the next"
+        "the input `{name}` is interpolated linearly between samples; if each value holds until \
+         the next, write `interpolation = \"hold\"`"
     ));
     Ok(Between::Lines)
 }

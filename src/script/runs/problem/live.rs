@@ -9,7 +9,7 @@ use crate::script::world::Progress;
 const HELP: &str = "\
 Paused. Type NAME = NUMBER to change a setting of the method (such as mutation = 0.3), of the stop
 conditions (generations, evaluations, seconds) or a search range (min A = 0.02, max A = 0.2);
-an empty line goes on, `stop` ends the run with what was found.
+an empty line continues; `stop` ends the run with the results found so far.
 ";
 /// What it asks with.
 const PROMPT: &str = "change> ";
@@ -104,7 +104,7 @@ fn change(session: &mut Session, run: &mut Run, line: &str) {
     let pair = pair.map(|(name, value)| (name.trim().trim_end_matches(':'), value.trim()));
     let Some((setting, Ok(value))) = pair.map(|(name, value)| (name.trim(), value.parse::<f64>()))
     else {
-        session.world.eprint("this is no NAME = NUMBER\n");
+        session.world.eprint("expected NAME = NUMBER\n");
         return;
     };
     super::control::change(session, run, setting, value);

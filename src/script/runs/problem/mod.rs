@@ -107,7 +107,7 @@ pub fn solve(
     let one = |fault: Fault| vec![fault.at(Span::NONE)];
     let bytes = session.read_bytes(path).map_err(one)?;
     let text = String::from_utf8(bytes)
-        .map_err(|_| one(fault!(BAD_OPTION, "`{}` is no text", path.display())))?;
+        .map_err(|_| one(fault!(BAD_OPTION, "`{}` is not valid UTF-8 text", path.display())))?;
     solve_text(session, path, text, options)
 }
 
@@ -202,7 +202,10 @@ fn solve_built(
         if session.world.wants_pause() {
             let paused = session.world.monotonic_seconds();
             if live::pause(session, &mut run) {
-                break ("ended by the user: these are the best values so far".to_owned(), true);
+                break (
+                    "stopped by the user: these are the best values found so far".to_owned(),
+                    true,
+                );
             }
             started += session.world.monotonic_seconds() - paused;
             timer = set_timer(session, &mut run, seconds);
@@ -245,7 +248,7 @@ fn solve_built(
         session.report_fault(fault!(BAD_OPTION, "the checkpoint could not be written: {why}"));
     }
     if interrupted {
-        session.print("\n  the run can go on from here with --resume\n");
+        session.print("\n  resume the run from here with --resume\n");
     } else if session.world.exists(checkpoint.path()) {
         // What cannot be removed does no harm.
         let _ = session.world.remove(checkpoint.path());
@@ -282,29 +285,30 @@ fn open(
     if exists && !options.resume && !options.fresh {
         bail!(
             BAD_OPTION,
-            "`{}` holds an earlier run that did not end", path.display();
-            help: "go on with `--resume`, or discard it with `--fresh`"
+            "`{}` contains an earlier run that did not finish", path.display();
+            help: "continue it with `--resume`, or discard it with `--fresh`"
         );
     }
     let mut bytes = solving::header(origins);
     if options.resume && exists {
         let old = session.read_bytes(&path)?;
         let Some(journal) = solving::decode(&old) else {
-            bail!(BAD_OPTION, "`{}` is no checkpoint", path.display(); help: "start anew with `--fresh`")
+            bail!(BAD_OPTION, "`{}` is not a checkpoint", path.display(); help: "start again with `--fresh`")
         };
         let changed = origins.changed_since(&journal.origins);
         if !changed.is_empty() {
             bail!(
                 BAD_OPTION,
-                "`{}` cannot be resumed: since then changed: {}", path.display(), solving::listed(&changed);
-                help: "undo the changes, or start anew with `--fresh`"
+                "`{}` cannot be resumed: these have changed since: \
+                 {}", path.display(), solving::listed(&changed);
+                help: "undo the changes, or start again with `--fresh`"
             );
         }
         run.resume(&journal.records)?;
         let lost = match journal.lost {
             0 => String::new(),
             lost => {
-                format!("; {lost} bytes at its end are damaged or unfinished and computed again")
+                format!("; {lost} damaged or incomplete bytes at its end are recomputed")
             }
         };
         let text = format!(
@@ -386,9 +390,10 @@ pub(super) fn write(
         Some(mut fault) => {
             let (missing, folder) = (missing.join(", "), folder.display());
             fault.message =
-                format!("{missing} could not be written into `{folder}`: {}", fault.message);
+                format!("{missing} could not be written to `{folder}`: {}", fault.message);
             return Err(fault.help(
-                "make room or choose another folder with `--out`; what the run has found stands above",
+                "free disk space or choose another folder with `--out`; the results of the run \
+                 are shown above",
             ));
         }
     }

@@ -89,8 +89,8 @@ fn choice_of(entry: &OperatorEntry) -> Result<Choice, Fault> {
 fn without(entry: &Entry<dyn Method>, kind: &str) -> Fault {
     let with = METHODS.iter().filter(|entry| registry::choices(entry).contains(&kind));
     let with: Vec<&str> = with.map(|entry| entry.name).collect();
-    fault!(BAD_OPTION, "`{}` has no {kind} to choose", entry.name)
-        .help(format!("methods that have: {}", with.join(", ")))
+    fault!(BAD_OPTION, "`{}` has no selectable {kind}", entry.name)
+        .help(format!("methods with a selectable one: {}", with.join(", ")))
 }
 
 /// Whether a function has as many inputs and outputs as an operator of this kind.

@@ -57,7 +57,10 @@ pub(super) fn compiled(
 fn wrong_inputs(name: &str, inputs: usize) -> Fault {
     let fault =
         Fault::new(BAD_OPTION, format!("the fitness function `{name}` has {inputs} inputs"));
-    fault.help("give it `input Real simulated[:]`, `input Real measured[:]` and, if wanted, `input Real weights[:]`")
+    fault.help(
+        "declare `input Real simulated[:]`, `input Real measured[:]` and, optionally, \
+                `input Real weights[:]`",
+    )
 }
 
 impl Fitness for OwnFitness {

@@ -135,7 +135,7 @@ impl Fields<'_> {
         match self.get(name)? {
             Value::Array(ArrayValue { elements: Elements::Record(records), .. }) => Ok(records),
             Value::Record(record) => Ok(vec![record]),
-            _ => bail!(BAD_OPTION, "`{name}` of `{}` must hold records", self.0.type_name),
+            _ => bail!(BAD_OPTION, "`{name}` of `{}` must contain records", self.0.type_name),
         }
     }
 
@@ -145,7 +145,7 @@ impl Fields<'_> {
             [] => {}
             [value] => put(entry, name, *value),
             more => {
-                bail!(BAD_OPTION, "`{name}` holds {} values instead of one or none", more.len())
+                bail!(BAD_OPTION, "`{name}` contains {} values; at most one is allowed", more.len())
             }
         }
         Ok(())
@@ -161,7 +161,8 @@ impl Fields<'_> {
 
 fn same_size(first: &str, count: usize, second: &str, other: usize) -> Result<(), Fault> {
     if count != other {
-        bail!(BAD_OPTION, "`{first}` has {count} elements, but `{second}` {other}"; help: "make the sizes agree");
+        bail!(BAD_OPTION, "`{first}` has {count} elements, but `{second}` has \
+                           {other}"; help: "use matching sizes");
     }
     Ok(())
 }

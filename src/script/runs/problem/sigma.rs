@@ -52,7 +52,8 @@ pub(super) fn sigma(
 /// Numbers that are not positive.
 pub(super) fn positive(name: &str, value: f64) -> Result<(), Fault> {
     if !(value.is_finite() && value > 0.0) {
-        bail!(BAD_OPTION, "the sigma of `{name}` is {value}"; help: "a standard deviation is positive");
+        bail!(BAD_OPTION, "the sigma of `{name}` is \
+                           {value}"; help: "a standard deviation must be positive");
     }
     Ok(())
 }
@@ -61,7 +62,8 @@ fn formula(name: &str, text: &str) -> Result<SigmaFormula, Fault> {
     let not = || {
         fault!(
             BAD_OPTION,
-            "the sigma of `{name}` is `{text}`, which is neither a column of the data nor a formula of the output";
+            "the sigma of `{name}` is `{text}`, which is neither a column of the data nor a \
+             formula in terms of the output";
             help: "write a number, the name of a column, \"estimate\", or a formula such as \"0.01 + 0.05*abs({name})\" of numbers, `{name}` (or `y`), + - * / ^, abs, sqrt, exp, log, min and max"
         )
     };

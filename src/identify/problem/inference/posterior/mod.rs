@@ -281,7 +281,9 @@ impl Posterior {
         );
         if !self.converged {
             return vec![format!(
-                "The chains have not converged after {} draws each ({judged}; 1.01 and 400 are needed): they give no intervals. Draw more, or fix a parameter that the data leave open.",
+                "The chains did not converge after {} draws each ({judged}; 1.01 and 400 are \
+                 required), so there are no intervals. Draw more samples, or fix a parameter \
+                 that is not identifiable from the data.",
                 self.draws
             )];
         }

@@ -146,8 +146,5 @@ fn chains_on_a_ridge_have_not_converged() {
     let posterior = infer(&finished(problem)).unwrap().posterior.unwrap();
     assert!(!posterior.converged);
     let sentence = &posterior.sentences()[0];
-    assert!(
-        sentence.starts_with("The chains have not converged after 500 draws each"),
-        "{sentence}"
-    );
+    assert!(sentence.starts_with("The chains did not converge after 500 draws each"), "{sentence}");
 }

@@ -1,0 +1,191 @@
+//! Words that messages, help, README and guide do not use, each with the term of the field that
+//! takes its place.
+
+use crate::shipped::project;
+use proc_macro2::{TokenStream, TokenTree};
+use std::fs;
+use std::path::{Path, PathBuf};
+use syn::visit::{self, Visit};
+use syn::{Attribute, ItemFn, ItemMod, Lit, LitStr, Macro};
+
+/// What must not come back, with what to use instead.
+const GONE: &[(&str, &str)] = &[
+    ("told", "reported, given, shown"),
+    ("slope of", "derivative of"),
+    ("slopes", "derivatives, Jacobian entries"),
+    ("carried out", "executed, evaluated"),
+    ("cannot stand", "is not allowed, cannot be mixed"),
+    ("stand in", "are in, are allowed in"),
+    ("stands in", "is in, belongs to"),
+    ("stands behind", "follows"),
+    ("stands before", "precedes"),
+    ("may stand", "is allowed"),
+    ("take it away", "remove it"),
+    ("nobody", "no one is a person here: name the cause"),
+    ("goes on", "continues"),
+    ("went on", "continued"),
+    ("comes back", "returns"),
+    ("anew", "again"),
+    ("came upon", "found"),
+    ("of one's own", "user-defined, your own"),
+    ("function of yours", "your own function"),
+    ("has not as many", "has different numbers of"),
+    ("hardly told apart", "strongly correlated"),
+    ("data leave open", "not identifiable from the data"),
+    ("shaped the", "structural parameter"),
+    ("settled", "evaluated"),
+    ("held unknowns", "tearing variables"),
+    ("lagged", "value of the previous iterate"),
+    ("culprit", "offending variable"),
+    ("inseparable", "structurally non-identifiable"),
+    ("comprehension", "array constructor with iterators"),
+    ("deselection", "selective model extension"),
+    ("habits", "legacy constructs"),
+    ("wishes", "simulation options"),
+    ("two-faced", "inside and outside connector"),
+    ("texts", "strings"),
+    ("change places", "are exchanged"),
+    ("new blood", "immigrants"),
+    ("fitted anew", "refitted"),
+    ("is taken to be", "is interpreted as"),
+    ("leave it out", "remove it, omit it"),
+    ("looks into", "accesses"),
+    ("points in time", "time points"),
+    ("gapi lets it", "gapi permits"),
+    ("step became too small", "step size became too small"),
+    ("which is no", "which is not a"),
+    ("this is no", "this is not a"),
+    ("equations of texts", "equations of Strings"),
+    ("turns of a loop", "iterations"),
+    ("into a folder of its own", "a separate folder"),
+    ("file of its own", "a separate file"),
+    ("go on where", "continue where"),
+    ("gives no number", "does not return a number"),
+    ("a text stands", "expected a number, got a String"),
+];
+
+/// Finds string literals, also in the arguments of macros; not those of tests and comments.
+#[derive(Default)]
+struct Literals {
+    found: Vec<(usize, String)>,
+}
+
+impl Literals {
+    fn tokens(&mut self, tokens: TokenStream) {
+        // Comments for documentation in the arguments of a macro.
+        let mut first = tokens.clone().into_iter();
+        if matches!(first.next(), Some(TokenTree::Ident(name)) if name == "doc") {
+            return;
+        }
+        for tree in tokens {
+            match tree {
+                TokenTree::Group(group) => self.tokens(group.stream()),
+                TokenTree::Literal(literal) => {
+                    if let Lit::Str(text) = Lit::new(literal) {
+                        self.visit_lit_str(&text);
+                    }
+                }
+                TokenTree::Ident(_) | TokenTree::Punct(_) => {}
+            }
+        }
+    }
+}
+
+fn is_test(attributes: &[Attribute]) -> bool {
+    let of_tests = |attribute: &Attribute| {
+        attribute.path().is_ident("test")
+            || attribute.path().is_ident("cfg")
+                && attribute.meta.require_list().is_ok_and(|list| list.tokens.to_string() == "test")
+    };
+    attributes.iter().any(of_tests)
+}
+
+impl<'ast> Visit<'ast> for Literals {
+    fn visit_lit_str(&mut self, text: &'ast LitStr) {
+        self.found.push((text.span().start().line, text.value()));
+    }
+    fn visit_macro(&mut self, call: &'ast Macro) {
+        self.tokens(call.tokens.clone());
+    }
+    fn visit_attribute(&mut self, attribute: &'ast Attribute) {
+        if !attribute.path().is_ident("doc") {
+            visit::visit_attribute(self, attribute);
+        }
+    }
+    fn visit_item_mod(&mut self, module: &'ast ItemMod) {
+        if !is_test(&module.attrs) {
+            visit::visit_item_mod(self, module);
+        }
+    }
+    fn visit_item_fn(&mut self, function: &'ast ItemFn) {
+        if !is_test(&function.attrs) {
+            visit::visit_item_fn(self, function);
+        }
+    }
+}
+
+/// Files below a folder that end so, those of tests left out.
+fn files(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("a readable folder") {
+        let path = entry.expect("a readable entry").path();
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        if path.is_dir() {
+            if name != "tests" {
+                files(&path, ending, found);
+            }
+        } else if name.ends_with(ending) && !name.ends_with("tests.rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// The line within a text in which a phrase stands as whole words, from 0.
+fn line_of(phrase: &str, text: &str) -> Option<usize> {
+    let lower = text.to_lowercase();
+    let is_word = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_' || c == '`');
+    let mut places = lower.match_indices(phrase);
+    let (place, _) = places.find(|(place, _)| {
+        !is_word(lower[..*place].chars().next_back())
+            && !is_word(lower[place + phrase.len()..].chars().next())
+    })?;
+    Some(lower[..place].matches('\n').count())
+}
+
+#[test]
+fn words_that_are_gone_do_not_come_back() {
+    let mut texts = Vec::new();
+    let mut sources = Vec::new();
+    files(&project("src"), ".rs", &mut sources);
+    assert!(sources.len() > 100, "the sources were not found");
+    for path in sources {
+        let source = fs::read_to_string(&path).unwrap();
+        let mut literals = Literals::default();
+        let file = syn::parse_file(&source).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        literals.visit_file(&file);
+        texts.extend(literals.found.into_iter().map(|(line, text)| (path.clone(), line, text)));
+    }
+    assert!(texts.len() > 5000, "the messages were not found: {}", texts.len());
+    let mut chapters = vec![project("README.md")];
+    files(&project("docs/src"), ".md", &mut chapters);
+    assert!(chapters.len() > 10, "the guide was not found");
+    for path in chapters {
+        let text = fs::read_to_string(&path).unwrap();
+        texts.push((path, 1, text));
+    }
+    let mut wrong = Vec::new();
+    for (path, line, text) in &texts {
+        for (phrase, instead) in GONE {
+            if let Some(below) = line_of(phrase, text) {
+                let line = line + below;
+                wrong.push(format!("{}:{line}: `{phrase}`: use {instead}", path.display()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn whole_words_are_found() {
+    assert_eq!(line_of("is told", "a\nwhat Is told."), Some(1));
+    assert_eq!(line_of("told", "retold and `told`"), None);
+}
