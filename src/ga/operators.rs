@@ -179,7 +179,7 @@ pub fn crossover(choice: Choice) -> Result<Arc<dyn Crossover>, Fault> {
 ///
 /// # Errors
 ///
-/// As [`crossover`].
+/// As [`crossover()`].
 pub fn mutation(choice: Choice) -> Result<Arc<dyn Mutation>, Fault> {
     made("mutation", MUTATIONS, choice, |function| Box::new(mutation::Own(function)))
 }
@@ -188,7 +188,7 @@ pub fn mutation(choice: Choice) -> Result<Arc<dyn Mutation>, Fault> {
 ///
 /// # Errors
 ///
-/// As [`crossover`].
+/// As [`crossover()`].
 pub fn selection(choice: Choice) -> Result<Arc<dyn Selection>, Fault> {
     made("selection", SELECTIONS, choice, |function| Box::new(selection::Own(function)))
 }
@@ -197,7 +197,7 @@ pub fn selection(choice: Choice) -> Result<Arc<dyn Selection>, Fault> {
 ///
 /// # Errors
 ///
-/// As [`crossover`].
+/// As [`crossover()`].
 pub fn survival(choice: Choice) -> Result<Arc<dyn Survival>, Fault> {
     made("survival", SURVIVALS, choice, |function| Box::new(survival::Own(function)))
 }
@@ -206,7 +206,7 @@ pub fn survival(choice: Choice) -> Result<Arc<dyn Survival>, Fault> {
 ///
 /// # Errors
 ///
-/// As [`crossover`].
+/// As [`crossover()`].
 pub fn sampling(choice: Choice) -> Result<Arc<dyn Sampling>, Fault> {
     made("sampling", SAMPLINGS, choice, |function| Box::new(sampling::Own(function)))
 }

@@ -1,10 +1,10 @@
 //! Lowering: a flat model becomes a system of differential-algebraic equations, a [`Dae`] — every
 //! variable a scalar, every equation a pair of scalar expressions (MLS appendix B).
 //!
-//! Arrays, records and functions are expanded ([`expressions`], [`function`], [`inline`]);
-//! algorithm sections and when-clauses become equations ([`algorithm`], [`when`]); every relation
-//! outside `noEvent` becomes a variable that changes at events only ([`build`]); operators with a
-//! meaning in time become variables too ([`temporal`]).
+//! Arrays, records and functions are expanded (`expressions`, `function`, `inline`);
+//! algorithm sections and when-clauses become equations (`algorithm`, `when`); every relation
+//! outside `noEvent` becomes a variable that changes at events only (`build`); operators with a
+//! meaning in time become variables too (`temporal`).
 //!
 //! Not supported yet, and refused with `not-supported`: `delay` by a time that varies,
 //! `spatialDistribution`, statements whose loops depend on variables.
