@@ -11,6 +11,9 @@ use crate::lower::Kind;
 use crate::symbolic::VarId;
 use rustc_hash::FxHashSet;
 
+/// Names that a message lists at most.
+const MOST_NAMES: usize = 8;
+
 impl Program {
     /// Name of the class.
     pub fn name(&self) -> &str {
@@ -46,9 +49,20 @@ impl Program {
     pub fn find_variable(&self, name: &str) -> Result<usize, Fault> {
         self.variables.iter().position(|v| &*v.name == name).ok_or_else(|| {
             let known = self.variables.iter().map(|v| &*v.name);
-            fault!(UNKNOWN_VARIABLE, "`{}` has no variable `{name}`", self.name())
-                .help_if(suggest::did_you_mean(name, known))
+            let help = suggest::did_you_mean(name, known).or_else(|| self.unknown_names());
+            fault!(UNKNOWN_VARIABLE, "`{}` has no variable `{name}`", self.name()).help_if(help)
         })
+    }
+
+    /// The names of what the model computes, for a message; the first of many.
+    fn unknown_names(&self) -> Option<String> {
+        let is_unknown = |v: &&VariableInfo| !v.is_known() && !v.protected && &*v.name != "time";
+        let is_derivative = |v: &&VariableInfo| v.name.starts_with("der(");
+        let unknowns = self.variables.iter().filter(is_unknown).filter(|v| !is_derivative(v));
+        let names: Vec<String> = unknowns.map(|v| format!("`{}`", v.name)).collect();
+        let more = if names.len() > MOST_NAMES { ", …" } else { "" };
+        let shown = names.iter().take(MOST_NAMES).cloned().collect::<Vec<_>>().join(", ");
+        (!names.is_empty()).then(|| format!("its variables are {shown}{more}"))
     }
 
     /// Position of a parameter in [`Program::parameters`].

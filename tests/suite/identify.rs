@@ -531,3 +531,21 @@ fn names_of_a_problem_are_text_wherever_they_are_shown() {
     }
     assert!(cells > 0, "no table names the experiment");
 }
+
+/// A variable that no name of the model resembles: the message lists those there are.
+#[test]
+fn an_unknown_output_is_refused_with_the_names_of_the_model() {
+    let model = "model Tank parameter Real k = 0.3; Real level(start = 2, fixed = true); \
+        equation der(level) = -k*level; end Tank;";
+    let problem = "model = \"Tank\"\nfiles = [\"Tank.mo\"]\n[parameters]\nk = { min = 0.1, max = 1 }\n\
+        [[experiment]]\ndata = \"d.csv\"\nx = \"time\"\noutputs = { q = \"q\" }\n";
+    let here = crate::cli::folder(&[
+        ("Tank.mo", model),
+        ("p.toml", problem),
+        ("d.csv", "time,q\n1,2\n2,1\n"),
+    ]);
+    let (code, _, errors) = crate::cli::gapi(&here, &["identify", "p.toml"]);
+    assert_eq!(code, 1, "{errors}");
+    assert!(errors.contains("has no variable `q`"), "{errors}");
+    assert!(errors.contains("its variables are `level`"), "{errors}");
+}
