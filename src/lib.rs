@@ -51,8 +51,9 @@
 //! - [`elementary`]: elementary functions with the same bits on every machine;
 //! - [`source`], [`name`], [`diag`], [`registry`]: places, names, diagnostics, named choices;
 //! - [`syntax`]: the grammar of classes and scripts, trees, printing;
-//! - [`value`], [`eval`]: values and their operations; expressions, statements, functions;
-//! - [`symbolic`], [`graph`]: scalar expressions; matching, sorting, tearing;
+//! - [`value`], [`symbolic`], [`graph`]: values and their operations; scalar expressions; matching,
+//!   sorting, tearing;
+//! - [`functions`], [`eval`]: the functions and operators of the language; the interpreter;
 //! - [`external`]: functions that libraries declare `external`, in Rust;
 //! - [`bytecode`]: functions that loop and branch, as instructions;
 //! - [`flatten`], [`lower`]: from a class to a flat model, to a system of differential-algebraic
@@ -83,6 +84,7 @@ pub mod codegen;
 pub mod eval;
 pub mod external;
 pub mod flatten;
+pub mod functions;
 pub mod ga;
 pub mod graph;
 pub mod identify;

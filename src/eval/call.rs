@@ -2,9 +2,10 @@
 
 use super::argument::Binding;
 use super::errors::{UNKNOWN_FUNCTION, WRONG_ARGUMENTS};
-use super::{Callee, Evaluator, Function, intrinsics, special};
+use super::{Callee, Evaluator, Function};
 use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::fault;
+use crate::functions::{self, Builtin, Meaning};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{self, ComponentReference, ExpressionKind};
@@ -31,9 +32,8 @@ impl From<Vec<Value>> for Arguments {
 pub(super) enum Target {
     Function(Arc<Function>),
     Builtin(Arc<Function>),
-    /// An operator whose arguments are not simply evaluated.
-    Special(special::Special),
-    Intrinsic(&'static intrinsics::Entry),
+    /// A function or an operator of the language.
+    Language(&'static Builtin),
     Unknown,
 }
 
@@ -66,10 +66,10 @@ impl Evaluator<'_> {
                 let given = self.bound(&header, arguments, &[], span)?;
                 self.call_builtin(&header, given, span)
             }
-            Target::Special(special) => self.special(special, arguments, span),
-            Target::Intrinsic(entry) => {
-                self.call_entry(entry, arguments, span).map(|value| vec![value])
-            }
+            Target::Language(entry) => match entry.meaning {
+                Meaning::Operator(operator) => self.operator(entry, operator, arguments, span),
+                _ => self.call_entry(entry, arguments, span).map(|value| vec![value]),
+            },
             Target::Unknown => self.call_type(function, arguments),
         }
     }
@@ -132,10 +132,9 @@ impl Evaluator<'_> {
             Some(Callee::Function(function)) => Target::Function(function),
             Some(Callee::Builtin(header)) => Target::Builtin(header),
             None => match name {
-                [ident] => special::find(ident.as_str())
-                    .map(Target::Special)
-                    .or_else(|| intrinsics::find(ident.as_str()).map(Target::Intrinsic))
-                    .unwrap_or(Target::Unknown),
+                [ident] => {
+                    functions::find(ident.as_str()).map_or(Target::Unknown, Target::Language)
+                }
                 _ => Target::Unknown,
             },
         })
@@ -177,7 +176,9 @@ impl Evaluator<'_> {
                 let given = self.bound(&header, arguments, &value.named, span)?;
                 self.call_builtin(&header, given, span)
             }
-            Target::Intrinsic(entry) if value.named.is_empty() => {
+            Target::Language(entry)
+                if value.named.is_empty() && !matches!(entry.meaning, Meaning::Operator(_)) =>
+            {
                 self.call_entry(entry, arguments, span).map(|value| vec![value])
             }
             _ => Err(self.unknown_function(&value.name).at(span)),
@@ -205,14 +206,15 @@ impl Evaluator<'_> {
     fn unknown_function(&mut self, name: &Name) -> Fault {
         let wanted = name.to_string();
         let mut known = self.host.function_names();
-        known.extend(intrinsics::intrinsic_names().map(str::to_owned));
+        known.extend(functions::names().map(str::to_owned));
         fault!(UNKNOWN_FUNCTION, "there is no function `{wanted}`")
             .help_if(suggest::did_you_mean(&wanted, known.iter().map(String::as_str)))
     }
 
-    fn call_entry(
+    /// A function of the values of its arguments.
+    pub(super) fn call_entry(
         &mut self,
-        entry: &'static intrinsics::Entry,
+        entry: &'static Builtin,
         arguments: &ast::Arguments,
         span: Span,
     ) -> Result<Value, Diagnostic> {
@@ -227,15 +229,15 @@ impl Evaluator<'_> {
         match arguments.positional.as_slice() {
             [only] => {
                 let value = self.expression(only)?;
-                entry.call(std::slice::from_ref(&value)).at(span)
+                entry.value(std::slice::from_ref(&value)).at(span)
             }
             [first, second] => {
                 let values = [self.expression(first)?, self.expression(second)?];
-                entry.call(&values).at(span)
+                entry.value(&values).at(span)
             }
             all => {
                 let values = self.expressions(all)?;
-                entry.call(&values).at(span)
+                entry.value(&values).at(span)
             }
         }
     }

@@ -1,17 +1,12 @@
 //! Codes of evaluation.
 
 use crate::codes;
+pub use crate::functions::errors::{UNKNOWN_FUNCTION, WRONG_ARGUMENTS};
 
 codes! {
     /// A name that stands for no variable.
     UNKNOWN_VARIABLE = "unknown-variable":
         "## What it means\n\nA name does not refer to a variable, constant or parameter in the scope where it is used.\n\n## Example\n\n`y := X + 1` where only `x` was declared.\n\n## What to do\n\nCorrect the name, or declare or assign the variable first. Functions can access their own variables and constants of packages, but not the variables of the calling script.",
-    /// A name that stands for no function.
-    UNKNOWN_FUNCTION = "unknown-function":
-        "## What it means\n\nA call names a function that is neither built in nor loaded.\n\n## Example\n\n`simulateModle(\"M\")`\n\n## What to do\n\nCorrect the name, or load the file that defines the function first.",
-    /// Arguments that do not fit the inputs of a function.
-    WRONG_ARGUMENTS = "wrong-arguments":
-        "## What it means\n\nA call has too many arguments, omits one without default, names an input that does not exist, or specifies one twice (MLS §12.4.1).\n\n## Example\n\n`sin(1, 2)`\n\n## What to do\n\nCompare the call with the inputs of the function, which the message names.",
     /// A variable or output that is read before anything was assigned to it.
     NO_VALUE_YET = "no-value-yet":
         "## What it means\n\nA variable, an element of an array or an output is used before it has a value. It is never replaced by zero. A partially assigned record can be read as a whole: its Real elements without a value are NaN.\n\n## Example\n\n`function f output Real y; algorithm end f;` never assigns `y`.\n\n## What to do\n\nAssign the variable on every path through the function, or give it a binding in its declaration.",

@@ -2,7 +2,7 @@
 //! (MLS §12.9).
 
 use super::errors::{EXTERNAL_FUNCTION, WRONG_ARGUMENTS};
-use super::{Evaluator, Function, FunctionComponent, ValueType, intrinsics};
+use super::{Evaluator, Function, FunctionComponent, ValueType};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::external::{self, Call, Kind, Object, Slot};
 use crate::fault;
@@ -103,7 +103,7 @@ impl Evaluator<'_> {
         clause: &ast::External,
         name: &str,
     ) -> Result<(), Diagnostic> {
-        let Some(entry) = intrinsics::find(name) else {
+        let Some(entry) = crate::functions::find(name) else {
             return Err(fault!(
                 EXTERNAL_FUNCTION,
                 "`{}` calls the external function `{name}`, which this program does not implement",
@@ -116,7 +116,7 @@ impl Evaluator<'_> {
             true => function.inputs.iter().map(|input| self.stored(input.name)).collect(),
             false => self.expressions(&clause.arguments)?,
         };
-        let value = entry.call(&values).at(clause.span)?;
+        let value = entry.value(&values).at(clause.span)?;
         match function.outputs.as_slice() {
             [output] => self.scope.set(output.name, value).at(clause.span),
             _ => Err(fault!(WRONG_ARGUMENTS, "`{name}` has one output").at(clause.span)),

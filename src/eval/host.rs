@@ -8,9 +8,6 @@ use crate::syntax::ast;
 use crate::value::Value;
 use std::sync::Arc;
 
-/// A function implemented in Rust, without effects, of values alone.
-pub type Intrinsic = fn(&[Value]) -> Result<Value, Fault>;
-
 /// What a called name stands for.
 pub enum Callee {
     /// A function written in Modelica.

@@ -6,11 +6,12 @@ use super::deduction;
 use super::errors::MISPLACED;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
+use crate::functions::{self, Meaning};
 use crate::source::Span;
 use crate::syntax::ast::{Expression, ExpressionKind, ForIndex, Statement};
 use crate::value::construct::{self, Range};
-use crate::value::errors::{DOMAIN_ERROR, TYPE_MISMATCH};
-use crate::value::{Value, element_count, ops};
+use crate::value::errors::DOMAIN_ERROR;
+use crate::value::{Value, element_count};
 
 /// What a deduced range is looked for in.
 #[derive(Clone, Copy)]
@@ -114,36 +115,27 @@ impl Evaluator<'_> {
         indices: &[ForIndex],
         span: Span,
     ) -> Result<Option<Value>, Diagnostic> {
-        let combine: fn(&Value, &Value) -> Result<Value, Fault> = match name {
-            "array" => return self.comprehension(element, indices, span).map(Some),
-            "sum" => ops::add,
-            "product" => ops::multiply,
-            "min" => |a, b| Ok(if ops::less(b, a)? { b.clone() } else { a.clone() }),
-            "max" => |a, b| Ok(if ops::greater(b, a)? { b.clone() } else { a.clone() }),
-            _ => return Ok(None),
+        if name == "array" {
+            return self.comprehension(element, indices, span).map(Some);
+        }
+        let Some(Meaning::Reduction(reduction)) = functions::find(name).map(|entry| entry.meaning)
+        else {
+            return Ok(None);
         };
         let mut total = None;
         self.reduce(element, indices, &mut |value| {
-            if name == "product" && value.rank() > 0 {
-                return Err(fault!(
-                    TYPE_MISMATCH,
-                    "`product` needs scalars, not values of type {}",
-                    value.type_name()
-                ));
-            }
             total = Some(match total.take() {
-                None => value,
-                Some(before) => combine(&before, &value)?,
+                None => reduction.first(value)?,
+                Some(before) => reduction.combine(&before, &value)?,
             });
             Ok(())
         })?;
         if let Some(total) = total {
             return Ok(Some(total));
         }
-        match name {
-            "sum" => Ok(Some(Value::Integer(0))),
-            "product" => Ok(Some(Value::Integer(1))),
-            _ => Err(fault!(DOMAIN_ERROR, "`{name}` without elements has no value").at(span)),
+        match reduction.of_none() {
+            Some(value) => Ok(Some(Value::Integer(value))),
+            None => Err(fault!(DOMAIN_ERROR, "`{name}` without elements has no value").at(span)),
         }
     }
 

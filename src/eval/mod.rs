@@ -18,7 +18,6 @@ mod external;
 mod flow;
 mod function;
 mod host;
-mod intrinsics;
 mod iteration;
 mod reference;
 mod scalar;
@@ -38,8 +37,7 @@ pub use declaration::{Given, declare};
 pub use depth::{MAX_CALLS, with_stack};
 pub use flow::Flow;
 pub use function::{Function, FunctionBody, FunctionComponent, ValueType};
-pub use host::{Callee, Host, Intrinsic};
-pub use intrinsics::{call_intrinsic, intrinsic_names, is_builtin};
+pub use host::{Callee, Host};
 pub use scalar_function::Compiled;
 pub use scope::Scope;
 

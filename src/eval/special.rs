@@ -4,120 +4,67 @@ use super::Evaluator;
 use super::errors::{ASSERTION_FAILED, MODEL_ONLY, TERMINATED, WRONG_ARGUMENTS};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;
+use crate::functions::{Builtin, Operator};
 use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{Arguments, Expression, ExpressionKind};
 use crate::value::errors::{DOMAIN_ERROR, TYPE_MISMATCH};
 use crate::value::{FromValue, Value, format};
 
-/// An operator of this file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Special {
-    /// `size(A)`, `size(A, i)`: without copying `A`.
-    Size,
-    /// `ndims(A)`
-    NumberOfDimensions,
-    /// `noEvent(e)`, `pure(e)`: the value of `e`.
-    Transparent,
-    /// `smooth(p, e)`
-    Smooth,
-    /// `homotopy(actual, simplified)`
-    Homotopy,
-    /// `String(…)`
-    Text,
-    /// `assert(…)`
-    Assert,
-    /// `terminate(…)`
-    Terminate,
-    /// `der`, `pre`, …
-    ModelOnly(&'static str),
-}
-
-const MODEL_OPERATORS: &[&str] = &[
-    "der",
-    "pre",
-    "edge",
-    "change",
-    "reinit",
-    "sample",
-    "initial",
-    "terminal",
-    "delay",
-    "inStream",
-    "actualStream",
-    "cardinality",
-    "spatialDistribution",
-    "previous",
-    "hold",
-    "noClock",
-];
-
-/// The special operator of this name.
-pub(super) fn find(name: &str) -> Option<Special> {
-    Some(match name {
-        "size" => Special::Size,
-        "ndims" => Special::NumberOfDimensions,
-        "noEvent" | "pure" => Special::Transparent,
-        "smooth" => Special::Smooth,
-        "homotopy" => Special::Homotopy,
-        "String" => Special::Text,
-        "assert" => Special::Assert,
-        "terminate" => Special::Terminate,
-        _ => {
-            let found = MODEL_OPERATORS.iter().find(|operator| **operator == name)?;
-            Special::ModelOnly(found)
-        }
-    })
-}
-
-/// Names of the operators of this file that have a value in scripts and functions.
-pub(super) const NAMES: &[&str] =
-    &["size", "ndims", "noEvent", "pure", "smooth", "homotopy", "String", "assert", "terminate"];
-
 impl Evaluator<'_> {
-    pub(super) fn special(
+    /// The outputs of an operator.
+    pub(super) fn operator(
         &mut self,
-        special: Special,
+        entry: &'static Builtin,
+        operator: Operator,
         arguments: &Arguments,
         span: Span,
     ) -> Result<Vec<Value>, Diagnostic> {
         let one = |value: Value| vec![value];
-        match special {
-            Special::Size => self.size(arguments, span).map(one),
-            Special::NumberOfDimensions => {
-                let [array] = taken(arguments, ["A"], 1, span)?;
+        match operator {
+            Operator::Size => self.size(entry, arguments, span).map(one),
+            Operator::NumberOfDimensions => {
+                let [array] = taken(arguments, entry, span)?;
                 let array = given(array, span)?;
                 Ok(one(Value::Integer(self.dims(array)?.len() as i64)))
             }
-            Special::Transparent => {
-                let [value] = taken(arguments, ["expr"], 1, span)?;
+            Operator::NoEvent | Operator::Pure => {
+                let [value] = taken(arguments, entry, span)?;
                 self.expression(given(value, span)?).map(one)
             }
-            Special::Smooth => {
-                let [_, value] = taken(arguments, ["p", "expr"], 2, span)?;
+            Operator::Smooth => {
+                let [_, value] = taken(arguments, entry, span)?;
                 self.expression(given(value, span)?).map(one)
             }
-            Special::Homotopy => {
-                let [actual, _] = taken(arguments, ["actual", "simplified"], 2, span)?;
+            Operator::Homotopy => {
+                let [actual, _] = taken(arguments, entry, span)?;
                 self.expression(given(actual, span)?).map(one)
             }
-            Special::Text => self.text(arguments, span).map(one),
-            Special::Assert => self.assertion(arguments, span).map(|()| Vec::new()),
-            Special::Terminate => {
-                let [message] = taken(arguments, ["message"], 1, span)?;
+            Operator::Text => self.text(arguments, span).map(one),
+            Operator::Assert => self.assertion(entry, arguments, span).map(|()| Vec::new()),
+            Operator::Terminate => {
+                let [message] = taken(arguments, entry, span)?;
                 let text = String::from_value(self.expression(given(message, span)?)?).at(span)?;
                 Err(Fault::new(TERMINATED, text).at(span))
             }
-            Special::ModelOnly(name) => {
-                let message = format!("`{name}` is allowed only in models");
+            Operator::SemiLinear | Operator::Ordinal => {
+                self.call_entry(entry, arguments, span).map(one)
+            }
+            Operator::InTime(_) => {
+                let message = format!("`{}` is allowed only in models", entry.name);
                 Err(Fault::new(MODEL_ONLY, message).at(span))
             }
         }
     }
 
     /// `size(A)` is a vector, `size(A, i)` a number (MLS §10.3.1).
-    fn size(&mut self, arguments: &Arguments, span: Span) -> Result<Value, Diagnostic> {
-        let [array, dimension] = taken(arguments, ["A", "i"], 1, span)?;
+    fn size(
+        &mut self,
+        entry: &Builtin,
+        arguments: &Arguments,
+        span: Span,
+    ) -> Result<Value, Diagnostic> {
+        let [array, dimension] = taken(arguments, entry, span)?;
         let dims = self.dims(given(array, span)?)?;
         let Some(dimension) = dimension else {
             return Ok(dims.into_iter().map(|size| size as i64).collect::<Vec<i64>>().into());
@@ -192,9 +139,13 @@ impl Evaluator<'_> {
     }
 
     /// `assert(condition, message, level)` (MLS §8.3.7)
-    fn assertion(&mut self, arguments: &Arguments, span: Span) -> Result<(), Diagnostic> {
-        let [condition, message, level] =
-            taken(arguments, ["condition", "message", "level"], 2, span)?;
+    fn assertion(
+        &mut self,
+        entry: &Builtin,
+        arguments: &Arguments,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        let [condition, message, level] = taken(arguments, entry, span)?;
         if self.condition(given(condition, span)?)? {
             return Ok(());
         }
@@ -228,13 +179,13 @@ impl Evaluator<'_> {
     }
 }
 
-/// The arguments in the order of `names`; the first `required` of them must be there.
+/// The arguments in the order of the entry's inputs, of which it may have fewer than `N` needed.
 fn taken<'a, const N: usize>(
     arguments: &'a Arguments,
-    names: [&str; N],
-    required: usize,
+    entry: &Builtin,
     span: Span,
 ) -> Result<[Option<&'a Expression>; N], Diagnostic> {
+    let (names, required) = (entry.inputs, entry.least.min(N));
     let mut found = [None; N];
     if arguments.positional.len() > N {
         let fault = fault!(WRONG_ARGUMENTS, "expected at most {N} arguments");

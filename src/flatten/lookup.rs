@@ -7,7 +7,6 @@ use super::library::ClassId;
 use super::modification::{Modifier, Redeclaration, Replacement};
 use super::scope::{Nested, ScopeId, Text};
 use crate::diag::{Diagnostic, suggest};
-use crate::eval;
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
@@ -371,7 +370,7 @@ impl Instantiation<'_> {
         name: &Name,
         span: Span,
     ) -> Diagnostic {
-        let builtin = || suggest::did_you_mean(&name.to_string(), eval::intrinsic_names());
+        let builtin = || suggest::did_you_mean(&name.to_string(), crate::functions::names());
         let suggestion = self.suggestion(scope, name).or_else(builtin);
         fault!(UNKNOWN_CLASS, "there is no function `{name}`").help_if(suggestion).at(span)
     }

@@ -7,7 +7,7 @@ use super::instantiation::Instantiation;
 use super::lookup::Type;
 use super::scope::ScopeId;
 use crate::diag::{Diagnostic, suggest};
-use crate::eval::{self, ValueType};
+use crate::eval::ValueType;
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::source::Span;
@@ -452,5 +452,7 @@ fn booleans(start: &Expression, stop: &Expression) -> Vec<Expression> {
 /// to the function in progress.
 fn is_builtin(name: &Name, local: &Local) -> bool {
     let ident = name.first().filter(|_| name.is_simple());
-    ident.is_some_and(|ident| eval::is_builtin(ident.as_str()) || local.get(ident).is_some())
+    ident.is_some_and(|ident| {
+        crate::functions::is_builtin(ident.as_str()) || local.get(ident).is_some()
+    })
 }

@@ -7,6 +7,7 @@ use super::modification::Bound;
 use super::resolve::Local;
 use super::scope::ScopeId;
 use crate::diag::Diagnostic;
+use crate::functions::{self, ArgumentShapes};
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
@@ -15,23 +16,6 @@ use crate::syntax::ast::{
 };
 use crate::syntax::visit::{Rewrite, rewrite_expression};
 use crate::value::Value;
-
-/// Functions that leave the sizes of their first argument as they are.
-const SAME_SIZES: &[&str] = &[
-    "der",
-    "pre",
-    "noEvent",
-    "smooth",
-    "delay",
-    "homotopy",
-    "symmetric",
-    "semiLinear",
-    "change",
-    "edge",
-];
-
-/// Reductions of arrays to scalars.
-const TO_SCALAR: &[&str] = &["sum", "product", "scalar", "ndims"];
 
 /// Writes a number for every iterator: the sizes of an element do not depend on which.
 struct Iterators<'a>(&'a [ForIndex]);
@@ -242,78 +226,9 @@ impl Instantiation<'_> {
         if let Some(Some(function)) = self.functions.get(name).cloned() {
             return self.function_shape(&function, arguments);
         }
-        let positional = &arguments.positional;
         let word = name.last().filter(|_| name.is_simple())?;
-        match word.as_str() {
-            word if SAME_SIZES.contains(&word) => {
-                let at = usize::from(word == "smooth");
-                self.shape_of(positional.get(at)?)
-            }
-            word if TO_SCALAR.contains(&word) => Some(Vec::new()),
-            "fill" => {
-                let inner = self.shape_of(positional.first()?)?;
-                let mut dims = self.sizes(&positional[1..])?;
-                dims.extend(inner);
-                Some(dims)
-            }
-            "zeros" | "ones" => self.sizes(positional),
-            "identity" => {
-                let n = *self.sizes(positional)?.first()?;
-                Some(vec![n, n])
-            }
-            "diagonal" => {
-                let n = *self.shape_of(positional.first()?)?.first()?;
-                Some(vec![n, n])
-            }
-            "transpose" => match self.shape_of(positional.first()?)?.as_slice() {
-                [n, m, rest @ ..] => Some([&[*m, *n], rest].concat()),
-                _ => None,
-            },
-            "vector" => {
-                let dims = self.shape_of(positional.first()?)?;
-                Some(vec![dims.iter().product()])
-            }
-            "cross" => Some(vec![3]),
-            "skew" => Some(vec![3, 3]),
-            "outerProduct" => {
-                let n = *self.shape_of(positional.first()?)?.first()?;
-                Some(vec![n, *self.shape_of(positional.get(1)?)?.first()?])
-            }
-            "linspace" => self.sizes(positional.get(2..3)?),
-            "min" | "max" if positional.len() == 1 => Some(Vec::new()),
-            "size" => match positional.len() {
-                1 => Some(vec![self.shape_of(&positional[0])?.len()]),
-                _ => Some(Vec::new()),
-            },
-            "cat" => self.cat_shape(positional),
-            // The functions of numbers are applied element by element (MLS §12.4.6).
-            word if ["mod", "rem", "div", "min", "max"].contains(&word)
-                || crate::symbolic::function::find(word).is_some() =>
-            {
-                let shapes: Option<Vec<Vec<usize>>> =
-                    positional.iter().map(|argument| self.shape_of(argument)).collect();
-                shapes?.into_iter().max_by_key(Vec::len)
-            }
-            _ => None,
-        }
-    }
-
-    fn cat_shape(&mut self, positional: &[Expression]) -> Option<Vec<usize>> {
-        let (dimension, arrays) = positional.split_first()?;
-        let Value::Integer(dimension) = self.flat_value(dimension).ok()? else { return None };
-        let at = usize::try_from(dimension - 1).ok()?;
-        let mut whole: Option<Vec<usize>> = None;
-        for array in arrays {
-            let dims = self.shape_of(array)?;
-            whole = Some(match whole {
-                None => dims,
-                Some(mut whole) => {
-                    *whole.get_mut(at)? += dims.get(at)?;
-                    whole
-                }
-            });
-        }
-        whole
+        let entry = functions::find(word.as_str())?;
+        entry.shape_of(&mut Shapes { instantiation: self, arguments: &arguments.positional })
     }
 
     fn sizes(&mut self, sizes: &[Expression]) -> Option<Vec<usize>> {
@@ -400,6 +315,29 @@ impl Instantiation<'_> {
             other => other.clone(),
         };
         Expression::new(kind, e.span)
+    }
+}
+
+/// The sizes of arguments.
+struct Shapes<'i, 'm, 'a> {
+    instantiation: &'i mut Instantiation<'m>,
+    arguments: &'a [Expression],
+}
+
+impl ArgumentShapes for Shapes<'_, '_, '_> {
+    fn count(&self) -> usize {
+        self.arguments.len()
+    }
+
+    fn dims(&mut self, at: usize) -> Option<Vec<usize>> {
+        self.instantiation.shape_of(self.arguments.get(at)?)
+    }
+
+    fn number(&mut self, at: usize) -> Option<i64> {
+        match self.instantiation.flat_value(self.arguments.get(at)?).ok()? {
+            Value::Integer(number) => Some(number),
+            _ => None,
+        }
     }
 }
 

@@ -8,21 +8,14 @@ use super::{BaseType, Variability, Variable};
 use crate::diag::Diagnostic;
 use crate::eval::ValueType;
 use crate::fault;
+use crate::functions::{self, ArgumentShapes, ShapeRule, TypeRule, VariabilityRule};
+use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{
     Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, Subscript,
     UnaryOperator,
 };
 use crate::syntax::visit::{Visit, walk_expression, walk_reference};
-
-/// Functions whose value is Real, whatever the arguments.
-const REAL_FUNCTIONS: &[&str] = &[
-    "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp", "log",
-    "log10", "sqrt", "der",
-];
-
-/// Functions that read sizes of their argument and not its value.
-const SIZE_FUNCTIONS: &[&str] = &["size", "ndims"];
 
 impl Instantiation<'_> {
     /// Refuses a value whose type, dimensions or variability cannot be those of the variable.
@@ -180,11 +173,18 @@ impl Instantiation<'_> {
                 _ => None,
             };
         }
-        match function.as_ident()?.as_str() {
-            name if REAL_FUNCTIONS.contains(&name) => Some(BaseType::Real),
-            "size" | "ndims" | "integer" | "Integer" => Some(BaseType::Integer),
-            "fill" => self.type_of(arguments.positional.first()?),
-            _ => None,
+        match functions::find(function.as_ident()?.as_str())?.value_type {
+            TypeRule::Real => Some(BaseType::Real),
+            TypeRule::Integer => Some(BaseType::Integer),
+            TypeRule::Boolean => Some(BaseType::Boolean),
+            TypeRule::String => Some(BaseType::String),
+            TypeRule::As(at) => self.type_of(arguments.positional.get(at)?),
+            TypeRule::Joined => {
+                let mut types = arguments.positional.iter().map(|argument| self.type_of(argument));
+                let first = types.next()??;
+                types.try_fold(first, |all, one| joined(all, one?))
+            }
+            TypeRule::Unknown => None,
         }
     }
 
@@ -204,11 +204,12 @@ impl Instantiation<'_> {
                 }
             }
             ExpressionKind::Array(elements) => Some(1 + self.rank_of(elements.first()?)?),
-            ExpressionKind::Call { function, arguments }
-                if function.as_ident().is_some_and(|name| name == "fill") =>
-            {
-                let inner = self.rank_of(arguments.positional.first()?)?;
-                Some(inner + arguments.positional.len() - 1)
+            ExpressionKind::Call { function, arguments } => {
+                let entry = functions::find(function.as_ident()?.as_str())?;
+                if entry.shape != ShapeRule::Planned || !arguments.iterators.is_empty() {
+                    return None;
+                }
+                entry.shape_of(&mut Ranks { instantiation: self, arguments }).map(|dims| dims.len())
             }
             _ => None,
         }
@@ -232,6 +233,33 @@ impl Instantiation<'_> {
     }
 }
 
+/// The numbers of dimensions of arguments, as sizes of one each.
+struct Ranks<'i, 'a> {
+    instantiation: &'i Instantiation<'a>,
+    arguments: &'i Arguments,
+}
+
+impl ArgumentShapes for Ranks<'_, '_> {
+    fn count(&self) -> usize {
+        self.arguments.positional.len()
+    }
+
+    fn dims(&mut self, at: usize) -> Option<Vec<usize>> {
+        Some(vec![1; self.instantiation.rank_of(self.arguments.positional.get(at)?)?])
+    }
+
+    fn number(&mut self, at: usize) -> Option<i64> {
+        match self.arguments.positional.get(at)?.kind {
+            ExpressionKind::Integer(value) => Some(value),
+            _ => None,
+        }
+    }
+
+    fn size(&mut self, _: usize) -> Option<i64> {
+        Some(2)
+    }
+}
+
 /// Searches the variable that changes most often.
 struct MostVariable<'i, 'a> {
     instantiation: &'i Instantiation<'a>,
@@ -242,7 +270,7 @@ impl Visit for MostVariable<'_, '_> {
     fn expression(&mut self, e: &Expression) {
         match &e.kind {
             ExpressionKind::Call { function, .. }
-                if function.as_ident().is_some_and(|f| SIZE_FUNCTIONS.contains(&f.as_str())) => {}
+                if function.as_ident().is_some_and(reads_sizes) => {}
             _ => walk_expression(self, e),
         }
     }
@@ -255,6 +283,12 @@ impl Visit for MostVariable<'_, '_> {
         }
         walk_reference(self, reference);
     }
+}
+
+/// Whether a function reads sizes of its argument and not its value.
+fn reads_sizes(name: Ident) -> bool {
+    let entry = functions::find(name.as_str());
+    entry.is_some_and(|entry| entry.variability == VariabilityRule::Never)
 }
 
 /// The type that values of both types have.

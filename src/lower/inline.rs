@@ -9,9 +9,7 @@ use super::build::{Builder, UNKNOWN_TEXT, message_text};
 use super::component_shape::{Declared, declared};
 use super::dae::{Assertion, Level, Part};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
-use super::expressions::{
-    Array, Binary, Branch, Choice, Lowered, Lowering, Operator, Target, Unary,
-};
+use super::expressions::{Array, Binary, Branch, Choice, Lowered, Lowering, Target, Unary};
 use super::function::{component_type, local_value};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
@@ -533,20 +531,6 @@ impl Target for Call<'_, '_> {
         super::function::call(self.builder, function, arguments, span)
     }
 
-    fn operator(
-        &mut self,
-        name: &str,
-        arguments: &[Expression],
-        span: Span,
-    ) -> Option<Result<Operator, Diagnostic>> {
-        match name {
-            "der" | "initial" => {
-                Some(Err(fault!(NOT_SUPPORTED, "`{name}` in a function").at(span)))
-            }
-            _ => self.builder.operator(name, arguments, span),
-        }
-    }
-
     fn gives_up(&self) -> bool {
         self.builder.inlined == 0
     }
@@ -557,9 +541,5 @@ impl Target for Call<'_, '_> {
 
     fn resources(&self) -> crate::external::Resources {
         self.builder.flat.resources.clone()
-    }
-
-    fn derivative(&mut self, _: Expr, span: Span) -> Result<Expr, Diagnostic> {
-        Err(fault!(NOT_SUPPORTED, "`der` in a function").at(span))
     }
 }

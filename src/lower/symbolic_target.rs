@@ -4,16 +4,17 @@ use super::build::derivative_of;
 use super::build::{Builder, Folding, UNKNOWN_TEXT, scalar_of_nothing};
 use super::dae::{Assertion, Homotopy, Kind, Level, Part, Relation};
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
-use super::expressions::{Array, Binary, Branch, Lowered, Lowering, Operator, Target, Unary};
+use super::expressions::{Array, Binary, Branch, Lowered, Lowering, Target, Unary};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, ValueType};
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
+use crate::functions::{Builtin, Temporal};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::symbolic::function::FunctionId;
 use crate::symbolic::{Expr, RelationOperator, VarId};
-use crate::syntax::ast::{ComponentReference, Expression, ExpressionKind};
+use crate::syntax::ast::ComponentReference;
 use indexmap::IndexSet;
 use std::cell::Cell;
 use std::sync::Arc;
@@ -215,39 +216,25 @@ impl Target for Builder<'_> {
         Some(self.number_of(text))
     }
 
-    fn operator(
+    fn begin_temporal(
         &mut self,
-        name: &str,
-        arguments: &[Expression],
+        entry: &Builtin,
+        operator: Temporal,
         span: Span,
-    ) -> Option<Result<Operator, Diagnostic>> {
-        Some(Ok(match name {
-            "der" => Operator::Derivative,
-            "noEvent" => Operator::Live(0),
-            // What is continuous alone still has kinks, which no step and no iteration may pass.
-            "smooth" => match arguments.first().map(|order| &order.kind) {
-                Some(ExpressionKind::Integer(0)) => Operator::Plain(1),
-                _ => Operator::Live(1),
-            },
-            "pre" | "edge" | "change" => {
+    ) -> Result<(), Diagnostic> {
+        match operator {
+            Temporal::Derivative
+            | Temporal::Initial
+            | Temporal::Terminal
+            | Temporal::Sample
+            | Temporal::Delay => Ok(()),
+            Temporal::Pre | Temporal::Edge | Temporal::Change => {
                 // Until `temporal`, which follows when the argument is lowered.
                 self.raw += 1;
-                Operator::Temporal
+                Ok(())
             }
-            "sample" | "initial" | "terminal" | "semiLinear" | "delay" => Operator::Temporal,
-            "reinit"
-            | "terminate"
-            | "spatialDistribution"
-            | "cardinality"
-            | "inStream"
-            | "actualStream"
-            | "getInstanceName"
-            | "previous"
-            | "hold" => {
-                return Some(Err(fault!(NOT_SUPPORTED, "`{name}` is not supported yet").at(span)));
-            }
-            _ => return None,
-        }))
+            _ => Err(fault!(NOT_SUPPORTED, "`{}` is not supported yet", entry.name).at(span)),
+        }
     }
 
     fn homotopy(&mut self, actual: Expr, simplified: Expr) -> Expr {
@@ -267,7 +254,21 @@ impl Target for Builder<'_> {
         self.flat.resources.clone()
     }
 
-    fn derivative(&mut self, a: Expr, span: Span) -> Result<Expr, Diagnostic> {
+    fn temporal(
+        &mut self,
+        entry: &Builtin,
+        operator: Temporal,
+        arguments: Vec<Array<Expr>>,
+        _: bool,
+        span: Span,
+    ) -> Result<Array<Expr>, Diagnostic> {
+        self.temporal_operator(entry, operator, arguments, span)
+    }
+}
+
+impl Builder<'_> {
+    /// `der(a)`
+    pub(super) fn derivative(&mut self, a: Expr, span: Span) -> Result<Expr, Diagnostic> {
         if self.is_parametric(a) {
             return Ok(self.dae.pool.constant(0.0));
         }
@@ -278,18 +279,6 @@ impl Target for Builder<'_> {
         Ok(self.dae.pool.variable(derivative))
     }
 
-    fn temporal(
-        &mut self,
-        name: &str,
-        arguments: Vec<Array<Expr>>,
-        live: bool,
-        span: Span,
-    ) -> Result<Array<Expr>, Diagnostic> {
-        self.temporal_operator(name, arguments, live, span)
-    }
-}
-
-impl Builder<'_> {
     /// The text that a variable is bound to, [`UNKNOWN_TEXT`] if that is not known.
     pub(super) fn text(&mut self, position: usize) -> Arc<str> {
         let flat = self.flat;

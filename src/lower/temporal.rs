@@ -8,89 +8,55 @@ use super::expressions::{Array, Target, size_fault};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::{BaseType, Variability};
+use crate::functions::{Builtin, Temporal};
 use crate::source::Span;
 use crate::symbolic::function::FunctionId;
 use crate::symbolic::{Expr, RelationOperator, VarId};
 
 impl Builder<'_> {
-    /// `pre`, `edge`, `change`, `initial`, `terminal`, `sample`, `semiLinear`.
+    /// The value of an operator whose arguments are lowered.
     pub(super) fn temporal_operator(
         &mut self,
-        name: &str,
+        entry: &Builtin,
+        operator: Temporal,
         mut arguments: Vec<Array<Expr>>,
-        live: bool,
         span: Span,
     ) -> Result<Array<Expr>, Diagnostic> {
-        let arity = match name {
-            "initial" | "terminal" => 0,
-            "delay" if arguments.len() == 3 => 3,
-            "sample" | "delay" => 2,
-            "semiLinear" => 3,
-            _ => 1,
-        };
-        if matches!(name, "pre" | "edge" | "change") {
+        if matches!(operator, Temporal::Pre | Temporal::Edge | Temporal::Change) {
             self.raw -= 1;
         }
-        if arguments.len() != arity {
-            return Err(fault!(ARRAY_MISMATCH, "`{name}` takes {arity} arguments here").at(span));
-        }
-        let scalar = |position: usize| match arguments[position].elements.as_slice() {
-            [only] if arguments[position].dims.is_empty() => Ok(*only),
-            _ => Err(fault!(ARRAY_MISMATCH, "`{name}` takes scalars").at(span)),
+        let scalar = |position: usize| match arguments.get(position) {
+            Some(Array { dims, elements }) if dims.is_empty() => Ok(elements[0]),
+            _ => Err(fault!(ARRAY_MISMATCH, "`{}` takes scalars", entry.name).at(span)),
         };
-        let value = match name {
-            "initial" if self.initial => self.dae.pool.constant(1.0),
-            "initial" => self.initial_signal(),
-            "terminal" => self.terminal_signal(),
-            "sample" => {
+        match operator {
+            Temporal::Initial if self.initial => {
+                return Ok(Array::scalar(self.dae.pool.constant(1.0)));
+            }
+            Temporal::Initial => return Ok(Array::scalar(self.initial_signal())),
+            Temporal::Terminal => return Ok(Array::scalar(self.terminal_signal())),
+            Temporal::Sample => {
                 let (start, interval) = (scalar(0)?, scalar(1)?);
-                self.sample(start, interval, span)?
+                return self.sample(start, interval, span).map(Array::scalar);
             }
-            "delay" | "semiLinear" => return self.of_each_element(name, &arguments, live, span),
-            _ => {
-                let mut array = arguments.swap_remove(0);
-                for element in &mut array.elements {
-                    *element = match name {
-                        "pre" => self.previous(*element, span)?,
-                        "edge" => self.edge_of_variable(*element, span)?,
-                        _ => self.change(*element, span)?,
-                    };
-                }
-                return Ok(array);
-            }
-        };
-        Ok(Array::scalar(value))
-    }
-
-    /// A function of scalars applied to the elements of arrays of one size, and to the scalars
-    /// among the arguments (MLS §12.4.6).
-    fn of_each_element(
-        &mut self,
-        name: &str,
-        arguments: &[Array<Expr>],
-        live: bool,
-        span: Span,
-    ) -> Result<Array<Expr>, Diagnostic> {
-        let arrays = || arguments.iter().map(|a| &a.dims).filter(|dims| !dims.is_empty());
-        let dims = arrays().next().cloned().unwrap_or_default();
-        if let Some(other) = arrays().find(|other| **other != dims) {
-            return Err(size_fault(&dims, other).at(span));
+            _ => {}
         }
-        let mut elements = Vec::new();
-        for at in 0..dims.iter().product() {
-            let of = |argument: &Array<Expr>| match argument.dims.is_empty() {
-                true => argument.elements[0],
-                false => argument.elements[at],
+        let mut array = arguments.remove(0);
+        for at in 0..array.elements.len() {
+            let element = array.elements[at];
+            array.elements[at] = match operator {
+                Temporal::Pre => self.previous(element, span)?,
+                Temporal::Edge => self.edge_of_variable(element, span)?,
+                Temporal::Change => self.change(element, span)?,
+                Temporal::Derivative => self.derivative(element, span)?,
+                Temporal::Delay => {
+                    let time = delay_time(&arguments, at, &array.dims, span)?;
+                    self.delay(element, time, span)?
+                }
+                _ => return Err(fault!(NOT_SUPPORTED, "`{}`", entry.name).at(span)),
             };
-            elements.push(match (name, arguments) {
-                ("semiLinear", [x, positive, negative]) => {
-                    self.semi_linear(of(x), of(positive), of(negative), live, span)
-                }
-                (_, [argument, time, ..]) => self.delay(of(argument), of(time), span)?,
-                _ => return Err(fault!(ARRAY_MISMATCH, "`{name}` needs more arguments").at(span)),
-            });
         }
-        Ok(Array { dims, elements })
+        Ok(array)
     }
 
     /// `pre(a)`: the value of a variable before the event iteration in progress.
@@ -251,21 +217,6 @@ impl Builder<'_> {
         Ok(self.dae.pool.variable(variable))
     }
 
-    /// `if x >= 0 then positive*x else negative*x`
-    fn semi_linear(
-        &mut self,
-        x: Expr,
-        positive: Expr,
-        negative: Expr,
-        live: bool,
-        span: Span,
-    ) -> Expr {
-        let zero = self.dae.pool.constant(0.0);
-        let condition = self.relation(RelationOperator::GreaterEqual, x, zero, live, span);
-        let (a, b) = (self.dae.pool.mul(positive, x), self.dae.pool.mul(negative, x));
-        self.dae.pool.if_then_else(condition, a, b)
-    }
-
     /// A function that jumps, outside `noEvent`, in terms of `floor` (MLS §3.7.2).
     pub(super) fn rounding_function(
         &mut self,
@@ -332,5 +283,22 @@ impl Builder<'_> {
         let id = VarId(self.dae.variables.len() as u32);
         self.dae.variables.push(variable);
         id
+    }
+}
+
+/// The delay time of an element: one for all, or an array of the same sizes.
+fn delay_time(
+    others: &[Array<Expr>],
+    at: usize,
+    dims: &[usize],
+    span: Span,
+) -> Result<Expr, Diagnostic> {
+    let Some(time) = others.first() else {
+        return Err(fault!(ARRAY_MISMATCH, "`delay` needs a delay time").at(span));
+    };
+    match time.dims.is_empty() {
+        true => Ok(time.elements[0]),
+        false if time.dims == dims => Ok(time.elements[at]),
+        false => Err(size_fault(dims, &time.dims).at(span)),
     }
 }

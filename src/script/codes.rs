@@ -9,6 +9,7 @@ pub fn all() -> Vec<Code> {
         crate::registry::CODES,
         crate::syntax::errors::CODES,
         crate::value::errors::CODES,
+        crate::functions::errors::CODES,
         crate::eval::errors::CODES,
         crate::external::errors::CODES,
         crate::mat::errors::CODES,

@@ -276,6 +276,20 @@ impl Elements {
         map_elements!(self, values => values[start..start + count].to_vec())
     }
 
+    /// Appends one element as [`Elements::append`] does.
+    ///
+    /// # Errors
+    ///
+    /// It is of another type.
+    pub fn push(&mut self, value: &Value) -> Result<(), Fault> {
+        match (&mut *self, value) {
+            (Elements::Real(values), Value::Real(value)) => values.push(*value),
+            (Elements::Integer(values), Value::Integer(value)) => values.push(*value),
+            (_, value) => return self.append(Elements::repeated(value, 1)?),
+        }
+        Ok(())
+    }
+
     /// Appends elements of the same type; Integers become Real on either side if the other is.
     pub fn append(&mut self, more: Elements) -> Result<(), Fault> {
         match (&mut *self, more) {

@@ -2,8 +2,8 @@
 
 use super::{Bounds, Component, Instruction, Kind, MAX_SLOTS, Operation, ScalarFunction};
 use crate::eval::scalar::{MAX_DEPTH, Scalar};
-use crate::eval::special::{self, Special};
-use crate::eval::{Function, FunctionBody, FunctionComponent, Host, ValueType, intrinsics};
+use crate::eval::{Function, FunctionBody, FunctionComponent, Host, ValueType};
+use crate::functions::{self, Operator};
 use crate::name::Ident;
 use crate::syntax::ast::{
     Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
@@ -132,7 +132,8 @@ impl Compiler<'_> {
     fn assertion(&mut self, call: &Expression) -> Option<Instruction> {
         let ExpressionKind::Call { function, arguments } = &call.kind else { return None };
         let condition = arguments.positional.first()?;
-        let is_assert = special::find(function.as_ident()?.as_str()) == Some(Special::Assert);
+        let is_assert =
+            functions::operator(function.as_ident()?.as_str()) == Some(Operator::Assert);
         let known = is_assert && self.is_of_language(function);
         known.then_some(Instruction::Assert(self.expression(condition, MAX_DEPTH)?))
     }
@@ -167,13 +168,13 @@ impl Compiler<'_> {
                 chosen
             }
             ExpressionKind::Call { function, arguments } => {
-                self.intrinsic(function, arguments, depth)?
+                self.builtin(function, arguments, depth)?
             }
             _ => return None,
         })
     }
 
-    fn intrinsic(
+    fn builtin(
         &mut self,
         function: &ComponentReference,
         arguments: &Arguments,
@@ -181,14 +182,13 @@ impl Compiler<'_> {
     ) -> Option<Operation> {
         let name = function.as_ident()?;
         let is_plain = arguments.named.is_empty() && arguments.iterators.is_empty();
-        let is_special = special::find(name.as_str()).is_some();
-        let entry = intrinsics::find(name.as_str())?;
+        let entry = functions::find(name.as_str())?;
         let count = arguments.positional.len();
-        let is_usable = is_plain && !is_special && entry.is_of_scalars(count);
+        let is_usable = is_plain && entry.is_of_scalars(count);
         if !is_usable || !self.is_of_language(function) {
             return None;
         }
         let operands = arguments.positional.iter().map(|a| self.expression(a, depth));
-        Some(Operation::Intrinsic(entry, operands.collect::<Option<Vec<_>>>()?))
+        Some(Operation::Builtin(entry, operands.collect::<Option<Vec<_>>>()?))
     }
 }

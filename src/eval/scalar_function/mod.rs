@@ -9,8 +9,8 @@
 mod compile;
 mod run;
 
-use super::intrinsics;
 use super::scalar::Scalar;
+use crate::functions::Builtin;
 use crate::syntax::ast::{BinaryOperator, UnaryOperator};
 use std::sync::OnceLock;
 
@@ -84,7 +84,7 @@ enum Operation {
     Unary(UnaryOperator, Box<Operation>),
     /// Condition, value, value otherwise.
     If(Box<[Operation; 3]>),
-    Intrinsic(&'static intrinsics::Entry, Vec<Operation>),
+    Builtin(&'static Builtin, Vec<Operation>),
 }
 
 /// A statement.

@@ -170,11 +170,11 @@ impl Run<'_> {
                 true => self.value(&parts[1]),
                 false => self.value(&parts[2]),
             },
-            Operation::Intrinsic(entry, operands) => {
+            Operation::Builtin(entry, operands) => {
                 let result = match operands.as_slice() {
-                    [only] => entry.call(&[self.value(only)?.into()]),
+                    [only] => entry.value(&[self.value(only)?.into()]),
                     [first, second] => {
-                        entry.call(&[self.value(first)?.into(), self.value(second)?.into()])
+                        entry.value(&[self.value(first)?.into(), self.value(second)?.into()])
                     }
                     _ => return None,
                 };

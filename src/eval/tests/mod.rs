@@ -1,9 +1,9 @@
 //! Evaluation from text, with a host that knows the functions of the text.
 
+mod builtins;
 mod expressions;
 mod functions;
 mod host;
-mod intrinsics;
 mod robustness;
 mod scalar_functions;
 mod scalars;

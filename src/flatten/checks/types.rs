@@ -9,6 +9,7 @@ use crate::fault;
 use crate::flatten::errors::TYPE_MISMATCH;
 use crate::flatten::library::ClassId;
 use crate::flatten::lookup::Predefined;
+use crate::functions::{self, Builtin, TypeRule};
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
     BinaryOperator, Binding, ClassSpecifier, ComponentReference, Equation, EquationKind,
@@ -17,11 +18,6 @@ use crate::syntax::ast::{
 use crate::syntax::visit::{
     Visit, walk_equation, walk_expression, walk_modification, walk_statement,
 };
-
-const NUMERIC_FUNCTIONS: [&str; 18] = [
-    "abs", "sign", "sqrt", "div", "mod", "rem", "sin", "cos", "tan", "asin", "acos", "atan",
-    "sinh", "cosh", "tanh", "exp", "log", "log10",
-];
 
 /// The type of an expression.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -115,7 +111,8 @@ impl Walk<'_, '_> {
     fn numeric_call(&mut self, function: &ComponentReference, arguments: &[Expression]) {
         let [name] = function.parts.as_slice() else { return };
         let is_declared = self.class.class_named(&name.name.into()).is_some();
-        if !is_declared && NUMERIC_FUNCTIONS.contains(&name.name.as_str()) {
+        let is_numeric = functions::find(name.name.as_str()).is_some_and(Builtin::is_numeric);
+        if !is_declared && is_numeric {
             for argument in arguments {
                 self.numeric(argument, &format!("`{}` needs a number", name.name));
             }
@@ -177,8 +174,9 @@ impl Walk<'_, '_> {
     fn kind_of_call(&self, function: &ComponentReference) -> Option<Kind> {
         let [name] = function.parts.as_slice() else { return None };
         let is_declared = self.class.class_named(&name.name.into()).is_some();
-        let is_event = ["initial", "terminal", "edge", "change"].contains(&name.name.as_str());
-        (is_event && !is_declared && !function.global).then_some(Kind::Boolean)
+        let value_type = functions::find(name.name.as_str())?.value_type;
+        (value_type == TypeRule::Boolean && !is_declared && !function.global)
+            .then_some(Kind::Boolean)
     }
 
     fn kind_of_reference(&self, reference: &ComponentReference) -> Option<Kind> {

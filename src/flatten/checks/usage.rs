@@ -8,6 +8,7 @@ use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::errors::{CONDITIONAL_COMPONENT, ILLEGAL_ACCESS, ILLEGAL_ARGUMENT, MISPLACED};
 use crate::flatten::lookup::Predefined;
+use crate::functions::{self, Builtin};
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -17,22 +18,6 @@ use crate::syntax::ast::{
 use crate::syntax::visit::{
     Visit, walk_equation, walk_expression, walk_modification, walk_reference, walk_statement,
 };
-
-/// Operators that have no value in a function (MLS §12.2).
-const NOT_IN_FUNCTIONS: &[&str] = &[
-    "der",
-    "initial",
-    "terminal",
-    "sample",
-    "pre",
-    "edge",
-    "change",
-    "reinit",
-    "delay",
-    "cardinality",
-    "inStream",
-    "actualStream",
-];
 
 /// Checks the expressions that a class itself writes.
 pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
@@ -71,7 +56,8 @@ impl<'a> Walk<'a, '_> {
     }
 
     fn call(&mut self, name: &str, arguments: &[Expression], span: Span) {
-        if self.is_function && NOT_IN_FUNCTIONS.contains(&name) && !self.is_declared(name) {
+        let in_time = functions::find(name).is_some_and(Builtin::is_forbidden_in_functions);
+        if self.is_function && in_time && !self.is_declared(name) {
             self.errors.push(
                 fault!(MISPLACED, "`{name}` has no meaning in a function";
                     help: "compute it in the model and pass it as an argument")

@@ -2,26 +2,10 @@
 //! (MLS §3.8).
 
 use super::scope::Scope;
+use crate::functions::{self, VariabilityRule};
 use crate::name::Ident;
 use crate::syntax::ast::{ComponentReference, Expression, ExpressionKind};
 use crate::syntax::visit::{Visit, walk_expression};
-
-/// Operators whose value changes even where their arguments do not.
-const VARYING: &[&str] = &[
-    "der",
-    "initial",
-    "terminal",
-    "sample",
-    "pre",
-    "edge",
-    "change",
-    "delay",
-    "inStream",
-    "actualStream",
-];
-
-/// Operators whose value does not change whatever their arguments do.
-const FIXED: &[&str] = &["size", "ndims", "cardinality"];
 
 /// Whether an expression in a class keeps its value during a simulation. Names that the class does
 /// not tell about, and those of the loop variables around, are taken to do so.
@@ -45,10 +29,11 @@ impl Visit for Walk<'_> {
                 [package, _] if package.name.as_str() == "Connections" => return,
                 _ => "",
             };
-            if FIXED.contains(&name) {
-                return;
+            match functions::find(name).map(|entry| entry.variability) {
+                Some(VariabilityRule::Never) => return,
+                Some(VariabilityRule::Always) => self.varies = true,
+                Some(VariabilityRule::OfArguments) | None => {}
             }
-            self.varies |= VARYING.contains(&name);
         }
         walk_expression(self, expression);
     }

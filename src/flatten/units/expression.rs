@@ -2,6 +2,8 @@
 
 use super::Units;
 use crate::flatten::balance::path;
+use crate::functions;
+use crate::symbolic::function::UnitRule;
 use crate::syntax::ast::{
     Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind, UnaryOperator,
 };
@@ -79,16 +81,13 @@ impl Units {
         if !arguments.named.is_empty() || !arguments.iterators.is_empty() {
             return None;
         }
-        let all = arguments.positional.iter();
-        let first = || self.of_expression(arguments.positional.first()?);
-        match function.as_ident()?.as_str() {
-            "der" => first()?.over(SECOND),
-            "sqrt" => first()?.power(0.5),
-            "abs" | "noEvent" | "pre" | "previous" | "delay" | "sum" | "homotopy" | "inStream"
-            | "actualStream" => first(),
-            "smooth" => self.of_expression(arguments.positional.get(1)?),
-            "min" | "max" => self.same(all),
-            _ => None,
+        let of = |at: usize| self.of_expression(arguments.positional.get(at)?);
+        match functions::find(function.as_ident()?.as_str())?.unit {
+            UnitRule::As(at) => of(at),
+            UnitRule::Common => self.same(arguments.positional.iter()),
+            UnitRule::Power(exponent) => of(0)?.power(exponent),
+            UnitRule::Rate => of(0)?.over(SECOND),
+            UnitRule::Unknown => None,
         }
     }
 }

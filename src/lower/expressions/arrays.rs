@@ -1,8 +1,10 @@
 //! Subscripts and matrix construction (MLS §10.4, §10.5).
 
-use super::{Array, Binary, Lowered, Lowering, Target, size_fault};
+use super::builtins::mismatch;
+use super::{Array, Binary, Lowered, Lowering, Target};
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::functions;
 use crate::lower::errors::ARRAY_MISMATCH;
 use crate::source::Span;
 use crate::syntax::ast::{ComponentReference, Expression, Subscript};
@@ -187,9 +189,22 @@ impl<T: Target> Lowering<'_, T> {
             for element in row {
                 parts.push(as_matrix(self.array(element)?, element.span)?);
             }
-            lines.push(concatenate(1, parts, span)?);
+            lines.push(self.concatenated(1, &parts, span)?);
         }
-        concatenate(0, lines, span)
+        self.concatenated(0, &lines, span)
+    }
+
+    /// Arrays put together along a dimension, from 0.
+    fn concatenated(
+        &mut self,
+        axis: usize,
+        parts: &[Array<T::Scalar>],
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        let dims: Vec<&[usize]> = parts.iter().map(|part| part.dims.as_slice()).collect();
+        let plan = functions::concatenation(axis, &dims).map_err(|fault| mismatch(fault, span))?;
+        let values: Vec<Option<&Array<T::Scalar>>> = parts.iter().map(Some).collect();
+        self.elements_of_plan(plan, &values, span)
     }
 }
 
@@ -215,38 +230,4 @@ fn as_matrix<S: Copy>(mut a: Array<S>, span: Span) -> Result<Array<S>, Diagnosti
         a.dims.push(1);
     }
     Ok(a)
-}
-
-/// `cat(dimension + 1, …)`
-pub(super) fn concatenate<S: Copy>(
-    dimension: usize,
-    parts: Vec<Array<S>>,
-    span: Span,
-) -> Result<Array<S>, Diagnostic> {
-    let Some(first) = parts.first() else {
-        return Err(fault!(ARRAY_MISMATCH, "nothing to concatenate").at(span));
-    };
-    let mut dims = first.dims.clone();
-    if dimension >= dims.len() {
-        return Err(fault!(ARRAY_MISMATCH, "there is no dimension {}", dimension + 1).at(span));
-    }
-    dims[dimension] = 0;
-    for part in &parts {
-        let others = |a: &[usize]| -> Vec<usize> {
-            a.iter().enumerate().filter(|(d, _)| *d != dimension).map(|(_, n)| *n).collect()
-        };
-        if part.dims.len() != dims.len() || others(&part.dims) != others(&dims) {
-            return Err(size_fault(&first.dims, &part.dims).at(span));
-        }
-        dims[dimension] += part.dims[dimension];
-    }
-    let outer: usize = dims[..dimension].iter().product();
-    let mut elements = Vec::new();
-    for o in 0..outer {
-        for part in &parts {
-            let chunk: usize = part.dims[dimension..].iter().product();
-            elements.extend(&part.elements[o * chunk..(o + 1) * chunk]);
-        }
-    }
-    Ok(Array { dims, elements })
 }

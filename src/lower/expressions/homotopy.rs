@@ -2,28 +2,18 @@
 
 use super::{Array, Lowered, Lowering, Target, size_fault};
 use crate::diag::Diagnostic;
-use crate::fault;
-use crate::lower::errors::ARRAY_MISMATCH;
 use crate::source::Span;
-use crate::syntax::ast::Arguments;
+use crate::syntax::ast::Expression;
 
 impl<T: Target> Lowering<'_, T> {
     /// Both arguments, joined element by element as the target wishes.
     pub(super) fn homotopy(
         &mut self,
-        arguments: &Arguments,
+        actual: &Expression,
+        simplified: &Expression,
         span: Span,
     ) -> Result<Lowered<T::Scalar>, Diagnostic> {
-        let mut argument = |position: usize, name: &str| {
-            let named = arguments.named.iter().find(|a| a.name.node == name).map(|a| &a.value);
-            let Some(given) = arguments.positional.get(position).or(named) else {
-                return Err(
-                    fault!(ARRAY_MISMATCH, "`homotopy` needs the argument `{name}`").at(span)
-                );
-            };
-            self.array(given)
-        };
-        let (actual, simplified) = (argument(0, "actual")?, argument(1, "simplified")?);
+        let (actual, simplified) = (self.array(actual)?, self.array(simplified)?);
         if actual.dims != simplified.dims {
             return Err(size_fault(&actual.dims, &simplified.dims).at(span));
         }

@@ -4,12 +4,12 @@
 //! statements of user functions. What differs is a [`Target`].
 
 mod arrays;
+mod builtins;
 mod calls;
 mod expression;
 mod homotopy;
 mod operators;
 mod placed;
-mod rearrangements;
 mod records;
 mod strings;
 mod varying_strings;
@@ -23,6 +23,7 @@ use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::external::Resources;
 use crate::fault;
+use crate::functions::{Builtin, Temporal};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
@@ -158,41 +159,33 @@ pub(crate) trait Target {
         arguments: Vec<Lowered<Self::Scalar>>,
         span: Span,
     ) -> Result<Vec<Lowered<Self::Scalar>>, Diagnostic>;
-    /// An operator with a meaning in time (`der`, `initial` …), `None` if it is not one.
-    fn operator(
-        &mut self,
-        name: &str,
-        arguments: &[Expression],
-        span: Span,
-    ) -> Option<Result<Operator, Diagnostic>>;
     /// What leads from `simplified` to `actual` at the start, and is `actual` afterwards.
     fn homotopy(&mut self, actual: Self::Scalar, _simplified: Self::Scalar) -> Self::Scalar {
         actual
     }
-    /// `der(a)`
-    fn derivative(&mut self, a: Self::Scalar, span: Span) -> Result<Self::Scalar, Diagnostic>;
-    /// An operator of values in time (`pre`, `edge`, `sample` …); functions have none.
+    /// Announces an operator with a meaning in time, before its arguments are lowered; functions
+    /// have none (MLS §12.2).
+    fn begin_temporal(
+        &mut self,
+        entry: &Builtin,
+        operator: Temporal,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        let _ = operator;
+        Err(fault!(NOT_SUPPORTED, "`{}` in a function", entry.name).at(span))
+    }
+    /// The value of an operator with a meaning in time that has been announced.
     fn temporal(
         &mut self,
-        name: &str,
-        _arguments: Vec<Array<Self::Scalar>>,
-        _live: bool,
+        entry: &Builtin,
+        operator: Temporal,
+        arguments: Vec<Array<Self::Scalar>>,
+        live: bool,
         span: Span,
     ) -> Result<Array<Self::Scalar>, Diagnostic> {
-        Err(fault!(NOT_SUPPORTED, "`{name}` in a function").at(span))
+        let _ = (operator, arguments, live);
+        Err(fault!(NOT_SUPPORTED, "`{}` in a function", entry.name).at(span))
     }
-}
-
-/// What an operator with a meaning in time is replaced by.
-pub(crate) enum Operator {
-    /// The derivative of the argument.
-    Derivative,
-    /// The argument of this position.
-    Plain(usize),
-    /// The argument of this position, relations inside it live.
-    Live(usize),
-    /// Left to [`Target::temporal`].
-    Temporal,
 }
 
 /// An if-expression under construction.

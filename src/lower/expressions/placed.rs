@@ -1,20 +1,17 @@
 //! Arguments in the places that an operator or a function of the language has for them.
 
 use crate::eval::{Function, FunctionBody};
+use crate::functions::{self, Builtin};
 use crate::syntax::ast::{Arguments, Expression, ExpressionKind};
 use std::borrow::Cow;
 
-/// The inputs of operators that models name: `homotopy(actual = a, simplified = b)` (MLS §3.7.4).
-const INPUTS: &[(&str, &[&str])] =
-    &[("homotopy", &["actual", "simplified"]), ("smooth", &["p", "expr"])];
-
-/// The arguments of an operator in order. Arguments by name that it does not have are left out.
-pub(super) fn of_operator<'a>(name: &str, arguments: &'a Arguments) -> Cow<'a, [Expression]> {
-    let inputs = INPUTS.iter().find(|(operator, _)| *operator == name);
-    let Some((_, inputs)) = inputs.filter(|_| !arguments.named.is_empty()) else {
+/// The arguments in the order of the entry's inputs: `homotopy(actual = a, simplified = b)`.
+/// Arguments by name that it does not have are left out.
+pub(super) fn of_operator<'a>(entry: &Builtin, arguments: &'a Arguments) -> Cow<'a, [Expression]> {
+    if entry.inputs.is_empty() || arguments.named.is_empty() {
         return Cow::Borrowed(&arguments.positional);
-    };
-    let behind = inputs.iter().skip(arguments.positional.len());
+    }
+    let behind = entry.inputs.iter().skip(arguments.positional.len());
     let named = behind.map_while(|input| {
         let named = arguments.named.iter().find(|argument| argument.name.node == *input)?;
         Some(named.value.clone())
@@ -27,13 +24,13 @@ pub(super) fn of_operator<'a>(name: &str, arguments: &'a Arguments) -> Cow<'a, [
 pub(super) fn of_builtin(
     user: &Function,
     arguments: &Arguments,
-) -> Option<(&'static str, Vec<Expression>)> {
+) -> Option<(&'static Builtin, Vec<Expression>)> {
     let FunctionBody::External(external) = &user.body else { return None };
     if external.language.as_deref() != Some("builtin") {
         return None;
     }
     let called = external.function.as_ref()?.node;
-    let known = crate::eval::intrinsic_names().find(|name| called == *name)?;
+    let known = functions::find(called.as_str())?;
     let given = |argument: &Expression| {
         let ExpressionKind::Reference(reference) = &argument.kind else { return None };
         let name = reference.as_ident()?;

@@ -6,14 +6,12 @@ use crate::bytecode::{Elementary, Instruction};
 use crate::diag::Diagnostic;
 use crate::elementary;
 use crate::eval::{Function, ValueType};
-use crate::fault;
-use crate::lower::errors::NOT_SUPPORTED;
-use crate::lower::expressions::{Array, Binary, Branch, Choice, Lowered, Operator, Target, Unary};
+use crate::lower::expressions::{Array, Binary, Branch, Choice, Lowered, Target, Unary};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::{FunctionId, Value};
-use crate::syntax::ast::{ComponentReference, Expression};
+use crate::syntax::ast::ComponentReference;
 use std::cell::Cell;
 use std::sync::Arc;
 
@@ -238,49 +236,12 @@ impl Target for Body<'_, '_> {
         Ok(instance.outputs.iter().map(|s| Lowered::from_scalars(s, &mut results)).collect())
     }
 
-    fn operator(
-        &mut self,
-        name: &str,
-        _: &[Expression],
-        span: Span,
-    ) -> Option<Result<Operator, Diagnostic>> {
-        Some(match name {
-            "noEvent" | "homotopy" => Ok(Operator::Live(0)),
-            "smooth" => Ok(Operator::Live(1)),
-            "der"
-            | "initial"
-            | "terminal"
-            | "pre"
-            | "edge"
-            | "change"
-            | "sample"
-            | "delay"
-            | "reinit"
-            | "terminate"
-            | "semiLinear"
-            | "spatialDistribution"
-            | "cardinality"
-            | "inStream"
-            | "actualStream"
-            | "getInstanceName"
-            | "previous"
-            | "hold" => {
-                Err(fault!(NOT_SUPPORTED, "`{name}` in a function of an equation").at(span))
-            }
-            _ => return None,
-        })
-    }
-
     fn interpreted(&self) -> &Cell<u64> {
         &self.instances.interpreted
     }
 
     fn resources(&self) -> crate::external::Resources {
         self.flat.resources.clone()
-    }
-
-    fn derivative(&mut self, _: Operand, span: Span) -> Result<Operand, Diagnostic> {
-        Err(fault!(NOT_SUPPORTED, "`der` in a function").at(span))
     }
 }
 

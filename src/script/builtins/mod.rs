@@ -270,7 +270,7 @@ pub fn declarations(name: &str) -> Vec<String> {
     let last = name.rsplit('.').next().unwrap_or(name);
     let found = BY_NAME.get(last).map_or(&[][..], Vec::as_slice);
     let text = |at: &usize| TABLE[*at].builtin.header.replace(" annotation(optional = true)", "");
-    let of_language = || crate::eval::intrinsic_names().any(|known| known == name);
+    let of_language = || crate::functions::names().any(|known| known == name);
     if found.is_empty() && of_language() {
         return vec![format!("`{name}` is a function of the language: MLS §3.7, §10.3, §12.9")];
     }

@@ -1,7 +1,7 @@
 //! The session as the host of evaluation: it answers calls, dotted names and questions.
 
 use crate::diag::{At, Diagnostic, Fault};
-use crate::eval::{self, Callee, Function, FunctionBody, Host, Scope};
+use crate::eval::{Callee, Function, FunctionBody, Host, Scope};
 use crate::external::{Outside, Random};
 use crate::name::{Ident, Name};
 use crate::script::Session;
@@ -204,7 +204,7 @@ impl Session {
         }
         for candidate in self.candidates(name) {
             let is_intrinsic = candidate.is_simple()
-                && eval::intrinsic_names().any(|intrinsic| candidate.parts[0] == intrinsic);
+                && crate::functions::names().any(|intrinsic| candidate.parts[0] == intrinsic);
             if !is_intrinsic && self.class_exists(&Name::new(candidate.first())) {
                 let function = self.loaded_function(name)?;
                 return Ok(function.map(|function| self.loaded_callee(function)));

@@ -95,7 +95,7 @@ impl Session {
         if let Some(model) = self.last_model() {
             names.extend(model.flat.variables.keys().map(|name| name.to_string()));
         }
-        names.extend(crate::eval::intrinsic_names().map(str::to_owned));
+        names.extend(crate::functions::names().map(str::to_owned));
         names
     }
 

@@ -1,6 +1,6 @@
 //! Exponential, logarithms, square root, absolute value, sign.
 
-use super::{Domain, Function, ResultType, Value, real, zero};
+use super::{Domain, Function, ResultType, UnitRule, Value, real, zero};
 
 const POSITIVE: Option<Domain> =
     Some(Domain { contains: |x| x[0] > 0.0, words: "the argument must be positive" });
@@ -8,6 +8,7 @@ const POSITIVE: Option<Domain> =
 pub(super) const FUNCTIONS: &[Function] = &[
     Function {
         result: ResultType::AsArguments,
+        unit: UnitRule::As(0),
         section: "MLS §3.7.1",
         ..real("abs", Value::Unary(f64::abs), |pool, x, _| pool.function("sign", &[x[0]]))
     },
@@ -21,6 +22,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
             contains: |x| x[0] >= 0.0,
             words: "the argument must not be negative",
         }),
+        unit: UnitRule::Power(0.5),
         section: "MLS §3.7.1",
         ..real("sqrt", Value::Unary(f64::sqrt), |pool, x, _| {
             let half = pool.constant(0.5);

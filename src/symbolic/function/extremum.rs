@@ -1,12 +1,13 @@
 //! Minimum and maximum of two numbers (MLS §10.3.4).
 
-use super::{Function, ResultType, Value, real};
+use super::{Function, ResultType, UnitRule, Value, real};
 use crate::symbolic::node::{Expr, RelationOperator};
 use crate::symbolic::pool::Pool;
 
 pub(super) const FUNCTIONS: &[Function] = &[
     Function {
         result: ResultType::AsArguments,
+        unit: UnitRule::Common,
         section: "MLS §10.3.4",
         ..real("min", Value::Binary(min), |pool, x, which| {
             chosen(pool, RelationOperator::LessEqual, x, which)
@@ -14,6 +15,7 @@ pub(super) const FUNCTIONS: &[Function] = &[
     },
     Function {
         result: ResultType::AsArguments,
+        unit: UnitRule::Common,
         section: "MLS §10.3.4",
         ..real("max", Value::Binary(max), |pool, x, which| {
             chosen(pool, RelationOperator::GreaterEqual, x, which)

@@ -41,6 +41,8 @@ pub struct Function {
     pub result: ResultType,
     /// Whether a jump of its value is a state event outside `noEvent` (MLS §3.7.2).
     pub event_generating: bool,
+    /// The unit of its value.
+    pub unit: UnitRule,
     /// The section of the MLS that defines it.
     pub section: &'static str,
 }
@@ -72,6 +74,21 @@ pub enum ResultType {
     Integer,
     /// Integer if all arguments are Integer, otherwise Real.
     AsArguments,
+}
+
+/// The unit of a value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum UnitRule {
+    /// That of the argument at this position.
+    As(usize),
+    /// That of all arguments, which have the same.
+    Common,
+    /// A power of that of the first argument.
+    Power(f64),
+    /// That of the first argument over time.
+    Rate,
+    /// Nothing tells it.
+    Unknown,
 }
 
 /// A function of the table.
@@ -152,6 +169,7 @@ const fn real(
         domain: None,
         result: ResultType::Real,
         event_generating: false,
+        unit: UnitRule::Unknown,
         section: "MLS §3.7.3",
     }
 }

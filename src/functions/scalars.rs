@@ -1,6 +1,5 @@
 //! The mathematical functions of scalars (MLS §3.7.1–3.7.3) applied to values.
 
-use super::Entry;
 use crate::diag::Fault;
 use crate::symbolic::function::{Function, FunctionId, ResultType};
 use crate::value::errors::{
@@ -8,8 +7,6 @@ use crate::value::errors::{
 };
 use crate::value::{ArrayValue, Elements, Value, construct, ops, sizes};
 use crate::{bail, fault};
-
-pub(super) const FUNCTIONS: &[Entry] = &[Entry::of_scalars("semiLinear", 3, semi_linear)];
 
 /// A function of the mathematical table, element by element where arguments are arrays.
 pub(super) fn call(function: FunctionId, arguments: &[Value]) -> Result<Value, Fault> {
@@ -95,7 +92,7 @@ fn number(name: &str, value: &Value) -> Result<f64, Fault> {
 
 /// Applies a function of scalars; arrays must have equal sizes and are gone through together,
 /// scalars stay the same (MLS §12.4.6).
-pub(super) fn each(
+pub fn each(
     name: &str,
     arguments: &[Value],
     function: &dyn Fn(&[Value]) -> Result<Value, Fault>,
@@ -154,7 +151,20 @@ fn modulo(x: i64, y: i64) -> Option<i64> {
 }
 
 /// `semiLinear(x, k⁺, k⁻)` (MLS §3.7.2.5)
-fn semi_linear(arguments: &[Value]) -> Result<Value, Fault> {
+pub(super) fn semi_linear(arguments: &[Value]) -> Result<Value, Fault> {
     let x = number("semiLinear", &arguments[0])?;
     ops::multiply(&arguments[0].clone().promoted(), &arguments[if x >= 0.0 { 1 } else { 2 }])
+}
+
+/// `Integer(e)`: which literal of its enumeration, from 1.
+pub(super) fn ordinal(arguments: &[Value]) -> Result<Value, Fault> {
+    match &arguments[0] {
+        Value::Enumeration(value) => Ok(Value::Integer(value.ordinal)),
+        Value::Integer(value) => Ok(Value::Integer(*value)),
+        other => bail!(
+            TYPE_MISMATCH,
+            "`Integer` is not defined for {}", other.type_name();
+            help: "use `integer(x)` for the largest Integer not above `x`"
+        ),
+    }
 }

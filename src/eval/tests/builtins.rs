@@ -1,7 +1,7 @@
-//! Tests of the intrinsic functions.
+//! Tests of the functions of the language.
 
 use super::{eval, fails};
-use crate::eval::{call_intrinsic, intrinsic_names};
+use crate::functions;
 use crate::value::Value;
 
 #[test]
@@ -42,11 +42,11 @@ fn scalar_functions_come_from_the_table_and_take_arrays() {
 fn every_function_of_the_table_is_callable() {
     for (_, function) in crate::symbolic::function::functions() {
         let arguments = vec![Value::Real(0.5); function.arity()];
-        let value = call_intrinsic(function.name, &arguments).expect(function.name);
+        let value = functions::call(function.name, &arguments).expect(function.name);
         let expected = function.value.of(&vec![0.5; function.arity()]);
         assert_eq!(value.as_real(), Some(expected), "{}", function.name);
     }
-    let names: Vec<&str> = intrinsic_names().collect();
+    let names: Vec<&str> = functions::names().collect();
     let distinct: std::collections::BTreeSet<&str> = names.iter().copied().collect();
     assert_eq!(names.len(), distinct.len());
 }

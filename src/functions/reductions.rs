@@ -1,19 +1,105 @@
 //! Reductions of arrays: `min`, `max`, `sum`, `product` (MLS §10.3.4). With iterators they are
 //! evaluated element by element elsewhere.
 
-use super::Entry;
+use super::rules::{ShapeRule, TypeRule};
+use super::{Builtin, Meaning};
 use crate::diag::Fault;
 use crate::fault;
+use crate::symbolic::function::UnitRule;
 use crate::value::errors::{DOMAIN_ERROR, INTEGER_OVERFLOW, REAL_OVERFLOW, TYPE_MISMATCH};
 use crate::value::{ArrayValue, Elements, Value, ops};
 use std::cmp::Ordering;
 
-pub(super) const FUNCTIONS: &[Entry] = &[
-    Entry::of_values("max", 1, 2, |values| extreme("max", values, Ordering::Greater)),
-    Entry::of_values("min", 1, 2, |values| extreme("min", values, Ordering::Less)),
-    Entry::of_values("product", 1, 1, product),
-    Entry::of_values("sum", 1, 1, sum),
+/// How the elements of an array become one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reduction {
+    /// The greatest.
+    Max,
+    /// The least.
+    Min,
+    /// The product, 1 of none.
+    Product,
+    /// The sum, 0 of none.
+    Sum,
+}
+
+pub(super) const FUNCTIONS: &[Builtin] = &[
+    Builtin { most: 2, value_type: TypeRule::Joined, ..reducing("max", Reduction::Max) },
+    Builtin { most: 2, value_type: TypeRule::Joined, ..reducing("min", Reduction::Min) },
+    Builtin { unit: UnitRule::Unknown, ..reducing("product", Reduction::Product) },
+    reducing("sum", Reduction::Sum),
 ];
+
+const fn reducing(name: &'static str, reduction: Reduction) -> Builtin {
+    let entry = Builtin::new(name, Meaning::Reduction(reduction), "MLS §10.3.4");
+    Builtin { shape: ShapeRule::Reduced, unit: UnitRule::Common, ..entry }
+}
+
+impl Reduction {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Reduction::Max => "max",
+            Reduction::Min => "min",
+            Reduction::Product => "product",
+            Reduction::Sum => "sum",
+        }
+    }
+
+    /// Whether it takes two scalars, too.
+    pub(super) fn takes_two_scalars(self) -> bool {
+        matches!(self, Reduction::Max | Reduction::Min)
+    }
+
+    /// What it makes of no elements; `None` where that depends on their type.
+    pub fn of_none(self) -> Option<i64> {
+        match self {
+            Reduction::Product => Some(1),
+            Reduction::Sum => Some(0),
+            Reduction::Max | Reduction::Min => None,
+        }
+    }
+
+    /// The value of a call.
+    pub(super) fn value(self, arguments: &[Value]) -> Result<Value, Fault> {
+        match self {
+            Reduction::Max => extreme("max", arguments, Ordering::Greater),
+            Reduction::Min => extreme("min", arguments, Ordering::Less),
+            Reduction::Product => product(arguments),
+            Reduction::Sum => sum(arguments),
+        }
+    }
+
+    /// The first value of several, as with iterators.
+    ///
+    /// # Errors
+    ///
+    /// A product of arrays, which is no reduction.
+    pub fn first(self, value: Value) -> Result<Value, Fault> {
+        if self == Reduction::Product && value.rank() > 0 {
+            return Err(fault!(
+                TYPE_MISMATCH,
+                "`product` needs scalars, not values of type {}",
+                value.type_name()
+            ));
+        }
+        Ok(value)
+    }
+
+    /// Two values combined, as with iterators.
+    ///
+    /// # Errors
+    ///
+    /// The values are not numbers, or have different sizes, or the result is out of range.
+    pub fn combine(self, a: &Value, b: &Value) -> Result<Value, Fault> {
+        match self {
+            Reduction::Sum => ops::add(a, b),
+            Reduction::Product => ops::multiply(a, &self.first(b.clone())?),
+            Reduction::Min => Ok(if ops::less(b, a)? { b.clone() } else { a.clone() }),
+            Reduction::Max => Ok(if ops::greater(b, a)? { b.clone() } else { a.clone() }),
+        }
+    }
+}
 
 /// Of two scalars, or of the elements of one array. A NaN among them is the result.
 fn extreme(name: &str, arguments: &[Value], better: Ordering) -> Result<Value, Fault> {

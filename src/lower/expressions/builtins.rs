@@ -1,0 +1,372 @@
+//! Calls of the functions and operators of the language, each by its entry in
+//! [`functions`](crate::functions).
+
+use super::expression::field;
+use super::records::{arrays, common_text};
+use super::{Array, Binary, Lowered, Lowering, Target, Unary, placed, size_fault};
+use crate::diag::{Diagnostic, Fault, suggest};
+use crate::fault;
+use crate::functions::{
+    self, Argument, Builtin, Element, Known, Meaning, Operator, Plan, PlanOf, Reduction, Temporal,
+};
+use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
+use crate::source::Span;
+use crate::symbolic::RelationOperator;
+use crate::symbolic::function::{self, FunctionId};
+use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
+
+impl<T: Target> Lowering<'_, T> {
+    /// A call of the function of the language that has this name.
+    pub(super) fn builtin_call(
+        &mut self,
+        name: &str,
+        callee: &ComponentReference,
+        arguments: &Arguments,
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let Some(entry) = functions::find(name) else {
+            return Err(fault!(UNRESOLVED_REFERENCE, "there is no function `{name}`")
+                .help_if(suggest::did_you_mean(name, functions::names()))
+                .at(span));
+        };
+        if let Meaning::Operator(Operator::Text) = entry.meaning {
+            return Ok(Lowered::Text(self.string_operator(callee, arguments, span)));
+        }
+        if let Meaning::Reduction(reduction) = entry.meaning
+            && (!arguments.iterators.is_empty() || arguments.positional.len() == 1)
+        {
+            return self.reduction(reduction, arguments, span).map(Lowered::scalar);
+        }
+        self.builtin(entry, &placed::of_operator(entry, arguments), span)
+    }
+
+    /// A call with the arguments in their places.
+    pub(super) fn builtin(
+        &mut self,
+        entry: &'static Builtin,
+        arguments: &[Expression],
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        entry.check_count(arguments.len()).map_err(|fault| mismatch(fault, span))?;
+        match entry.meaning {
+            Meaning::Mathematical(id) => self.of_scalars(id, arguments, span),
+            Meaning::Plan(plan, known) => self.planned(plan, known, arguments, span),
+            Meaning::Reduction(reduction) => match function::find(reduction.name()) {
+                Some(id) => self.of_scalars(id, arguments, span),
+                None => Err(fault!(ARRAY_MISMATCH, "`{}` takes one array", entry.name).at(span)),
+            },
+            Meaning::Operator(operator) => self.operator(entry, operator, arguments, span),
+        }
+    }
+
+    /// An operator with as many arguments as it takes.
+    fn operator(
+        &mut self,
+        entry: &'static Builtin,
+        operator: Operator,
+        arguments: &[Expression],
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        match (operator, arguments) {
+            (Operator::Size, _) => self.size(arguments, span).map(Lowered::Array),
+            (Operator::NumberOfDimensions, [array]) => {
+                let rank = self.array(array)?.dims.len();
+                Ok(Lowered::scalar(self.target.constant(rank as f64)))
+            }
+            (Operator::Ordinal, [value]) => self.array(value).map(Lowered::Array),
+            (Operator::Pure, [value]) => self.lower(value),
+            (Operator::NoEvent, [value]) => self.without_events(value),
+            // What is continuous alone still has kinks, which no step and no iteration may pass.
+            (Operator::Smooth, [order, value]) if order.kind == ExpressionKind::Integer(0) => {
+                self.lower(value)
+            }
+            (Operator::Smooth, [_, value]) => self.without_events(value),
+            (Operator::Homotopy, [actual, simplified]) => self.homotopy(actual, simplified, span),
+            (Operator::SemiLinear, _) => self.semi_linear(arguments, span),
+            (Operator::InTime(operator), _) => self.in_time(entry, operator, arguments, span),
+            _ => Err(fault!(NOT_SUPPORTED, "`{}` in an expression", entry.name).at(span)),
+        }
+    }
+
+    /// A value whose relations are evaluated as they are.
+    fn without_events(&mut self, value: &Expression) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let before = std::mem::replace(&mut self.live, true);
+        let value = self.lower(value);
+        self.live = before;
+        value
+    }
+
+    fn in_time(
+        &mut self,
+        entry: &'static Builtin,
+        operator: Temporal,
+        arguments: &[Expression],
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        self.target.begin_temporal(entry, operator, span)?;
+        if let (Temporal::Pre | Temporal::Change, [text]) = (operator, arguments)
+            && let Lowered::Numbered(text) = self.lower(text)?
+        {
+            let text = vec![Array::scalar(text)];
+            let value = self.target.temporal(entry, operator, text, self.live, span)?.elements[0];
+            return Ok(match operator {
+                Temporal::Pre => Lowered::Numbered(value),
+                _ => Lowered::scalar(value),
+            });
+        }
+        let values = arguments.iter().map(|a| self.array(a)).collect::<Result<_, _>>()?;
+        self.target.temporal(entry, operator, values, self.live, span).map(Lowered::Array)
+    }
+
+    /// An array made by a plan; of records, which are records of arrays, field by field.
+    fn planned(
+        &mut self,
+        plan: PlanOf,
+        known: Known,
+        arguments: &[Expression],
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let mut numbers = Vec::with_capacity(arguments.len());
+        let mut values = Vec::new();
+        for (at, argument) in arguments.iter().enumerate() {
+            numbers.push(match known.contains(at) {
+                true => Some(self.known_size(argument)? as i64),
+                false => {
+                    values.push(self.lower(argument)?);
+                    None
+                }
+            });
+        }
+        if values.is_empty() {
+            return self.made(plan, &numbers, &[], span).map(Lowered::Array);
+        }
+        self.by_fields(&values, span, &mut |lowering, arrays| {
+            lowering.made(plan, &numbers, &arrays, span)
+        })
+    }
+
+    fn by_fields(
+        &mut self,
+        values: &[Lowered<T::Scalar>],
+        span: Span,
+        make: &mut Make<'_, Self, T::Scalar>,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        if let Some(Lowered::Record(first)) = values.first() {
+            let mut fields = Vec::with_capacity(first.len());
+            for (name, _) in first {
+                let of_all = values.iter().map(|value| field(value.clone(), *name, span));
+                let of_all = of_all.collect::<Result<Vec<_>, _>>()?;
+                fields.push((*name, self.by_fields(&of_all, span, make)?));
+            }
+            return Ok(Lowered::Record(fields));
+        }
+        if let Some(text) = common_text(values) {
+            return Ok(Lowered::Text(text));
+        }
+        let arrays = arrays(values.to_vec(), span)?;
+        make(self, arrays).map(Lowered::Array)
+    }
+
+    /// The array of a plan; `numbers` are the arguments that it depends on, `arrays` the others.
+    fn made(
+        &mut self,
+        plan: PlanOf,
+        numbers: &[Option<i64>],
+        arrays: &[Array<T::Scalar>],
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        let mut rest = arrays.iter();
+        let values: Vec<Option<&Array<T::Scalar>>> =
+            numbers.iter().map(|number| number.map_or_else(|| rest.next(), |_| None)).collect();
+        let described = values.iter().zip(numbers).map(|(value, number)| Argument {
+            dims: value.map_or(&[], |value| value.dims.as_slice()),
+            number: number.unwrap_or(0),
+        });
+        let plan = plan(&described.collect::<Vec<_>>()).map_err(|fault| mismatch(fault, span))?;
+        self.elements_of_plan(plan, &values, span)
+    }
+
+    /// The array of a plan of these arguments.
+    pub(super) fn elements_of_plan(
+        &mut self,
+        plan: Plan,
+        values: &[Option<&Array<T::Scalar>>],
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        let count = match plan.count() {
+            Some(count) if count <= super::MAX_SCALARS => count,
+            _ => return Err(fault!(ARRAY_MISMATCH, "an array of too many elements").at(span)),
+        };
+        let elements = (0..count).map(|at| self.element_of_plan(plan.element(at), values));
+        let elements = elements.collect();
+        Ok(Array { dims: plan.dims, elements })
+    }
+
+    fn element_of_plan(
+        &mut self,
+        element: Element,
+        values: &[Option<&Array<T::Scalar>>],
+    ) -> T::Scalar {
+        let zero = self.target.constant(0.0);
+        let of = |pick: functions::Pick| {
+            values[pick.argument].map_or(zero, |array| array.elements[pick.at])
+        };
+        let target = &mut *self.target;
+        match element {
+            Element::Integer(0) => zero,
+            Element::Integer(value) => target.constant(value as f64),
+            Element::Of(pick) => of(pick),
+            Element::Negative(pick) => target.unary(Unary::Neg, of(pick)),
+            Element::Product(a, b) => target.binary(Binary::Mul, of(a), of(b)),
+            Element::Determinant([a, b], [c, d]) => {
+                let plus = target.binary(Binary::Mul, of(a), of(b));
+                let minus = target.binary(Binary::Mul, of(c), of(d));
+                target.binary(Binary::Sub, plus, minus)
+            }
+            Element::Between(a, b, numerator, denominator) => {
+                let width = target.binary(Binary::Sub, of(b), of(a));
+                let (numerator, denominator) =
+                    (target.constant(numerator), target.constant(denominator));
+                let part = target.binary(Binary::Mul, width, numerator);
+                let part = target.binary(Binary::Div, part, denominator);
+                target.binary(Binary::Add, of(a), part)
+            }
+        }
+    }
+
+    fn reduction(
+        &mut self,
+        reduction: Reduction,
+        arguments: &Arguments,
+        span: Span,
+    ) -> Result<T::Scalar, Diagnostic> {
+        let name = reduction.name();
+        let [element] = arguments.positional.as_slice() else {
+            return Err(fault!(ARRAY_MISMATCH, "`{name}` takes one array").at(span));
+        };
+        let elements = match arguments.iterators.is_empty() {
+            true => self.array(element)?.elements,
+            false => self.reduction_elements(element, &arguments.iterators)?,
+        };
+        match reduction {
+            Reduction::Sum => return Ok(self.fold(Binary::Add, 0.0, &elements)),
+            Reduction::Product => return Ok(self.fold(Binary::Mul, 1.0, &elements)),
+            Reduction::Min | Reduction::Max => {}
+        }
+        let (Some((first, rest)), Some(id)) = (elements.split_first(), function::find(name)) else {
+            return Err(fault!(ARRAY_MISMATCH, "`{name}` of an empty array").at(span));
+        };
+        let mut result = *first;
+        for element in rest {
+            result = self.target.apply(id, &[result, *element], self.live, span)?;
+        }
+        Ok(result)
+    }
+
+    fn size(
+        &mut self,
+        arguments: &[Expression],
+        span: Span,
+    ) -> Result<Array<T::Scalar>, Diagnostic> {
+        match arguments {
+            [a] => {
+                let dims = self.array(a)?.dims;
+                let sizes = dims.iter().map(|n| self.target.constant(*n as f64)).collect();
+                Ok(Array::vector(sizes))
+            }
+            [a, dimension] => {
+                let dims = self.leading_sizes(a)?;
+                let dimension = self.known_size(dimension)?;
+                match dims.get(dimension.wrapping_sub(1)) {
+                    Some(size) => Ok(Array::scalar(self.target.constant(*size as f64))),
+                    None => {
+                        Err(fault!(ARRAY_MISMATCH, "there is no dimension {dimension}").at(span))
+                    }
+                }
+            }
+            _ => Err(fault!(ARRAY_MISMATCH, "`size` takes an array and a dimension").at(span)),
+        }
+    }
+
+    /// The sizes of an array; those of an array of records and then some of a component.
+    fn leading_sizes(&mut self, e: &Expression) -> Result<Vec<usize>, Diagnostic> {
+        let mut value = &self.lower(e)?;
+        while let Lowered::Record(fields) = value {
+            let Some((_, first)) = fields.first() else { break };
+            value = first;
+        }
+        match value {
+            Lowered::Array(array) => Ok(array.dims.clone()),
+            _ => self.array(e).map(|array| array.dims),
+        }
+    }
+
+    /// A mathematical function, element by element (MLS §12.4.6).
+    fn of_scalars(
+        &mut self,
+        id: FunctionId,
+        arguments: &[Expression],
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        self.each_element(arguments, span, |lowering, scalars| {
+            lowering.target.apply(id, scalars, lowering.live, span)
+        })
+    }
+
+    /// `if x >= 0 then positive*x else negative*x` (MLS §3.7.2.5)
+    fn semi_linear(
+        &mut self,
+        arguments: &[Expression],
+        span: Span,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        self.each_element(arguments, span, |lowering, scalars| {
+            let (live, target) = (lowering.live, &mut *lowering.target);
+            let &[x, positive, negative] = scalars else {
+                return Err(fault!(ARRAY_MISMATCH, "`semiLinear` takes 3 arguments").at(span));
+            };
+            let zero = target.constant(0.0);
+            let condition = target.relation(RelationOperator::GreaterEqual, x, zero, live, span);
+            let mut branch = target.begin_if(condition);
+            let first = target.binary(Binary::Mul, positive, x);
+            target.begin_else(&mut branch, &[first]);
+            let second = target.binary(Binary::Mul, negative, x);
+            Ok(target.end_if(branch, &[second])[0])
+        })
+    }
+
+    /// A function of scalars for the elements of arrays of one size, and for the scalars among the
+    /// arguments.
+    fn each_element(
+        &mut self,
+        arguments: &[Expression],
+        span: Span,
+        mut apply: impl FnMut(&mut Self, &[T::Scalar]) -> Result<T::Scalar, Diagnostic>,
+    ) -> Result<Lowered<T::Scalar>, Diagnostic> {
+        let values = arguments.iter().map(|a| self.array(a)).collect::<Result<Vec<_>, _>>()?;
+        let dims = values.iter().map(|v| &v.dims).max_by_key(|d| d.len()).cloned();
+        let dims = dims.unwrap_or_default();
+        if let Some(other) = values.iter().find(|v| !v.dims.is_empty() && v.dims != dims) {
+            return Err(size_fault(&dims, &other.dims).at(span));
+        }
+        let mut elements = Vec::new();
+        for position in 0..dims.iter().product() {
+            let scalars: Vec<T::Scalar> = values
+                .iter()
+                .map(|v| v.elements[if v.dims.is_empty() { 0 } else { position }])
+                .collect();
+            elements.push(apply(self, &scalars)?);
+        }
+        if elements.len() > super::MAX_SCALARS {
+            return Err(fault!(NOT_SUPPORTED, "an array of too many elements").at(span));
+        }
+        Ok(Lowered::Array(Array { dims, elements }))
+    }
+}
+
+/// What [`Lowering::by_fields`] does with arrays of numbers.
+type Make<'a, L, S> = dyn FnMut(&mut L, Vec<Array<S>>) -> Result<Array<S>, Diagnostic> + 'a;
+
+/// A fault of the arguments, of the code that lowering gives to all arrays that do not fit.
+pub(super) fn mismatch(fault: Fault, span: Span) -> Diagnostic {
+    Fault { code: ARRAY_MISMATCH, ..fault }.at(span)
+}
