@@ -5,41 +5,29 @@
 //! Loops of known length are unrolled, branches merged into if-expressions.
 
 use super::assigned_variables::Place;
-use super::build::{Builder, message_text};
-use super::dae::{Equation, Kind};
+use super::builder::Builder;
+use super::dae::Kind;
+use super::equation::Equation;
 use super::errors::{
     ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNBALANCED_MODEL, UNRESOLVED_REFERENCE,
 };
 use super::events::Termination;
+use super::execution::Loops;
+use super::expressions::message_text;
 use super::expressions::{Lowered, Lowering, Target};
 use super::statement_function::may_be_a_function;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::flatten::BaseType;
-use crate::name::Ident;
 use crate::source::Span;
 use crate::symbolic::{Expr, VarId};
 use crate::syntax::ast::{
     ComponentReference, Expression, ExpressionKind, ForIndex, Statement, StatementKind,
 };
-use indexmap::IndexMap;
-use rustc_hash::FxHashSet;
-
-/// Values of the variables that an algorithm assigns, while its statements are carried out.
-#[derive(Debug, Default)]
-pub(super) struct Execution {
-    /// In the order of the first assignment.
-    pub(super) values: IndexMap<VarId, Expr>,
-    /// Conditions of the branches around the statement.
-    guards: Vec<Expr>,
-    /// What when-statements assign.
-    pub(super) in_when: FxHashSet<VarId>,
-}
 
 /// How a sequence of statements ended: whether a loop was left, as a condition.
 type Broken = Expr;
 
-pub(super) type Loops = Vec<(Ident, Expr)>;
 type Branch<'a> = (&'a Expression, &'a [Statement]);
 
 impl Builder<'_> {
@@ -56,10 +44,10 @@ impl Builder<'_> {
         let execution = std::mem::take(&mut self.execution);
         for (variable, right) in execution.values {
             let left = self.dae.pool.variable(variable);
-            let instance = self.instance;
+            let instance = self.place.instance;
             let equation = Equation { instance, ..Equation::new(left, right, first.span) };
             let is_discrete = self.dae.variable(variable).kind == Kind::Discrete;
-            match (self.initial, is_discrete) {
+            match (self.place.initial, is_discrete) {
                 (true, _) => self.dae.initial_equations.push(equation),
                 (false, false) => self.dae.equations.push(equation),
                 (false, true) => {
@@ -81,7 +69,7 @@ impl Builder<'_> {
                 self.previous(own, span)
             }
             Kind::Unknown => Ok(known.start.unwrap_or(zero)),
-            Kind::Solved if self.initial => Ok(known.start.unwrap_or(zero)),
+            Kind::Solved if self.place.initial => Ok(known.start.unwrap_or(zero)),
             _ => Err(fault!(NOT_SUPPORTED, "`{}` cannot be assigned", known.name).at(span)),
         }
     }
@@ -93,7 +81,7 @@ impl Builder<'_> {
         in_when: bool,
     ) -> Result<(), Diagnostic> {
         let name = self.dae.variable(variable).name.clone();
-        if !self.assigned.insert(variable) {
+        if !self.execution.assigned.insert(variable) {
             return Err(fault!(UNBALANCED_MODEL, "`{name}` is assigned more than once";
                 help: "assign it in one algorithm or one when-clause")
             .at(equation.span));
@@ -109,7 +97,7 @@ impl Builder<'_> {
     }
 
     pub(super) fn statement_lowering(&mut self, loops: &Loops) -> Lowering<'_, Self> {
-        let live = self.in_when;
+        let live = self.place.in_when;
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.clone();
         lowering.live = live;
@@ -147,8 +135,8 @@ impl Builder<'_> {
     }
 
     fn count_statement(&mut self, span: Span) -> Result<(), Diagnostic> {
-        self.statements = self.statements.saturating_sub(1);
-        match self.statements {
+        self.calls.statements = self.calls.statements.saturating_sub(1);
+        match self.calls.statements {
             0 => Err(fault!(NOT_SUPPORTED, "this model has too many statements").at(span)),
             _ => Ok(()),
         }
@@ -286,7 +274,7 @@ impl Builder<'_> {
                 None => values[element],
                 Some(guard) => self.dae.pool.if_then_else(guard, values[element], *before),
             };
-            if self.in_when {
+            if self.place.in_when {
                 self.execution.in_when.insert(variable);
             }
         }
@@ -389,7 +377,7 @@ impl Builder<'_> {
         let Some(((condition, body), rest)) = branches.split_first() else {
             return Ok(self.not_broken());
         };
-        if self.initial || self.in_when {
+        if self.place.initial || self.place.in_when {
             return Err(
                 fault!(NOT_SUPPORTED, "`when` inside `when` or initial algorithms").at(span)
             );
@@ -402,9 +390,9 @@ impl Builder<'_> {
             guard,
             loops,
             |builder, loops| {
-                builder.in_when = true;
+                builder.place.in_when = true;
                 let flow = builder.statements(body, loops);
-                builder.in_when = false;
+                builder.place.in_when = false;
                 flow
             },
             |builder, loops| builder.when_statement(rest, earlier, span, loops),
@@ -438,7 +426,7 @@ impl Builder<'_> {
     /// `assert`, `terminate`
     fn statement_call(&mut self, call: &Expression, loops: &Loops) -> Result<(), Diagnostic> {
         let ExpressionKind::Call { function, arguments } = &call.kind else { return Ok(()) };
-        match (function.name().to_string().as_str(), self.in_when) {
+        match (function.name().to_string().as_str(), self.place.in_when) {
             ("assert", _) => self.assertion(arguments, call.span, loops),
             ("terminate", true) => {
                 let message = arguments.positional.first();
@@ -449,7 +437,7 @@ impl Builder<'_> {
                 self.dae.events.terminations.push(termination);
                 Ok(())
             }
-            _ => self.call_statement(call, loops, self.in_when || self.initial),
+            _ => self.call_statement(call, loops, self.place.in_when || self.place.initial),
         }
     }
 
@@ -466,7 +454,7 @@ impl Builder<'_> {
     fn guard_new_assertions(&mut self, from: usize) {
         if self.dae.assertions.len() > from {
             let guard = self.guard();
-            match self.in_when {
+            match self.place.in_when {
                 true => self.move_assertions(from, guard),
                 false => self.guard_assertions(from, guard),
             }

@@ -3,9 +3,9 @@
 //! A subscript that is computed stands for one element of several: each of these is assigned under
 //! the condition that the subscript is its own.
 
-use super::algorithm::Loops;
-use super::build::Builder;
+use super::builder::Builder;
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
+use super::execution::Loops;
 use super::expressions::{Choice, Lowered, Lowering};
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -112,7 +112,7 @@ impl Builder<'_> {
                 }
             };
         }
-        let first = self.first[position].0;
+        let first = self.scalars.first[position].0;
         places.iter_mut().for_each(|place| place.variable.0 += first);
         Ok(places)
     }
@@ -158,9 +158,9 @@ impl Builder<'_> {
     ) -> Result<Vec<Place>, Diagnostic> {
         let e = Expression::new(ExpressionKind::Reference(target.clone()), target.span);
         let mut lowering = self.statement_lowering(loops);
-        lowering.target.raw += 1;
+        lowering.target.execution.raw += 1;
         let value: Result<Lowered<Expr>, Diagnostic> = lowering.lower(&e);
-        self.raw -= 1;
+        self.execution.raw -= 1;
         let mut scalars = Vec::new();
         value?.append_scalars(&mut scalars);
         let place = |(element, e): (usize, Expr)| match self.dae.pool.as_variable(e) {

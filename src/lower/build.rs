@@ -1,123 +1,31 @@
 //! A flat model becomes a [`Dae`]: every variable a scalar, every equation a pair of scalars.
 
-use super::algorithm::Execution;
-use super::dae;
-use super::dae::{Assertion, Dae, Equation, Instance, Kind, Level, StateSelect, Variable};
+use super::builder::{Builder, Folding};
+use super::dae::{Dae, Kind, StateSelect, Variable};
+use super::equation;
+use super::equation::{Assertion, Equation, Instance, Level};
 use super::errors::{
     ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, PARAMETER_CYCLE, UNRESOLVED_REFERENCE,
 };
-use super::expressions::{Array, Lowered, Lowering, Target, size_fault};
+use super::expressions::message_text;
+use super::expressions::{Array, Lowered, Lowering, size_fault};
 use super::message::message_parts;
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
 use crate::flatten::{self, BaseType, FlatModel, Part, Variability};
 use crate::source::Span;
-use crate::symbolic::{Containing, Expr, Pool, VarId};
+use crate::symbolic::{Expr, VarId};
 use crate::syntax::ast::{self, EquationKind, Expression, ExpressionKind};
-use indexmap::IndexSet;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 use std::ops::Range;
 use std::sync::Arc;
-
-/// Stands for a text, or a part of one, that is not known when compiling; messages show it.
-pub(super) const UNKNOWN_TEXT: &str = "…";
 
 /// Largest number of scalar equations.
 const MAX_EQUATIONS: usize = 2_000_000;
 
-/// What is known about a flat variable so far.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Folding {
-    Unvisited,
-    InProgress,
-    Done,
-}
-
-/// Builds a [`Dae`].
-pub(super) struct Builder<'a> {
-    pub(super) flat: &'a FlatModel,
-    pub(super) dae: Dae,
-    /// First scalar of every flat variable.
-    pub(super) first: Vec<VarId>,
-    pub(super) folding: Vec<Folding>,
-    pub(super) derivatives: FxHashMap<VarId, VarId>,
-    pub(super) relations: FxHashMap<(crate::symbolic::RelationOperator, Expr, Expr), VarId>,
-    /// How deep calls of user functions are nested, and how many statements they may still run.
-    pub(super) calls: usize,
-    pub(super) inlined: usize,
-    /// How many statements of algorithms may still be carried out.
-    pub(super) statements: usize,
-    /// Statements that became functions so far.
-    pub(super) statement_functions: usize,
-    /// Functions that cannot be expressions.
-    pub(super) functions: super::function::Instances,
-    /// What calls came to.
-    pub(super) repeated: super::function::Repeated,
-    /// Whether expressions contain variables of functions without value.
-    pub(super) undefined: Containing<fn(&Pool, Expr) -> bool>,
-    /// How many calls of impure functions were read.
-    pub(super) impure_calls: u32,
-    /// The calls of functions that write, in the statement at hand.
-    pub(super) written: Vec<Expr>,
-    /// Whose equations are being read.
-    pub(super) instance: Option<Instance>,
-    /// Whether initial equations are being read.
-    pub(super) initial: bool,
-    /// Whether the body of a when-clause is being read.
-    pub(super) in_when: bool,
-    /// How many branches of if-equations are being read whose conditions are not known.
-    pub(super) branches: usize,
-    /// `pre` of every variable that needs it.
-    pub(super) previous: FxHashMap<VarId, VarId>,
-    /// Discrete variables that hold conditions.
-    pub(super) conditions: FxHashMap<Expr, VarId>,
-    /// What when-clauses and algorithms assign.
-    pub(super) assigned: FxHashSet<VarId>,
-    /// The algorithm in progress.
-    pub(super) execution: Execution,
-    /// More than zero where a reference means the variable, not the value it has in an algorithm.
-    pub(super) raw: usize,
-    /// How many assertions there were when the branches of if-expressions began.
-    pub(super) asserted: Vec<usize>,
-    /// The texts that have numbers.
-    pub(super) texts: IndexSet<Arc<str>>,
-}
-
 /// The scalar system of a flat model.
 pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
-    let mut builder = Builder {
-        flat,
-        dae: Dae {
-            name: flat.name.clone(),
-            pool: Pool::new(),
-            experiment: flat.experiment,
-            ..Dae::default()
-        },
-        first: Vec::new(),
-        folding: vec![Folding::Unvisited; flat.variables.len()],
-        derivatives: FxHashMap::default(),
-        relations: FxHashMap::default(),
-        calls: 0,
-        statements: super::inline::MAX_STATEMENTS,
-        statement_functions: 0,
-        inlined: 0,
-        functions: super::function::Instances::default(),
-        repeated: FxHashMap::default(),
-        undefined: Containing::new(|pool, e| pool.as_constant(e).is_some_and(f64::is_nan)),
-        impure_calls: 0,
-        written: Vec::new(),
-        instance: None,
-        initial: false,
-        in_when: false,
-        branches: 0,
-        previous: FxHashMap::default(),
-        conditions: FxHashMap::default(),
-        assigned: FxHashSet::default(),
-        execution: Execution::default(),
-        raw: 0,
-        asserted: Vec::new(),
-        texts: IndexSet::new(),
-    };
+    let mut builder = Builder::new(flat);
     builder.declare();
     builder.find_varying_texts();
     builder.find_discrete();
@@ -127,27 +35,27 @@ pub(super) fn build(flat: &FlatModel) -> Result<Dae, Diagnostic> {
     let owners_of = |range| owners(&flat.parts, range);
     let owners = owners_of(|part| &part.equations);
     for (position, equation) in flat.equations.iter().enumerate() {
-        builder.instance = owners.get(&position).copied();
+        builder.place.instance = owners.get(&position).copied();
         builder.equation(equation, &mut Vec::new())?;
     }
     let owners = owners_of(|part| &part.algorithms);
     for (position, statements) in flat.algorithms.iter().enumerate() {
-        builder.instance = owners.get(&position).copied();
+        builder.place.instance = owners.get(&position).copied();
         builder.algorithm(statements)?;
     }
-    builder.initial = true;
+    builder.place.initial = true;
     let asserted = builder.dae.assertions.len();
     let owners = owners_of(|part| &part.initial_equations);
     for (position, equation) in flat.initial_equations.iter().enumerate() {
-        builder.instance = owners.get(&position).copied();
+        builder.place.instance = owners.get(&position).copied();
         builder.equation(equation, &mut Vec::new())?;
     }
-    builder.instance = None;
+    builder.place.instance = None;
     for statements in &flat.initial_algorithms {
         builder.algorithm(statements)?;
     }
     builder.move_to_start(asserted);
-    builder.dae.functions = Arc::new(builder.functions.finish());
+    builder.dae.functions = Arc::new(builder.calls.functions.finish());
     Ok(builder.dae)
 }
 
@@ -159,7 +67,7 @@ impl<'a> Builder<'a> {
         time.description = "simulated time".into();
         self.dae.variables.push(time);
         for variable in self.flat.variables.values() {
-            self.first.push(VarId(self.dae.variables.len() as u32));
+            self.scalars.first.push(VarId(self.dae.variables.len() as u32));
             for position in 0..variable.len() {
                 let mut scalar = declared(variable, position);
                 if matches!(variable.base, BaseType::Enumeration(_)) {
@@ -180,18 +88,18 @@ impl<'a> Builder<'a> {
     pub(super) fn fold(&mut self, position: usize) -> Result<(), Diagnostic> {
         let variable = &self.flat.variables[position];
         let fixed = variable.variability <= Variability::Parameter && !variable.is_tunable();
-        match (self.folding[position], &variable.binding) {
+        match (self.scalars.folding[position], &variable.binding) {
             (Folding::Done, _) => return Ok(()),
             (Folding::InProgress, _) => {
                 return Err(fault!(PARAMETER_CYCLE, "`{}` depends on itself", variable.name)
                     .at(variable.span));
             }
             (Folding::Unvisited, Some(binding)) if fixed && variable.base != BaseType::String => {
-                self.folding[position] = Folding::InProgress;
-                self.functions.take_exhausted();
+                self.scalars.folding[position] = Folding::InProgress;
+                self.calls.functions.take_exhausted();
                 let array = self.sized(binding, &variable.dims)?;
                 if let (Some(words), Variability::Constant) =
-                    (self.functions.take_exhausted(), variable.variability)
+                    (self.calls.functions.take_exhausted(), variable.variability)
                 {
                     let name = &variable.name;
                     return Err(fault!(NO_CONSTANT_VALUE, "`{name}` has no value: {words}";
@@ -200,14 +108,14 @@ impl<'a> Builder<'a> {
                 }
                 for (at, element) in array.elements.iter().enumerate() {
                     if let Some(value) = self.dae.pool.as_constant(*element) {
-                        let id = self.first[position].0 as usize + at;
+                        let id = self.scalars.first[position].0 as usize + at;
                         self.dae.variables[id].kind = Kind::Constant(value);
                     }
                 }
             }
             _ => {}
         }
-        self.folding[position] = Folding::Done;
+        self.scalars.folding[position] = Folding::Done;
         Ok(())
     }
 
@@ -221,7 +129,7 @@ impl<'a> Builder<'a> {
                 self.varying_text(position)?;
                 continue;
             }
-            let first = self.first[position].0 as usize;
+            let first = self.scalars.first[position].0 as usize;
             let holder = variable.name.rsplit_once('.').map_or("", |(holder, _)| holder);
             let instance = instances.get(holder).copied();
             let is_parameter = variable.variability <= Variability::Parameter
@@ -377,8 +285,8 @@ impl<'a> Builder<'a> {
     }
 
     pub(super) fn push(&mut self, equation: Equation) {
-        let equation = Equation { instance: self.instance, ..equation };
-        match self.initial {
+        let equation = Equation { instance: self.place.instance, ..equation };
+        match self.place.initial {
             true => self.dae.initial_equations.push(equation),
             false => self.dae.equations.push(equation),
         }
@@ -395,7 +303,7 @@ impl<'a> Builder<'a> {
         if let ExpressionKind::Tuple(targets) = &left.kind {
             return self.tuple_equal(targets, right, span, loops);
         }
-        let live = self.in_when;
+        let live = self.place.in_when;
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.to_vec();
         lowering.live = live;
@@ -408,7 +316,7 @@ impl<'a> Builder<'a> {
         let pairs = pairs(&a, &b, span)?;
         let of_record = |e: &Expression| matches!(e.kind, ExpressionKind::Field { .. });
         let is_record = matches!(a, Lowered::Record(_)) || of_record(left) || of_record(right);
-        if is_record && !live && !self.initial {
+        if is_record && !live && !self.place.initial {
             pairs.iter().for_each(|pair| self.allow_continuous(*pair));
         }
         Ok(pairs)
@@ -439,7 +347,7 @@ impl<'a> Builder<'a> {
         let ExpressionKind::Call { function, arguments } = &right.kind else {
             return Err(fault!(ARRAY_MISMATCH, "an output list needs a function call").at(span));
         };
-        let live = self.in_when;
+        let live = self.place.in_when;
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.to_vec();
         lowering.live = live;
@@ -458,7 +366,7 @@ impl<'a> Builder<'a> {
             };
             let value = lowering.lower(target)?;
             let pairs = pairs(&value, output, span)?;
-            if matches!(value, Lowered::Record(_)) && !live && !lowering.target.initial {
+            if matches!(value, Lowered::Record(_)) && !live && !lowering.target.place.initial {
                 pairs.iter().for_each(|pair| lowering.target.allow_continuous(*pair));
             }
             equations.extend(pairs);
@@ -507,13 +415,13 @@ impl<'a> Builder<'a> {
                 false => self.if_equation(rest, otherwise, span, loops),
             };
         }
-        self.branches += 1;
+        self.place.branches += 1;
         let asserted = self.dae.assertions.len();
         let first = self.collect(body, loops)?;
         self.guard_assertions(asserted, condition);
         let asserted = self.dae.assertions.len();
         let second = self.if_equation(rest, otherwise, span, loops)?;
-        self.branches -= 1;
+        self.place.branches -= 1;
         let not = self.dae.pool.not(condition);
         self.guard_assertions(asserted, not);
         if first.len() != second.len() {
@@ -552,14 +460,14 @@ impl<'a> Builder<'a> {
         body: &[ast::Equation],
         loops: &mut Vec<(crate::name::Ident, Expr)>,
     ) -> Result<Vec<Equation>, Diagnostic> {
-        let list = |builder: &mut Self| match builder.initial {
+        let list = |builder: &mut Self| match builder.place.initial {
             true => std::mem::take(&mut builder.dae.initial_equations),
             false => std::mem::take(&mut builder.dae.equations),
         };
         let before = list(self);
         let result = body.iter().try_for_each(|equation| self.equation(equation, loops));
         let collected = list(self);
-        match self.initial {
+        match self.place.initial {
             true => self.dae.initial_equations = before,
             false => self.dae.equations = before,
         }
@@ -578,7 +486,7 @@ impl<'a> Builder<'a> {
         match name.as_str() {
             "assert" => self.assertion(arguments, call.span, loops),
             _ if name.starts_with("Connections.") => Ok(()),
-            _ => self.call_statement(call, loops, self.initial),
+            _ => self.call_statement(call, loops, self.place.initial),
         }
     }
 
@@ -606,37 +514,12 @@ impl<'a> Builder<'a> {
         // What ends a simulation is told with what was known when compiling.
         let parts = match level {
             Level::Error => {
-                vec![dae::Part::Text(message_text(&mut lowering, find(1, "message")).into())]
+                vec![equation::Part::Text(message_text(&mut lowering, find(1, "message")).into())]
             }
             _ => message_parts(&mut lowering, find(1, "message")),
         };
         self.dae.assertions.push(Assertion::new(condition, parts, level, span));
         Ok(())
-    }
-}
-
-/// The text of a message as far as it is known when compiling.
-pub(super) fn message_text<T: Target>(
-    lowering: &mut Lowering<'_, T>,
-    e: Option<&Expression>,
-) -> String {
-    let Some(e) = e else { return String::new() };
-    let text = match &e.kind {
-        ExpressionKind::String(text) => return text.to_string(),
-        ExpressionKind::Binary { operator: ast::BinaryOperator::Add, left, right } => {
-            return message_text(lowering, Some(left)) + &message_text(lowering, Some(right));
-        }
-        ExpressionKind::Call { function, .. }
-            if function.as_ident().is_some_and(|name| name == "String") =>
-        {
-            lowering.lower(e)
-        }
-        ExpressionKind::Reference(_) => lowering.lower(e),
-        _ => return UNKNOWN_TEXT.into(),
-    };
-    match text {
-        Ok(Lowered::Text(text)) => text.to_string(),
-        _ => UNKNOWN_TEXT.into(),
     }
 }
 

@@ -3,10 +3,10 @@
 //! A size `:` is that of the value in the declaration, or of what is assigned to the variable. A
 //! size of a component of a record may use whole numbers of the same record.
 
-use super::build::UNKNOWN_TEXT;
-use super::dae::Shape;
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
 use super::expressions::{Lowered, Lowering, Target};
+use super::shape::Shape;
+use super::shape::UNKNOWN_TEXT;
 use crate::diag::Diagnostic;
 use crate::eval::{FunctionBody, FunctionComponent, ValueType};
 use crate::fault;

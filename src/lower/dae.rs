@@ -1,7 +1,6 @@
 //! The system of equations: scalar, first order (MLS appendix B). Data only.
 
-use super::build::UNKNOWN_TEXT;
-use super::default_values::DefaultValues;
+use super::equation::{Assertion, Equation};
 use super::events::Events;
 use crate::bytecode::Functions;
 use crate::diag::Diagnostic;
@@ -155,69 +154,6 @@ pub enum Kind {
     Text,
 }
 
-/// `left = right`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Equation {
-    /// Left side.
-    pub left: Expr,
-    /// Right side.
-    pub right: Expr,
-    /// Where it is written.
-    pub span: Span,
-    /// Whose equation it is, if of one instance.
-    pub instance: Option<Instance>,
-}
-
-impl Equation {
-    /// `left = right`, written at `span`; whose it is, is not known.
-    pub fn new(left: Expr, right: Expr, span: Span) -> Equation {
-        Equation { left, right, span, instance: None }
-    }
-}
-
-/// Position of a path in [`Dae::instances`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Instance(pub u32);
-
-/// What it means that a condition does not hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Level {
-    /// The simulation ends (`AssertionLevel.error`).
-    Error,
-    /// The user is warned (`AssertionLevel.warning`).
-    Warning,
-    /// A function prints the text.
-    Message,
-    /// Functions write; the parts are their calls.
-    Effect,
-}
-
-/// A part of a text for people.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Part {
-    /// Known when compiling.
-    Text(Arc<str>),
-    /// A number of this value.
-    Number(Expr),
-    /// `true` or `false`.
-    Boolean(Expr),
-}
-
-/// `assert(condition, message, level)`, or a text that is printed.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Assertion {
-    /// Must hold; its relations are evaluated as they are.
-    pub condition: Expr,
-    /// The text for people as far as it is known when compiling.
-    pub message: Arc<str>,
-    /// The same in parts.
-    pub parts: Vec<Part>,
-    /// What a violation means.
-    pub level: Level,
-    /// Where it is written.
-    pub span: Span,
-}
-
 /// A relation whose value changes at events only (MLS §8.5).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Relation {
@@ -231,82 +167,6 @@ pub struct Relation {
     pub right: Expr,
     /// Where it is written.
     pub span: Span,
-}
-
-/// Sizes of an argument.
-#[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub enum Shape {
-    /// A scalar (no sizes) or an array.
-    Array(Vec<usize>),
-    /// A record: name and shape of its components.
-    Record(Vec<(crate::name::Ident, Shape)>),
-    /// A text, no scalar; `…` stands for what is not known when compiling.
-    Text(Arc<str>),
-}
-
-impl Shape {
-    /// Number of scalars.
-    pub fn len(&self) -> usize {
-        match self {
-            Shape::Array(dims) => dims.iter().product(),
-            Shape::Record(fields) => fields.iter().map(|(_, shape)| shape.len()).sum(),
-            Shape::Text(_) => 0,
-        }
-    }
-
-    /// Whether there are no scalars.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// The shape of an array of these; that of an array of records is a record of arrays.
-    pub fn repeated(self, dims: &[usize]) -> Shape {
-        match self {
-            Shape::Array(own) => Shape::Array(dims.iter().copied().chain(own).collect()),
-            Shape::Record(fields) => {
-                let field = |(name, shape): (_, Shape)| (name, shape.repeated(dims));
-                Shape::Record(fields.into_iter().map(field).collect())
-            }
-            Shape::Text(text) => Shape::Text(text),
-        }
-    }
-
-    /// Whether it is a text, or a record with one.
-    pub fn holds_text(&self) -> bool {
-        match self {
-            Shape::Array(_) => false,
-            Shape::Record(fields) => fields.iter().any(|(_, shape)| shape.holds_text()),
-            Shape::Text(_) => true,
-        }
-    }
-
-    /// Makes all texts unknown.
-    pub fn forget_texts(&mut self) {
-        match self {
-            Shape::Array(_) => {}
-            Shape::Record(fields) => fields.iter_mut().for_each(|(_, s)| s.forget_texts()),
-            Shape::Text(text) => *text = UNKNOWN_TEXT.into(),
-        }
-    }
-
-    /// The shape of a value that may have either shape: texts that differ are not known. `None` if
-    /// sizes or components differ.
-    pub fn joined(&self, other: &Shape) -> Option<Shape> {
-        match (self, other) {
-            (Shape::Array(a), Shape::Array(b)) => (a == b).then(|| self.clone()),
-            (Shape::Text(a), Shape::Text(b)) if a == b => Some(self.clone()),
-            (Shape::Text(_), Shape::Text(_)) => Some(Shape::Text(UNKNOWN_TEXT.into())),
-            (Shape::Record(a), Shape::Record(b)) if a.len() == b.len() => {
-                let fields = a.iter().zip(b);
-                let joined = |((name, a), (other, b)): (&(_, Shape), &(_, Shape))| {
-                    let shape = a.joined(b)?;
-                    (name == other).then_some((*name, shape))
-                };
-                fields.map(joined).collect::<Option<_>>().map(Shape::Record)
-            }
-            _ => None,
-        }
-    }
 }
 
 impl Dae {
@@ -323,5 +183,27 @@ impl Dae {
     /// Whether its value is found by the equations, at events or between them.
     pub fn is_solved_for(&self, id: VarId) -> bool {
         self.is_unknown(id) || self.variable(id).kind == Kind::Discrete
+    }
+}
+
+/// A value for every variable, NaN where there is none.
+#[derive(Debug, Clone, Default)]
+pub struct DefaultValues {
+    pub(super) values: Vec<f64>,
+}
+
+impl DefaultValues {
+    /// The value of a variable, NaN where it has none.
+    pub(crate) fn get(&self, variable: VarId) -> f64 {
+        self.values.get(variable.0 as usize).copied().unwrap_or(f64::NAN)
+    }
+
+    /// With no value for variables declared later.
+    pub(crate) fn grow(&mut self, n: usize) {
+        self.values.resize(n, f64::NAN);
+    }
+
+    pub(crate) fn set(&mut self, variable: VarId, value: f64) {
+        self.values[variable.0 as usize] = value;
     }
 }

@@ -3,17 +3,11 @@
 //! Where they are known before sorting, a parameter that nobody may set becomes a number, and a
 //! divisor made of parameters is told from one that is zero.
 
-use super::dae::{Dae, Kind};
+use super::dae::{Dae, DefaultValues, Kind};
 use crate::bytecode::{Functions, Machine};
 use crate::flatten::BaseType;
 use crate::symbolic::{Environment, Expr, Substitution, VarId, evaluate};
 use std::cell::RefCell;
-
-/// A value for every variable, NaN where there is none.
-#[derive(Debug, Clone, Default)]
-pub struct DefaultValues {
-    values: Vec<f64>,
-}
 
 impl DefaultValues {
     /// Of constants and parameters, these in order of dependence.
@@ -45,20 +39,6 @@ impl DefaultValues {
             e,
             &Calling { values: &self.values, functions: &dae.functions, machine },
         )
-    }
-
-    /// The value of a variable, NaN where it has none.
-    pub(crate) fn get(&self, variable: VarId) -> f64 {
-        self.values.get(variable.0 as usize).copied().unwrap_or(f64::NAN)
-    }
-
-    /// With no value for variables declared later.
-    pub(crate) fn grow(&mut self, n: usize) {
-        self.values.resize(n, f64::NAN);
-    }
-
-    pub(crate) fn set(&mut self, variable: VarId, value: f64) {
-        self.values[variable.0 as usize] = value;
     }
 }
 

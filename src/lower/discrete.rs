@@ -1,6 +1,6 @@
 //! Which Reals are discrete: those that a when-clause assigns (MLS §3.8.4, §4.5).
 
-use super::build::Builder;
+use super::builder::Builder;
 use super::dae::Kind;
 use super::expressions::Lowering;
 use crate::symbolic::VarId;
@@ -37,7 +37,7 @@ impl Builder<'_> {
         let Some((position, _, variable)) = self.flat.variables.get_full(path.as_str()) else {
             return Vec::new();
         };
-        let first = self.first[position].0;
+        let first = self.scalars.first[position].0;
         (first..first + variable.len() as u32).map(VarId).collect()
     }
 }

@@ -1,6 +1,6 @@
 //! Values of parameters that shape the sorted system: those in `fixed` and `stateSelect`.
 
-use super::build::Builder;
+use super::builder::Builder;
 use super::dae::Kind;
 use crate::diag::Diagnostic;
 use crate::symbolic::{Expr, VarId, evaluate};
@@ -41,7 +41,9 @@ impl Builder<'_> {
             _ => return Ok(None),
         }
         // The variable after the last that begins before it.
-        let Some(at) = self.first.partition_point(|first| *first <= variable).checked_sub(1) else {
+        let Some(at) =
+            self.scalars.first.partition_point(|first| *first <= variable).checked_sub(1)
+        else {
             return Ok(None);
         };
         let declared = &self.flat.variables[at];
@@ -49,8 +51,8 @@ impl Builder<'_> {
         let Some(given) = given.or(declared.attributes.get("start").map(|a| &a.value)) else {
             return Ok(None);
         };
-        let element =
-            self.sized(given, &declared.dims)?.elements[(variable.0 - self.first[at].0) as usize];
+        let element = self.sized(given, &declared.dims)?.elements
+            [(variable.0 - self.scalars.first[at].0) as usize];
         let value = self.settled_below(element, depth - 1)?;
         if value.is_some() {
             self.dae.variables[position].kind = Kind::Parameter { tunable: false };

@@ -1,6 +1,6 @@
 //! What happens at events (MLS §8.3.5, §8.5). Data only.
 
-use super::dae::{Assertion, Equation};
+use super::equation::{Assertion, Equation};
 use crate::source::Span;
 use crate::symbolic::{Expr, VarId};
 use std::sync::Arc;

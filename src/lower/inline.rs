@@ -5,12 +5,14 @@
 //! that depend on variables, and for recursion that does not end when compiling: such calls are left
 //! to the bytecode of `function`, which refuses impure functions.
 
-use super::build::{Builder, UNKNOWN_TEXT, message_text};
+use super::builder::{Builder, MAX_STATEMENTS};
 use super::component_shape::{Declared, declared};
-use super::dae::{Assertion, Level, Part};
+use super::equation::{Assertion, Level, Part};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
+use super::expressions::message_text;
 use super::expressions::{Array, Binary, Branch, Choice, Lowered, Lowering, Target, Unary};
 use super::function::{component_type, local_value};
+use super::shape::UNKNOWN_TEXT;
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
@@ -25,8 +27,6 @@ use crate::syntax::ast::{
 use std::cell::Cell;
 use std::sync::Arc;
 
-/// Most statements that one call may run where it cannot be compiled.
-pub(super) const MAX_STATEMENTS: usize = 1_000_000;
 /// Deepest nesting of calls.
 const MAX_CALLS: usize = 40;
 
@@ -57,15 +57,15 @@ pub(super) fn inline(
     if function.impure {
         return refuse("is impure and cannot be used in equations");
     }
-    if builder.calls >= MAX_CALLS {
-        builder.inlined = 0;
+    if builder.calls.depth >= MAX_CALLS {
+        builder.calls.inlined = 0;
         return refuse("calls itself without an end that is known at translation");
     }
-    builder.calls += 1;
+    builder.calls.depth += 1;
     let mut call =
         Call { builder, function: function.clone(), locals: Vec::new(), unassigned: false };
     let result = call.run(function, statements, arguments, span);
-    builder.calls -= 1;
+    builder.calls.depth -= 1;
     result
 }
 
@@ -111,8 +111,8 @@ impl Call<'_, '_> {
             .collect();
         let mut scalars = Vec::new();
         outputs.iter().for_each(|output| output.append_scalars(&mut scalars));
-        let Builder { dae, undefined, .. } = &mut *self.builder;
-        if self.unassigned || scalars.iter().any(|e| undefined.contains(&dae.pool, *e)) {
+        let Builder { dae, calls, .. } = &mut *self.builder;
+        if self.unassigned || scalars.iter().any(|e| calls.undefined.contains(&dae.pool, *e)) {
             return Err(fault!(
                 NOT_SUPPORTED,
                 "the function `{}` uses or returns a variable that is not assigned on every path",
@@ -142,8 +142,8 @@ impl Call<'_, '_> {
     }
 
     fn statement(&mut self, s: &Statement, loops: &mut Loops) -> Result<Flow, Diagnostic> {
-        self.builder.inlined = self.builder.inlined.saturating_sub(1);
-        if self.builder.inlined == 0 {
+        self.builder.calls.inlined = self.builder.calls.inlined.saturating_sub(1);
+        if self.builder.calls.inlined == 0 {
             return Err(fault!(
                 NOT_SUPPORTED,
                 "functions in equations execute more than {MAX_STATEMENTS} statements"
@@ -187,8 +187,8 @@ impl Call<'_, '_> {
                         Flow::Break => break,
                         Flow::Return => return Ok(Flow::Return),
                     }
-                    self.builder.inlined = self.builder.inlined.saturating_sub(1);
-                    if self.builder.inlined == 0 {
+                    self.builder.calls.inlined = self.builder.calls.inlined.saturating_sub(1);
+                    if self.builder.calls.inlined == 0 {
                         return Err(fault!(NOT_SUPPORTED, "this loop does not end").at(s.span));
                     }
                 }
@@ -532,7 +532,7 @@ impl Target for Call<'_, '_> {
     }
 
     fn gives_up(&self) -> bool {
-        self.builder.inlined == 0
+        self.builder.calls.inlined == 0
     }
 
     fn interpreted(&self) -> &Cell<u64> {

@@ -1,6 +1,7 @@
 //! Inputs of the model itself that nothing is connected to (MLS §4.4.2.2).
 
-use super::dae::{Dae, Equation, Kind};
+use super::dae::{Dae, Kind};
+use super::equation::Equation;
 use super::errors::NOT_SUPPORTED;
 use crate::fault;
 use crate::flatten::FlatModel;

@@ -1,10 +1,12 @@
 //! Texts for people: of assertions, and of functions that print (MLS §8.3.7, §12.9).
 
-use super::build::{Builder, UNKNOWN_TEXT, message_text};
-use super::dae::{Assertion, Level, Part};
+use super::builder::Builder;
+use super::equation::{Assertion, Level, Part};
 use super::errors::NOT_SUPPORTED;
+use super::expressions::message_text;
 use super::expressions::{Lowered, Lowering, Target};
 use super::function::prints;
+use super::shape::UNKNOWN_TEXT;
 use crate::diag::Diagnostic;
 use crate::eval::Function;
 use crate::fault;
@@ -139,18 +141,18 @@ impl Builder<'_> {
         span: Span,
         loops: &[(crate::name::Ident, Expr)],
     ) -> Result<(), Diagnostic> {
-        self.written.clear();
-        self.functions.may_write = true;
+        self.calls.written.clear();
+        self.calls.functions.may_write = true;
         let mut lowering = Lowering::new(self);
         lowering.loops = loops.to_vec();
         lowering.live = true;
         let called = lowering.user_call(user, arguments, span);
-        self.functions.may_write = false;
+        self.calls.functions.may_write = false;
         let outputs = called?;
-        if !user.impure && self.written.is_empty() {
+        if !user.impure && self.calls.written.is_empty() {
             self.unused(&outputs, span);
         }
-        let parts: Vec<Part> = self.written.drain(..).map(Part::Number).collect();
+        let parts: Vec<Part> = self.calls.written.drain(..).map(Part::Number).collect();
         if !parts.is_empty() {
             let condition = self.dae.pool.constant(0.0);
             self.dae.assertions.push(Assertion::new(condition, parts, Level::Effect, span));

@@ -12,18 +12,22 @@
 mod algorithm;
 mod assigned_variables;
 mod build;
+mod builder;
 mod component_shape;
 mod dae;
 mod default_values;
 mod discrete;
+mod equation;
 pub mod errors;
 mod evaluated_parameters;
 mod events;
+mod execution;
 mod expressions;
 mod function;
 mod inline;
 mod inputs;
 mod message;
+mod shape;
 mod statement_function;
 mod symbolic_target;
 mod temporal;
@@ -32,9 +36,10 @@ mod when;
 
 pub(crate) use build::{derivative_of, scalar_of_nothing};
 pub use dae::*;
-pub use default_values::DefaultValues;
 pub(crate) use default_values::fold_parameters;
+pub use equation::*;
 pub use events::*;
+pub use shape::Shape;
 
 use crate::diag::Diagnostic;
 use crate::flatten::FlatModel;

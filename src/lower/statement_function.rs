@@ -2,9 +2,9 @@
 //! ends depend on variables: each is a function of what it reads (MLS §11.1.1), and what it assigns
 //! are results of a call. Relations in it cause no events.
 
-use super::algorithm::Loops;
-use super::build::Builder;
+use super::builder::Builder;
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
+use super::execution::Loops;
 use super::expressions::{Lowered, Lowering, Target};
 use super::function::compiled_call;
 use crate::diag::Diagnostic;
@@ -87,8 +87,8 @@ impl Builder<'_> {
         inputs: Vec<FunctionComponent>,
         outputs: Vec<FunctionComponent>,
     ) -> Arc<Function> {
-        self.statement_functions += 1;
-        let name = Ident::new(&format!("statement {}", self.statement_functions));
+        self.calls.statement_functions += 1;
+        let name = Ident::new(&format!("statement {}", self.calls.statement_functions));
         Arc::new(Function {
             name: Name::from(name),
             inputs,
@@ -108,11 +108,11 @@ impl Builder<'_> {
         let mut values = Vec::new();
         result.append_scalars(&mut values);
         let Some(position) = self.flat.variables.get_index_of(path) else { return };
-        let first = self.first[position].0;
+        let first = self.scalars.first[position].0;
         for (variable, value) in (first..).map(VarId).zip(values) {
             if let Some(before) = self.execution.values.get_mut(&variable) {
                 *before = value;
-                if self.in_when {
+                if self.place.in_when {
                     self.execution.in_when.insert(variable);
                 }
             }

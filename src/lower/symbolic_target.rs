@@ -1,10 +1,13 @@
 //! Lowering into the symbolic expressions of a [`Dae`](super::dae::Dae).
 
 use super::build::derivative_of;
-use super::build::{Builder, Folding, UNKNOWN_TEXT, scalar_of_nothing};
-use super::dae::{Assertion, Homotopy, Kind, Level, Part, Relation};
+use super::build::scalar_of_nothing;
+use super::builder::{Builder, Folding};
+use super::dae::{Homotopy, Kind, Relation};
+use super::equation::{Assertion, Level, Part};
 use super::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use super::expressions::{Array, Binary, Branch, Lowered, Lowering, Target, Unary};
+use super::shape::UNKNOWN_TEXT;
 use crate::diag::Diagnostic;
 use crate::eval::{Function, ValueType};
 use crate::fault;
@@ -68,7 +71,7 @@ impl Target for Builder<'_> {
             return relation;
         }
         let key = (operator, a, b);
-        let variable = match self.relations.get(&key) {
+        let variable = match self.scalars.relations.get(&key) {
             Some(variable) => *variable,
             None => {
                 let variable = VarId(self.dae.variables.len() as u32);
@@ -78,7 +81,7 @@ impl Target for Builder<'_> {
                 frozen.variability = Variability::Discrete;
                 self.dae.variables.push(frozen);
                 self.dae.relations.push(Relation { variable, operator, left: a, right: b, span });
-                self.relations.insert(key, variable);
+                self.scalars.relations.insert(key, variable);
                 variable
             }
         };
@@ -100,19 +103,19 @@ impl Target for Builder<'_> {
     }
 
     fn begin_if(&mut self, condition: Expr) -> Branch<Expr> {
-        self.asserted.push(self.dae.assertions.len());
+        self.execution.asserted.push(self.dae.assertions.len());
         Branch { condition, values: Vec::new() }
     }
 
     fn begin_else(&mut self, branch: &mut Branch<Expr>, values: &[Expr]) {
         branch.values = values.to_vec();
-        let from = self.asserted.pop().unwrap_or(usize::MAX);
+        let from = self.execution.asserted.pop().unwrap_or(usize::MAX);
         self.guard_assertions(from, branch.condition);
-        self.asserted.push(self.dae.assertions.len());
+        self.execution.asserted.push(self.dae.assertions.len());
     }
 
     fn end_if(&mut self, branch: Branch<Expr>, values: &[Expr]) -> Vec<Expr> {
-        let from = self.asserted.pop().unwrap_or(usize::MAX);
+        let from = self.execution.asserted.pop().unwrap_or(usize::MAX);
         let not = self.dae.pool.not(branch.condition);
         self.guard_assertions(from, not);
         let pairs = branch.values.iter().zip(values);
@@ -152,9 +155,11 @@ impl Target for Builder<'_> {
             return self.record(path).ok_or_else(|| self.unresolved(path, reference.span));
         };
         if variable.base == BaseType::String {
-            let first = self.first[position];
+            let first = self.scalars.first[position];
             return Ok(match self.dae.variable(first).kind {
-                Kind::Discrete if self.raw > 0 => Lowered::Numbered(self.dae.pool.variable(first)),
+                Kind::Discrete if self.execution.raw > 0 => {
+                    Lowered::Numbered(self.dae.pool.variable(first))
+                }
                 Kind::Discrete => Lowered::Numbered(self.value_now(first)),
                 _ => Lowered::Text(self.text(position)),
             });
@@ -162,14 +167,14 @@ impl Target for Builder<'_> {
         if variable.variability <= Variability::Parameter {
             self.fold(position)?;
         }
-        let first = self.first[position].0;
+        let first = self.scalars.first[position].0;
         let elements =
             (first..first + variable.len() as u32).map(|id| self.scalar_now(id)).collect();
         Ok(Lowered::Array(Array { dims: variable.dims.clone(), elements }))
     }
 
     fn interpreted(&self) -> &Cell<u64> {
-        &self.functions.interpreted
+        &self.calls.functions.interpreted
     }
 
     fn sizes(&self, path: &str) -> Option<Vec<usize>> {
@@ -184,7 +189,7 @@ impl Target for Builder<'_> {
         if variable.variability <= Variability::Parameter {
             self.fold(number)?;
         }
-        Ok(Some(self.scalar_now(self.first[number].0 + position as u32)))
+        Ok(Some(self.scalar_now(self.scalars.first[number].0 + position as u32)))
     }
 
     fn function(&self, name: &Name) -> Option<Arc<Function>> {
@@ -230,7 +235,7 @@ impl Target for Builder<'_> {
             | Temporal::Delay => Ok(()),
             Temporal::Pre | Temporal::Edge | Temporal::Change => {
                 // Until `temporal`, which follows when the argument is lowered.
-                self.raw += 1;
+                self.execution.raw += 1;
                 Ok(())
             }
             _ => Err(fault!(NOT_SUPPORTED, "`{}` is not supported yet", entry.name).at(span)),
@@ -284,12 +289,12 @@ impl Builder<'_> {
         let flat = self.flat;
         let unknown = || Arc::from(UNKNOWN_TEXT);
         let Some(binding) = &flat.variables[position].binding else { return unknown() };
-        if self.folding[position] == Folding::InProgress {
+        if self.scalars.folding[position] == Folding::InProgress {
             return unknown();
         }
-        let before = std::mem::replace(&mut self.folding[position], Folding::InProgress);
+        let before = std::mem::replace(&mut self.scalars.folding[position], Folding::InProgress);
         let lowered = Lowering::new(self).lower(binding);
-        self.folding[position] = before;
+        self.scalars.folding[position] = before;
         match lowered {
             Ok(Lowered::Text(text)) => text,
             _ => unknown(),
@@ -371,7 +376,7 @@ impl Builder<'_> {
     }
 
     fn derivative_variable(&mut self, of: VarId, span: Span) -> Result<VarId, Diagnostic> {
-        if let Some(known) = self.derivatives.get(&of) {
+        if let Some(known) = self.scalars.derivatives.get(&of) {
             return Ok(*known);
         }
         let source = self.dae.variable(of);
@@ -381,7 +386,7 @@ impl Builder<'_> {
         let variable = derivative_of(source, of);
         let id = VarId(self.dae.variables.len() as u32);
         self.dae.variables.push(variable);
-        self.derivatives.insert(of, id);
+        self.scalars.derivatives.insert(of, id);
         Ok(id)
     }
 
@@ -403,7 +408,7 @@ impl Builder<'_> {
     fn scalar_now(&mut self, id: u32) -> Expr {
         match self.dae.variables[id as usize].kind {
             Kind::Constant(value) => self.dae.pool.constant(value),
-            _ if self.raw > 0 => self.dae.pool.variable(VarId(id)),
+            _ if self.execution.raw > 0 => self.dae.pool.variable(VarId(id)),
             _ => self.value_now(VarId(id)),
         }
     }

@@ -1,7 +1,9 @@
 //! Operators with a meaning in time (MLS §3.7.4, §3.7.5) as variables that change at events only.
 
-use super::build::{Builder, scalar_of_nothing};
-use super::dae::{Assertion, Equation, Kind, Level, Part};
+use super::build::scalar_of_nothing;
+use super::builder::Builder;
+use super::dae::Kind;
+use super::equation::{Assertion, Equation, Level, Part};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
 use super::events::{Delay, Rounding, Sample};
 use super::expressions::{Array, Target, size_fault};
@@ -23,14 +25,14 @@ impl Builder<'_> {
         span: Span,
     ) -> Result<Array<Expr>, Diagnostic> {
         if matches!(operator, Temporal::Pre | Temporal::Edge | Temporal::Change) {
-            self.raw -= 1;
+            self.execution.raw -= 1;
         }
         let scalar = |position: usize| match arguments.get(position) {
             Some(Array { dims, elements }) if dims.is_empty() => Ok(elements[0]),
             _ => Err(fault!(ARRAY_MISMATCH, "`{}` takes scalars", entry.name).at(span)),
         };
         match operator {
-            Temporal::Initial if self.initial => {
+            Temporal::Initial if self.place.initial => {
                 return Ok(Array::scalar(self.dae.pool.constant(1.0)));
             }
             Temporal::Initial => return Ok(Array::scalar(self.initial_signal())),
@@ -77,7 +79,7 @@ impl Builder<'_> {
     }
 
     pub(super) fn previous_variable(&mut self, of: VarId) -> VarId {
-        if let Some(known) = self.previous.get(&of) {
+        if let Some(known) = self.scalars.previous.get(&of) {
             return *known;
         }
         let source = self.dae.variable(of);
@@ -86,7 +88,7 @@ impl Builder<'_> {
         variable.base = source.base.clone();
         variable.variability = Variability::Discrete;
         let id = self.declare_scalar(variable);
-        self.previous.insert(of, id);
+        self.scalars.previous.insert(of, id);
         id
     }
 
@@ -126,7 +128,7 @@ impl Builder<'_> {
         if known == Some(Kind::Discrete) || self.is_parametric(b) {
             return Ok(b);
         }
-        if let Some(variable) = self.conditions.get(&b) {
+        if let Some(variable) = self.scalars.conditions.get(&b) {
             return Ok(self.dae.pool.variable(*variable));
         }
         if self.varies(b) {
@@ -134,12 +136,12 @@ impl Builder<'_> {
                 help: "do not use relations inside `noEvent` or inside functions")
             .at(span));
         }
-        let name = format!("$condition[{}]", self.conditions.len() + 1);
+        let name = format!("$condition[{}]", self.scalars.conditions.len() + 1);
         let mut variable = scalar_of_nothing(&name, Kind::Discrete, span);
         variable.base = BaseType::Boolean;
         variable.variability = Variability::Discrete;
         let id = self.declare_scalar(variable);
-        self.conditions.insert(b, id);
+        self.scalars.conditions.insert(b, id);
         let left = self.dae.pool.variable(id);
         self.dae.events.equations.push(Equation::new(left, b, span));
         Ok(left)

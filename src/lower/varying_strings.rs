@@ -1,8 +1,10 @@
 //! Texts that change at events: discrete variables whose values are the numbers of texts.
 
-use super::build::{Builder, UNKNOWN_TEXT};
-use super::dae::{Equation, Kind};
+use super::builder::Builder;
+use super::dae::Kind;
+use super::equation::Equation;
 use super::expressions::Lowering;
+use super::shape::UNKNOWN_TEXT;
 use crate::diag::Diagnostic;
 use crate::flatten::{BaseType, Variability};
 use crate::symbolic::Expr;
@@ -18,7 +20,7 @@ impl Builder<'_> {
                 && variable.dims.is_empty()
                 && self.text(position).contains(UNKNOWN_TEXT)
             {
-                self.dae.variables[self.first[position].0 as usize].kind = Kind::Discrete;
+                self.dae.variables[self.scalars.first[position].0 as usize].kind = Kind::Discrete;
             }
         }
     }
@@ -26,7 +28,7 @@ impl Builder<'_> {
     /// Binding equation and start value of a text that changes.
     pub(super) fn varying_text(&mut self, position: usize) -> Result<(), Diagnostic> {
         let variable = &self.flat.variables[position];
-        let first = self.first[position];
+        let first = self.scalars.first[position];
         if self.dae.variable(first).kind != Kind::Discrete {
             return Ok(());
         }

@@ -4,10 +4,12 @@
 //! A branch is active in the event iteration in which one of its conditions becomes true and no
 //! branch before it is active; a branch with `initial()` also during initialization (MLS §8.6).
 
-use super::build::{Builder, message_text};
-use super::dae::{Equation, Kind, Level, Part};
+use super::builder::Builder;
+use super::dae::Kind;
+use super::equation::{Equation, Level, Part};
 use super::errors::{ARRAY_MISMATCH, NOT_SUPPORTED, UNBALANCED_MODEL};
 use super::events::{Reinit, Termination};
+use super::expressions::message_text;
 use super::expressions::{Array, Lowering};
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -35,10 +37,10 @@ impl Builder<'_> {
         span: Span,
         loops: &mut Loops,
     ) -> Result<(), Diagnostic> {
-        if self.initial {
+        if self.place.initial {
             return Err(fault!(NOT_SUPPORTED, "`when` among the initial equations").at(span));
         }
-        if self.branches > 0 {
+        if self.place.branches > 0 {
             return Err(fault!(NOT_SUPPORTED, "`when` under a condition that can change";
                 help: "move the condition into the condition of the when-clause")
             .at(span));
@@ -49,9 +51,9 @@ impl Builder<'_> {
             let active = self.activation(condition, loops)?;
             let not = self.dae.pool.not(earlier);
             let guard = self.dae.pool.and(not, active);
-            self.in_when = true;
+            self.place.in_when = true;
             let done = self.when_body(body, guard, &mut assigned, loops);
-            self.in_when = false;
+            self.place.in_when = false;
             done?;
             earlier = self.dae.pool.or(earlier, active);
         }
@@ -122,7 +124,7 @@ impl Builder<'_> {
                 fault!(NOT_SUPPORTED, "`{name}` cannot be assigned in a when-clause").at(span)
             );
         }
-        if !self.assigned.insert(variable) {
+        if !self.execution.assigned.insert(variable) {
             return Err(fault!(UNBALANCED_MODEL, "`{name}` is assigned by two when-clauses";
                 help: "use one `when` with `elsewhen` branches")
             .at(span));
@@ -133,7 +135,8 @@ impl Builder<'_> {
             right = self.dae.pool.if_then_else(value.guard, value.value, right);
         }
         let span = values.first().map_or(span, |value| value.span);
-        let equation = Equation { instance: self.instance, ..Equation::new(left, right, span) };
+        let equation =
+            Equation { instance: self.place.instance, ..Equation::new(left, right, span) };
         self.dae.events.equations.push(equation);
         Ok(())
     }

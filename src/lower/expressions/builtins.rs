@@ -1,8 +1,7 @@
 //! Calls of the functions and operators of the language, each by its entry in
 //! [`functions`](crate::functions).
 
-use super::expression::field;
-use super::records::{arrays, common_text};
+use super::records::{arrays, common_text, field};
 use super::{Array, Binary, Lowered, Lowering, Target, Unary, placed, size_fault};
 use crate::diag::{Diagnostic, Fault, suggest};
 use crate::fault;

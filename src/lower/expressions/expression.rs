@@ -1,7 +1,7 @@
 //! The forms of expressions.
 
-use super::records::stacked;
-use super::{Array, Lowered, Lowering, MAX_DEPTH, MAX_SCALARS, Target, size_fault};
+use super::records::{field, stacked};
+use super::{Array, Lowered, Lowering, MAX_DEPTH, MAX_SCALARS, Target};
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
@@ -277,48 +277,4 @@ impl<T: Target> Lowering<'_, T> {
         let values = elements.iter().map(|e| self.lower(e)).collect::<Result<Vec<_>, _>>()?;
         stacked(values, span)
     }
-}
-
-/// A component of a record.
-pub(crate) fn field<S: Copy>(
-    base: Lowered<S>,
-    name: crate::name::Ident,
-    span: Span,
-) -> Result<Lowered<S>, Diagnostic> {
-    field_of(&base, name, span).cloned()
-}
-
-/// As [`field`], without copying.
-pub(crate) fn field_of<S: Copy>(
-    base: &Lowered<S>,
-    name: crate::name::Ident,
-    span: Span,
-) -> Result<&Lowered<S>, Diagnostic> {
-    if let Lowered::Record(fields) = base
-        && let Some((_, value)) = fields.iter().find(|(field, _)| *field == name)
-    {
-        return Ok(value);
-    }
-    Err(fault!(super::super::errors::UNRESOLVED_REFERENCE, "there is no component `{name}`")
-        .at(span))
-}
-
-/// Arrays of one size as the elements of an array with one more dimension.
-pub(super) fn stack<S: Copy>(arrays: Vec<Array<S>>, span: Span) -> Result<Array<S>, Diagnostic> {
-    let mut dims = vec![arrays.len()];
-    let Some(first) = arrays.first() else {
-        return Ok(Array { dims, elements: Vec::new() });
-    };
-    dims.extend(&first.dims);
-    let mut elements = Vec::new();
-    for array in &arrays {
-        if array.dims != first.dims {
-            return super::at(Err(size_fault(&first.dims, &array.dims)), span);
-        }
-        elements.extend(&array.elements);
-    }
-    if elements.len() > MAX_SCALARS {
-        return Err(fault!(ARRAY_MISMATCH, "an array of more than {MAX_SCALARS} elements").at(span));
-    }
-    Ok(Array { dims, elements })
 }

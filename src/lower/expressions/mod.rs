@@ -16,10 +16,11 @@ mod varying_strings;
 mod vectorized;
 
 pub(crate) use arrays::Choice;
-pub(crate) use expression::field_of;
+pub(crate) use records::field_of;
+pub(crate) use strings::message_text;
 
-use super::dae::Shape;
 use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED};
+use super::shape::Shape;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::external::Resources;
 use crate::fault;

@@ -3,8 +3,8 @@
 use super::{Array, Binary, Lowered, Lowering, Target, Unary, size_fault};
 use crate::diag::{At, Diagnostic};
 use crate::fault;
-use crate::lower::build::UNKNOWN_TEXT;
 use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
+use crate::lower::shape::UNKNOWN_TEXT;
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
 use crate::syntax::ast::{BinaryOperator, Expression};

@@ -6,11 +6,13 @@ use crate::diag::{Diagnostic, Fault};
 use crate::eval::{self, Callee, Function, Host, Scope, ValueType};
 use crate::external::{Outside, Resources};
 use crate::fault;
-use crate::lower::build::UNKNOWN_TEXT;
 use crate::lower::errors::NOT_SUPPORTED;
+use crate::lower::shape::UNKNOWN_TEXT;
 use crate::name::Name;
 use crate::source::Span;
-use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind};
+use crate::syntax::ast::{
+    Arguments, BinaryOperator, ComponentReference, Expression, ExpressionKind,
+};
 use crate::value::{ArrayValue, Elements, EnumerationValue, Value};
 use std::cell::Cell;
 use std::sync::Arc;
@@ -289,4 +291,29 @@ fn typed(number: f64, wanted: &ValueType) -> Option<Value> {
         }),
         _ => return None,
     })
+}
+
+/// The text of a message as far as it is known when compiling.
+pub(crate) fn message_text<T: Target>(
+    lowering: &mut Lowering<'_, T>,
+    e: Option<&Expression>,
+) -> String {
+    let Some(e) = e else { return String::new() };
+    let text = match &e.kind {
+        ExpressionKind::String(text) => return text.to_string(),
+        ExpressionKind::Binary { operator: BinaryOperator::Add, left, right } => {
+            return message_text(lowering, Some(left)) + &message_text(lowering, Some(right));
+        }
+        ExpressionKind::Call { function, .. }
+            if function.as_ident().is_some_and(|name| name == "String") =>
+        {
+            lowering.lower(e)
+        }
+        ExpressionKind::Reference(_) => lowering.lower(e),
+        _ => return UNKNOWN_TEXT.into(),
+    };
+    match text {
+        Ok(Lowered::Text(text)) => text.to_string(),
+        _ => UNKNOWN_TEXT.into(),
+    }
 }

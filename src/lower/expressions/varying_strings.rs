@@ -3,8 +3,8 @@
 use super::{Lowered, Lowering, Target};
 use crate::diag::Diagnostic;
 use crate::fault;
-use crate::lower::build::UNKNOWN_TEXT;
 use crate::lower::errors::{ARRAY_MISMATCH, NOT_SUPPORTED};
+use crate::lower::shape::UNKNOWN_TEXT;
 use crate::source::Span;
 use crate::symbolic::RelationOperator;
 use crate::syntax::ast::{BinaryOperator, Expression};

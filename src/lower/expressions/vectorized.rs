@@ -1,7 +1,6 @@
 //! Functions applied to arrays element by element (MLS §12.4.6).
 
-use super::expression::field;
-use super::records::{arrays, common_text};
+use super::records::{arrays, common_text, field};
 use super::{Array, Lowered, Lowering, Target, size_fault};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionComponent, ValueType};

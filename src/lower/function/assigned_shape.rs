@@ -3,9 +3,9 @@
 use super::emitter::Operand;
 use super::statements::Body;
 use crate::diag::Diagnostic;
-use crate::lower::dae::Shape;
 use crate::lower::errors::UNRESOLVED_REFERENCE;
 use crate::lower::expressions::{Lowered, Target};
+use crate::lower::shape::Shape;
 use crate::name::Ident;
 use crate::syntax::ast::{
     ComponentReference, Expression, ExpressionKind, Statement, StatementKind,

@@ -8,10 +8,10 @@ use crate::eval::{Function, FunctionBody, ValueType};
 use crate::external::Effect;
 use crate::fault;
 use crate::flatten::FlatModel;
-use crate::lower::build::UNKNOWN_TEXT;
-use crate::lower::dae::Shape;
 use crate::lower::errors::{NO_CONSTANT_VALUE, NOT_SUPPORTED};
 use crate::lower::expressions::Lowered;
+use crate::lower::shape::Shape;
+use crate::lower::shape::UNKNOWN_TEXT;
 use crate::name::Name;
 use crate::source::Span;
 use indexmap::IndexMap;
@@ -135,7 +135,7 @@ impl Instances {
             return Err(failed.clone());
         }
         let name = &function.name;
-        if let Some(reason) = super::external::refusal(function) {
+        if let Some(reason) = super::external_kinds::refusal(function) {
             return Err(fault!(NOT_SUPPORTED, "the function `{name}` {reason}").at(span));
         }
         let statements = match &function.body {
@@ -177,7 +177,7 @@ impl Instances {
         let mut instance = Instance {
             code: body.instances.finished.len() as u32,
             outputs,
-            folds: !function.impure && !super::external::handles_objects(function),
+            folds: !function.impure && !super::external_kinds::handles_objects(function),
             impure: function.impure,
             writes: false,
             passed: signature.arguments.iter().map(passed).collect(),
@@ -295,7 +295,7 @@ fn signature(
         list.push(match argument {
             // Algorithms refuse to decide by it themselves.
             Lowered::Text(text)
-                if text.contains(UNKNOWN_TEXT) && super::external::reads_texts(function) =>
+                if text.contains(UNKNOWN_TEXT) && super::external_kinds::reads_texts(function) =>
             {
                 return Err(fault!(
                     NOT_SUPPORTED,

@@ -10,22 +10,24 @@ mod assigned_shape;
 mod derivative;
 mod emitter;
 mod external;
+mod external_kinds;
 mod instances;
 mod place;
 mod printing;
 mod repeated;
+mod results;
 mod single_assignment;
 mod statements;
 mod target;
 
+pub(super) use external_kinds::prints;
 pub(super) use instances::Instances;
-pub(super) use printing::prints;
-pub(super) use repeated::Repeated;
+pub(super) use results::CallResults;
 
-use super::build::Builder;
+use super::builder::{Builder, MAX_STATEMENTS};
 use super::errors::{ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED_REFERENCE};
 use super::expressions::{Lowered, field_of};
-use super::inline::{MAX_INLINED, MAX_STATEMENTS, inline};
+use super::inline::{MAX_INLINED, inline};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionComponent, ValueType};
 use crate::fault;
@@ -43,12 +45,12 @@ pub(super) fn call(
     arguments: Vec<Lowered<Expr>>,
     span: Span,
 ) -> Result<Vec<Lowered<Expr>>, Diagnostic> {
-    if builder.functions.may_write {
+    if builder.calls.functions.may_write {
         // Carried out on expressions, a function would write whatever its branches are.
         return compiled_call(builder, function, arguments, span);
     }
-    if builder.calls == 0 {
-        builder.inlined = MAX_INLINED;
+    if builder.calls.depth == 0 {
+        builder.calls.inlined = MAX_INLINED;
     }
     if let Some(results) = repeated::repeat(builder, function, &arguments) {
         return Ok(results);
@@ -70,8 +72,8 @@ fn inlined_or_compiled(
         Err(e) if [NOT_SUPPORTED, NO_CONSTANT_VALUE, ARRAY_MISMATCH].contains(&e.code) => e,
         result => return result,
     };
-    let too_big = builder.inlined == 0;
-    if too_big && builder.calls > 0 {
+    let too_big = builder.calls.inlined == 0;
+    if too_big && builder.calls.depth > 0 {
         return Err(error);
     }
     builder.dae.assertions.truncate(asserted);
@@ -85,7 +87,7 @@ fn inlined_or_compiled(
         // What does not fit may stand in a branch that is never taken.
         Err(_) if error.code == ARRAY_MISMATCH => Err(error),
         Err(_) if too_big => {
-            builder.inlined = MAX_STATEMENTS;
+            builder.calls.inlined = MAX_STATEMENTS;
             inline(builder, function, arguments, span)
         }
         result => result,
@@ -127,7 +129,7 @@ pub(super) fn compiled_call(
     let pool = &builder.dae.pool;
     let known: Vec<Lowered<Option<f64>>> =
         arguments.iter().map(|a| a.map(&mut |e| pool.as_constant(e))).collect();
-    let instance = builder.functions.instance(builder.flat, function, &known, span)?;
+    let instance = builder.calls.functions.instance(builder.flat, function, &known, span)?;
     let mut scalars = Vec::new();
     for (argument, passed) in arguments.iter().zip(&instance.passed) {
         if *passed {
@@ -136,15 +138,15 @@ pub(super) fn compiled_call(
     }
     if instance.impure {
         // Calls in different places are different calls, though their arguments are the same.
-        let site = builder.impure_calls;
-        builder.impure_calls += 1;
+        let site = builder.calls.impure;
+        builder.calls.impure += 1;
         scalars.push(builder.dae.pool.constant(f64::from(site)));
     }
     let numbers: Option<Vec<f64>> = match instance.folds {
         true => scalars.iter().map(|e| builder.dae.pool.as_constant(*e)).collect(),
         false => None,
     };
-    let folded = numbers.and_then(|numbers| builder.functions.evaluate(&instance, &numbers));
+    let folded = numbers.and_then(|numbers| builder.calls.functions.evaluate(&instance, &numbers));
     let pool = &mut builder.dae.pool;
     let mut results = Vec::new();
     match folded {
@@ -153,7 +155,7 @@ pub(super) fn compiled_call(
             let n: usize = instance.outputs.iter().map(|shape| shape.len()).sum();
             results.extend((0..n as u32).map(|at| pool.call(instance.code, at, &scalars)));
             if instance.writes {
-                builder.written.push(pool.call(instance.code, 0, &scalars));
+                builder.calls.written.push(pool.call(instance.code, 0, &scalars));
             } else if n == 0 && instance.impure {
                 return Err(fault!(
                     NOT_SUPPORTED,

@@ -1,17 +1,16 @@
 //! Functions that print, called in functions being compiled: their texts may have numbers in them
 //! that are known when the simulation gets there.
 
-use super::external::external_name;
 use super::statements::{Body, Loops};
 use crate::bytecode::{ExternalCall, Instruction};
 use crate::diag::{Diagnostic, Fault};
-use crate::eval::{Function, FunctionBody};
 use crate::external::{Call, Entry, Kind, Slot};
 use crate::fault;
-use crate::lower::build::{UNKNOWN_TEXT, message_text};
 use crate::lower::errors::NOT_SUPPORTED;
 use crate::lower::expressions::Lowered;
+use crate::lower::expressions::message_text;
 use crate::lower::message::nth;
+use crate::lower::shape::UNKNOWN_TEXT;
 use crate::source::Span;
 use crate::syntax::ast;
 use crate::value::Value;
@@ -37,17 +36,6 @@ fn tell(call: &mut Call<'_>) -> Result<(), Fault> {
     match &*call.texts[call.arguments[0].first as usize].clone() {
         "" => call.outside.print(words.trim_end_matches('\n')),
         path => call.outside.append(path, format!("{words}\n").as_bytes()),
-    }
-}
-
-/// Whether a function does nothing but to print its first argument.
-pub(in crate::lower) fn prints(function: &Function) -> bool {
-    match &function.body {
-        FunctionBody::External(clause) => matches!(
-            external_name(function, clause).as_str(),
-            "ModelicaMessage" | "ModelicaWarning" | "ModelicaInternal_print"
-        ),
-        _ => false,
     }
 }
 

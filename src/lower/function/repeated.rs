@@ -1,27 +1,12 @@
 //! Calls that were made before: a medium is asked for the same state at the same point again and
 //! again, and each answer may take thousands of statements.
 
+use super::results::Outcome;
 use crate::eval::Function;
-use crate::lower::build::Builder;
-use crate::lower::dae::Assertion;
+use crate::lower::builder::Builder;
 use crate::lower::expressions::Lowered;
 use crate::symbolic::Expr;
-use rustc_hash::FxHashMap;
 use std::sync::Arc;
-
-/// Calls with what they came to, by the function's address, which stays as the function is kept.
-pub(in crate::lower) type Repeated = FxHashMap<(usize, Vec<Lowered<Expr>>), Outcome>;
-
-/// What a call came to.
-pub(in crate::lower) struct Outcome {
-    _function: Arc<Function>,
-    results: Vec<Lowered<Expr>>,
-    assertions: Vec<Assertion>,
-    /// Statements that it needs to come to this within another call; `None` if it does not.
-    statements: Option<usize>,
-    /// Whether it comes to this where it is in no other call.
-    outermost: bool,
-}
 
 /// How much a model had before a call.
 pub(super) struct Before {
@@ -32,14 +17,20 @@ pub(super) struct Before {
 
 fn counts(builder: &Builder<'_>) -> [usize; 5] {
     let dae = &builder.dae;
-    let calls = builder.impure_calls as usize;
-    [dae.variables.len(), dae.relations.len(), dae.warnings.len(), calls, builder.written.len()]
+    let calls = builder.calls.impure as usize;
+    [
+        dae.variables.len(),
+        dae.relations.len(),
+        dae.warnings.len(),
+        calls,
+        builder.calls.written.len(),
+    ]
 }
 
 impl Before {
     pub(super) fn new(builder: &Builder<'_>) -> Before {
         let assertions = builder.dae.assertions.len();
-        Before { counts: counts(builder), assertions, inlined: builder.inlined }
+        Before { counts: counts(builder), assertions, inlined: builder.calls.inlined }
     }
 }
 
@@ -53,13 +44,13 @@ pub(super) fn repeat(
     function: &Arc<Function>,
     arguments: &[Lowered<Expr>],
 ) -> Option<Vec<Lowered<Expr>>> {
-    let known = builder.repeated.get(&key(function, arguments.to_vec()))?;
-    let outermost = builder.calls == 0;
-    let statements = known.statements.filter(|statements| *statements < builder.inlined);
+    let known = builder.calls.results.get(&key(function, arguments.to_vec()))?;
+    let outermost = builder.calls.depth == 0;
+    let statements = known.statements.filter(|statements| *statements < builder.calls.inlined);
     if statements.is_none() && !(outermost && known.outermost) {
         return None;
     }
-    builder.inlined -= statements.unwrap_or(0);
+    builder.calls.inlined -= statements.unwrap_or(0);
     builder.dae.assertions.extend(known.assertions.iter().cloned());
     Some(known.results.clone())
 }
@@ -75,13 +66,13 @@ pub(super) fn remember(
     if counts(builder) != before.counts {
         return;
     }
-    let has_room = builder.inlined > 0;
+    let has_room = builder.calls.inlined > 0;
     let outcome = Outcome {
         _function: function.clone(),
         results: results.to_vec(),
         assertions: builder.dae.assertions[before.assertions..].to_vec(),
-        statements: before.inlined.checked_sub(builder.inlined).filter(|_| has_room),
-        outermost: builder.calls == 0,
+        statements: before.inlined.checked_sub(builder.calls.inlined).filter(|_| has_room),
+        outermost: builder.calls.depth == 0,
     };
-    builder.repeated.insert(key(function, arguments), outcome);
+    builder.calls.results.insert(key(function, arguments), outcome);
 }

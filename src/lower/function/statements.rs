@@ -1,18 +1,18 @@
 //! Declarations and statements of a function being compiled (MLS ch. 11, §12.4).
 
 use super::emitter::{Emitter, Operand};
+use super::external_kinds::prints;
 use super::instances::{Argument, Instances, MAX_INSTRUCTIONS};
-use super::printing::prints;
 use super::single_assignment::assigned_once;
 use crate::bytecode::{Code, Instruction, Register};
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
 use crate::flatten::FlatModel;
-use crate::lower::build::message_text;
 use crate::lower::errors::{
     ARRAY_MISMATCH, NO_CONSTANT_VALUE, NOT_SUPPORTED, UNRESOLVED_REFERENCE,
 };
+use crate::lower::expressions::message_text;
 use crate::lower::expressions::{Array, Lowered, Lowering, Target};
 use crate::name::Ident;
 use crate::source::Span;

@@ -1,0 +1,134 @@
+//! What lowering knows while it goes through a flat model.
+
+use super::dae::Dae;
+use super::equation::Instance;
+use super::execution::Execution;
+use super::function::{CallResults, Instances};
+use crate::flatten::FlatModel;
+use crate::symbolic::{Containing, Expr, Pool, RelationOperator, VarId};
+use indexmap::IndexSet;
+use rustc_hash::FxHashMap;
+use std::sync::Arc;
+
+/// The most statements that the functions of one model may carry out when it is compiled.
+pub(super) const MAX_STATEMENTS: usize = 1_000_000;
+
+/// What is known about a flat variable so far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Folding {
+    Unvisited,
+    InProgress,
+    Done,
+}
+
+/// Builds a [`Dae`] from a flat model.
+pub(super) struct Builder<'a> {
+    pub(super) flat: &'a FlatModel,
+    pub(super) dae: Dae,
+    pub(super) scalars: Scalars,
+    pub(super) place: Place,
+    pub(super) calls: Calls,
+    /// The algorithm in progress.
+    pub(super) execution: Execution,
+    /// The texts that have numbers.
+    pub(super) texts: IndexSet<Arc<str>>,
+}
+
+/// The scalars of the flat variables, and those that lowering declares for them.
+pub(super) struct Scalars {
+    /// First scalar of every flat variable.
+    pub(super) first: Vec<VarId>,
+    pub(super) folding: Vec<Folding>,
+    pub(super) derivatives: FxHashMap<VarId, VarId>,
+    /// `pre` of every variable that needs it.
+    pub(super) previous: FxHashMap<VarId, VarId>,
+    /// Discrete variables that hold conditions.
+    pub(super) conditions: FxHashMap<Expr, VarId>,
+    /// Variables that hold relations.
+    pub(super) relations: FxHashMap<(RelationOperator, Expr, Expr), VarId>,
+}
+
+/// Where in the model the equation or statement at hand stands.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Place {
+    /// Whose it is.
+    pub(super) instance: Option<Instance>,
+    /// Whether it is an initial one.
+    pub(super) initial: bool,
+    /// Whether it is in the body of a when-clause.
+    pub(super) in_when: bool,
+    /// How many branches of if-equations are around it whose conditions are not known.
+    pub(super) branches: usize,
+}
+
+/// Calls of user functions.
+pub(super) struct Calls {
+    /// How deep they are nested.
+    pub(super) depth: usize,
+    /// How many statements the one at hand may still carry out.
+    pub(super) inlined: usize,
+    /// How many statements of algorithms may still be carried out.
+    pub(super) statements: usize,
+    /// Statements that became functions so far.
+    pub(super) statement_functions: usize,
+    /// Functions that cannot be expressions.
+    pub(super) functions: Instances,
+    /// What calls came to.
+    pub(super) results: CallResults,
+    /// Whether expressions contain variables of functions without value.
+    pub(super) undefined: Containing<fn(&Pool, Expr) -> bool>,
+    /// How many calls of impure functions were read.
+    pub(super) impure: u32,
+    /// The calls of functions that write, in the statement at hand.
+    pub(super) written: Vec<Expr>,
+}
+
+impl<'a> Builder<'a> {
+    /// Knows nothing of the model yet.
+    pub(super) fn new(flat: &'a FlatModel) -> Builder<'a> {
+        let dae = Dae {
+            name: flat.name.clone(),
+            pool: Pool::new(),
+            experiment: flat.experiment,
+            ..Dae::default()
+        };
+        Builder {
+            flat,
+            dae,
+            scalars: Scalars::new(flat.variables.len()),
+            place: Place::default(),
+            calls: Calls::new(),
+            execution: Execution::default(),
+            texts: IndexSet::new(),
+        }
+    }
+}
+
+impl Scalars {
+    fn new(variables: usize) -> Scalars {
+        Scalars {
+            first: Vec::new(),
+            folding: vec![Folding::Unvisited; variables],
+            derivatives: FxHashMap::default(),
+            previous: FxHashMap::default(),
+            conditions: FxHashMap::default(),
+            relations: FxHashMap::default(),
+        }
+    }
+}
+
+impl Calls {
+    fn new() -> Calls {
+        Calls {
+            depth: 0,
+            inlined: 0,
+            statements: MAX_STATEMENTS,
+            statement_functions: 0,
+            functions: Instances::default(),
+            results: CallResults::default(),
+            undefined: Containing::new(|pool, e| pool.as_constant(e).is_some_and(f64::is_nan)),
+            impure: 0,
+            written: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! Equations and assertions: scalar, with their places. Data only.
+
+use crate::source::Span;
+use crate::symbolic::Expr;
+use std::sync::Arc;
+
+/// `left = right`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Equation {
+    /// Left side.
+    pub left: Expr,
+    /// Right side.
+    pub right: Expr,
+    /// Where it is written.
+    pub span: Span,
+    /// Whose equation it is, if of one instance.
+    pub instance: Option<Instance>,
+}
+
+impl Equation {
+    /// `left = right`, written at `span`; whose it is, is not known.
+    pub fn new(left: Expr, right: Expr, span: Span) -> Equation {
+        Equation { left, right, span, instance: None }
+    }
+}
+
+/// Position of a path in [`Dae::instances`](super::Dae::instances).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Instance(pub u32);
+
+/// What it means that a condition does not hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Level {
+    /// The simulation ends (`AssertionLevel.error`).
+    Error,
+    /// The user is warned (`AssertionLevel.warning`).
+    Warning,
+    /// A function prints the text.
+    Message,
+    /// Functions write; the parts are their calls.
+    Effect,
+}
+
+/// A part of a text for people.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Part {
+    /// Known when compiling.
+    Text(Arc<str>),
+    /// A number of this value.
+    Number(Expr),
+    /// `true` or `false`.
+    Boolean(Expr),
+}
+
+/// `assert(condition, message, level)`, or a text that is printed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Assertion {
+    /// Must hold; its relations are evaluated as they are.
+    pub condition: Expr,
+    /// The text for people as far as it is known when compiling.
+    pub message: Arc<str>,
+    /// The same in parts.
+    pub parts: Vec<Part>,
+    /// What a violation means.
+    pub level: Level,
+    /// Where it is written.
+    pub span: Span,
+}

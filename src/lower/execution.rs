@@ -1,0 +1,26 @@
+//! Statements of algorithms while they are carried out on expressions.
+
+use crate::name::Ident;
+use crate::symbolic::{Expr, VarId};
+use indexmap::IndexMap;
+use rustc_hash::FxHashSet;
+
+/// The variables of the loops around a statement, innermost last.
+pub(super) type Loops = Vec<(Ident, Expr)>;
+
+/// Values of the variables that an algorithm assigns, while its statements are carried out.
+#[derive(Debug, Default)]
+pub(super) struct Execution {
+    /// In the order of the first assignment.
+    pub(super) values: IndexMap<VarId, Expr>,
+    /// Conditions of the branches around the statement.
+    pub(super) guards: Vec<Expr>,
+    /// What when-statements assign.
+    pub(super) in_when: FxHashSet<VarId>,
+    /// What when-clauses and algorithms of the model assign.
+    pub(super) assigned: FxHashSet<VarId>,
+    /// More than zero where a reference means the variable, not the value it has in an algorithm.
+    pub(super) raw: usize,
+    /// How many assertions there were when the branches of if-expressions began.
+    pub(super) asserted: Vec<usize>,
+}

@@ -1,0 +1,59 @@
+//! Which functions are external, and what their calls need (MLS §12.9).
+
+use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
+use crate::external::{self, Effect};
+use crate::syntax::ast;
+
+/// The external name of a function.
+pub(super) fn external_name(function: &Function, clause: &ast::External) -> String {
+    let own = || function.name.last().map_or(String::new(), |name| name.to_string());
+    clause.function.as_ref().map_or_else(own, |name| name.node.to_string())
+}
+
+/// Why a function that is external cannot be compiled, if it cannot.
+pub(super) fn refusal(function: &Function) -> Option<String> {
+    let FunctionBody::External(clause) = &function.body else { return None };
+    let name = external_name(function, clause);
+    if function.inputs.iter().any(|i| i.value_type == ValueType::String && !i.dims.is_empty()) {
+        return Some(format!("is the external function `{name}`, which takes arrays of Strings"));
+    }
+    match external::find(&name) {
+        None => Some(format!(
+            "is the external function `{name}`, which this program does not implement"
+        )),
+        Some(entry) if entry.effect == Effect::Outside => Some(format!(
+            "is the external function `{name}`, whose values change without a change of its \
+             arguments"
+        )),
+        Some(_) => None,
+    }
+}
+
+/// Whether a function is external and needs its texts: all but one that fails with a message, which
+/// may be unknown in parts.
+pub(super) fn reads_texts(function: &Function) -> bool {
+    match &function.body {
+        FunctionBody::External(clause) => external_name(function, clause) != "ModelicaError",
+        _ => false,
+    }
+}
+
+/// Whether external objects go in or out: such a call is not the number that it returns.
+pub(super) fn handles_objects(function: &Function) -> bool {
+    function.inputs.iter().chain(&function.outputs).any(is_object)
+}
+
+pub(super) fn is_object(component: &FunctionComponent) -> bool {
+    matches!(component.value_type, ValueType::ExternalObject(_))
+}
+
+/// Whether a function does nothing but to print its first argument.
+pub(in crate::lower) fn prints(function: &Function) -> bool {
+    match &function.body {
+        FunctionBody::External(clause) => matches!(
+            external_name(function, clause).as_str(),
+            "ModelicaMessage" | "ModelicaWarning" | "ModelicaInternal_print"
+        ),
+        _ => false,
+    }
+}

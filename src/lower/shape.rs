@@ -1,0 +1,82 @@
+//! Sizes and components of values, known when a model is compiled.
+
+use std::sync::Arc;
+
+/// Stands for a text, or a part of one, that is not known when compiling; messages show it.
+pub(super) const UNKNOWN_TEXT: &str = "…";
+
+/// Sizes of an argument.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum Shape {
+    /// A scalar (no sizes) or an array.
+    Array(Vec<usize>),
+    /// A record: name and shape of its components.
+    Record(Vec<(crate::name::Ident, Shape)>),
+    /// A text, no scalar; `…` stands for what is not known when compiling.
+    Text(Arc<str>),
+}
+
+impl Shape {
+    /// Number of scalars.
+    pub fn len(&self) -> usize {
+        match self {
+            Shape::Array(dims) => dims.iter().product(),
+            Shape::Record(fields) => fields.iter().map(|(_, shape)| shape.len()).sum(),
+            Shape::Text(_) => 0,
+        }
+    }
+
+    /// Whether there are no scalars.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The shape of an array of these; that of an array of records is a record of arrays.
+    pub fn repeated(self, dims: &[usize]) -> Shape {
+        match self {
+            Shape::Array(own) => Shape::Array(dims.iter().copied().chain(own).collect()),
+            Shape::Record(fields) => {
+                let field = |(name, shape): (_, Shape)| (name, shape.repeated(dims));
+                Shape::Record(fields.into_iter().map(field).collect())
+            }
+            Shape::Text(text) => Shape::Text(text),
+        }
+    }
+
+    /// Whether it is a text, or a record with one.
+    pub fn holds_text(&self) -> bool {
+        match self {
+            Shape::Array(_) => false,
+            Shape::Record(fields) => fields.iter().any(|(_, shape)| shape.holds_text()),
+            Shape::Text(_) => true,
+        }
+    }
+
+    /// Makes all texts unknown.
+    pub fn forget_texts(&mut self) {
+        match self {
+            Shape::Array(_) => {}
+            Shape::Record(fields) => fields.iter_mut().for_each(|(_, s)| s.forget_texts()),
+            Shape::Text(text) => *text = UNKNOWN_TEXT.into(),
+        }
+    }
+
+    /// The shape of a value that may have either shape: texts that differ are not known. `None` if
+    /// sizes or components differ.
+    pub fn joined(&self, other: &Shape) -> Option<Shape> {
+        match (self, other) {
+            (Shape::Array(a), Shape::Array(b)) => (a == b).then(|| self.clone()),
+            (Shape::Text(a), Shape::Text(b)) if a == b => Some(self.clone()),
+            (Shape::Text(_), Shape::Text(_)) => Some(Shape::Text(UNKNOWN_TEXT.into())),
+            (Shape::Record(a), Shape::Record(b)) if a.len() == b.len() => {
+                let fields = a.iter().zip(b);
+                let joined = |((name, a), (other, b)): (&(_, Shape), &(_, Shape))| {
+                    let shape = a.joined(b)?;
+                    (name == other).then_some((*name, shape))
+                };
+                fields.map(joined).collect::<Option<_>>().map(Shape::Record)
+            }
+            _ => None,
+        }
+    }
+}
