@@ -4,7 +4,7 @@
 //! takes the same branch: what the first computed is known there again. So an array that is set
 //! under one condition costs one computation of what its elements share, not one for each.
 
-use super::tape::Register;
+use super::instruction::Register;
 use rustc_hash::FxHashMap;
 use std::hash::Hash;
 

@@ -3,20 +3,21 @@
 //! The order of the parts decides the numbers of registers and auxiliary variables, and with them
 //! the bits of results where sums are formed: it is part of the contract of equal bytes.
 
-use super::event_code::{CompiledRounding, compile_events, linear_in_time};
+use super::code::{CompiledRelation, CompiledSelection, Notice, Outputs, Step};
+use super::event_code::{compile_events, linear_in_time};
+use super::events::CompiledRounding;
 use super::hoist::Hoisting;
+use super::instruction::Register;
 use super::iteration_variables::IterationVariables;
 use super::jacobian::differentiate_sequence;
 use super::memory::Memory;
-use super::noevent_relations::Literal;
-use super::program::{
-    Access, CompiledRelation, CompiledSelection, Notice, Outputs, ParameterInfo, Program, Step,
-    VariableInfo, number_of_equations,
-};
+use super::program::Literal;
+use super::program::{Access, ParameterInfo, Program, VariableInfo, number_of_equations};
+use super::registers::Registers;
 use super::relation_groups::{memoryless, relations_of_blocks};
 use super::sequence::{compile_continuous, compile_outputs, compile_steps, resolved, slice};
-use super::tape::{Register, Tape};
-use super::tape_builder::{Registers, TapeBuilder};
+use super::tape::Tape;
+use super::tape_builder::TapeBuilder;
 use crate::causalize::{Assignment, CausalizedDae};
 use crate::diag::Diagnostic;
 use crate::flatten::BaseType;
@@ -359,7 +360,7 @@ impl Compilation {
             .collect()
     }
 
-    fn events(&mut self) -> super::event_code::Events {
+    fn events(&mut self) -> super::events::Events {
         let Compilation { causalized, pool, registers, sequence, .. } = self;
         compile_events(pool, registers, causalized, sequence)
     }

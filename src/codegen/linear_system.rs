@@ -14,7 +14,8 @@
 //! Jacobi's one-sided method ([Golub & Van Loan 2013](crate::bibliography#golub-van-loan-2013),
 //! §8.6.3).
 
-use super::tape::Register;
+use super::instruction::LinearSolve;
+use crate::codegen::instruction::Register;
 use crate::elementary;
 use crate::sim::DenseLu;
 
@@ -35,21 +36,6 @@ pub(super) const MOST_SMALL: usize = 6;
 /// Up to so many equations are clearly regular where the pivots are more than this part of the
 /// largest entry of their column.
 const CLEAR_PIVOT: f64 = 1e-8;
-
-/// Solves A x = b.
-#[derive(Debug, Clone)]
-pub(super) struct LinearSolve {
-    /// The workspace.
-    pub(super) system: u32,
-    /// Places in A, by rows, with the registers of the entries that are not always zero; `None` if
-    /// A is that of the instruction before on the same workspace.
-    pub(super) entries: Option<Box<[(u32, Register)]>>,
-    pub(super) right: Box<[Register]>,
-    /// Register of the first unknown; the others follow.
-    pub(super) d: Register,
-    /// Whether b need not fit to a singular A.
-    pub(super) is_slope: bool,
-}
 
 /// No solution, or one that is not finite.
 #[derive(Debug)]

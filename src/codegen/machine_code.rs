@@ -10,10 +10,10 @@
 
 #![allow(unsafe_code, reason = "machine code made at run time can only be called so")]
 
-use super::program::Outputs;
+use super::instruction::Register;
 use super::routines::without_routines;
-use super::tape::Register;
 use super::translation::translate;
+use crate::codegen::tape::Tape;
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Linkage, Module, default_libcall_names};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -44,7 +44,13 @@ pub(crate) struct MachineCode {
 
 impl MachineCode {
     /// Computes outputs from registers; whether it did. If not, the tape must be run.
-    pub(crate) fn run(&self, code: &Outputs, registers: &[f64], out: &mut [f64]) -> bool {
+    pub(crate) fn run(
+        &self,
+        tape: &Tape,
+        outputs: &[Register],
+        registers: &[f64],
+        out: &mut [f64],
+    ) -> bool {
         if let Some(function) = self.function.get() {
             // Who asks for fewer values than there are gets them from the tape.
             let function = function.as_ref().filter(|function| function.n_outputs <= out.len());
@@ -52,7 +58,8 @@ impl MachineCode {
         }
         if self.runs.fetch_add(1, Ordering::Relaxed) == OFTEN {
             let interpreted = INTERPRETED.load(Ordering::Relaxed);
-            self.function.get_or_init(|| if interpreted { None } else { Function::new(code) });
+            self.function
+                .get_or_init(|| if interpreted { None } else { Function::new(tape, outputs) });
         }
         false
     }
@@ -84,18 +91,23 @@ pub(super) struct Function {
 
 impl Function {
     /// Translates a tape, if it consists of what can be translated and the machine is supported.
-    fn new(code: &Outputs) -> Option<Function> {
-        let length = without_routines(&code.tape, LONGEST)?.len();
+    fn new(tape: &Tape, outputs: &[Register]) -> Option<Function> {
+        let length = without_routines(tape, LONGEST)?.len();
         if length <= LONG {
-            Function::translated(code, "speed", "backtracking")
+            Function::translated(tape, outputs, "speed", "backtracking")
         } else {
             // Better code would take too long.
-            Function::translated(code, "none", "single_pass")
+            Function::translated(tape, outputs, "none", "single_pass")
         }
     }
 
     /// Translates with options of Cranelift.
-    fn translated(code: &Outputs, opt_level: &str, regalloc_algorithm: &str) -> Option<Function> {
+    fn translated(
+        tape: &Tape,
+        outputs: &[Register],
+        opt_level: &str,
+        regalloc_algorithm: &str,
+    ) -> Option<Function> {
         let flags = [
             ("opt_level", opt_level),
             ("regalloc_algorithm", regalloc_algorithm),
@@ -106,8 +118,8 @@ impl Function {
         let builder = JITBuilder::with_flags(&flags, default_libcall_names()).ok()?;
         let mut module = JITModule::new(builder);
         let mut context = module.make_context();
-        let instructions = without_routines(&code.tape, LONGEST)?;
-        translate(code, &instructions, module.target_config(), &mut context)?;
+        let instructions = without_routines(tape, LONGEST)?;
+        translate((tape, outputs), &instructions, module.target_config(), &mut context)?;
         let signature = &context.func.signature;
         let id = module.declare_function("tape", Linkage::Export, signature).ok()?;
         module.define_function(id, &mut context).ok()?;
@@ -119,8 +131,8 @@ impl Function {
         let entry = unsafe { std::mem::transmute::<*const u8, Entry>(address) };
         Some(Function {
             entry,
-            n_registers: registers_read(code),
-            n_outputs: code.outputs.len(),
+            n_registers: registers_read(tape, outputs),
+            n_outputs: outputs.len(),
             module: Mutex::new(Some(module)),
         })
     }
@@ -146,26 +158,27 @@ impl Drop for Function {
 }
 
 /// One more than the last register that a tape or its outputs mention.
-fn registers_read(code: &Outputs) -> usize {
+fn registers_read(tape: &Tape, outputs: &[Register]) -> usize {
     let mut last: Register = 0;
-    for instruction in &code.tape.code {
+    for instruction in &tape.code {
         instruction.for_each_operand(|register| last = last.max(register));
     }
-    for solve in &code.tape.solves {
+    for solve in &tape.solves {
         let entries = solve.entries.iter().flatten().map(|(_, register)| *register);
         last = entries.chain(solve.right.iter().copied()).fold(last, Register::max);
     }
-    code.outputs.iter().copied().fold(last, Register::max) as usize + 1
+    outputs.iter().copied().fold(last, Register::max) as usize + 1
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::bytecode::Functions;
+    use crate::codegen::code::Outputs;
     use crate::codegen::hoist::Hoisting;
     use crate::codegen::memory::Memory;
+    use crate::codegen::registers::Registers;
     use crate::codegen::sequence::compile_continuous;
-    use crate::codegen::tape_builder::Registers;
     use crate::symbolic::{Expr, Pool, RelationOperator, VarId};
     use proptest::prelude::*;
     use std::sync::Arc;
@@ -246,8 +259,8 @@ mod tests {
             let mut pool = Pool::new();
             let outputs = expressions(&mut pool, &steps);
             let (code, mut memory) = compiled(&pool, &outputs);
-            let best = Function::translated(&code, "speed", "backtracking");
-            let quick = Function::translated(&code, "none", "single_pass");
+            let best = Function::translated(&code.tape, &code.outputs, "speed", "backtracking");
+            let quick = Function::translated(&code.tape, &code.outputs, "none", "single_pass");
             let functions = [best, quick].map(|f| f.expect("all of it can be translated"));
             let mut out = vec![f64::NAN; outputs.len()];
             for (values, function) in values.iter().flat_map(|v| functions.iter().map(move |f| (v, f))) {
@@ -282,7 +295,7 @@ mod tests {
         }
         let outputs = [value];
         let (code, mut memory) = compiled(&pool, &outputs);
-        let function = Function::translated(&code, "speed", "backtracking");
+        let function = Function::translated(&code.tape, &code.outputs, "speed", "backtracking");
         let function = function.expect("all of it can be translated");
         for x in [0.05, 0.3, 0.52, 0.8, 1.5] {
             memory[0] = x;
@@ -301,10 +314,14 @@ mod tests {
         let (code, mut memory) = compiled(&pool, &outputs);
         let mut out = [0.0];
         memory[0] = 2.0;
-        let first = (0..2 * OFTEN).position(|_| code.machine_code.run(&code, &memory, &mut out));
+        let first = (0..2 * OFTEN)
+            .position(|_| code.machine_code.run(&code.tape, &code.outputs, &memory, &mut out));
         assert_eq!(first, Some(OFTEN as usize + 1));
         assert_eq!(out[0].to_bits(), 2f64.ln().to_bits());
         memory[0] = -1.0;
-        assert!(!code.machine_code.run(&code, &memory, &mut out), "the tape tells what is wrong");
+        assert!(
+            !code.machine_code.run(&code.tape, &code.outputs, &memory, &mut out),
+            "the tape tells what is wrong"
+        );
     }
 }

@@ -1,8 +1,8 @@
 //! What a running system writes to: its registers, and the machine that runs its functions.
 
+use super::instruction::Call;
 use super::linear_system::LinearSystem;
-use super::tape::Call;
-use super::tape_builder::Registers;
+use super::registers::Registers;
 use crate::bytecode::{Failure, Functions, Journal, Machine};
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;

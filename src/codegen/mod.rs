@@ -11,10 +11,13 @@
 //! ```
 
 mod branches;
+pub(crate) mod code;
 mod compilation;
 pub mod errors;
-pub(crate) mod event_code;
+mod event_code;
+pub(crate) mod events;
 pub(crate) mod hoist;
+pub(crate) mod instruction;
 mod iteration_variables;
 pub(crate) mod jacobian;
 pub(crate) mod linear_system;
@@ -24,6 +27,7 @@ pub(crate) mod noevent_relations;
 pub(crate) mod program;
 mod queries;
 mod regions;
+mod registers;
 mod relation_groups;
 mod routines;
 pub(crate) mod sensitivity;

@@ -9,29 +9,15 @@
 //! Only relations of Reals in equations that hold between events take part, not those in functions,
 //! assertions and when-clauses.
 
-use super::program::{Outputs, Program};
+use super::program::Program;
 use super::sequence::compile_outputs;
-use super::tape_builder::Registers;
 use crate::causalize::{Assignment, Block, CausalizedDae};
+use crate::codegen::program::Differences;
 use crate::flatten::{BaseType, Variability};
 use crate::lower::{Dae, Kind, Relation, Variable};
 use crate::symbolic::{Expr, Node, Pool, RelationOperator, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
-use std::sync::{Arc, OnceLock};
-
-/// What a program knows of its relations inside `noEvent`, once somebody has asked.
-#[derive(Debug, Default)]
-pub(super) struct Literal {
-    differences: OnceLock<Option<Differences>>,
-    program: OnceLock<Option<Arc<Program>>>,
-}
-
-/// Computes left − right of every relation, from the registers of the unknowns and parameters.
-#[derive(Debug)]
-pub(crate) struct Differences {
-    pub(crate) registers: Registers,
-    pub(crate) code: Outputs,
-}
+use std::sync::Arc;
 
 /// A relation, and the number of the equation it was found in first.
 type Found = (Expr, usize);

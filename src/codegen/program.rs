@@ -1,17 +1,21 @@
 //! A compiled model: immutable, shared by any number of systems.
 
-use super::event_code::Events;
-use super::machine_code::MachineCode;
-use super::noevent_relations::Literal;
-use super::tape::{Register, Tape};
-use super::tape_builder::Registers;
+use super::events::Events;
+use super::instruction::Register;
+use super::registers::Registers;
+use super::tape::Tape;
 use crate::causalize::{Assignment, CausalizedDae};
+use crate::codegen::code::CompiledRelation;
+use crate::codegen::code::CompiledSelection;
+use crate::codegen::code::Notice;
+use crate::codegen::code::Outputs;
+use crate::codegen::code::Step;
 use crate::flatten::{BaseType, Variability};
 use crate::lower::Kind;
 use crate::sim::Pattern;
 use crate::symbolic::{Expr, VarId};
 use crate::syntax::ast::CausalityPrefix;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A parameter that can be set between simulations.
 #[derive(Debug, Clone)]
@@ -91,60 +95,17 @@ pub enum Access {
     },
 }
 
-/// A step of solving for all variables, the states (or nothing, at the start) given.
-#[derive(Debug, Clone)]
-pub(crate) enum Step {
-    Run(Tape),
-    Solve(CompiledLoop),
+/// What a program knows of its relations inside `noEvent`, once somebody has asked.
+#[derive(Debug, Default)]
+pub(super) struct Literal {
+    pub(super) differences: OnceLock<Option<Differences>>,
+    pub(super) program: OnceLock<Option<Arc<Program>>>,
 }
 
-/// A torn loop with its Jacobian.
-#[derive(Debug, Clone)]
-pub(crate) struct CompiledLoop {
-    pub(crate) tape: Tape,
-    pub(crate) unknowns: Vec<Register>,
-    pub(crate) residuals: Vec<Register>,
-    /// Row-major.
-    pub(crate) jacobian: Vec<Register>,
-    /// 1 once the tape has computed the residuals: what fails behind them is a derivative.
-    pub(crate) has_residuals: Register,
-    pub(crate) block: u32,
-}
-
-/// A frozen relation, compiled.
-#[derive(Debug, Clone)]
-pub(crate) struct CompiledRelation {
-    pub(crate) register: Register,
-    pub(crate) operator: crate::symbolic::RelationOperator,
-    /// For a relation on time alone: registers of the factor of time and of the rest.
-    pub(crate) time: Option<(f64, Register)>,
-}
-
-/// States chosen at run time, as registers.
-#[derive(Debug, Clone)]
-pub(crate) struct CompiledSelection {
-    /// By rows.
-    pub(crate) jacobian: Outputs,
-    pub(crate) candidates: Vec<Register>,
-    pub(crate) states: Vec<Register>,
-    pub(crate) weights: Vec<Vec<Register>>,
-    /// Places of the candidates that are states at first.
-    pub(crate) chosen: Vec<usize>,
-}
-
-/// Code with the registers of its results.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Outputs {
-    pub(crate) tape: Tape,
-    pub(crate) outputs: Vec<Register>,
-    pub(crate) machine_code: MachineCode,
-}
-
-/// The condition that must hold, and the numbers in the message.
-#[derive(Debug, Clone)]
-pub(crate) struct Notice {
-    /// Its number among all assertions, those at events behind the others.
-    pub(crate) assertion: u32,
+/// Computes left − right of every relation, from the registers of the unknowns and parameters.
+#[derive(Debug)]
+pub(crate) struct Differences {
+    pub(crate) registers: Registers,
     pub(crate) code: Outputs,
 }
 

@@ -4,8 +4,9 @@
 //! the writer of a register need not stand on every way to its readers. Code that keeps values in
 //! registers of the machine must know which these are.
 
-use super::linear_system::LinearSolve;
-use super::tape::{Instruction, Register, Tape};
+use super::instruction::LinearSolve;
+use super::instruction::{Instruction, Register};
+use super::tape::Tape;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The registers that are written in a branch and read outside of it, or written in several. The

@@ -5,7 +5,8 @@
 //! perform, and that runs at most once in a run of the tape. Otherwise a chain of functions with
 //! such branches, as media have, would be written as often as there are ways through it.
 
-use super::tape::{Instruction, Register, Tape};
+use super::instruction::{Instruction, Register};
+use super::tape::Tape;
 use crate::symbolic::Expr;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -156,11 +157,11 @@ fn write(
 mod tests {
     use super::*;
     use crate::bytecode::Functions;
+    use crate::codegen::code::Outputs;
     use crate::codegen::hoist::Hoisting;
     use crate::codegen::memory::Memory;
-    use crate::codegen::program::Outputs;
+    use crate::codegen::registers::Registers;
     use crate::codegen::sequence::compile_continuous;
-    use crate::codegen::tape_builder::Registers;
     use crate::symbolic::{Pool, RelationOperator, VarId, evaluate};
     use std::sync::Arc;
 

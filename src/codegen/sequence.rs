@@ -1,9 +1,11 @@
 //! Code for outputs, and only for what they need: slices of the sequence of assignments as tapes.
 
+use super::code::{CompiledLoop, Outputs, Step};
 use super::hoist::Hoisting;
 use super::jacobian::differentiate_sequence;
-use super::program::{Access, CompiledLoop, Outputs, Program, Step};
-use super::tape_builder::{Registers, TapeBuilder};
+use super::program::{Access, Program};
+use super::registers::Registers;
+use super::tape_builder::TapeBuilder;
 use crate::causalize::{Assignment, Block, CausalizedDae};
 use crate::symbolic::{Expr, Pool, VarId, VariableCollection};
 use rustc_hash::FxHashSet;

@@ -1,93 +1,15 @@
 //! Symbolic expressions become instructions, common subexpressions computed once.
 
 use super::branches::{Branches, Computed};
-use super::hoist::{Hoisted, Hoisting};
-use super::linear_system::LinearSolve;
+use super::hoist::Hoisting;
+use super::instruction::LinearSolve;
+use super::instruction::{Call, Instruction, Register};
 use super::routines::{Routine, Routines};
-use super::tape::{Call, Instruction, Register, Tape};
-use crate::bytecode::Functions;
+use super::tape::Tape;
+use crate::codegen::registers::Registers;
 use crate::symbolic::function::Value;
 use crate::symbolic::{Expr, Node, Pool, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
-use std::sync::Arc;
-
-/// The registers of a program: one for every variable, then constants and temporaries.
-#[derive(Debug, Clone)]
-pub(crate) struct Registers {
-    next: Register,
-    constants: FxHashMap<u64, Register>,
-    functions: Arc<Functions>,
-    /// Workspaces of linear systems by matrix, and their sizes.
-    workspaces: FxHashMap<Expr, u32>,
-    systems: Vec<usize>,
-    /// Registers with their values.
-    pub(super) values: Vec<(Register, f64)>,
-    /// What is computed once a simulation.
-    pub(crate) hoisted: Hoisted,
-}
-
-impl Registers {
-    pub(super) fn new(n_variables: usize, functions: Arc<Functions>) -> Registers {
-        let next = n_variables as Register;
-        Registers {
-            next,
-            constants: FxHashMap::default(),
-            functions,
-            workspaces: FxHashMap::default(),
-            systems: Vec::new(),
-            values: Vec::new(),
-            hoisted: Hoisted::default(),
-        }
-    }
-
-    /// Sizes of the linear systems that tapes on these registers solve.
-    pub(super) fn systems(&self) -> &[usize] {
-        &self.systems
-    }
-
-    /// The workspace for a matrix of n rows. Tapes that share it factorise the matrix anew.
-    fn workspace(&mut self, matrix: Expr, n: usize) -> u32 {
-        *self.workspaces.entry(matrix).or_insert_with(|| {
-            self.systems.push(n);
-            self.systems.len() as u32 - 1
-        })
-    }
-
-    /// The workspace for a matrix, if any tape solves a system with it.
-    pub(crate) fn workspace_of(&self, matrix: Expr) -> Option<u32> {
-        self.workspaces.get(&matrix).copied()
-    }
-
-    /// The functions that tapes on these registers call.
-    pub(super) fn functions(&self) -> &Arc<Functions> {
-        &self.functions
-    }
-
-    pub(crate) fn len(&self) -> usize {
-        self.next as usize
-    }
-
-    pub(super) fn fresh(&mut self) -> Register {
-        self.row(1)
-    }
-
-    /// New registers that follow each other.
-    fn row(&mut self, n: usize) -> Register {
-        self.next += n as Register;
-        self.next - n as Register
-    }
-
-    fn constant(&mut self, value: f64) -> Register {
-        if let Some(known) = self.constants.get(&value.to_bits()) {
-            return *known;
-        }
-        let register = self.fresh();
-        self.constants.insert(value.to_bits(), register);
-        self.values.push((register, value));
-        self.hoisted.fix(register);
-        register
-    }
-}
 
 /// What has several results.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -230,7 +152,7 @@ impl<'a> TapeBuilder<'a> {
             }
             Node::Call { function, output, arguments } => {
                 let d = output + self.call(*function, Box::new([]), *arguments);
-                if self.registers.functions.codes[*function as usize].may_lack {
+                if self.registers.functions().codes[*function as usize].may_lack {
                     self.tape.code.push(Instruction::Given { a: d, function: *function });
                 }
                 return d;
@@ -299,7 +221,7 @@ impl<'a> TapeBuilder<'a> {
             return known;
         }
         self.compute_entries(arguments);
-        let d = self.registers.row(self.registers.functions.n_outputs(function));
+        let d = self.registers.row(self.registers.functions().n_outputs(function));
         self.tape.code.push(Instruction::Call { call: self.tape.calls.len() as u32 });
         let arguments = self.pool.entries(arguments).iter().map(|a| self.register(*a)).collect();
         self.tape.calls.push(Call { function, inputs, arguments, d });

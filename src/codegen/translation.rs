@@ -5,10 +5,11 @@
 //! returns, is zero if all were finite. Calls of functions and linear systems that need a workspace
 //! are not translated.
 
-use super::linear_system::{LinearSolve, MOST_SMALL, SMALLEST_DETERMINANT, eliminate};
-use super::program::Outputs;
+use super::instruction::LinearSolve;
+use super::instruction::{Instruction, Register};
+use super::linear_system::{MOST_SMALL, SMALLEST_DETERMINANT, eliminate};
 use super::regions::shared_by_branches;
-use super::tape::{Instruction, Register};
+use super::tape::Tape;
 use crate::elementary;
 use crate::symbolic::RelationOperator;
 use crate::symbolic::function::FunctionId;
@@ -29,7 +30,7 @@ const CHECKS: usize = 4;
 /// Writes the code of a tape, given without routines, into a context; `None` if it has what cannot
 /// be translated.
 pub(super) fn translate(
-    code: &Outputs,
+    (tape, outputs): (&Tape, &[Register]),
     instructions: &[Instruction],
     target: TargetFrontendConfig,
     context: &mut Context,
@@ -59,7 +60,8 @@ pub(super) fn translate(
     checks.iter().for_each(|check| builder.def_var(*check, zero));
     let mut translation = Translation {
         builder,
-        code,
+        tape,
+        outputs,
         instructions,
         pointer,
         memory,
@@ -110,7 +112,8 @@ extern "C" fn small_system(system: &mut [f64; SMALL_SYSTEM], n: usize) {
 
 struct Translation<'a> {
     builder: FunctionBuilder<'a>,
-    code: &'a Outputs,
+    tape: &'a Tape,
+    outputs: &'a [Register],
     /// Those of the tape, routines where they are performed.
     instructions: &'a [Instruction],
     pointer: Type,
@@ -136,7 +139,6 @@ struct Translation<'a> {
 
 impl Translation<'_> {
     fn prepare(&mut self) {
-        let code = self.code;
         let mut targets = BTreeSet::new();
         for instruction in self.instructions {
             match *instruction {
@@ -148,14 +150,14 @@ impl Translation<'_> {
             }
         }
         let mut shared: Vec<Register> =
-            shared_by_branches(self.instructions, &code.tape).into_iter().collect();
+            shared_by_branches(self.instructions, self.tape).into_iter().collect();
         shared.sort_unstable();
         shared.into_iter().for_each(|register| self.choose(register));
         for target in targets {
             let block = self.builder.create_block();
             self.blocks.insert(target, block);
         }
-        for (place, register) in code.outputs.iter().enumerate() {
+        for (place, register) in self.outputs.iter().enumerate() {
             self.places.entry(*register).or_default().push(place);
         }
     }
@@ -292,8 +294,8 @@ impl Translation<'_> {
                 return None;
             }
             Instruction::Solve { solve } => {
-                let code = self.code;
-                self.solve(&code.tape.solves[solve as usize])?;
+                let tape = self.tape;
+                self.solve(&tape.solves[solve as usize])?;
             }
             Instruction::JumpUnless { a, target } => {
                 let holds = self.is_true(a);
@@ -431,8 +433,7 @@ impl Translation<'_> {
 
     /// Writes the outputs that are not written yet, and returns the check.
     fn finish(mut self, target: TargetFrontendConfig) {
-        let code = self.code;
-        for (place, register) in code.outputs.iter().enumerate() {
+        for (place, register) in self.outputs.iter().enumerate() {
             if !self.values.contains_key(register) {
                 let value = self.get(*register);
                 self.builder.ins().store(

@@ -2,6 +2,7 @@
 
 use super::argument::Binding;
 use super::errors::{UNKNOWN_FUNCTION, WRONG_ARGUMENTS};
+use super::function::Target;
 use super::{Callee, Evaluator, Function};
 use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::fault;
@@ -25,16 +26,6 @@ impl From<Vec<Value>> for Arguments {
     fn from(positional: Vec<Value>) -> Arguments {
         Arguments { positional, named: Vec::new() }
     }
-}
-
-/// What a called name stands for.
-#[derive(Clone)]
-pub(super) enum Target {
-    Function(Arc<Function>),
-    Builtin(Arc<Function>),
-    /// A function or an operator of the language.
-    Language(&'static Builtin),
-    Unknown,
 }
 
 impl Evaluator<'_> {

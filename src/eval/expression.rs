@@ -1,8 +1,9 @@
 //! Expressions (MLS ch. 3).
 
-use super::call::Target;
 use super::errors::{MISPLACED, WRONG_OUTPUTS};
-use super::scalar::{MAX_DEPTH, Scalar, scalar};
+use super::function::Target;
+use super::scalar::{MAX_DEPTH, Scalar};
+use super::scalar_expression::scalar;
 use super::{Compiled, Evaluator, depth};
 use crate::diag::{At, Diagnostic, Fault};
 use crate::fault;

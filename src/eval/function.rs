@@ -1,6 +1,7 @@
 //! A function ready to be called: inheritance resolved, names absolute. Data only.
 
 use super::Compiled;
+use crate::functions::Builtin;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast;
@@ -104,4 +105,14 @@ pub enum ValueType {
     Expression,
     /// Any value (built-ins only).
     Any,
+}
+
+/// What a called name stands for.
+#[derive(Clone)]
+pub(super) enum Target {
+    Function(Arc<Function>),
+    Builtin(Arc<Function>),
+    /// A function or an operator of the language.
+    Language(&'static Builtin),
+    Unknown,
 }

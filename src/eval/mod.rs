@@ -21,6 +21,7 @@ mod host;
 mod iteration;
 mod reference;
 mod scalar;
+mod scalar_expression;
 mod scalar_function;
 mod scope;
 mod special;

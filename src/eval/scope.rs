@@ -29,7 +29,7 @@ pub struct Scope {
     pub(super) in_progress: Vec<Ident>,
     /// Functions already looked up, by the address of the reference: in a function only, whose
     /// tree does not move while it runs.
-    pub(super) callees: FxHashMap<usize, super::call::Target>,
+    pub(super) callees: FxHashMap<usize, super::function::Target>,
     /// How many loops of this scope are running.
     pub(super) loops: usize,
 }

@@ -15,6 +15,8 @@ mod plan;
 mod reductions;
 mod rules;
 mod scalars;
+#[cfg(test)]
+mod tests;
 mod values;
 
 pub use arrays::concatenation;

@@ -2,7 +2,7 @@
 
 use super::execution::run;
 use super::system::System;
-use crate::codegen::event_code::CompiledDelay;
+use crate::codegen::events::CompiledDelay;
 use crate::sim::Failure;
 
 impl System {

@@ -1,15 +1,16 @@
 //! Execution of code on the registers of a system, with failures that say which operation of which
 //! equation failed.
 
+use crate::codegen::code::Outputs;
+use crate::codegen::instruction::Instruction;
 use crate::codegen::memory::Memory;
-use crate::codegen::program::Outputs;
-use crate::codegen::tape::{Instruction, Tape};
+use crate::codegen::tape::Tape;
 use crate::sim::Failure;
 use crate::symbolic::function::{self, Function, FunctionId};
 
 /// Computes the outputs of code that computes nothing else.
 pub(super) fn read(code: &Outputs, registers: &mut Memory, out: &mut [f64]) -> Result<(), Failure> {
-    if code.machine_code.run(code, registers, out) {
+    if code.machine_code.run(&code.tape, &code.outputs, registers, out) {
         return Ok(());
     }
     run(&code.tape, registers)?;

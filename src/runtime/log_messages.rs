@@ -6,7 +6,7 @@ use super::simulation_log::{Notices, Recorded, Told};
 use super::system::System;
 use crate::bytecode::Journal;
 use crate::codegen::Program;
-use crate::codegen::program::Notice;
+use crate::codegen::code::Notice;
 use crate::lower::{Assertion, Level, Part};
 use crate::sim::Failure;
 use crate::value::Value;

@@ -16,8 +16,8 @@ use super::difference_quotients::quotient;
 use super::execution::run;
 use super::global_newton::Continuation;
 use super::levenberg_marquardt::LeastSquares;
+use crate::codegen::code::CompiledLoop;
 use crate::codegen::memory::Memory;
-use crate::codegen::program::CompiledLoop;
 use crate::sim::{Equations, Failure, Newton, NewtonFailure};
 use std::sync::Arc;
 

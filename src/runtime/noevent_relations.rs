@@ -4,7 +4,7 @@
 use super::execution::run;
 use super::system::System;
 use crate::codegen::memory::Memory;
-use crate::codegen::noevent_relations::Differences;
+use crate::codegen::program::Differences;
 use crate::codegen::program::Program;
 use crate::sim::{DaeSystem, Failure};
 use std::sync::Arc;

@@ -4,9 +4,9 @@ use super::execution::{read, run};
 use super::instants::{Stage, same_time};
 use super::sensitivity_state::Sensitivity;
 use super::system::System;
-use crate::codegen::program::Outputs;
+use crate::codegen::code::Outputs;
+use crate::codegen::instruction::Register;
 use crate::codegen::sensitivity::SensitivityCode;
-use crate::codegen::tape::Register;
 use crate::sim::{DaeSystem, EventOutcome, Failure};
 use std::sync::Arc;
 

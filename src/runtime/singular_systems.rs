@@ -4,7 +4,8 @@
 use super::simulation_log::OpenLoop;
 use super::system::System;
 use crate::causalize::{Block, LinearLoop, Loop};
-use crate::codegen::program::{Program, Step};
+use crate::codegen::code::Step;
+use crate::codegen::program::Program;
 use crate::source::Span;
 use crate::symbolic::{Node, VarId};
 

@@ -9,8 +9,8 @@
 //! Reference: [Mattsson & Söderlind 1993](crate::bibliography#mattsson-soderlind-1993), section 4.
 
 use super::execution::run;
+use crate::codegen::code::CompiledSelection;
 use crate::codegen::memory::Memory;
-use crate::codegen::program::CompiledSelection;
 use crate::sim::{DenseLu, Failure};
 
 /// The largest entry of W that is good enough.

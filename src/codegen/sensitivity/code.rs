@@ -3,13 +3,16 @@
 
 use super::super::event_code::linear_in_time;
 use super::super::hoist::Hoisting;
+use super::super::instruction::Register;
 use super::super::jacobian::Forward;
-use super::super::program::{Outputs, Program};
+use super::super::program::Program;
+use super::super::registers::Registers;
 use super::super::sequence::{compile_continuous, compile_outputs, resolved, slice};
-use super::super::tape::{Register, Tape};
-use super::super::tape_builder::{Registers, TapeBuilder};
+use super::super::tape::Tape;
+use super::super::tape_builder::TapeBuilder;
 use super::blocks::through_blocks;
 use crate::causalize::{Assignment, Block};
+use crate::codegen::code::Outputs;
 use crate::codegen::sequence::{expressions, observing};
 use crate::flatten::BaseType;
 use crate::lower::{Kind, Reinit};

@@ -1,7 +1,8 @@
 //! The quick way to scalars.
 
 use super::TestHost;
-use crate::eval::scalar::{MAX_DEPTH, scalar};
+use crate::eval::scalar::MAX_DEPTH;
+use crate::eval::scalar_expression::scalar;
 use crate::eval::{Scope, evaluate};
 use crate::name::Ident;
 use crate::source::SourceId;

@@ -4,25 +4,8 @@
 /// Folders with larger cycles of files than three: the sizes of these cycles, and what ties the
 /// files together.
 pub(super) const CYCLES: &[(&str, &[usize], &str)] = &[
-    (
-        "codegen",
-        &[6, 7],
-        "`Program` holds the code of its parts, and parts make programs of their own (`noEvent`); \
-         a tape solves linear systems whose matrices are tapes",
-    ),
-    (
-        "eval",
-        &[8],
-        "a function holds its compiled form, which calls intrinsics, which ask the host for \
-         functions",
-    ),
     ("flatten", &[16], "`Instantiation` is one structure for the tree, scopes, types and values"),
     ("identify", &[11], "the summary of a run is made by the steps that conclude it"),
-    (
-        "lower",
-        &[21],
-        "`Builder` is the target of all lowering, and lowers functions through itself",
-    ),
     ("script", &[11], "`Session` has the state of all its parts in one structure"),
 ];
 

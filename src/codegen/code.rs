@@ -1,0 +1,62 @@
+//! Pieces of compiled code: tapes with the registers of their results.
+
+use super::instruction::Register;
+use super::machine_code::MachineCode;
+use super::tape::Tape;
+
+/// A step of solving for all variables, the states (or nothing, at the start) given.
+#[derive(Debug, Clone)]
+pub(crate) enum Step {
+    Run(Tape),
+    Solve(CompiledLoop),
+}
+
+/// A torn loop with its Jacobian.
+#[derive(Debug, Clone)]
+pub(crate) struct CompiledLoop {
+    pub(crate) tape: Tape,
+    pub(crate) unknowns: Vec<Register>,
+    pub(crate) residuals: Vec<Register>,
+    /// Row-major.
+    pub(crate) jacobian: Vec<Register>,
+    /// 1 once the tape has computed the residuals: what fails behind them is a derivative.
+    pub(crate) has_residuals: Register,
+    pub(crate) block: u32,
+}
+
+/// A frozen relation, compiled.
+#[derive(Debug, Clone)]
+pub(crate) struct CompiledRelation {
+    pub(crate) register: Register,
+    pub(crate) operator: crate::symbolic::RelationOperator,
+    /// For a relation on time alone: registers of the factor of time and of the rest.
+    pub(crate) time: Option<(f64, Register)>,
+}
+
+/// States chosen at run time, as registers.
+#[derive(Debug, Clone)]
+pub(crate) struct CompiledSelection {
+    /// By rows.
+    pub(crate) jacobian: Outputs,
+    pub(crate) candidates: Vec<Register>,
+    pub(crate) states: Vec<Register>,
+    pub(crate) weights: Vec<Vec<Register>>,
+    /// Places of the candidates that are states at first.
+    pub(crate) chosen: Vec<usize>,
+}
+
+/// Code with the registers of its results.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Outputs {
+    pub(crate) tape: Tape,
+    pub(crate) outputs: Vec<Register>,
+    pub(crate) machine_code: MachineCode,
+}
+
+/// The condition that must hold, and the numbers in the message.
+#[derive(Debug, Clone)]
+pub(crate) struct Notice {
+    /// Its number among all assertions, those at events behind the others.
+    pub(crate) assertion: u32,
+    pub(crate) code: Outputs,
+}

@@ -1,0 +1,96 @@
+//! What happens at events, compiled. Data only.
+
+use super::code::{Notice, Outputs, Step};
+use super::instruction::Register;
+use crate::symbolic::VarId;
+
+/// The part of a program that acts at events alone.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Events {
+    /// Solves for discrete variables as well; empty if there are none.
+    pub(crate) steps: Vec<Step>,
+    /// Variables with their previous values.
+    pub(crate) previous: Vec<Previous>,
+    /// Discrete variables that solving reads before it writes them.
+    pub(crate) lagged: Vec<VarId>,
+    /// All discrete variables.
+    pub(crate) discrete: Vec<VarId>,
+    pub(crate) roundings: Vec<CompiledRounding>,
+    /// Arguments of the roundings, from the registers of the variables.
+    pub(crate) rounded: Vec<Outputs>,
+    /// The variables that are 1 when a sample is due.
+    pub(crate) samples: Vec<VarId>,
+    /// Whether variables of the model show samples that are due, not only conditions of
+    /// when-clauses.
+    pub(crate) shows_samples: bool,
+    /// First time and interval of every sample, one after the other.
+    pub(crate) clocks: Outputs,
+    /// The states that `reinit` sets, and whether with the opposite sign.
+    pub(crate) reinitialized: Vec<(VarId, bool)>,
+    /// Condition and value of every `reinit`, one after the other.
+    pub(crate) reinits: Outputs,
+    /// Conditions of the assertions at events.
+    pub(crate) assertions: Outputs,
+    /// Their numbers among all.
+    pub(crate) asserted: Vec<u32>,
+    /// Warnings and texts that are printed.
+    pub(crate) notices: Vec<Notice>,
+    /// Conditions of `terminate`.
+    pub(crate) terminations: Outputs,
+    pub(crate) delays: Vec<CompiledDelay>,
+    /// The variable that is 1 during initialization.
+    pub(crate) initial: Option<VarId>,
+    /// The variable that is 1 at the end.
+    pub(crate) terminal: Option<VarId>,
+}
+
+/// A variable with its previous value.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Previous {
+    pub(crate) of: VarId,
+    pub(crate) register: Register,
+    /// Whether event iteration goes on until both are equal.
+    pub(crate) discrete: bool,
+    /// Whether every difference counts, not only one that is more than rounding.
+    pub(crate) exact: bool,
+    /// Whether it must be computed from the states before an event.
+    pub(super) computed: bool,
+}
+
+/// A rounding, compiled.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CompiledRounding {
+    pub(crate) register: Register,
+    /// For an argument that is linear in time: its slope, and the register of the rest.
+    pub(crate) time: Option<(f64, Register)>,
+}
+
+/// `register = delay(value, time)`
+#[derive(Debug, Clone)]
+pub(crate) struct CompiledDelay {
+    pub(crate) register: Register,
+    /// The expression, from states and values of events.
+    pub(crate) value: Outputs,
+    /// The delay, from parameters.
+    pub(crate) time: Outputs,
+}
+
+impl Events {
+    /// Whether anything can happen at an event beside relations that switch.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.steps.is_empty()
+            && self.reinitialized.is_empty()
+            && self.samples.is_empty()
+            && self.delays.is_empty()
+            && self.initial.is_none()
+            && self.terminal.is_none()
+            && self.assertions.outputs.is_empty()
+            && self.notices.is_empty()
+            && self.terminations.outputs.is_empty()
+    }
+
+    /// Whether previous values of algebraic variables are needed.
+    pub(crate) fn need_left_limits(&self) -> bool {
+        self.previous.iter().any(|previous| previous.computed)
+    }
+}

@@ -1,0 +1,122 @@
+//! The registers of a program, and what is computed in them once a simulation.
+
+use super::instruction::{Instruction, Register};
+use super::tape::Tape;
+use crate::bytecode::Functions;
+use crate::symbolic::function::FunctionId;
+use crate::symbolic::{Expr, RelationOperator};
+use rustc_hash::FxHashMap;
+use std::mem::Discriminant;
+use std::sync::Arc;
+
+/// The registers of a program: one for every variable, then constants and temporaries.
+#[derive(Debug, Clone)]
+pub(crate) struct Registers {
+    next: Register,
+    constants: FxHashMap<u64, Register>,
+    functions: Arc<Functions>,
+    /// Workspaces of linear systems by matrix, and their sizes.
+    workspaces: FxHashMap<Expr, u32>,
+    systems: Vec<usize>,
+    /// Registers with their values.
+    pub(super) values: Vec<(Register, f64)>,
+    /// What is computed once a simulation.
+    pub(crate) hoisted: Hoisted,
+}
+
+impl Registers {
+    pub(super) fn new(n_variables: usize, functions: Arc<Functions>) -> Registers {
+        let next = n_variables as Register;
+        Registers {
+            next,
+            constants: FxHashMap::default(),
+            functions,
+            workspaces: FxHashMap::default(),
+            systems: Vec::new(),
+            values: Vec::new(),
+            hoisted: Hoisted::default(),
+        }
+    }
+
+    /// Sizes of the linear systems that tapes on these registers solve.
+    pub(super) fn systems(&self) -> &[usize] {
+        &self.systems
+    }
+
+    /// The workspace for a matrix of n rows. Tapes that share it factorise the matrix anew.
+    pub(super) fn workspace(&mut self, matrix: Expr, n: usize) -> u32 {
+        *self.workspaces.entry(matrix).or_insert_with(|| {
+            self.systems.push(n);
+            self.systems.len() as u32 - 1
+        })
+    }
+
+    /// The workspace for a matrix, if any tape solves a system with it.
+    pub(crate) fn workspace_of(&self, matrix: Expr) -> Option<u32> {
+        self.workspaces.get(&matrix).copied()
+    }
+
+    /// The functions that tapes on these registers call.
+    pub(super) fn functions(&self) -> &Arc<Functions> {
+        &self.functions
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.next as usize
+    }
+
+    pub(super) fn fresh(&mut self) -> Register {
+        self.row(1)
+    }
+
+    /// New registers that follow each other.
+    pub(super) fn row(&mut self, n: usize) -> Register {
+        self.next += n as Register;
+        self.next - n as Register
+    }
+
+    pub(super) fn constant(&mut self, value: f64) -> Register {
+        if let Some(known) = self.constants.get(&value.to_bits()) {
+            return *known;
+        }
+        let register = self.fresh();
+        self.constants.insert(value.to_bits(), register);
+        self.values.push((register, value));
+        self.hoisted.fix(register);
+        register
+    }
+}
+
+/// Operation, function or relation, operands.
+pub(super) type Key = (Discriminant<Instruction>, Which, Register, Register);
+
+/// Which of its kind an operation is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Which {
+    Only,
+    Function(FunctionId),
+    Relation(RelationOperator),
+}
+
+/// The instructions moved.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Hoisted {
+    pub(crate) tape: Tape,
+    pub(super) results: FxHashMap<Key, Register>,
+    pub(super) fixed: Vec<bool>,
+}
+
+impl Hoisted {
+    /// Declares a register fixed.
+    pub(super) fn fix(&mut self, register: Register) {
+        let register = register as usize;
+        if self.fixed.len() <= register {
+            self.fixed.resize(register + 1, false);
+        }
+        self.fixed[register] = true;
+    }
+
+    pub(super) fn is_fixed(&self, register: Register) -> bool {
+        self.fixed.get(register as usize).copied().unwrap_or(false)
+    }
+}
