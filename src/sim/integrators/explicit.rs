@@ -7,8 +7,8 @@
 //! Between steps: cubic Hermite interpolation, with the term of order 4 where the tableau has one.
 //! For systems without algebraic unknowns.
 
+use super::step_control::{Attempt, SAFETY, StepControl, error_factor};
 use super::{Integrator, Problem};
-use crate::elementary;
 use crate::sim::SimErrorKind;
 use crate::sim::norm::{set_weights, weighted_rms};
 
@@ -35,12 +35,15 @@ pub(super) struct Embedded {
     pub(super) dense: [f64; 7],
 }
 
+/// A step is at most so many times longer than the one before.
+const MOST_FACTOR: f64 = 5.0;
+
 /// An explicit method with its workspace.
 pub(super) struct ExplicitRungeKutta {
     tableau: &'static Tableau,
     t: f64,
     t_old: f64,
-    h: f64,
+    control: StepControl,
     y: Vec<f64>,
     y_old: Vec<f64>,
     stage: Vec<f64>,
@@ -61,7 +64,7 @@ impl ExplicitRungeKutta {
             tableau,
             t: 0.0,
             t_old: 0.0,
-            h: 0.0,
+            control: StepControl::default(),
             y: Vec::new(),
             y_old: Vec::new(),
             stage: Vec::new(),
@@ -88,15 +91,15 @@ impl ExplicitRungeKutta {
     }
 
     /// Computes y and its slope at t + h from y_old.
-    fn advance(&mut self, problem: &mut Problem, t_new: f64) -> Result<(), SimErrorKind> {
-        let h = t_new - self.t_old;
+    fn advance(&mut self, problem: &mut Problem, attempt: Attempt) -> Result<(), SimErrorKind> {
+        let h = attempt.h;
         for i in 1..self.tableau.nodes.len() {
             combine(&self.y_old, h, self.tableau.stages[i], &self.slopes, &mut self.stage);
             let t = self.t_old + h * self.tableau.nodes[i];
             problem.rhs(t, &self.stage, &mut self.slopes[i])?;
         }
         combine(&self.y_old, h, self.tableau.weights, &self.slopes, &mut self.y);
-        problem.rhs(t_new, &self.y, &mut self.slope_end)
+        problem.rhs(attempt.end, &self.y, &mut self.slope_end)
     }
 
     /// Writes h Σ cᵢ kᵢ over all slopes and the one at the end.
@@ -108,24 +111,19 @@ impl ExplicitRungeKutta {
         }
     }
 
-    /// The error of the attempt relative to the tolerance, and the exponent by which it depends on
-    /// h; `None` for fixed steps.
-    fn error(&mut self, problem: &Problem, h: f64) -> Option<(f64, f64)> {
-        let embedded = self.tableau.embedded.as_ref()?;
+    /// The error of the attempt relative to the tolerance.
+    fn error(&mut self, problem: &Problem, h: f64, embedded: &Embedded) -> f64 {
         self.combine_all(h, &embedded.error);
         set_weights(problem.settings.tolerance, &self.y_old, problem.nominal, &mut self.weights);
-        let norm = weighted_rms(&self.combined, &self.weights);
-        Some((norm, -1.0 / f64::from(embedded.order + 1)))
+        weighted_rms(&self.combined, &self.weights)
     }
 
-    fn accept(&mut self, problem: &mut Problem, t_new: f64) {
-        if let Some(embedded) = &self.tableau.embedded {
-            self.combine_all(t_new - self.t_old, &embedded.dense);
-        } else {
-            self.combined.fill(0.0);
+    fn accept(&mut self, attempt: Attempt) {
+        match &self.tableau.embedded {
+            Some(embedded) => self.combine_all(attempt.h, &embedded.dense),
+            None => self.combined.fill(0.0),
         }
-        self.t = t_new;
-        problem.statistics.steps += 1;
+        self.t = attempt.end;
     }
 }
 
@@ -150,10 +148,10 @@ impl Integrator for ExplicitRungeKutta {
         (self.t, self.t_old) = (t, t);
         problem.rhs(t, &self.y, &mut self.slope_end)?;
         self.is_outdated = false;
-        self.h = match self.tableau.embedded {
-            None => problem.settings.fixed_step(),
-            Some(_) => problem.first_step(t, &self.y, &self.slope_end),
-        };
+        match self.tableau.embedded {
+            None => self.control = StepControl::fixed(problem.settings.fixed_step()),
+            Some(_) => self.control.start(problem, t, &self.y, &self.slope_end),
+        }
         Ok(())
     }
 
@@ -164,42 +162,29 @@ impl Integrator for ExplicitRungeKutta {
             problem.rhs(self.t, &self.y, &mut self.slope_end)?;
         }
         self.slopes[0].copy_from_slice(&self.slope_end);
-        let (smallest, fixed) = (problem.smallest_step(self.t), self.tableau.embedded.is_none());
+        self.control.begin(problem, self.t);
         loop {
             problem.may_continue()?;
-            let truncated = self.t_old + self.h * (1.0 + 1e-9) >= limit;
-            let t_new = if truncated { limit } else { self.t_old + self.h };
-            let h = t_new - self.t_old;
-            let failure = match self.advance(problem, t_new) {
-                Ok(()) => match self.error(problem, h) {
-                    None => {
-                        return {
-                            self.accept(problem, t_new);
-                            Ok(())
-                        };
-                    }
-                    Some((error, exponent)) if error <= 1.0 => {
-                        let factor = (0.9 * elementary::powf(error, exponent)).clamp(0.2, 5.0);
-                        if !truncated || factor < 1.0 {
-                            self.h = (h * factor).min(problem.settings.max_step);
-                        }
-                        self.accept(problem, t_new);
+            let attempt = Attempt::cut(limit, self.t_old, self.control.h());
+            let advanced = self.advance(problem, attempt);
+            let Some(embedded) = &self.tableau.embedded else {
+                advanced.inspect_err(|_| problem.statistics.newton_failures += 1)?;
+                self.accept(attempt);
+                problem.statistics.steps += 1;
+                return Ok(());
+            };
+            match advanced {
+                Ok(()) => {
+                    let error = self.error(problem, attempt.h, embedded);
+                    let factor = error_factor(error, embedded.order, SAFETY, MOST_FACTOR);
+                    if error <= 1.0 {
+                        self.accept(attempt);
+                        self.control.accept(problem, attempt, factor);
                         return Ok(());
                     }
-                    Some((error, exponent)) => {
-                        problem.statistics.error_failures += 1;
-                        self.h = h * (0.9 * elementary::powf(error, exponent)).max(0.2);
-                        SimErrorKind::StepSize
-                    }
-                },
-                Err(failure) => {
-                    problem.statistics.newton_failures += 1;
-                    self.h = 0.25 * h;
-                    failure
+                    self.control.reject(problem, attempt, factor)?;
                 }
-            };
-            if fixed || self.h.is_nan() || self.h < smallest {
-                return Err(failure);
+                Err(failure) => self.control.fail(problem, attempt, failure)?,
             }
         }
     }

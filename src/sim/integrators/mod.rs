@@ -8,6 +8,7 @@ mod mass_matrix;
 mod radau;
 mod rodas;
 mod rungekutta;
+mod step_control;
 mod without_unknowns;
 
 use super::sliding::Sliding;

@@ -48,7 +48,6 @@ pub(super) const LONG_FUNCTIONS: &[(&str, &str, &str)] = &[
     ("flatten/resolve.rs", "resolve_kind", PER_CASE),
     ("flatten/resolve.rs", "call", ONE_TABLE),
     ("flatten/shapes.rs", "call_shape", ONE_TABLE),
-    ("identify/problem/statistics/distributions.rs", "normal_quantile", "coefficients"),
     ("identify/problem/statistics/mod.rs", "at", IN_ORDER),
     ("identify/problem/summary.rs", "of", IN_ORDER),
     ("identify/problem/text.rs", "facts", ONE_TABLE),
@@ -64,7 +63,6 @@ pub(super) const LONG_FUNCTIONS: &[(&str, &str, &str)] = &[
     ("script/runs/problem/draft.rs", "experiment", IN_ORDER),
     ("script/runs/problem/mod.rs", "solve_built", IN_ORDER),
     ("sim/event.rs", "first_event", IN_ORDER),
-    ("sim/integrators/radau.rs", "step", IN_ORDER),
     ("syntax/failure.rs", "described", PER_CASE),
     ("syntax/print/expression.rs", "expression", PER_CASE),
 ];
