@@ -1,7 +1,7 @@
 //! The arguments of one call.
 
 use super::errors::{EXTERNAL_FAILED, EXTERNAL_OUTSIDE};
-use super::random::Random;
+use super::xorshift::Random;
 use crate::diag::Fault;
 use crate::fault;
 use std::any::Any;

@@ -1,7 +1,8 @@
 //! Eigenvectors of upper quasi-triangular matrices, in LAPACK's form.
 
 use super::matrices::power_of_two;
-use super::schur::{block_size, modulus};
+use super::quasi_triangular::block_size;
+use super::schur::modulus;
 use nalgebra::{Complex, DMatrix, DVector};
 
 type C = Complex<f64>;

@@ -4,6 +4,7 @@
 //! Blocks are in LAPACK's standard form: equal diagonal elements, the other two of opposite signs.
 
 use super::matrices::power_of_two;
+use super::quasi_triangular::{block, block_size, block_start};
 use super::sylvester::sylvester;
 use crate::elementary;
 use nalgebra::{Complex, DMatrix, DVector, Schur};
@@ -173,20 +174,6 @@ impl RealSchur {
         }
         values
     }
-}
-
-fn block(t: &DMatrix<f64>, k: usize) -> [[f64; 2]; 2] {
-    [[t[(k, k)], t[(k, k + 1)]], [t[(k + 1, k)], t[(k + 1, k + 1)]]]
-}
-
-/// Number of rows of the block that starts in a row.
-pub(super) fn block_size(t: &DMatrix<f64>, row: usize) -> usize {
-    if row + 1 < t.nrows() && t[(row + 1, row)] != 0.0 { 2 } else { 1 }
-}
-
-/// The first row of the block that a row belongs to.
-fn block_start(t: &DMatrix<f64>, row: usize) -> usize {
-    if row > 0 && t[(row, row - 1)] != 0.0 { row - 1 } else { row }
 }
 
 /// The eigenvalue of the block that starts in a row: of a pair, the one with positive imaginary

@@ -1,6 +1,6 @@
 //! Sylvester's equation A X ± X B = C with quasi-triangular matrices.
 
-use super::schur::block_size;
+use super::quasi_triangular::block_size;
 use nalgebra::{DMatrix, DVector};
 
 /// X with A X + sign X B = C, for upper quasi-triangular A and B ([Golub &

@@ -6,7 +6,7 @@
 
 use super::Simulated;
 use super::fitness::sum_of_squares;
-use super::recorder::{Compared, Measurement, Study};
+use super::study::{Compared, Measurement, Study};
 use crate::ga::Genomes;
 use rustc_hash::{FxHashMap, FxHasher};
 use std::hash::Hasher as _;

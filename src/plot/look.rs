@@ -6,15 +6,6 @@
 use super::svg::Writing;
 use std::borrow::Cow;
 
-/// What letters are drawn as.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Letters {
-    /// Text, in a face of the viewer.
-    Text,
-    /// Outlines of a face that comes with the program: the same in every viewer.
-    Outlines,
-}
-
 /// How figures look.
 #[derive(Debug)]
 pub(super) struct Look {

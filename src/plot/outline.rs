@@ -2,7 +2,7 @@
 //! wherever they are drawn, and no library for shaping text is needed. Letters are set one after
 //! the other by their advance widths, without kerning; that is enough for labels of axes.
 
-use super::svg::number;
+use super::coordinate::number;
 use std::fmt::Write;
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
 

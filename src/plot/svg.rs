@@ -1,6 +1,6 @@
 //! The few SVG elements that drawings need, with numbers rounded to hundredths of a pixel.
 
-use super::look::Letters;
+use super::coordinate::number;
 use super::outline;
 use maud::Render;
 use std::fmt::Write;
@@ -11,6 +11,15 @@ pub(crate) enum Anchor {
     Start,
     Middle,
     End,
+}
+
+/// What letters are drawn as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Letters {
+    /// Text, in a face of the viewer.
+    Text,
+    /// Outlines of a face that comes with the program: the same in every viewer.
+    Outlines,
 }
 
 /// A picture under construction.
@@ -150,13 +159,6 @@ impl Svg {
 fn places(points: &[(f64, f64)]) -> String {
     let place = |(x, y): &(f64, f64)| format!("{},{}", number(*x), number(*y));
     points.iter().map(place).collect::<Vec<_>>().join(" ")
-}
-
-/// A coordinate with at most two decimals.
-pub(super) fn number(value: f64) -> String {
-    let text = format!("{value:.2}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
 /// Text as SVG holds it, without what XML does not allow.

@@ -25,21 +25,10 @@ const QUIET: u32 = 20;
 /// Width of a layer relative to z where the tolerance is tighter: what rounding makes of z must be
 /// a small part of it.
 const NARROWEST: f64 = 1e-9;
-/// The integrator computes the shares from differences of z, which the narrowest layer makes so inexact.
-const SHARE_NOISE: f64 = 1e-6;
 /// Length of the difference that gives the rate of z, relative to the time in which y changes.
 const DIFFERENCE: f64 = 1e-7;
 /// Rounding of z relative to the error that a change of y by its own size makes.
 const ROUNDING: f64 = 1e-13;
-
-/// The nominal value of a share. Along a surface that moves or is curved the integrator's error of a
-/// share is that of y, divided by the width of the layer and by the step: with an accuracy as that
-/// of y, tests of the error would make steps shorter and this error larger until the steps are used up
-/// (`der(x) = if x > 0.3*sin(3*time) then -2 else 2` at the tolerance 1e-6). What y does follows from
-/// the mean of the shares over time, and their values are computed anew where they are asked for.
-pub(super) fn nominal_share(tolerance: f64) -> f64 {
-    (SHARE_NOISE / tolerance).max(1.0 / tolerance.sqrt())
-}
 
 impl Run<'_> {
     /// Counts the switches of the event at `event` in a step that was searched from `begin`.

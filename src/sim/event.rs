@@ -162,7 +162,7 @@ impl CrossingSearch {
         &mut self,
         problem: &mut Problem,
         integrator: &dyn Integrator,
-        (mut a, mut b): (f64, f64),
+        (a, mut b): (f64, f64),
         y: &mut [f64],
     ) -> Result<Option<f64>, Failure> {
         if self.signs.is_empty() {
@@ -187,6 +187,25 @@ impl CrossingSearch {
             let is_far = sign(z) == self.signs[at] && z.abs() > self.margin(at);
             self.is_near[at] = !is_far || self.followed[at];
         }
+        let b = self.narrow(problem, integrator, (a, b), y)?;
+        integrator.interpolate(b, y);
+        self.switched.clear();
+        for at in 0..self.signs.len() {
+            if self.has_changed(at, self.right[at]) {
+                self.switched.push(at);
+            }
+        }
+        Ok(Some(b))
+    }
+
+    /// Narrows a bracket of the first change of sign; its later end, behind the change.
+    fn narrow(
+        &mut self,
+        problem: &mut Problem,
+        integrator: &dyn Integrator,
+        (mut a, mut b): (f64, f64),
+        y: &mut [f64],
+    ) -> Result<f64, Failure> {
         let width = WIDTH * (b - a);
         let resolution = 4.0 * f64::EPSILON * a.abs().max(b.abs());
         let width = width.max(resolution);
@@ -210,14 +229,7 @@ impl CrossingSearch {
                 std::mem::swap(&mut self.left, &mut self.trial);
             }
         }
-        integrator.interpolate(b, y);
-        self.switched.clear();
-        for at in 0..self.signs.len() {
-            if self.has_changed(at, self.right[at]) {
-                self.switched.push(at);
-            }
-        }
-        Ok(Some(b))
+        Ok(b)
     }
 
     /// Counts the steps at whose ends a function has kept another sign and grown.

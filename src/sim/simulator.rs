@@ -1,8 +1,8 @@
 //! The loop of a simulation.
 
-use super::chattering::nominal_share;
 use super::event::CrossingSearch;
 use super::integrators::{Integrator, Problem, WithoutUnknowns, bdf};
+use super::norm::nominal_share;
 use super::progress::Progress;
 use super::sliding::{MOST_SURFACES, Sliding};
 use super::switches::Watch;

@@ -5,10 +5,9 @@
 //! descents have ended in w different minima, w (n − 1) / (n − w − 2) are expected in all.
 
 use super::levenberg_marquardt::{Accuracy, COARSE, Descent, FINE};
-use super::{Answers, Wants};
+use super::{Answers, DescentEnd, DescentReport, Wants};
 use crate::elementary;
 use crate::ga::Genomes;
-use serde::{Deserialize, Serialize};
 
 /// Descents from different starts that must agree before a search ends early.
 const AGREEING: usize = 3;
@@ -31,41 +30,6 @@ const IMPROVED: f64 = 1e-3;
 const STEPS: usize = 40;
 /// Steps to make the best minimum finer.
 const FINE_STEPS: usize = 100;
-
-/// How a descent ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum DescentEnd {
-    /// At a minimum: the test of Bates and Watts holds.
-    Minimum,
-    /// Its steps were used up, or the search ended before it did.
-    StepLimit,
-    /// No step reduces the sum of squares beyond the errors of the simulation.
-    NoDescent,
-    /// Nothing that is varied has an effect there.
-    Flat,
-    /// Its start could not be simulated.
-    Failed,
-}
-
-/// One descent.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DescentReport {
-    /// Where it started and where it ended, in the unit cube.
-    pub start: Vec<f64>,
-    /// Where it stands.
-    pub end: Vec<f64>,
-    /// The sum of squares there.
-    pub objective: f64,
-    /// How it ended.
-    pub ending: DescentEnd,
-    /// The relative offset there, where there are degrees of freedom.
-    pub offset: Option<f64>,
-    /// Steps tried.
-    pub steps: u64,
-    /// The number of the end: descents that ended at the same place share it; 0 is the best.
-    pub group: usize,
-}
 
 /// All descents of a search; those of a round are asked together, trials first, then Jacobians.
 pub(super) struct Pool {

@@ -6,8 +6,9 @@
 //!
 //! Reference: [Nocedal & Wright 2006](crate::bibliography#nocedal-wright-2006), §2.1 and §3.4.
 
-use super::ending::{Cause, is_at_minimum};
 use super::limits::along;
+use super::minimum_test::is_at_minimum;
+use super::run::Cause;
 use super::{Best, Run};
 use crate::elementary;
 use crate::ga::optimizer::MINIMUM;

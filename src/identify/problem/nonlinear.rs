@@ -9,7 +9,6 @@
 
 use super::notes::undetermined;
 use super::profile::{Known, Profile, profiles};
-use super::summary::is_narrow;
 use super::{Finding, FindingKind, Run, Severity, Solution, SolvedParameter, Statistics, Verdict};
 use crate::diag::Fault;
 use crate::elementary;
@@ -165,7 +164,7 @@ impl Solution {
             true => 0.5 * elementary::ln(interval[1] / interval[0]) * own.value / factor,
             false => 0.5 * width / factor,
         };
-        let is_identifiable = bounded && is_narrow(own, deviation, factor);
+        let is_identifiable = bounded && own.is_narrow(deviation, factor);
         own.verdict = Some(match is_identifiable {
             true => Verdict::Identifiable,
             false => Verdict::PracticallyNonIdentifiable,

@@ -2,10 +2,10 @@
 
 use super::checks::residual_findings;
 use super::effects::{Effect, How};
-use super::summary::BEYOND;
+use super::statistics::BEYOND;
 use super::{
-    ErrorModel, FailureRegion, Finding, FindingKind, Form, Inseparable, Profiles, Run, Severity,
-    Solution, SolvedParameter, SolvedSeries, Statistics, Verdict,
+    ErrorModel, FailureRegion, Finding, FindingKind, Form, Inseparable, OtherMinimum, Profiles,
+    Run, Severity, Solution, SolvedParameter, SolvedSeries, Statistics, Verdict,
 };
 use crate::elementary;
 use crate::identify::table::significant;
@@ -562,4 +562,21 @@ fn about_failures(region: &FailureRegion) -> Finding {
     );
     let finding = Finding::new(FindingKind::Failures, sentence).severity(Severity::Information);
     finding.parameters([region.parameter.as_str()])
+}
+
+/// A finding for each other minimum.
+pub(super) fn about_other_minima(solution: &Solution) -> Vec<Finding> {
+    let one = |other: &OtherMinimum| {
+        let pairs = solution.parameters.iter().zip(&other.values);
+        let values: Vec<String> =
+            pairs.map(|(p, value)| format!("{} = {}", p.name, significant(*value, 5))).collect();
+        let sentence = format!(
+            "Another minimum fits these data as well within the 95 % limit ({} against {}): {}.",
+            significant(other.objective, 6),
+            significant(solution.fitness, 6),
+            values.join(", ")
+        );
+        Finding::new(FindingKind::OtherMinimum, sentence).severity(Severity::Serious)
+    };
+    solution.other_minima.iter().map(one).collect()
 }

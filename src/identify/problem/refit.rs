@@ -1,6 +1,6 @@
 //! Least squares of some parameters from a known point, the others held.
 
-use super::{Evaluation, Problem};
+use super::{Best, Evaluation, Problem, Run};
 use crate::diag::Fault;
 use crate::ga::optimizer::{Answers, METHODS, Setup, Wants};
 use crate::ga::{FAILED_FITNESS, Gene, Genomes, Mrg32k3a};
@@ -156,4 +156,43 @@ impl<'a> Refit<'a> {
 
 fn square(row: &[f64]) -> f64 {
     row.iter().map(|r| r * r).sum()
+}
+
+impl Run {
+    /// Goes to a better point that was found beside the search, as by a profile, and on from there by
+    /// least squares; returns whether it was better.
+    ///
+    /// # Errors
+    ///
+    /// Those of the method's maker.
+    pub(super) fn continue_from(&mut self, values: &[f64]) -> Result<bool, Fault> {
+        let is_better = self.go_to(values);
+        if is_better {
+            self.refit()?;
+        }
+        Ok(is_better)
+    }
+
+    /// Least squares from the best point, which it replaces; without least squares only the objective
+    /// is computed anew. Returns whether that is smaller.
+    ///
+    /// # Errors
+    ///
+    /// Those of the method's maker.
+    pub(super) fn refit(&mut self) -> Result<bool, Fault> {
+        let Some(best) = &self.best else { return Ok(false) };
+        let before = best.fitness;
+        let found = match Refit::new(&self.problem, &self.evaluation) {
+            Some(mut refit) => {
+                let found = refit.from(&best.values, None)?;
+                self.conclusion.simulations += refit.simulations;
+                found.map_or_else(|| best.values.clone(), |(values, _)| values)
+            }
+            None => best.values.clone(),
+        };
+        let Ok(simulated) = self.evaluation.simulate(&found) else { return Ok(false) };
+        let fitness = self.evaluation.objective(&self.problem, &simulated);
+        self.best = Some(Best { values: found, fitness });
+        Ok(fitness < before)
+    }
 }

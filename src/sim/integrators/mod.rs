@@ -30,6 +30,9 @@ pub const INTEGRATORS: &[&Entry<dyn Integrator>] = &[
     &rungekutta::ENTRY,
 ];
 
+/// The method where none is asked for.
+pub(super) const DEFAULT: &Entry<dyn Integrator> = &bdf::ENTRY;
+
 /// The method of this name or alias.
 ///
 /// # Errors

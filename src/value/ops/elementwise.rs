@@ -2,9 +2,7 @@
 //! the others: an operation of two scalars applied to arrays of equal sizes, or to a scalar and an
 //! array.
 
-use super::arithmetic::{
-    overflow, real_add, real_divide, real_multiply, real_power, real_subtract,
-};
+use super::scalar::{overflow, real_add, real_divide, real_multiply, real_power, real_subtract};
 use super::unsuitable;
 use crate::diag::Fault;
 use crate::fault;

@@ -1,6 +1,6 @@
 //! Products of vectors and matrices (MLS §10.6.4) and powers of square matrices (MLS §10.6.8).
 
-use super::arithmetic::overflow;
+use super::scalar::overflow;
 use crate::diag::Fault;
 use crate::value::array::{element_count, sizes};
 use crate::value::errors::{
