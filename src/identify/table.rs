@@ -1,7 +1,7 @@
 //! Numbers in tables for people, and names in tables for programs.
 
 /// A number to this many significant digits, without trailing zeros.
-pub(super) fn significant(value: f64, digits: usize) -> String {
+pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }
@@ -11,7 +11,7 @@ pub(super) fn significant(value: f64, digits: usize) -> String {
 }
 
 /// A cell of a CSV file; names that a spreadsheet would take for formulas are quoted, too.
-pub(super) fn quoted(text: &str) -> String {
+pub fn quoted(text: &str) -> String {
     match text.contains([',', '"', '\n']) || text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
         true => crate::results::quoted(text),
         false => text.to_owned(),
@@ -19,7 +19,7 @@ pub(super) fn quoted(text: &str) -> String {
 }
 
 /// A table of numbers below names.
-pub(super) fn table_csv<'a>(names: impl Iterator<Item = &'a str>, rows: &[Vec<f64>]) -> String {
+pub fn table_csv<'a>(names: impl Iterator<Item = &'a str>, rows: &[Vec<f64>]) -> String {
     let names: Vec<String> = names.map(quoted).collect();
     let mut text = names.join(",") + "\n";
     for row in rows {

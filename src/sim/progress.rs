@@ -21,7 +21,7 @@ const TURN: f64 = 0.25;
 
 /// What is seen of a relation between steps.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Look {
+pub struct Look {
     /// left − right, and by how much it has changed.
     difference: f64,
     change: f64,
@@ -41,7 +41,7 @@ impl Look {
 
 /// How the simulation gets on.
 #[derive(Debug, Default)]
-pub(super) struct Progress {
+pub struct Progress {
     /// Time and attempts where the window at hand began.
     pub(super) begin: Option<(f64, u64)>,
     /// How often relations were looked at, and what was seen of each.
@@ -53,12 +53,12 @@ pub(super) struct Progress {
 }
 
 impl Progress {
-    pub(super) fn end_of_looking(&mut self) {
+    pub fn end_of_looking(&mut self) {
         (self.begin, self.looks) = (None, 0);
         self.relations.clear();
     }
 
-    pub(super) fn look(&mut self) {
+    pub fn look(&mut self) {
         if self.looks == 0 {
             let first = |z: &f64| Look { difference: *z, ..Look::default() };
             self.relations.extend(self.differences.iter().map(first));
@@ -68,7 +68,7 @@ impl Progress {
         self.looks += 1;
     }
 
-    pub(super) fn is_chattering(&self) -> bool {
+    pub fn is_chattering(&self) -> bool {
         self.relations.iter().any(|seen| seen.switches >= SWITCHES || seen.turns >= TURNS)
     }
 }

@@ -9,7 +9,7 @@ use crate::ga::{Gene, Mrg32k3a};
 use crate::registry::Entry;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
+pub const ENTRY: Entry<dyn Crossover> = Entry {
     name: "one_point",
     aliases: &["single_point"],
     summary: "one-point crossover: the genes after a random point are exchanged",

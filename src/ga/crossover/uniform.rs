@@ -8,7 +8,7 @@ use crate::ga::{Gene, Mrg32k3a};
 use crate::registry::Entry;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
+pub const ENTRY: Entry<dyn Crossover> = Entry {
     name: "uniform",
     aliases: &["discrete"],
     summary: "uniform crossover: each gene is exchanged with the probability `swap`",

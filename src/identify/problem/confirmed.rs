@@ -15,7 +15,7 @@ const OF_DIRECTION: f64 = 1e-5;
 
 /// Whether finite changes of the group have no effect, and the simulations that it took. `simulated`:
 /// the points at the best `values`; `limit`: whether a simulation is within the 95 % limit.
-pub(super) fn is_confirmed(
+pub fn is_confirmed(
     problem: &Problem,
     evaluation: &Evaluation,
     (values, simulated): (&[f64], &[f64]),

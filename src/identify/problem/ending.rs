@@ -227,7 +227,7 @@ fn by_curvature(offset: f64) -> String {
 }
 
 /// The descents of a run, in their order.
-pub(super) fn descents(run: &Run) -> Vec<SolvedDescent> {
+pub fn descents(run: &Run) -> Vec<SolvedDescent> {
     let one = |report: DescentReport| SolvedDescent {
         start: run.problem.values(&report.start),
         end: run.problem.values(&report.end),
@@ -241,7 +241,7 @@ pub(super) fn descents(run: &Run) -> Vec<SolvedDescent> {
 }
 
 /// Minima whose sum of squares is below `limit`, but for the best, best first.
-pub(super) fn other_minima(descents: &[SolvedDescent], limit: f64) -> Vec<OtherMinimum> {
+pub fn other_minima(descents: &[SolvedDescent], limit: f64) -> Vec<OtherMinimum> {
     let is_near = |descent: &&SolvedDescent| {
         descent.group > 0
             && descent.ending == DescentEnd::Minimum

@@ -16,7 +16,7 @@ const PART: f64 = 0.02;
 
 /// Sensitivities at a point: one column for each parameter.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Sensitivities {
+pub struct Sensitivities {
     /// Where.
     pub values: Vec<f64>,
     /// Derivatives of the weighted points.
@@ -53,7 +53,7 @@ pub struct Inseparable {
 
 /// What the sensitivities tell of the rank.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Rank {
+pub struct Rank {
     /// Groups without full rank.
     pub inseparable: Vec<Inseparable>,
     /// Parameters without any effect.
@@ -64,7 +64,7 @@ pub(super) struct Rank {
 
 /// The rank at `best`, and how far it holds at the points `others`. Singular values below
 /// `tolerance` times the largest are none.
-pub(super) fn rank(best: &Sensitivities, others: &[Sensitivities], tolerance: f64) -> Rank {
+pub fn rank(best: &Sensitivities, others: &[Sensitivities], tolerance: f64) -> Rank {
     let finite = best.columns.iter().flatten().all(|value| value.is_finite());
     let points = best.columns.first().map_or(0, Vec::len);
     if points == 0 || !finite {

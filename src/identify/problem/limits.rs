@@ -32,7 +32,7 @@ const DIFFERENCE: f64 = 1e-6;
 const NULL: f64 = 1e-9;
 
 /// The space along the limits that hold a point.
-pub(super) struct Along {
+pub struct Along {
     /// Gradients of the margins by the fractions of the ranges, a row for each constraint.
     gradients: DMatrix<f64>,
     /// An orthonormal basis of the directions along the limits, in columns.
@@ -46,13 +46,13 @@ fn active<'a>(problem: &'a Problem, values: &[f64], within: f64) -> Vec<&'a Cons
 }
 
 /// The directions along the limits at which the values stand; `None` where they stand at none.
-pub(super) fn along(problem: &Problem, values: &[f64]) -> Option<Along> {
+pub fn along(problem: &Problem, values: &[f64]) -> Option<Along> {
     let held = active(problem, values, ON);
     (!held.is_empty()).then(|| Along::of(problem, values, &held)).flatten()
 }
 
 /// The constraints at whose limits the values stand, as they are written.
-pub(super) fn texts(problem: &Problem, values: &[f64]) -> Vec<String> {
+pub fn texts(problem: &Problem, values: &[f64]) -> Vec<String> {
     active(problem, values, ON).into_iter().map(|own| own.text.clone()).collect()
 }
 
@@ -106,7 +106,7 @@ impl Along {
 }
 
 /// What is known of a point at limits.
-pub(super) struct AtLimits {
+pub struct AtLimits {
     /// The relative offset along the limits.
     pub offset: Option<Offset>,
     /// Whether it is a minimum there: stationary along them, and held by each.
@@ -118,12 +118,7 @@ pub(super) struct AtLimits {
 }
 
 /// Tests a point that stands at limits.
-pub(super) fn test(
-    run: &Run,
-    values: &[f64],
-    along: &Along,
-    found: &Linearization,
-) -> Option<AtLimits> {
+pub fn test(run: &Run, values: &[f64], along: &Along, found: &Linearization) -> Option<AtLimits> {
     let residuals = run.evaluation.residuals(&run.problem, &found.simulated);
     let jacobian = run.evaluation.weighted(&run.problem, values, found);
     if jacobian.iter().any(|entry| !entry.is_finite()) {
@@ -152,7 +147,7 @@ pub(super) fn test(
 }
 
 /// Goes to the minimum at the limits beside which the search has ended, if it has ended by itself.
-pub(super) fn finish(run: &mut Run) {
+pub fn finish(run: &mut Run) {
     if run.problem.inference.constraints.is_empty() || run.cause() != Cause::Converged {
         return;
     }

@@ -7,7 +7,7 @@ use crate::ga::optimizer::{Offset, test_minimum};
 
 /// Whether the best point of a run is a minimum, and the simulations of the test; `None` where that
 /// cannot be tested.
-pub(super) fn is_at_minimum(run: &Run) -> Option<(bool, u64)> {
+pub fn is_at_minimum(run: &Run) -> Option<(bool, u64)> {
     if !run.evaluation.has_residuals() || run.problem.objectives.len() > 1 {
         return None;
     }
@@ -17,7 +17,7 @@ pub(super) fn is_at_minimum(run: &Run) -> Option<(bool, u64)> {
 }
 
 /// The test of Bates and Watts at a point that was linearized.
-pub(super) fn tested(
+pub fn tested(
     problem: &Problem,
     evaluation: &Evaluation,
     values: &[f64],

@@ -25,7 +25,7 @@ const DOMINANT: f64 = 3.0;
 const RATIOS: [f64; 2] = [1.5, 10.0];
 
 /// All findings, most important first.
-pub(super) fn findings(
+pub fn findings(
     solution: &Solution,
     run: &Run,
     statistics: &Statistics,
@@ -487,7 +487,7 @@ fn product<'a>(parts: impl Iterator<Item = (&'a &'a str, &'a f64)>) -> String {
     }
 }
 
-pub(super) fn undetermined(parameter: &SolvedParameter) -> String {
+pub fn undetermined(parameter: &SolvedParameter) -> String {
     let [min, max] = parameter.range;
     let (low, high) = match parameter.interval {
         Some([low, high]) => (low.clamp(min, max), high.clamp(min, max)),
@@ -504,7 +504,7 @@ pub(super) fn undetermined(parameter: &SolvedParameter) -> String {
 }
 
 /// What the profiles say beyond the linear intervals.
-pub(super) fn profile_findings(solution: &Solution, found: &Profiles) -> Vec<Finding> {
+pub fn profile_findings(solution: &Solution, found: &Profiles) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (parameter, profile) in solution.parameters.iter().zip(&found.profiles) {
         let [min, max] = parameter.range.map(|end| significant(end, 4));
@@ -565,7 +565,7 @@ fn about_failures(region: &FailureRegion) -> Finding {
 }
 
 /// A finding for each other minimum.
-pub(super) fn about_other_minima(solution: &Solution) -> Vec<Finding> {
+pub fn about_other_minima(solution: &Solution) -> Vec<Finding> {
     let one = |other: &OtherMinimum| {
         let pairs = solution.parameters.iter().zip(&other.values);
         let values: Vec<String> =

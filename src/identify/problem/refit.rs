@@ -10,7 +10,7 @@ use crate::registry::{self, Options};
 const BUDGET: u64 = 400;
 
 /// Fits again and again about the same problem.
-pub(super) struct Refit<'a> {
+pub struct Refit<'a> {
     problem: &'a Problem,
     evaluation: &'a Evaluation,
     n_points: usize,
@@ -19,11 +19,11 @@ pub(super) struct Refit<'a> {
 }
 
 /// Values of all parameters and their sum of squares.
-pub(super) type Fitted = (Vec<f64>, f64);
+pub type Fitted = (Vec<f64>, f64);
 
 impl<'a> Refit<'a> {
     /// `None` where the first objective is no sum of squares.
-    pub(super) fn new(problem: &'a Problem, evaluation: &'a Evaluation) -> Option<Refit<'a>> {
+    pub fn new(problem: &'a Problem, evaluation: &'a Evaluation) -> Option<Refit<'a>> {
         evaluation.scales()?;
         Some(Refit { problem, evaluation, n_points: problem.n_points(), simulations: 0 })
     }
@@ -34,11 +34,7 @@ impl<'a> Refit<'a> {
     /// # Errors
     ///
     /// Those of the method's maker.
-    pub(super) fn from(
-        &mut self,
-        start: &[f64],
-        held: Option<usize>,
-    ) -> Result<Option<Fitted>, Fault> {
+    pub fn from(&mut self, start: &[f64], held: Option<usize>) -> Result<Option<Fitted>, Fault> {
         let Some(first) = self.residuals(&[start.to_vec()]).pop().flatten() else {
             return Ok(None);
         };
@@ -85,7 +81,7 @@ impl<'a> Refit<'a> {
     }
 
     /// Weighted residuals, measured less simulated, without the factors of a robust fitness.
-    pub(super) fn plain_residuals(&self, values: &[f64]) -> Option<Vec<f64>> {
+    pub fn plain_residuals(&self, values: &[f64]) -> Option<Vec<f64>> {
         let simulated = self.evaluation.simulate(values).ok()?;
         let weights = self.evaluation.error_weights(self.problem, &simulated);
         let measured = self.problem.series.iter().flat_map(|series| &series.y);

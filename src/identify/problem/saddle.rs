@@ -26,7 +26,7 @@ const BETTER: f64 = 1e-6;
 /// # Errors
 ///
 /// Those of least squares.
-pub(super) fn leave(run: &mut Run) -> Result<(), Fault> {
+pub fn leave(run: &mut Run) -> Result<(), Fault> {
     if !run.evaluation.has_residuals() || run.problem.objectives.len() > 1 {
         return Ok(());
     }

@@ -13,7 +13,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 const RELATIVE: f64 = 0.5;
 /// Or, on a linear scale, when its 95 % interval is below this fraction of the search range: a
 /// parameter near 0 may be known well.
-pub(super) const OF_RANGE: f64 = 0.25;
+pub const OF_RANGE: f64 = 0.25;
 /// Correlations above this are worth a word.
 const STRONG: f64 = 0.95;
 

@@ -9,12 +9,12 @@ use maud::{Markup, html};
 const CHAPTER: &str = include_str!("../../../docs/src/report.md");
 
 /// The chapter below its title.
-pub(super) fn chapter() -> Markup {
+pub fn chapter() -> Markup {
     html! { @for block in blocks(CHAPTER) { (block.markup()) } }
 }
 
 /// The id of a section; mdBook makes the same of a heading, without what stands before.
-pub(super) fn anchor(heading: &str) -> String {
+pub fn anchor(heading: &str) -> String {
     let letters = heading.to_lowercase();
     let kept = letters.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
     format!("guide-{}", kept.collect::<String>().replace(' ', "-"))

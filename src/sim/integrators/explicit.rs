@@ -13,7 +13,7 @@ use crate::sim::SimErrorKind;
 use crate::sim::norm::{set_weights, weighted_rms};
 
 /// The coefficients of a method.
-pub(super) struct Tableau {
+pub struct Tableau {
     /// cᵢ
     pub(super) nodes: &'static [f64],
     /// aᵢⱼ, j < i
@@ -26,7 +26,7 @@ pub(super) struct Tableau {
 
 /// What a method with variable step knows besides. The last of the seven slopes is the one at the
 /// end of the step.
-pub(super) struct Embedded {
+pub struct Embedded {
     /// Order of the method the error is measured against.
     pub(super) order: i32,
     /// Error = h Σ eᵢ kᵢ
@@ -39,7 +39,7 @@ pub(super) struct Embedded {
 const MOST_FACTOR: f64 = 5.0;
 
 /// An explicit method with its workspace.
-pub(super) struct ExplicitRungeKutta {
+pub struct ExplicitRungeKutta {
     tableau: &'static Tableau,
     t: f64,
     t_old: f64,
@@ -59,7 +59,7 @@ pub(super) struct ExplicitRungeKutta {
 }
 
 impl ExplicitRungeKutta {
-    pub(super) fn new(tableau: &'static Tableau) -> ExplicitRungeKutta {
+    pub fn new(tableau: &'static Tableau) -> ExplicitRungeKutta {
         ExplicitRungeKutta {
             tableau,
             t: 0.0,

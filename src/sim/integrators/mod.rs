@@ -31,7 +31,7 @@ pub const INTEGRATORS: &[&Entry<dyn Integrator>] = &[
 ];
 
 /// The method where none is asked for.
-pub(super) const DEFAULT: &Entry<dyn Integrator> = &bdf::ENTRY;
+pub const DEFAULT: &Entry<dyn Integrator> = &bdf::ENTRY;
 
 /// The method of this name or alias.
 ///

@@ -24,7 +24,7 @@ use crate::sim::linear::Factorization;
 use crate::sim::norm::{set_weights, weighted_rms};
 use crate::sim::{DaeSystem, Pattern, SimErrorKind};
 
-pub(super) const ENTRY: Entry<dyn Integrator> = Entry {
+pub const ENTRY: Entry<dyn Integrator> = Entry {
     name: "radau",
     aliases: &["radau5", "radauIIa"],
     summary: "implicit Runge-Kutta method Radau IIA, L-stable, order 5, variable step",

@@ -22,7 +22,7 @@ use crate::registry::Entry;
 use crate::sim::norm::{set_weights, weighted_rms};
 use crate::sim::{DaeSystem, SimErrorKind};
 
-pub(super) const ENTRY: Entry<dyn Integrator> = Entry {
+pub const ENTRY: Entry<dyn Integrator> = Entry {
     name: "rodas4",
     aliases: &["rodas", "rosenbrock"],
     summary: "Rosenbrock method Rodas4, L-stable, order 4, variable step",

@@ -12,12 +12,12 @@ use crate::sim::SimErrorKind;
 
 /// Predicted steps are shortened by this factor, so that most of them are accepted; the choice of
 /// Hairer & Wanner.
-pub(super) const SAFETY: f64 = 0.9;
+pub const SAFETY: f64 = 0.9;
 /// A step becomes at most so much shorter for its error: what an estimate says about steps far from
 /// its own length is not reliable.
 const LEAST_FACTOR: f64 = 0.2;
 /// Where a step fails without an estimate of its error, the next attempt has this part of its length.
-pub(super) const FAILURE_FACTOR: f64 = 0.25;
+pub const FAILURE_FACTOR: f64 = 0.25;
 /// A step that ends this near to the limit, relative to its length, is stretched to it: what remained
 /// would be of the size of rounding errors in t.
 const STRETCH: f64 = 1.0 + 1e-9;
@@ -26,7 +26,7 @@ const BEHIND_EVENT: f64 = 0.1;
 
 /// An attempt of a step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Attempt {
+pub struct Attempt {
     /// Its length, s.
     pub(super) h: f64,
     /// When it ends, s; the limit itself where it reaches that.
@@ -37,7 +37,7 @@ pub(super) struct Attempt {
 
 impl Attempt {
     /// The step of length h from t, or one or two equal ones to the limit if it comes near.
-    pub(super) fn towards(limit: f64, t: f64, h: f64) -> Attempt {
+    pub fn towards(limit: f64, t: f64, h: f64) -> Attempt {
         let remaining = limit - t;
         if h * STRETCH >= remaining {
             return Attempt { h: remaining, end: limit, reaches_limit: true };
@@ -47,7 +47,7 @@ impl Attempt {
     }
 
     /// The step of length h from t, cut at the limit.
-    pub(super) fn cut(limit: f64, t: f64, h: f64) -> Attempt {
+    pub fn cut(limit: f64, t: f64, h: f64) -> Attempt {
         let reaches_limit = t + h * STRETCH >= limit;
         let end = if reaches_limit { limit } else { t + h };
         Attempt { h: end - t, end, reaches_limit }
@@ -56,7 +56,7 @@ impl Attempt {
 
 /// The length of the next step of a one-step method.
 #[derive(Debug, Default)]
-pub(super) struct StepControl {
+pub struct StepControl {
     /// s
     h: f64,
     /// Below this a step does not change t noticeably.
@@ -67,46 +67,46 @@ pub(super) struct StepControl {
 
 impl StepControl {
     /// Steps of one length, s.
-    pub(super) fn fixed(h: f64) -> StepControl {
+    pub fn fixed(h: f64) -> StepControl {
         StepControl { h, ..StepControl::default() }
     }
 
     /// The first step from (t, y), where the right-hand side is given.
-    pub(super) fn start(&mut self, problem: &Problem, t: f64, y: &[f64], rhs: &[f64]) {
+    pub fn start(&mut self, problem: &Problem, t: f64, y: &[f64], rhs: &[f64]) {
         self.h = problem.first_step(t, y, rhs);
     }
 
     /// As [`StepControl::start`], for methods whose steps may be nearly as long behind an event as
     /// before it.
-    pub(super) fn restart(&mut self, problem: &Problem, t: f64, y: &[f64], rhs: &[f64]) {
+    pub fn restart(&mut self, problem: &Problem, t: f64, y: &[f64], rhs: &[f64]) {
         let is_first = self.h == 0.0 || t <= problem.settings.start;
         let first = problem.first_step(t, y, rhs);
         self.h = if is_first { first } else { first.max(BEHIND_EVENT * self.h) };
     }
 
     /// Begins a step from t.
-    pub(super) fn begin(&mut self, problem: &Problem, t: f64) {
+    pub fn begin(&mut self, problem: &Problem, t: f64) {
         self.smallest = problem.smallest_step(t);
         self.is_cautious = false;
     }
 
     /// Takes the step as one of which an attempt was rejected.
-    pub(super) fn be_cautious(&mut self) {
+    pub fn be_cautious(&mut self) {
         self.is_cautious = true;
     }
 
     /// Whether an attempt of this step was rejected.
-    pub(super) fn is_cautious(&self) -> bool {
+    pub fn is_cautious(&self) -> bool {
         self.is_cautious
     }
 
     /// The length to be tried, s.
-    pub(super) fn h(&self) -> f64 {
+    pub fn h(&self) -> f64 {
         self.h
     }
 
     /// An attempt was accepted; the next step has `factor` times its length, if it may.
-    pub(super) fn accept(&mut self, problem: &mut Problem, attempt: Attempt, factor: f64) {
+    pub fn accept(&mut self, problem: &mut Problem, attempt: Attempt, factor: f64) {
         problem.statistics.steps += 1;
         let next = attempt.h * if self.is_cautious { factor.min(1.0) } else { factor };
         // A step cut short at the limit says little about longer ones.
@@ -115,7 +115,7 @@ impl StepControl {
     }
 
     /// An attempt had too large an error: the next one has `factor` times its length.
-    pub(super) fn reject(
+    pub fn reject(
         &mut self,
         problem: &mut Problem,
         attempt: Attempt,
@@ -126,7 +126,7 @@ impl StepControl {
     }
 
     /// An attempt could not be completed.
-    pub(super) fn fail(
+    pub fn fail(
         &mut self,
         problem: &mut Problem,
         attempt: Attempt,
@@ -146,14 +146,14 @@ impl StepControl {
 
 /// How many times longer a step may be so that its error, relative to the tolerance, becomes one.
 /// `order` is that of the estimate. An error that is not a number shortens most.
-pub(super) fn error_factor(error: f64, order: i32, safety: f64, largest: f64) -> f64 {
+pub fn error_factor(error: f64, order: i32, safety: f64, largest: f64) -> f64 {
     let exponent = -1.0 / f64::from(order + 1);
     (safety * elementary::powf(error, exponent)).max(LEAST_FACTOR).min(largest)
 }
 
 /// The safety factor after so many of at most `most` iterations of Newton's method: many of them say
 /// that a longer step may not converge.
-pub(super) fn newton_safety(iterations: usize, most: usize) -> f64 {
+pub fn newton_safety(iterations: usize, most: usize) -> f64 {
     let budget = 2.0 * most as f64 + 1.0;
     SAFETY * budget / (budget - 1.0 + iterations as f64)
 }

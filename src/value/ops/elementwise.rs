@@ -18,7 +18,7 @@ pub fn elementwise_add(left: &Value, right: &Value) -> Result<Value, Fault> {
     added(".+", left, right)
 }
 
-pub(super) fn added(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
+pub fn added(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
     if left.is_text() && right.is_text() {
         return join(left, right);
     }
@@ -32,7 +32,7 @@ pub fn elementwise_subtract(left: &Value, right: &Value) -> Result<Value, Fault>
     subtracted(".-", left, right)
 }
 
-pub(super) fn subtracted(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
+pub fn subtracted(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
     numeric(symbol, left, right, real_subtract, |a, b| {
         a.checked_sub(b).ok_or_else(|| overflow("-", a, b))
     })
@@ -43,7 +43,7 @@ pub fn elementwise_multiply(left: &Value, right: &Value) -> Result<Value, Fault>
     multiplied(".*", left, right)
 }
 
-pub(super) fn multiplied(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
+pub fn multiplied(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
     numeric(symbol, left, right, real_multiply, |a, b| {
         a.checked_mul(b).ok_or_else(|| overflow("*", a, b))
     })
@@ -54,7 +54,7 @@ pub fn elementwise_divide(left: &Value, right: &Value) -> Result<Value, Fault> {
     divided("./", left, right)
 }
 
-pub(super) fn divided(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
+pub fn divided(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
     real(symbol, left, right, real_divide)
 }
 
@@ -64,7 +64,7 @@ pub fn elementwise_power(left: &Value, right: &Value) -> Result<Value, Fault> {
 }
 
 /// Applies `on_reals`, or `on_integers` where both sides are Integer.
-pub(super) fn numeric(
+pub fn numeric(
     symbol: &str,
     left: &Value,
     right: &Value,

@@ -5,15 +5,15 @@ use crate::elementary;
 use crate::value::errors::{DIVISION_BY_ZERO, DOMAIN_ERROR, INTEGER_OVERFLOW, REAL_OVERFLOW};
 use crate::{bail, fault};
 
-pub(super) fn real_add(a: f64, b: f64) -> Result<f64, Fault> {
+pub fn real_add(a: f64, b: f64) -> Result<f64, Fault> {
     representable("+", a, b, a + b)
 }
 
-pub(super) fn real_subtract(a: f64, b: f64) -> Result<f64, Fault> {
+pub fn real_subtract(a: f64, b: f64) -> Result<f64, Fault> {
     representable("-", a, b, a - b)
 }
 
-pub(super) fn real_multiply(a: f64, b: f64) -> Result<f64, Fault> {
+pub fn real_multiply(a: f64, b: f64) -> Result<f64, Fault> {
     representable("*", a, b, a * b)
 }
 
@@ -44,7 +44,7 @@ pub fn real_power(a: f64, b: f64) -> Result<f64, Fault> {
     representable("^", a, b, elementary::powf(a, b))
 }
 
-pub(super) fn overflow(symbol: &str, a: i64, b: i64) -> Fault {
+pub fn overflow(symbol: &str, a: i64, b: i64) -> Fault {
     fault!(INTEGER_OVERFLOW, "{a} {symbol} {b} does not fit in an Integer";
         help: "write one operand as a Real, such as `{a}.0`")
 }

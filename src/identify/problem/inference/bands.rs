@@ -47,7 +47,7 @@ pub struct BandPoint {
 }
 
 /// The bands of all experiments.
-pub(super) fn bands(
+pub fn bands(
     problem: &Problem,
     predict: &dyn Predict,
     local: &Local,

@@ -92,7 +92,7 @@ pub struct Bootstrapped {
 }
 
 /// The bootstrap; `None` where it is refused.
-pub(super) fn bootstrap(
+pub fn bootstrap(
     run: &Run,
     settings: &BootstrapSettings,
     local: &Local,
@@ -228,7 +228,7 @@ fn interval(kind: IntervalKind, ordered: &[f64], estimate: f64, acceleration: f6
 }
 
 /// The quantile of ordered values, linear between them (type 7 of Hyndman and Fan).
-pub(super) fn quantile(ordered: &[f64], p: f64) -> f64 {
+pub fn quantile(ordered: &[f64], p: f64) -> f64 {
     let place = p.clamp(0.0, 1.0) * (ordered.len() - 1) as f64;
     let low = place.floor() as usize;
     let high = (low + 1).min(ordered.len() - 1);

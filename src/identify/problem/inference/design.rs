@@ -110,7 +110,7 @@ struct Search<'a> {
 }
 
 /// The next measurement; `None` where nothing can be predicted.
-pub(super) fn next_measurement(
+pub fn next_measurement(
     problem: &Problem,
     settings: &DesignSettings,
     local: &Local,

@@ -46,7 +46,7 @@ impl AtBounds {
     /// From the weighted sensitivities, column by column, their variance, and the rise of the sum
     /// of squares that a 95 % interval allows. `None` where no parameter stands at an end, or the
     /// data leave a direction open.
-    pub(super) fn of(
+    pub fn of(
         columns: &[Vec<f64>],
         residuals: Option<&[f64]>,
         inward: &[Option<f64>],

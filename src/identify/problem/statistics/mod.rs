@@ -344,7 +344,7 @@ fn size(simulated: &[f64], scales: &[f64]) -> f64 {
 
 /// Derivatives of the simulated points, column by column, and the simulations that they took.
 /// Columns that do not exceed the errors of the simulation are zero.
-pub(super) fn sensitivities(
+pub fn sensitivities(
     problem: &Problem,
     evaluation: &Evaluation,
     values: &[f64],

@@ -85,7 +85,7 @@ pub struct Sampled {
 }
 
 /// The posterior; `None` where it is refused.
-pub(super) fn posterior(
+pub fn posterior(
     run: &Run,
     settings: &PosteriorSettings,
     local: &Local,
