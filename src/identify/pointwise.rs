@@ -82,7 +82,7 @@ impl Pointwise {
                 checked.and_then(read).map_err(|failure: Failure| SimErrorKind::Evaluation(failure))
             });
         solved.map_err(|kind| {
-            let error = SimError { time, kind, culprit: None };
+            let error = SimError { time, kind, offending: None };
             format!("{} (at X = {x})", instance.explain(&error))
         })
     }

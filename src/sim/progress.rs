@@ -15,7 +15,7 @@ const SWITCHES: u32 = 10;
 /// Of these, those in which the difference of its sides turns back that are chattering: `radau5` at the
 /// tolerance 1e-8 stays on one side of a relay, and turns in every other step. No oscillation is
 /// resolved with three steps between its turns.
-const TURNS: u32 = 20;
+const REVERSALS: u32 = 20;
 /// A turn changes the difference by this part of it at least; what rounding changes is less.
 const TURN: f64 = 0.25;
 
@@ -26,7 +26,7 @@ pub struct Look {
     difference: f64,
     change: f64,
     switches: u32,
-    turns: u32,
+    reversals: u32,
 }
 
 impl Look {
@@ -34,7 +34,7 @@ impl Look {
         let change = difference - self.difference;
         let is_large = change.abs() > TURN * difference.abs().max(self.difference.abs());
         self.switches += u32::from(sign(difference) != sign(self.difference));
-        self.turns += u32::from(is_large && change * self.change < 0.0);
+        self.reversals += u32::from(is_large && change * self.change < 0.0);
         (self.difference, self.change) = (difference, change);
     }
 }
@@ -69,6 +69,6 @@ impl Progress {
     }
 
     pub fn is_chattering(&self) -> bool {
-        self.relations.iter().any(|seen| seen.switches >= SWITCHES || seen.turns >= TURNS)
+        self.relations.iter().any(|seen| seen.switches >= SWITCHES || seen.reversals >= REVERSALS)
     }
 }

@@ -7,7 +7,7 @@ use super::progress::Progress;
 use super::sliding::{MOST_SURFACES, Sliding};
 use super::switches::Watch;
 use super::{
-    Culprit, DaeSystem, EventOutcome, Failure, Settings, SimError, SimErrorKind, Statistics,
+    DaeSystem, EventOutcome, Failure, Offending, Settings, SimError, SimErrorKind, Statistics,
     Trajectory,
 };
 use crate::registry::Options;
@@ -119,7 +119,7 @@ impl Simulator {
         };
         let mut statistics = Statistics::default();
         if let Some(kind) = refused(settings, integrator, system) {
-            return Err(SimError { time: settings.start, kind, culprit: None });
+            return Err(SimError { time: settings.start, kind, offending: None });
         }
         let mut system = Sliding::new(system);
         let mut run = Run {
@@ -151,7 +151,7 @@ impl Simulator {
             progress: Progress::default(),
         };
         let ended = run.run();
-        ended.map_err(|kind| SimError { time: run.t, kind, culprit: run.culprit(kind) })?;
+        ended.map_err(|kind| SimError { time: run.t, kind, offending: run.offending(kind) })?;
         Ok(statistics)
     }
 
@@ -625,13 +625,13 @@ impl Run<'_> {
     }
 
     /// What is in the way where `kind` does not say it.
-    fn culprit(&mut self, kind: SimErrorKind) -> Option<Culprit> {
+    fn offending(&mut self, kind: SimErrorKind) -> Option<Offending> {
         match kind {
             SimErrorKind::StepSize | SimErrorKind::Singular | SimErrorKind::NotFinite => {
-                self.fastest_unknown().map(|at| Culprit::Unknown(at as u32))
+                self.fastest_unknown().map(|at| Offending::Unknown(at as u32))
             }
             SimErrorKind::Chattering | SimErrorKind::Accumulation => {
-                self.crossings.last().map(|at| Culprit::Crossing(at as u32))
+                self.crossings.last().map(|at| Offending::Crossing(at as u32))
             }
             _ => None,
         }

@@ -2,9 +2,9 @@
 //!
 //! Reference: [Syswerda 1989](crate::bibliography#syswerda-1989).
 
-use super::Crossover;
+use super::{Crossover, Parents};
 use crate::diag::Fault;
-use crate::ga::{Gene, Mrg32k3a};
+use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
@@ -21,13 +21,8 @@ struct Uniform {
 }
 
 impl Crossover for Uniform {
-    fn cross(
-        &self,
-        first: &mut [f64],
-        second: &mut [f64],
-        _: &[Gene],
-        rng: &mut Mrg32k3a,
-    ) -> Result<(), Fault> {
+    fn cross(&self, parents: Parents, rng: &mut Mrg32k3a) -> Result<(), Fault> {
+        let Parents { first, second, .. } = parents;
         for (a, b) in first.iter_mut().zip(second) {
             if rng.uniform() < self.swap {
                 std::mem::swap(a, b);

@@ -3,8 +3,8 @@
 
 use super::Setup;
 use crate::diag::Fault;
-use crate::ga::crossover::Crossover;
-use crate::ga::mutation::{Course, Mutation};
+use crate::ga::crossover::{Crossover, Parents};
+use crate::ga::mutation::{Child, Course, Mutation};
 use crate::ga::operators::{self, usual};
 use crate::ga::{Gene, Mrg32k3a};
 use crate::registry::{Choice, Options};
@@ -102,7 +102,7 @@ impl Breeding {
         rng: &mut Mrg32k3a,
     ) -> Result<(), Fault> {
         if self.probability.is_none_or(|probability| rng.uniform() < probability) {
-            self.crossover.cross(first, second, genes, rng)?;
+            self.crossover.cross(Parents { first, second, genes }, rng)?;
         }
         Ok(())
     }
@@ -117,7 +117,7 @@ impl Breeding {
     ) -> Result<(), Fault> {
         let one_gene = self.zero_is_one_gene && self.rate == 0.0;
         let rate = if one_gene { 1.0 / genes.len() as f64 } else { self.rate };
-        self.mutation.mutate(child, genes, rate, course, rng)
+        self.mutation.mutate(Child { genome: child, genes, rate, course }, rng)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Whether parameters that cancel each other by their derivatives do so at finite distances: where one
 //! of them also acts in steps, or derivatives vanish at the best point alone, they do not.
 
-use super::inseparable::{Form, Inseparable};
+use super::non_identifiable::{Form, NonIdentifiable};
 use super::{Evaluation, Problem};
 use crate::elementary;
 
@@ -19,7 +19,7 @@ pub fn is_confirmed(
     problem: &Problem,
     evaluation: &Evaluation,
     (values, simulated): (&[f64], &[f64]),
-    group: &Inseparable,
+    group: &NonIdentifiable,
     is_within: &dyn Fn(&[f64]) -> bool,
 ) -> (bool, u64) {
     let is_local = group.form == Form::Local;
@@ -44,7 +44,7 @@ pub fn is_confirmed(
 fn moved(
     problem: &Problem,
     values: &[f64],
-    group: &Inseparable,
+    group: &NonIdentifiable,
     direction: &[f64],
     change: f64,
 ) -> Option<Vec<f64>> {

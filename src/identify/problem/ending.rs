@@ -202,8 +202,10 @@ fn at_limits(
 ) -> Option<Ending> {
     let along = limits::along(&run.problem, values)?;
     let tested = limits::test(run, values, &along, found).filter(|tested| tested.is_minimum)?;
-    let texts: Vec<String> =
-        limits::texts(&run.problem, values).iter().map(|text| format!("`{text}`")).collect();
+    let constraints: Vec<String> = limits::active_constraints(&run.problem, values)
+        .iter()
+        .map(|text| format!("`{text}`"))
+        .collect();
     let relative = tested.offset.and_then(|offset| offset.relative);
     let measure = relative.map_or_else(String::new, |relative| {
         format!(" (relative offset along it {})", significant(relative, 2))
@@ -212,7 +214,7 @@ fn at_limits(
         kind: EndingKind::Minimum,
         relative_offset: relative,
         reached,
-        words: format!("Minimum found at the limit of {}{measure}.", texts.join(" and ")),
+        words: format!("Minimum found at the limit of {}{measure}.", constraints.join(" and ")),
         derivatives: Some(derivatives(found)),
         simulations: found.simulations,
     })

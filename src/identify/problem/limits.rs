@@ -52,7 +52,7 @@ pub fn along(problem: &Problem, values: &[f64]) -> Option<Along> {
 }
 
 /// The constraints at whose limits the values stand, as they are written.
-pub fn texts(problem: &Problem, values: &[f64]) -> Vec<String> {
+pub fn active_constraints(problem: &Problem, values: &[f64]) -> Vec<String> {
     active(problem, values, ON).into_iter().map(|own| own.text.clone()).collect()
 }
 
@@ -154,9 +154,9 @@ pub fn finish(run: &mut Run) {
     let Some((false, simulations)) = is_at_minimum(run) else { return };
     run.conclusion.simulations += simulations;
     let Some(first) = run.best.clone() else { return };
-    let texts: Vec<String> =
+    let constraints: Vec<String> =
         active(&run.problem, &first.values, NEAR).iter().map(|own| own.text.clone()).collect();
-    let Some(reached) = descend(run, &first, texts) else { return };
+    let Some(reached) = descend(run, &first, constraints) else { return };
     // Beside the limit the point may have been lower by the errors of the simulation.
     if reached.fitness <= first.fitness * (1.0 + 1e-6) {
         run.best = Some(reached);
@@ -164,15 +164,15 @@ pub fn finish(run: &mut Run) {
 }
 
 /// Steps along the limits of these constraints, which are left where they do not hold.
-fn descend(run: &mut Run, first: &Best, mut texts: Vec<String>) -> Option<Best> {
+fn descend(run: &mut Run, first: &Best, mut constraints: Vec<String>) -> Option<Best> {
     let mut best: Option<Best> = None;
     for _ in 0..STEPS {
-        if texts.is_empty() {
+        if constraints.is_empty() {
             break;
         }
         let from = best.as_ref().map_or(&first.values, |best| &best.values).clone();
-        let values = onto(run, &from, &texts)?;
-        let along = Along::of(&run.problem, &values, &named(&run.problem, &texts))?;
+        let values = onto(run, &from, &constraints)?;
+        let along = Along::of(&run.problem, &values, &named(&run.problem, &constraints))?;
         let linearized =
             run.evaluation.linearize(&run.problem, std::slice::from_ref(&values)).pop()?.ok()?;
         run.conclusion.simulations += linearized.simulations;
@@ -185,11 +185,13 @@ fn descend(run: &mut Run, first: &Best, mut texts: Vec<String>) -> Option<Best> 
             break;
         }
         // Multipliers say something only where nothing is better along the limits.
-        match lower(run, (&values, fitness), &found.step, &texts).filter(|_| !found.is_stationary) {
+        match lower(run, (&values, fitness), &found.step, &constraints)
+            .filter(|_| !found.is_stationary)
+        {
             Some(lower) => best = Some(lower),
             None => match found.multipliers.iter().position(|own| *own < 0.0) {
                 Some(loose) => {
-                    texts.remove(loose);
+                    constraints.remove(loose);
                 }
                 None => break,
             },
@@ -203,7 +205,7 @@ fn lower(
     run: &mut Run,
     (values, fitness): (&[f64], f64),
     step: &DVector<f64>,
-    texts: &[String],
+    constraints: &[String],
 ) -> Option<Best> {
     let parameters = &run.problem.parameters;
     let moved = |part: &f64| {
@@ -211,7 +213,7 @@ fn lower(
         let place = pairs.map(|((free, value), by)| {
             free.value((free.fraction(*value) + part * by).clamp(0.0, 1.0))
         });
-        onto(run, &place.collect::<Vec<f64>>(), texts)
+        onto(run, &place.collect::<Vec<f64>>(), constraints)
     };
     let places: Vec<Vec<f64>> = PARTS.iter().filter_map(moved).collect();
     let rows = run.evaluation.simulate_all(&places);
@@ -224,14 +226,14 @@ fn lower(
     (lowest.fitness < fitness).then_some(lowest)
 }
 
-fn named<'a>(problem: &'a Problem, texts: &[String]) -> Vec<&'a Constraint> {
-    problem.inference.constraints.iter().filter(|own| texts.contains(&own.text)).collect()
+fn named<'a>(problem: &'a Problem, constraints: &[String]) -> Vec<&'a Constraint> {
+    problem.inference.constraints.iter().filter(|own| constraints.contains(&own.text)).collect()
 }
 
 /// The values moved onto the limits of these constraints, just inside.
-fn onto(run: &Run, values: &[f64], texts: &[String]) -> Option<Vec<f64>> {
+fn onto(run: &Run, values: &[f64], constraints: &[String]) -> Option<Vec<f64>> {
     let problem = &run.problem;
-    let held = named(problem, texts);
+    let held = named(problem, constraints);
     let mut values = values.to_vec();
     for _ in 0..CORRECTIONS {
         let missing =

@@ -256,7 +256,7 @@ fn parameters(
             Some(Effect::Finite(Finite { ends: [low, high], .. })) => {
                 Some([low.unwrap_or(free.min), high.unwrap_or(free.max)])
             }
-            _ => interval_with(effects, free, k, value, reach(statistics, k), statistics.factor),
+            _ => interval_with(effects, free, k, value, reach(statistics, k), statistics.quantile),
         };
         let place = free.fraction(value);
         let mut solved = SolvedParameter {
@@ -291,7 +291,7 @@ fn tabulated(statistics: &Statistics) -> Option<&Uncertainty> {
 fn reach(statistics: &Statistics, k: usize) -> Option<[f64; 2]> {
     let Some(at_bounds) = &statistics.at_bounds else {
         let deviation = statistics.uncertainty.as_ref()?.standard_deviations[k];
-        return Some([statistics.factor * deviation; 2]);
+        return Some([statistics.quantile * deviation; 2]);
     };
     let end = at_bounds.ends.iter().find(|end| end.parameter == k);
     end.is_none_or(|end| end.pull <= BEYOND).then(|| at_bounds.reach[k])
@@ -354,7 +354,7 @@ fn verdict(
         Some(Effect::Finite(_)) => return Some(Verdict::PracticallyNonIdentifiable),
         None => {}
     }
-    let group = statistics.inseparable.iter().find(|group| group.parameters.contains(&k));
+    let group = statistics.non_identifiable.iter().find(|group| group.parameters.contains(&k));
     if let Some(group) = group {
         return Some(match group.form {
             Form::Sum | Form::Product => Verdict::StructurallyNonIdentifiable,
@@ -371,12 +371,12 @@ fn verdict(
     // The interval is wider than its standard error says where another parameter acts in steps.
     let spread = match parameter.interval {
         Some([low, high]) if parameter.logarithmic => {
-            0.5 * elementary::ln(high / low).abs() * parameter.value.abs() / statistics.factor
+            0.5 * elementary::ln(high / low).abs() * parameter.value.abs() / statistics.quantile
         }
-        Some([low, high]) => 0.5 * (high - low) / statistics.factor,
+        Some([low, high]) => 0.5 * (high - low) / statistics.quantile,
         _ => deviation,
     };
-    Some(yes(parameter.is_narrow(deviation.max(spread), statistics.factor)))
+    Some(yes(parameter.is_narrow(deviation.max(spread), statistics.quantile)))
 }
 
 fn correlations(statistics: &Statistics, n: usize) -> Option<Vec<Vec<Option<f64>>>> {

@@ -13,7 +13,7 @@
 //! columns are scaled by the nominal values. The Jacobian is kept until the corrector converges
 //! slowly: at once if it fails, with the next change of c if it needed more than two iterations.
 //! Between steps the interpolating polynomial of the differences gives y. The first step after a
-//! restart has order 1; v has no slope there and takes no part in its error test.
+//! restart has order 1; v has no derivative there and takes no part in its error test.
 //!
 //! This is what `dassl` and its relatives name here: our own method of the same family, not
 //! anybody's code.

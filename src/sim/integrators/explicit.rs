@@ -24,7 +24,7 @@ pub struct Tableau {
     pub(super) embedded: Option<Embedded>,
 }
 
-/// What a method with variable step knows besides. The last of the seven slopes is the one at the
+/// What a method with variable step knows besides. The last of the seven derivatives is the one at the
 /// end of the step.
 pub struct Embedded {
     /// Order of the method the error is measured against.
@@ -48,11 +48,11 @@ pub struct ExplicitRungeKutta {
     y_old: Vec<f64>,
     stage: Vec<f64>,
     weights: Vec<f64>,
-    /// Slopes of the stages, the first at the start of the step.
-    slopes: Vec<Vec<f64>>,
-    /// Slope at the end of the step.
-    slope_end: Vec<f64>,
-    /// Whether the slope at the end is another one since.
+    /// Derivatives of the stages, the first at the start of the step.
+    derivatives: Vec<Vec<f64>>,
+    /// Derivative at the end of the step.
+    derivative_end: Vec<f64>,
+    /// Whether the derivative at the end is another one since.
     is_outdated: bool,
     /// Error estimate, then term of order 4 of the interpolation.
     combined: Vec<f64>,
@@ -69,8 +69,8 @@ impl ExplicitRungeKutta {
             y_old: Vec::new(),
             stage: Vec::new(),
             weights: Vec::new(),
-            slopes: vec![Vec::new(); tableau.nodes.len()],
-            slope_end: Vec::new(),
+            derivatives: vec![Vec::new(); tableau.nodes.len()],
+            derivative_end: Vec::new(),
             is_outdated: false,
             combined: Vec::new(),
         }
@@ -82,31 +82,32 @@ impl ExplicitRungeKutta {
             &mut self.y_old,
             &mut self.stage,
             &mut self.weights,
-            &mut self.slope_end,
+            &mut self.derivative_end,
             &mut self.combined,
         ];
-        for vector in workspaces.into_iter().chain(&mut self.slopes) {
+        for vector in workspaces.into_iter().chain(&mut self.derivatives) {
             vector.resize(n, 0.0);
         }
     }
 
-    /// Computes y and its slope at t + h from y_old.
+    /// Computes y and its derivative at t + h from y_old.
     fn advance(&mut self, problem: &mut Problem, attempt: Attempt) -> Result<(), SimErrorKind> {
         let h = attempt.h;
         for i in 1..self.tableau.nodes.len() {
-            combine(&self.y_old, h, self.tableau.stages[i], &self.slopes, &mut self.stage);
+            combine(&self.y_old, h, self.tableau.stages[i], &self.derivatives, &mut self.stage);
             let t = self.t_old + h * self.tableau.nodes[i];
-            problem.rhs(t, &self.stage, &mut self.slopes[i])?;
+            problem.rhs(t, &self.stage, &mut self.derivatives[i])?;
         }
-        combine(&self.y_old, h, self.tableau.weights, &self.slopes, &mut self.y);
-        problem.rhs(attempt.end, &self.y, &mut self.slope_end)
+        combine(&self.y_old, h, self.tableau.weights, &self.derivatives, &mut self.y);
+        problem.rhs(attempt.end, &self.y, &mut self.derivative_end)
     }
 
-    /// Writes h Σ cᵢ kᵢ over all slopes and the one at the end.
+    /// Writes h Σ cᵢ kᵢ over all derivatives and the one at the end.
     fn combine_all(&mut self, h: f64, coefficients: &[f64; 7]) {
         for (i, combined) in self.combined.iter_mut().enumerate() {
-            let slopes = self.slopes.iter().chain([&self.slope_end]);
-            let sum: f64 = coefficients.iter().zip(slopes).map(|(c, slope)| c * slope[i]).sum();
+            let derivatives = self.derivatives.iter().chain([&self.derivative_end]);
+            let sum: f64 =
+                coefficients.iter().zip(derivatives).map(|(c, derivative)| c * derivative[i]).sum();
             *combined = h * sum;
         }
     }
@@ -128,11 +129,11 @@ impl ExplicitRungeKutta {
 }
 
 /// out = y + h Σ cᵢ kᵢ
-fn combine(y: &[f64], h: f64, coefficients: &[f64], slopes: &[Vec<f64>], out: &mut [f64]) {
+fn combine(y: &[f64], h: f64, coefficients: &[f64], derivatives: &[Vec<f64>], out: &mut [f64]) {
     out.copy_from_slice(y);
-    for (coefficient, slope) in coefficients.iter().zip(slopes) {
-        for (out, slope) in out.iter_mut().zip(slope) {
-            *out += h * coefficient * slope;
+    for (coefficient, derivative) in coefficients.iter().zip(derivatives) {
+        for (out, derivative) in out.iter_mut().zip(derivative) {
+            *out += h * coefficient * derivative;
         }
     }
 }
@@ -146,11 +147,11 @@ impl Integrator for ExplicitRungeKutta {
         self.resize(y.len());
         self.y.copy_from_slice(y);
         (self.t, self.t_old) = (t, t);
-        problem.rhs(t, &self.y, &mut self.slope_end)?;
+        problem.rhs(t, &self.y, &mut self.derivative_end)?;
         self.is_outdated = false;
         match self.tableau.embedded {
             None => self.control = StepControl::fixed(problem.settings.fixed_step()),
-            Some(_) => self.control.start(problem, t, &self.y, &self.slope_end),
+            Some(_) => self.control.start(problem, t, &self.y, &self.derivative_end),
         }
         Ok(())
     }
@@ -159,9 +160,9 @@ impl Integrator for ExplicitRungeKutta {
         self.t_old = self.t;
         self.y_old.copy_from_slice(&self.y);
         if std::mem::take(&mut self.is_outdated) {
-            problem.rhs(self.t, &self.y, &mut self.slope_end)?;
+            problem.rhs(self.t, &self.y, &mut self.derivative_end)?;
         }
-        self.slopes[0].copy_from_slice(&self.slope_end);
+        self.derivatives[0].copy_from_slice(&self.derivative_end);
         self.control.begin(problem, self.t);
         loop {
             problem.may_continue()?;
@@ -210,8 +211,8 @@ impl Integrator for ExplicitRungeKutta {
         let rest = 1.0 - theta;
         for (i, y) in y.iter_mut().enumerate() {
             let difference = self.y[i] - self.y_old[i];
-            let start = h * self.slopes[0][i] - difference;
-            let end = difference - h * self.slope_end[i] - start;
+            let start = h * self.derivatives[0][i] - difference;
+            let end = difference - h * self.derivative_end[i] - start;
             let inner = start + theta * (end + rest * self.combined[i]);
             *y = self.y_old[i] + theta * (difference + rest * inner);
         }

@@ -155,7 +155,7 @@ impl Problem<'_> {
     }
 
     /// A first step over which x changes little, from the relative speed of x at (t, y). It is not
-    /// longer than the distance of output points: slopes that are zero at first tell nothing about
+    /// longer than the distance of output points: derivatives that are zero at first tell nothing about
     /// what comes, and whoever asks for points expects something between them.
     fn first_step(&self, t: f64, y: &[f64], rhs: &[f64]) -> f64 {
         let settings = self.settings;

@@ -156,11 +156,11 @@ impl StageMatrix {
                     true => B[block][stage] / h,
                     false => 0.0,
                 };
-                let slope = match block == stage {
+                let entry = match block == stage {
                     true => *entries.next().expect("the block has the pattern of J"),
                     false => 0.0,
                 };
-                self.values[k] = scale * (shift - slope);
+                self.values[k] = scale * (shift - entry);
             }
         }
         problem.statistics.factorizations += 1;

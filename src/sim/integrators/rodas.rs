@@ -94,10 +94,10 @@ struct Rodas {
     y_old: Vec<f64>,
     trial: Vec<f64>,
     rhs: Vec<f64>,
-    /// F at the start of the step, whether it is known, and its slope in time.
+    /// F at the start of the step, whether it is known, and its derivative by time.
     first: Vec<f64>,
     knows_first: bool,
-    time_slope: Vec<f64>,
+    time_derivative: Vec<f64>,
     stages: [Vec<f64>; STAGES],
     dense: [Vec<f64>; 2],
     weights: Vec<f64>,
@@ -113,7 +113,7 @@ impl Rodas {
             &mut self.trial,
             &mut self.rhs,
             &mut self.first,
-            &mut self.time_slope,
+            &mut self.time_derivative,
         ];
         for vector in single.into_iter().chain(&mut self.stages).chain(&mut self.dense) {
             vector.resize(n, 0.0);
@@ -126,13 +126,13 @@ impl Rodas {
             problem.rhs(self.t, &self.y, &mut self.first)?;
         }
         let mut delta = (f64::EPSILON * self.t.abs().max(1e-5)).sqrt().min(self.control.h());
-        if problem.rhs(self.t + delta, &self.y, &mut self.time_slope).is_err() {
+        if problem.rhs(self.t + delta, &self.y, &mut self.time_derivative).is_err() {
             // The domain of F may end here, as that of sqrt(1 - t) at t = 1.
             delta = -delta;
-            problem.rhs(self.t + delta, &self.y, &mut self.time_slope)?;
+            problem.rhs(self.t + delta, &self.y, &mut self.time_derivative)?;
         }
-        for (slope, first) in self.time_slope.iter_mut().zip(&self.first) {
-            *slope = (*slope - first) / delta;
+        for (derivative, first) in self.time_derivative.iter_mut().zip(&self.first) {
+            *derivative = (*derivative - first) / delta;
         }
         self.matrix.evaluate(problem, self.t, &self.y)
     }
@@ -150,7 +150,7 @@ impl Rodas {
             let (done, rest) = self.stages.split_at_mut(i);
             let stage = &mut rest[0];
             for (k, stage) in stage.iter_mut().enumerate() {
-                let mut sum = self.rhs[k] + TIME[i] * h * self.time_slope[k];
+                let mut sum = self.rhs[k] + TIME[i] * h * self.time_derivative[k];
                 if k < self.n_differential {
                     let before: f64 = done.iter().zip(&C[i]).map(|(u, c)| c * u[k]).sum();
                     sum += before / h;

@@ -129,7 +129,7 @@ impl Local {
             freedom,
             known: believed,
             robust,
-            quantile: found.factor,
+            quantile: found.quantile,
             information,
         })
     }

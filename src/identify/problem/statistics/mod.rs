@@ -21,7 +21,7 @@ use at_bounds::AtBounds;
 pub use residuals::{ResidualTest, residual_test};
 
 use super::confirmed::is_confirmed;
-use super::inseparable::{self, Form, Inseparable, Sensitivities};
+use super::non_identifiable::{self, Form, NonIdentifiable, Sensitivities};
 use super::{ErrorModel, Evaluation, Problem, Series};
 use crate::identify::{Uncertainty, error_of_combination, uncertainty_given};
 pub(super) use at_bounds::BEYOND;
@@ -53,7 +53,7 @@ pub struct Statistics {
     pub(super) at_bounds: Option<AtBounds>,
     /// Half-widths of the 95 % intervals, as multiples of a standard error: a quantile of
     /// Student's distribution, or of the normal one where sigma is given.
-    pub factor: f64,
+    pub quantile: f64,
     /// Points less parameters; equal series count once.
     pub freedom: f64,
     /// Whether the deviations of the measurements are known and believed.
@@ -72,7 +72,7 @@ pub struct Statistics {
     /// Condition number of the sensitivities, columns of unit length.
     pub condition: Option<f64>,
     /// Groups of parameters that only together have an effect.
-    pub inseparable: Vec<Inseparable>,
+    pub non_identifiable: Vec<NonIdentifiable>,
     /// Parameters whose derivatives cancel each other, while finite changes do not.
     pub(super) cancelling: Vec<usize>,
     /// Parameters without any effect on the compared points at the best values.
@@ -91,7 +91,7 @@ impl Statistics {
     /// The largest weighted sum of squares within the 95 % limit of the likelihood.
     pub(super) fn limit_of_squares(&self) -> f64 {
         let square: f64 = self.residuals.iter().map(|r| r * r).sum();
-        let rise = elementary::powi(self.factor, 2);
+        let rise = elementary::powi(self.quantile, 2);
         match self.believed {
             true => square + rise,
             false => square * (1.0 + rise / self.freedom),
@@ -127,7 +127,7 @@ impl Statistics {
         let mut found = Statistics {
             uncertainty,
             at_bounds,
-            factor: spread.factor,
+            quantile: spread.quantile,
             freedom: spread.freedom,
             believed: spread.believed,
             variance: spread.variance,
@@ -136,7 +136,7 @@ impl Statistics {
             residuals: data.residuals,
             repeated,
             condition: None,
-            inseparable: Vec::new(),
+            non_identifiable: Vec::new(),
             cancelling: Vec::new(),
             without_effect: Vec::new(),
             jacobian,
@@ -159,11 +159,12 @@ impl Statistics {
         scales: &[f64],
         limit: f64,
     ) {
-        let mut rank = inseparable::rank(best, &[], self.rank_tolerance);
-        if !rank.inseparable.is_empty() {
+        let mut rank = non_identifiable::rank(best, &[], self.rank_tolerance);
+        if !rank.non_identifiable.is_empty() {
             let elsewhere = elsewhere(problem, evaluation, others, scales, &mut self.simulations);
-            rank = inseparable::rank(best, &elsewhere, self.rank_tolerance);
-            rank.inseparable.retain(|group| problem.noise <= EXACT || group.form != Form::Local);
+            rank = non_identifiable::rank(best, &elsewhere, self.rank_tolerance);
+            rank.non_identifiable
+                .retain(|group| problem.noise <= EXACT || group.form != Form::Local);
         }
         let measured: Vec<f64> =
             problem.series.iter().flat_map(|series| series.y.iter().copied()).collect();
@@ -171,12 +172,12 @@ impl Statistics {
             let points = measured.iter().zip(row).zip(scales);
             points.map(|((m, s), w)| elementary::powi(w * (m - s), 2)).sum::<f64>() <= limit
         };
-        for group in rank.inseparable {
+        for group in rank.non_identifiable {
             let at = (&best.values[..], simulated);
             let (holds, took) = is_confirmed(problem, evaluation, at, &group, &is_within);
             self.simulations += took;
             match holds {
-                true => self.inseparable.push(group),
+                true => self.non_identifiable.push(group),
                 false => self.cancelling.extend(group.parameters),
             }
         }
@@ -225,7 +226,7 @@ struct Spread {
     believed: bool,
     variance: f64,
     /// The quantile of a 95 % interval.
-    factor: f64,
+    quantile: f64,
 }
 
 impl Spread {
@@ -245,16 +246,16 @@ impl Spread {
             None if believed => 1.0,
             None => data.square / freedom,
         };
-        let factor = match believed {
+        let quantile = match believed {
             true => normal_quantile(UPPER),
             false => student_quantile(UPPER, robust.map_or(freedom, |robust| robust.freedom)),
         };
-        Spread { freedom, robust: robust.is_some(), believed, variance, factor }
+        Spread { freedom, robust: robust.is_some(), believed, variance, quantile }
     }
 
     /// By how much the weighted sum of squares may rise within the 95 % limit of one parameter.
     fn rise(&self) -> f64 {
-        self.factor * self.factor * self.variance
+        self.quantile * self.quantile * self.variance
     }
 }
 
