@@ -95,7 +95,7 @@ impl RunExternal for f64 {
             arguments: &call.arguments,
             result: call.result.as_ref(),
             numbers: r,
-            texts: &code.texts,
+            strings: &code.texts,
             written: &mut written,
             objects: &mut externals.objects,
             outside: &mut Granted {

@@ -58,7 +58,7 @@ impl Evaluator<'_> {
             arguments: &slots,
             result: result.as_ref(),
             numbers: &mut memory.numbers,
-            texts: &memory.texts,
+            strings: &memory.texts,
             written: &mut texts,
             objects: &mut memory.objects,
             outside: &mut (),

@@ -14,7 +14,7 @@ use std::ops::Range;
 
 /// A similar matrix, and how it came about.
 #[derive(Debug, Clone)]
-pub(super) struct Balanced {
+pub struct Balanced {
     /// B = D⁻¹ Pᵀ A P D.
     pub(super) matrix: DMatrix<f64>,
     /// Rows and columns that are scaled; upper triangular before and behind.
@@ -26,13 +26,13 @@ pub(super) struct Balanced {
 
 impl Balanced {
     /// Neither permuted nor scaled.
-    pub(super) fn unchanged(matrix: DMatrix<f64>) -> Balanced {
+    pub fn unchanged(matrix: DMatrix<f64>) -> Balanced {
         let n = matrix.nrows();
         Balanced { matrix, active: 0..n, scale: vec![1.0; n] }
     }
 
     /// Permuted and scaled.
-    pub(super) fn of(matrix: DMatrix<f64>) -> Balanced {
+    pub fn of(matrix: DMatrix<f64>) -> Balanced {
         let mut balanced = Balanced::unchanged(matrix);
         balanced.permute();
         balanced.scale();
@@ -40,7 +40,7 @@ impl Balanced {
     }
 
     /// Rows without elements beside the diagonal go down, then columns without them to the left.
-    pub(super) fn permute(&mut self) {
+    pub fn permute(&mut self) {
         while let Some(row) = self.active.clone().rev().find(|row| self.is_isolated(*row, false)) {
             self.active.end -= 1;
             self.interchange(row, self.active.end);
@@ -65,7 +65,7 @@ impl Balanced {
     }
 
     /// Scales the active part.
-    pub(super) fn scale(&mut self) {
+    pub fn scale(&mut self) {
         let (first, size) = (self.active.start, self.active.len());
         let block = self.matrix.view((first, first), (size, size));
         // Squares of its elements must not overflow.
@@ -82,7 +82,7 @@ impl Balanced {
     }
 
     /// Turns right eigenvectors of the balanced matrix, as columns, into those of the matrix.
-    pub(super) fn right(&self, vectors: &mut DMatrix<f64>) {
+    pub fn right(&self, vectors: &mut DMatrix<f64>) {
         for k in self.active.clone() {
             vectors.row_mut(k).scale_mut(self.scale[k]);
         }
@@ -90,7 +90,7 @@ impl Balanced {
     }
 
     /// Turns left eigenvectors of the balanced matrix, as columns, into those of the matrix.
-    pub(super) fn left(&self, vectors: &mut DMatrix<f64>) {
+    pub fn left(&self, vectors: &mut DMatrix<f64>) {
         for k in self.active.clone() {
             vectors.row_mut(k).unscale_mut(self.scale[k]);
         }

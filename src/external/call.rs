@@ -1,7 +1,7 @@
 //! The arguments of one call.
 
 use super::errors::{EXTERNAL_FAILED, EXTERNAL_OUTSIDE};
-use super::random::Random;
+use super::xorshift::Random;
 use crate::diag::Fault;
 use crate::fault;
 use std::any::Any;
@@ -15,7 +15,7 @@ pub type Object = Arc<dyn Any + Send + Sync>;
 pub enum Kind {
     /// Numbers at a position of [`Call::numbers`].
     Number,
-    /// The text at a position of [`Call::texts`].
+    /// The text at a position of [`Call::strings`].
     Text,
     /// The object whose handle stands at a position of [`Call::numbers`].
     Object,
@@ -118,8 +118,8 @@ pub struct Call<'a> {
     pub result: Option<&'a Slot>,
     /// All numbers.
     pub numbers: &'a mut [f64],
-    /// All texts; arguments are read here.
-    pub texts: &'a [Arc<str>],
+    /// All strings; arguments are read here.
+    pub strings: &'a [Arc<str>],
     /// Texts written, with their positions.
     pub written: &'a mut Vec<(u32, Arc<str>)>,
     /// All objects, by handle.
@@ -153,7 +153,7 @@ impl Call<'_> {
 
     /// A text.
     pub(super) fn text(&self, argument: usize) -> &str {
-        &self.texts[self.arguments[argument].first as usize]
+        &self.strings[self.arguments[argument].first as usize]
     }
 
     /// The numbers of an array, row-major.

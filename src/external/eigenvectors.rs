@@ -1,14 +1,15 @@
 //! Eigenvectors of upper quasi-triangular matrices, in LAPACK's form.
 
 use super::matrices::power_of_two;
-use super::schur::{block_size, modulus};
+use super::quasi_triangular::block_size;
+use super::schur::modulus;
 use nalgebra::{Complex, DMatrix, DVector};
 
 type C = Complex<f64>;
 
 /// The right eigenvectors of all eigenvalues, as columns: one for a real eigenvalue, real and
 /// imaginary parts of that with positive imaginary part for a pair.
-pub(super) fn right_eigenvectors(t: &DMatrix<f64>) -> DMatrix<f64> {
+pub fn right_eigenvectors(t: &DMatrix<f64>) -> DMatrix<f64> {
     let n = t.nrows();
     // The vectors are those of any multiple; products must not overflow.
     let t = &(t / power_of_two(t.amax()));
@@ -27,7 +28,7 @@ pub(super) fn right_eigenvectors(t: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// The left eigenvectors y, yᴴ T = λ yᴴ, as columns like the right ones.
-pub(super) fn left_eigenvectors(t: &DMatrix<f64>) -> DMatrix<f64> {
+pub fn left_eigenvectors(t: &DMatrix<f64>) -> DMatrix<f64> {
     // They are right ones of Tᵀ, which is upper triangular with its coordinates in reverse, for
     // the conjugate eigenvalues.
     let n = t.nrows();
@@ -98,7 +99,7 @@ fn apart(value: C, element: f64, least: f64) -> C {
 
 /// How columns that hold eigenvectors are scaled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Scale {
+pub enum Scale {
     /// Euclidean norm 1; the largest component of a complex one is real.
     Norm,
     /// The largest component has 1 as sum of the sizes of its parts.
@@ -106,7 +107,7 @@ pub(super) enum Scale {
 }
 
 /// Scales columns that hold eigenvectors, complex ones where eigenvalues are.
-pub(super) fn scale(vectors: &mut DMatrix<f64>, is_complex: impl Fn(usize) -> bool, scale: Scale) {
+pub fn scale(vectors: &mut DMatrix<f64>, is_complex: impl Fn(usize) -> bool, scale: Scale) {
     let mut at = 0;
     while at < vectors.ncols() {
         let size = if is_complex(at) && at + 1 < vectors.ncols() { 2 } else { 1 };

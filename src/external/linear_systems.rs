@@ -14,7 +14,7 @@ use super::matrices::{column, is_transposed, matrix, norm, square, write};
 use crate::diag::Fault;
 use nalgebra::{DMatrix, DVector};
 
-pub(super) const ENTRIES: &[Entry] = &[
+pub const ENTRIES: &[Entry] = &[
     Entry::pure("dgesv", "nnAnAAnN", dgesv),
     Entry::pure("dgesvx", "ttnnAnAnAtAAAnAnNAAAAN", dgesvx),
     Entry::pure("dgetrf", "nnAnAN", dgetrf),

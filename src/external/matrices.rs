@@ -5,7 +5,7 @@ use crate::diag::Fault;
 use nalgebra::DMatrix;
 
 /// A vector or matrix argument; a vector is a column.
-pub(super) fn matrix(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, Fault> {
+pub fn matrix(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, Fault> {
     let (rows, columns) = match *call.dims(argument) {
         [rows] => (rows as usize, 1),
         [rows, columns] => (rows as usize, columns as usize),
@@ -19,7 +19,7 @@ pub(super) fn matrix(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, F
 }
 
 /// A square matrix argument.
-pub(super) fn square(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, Fault> {
+pub fn square(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, Fault> {
     let matrix = matrix(call, argument)?;
     match matrix.is_square() {
         true => Ok(matrix),
@@ -28,7 +28,7 @@ pub(super) fn square(call: &Call<'_>, argument: usize) -> Result<DMatrix<f64>, F
 }
 
 /// Writes the upper left part that fits.
-pub(super) fn write(call: &mut Call<'_>, argument: usize, matrix: &DMatrix<f64>) {
+pub fn write(call: &mut Call<'_>, argument: usize, matrix: &DMatrix<f64>) {
     let columns = call.dims(argument).get(1).map_or(1, |columns| *columns as usize);
     for (at, element) in call.array_mut(argument).iter_mut().enumerate() {
         let (row, column) = (at / columns, at % columns);
@@ -40,28 +40,28 @@ pub(super) fn write(call: &mut Call<'_>, argument: usize, matrix: &DMatrix<f64>)
 
 /// The power of two at or below a size: division by it rounds nothing. 1 for nothing and for what is
 /// below normal numbers.
-pub(super) fn power_of_two(size: f64) -> f64 {
+pub fn power_of_two(size: f64) -> f64 {
     const EXPONENT: u64 = 0x7ff << 52;
     if size.is_normal() { f64::from_bits(size.to_bits() & EXPONENT) } else { 1.0 }
 }
 
 /// A matrix of one column.
-pub(super) fn column(values: &[f64]) -> DMatrix<f64> {
+pub fn column(values: &[f64]) -> DMatrix<f64> {
     DMatrix::from_column_slice(values.len(), 1, values)
 }
 
 /// Whether a job is asked for: its letter is not `N`.
-pub(super) fn wants(call: &Call<'_>, argument: usize) -> bool {
+pub fn wants(call: &Call<'_>, argument: usize) -> bool {
     !call.text(argument).eq_ignore_ascii_case("N")
 }
 
 /// Whether the letter for op(A) is not `N`.
-pub(super) fn is_transposed(call: &Call<'_>, argument: usize) -> bool {
+pub fn is_transposed(call: &Call<'_>, argument: usize) -> bool {
     wants(call, argument)
 }
 
 /// The norm that a letter names: greatest element, columns, rows, Frobenius.
-pub(super) fn norm(call: &Call<'_>, letter: &str, a: &DMatrix<f64>) -> Result<f64, Fault> {
+pub fn norm(call: &Call<'_>, letter: &str, a: &DMatrix<f64>) -> Result<f64, Fault> {
     let greatest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
     let size = |values: &[f64]| values.iter().map(|value| value.abs()).sum::<f64>();
     Ok(match letter.to_ascii_uppercase().as_str() {

@@ -9,7 +9,7 @@ use super::call::Call;
 use crate::diag::Fault;
 use crate::mat::Matrix;
 
-pub(super) const ENTRIES: &[Entry] = &[
+pub const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaError", "t", error),
     Entry::writing("ModelicaMessage", "t", message),
     Entry::writing("ModelicaWarning", "t", message),
@@ -34,7 +34,7 @@ fn nothing(_: &mut Call<'_>) -> Result<(), Fault> {
 }
 
 fn message(call: &mut Call<'_>) -> Result<(), Fault> {
-    let text = call.texts[call.arguments[0].first as usize].clone();
+    let text = call.strings[call.arguments[0].first as usize].clone();
     call.outside.print(text.trim_end_matches('\n'))
 }
 

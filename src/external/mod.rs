@@ -32,20 +32,22 @@ mod linear_systems;
 mod matrices;
 mod messages;
 mod objects;
+mod quasi_triangular;
 mod random;
 mod resources;
 mod schur;
 mod strings;
 mod sylvester;
 mod tables;
+mod xorshift;
 
 pub use call::{Call, Kind, Object, Outside, Slot};
 pub use journal::Journal;
 pub(crate) use messages::date_and_time;
 pub use objects::Objects;
-pub use random::Random;
 pub use resources::{Contents, Provide, Resources};
 pub use tables::names_a_file;
+pub use xorshift::Random;
 
 use crate::diag::Fault;
 use errors::EXTERNAL_CALL;

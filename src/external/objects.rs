@@ -8,12 +8,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// Most objects that are remembered; more are made by models whose parameters change.
 const MAX_OBJECTS: usize = 256;
 
-/// What an object was made from: the name of the function, numbers, texts.
+/// What an object was made from: the name of the function, numbers, strings.
 #[derive(PartialEq, Eq, Hash)]
 struct Key {
     name: &'static str,
     numbers: Vec<u64>,
-    texts: Vec<Arc<str>>,
+    strings: Vec<Arc<str>>,
 }
 
 /// Objects of a model; clones remember together.
@@ -58,11 +58,11 @@ impl Objects {
 
 impl Key {
     fn of(call: &Call<'_>) -> Key {
-        let mut key = Key { name: call.name, numbers: Vec::new(), texts: Vec::new() };
+        let mut key = Key { name: call.name, numbers: Vec::new(), strings: Vec::new() };
         for slot in call.arguments {
             let first = slot.first as usize;
             match slot.kind {
-                Kind::Text => key.texts.push(call.texts[first].clone()),
+                Kind::Text => key.strings.push(call.strings[first].clone()),
                 Kind::Number | Kind::Object => {
                     key.numbers.extend(slot.dims.iter().map(|size| u64::from(*size)));
                     let numbers = &call.numbers[first..][..slot.len()];

@@ -4,14 +4,15 @@
 //! A state is an array of Integers of 32 bits: words of 64 bits, the lower half first. As the
 //! standard library defines them, xorshift64* and xorshift128+ go on from the number that they gave,
 //! where their author goes on from the word before it is scrambled. The hidden state is that of one
-//! generator xorshift1024*, [`Random`].
+//! generator xorshift1024*, [`Random`](super::Random).
 
 use super::Entry;
 use super::call::Call;
+use super::xorshift::Xorshift1024;
 use crate::diag::Fault;
 use crate::elementary;
 
-pub(super) const ENTRIES: &[Entry] = &[
+pub const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaRandom_xorshift64star", "aAN", xorshift64_star),
     Entry::pure("ModelicaRandom_xorshift128plus", "aAN", xorshift128_plus),
     Entry::pure("ModelicaRandom_xorshift1024star", "aAN", xorshift1024_star),
@@ -23,10 +24,6 @@ pub(super) const ENTRIES: &[Entry] = &[
 /// The seed that is chosen where the user leaves the choice: always the same, so that a run can be
 /// repeated.
 const AUTOMATIC_SEED: f64 = 1_873_659_421.0;
-
-/// The hidden state of a simulation: what `initializeImpureRandom` made for `impureRandom`.
-#[derive(Debug, Clone, Default)]
-pub struct Random(Option<(Xorshift1024, f64)>);
 
 /// The words of the state, which has `n` Integers.
 fn words(call: &Call<'_>, n: usize) -> Result<Vec<u64>, Fault> {
@@ -74,36 +71,16 @@ fn xorshift128_plus(call: &mut Call<'_>) -> Result<(), Fault> {
     done(call, &words, bits)
 }
 
-/// Sixteen words and the position of the current one.
-#[derive(Debug, Clone)]
-struct Xorshift1024 {
-    words: [u64; 16],
-    at: usize,
-}
-
-impl Xorshift1024 {
-    /// From the 33 Integers of an argument.
-    fn of(call: &Call<'_>) -> Result<Xorshift1024, Fault> {
-        let words = words(call, 33)?;
-        let position = call.array(0)[32];
-        match <[u64; 16]>::try_from(words) {
-            // An initial state has any Integer there, of which the last four bits count.
-            Ok(words) if position.is_finite() => {
-                Ok(Xorshift1024 { words, at: (position as i64 & 15) as usize })
-            }
-            _ => Err(call.fault(format!("the state has no position {position}"))),
+/// The generator from the 33 Integers of an argument.
+fn generator(call: &Call<'_>) -> Result<Xorshift1024, Fault> {
+    let words = words(call, 33)?;
+    let position = call.array(0)[32];
+    match <[u64; 16]>::try_from(words) {
+        // An initial state has any Integer there, of which the last four bits count.
+        Ok(words) if position.is_finite() => {
+            Ok(Xorshift1024 { words, at: (position as i64 & 15) as usize })
         }
-    }
-
-    fn next(&mut self) -> u64 {
-        let mut a = self.words[self.at];
-        self.at = (self.at + 1) % 16;
-        let mut b = self.words[self.at];
-        b ^= b << 31;
-        b ^= b >> 11;
-        a ^= a >> 30;
-        self.words[self.at] = a ^ b;
-        self.words[self.at].wrapping_mul(1_181_783_497_276_652_981)
+        _ => Err(call.fault(format!("the state has no position {position}"))),
     }
 }
 
@@ -111,7 +88,7 @@ fn xorshift1024_star(call: &mut Call<'_>) -> Result<(), Fault> {
     if call.arguments[1].len() != 33 {
         return Err(call.fault("the new state has not 33 Integers"));
     }
-    let mut state = Xorshift1024::of(call)?;
+    let mut state = generator(call)?;
     let bits = state.next();
     call.array_mut(1)[32] = state.at as f64;
     done(call, &state.words, bits)
@@ -123,7 +100,7 @@ fn automatic_global_seed(call: &mut Call<'_>) -> Result<(), Fault> {
 
 /// `(state, size, id)`
 fn set_state(call: &mut Call<'_>) -> Result<(), Fault> {
-    let (state, id) = (Xorshift1024::of(call)?, call.number(2));
+    let (state, id) = (generator(call)?, call.number(2));
     call.outside.random()?.0 = Some((state, id));
     Ok(())
 }

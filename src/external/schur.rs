@@ -4,12 +4,13 @@
 //! Blocks are in LAPACK's standard form: equal diagonal elements, the other two of opposite signs.
 
 use super::matrices::power_of_two;
+use super::quasi_triangular::{block, block_size, block_start};
 use super::sylvester::sylvester;
 use crate::elementary;
 use nalgebra::{Complex, DMatrix, DVector, Schur};
 
 /// Absolute value of a complex number.
-pub(super) fn modulus(z: Complex<f64>) -> f64 {
+pub fn modulus(z: Complex<f64>) -> f64 {
     elementary::hypot(z.re, z.im)
 }
 
@@ -18,7 +19,7 @@ const MAX_SWEEPS: usize = 10_000;
 
 /// A real Schur form.
 #[derive(Debug, Clone)]
-pub(super) struct RealSchur {
+pub struct RealSchur {
     /// Orthogonal.
     pub(super) q: DMatrix<f64>,
     /// Upper quasi-triangular.
@@ -27,7 +28,7 @@ pub(super) struct RealSchur {
 
 impl RealSchur {
     /// The form of a square matrix; `None` if it was not found.
-    pub(super) fn of(a: &DMatrix<f64>) -> Option<RealSchur> {
+    pub fn of(a: &DMatrix<f64>) -> Option<RealSchur> {
         if a.nrows() < 2 {
             return Some(RealSchur { q: DMatrix::identity(a.nrows(), a.nrows()), t: a.clone() });
         }
@@ -64,7 +65,7 @@ impl RealSchur {
 
     /// Turns the block of rows `k` and `k + 1`, if there is one, to standard form, or splits it if
     /// its eigenvalues are real.
-    pub(super) fn standardize(&mut self, k: usize) {
+    pub fn standardize(&mut self, k: usize) {
         if self.t[(k + 1, k)] == 0.0 {
             return;
         }
@@ -111,7 +112,7 @@ impl RealSchur {
 
     /// Brings chosen eigenvalues to the front, in their order; both of a pair count as chosen where
     /// one is. How many there are.
-    pub(super) fn reorder(&mut self, chosen: &[bool]) -> usize {
+    pub fn reorder(&mut self, chosen: &[bool]) -> usize {
         let mut front = 0;
         let mut at = 0;
         while at < self.t.nrows() {
@@ -161,7 +162,7 @@ impl RealSchur {
 
     /// The eigenvalues in the order of the diagonal; of a pair, the one with positive imaginary
     /// part first.
-    pub(super) fn eigenvalues(&self) -> Vec<Complex<f64>> {
+    pub fn eigenvalues(&self) -> Vec<Complex<f64>> {
         let mut values = Vec::with_capacity(self.t.nrows());
         while values.len() < self.t.nrows() {
             let at = values.len();
@@ -173,20 +174,6 @@ impl RealSchur {
         }
         values
     }
-}
-
-fn block(t: &DMatrix<f64>, k: usize) -> [[f64; 2]; 2] {
-    [[t[(k, k)], t[(k, k + 1)]], [t[(k + 1, k)], t[(k + 1, k + 1)]]]
-}
-
-/// Number of rows of the block that starts in a row.
-pub(super) fn block_size(t: &DMatrix<f64>, row: usize) -> usize {
-    if row + 1 < t.nrows() && t[(row + 1, row)] != 0.0 { 2 } else { 1 }
-}
-
-/// The first row of the block that a row belongs to.
-fn block_start(t: &DMatrix<f64>, row: usize) -> usize {
-    if row > 0 && t[(row, row - 1)] != 0.0 { row - 1 } else { row }
 }
 
 /// The eigenvalue of the block that starts in a row: of a pair, the one with positive imaginary

@@ -1,17 +1,12 @@
 //! Sylvester's equation A X ± X B = C with quasi-triangular matrices.
 
-use super::schur::block_size;
+use super::quasi_triangular::block_size;
 use nalgebra::{DMatrix, DVector};
 
 /// X with A X + sign X B = C, for upper quasi-triangular A and B ([Golub &
 /// Van Loan 2013](crate::bibliography#golub-van-loan-2013), §7.6.3). Where the equation has no unique
 /// solution, the nearest that has one is solved.
-pub(super) fn sylvester(
-    a: &DMatrix<f64>,
-    b: &DMatrix<f64>,
-    c: &DMatrix<f64>,
-    sign: f64,
-) -> DMatrix<f64> {
+pub fn sylvester(a: &DMatrix<f64>, b: &DMatrix<f64>, c: &DMatrix<f64>, sign: f64) -> DMatrix<f64> {
     let (rows, columns) = (starts(a), starts(b));
     let mut x = DMatrix::zeros(a.nrows(), b.nrows());
     for &(column, n) in &columns {

@@ -1,6 +1,7 @@
 //! What holds for every entry of the tables of operators.
 
-use super::mutation::Course;
+use super::crossover::Parents;
+use super::mutation::{Child, Course};
 use super::operators::{self, KINDS, Size, kind};
 use super::{Gene, Genomes, Mrg32k3a, crossover};
 use crate::registry::{BAD_OPTION, Choice, UNKNOWN_CHOICE};
@@ -45,7 +46,7 @@ proptest! {
                 let (mut rng, [mut a, mut b]) = (rng(seed), [parent(0), parent(5)]);
                 let own = operators::crossover(Choice::named(name)).unwrap();
                 let own = own.for_run(all.len(), &mut rng).unwrap_or(own);
-                own.cross(&mut a, &mut b, &all, &mut rng).unwrap();
+                own.cross(Parents { first: &mut a, second: &mut b, genes: &all }, &mut rng).unwrap();
                 (a, b)
             };
             let (a, b) = run();
@@ -57,7 +58,7 @@ proptest! {
                 let (mut rng, mut genome) = (rng(seed), parent(0));
                 let own = operators::mutation(Choice::named(name)).unwrap();
                 let course = Course { generation, planned: None };
-                own.mutate(&mut genome, &all, rate, course, &mut rng).unwrap();
+                own.mutate(Child { genome: &mut genome, genes: &all, rate, course }, &mut rng).unwrap();
                 genome
             };
             prop_assert!(is_within(&run(rate)), "{} {:?}", name, run(rate));
@@ -106,7 +107,7 @@ proptest! {
             let own = own.for_run(n, &mut rng).unwrap_or(own);
             let parents = [(0..n).map(|k| k as f64).collect(), (50..50 + n).map(|k| k as f64).collect()];
             let [mut a, mut b]: [Vec<f64>; 2] = parents.clone();
-            own.cross(&mut a, &mut b, &genes, &mut rng).unwrap();
+            own.cross(Parents { first: &mut a, second: &mut b, genes: &genes }, &mut rng).unwrap();
             let mut borders = 0;
             for k in 0..n {
                 let pair = [a[k], b[k]];
@@ -137,10 +138,12 @@ fn cuts_are_uniform() {
     let (mut cuts, mut swapped) = ([0.0; 5], 0.0);
     for _ in 0..8000 {
         let [mut a, mut b] = [vec![0.0; 5], vec![1.0; 5]];
-        one_point.cross(&mut a, &mut b, &genes, &mut rng).unwrap();
+        one_point
+            .cross(Parents { first: &mut a, second: &mut b, genes: &genes }, &mut rng)
+            .unwrap();
         cuts[a.iter().position(|value| *value == 1.0).unwrap()] += 1.0;
         let [mut a, mut b] = [vec![0.0; 5], vec![1.0; 5]];
-        uniform.cross(&mut a, &mut b, &genes, &mut rng).unwrap();
+        uniform.cross(Parents { first: &mut a, second: &mut b, genes: &genes }, &mut rng).unwrap();
         swapped += a.iter().sum::<f64>() / 5.0;
     }
     assert_eq!(cuts[0], 0.0);
@@ -159,10 +162,12 @@ fn children_lie_where_the_papers_say() {
     let mut all = Vec::new();
     for _ in 0..2000 {
         let [mut a, mut b] = [[1.0], [2.0]];
-        arithmetic.cross(&mut a, &mut b, &genes, &mut rng).unwrap();
+        arithmetic
+            .cross(Parents { first: &mut a, second: &mut b, genes: &genes }, &mut rng)
+            .unwrap();
         assert!((a[0] + b[0] - 3.0).abs() < 1e-14 && (1.0..=2.0).contains(&a[0]));
         let [mut a, mut b] = [[1.0], [2.0]];
-        blend.cross(&mut a, &mut b, &genes, &mut rng).unwrap();
+        blend.cross(Parents { first: &mut a, second: &mut b, genes: &genes }, &mut rng).unwrap();
         all.extend([a[0], b[0]]);
     }
     all.sort_by(f64::total_cmp);

@@ -6,7 +6,7 @@
 
 use super::Simulated;
 use super::fitness::sum_of_squares;
-use super::recorder::{Compared, Measurement, Study};
+use super::study::{Compared, Measurement, Study};
 use crate::ga::Genomes;
 use rustc_hash::{FxHashMap, FxHasher};
 use std::hash::Hasher as _;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 /// Simulations of one generation.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Generation {
+pub struct Generation {
     experiments: Vec<Simulations>,
     /// Calls of `Eval`.
     calls: u64,
@@ -41,27 +41,21 @@ struct Series<'a> {
 }
 
 impl Generation {
-    pub(super) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.experiments.is_empty()
     }
 
-    pub(super) fn clear(&mut self) {
+    pub fn clear(&mut self) {
         self.experiments.clear();
     }
 
     /// Number of individuals of all experiments.
-    pub(super) fn size(&self) -> usize {
+    pub fn size(&self) -> usize {
         self.experiments.iter().map(|simulations| simulations.genomes.len()).sum()
     }
 
     /// Adds what `Eval` has simulated.
-    pub(super) fn add(
-        &mut self,
-        study: &Arc<Study>,
-        x: &[f64],
-        genomes: &Genomes,
-        simulated: &Simulated,
-    ) {
+    pub fn add(&mut self, study: &Arc<Study>, x: &[f64], genomes: &Genomes, simulated: &Simulated) {
         let known = self.experiments.iter().position(|known| known.is_of(study, x));
         let place = known.unwrap_or_else(|| {
             let (study, x) = (study.clone(), x.to_vec());
@@ -79,7 +73,7 @@ impl Generation {
     }
 
     /// Adds the simulations of another one.
-    pub(super) fn append(&mut self, other: Generation) {
+    pub fn append(&mut self, other: Generation) {
         for mut more in other.experiments {
             match self.experiments.iter_mut().find(|own| own.is_of(&more.study, &more.x)) {
                 Some(own) => own.append(&mut more),
@@ -91,7 +85,7 @@ impl Generation {
     /// `Fit` has compared these rows with `measured`. They belong to the experiment that has all of
     /// them, the one simulated last if several have (as where all simulations have failed); rows of
     /// several experiments belong to the last that has each.
-    pub(super) fn rate(&mut self, rows: &[f64], measured: &[f64]) {
+    pub fn rate(&mut self, rows: &[f64], measured: &[f64]) {
         let wanted: Vec<&[f64]> = rows.chunks_exact(measured.len().max(1)).collect();
         let of_size = |own: &Simulations| own.x.len() == measured.len();
         let mut found: Vec<(usize, Vec<Vec<usize>>)> = (0..self.experiments.len())
@@ -114,22 +108,22 @@ impl Generation {
     }
 
     /// Whether there are individuals and `Fit` got all of them.
-    pub(super) fn is_rated(&self) -> bool {
+    pub fn is_rated(&self) -> bool {
         !self.is_empty() && self.experiments.iter().all(Simulations::is_rated)
     }
 
     /// Whether `Fit` got any of them.
-    pub(super) fn has_ratings(&self) -> bool {
+    pub fn has_ratings(&self) -> bool {
         self.experiments.iter().any(|simulations| !simulations.ratings.is_empty())
     }
 
     /// Whether this experiment has been simulated, and all its individuals compared.
-    pub(super) fn has_rated(&self, study: &Study, x: &[f64]) -> bool {
+    pub fn has_rated(&self, study: &Study, x: &[f64]) -> bool {
         self.experiments.iter().any(|own| own.is_of(study, x) && own.is_rated())
     }
 
     /// The only experiment, where there is one alone.
-    pub(super) fn only(&self) -> Option<(&Study, &[f64], usize)> {
+    pub fn only(&self) -> Option<(&Study, &[f64], usize)> {
         match self.experiments.as_slice() {
             [own] => Some((&own.study, &own.x, own.genomes.len())),
             _ => None,
@@ -137,19 +131,19 @@ impl Generation {
     }
 
     /// The individuals of the first experiment.
-    pub(super) fn genomes(&self) -> &[Vec<f64>] {
+    pub fn genomes(&self) -> &[Vec<f64>] {
         self.experiments.first().map_or(&[], |first| &first.genomes)
     }
 
     /// Whether all individuals are among those of `population`.
-    pub(super) fn is_part_of(&self, population: &[u64]) -> bool {
+    pub fn is_part_of(&self, population: &[u64]) -> bool {
         let known = |genome: &Vec<f64>| population.binary_search(&key(genome)).is_ok();
         self.experiments.iter().all(|own| own.genomes.iter().all(known))
     }
 
     /// The experiments that simulated the most of these individuals: one that simulated few of them
     /// had another purpose, such as the check of a result with other data.
-    pub(super) fn covering(&self, individuals: &[Vec<f64>]) -> Vec<usize> {
+    pub fn covering(&self, individuals: &[Vec<f64>]) -> Vec<usize> {
         let covered = |own: &Simulations| {
             let places = own.places();
             individuals.iter().filter(|genome| places.contains_key(&key(genome))).count()
@@ -161,7 +155,7 @@ impl Generation {
 
     /// The sums of squares of each individual, series by series of these experiments; empty for
     /// one that was not simulated in all of them or where data are not known.
-    pub(super) fn sums(
+    pub fn sums(
         &self,
         experiments: &[usize],
         individuals: &[Vec<f64>],
@@ -181,7 +175,7 @@ impl Generation {
     }
 
     /// An individual beside all series of these experiments; empty if it was not simulated.
-    pub(super) fn compared(
+    pub fn compared(
         &self,
         experiments: &[usize],
         genome: &[f64],
@@ -288,7 +282,7 @@ impl Simulations {
 }
 
 /// A number made of the bits.
-pub(super) fn key(values: &[f64]) -> u64 {
+pub fn key(values: &[f64]) -> u64 {
     let mut hasher = FxHasher::default();
     values.iter().for_each(|value| hasher.write_u64(value.to_bits()));
     hasher.finish()

@@ -21,6 +21,7 @@ mod program;
 mod recorder;
 mod report;
 mod seeds;
+mod study;
 mod table;
 mod uncertainty;
 
@@ -30,5 +31,6 @@ pub use objective::Objective;
 pub use points::{Path, time_of};
 pub use probe::{Ending, Probe};
 pub use program::CompiledModel;
-pub use recorder::{Best, Compared, Measurement, Quantity, Recorder, Study};
+pub use recorder::{Best, Recorder};
+pub use study::{Compared, Measurement, Quantity, Study};
 pub use uncertainty::{Uncertainty, error_of_combination, uncertainty, uncertainty_given};

@@ -65,7 +65,7 @@ impl Objective {
 
 /// The objective that has the values `fitness` for individuals with these sums of squares:
 /// `sums[k]` has one entry for each series.
-pub(super) fn recognised(sums: &[Vec<f64>], fitness: &[f64]) -> Objective {
+pub fn recognised(sums: &[Vec<f64>], fitness: &[f64]) -> Objective {
     let good: Vec<(&[f64], f64)> = sums
         .iter()
         .zip(fitness)

@@ -6,12 +6,12 @@ use crate::diag::Fault;
 use crate::sim::{OutputGrid, Settings};
 
 /// X when nothing else is named.
-pub(super) const TIME: &str = "time";
+pub const TIME: &str = "time";
 /// Slices in which the measured points are looked for on a function of time.
 const SLICES: u32 = 500;
 
 /// How the measured points are found on a trajectory.
-pub(super) enum Plan {
+pub enum Plan {
     /// X depends on time alone: at these times, in the order of the points. Only Y is observed.
     AtTimes(Vec<f64>),
     /// X is simulated along with Y: by interpolation in X.
@@ -21,13 +21,13 @@ pub(super) enum Plan {
 }
 
 /// The varied parameters, and behind them that which stands for X where it is an input.
-pub(super) fn with_driver(model: &dyn Model, varied: &[String]) -> Vec<String> {
+pub fn with_driver(model: &dyn Model, varied: &[String]) -> Vec<String> {
     let driver = model.driven().map(|(_, parameter)| parameter.to_owned());
     varied.iter().cloned().chain(driver).collect()
 }
 
 /// How the points are found; changes `settings` to what that needs.
-pub(super) fn plan(
+pub fn plan(
     model: &dyn Model,
     varied: &[String],
     x_name: &str,

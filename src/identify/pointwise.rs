@@ -6,7 +6,7 @@ use crate::sim::{Failure, SimError, SimErrorKind};
 
 /// Evaluates points one by one; keeps its memory.
 #[derive(Debug, Default)]
-pub(super) struct Pointwise {
+pub struct Pointwise {
     /// Values of the varied parameters, that which stands for X at the end.
     values: Vec<f64>,
     unknowns: Vec<f64>,
@@ -20,7 +20,7 @@ impl Pointwise {
     /// # Errors
     ///
     /// Why a point has no solution, in one sentence.
-    pub(super) fn evaluate(
+    pub fn evaluate(
         &mut self,
         instance: &mut dyn Instance,
         at: (&[f64], f64),
@@ -40,7 +40,7 @@ impl Pointwise {
     /// # Errors
     ///
     /// Why a point has no solution or no derivatives, in one sentence.
-    pub(super) fn differentiate(
+    pub fn differentiate(
         &mut self,
         instance: &mut dyn Instance,
         at: (&[f64], f64),
@@ -82,7 +82,7 @@ impl Pointwise {
                 checked.and_then(read).map_err(|failure: Failure| SimErrorKind::Evaluation(failure))
             });
         solved.map_err(|kind| {
-            let error = SimError { time, kind, culprit: None };
+            let error = SimError { time, kind, offending: None };
             format!("{} (at X = {x})", instance.explain(&error))
         })
     }

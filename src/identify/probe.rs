@@ -12,7 +12,8 @@ use super::problem::{
     Problem, Run, ScriptResult, Series, Severity, Sigma, Simulate, Solution, SolvedParameter,
     SolvedSeries, Stop, conclude, draw_curves, failure_region,
 };
-use super::recorder::{Best, Compared, Recorder};
+use super::recorder::{Best, Recorder};
+use super::study::Compared;
 use super::table::significant;
 use super::{Model, Objective, Parameter};
 use crate::diag::Fault;

@@ -13,6 +13,7 @@ use super::fitness::sum_of_squares;
 use super::generation::{self, Generation};
 use super::objective::{Objective, recognised};
 use super::seeds::Seeds;
+use super::study::{Compared, Measurement, Study};
 use crate::ga::{Genomes, History, has_failed};
 use indexmap::IndexMap;
 use std::sync::Arc;
@@ -26,54 +27,6 @@ const OTHER_CAUSES: &str = "other causes";
 const PROVISIONAL: usize = 10_000;
 /// Individuals kept for the figures.
 const KEPT: usize = 4000;
-
-/// What is simulated: the model, what varies, what is compared.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Study {
-    /// The model, with its modification.
-    pub model: String,
-    /// The identified parameters in the order of the genes.
-    pub parameters: Vec<Quantity>,
-    /// What the measured points are given over.
-    pub x: Quantity,
-    /// What was measured.
-    pub y: Quantity,
-}
-
-/// A name and a unit.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Quantity {
-    /// Its name in the model.
-    pub name: String,
-    /// Its unit; empty where the model gives none.
-    pub unit: String,
-}
-
-/// Where measured data come from.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Measurement {
-    /// The file as the script names it.
-    pub file: String,
-    /// Measured X.
-    pub x: Vec<f64>,
-    /// Measured Y.
-    pub y: Vec<f64>,
-}
-
-/// A series beside the simulation of an individual.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Compared {
-    /// What was simulated.
-    pub study: Arc<Study>,
-    /// The measured X.
-    pub x: Vec<f64>,
-    /// The simulated Y.
-    pub simulated: Vec<f64>,
-    /// The measured Y; `None` where the script has not shown it.
-    pub measured: Option<Vec<f64>>,
-    /// The file that it was read from; empty where not known.
-    pub file: String,
-}
 
 /// The best individual of the run.
 #[derive(Debug, Clone, PartialEq)]
@@ -356,7 +309,7 @@ impl Best {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::FailedSimulation;
+    use crate::identify::{FailedSimulation, Quantity};
 
     fn study() -> Arc<Study> {
         let quantity = |name: &str| Quantity { name: name.to_owned(), unit: String::new() };

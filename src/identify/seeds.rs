@@ -12,7 +12,7 @@ struct Chain {
 
 /// The seeds of a run.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Seeds {
+pub struct Seeds {
     /// The seed that the random numbers of the first population began with.
     pub(super) seed: Option<[f64; 6]>,
     chain: Option<Chain>,
@@ -31,7 +31,7 @@ pub(super) struct Seeds {
 impl Seeds {
     /// Numbers were drawn with `seed`, which left `next`, by the call at `site`. `simulated`:
     /// whether the run has simulated anything yet.
-    pub(super) fn drawn(&mut self, seed: [f64; 6], next: [f64; 6], site: u64, simulated: bool) {
+    pub fn drawn(&mut self, seed: [f64; 6], next: [f64; 6], site: u64, simulated: bool) {
         let continues = self.chain.filter(|chain| chain.next == seed && !self.inherited);
         self.inherited = false;
         let first = continues.map_or(seed, |chain| chain.first);
@@ -51,7 +51,7 @@ impl Seeds {
 
     /// The run goes on with a simulation. The seed set since the last one, if it is not the one
     /// that the run is named by: what was drawn for the first population comes from another.
-    pub(super) fn goes_on(&mut self, generations: usize) -> Option<[f64; 6]> {
+    pub fn goes_on(&mut self, generations: usize) -> Option<[f64; 6]> {
         self.in_cycle.extend(self.since.drain(..));
         self.next_first = None;
         let seed = self.waiting.take()?;
@@ -63,7 +63,7 @@ impl Seeds {
     }
 
     /// The seeds of the run that begins now.
-    pub(super) fn of_next_run(&self) -> Seeds {
+    pub fn of_next_run(&self) -> Seeds {
         let chain = self
             .chain
             .map(|chain| Chain { first: self.next_first.unwrap_or(chain.first), next: chain.next });

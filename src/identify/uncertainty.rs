@@ -151,8 +151,8 @@ mod tests {
         let found = uncertainty(&jacobian, &[0.1, 0.1, -0.1, 0.1]).unwrap();
         assert!(found.standard_deviations[1].is_infinite());
         assert!(found.standard_deviations[0].is_finite());
-        let inseparable = [vec![1.0, 2.0, 3.0], vec![2.0, 4.0, 6.0]];
-        let found = uncertainty(&inseparable, &[0.1, 0.1, -0.1]).unwrap();
+        let non_identifiable = [vec![1.0, 2.0, 3.0], vec![2.0, 4.0, 6.0]];
+        let found = uncertainty(&non_identifiable, &[0.1, 0.1, -0.1]).unwrap();
         assert!(found.standard_deviations.iter().all(|deviation| deviation.is_infinite()));
     }
 

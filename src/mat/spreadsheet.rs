@@ -16,7 +16,7 @@ const MOST_CELLS: usize = 10_000_000;
 const DAYS_TO_1970: f64 = 25_569.0;
 
 /// Whether the bytes are those of a zip archive, as XLSX files are.
-pub(super) fn looks_like(bytes: &[u8]) -> bool {
+pub fn looks_like(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04")
 }
 
@@ -26,7 +26,7 @@ pub(super) fn looks_like(bytes: &[u8]) -> bool {
 /// # Errors
 ///
 /// `bad-table`; faults name the cell.
-pub(super) fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
+pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
     let unreadable = |error: &dyn std::fmt::Display| {
         fault!(BAD_TABLE, "the spreadsheet cannot be read: {error}")
             .help("save it as .xlsx or .csv")

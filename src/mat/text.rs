@@ -12,12 +12,12 @@ use crate::{bail, fault};
 const MAX_CHARACTERS: usize = 1 << 26;
 
 /// Whether the first line is `#1`.
-pub(super) fn looks_like(bytes: &[u8]) -> bool {
+pub fn looks_like(bytes: &[u8]) -> bool {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     matches!(bytes, [b'#', b'1'] | [b'#', b'1', b' ' | b'\t' | b'\r' | b'\n', ..])
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
+pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
     let text = super::table::decode(bytes);
     let mut lines = text.lines().enumerate().map(|(i, line)| (i + 1, line));
     let mut file = MatFile::new(Version::Text);
@@ -119,10 +119,10 @@ fn read_lines<'a>(
     lines: &mut impl Iterator<Item = (usize, &'a str)>,
 ) -> Result<Matrix, Fault> {
     let Declaration { name, rows, columns, .. } = *declaration;
-    let mut texts: Vec<&str> = Vec::new();
+    let mut lines_found: Vec<&str> = Vec::new();
     for _ in 0..rows {
         let Some((number, line)) = lines.next() else {
-            let found = texts.len();
+            let found = lines_found.len();
             bail!(BAD_TABLE, "`{name}` has {found} lines, but {rows} are declared");
         };
         let line = line.trim_end();
@@ -133,14 +133,14 @@ fn read_lines<'a>(
                 columns + 1
             );
         }
-        texts.push(line);
+        lines_found.push(line);
     }
-    let longest = texts.iter().map(|text| text.len()).max().unwrap_or(0);
+    let longest = lines_found.iter().map(|text| text.len()).max().unwrap_or(0);
     if longest.saturating_mul(rows) > MAX_CHARACTERS {
         bail!(
             BAD_TABLE,
             "`{name}` has {rows} rows of up to {longest} characters, which is too large"
         );
     }
-    Ok(Matrix::from_text(&texts))
+    Ok(Matrix::from_text(&lines_found))
 }

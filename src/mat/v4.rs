@@ -14,7 +14,7 @@ use crate::diag::Fault;
 use crate::{bail, fault};
 
 /// The number P of a storage.
-pub(super) const STORAGES: [Storage; 6] =
+pub const STORAGES: [Storage; 6] =
     [Storage::F64, Storage::F32, Storage::I32, Storage::I16, Storage::U16, Storage::U8];
 
 struct Header {
@@ -28,7 +28,7 @@ struct Header {
     name_length: usize,
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
+pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
     if bytes.is_empty() {
         bail!(BAD_MAT_FILE, "the file is empty");
     }

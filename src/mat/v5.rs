@@ -26,7 +26,7 @@ const MI_UTF16: u32 = 17;
 const MI_UTF32: u32 = 18;
 
 /// The byte order of a version 5 file; `None` if it is no such file.
-pub(super) fn byte_order(bytes: &[u8]) -> Option<ByteOrder> {
+pub fn byte_order(bytes: &[u8]) -> Option<ByteOrder> {
     match bytes.get(126..HEADER)? {
         _ if bytes[..4].contains(&0) => None,
         b"IM" => Some(ByteOrder::Little),
@@ -35,7 +35,7 @@ pub(super) fn byte_order(bytes: &[u8]) -> Option<ByteOrder> {
     }
 }
 
-pub(super) fn read(bytes: &[u8], order: ByteOrder) -> Result<MatFile, Fault> {
+pub fn read(bytes: &[u8], order: ByteOrder) -> Result<MatFile, Fault> {
     let mut file = File { found: MatFile::new(Version::V5), inflatable: MAX_INFLATED };
     let mut reader = Reader::new(&bytes[HEADER..], order);
     while !reader.is_empty() {

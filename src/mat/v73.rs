@@ -22,12 +22,12 @@ const MAX_DEPTH: usize = 32;
 const MAX_OBJECTS: usize = 100_000;
 
 /// Whether the bytes are HDF5, by themselves or behind the head of a MAT file.
-pub(super) fn looks_like(bytes: &[u8]) -> bool {
+pub fn looks_like(bytes: &[u8]) -> bool {
     let signed = |at: usize| bytes.get(at..).is_some_and(|rest| rest.starts_with(SIGNATURE));
     signed(0) || signed(512) || bytes.starts_with(b"MATLAB 7.3 MAT-file")
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
+pub fn read(bytes: &[u8]) -> Result<MatFile, Fault> {
     let file = File::from_bytes(bytes.to_vec()).map_err(|error| damaged("the file", &error))?;
     let mut reader = Reader {
         found: MatFile::new(Version::V73),
@@ -127,17 +127,8 @@ impl Reader {
         let Some((rows, columns)) = self.sizes(&name, &shape)? else {
             return Ok(());
         };
+        self.take_room(&name, (rows, columns), width)?;
         let size = matrix::size(&name, rows, columns)?;
-        let needed = (size as u64).saturating_mul(width.max(8));
-        if needed > self.bytes {
-            bail!(
-                BAD_MAT_FILE,
-                "`{name}` is {rows} by {columns}: the file contains more than {} \
-                 MiB", MAX_INFLATED >> 20;
-                help: "save only the matrices that are needed"
-            );
-        }
-        self.bytes -= needed;
         let values = match dataset.read_f64() {
             Ok(values) if values.len() == size => values,
             Ok(values) => {
@@ -165,6 +156,27 @@ impl Reader {
         let by_rows = !self.is_matlab && class.is_empty() && shape.len() == 2;
         let matrix = if by_rows { matrix.transposed() } else { matrix };
         self.found.insert(name, matrix);
+        Ok(())
+    }
+
+    /// Counts a matrix of elements of so many bytes against what a file may contain.
+    fn take_room(
+        &mut self,
+        name: &str,
+        (rows, columns): (usize, usize),
+        width: u64,
+    ) -> Result<(), Fault> {
+        let size = matrix::size(name, rows, columns)?;
+        let needed = (size as u64).saturating_mul(width.max(8));
+        if needed > self.bytes {
+            bail!(
+                BAD_MAT_FILE,
+                "`{name}` is {rows} by {columns}: the file contains more than {} \
+                 MiB", MAX_INFLATED >> 20;
+                help: "save only the matrices that are needed"
+            );
+        }
+        self.bytes -= needed;
         Ok(())
     }
 

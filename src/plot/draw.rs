@@ -1,8 +1,8 @@
 //! From a figure to a picture.
 
 use super::figure::{Axis, Figure, Mark, Panel, Scale, Series};
-use super::look::{FILE, Letters, Look, PAGE, SMALL, SOLID};
-use super::svg::{Anchor, Svg, Writing, raised, text_width};
+use super::look::{FILE, Look, PAGE, SMALL, SOLID};
+use super::svg::{Anchor, Letters, Svg, Writing, raised, text_width};
 use super::ticks::{Ticks, power_of_ten};
 
 const RIGHT: f64 = 24.0;

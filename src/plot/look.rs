@@ -6,18 +6,9 @@
 use super::svg::Writing;
 use std::borrow::Cow;
 
-/// What letters are drawn as.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Letters {
-    /// Text, in a face of the viewer.
-    Text,
-    /// Outlines of a face that comes with the program: the same in every viewer.
-    Outlines,
-}
-
 /// How figures look.
 #[derive(Debug)]
-pub(super) struct Look {
+pub struct Look {
     pub(super) width: f64,
     pub(super) ink: &'static str,
     pub(super) paper: &'static str,
@@ -34,7 +25,7 @@ pub(super) struct Look {
 }
 
 /// A figure on white paper.
-pub(super) static FILE: Look = Look {
+pub static FILE: Look = Look {
     width: 640.0,
     ink: "#222222",
     paper: "#ffffff",
@@ -49,14 +40,14 @@ pub(super) static FILE: Look = Look {
 };
 
 /// The same for PNG and PDF.
-pub(super) static SOLID: Look = Look { solid: true, ..FILE };
+pub static SOLID: Look = Look { solid: true, ..FILE };
 
 /// A figure in a page, whose style sheet knows whether it is dark. On a phone of 390 pixels its 12
 /// pixel letters are still 9 high.
-pub(super) static PAGE: Look = page(480.0);
+pub static PAGE: Look = page(480.0);
 
 /// A figure of which three stand side by side on a screen of 1280 pixels.
-pub(super) static SMALL: Look = page(380.0);
+pub static SMALL: Look = page(380.0);
 
 const fn page(width: f64) -> Look {
     Look {
@@ -83,7 +74,7 @@ const fn page(width: f64) -> Look {
 
 impl Look {
     /// The colour of a series and the attribute `opacity` that makes it faint, if any.
-    pub(super) fn faint(
+    pub fn faint(
         &self,
         colour: usize,
         attribute: &str,
@@ -97,7 +88,7 @@ impl Look {
     }
 
     /// Plain text of this size.
-    pub(super) fn writing(&self, size: f64) -> Writing {
+    pub fn writing(&self, size: f64) -> Writing {
         Writing { size, bold: false, upright: false, colour: self.ink }
     }
 }

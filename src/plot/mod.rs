@@ -6,6 +6,7 @@
 //! colour vision can tell apart; series also differ in weight and marks.
 
 mod chart;
+mod coordinate;
 mod draw;
 pub mod errors;
 mod figure;
@@ -18,7 +19,6 @@ mod ticks;
 
 pub use draw::{power, shown_unit};
 pub use figure::{Axis, Figure, Mark, Panel, Scale, Series};
-pub(crate) use look::Letters;
 pub use picture::Picture;
 pub use ready::{Comparison, convergence, fit};
-pub(crate) use svg::{Anchor, Svg, Writing};
+pub(crate) use svg::{Anchor, Letters, Svg, Writing};

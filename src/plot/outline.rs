@@ -2,13 +2,13 @@
 //! wherever they are drawn, and no library for shaping text is needed. Letters are set one after
 //! the other by their advance widths, without kerning; that is enough for labels of axes.
 
-use super::svg::number;
+use super::coordinate::number;
 use std::fmt::Write;
 use ttf_parser::{Face, GlyphId, OutlineBuilder};
 
 /// The outlines of a line of text as the data of an SVG path that begins at the origin, and how
 /// wide it is. A letter that the face does not have is drawn as its empty box.
-pub(super) fn of(text: &str, size: f64, bold: bool) -> (String, f64) {
+pub fn of(text: &str, size: f64, bold: bool) -> (String, f64) {
     let font = if bold { dejavu::sans::bold() } else { dejavu::sans::regular() };
     let Ok(face) = Face::parse(font, 0) else { return (String::new(), 0.0) };
     let scale = size / f64::from(face.units_per_em());

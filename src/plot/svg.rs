@@ -1,6 +1,6 @@
 //! The few SVG elements that drawings need, with numbers rounded to hundredths of a pixel.
 
-use super::look::Letters;
+use super::coordinate::number;
 use super::outline;
 use maud::Render;
 use std::fmt::Write;
@@ -11,6 +11,15 @@ pub(crate) enum Anchor {
     Start,
     Middle,
     End,
+}
+
+/// What letters are drawn as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Letters {
+    /// Text, in a face of the viewer.
+    Text,
+    /// Outlines of a face that comes with the program: the same in every viewer.
+    Outlines,
 }
 
 /// A picture under construction.
@@ -49,7 +58,7 @@ impl Svg {
 
     /// A picture within a page, as wide as the page gives it room and in the page's face;
     /// `title` is what is read out.
-    pub(super) fn inline(width: f64, height: f64, title: &str) -> Svg {
+    pub fn inline(width: f64, height: f64, title: &str) -> Svg {
         let (width, height, title) = (number(width), number(height), escape(title));
         Svg {
             text: format!(
@@ -71,12 +80,12 @@ impl Svg {
     }
 
     /// The area within points; `style` are further attributes.
-    pub(super) fn polygon(&mut self, points: &[(f64, f64)], style: &str) {
+    pub fn polygon(&mut self, points: &[(f64, f64)], style: &str) {
         self.put(format_args!("<polygon points=\"{}\" {style}/>", places(points)));
     }
 
     /// Pen strokes of no length, which round ends make to dots: many of them in few bytes.
-    pub(super) fn dots(&mut self, points: &[(f64, f64)], style: &str) {
+    pub fn dots(&mut self, points: &[(f64, f64)], style: &str) {
         let mut path = String::new();
         for (x, y) in points {
             // Writing into a String cannot fail.
@@ -86,7 +95,7 @@ impl Svg {
     }
 
     /// A path as SVG writes it.
-    pub(super) fn path(&mut self, path: &str, style: &str) {
+    pub fn path(&mut self, path: &str, style: &str) {
         self.put(format_args!("<path d=\"{path}\" {style}/>"));
     }
 
@@ -152,13 +161,6 @@ fn places(points: &[(f64, f64)]) -> String {
     points.iter().map(place).collect::<Vec<_>>().join(" ")
 }
 
-/// A coordinate with at most two decimals.
-pub(super) fn number(value: f64) -> String {
-    let text = format!("{value:.2}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
-}
-
 /// Text as SVG holds it, without what XML does not allow.
 fn escape(text: &str) -> String {
     let allowed = text.chars().filter(|c| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}'));
@@ -167,7 +169,7 @@ fn escape(text: &str) -> String {
 
 /// Writes `10^{-3}` with raised digits. They are letters of their own, not shifted parts: viewers
 /// disagree about where shifted parts of centred text lie.
-pub(super) fn raised(text: &str) -> String {
+pub fn raised(text: &str) -> String {
     let mut parts = text.split("^{");
     let mut out = parts.next().unwrap_or_default().to_owned();
     for part in parts {
@@ -178,7 +180,7 @@ pub(super) fn raised(text: &str) -> String {
     out
 }
 
-pub(super) fn raised_letter(letter: char) -> char {
+pub fn raised_letter(letter: char) -> char {
     match letter {
         '0' => '⁰',
         '1' => '¹',
@@ -192,7 +194,7 @@ pub(super) fn raised_letter(letter: char) -> char {
 }
 
 /// About how wide text is, in pixels, in the widest of the faces asked for.
-pub(super) fn text_width(text: &str, size: f64) -> f64 {
+pub fn text_width(text: &str, size: f64) -> f64 {
     let em = |letter: char| match letter {
         'i' | 'j' | 'l' | '.' | ',' | '\'' | '|' | ':' | ';' | ' ' | 'f' | 't' | 'I' => 0.29,
         '(' | ')' | '[' | ']' | '/' | '-' | 'r' => 0.34,

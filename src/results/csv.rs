@@ -10,7 +10,7 @@ use crate::registry::Entry;
 use std::fmt::Write;
 use std::io;
 
-pub(super) const ENTRY: Entry<dyn Format> = Entry {
+pub const ENTRY: Entry<dyn Format> = Entry {
     name: "csv",
     aliases: &[],
     summary: "text with a header line and one line per time point",

@@ -19,7 +19,7 @@ use crate::mat::{self, MatFile, Matrix, Storage};
 use crate::registry::Entry;
 use std::collections::HashMap;
 
-pub(super) const ENTRY: Entry<dyn Format> = Entry {
+pub const ENTRY: Entry<dyn Format> = Entry {
     name: "mat",
     aliases: &["dymola"],
     summary: "MAT version 4 in the layout of Dymola and OpenModelica",
@@ -57,8 +57,8 @@ impl Format for Mat {
     fn read(&self, bytes: &[u8]) -> Result<ResultTable, Fault> {
         let file = mat::read(bytes)?;
         let is_transposed = is_transposed(&file)?;
-        let names = texts(&file, "name", is_transposed)?;
-        let descriptions = texts(&file, "description", is_transposed)?;
+        let names = strings(&file, "name", is_transposed)?;
+        let descriptions = strings(&file, "description", is_transposed)?;
         let info = oriented(&file, "dataInfo", is_transposed)?;
         let data =
             [oriented(&file, "data_1", is_transposed)?, oriented(&file, "data_2", is_transposed)?];
@@ -174,7 +174,7 @@ fn is_transposed(file: &MatFile) -> Result<bool, Fault> {
     }
 }
 
-fn texts(file: &MatFile, name: &str, is_transposed: bool) -> Result<Vec<String>, Fault> {
+fn strings(file: &MatFile, name: &str, is_transposed: bool) -> Result<Vec<String>, Fault> {
     let matrix = file.matrix(name)?;
     Ok(if is_transposed { matrix.text_columns() } else { matrix.text_rows() })
 }

@@ -11,7 +11,7 @@ const RELATIVE_STEP: f64 = 1.5e-8;
 
 /// Writes (f(x + h eⱼ) − f(x)) / h, or the same with −h where f has no value there. `at` evaluates f
 /// where one entry of x is another; `column` receives the quotients.
-pub(super) fn quotient(
+pub fn quotient(
     x: f64,
     nominal: f64,
     before: &[f64],

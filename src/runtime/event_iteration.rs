@@ -265,7 +265,7 @@ impl System {
         for number in 0..MAX_PASSES {
             let change = if number < PASSES_AT_ONCE { Change::All } else { Change::First };
             if number == PASSES_AT_ONCE {
-                self.restless.fill(false);
+                self.inconsistent.fill(false);
             }
             match self.pass(t, stage, change)? {
                 None => return Ok(any),
@@ -305,15 +305,15 @@ impl System {
 
     /// Keeps the values of the variables of discrete loops.
     pub(super) fn note_lagged(&mut self) {
-        for (slot, variable) in self.lagged.iter_mut().zip(&self.program.events.lagged) {
+        for (slot, variable) in self.previous_iterate.iter_mut().zip(&self.program.events.lagged) {
             *slot = self.registers[variable.0 as usize];
         }
     }
 
     /// One of them that has another value now.
     pub(super) fn moved_lagged(&self) -> Option<u32> {
-        let mut lagged = self.lagged.iter().zip(&self.program.events.lagged);
-        let moved = lagged.find(|(old, variable)| **old != self.registers[variable.0 as usize]);
+        let mut previous = self.previous_iterate.iter().zip(&self.program.events.lagged);
+        let moved = previous.find(|(old, variable)| **old != self.registers[variable.0 as usize]);
         moved.map(|(_, variable)| variable.0)
     }
 

@@ -9,7 +9,7 @@ use crate::sim::Failure;
 use crate::symbolic::function::{self, Function, FunctionId};
 
 /// Computes the outputs of code that computes nothing else.
-pub(super) fn read(code: &Outputs, registers: &mut Memory, out: &mut [f64]) -> Result<(), Failure> {
+pub fn read(code: &Outputs, registers: &mut Memory, out: &mut [f64]) -> Result<(), Failure> {
     if code.machine_code.run(&code.tape, &code.outputs, registers, out) {
         return Ok(());
     }
@@ -22,7 +22,7 @@ pub(super) fn read(code: &Outputs, registers: &mut Memory, out: &mut [f64]) -> R
 
 /// The operation that had no value, and its number in a [`Failure::Domain`].
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Operation {
+pub enum Operation {
     /// A division, or another operation that overflowed.
     Division,
     /// A power.
@@ -34,9 +34,9 @@ pub(super) enum Operation {
 }
 
 impl Operation {
-    pub(super) const DIVISION: u32 = 0;
-    pub(super) const POWER: u32 = 1;
-    pub(super) const OTHER: u32 = u32::MAX;
+    pub const DIVISION: u32 = 0;
+    pub const POWER: u32 = 1;
+    pub const OTHER: u32 = u32::MAX;
     /// The number of the first function.
     const FUNCTIONS: u32 = 2;
 
@@ -47,7 +47,7 @@ impl Operation {
     }
 
     /// The operation of a number.
-    pub(super) fn of(number: u32) -> Operation {
+    pub fn of(number: u32) -> Operation {
         match number {
             Operation::DIVISION => Operation::Division,
             Operation::POWER => Operation::Power,
@@ -59,7 +59,7 @@ impl Operation {
 }
 
 /// Runs a tape; a failure says which operation of which equation.
-pub(super) fn run(tape: &Tape, registers: &mut Memory) -> Result<(), Failure> {
+pub fn run(tape: &Tape, registers: &mut Memory) -> Result<(), Failure> {
     tape.run(registers).map_err(|at| {
         let operation = match tape.code[at as usize] {
             Instruction::Unary { id, .. } | Instruction::Binary { id, .. } => Operation::number(id),

@@ -10,7 +10,7 @@ use crate::codegen::memory::Memory;
 use crate::codegen::program::{Program, number_of_equations};
 use crate::diag::{Code, Diagnostic};
 use crate::fault;
-use crate::sim::{Culprit, Failure, SimError, SimErrorKind};
+use crate::sim::{Failure, Offending, SimError, SimErrorKind};
 use crate::source::Span;
 use crate::symbolic::VarId;
 
@@ -24,12 +24,17 @@ impl Program {
                 Failure::Newton { block } | Failure::Singular { block },
             ) => self.explain_block(self.block(block), &when, INITIALIZATION_FAILED),
             SimErrorKind::Initialization(failure) => self.explain_failure(failure, &when),
-            other => self.explain_end(other, error.culprit, &when),
+            other => self.explain_end(other, error.offending, &when),
         }
     }
 
     /// A simulation that ended where nothing failed by itself.
-    fn explain_end(&self, kind: SimErrorKind, culprit: Option<Culprit>, when: &str) -> Diagnostic {
+    fn explain_end(
+        &self,
+        kind: SimErrorKind,
+        offending: Option<Offending>,
+        when: &str,
+    ) -> Diagnostic {
         let reason = match kind {
             SimErrorKind::StepSize => "the step size became too small",
             SimErrorKind::StepBudget => "the limit on the number of steps was reached",
@@ -42,7 +47,7 @@ impl Program {
             }
             _ => "a value is not finite",
         };
-        let (words, span) = match culprit.and_then(|culprit| self.culprit(culprit)) {
+        let (words, span) = match offending.and_then(|offending| self.offending(offending)) {
             Some((words, span)) => (format!("{reason}; {words}"), span),
             None => (reason.to_owned(), self.first_span()),
         };
@@ -51,14 +56,14 @@ impl Program {
     }
 
     /// What was in the way, and where it is written.
-    fn culprit(&self, culprit: Culprit) -> Option<(String, Span)> {
+    fn offending(&self, offending: Offending) -> Option<(String, Span)> {
         let dae = &self.sorted.dae;
-        match culprit {
-            Culprit::Unknown(at) => {
+        match offending {
+            Offending::Unknown(at) => {
                 let variable = dae.variable(*self.unknowns.get(at as usize)?);
                 Some((format!("`{}` changes fastest", variable.name), variable.span))
             }
-            Culprit::Crossing(at) => {
+            Offending::Crossing(at) => {
                 let relation = dae.relations.get(*self.crossing_relations.get(at as usize)?)?;
                 Some(("this relation switches repeatedly".to_owned(), relation.span))
             }

@@ -25,11 +25,11 @@ const LAST_CORRECTION: f64 = 1e-3;
 
 /// The curve leads to no solution.
 #[derive(Debug)]
-pub(super) struct NoSolution;
+pub struct NoSolution;
 
 /// The workspace for systems of one size.
 #[derive(Debug, Clone)]
-pub(super) struct Continuation {
+pub struct Continuation {
     lu: DenseLu,
     /// F(x₀).
     start: Vec<f64>,
@@ -42,7 +42,7 @@ pub(super) struct Continuation {
 }
 
 impl Continuation {
-    pub(super) fn new(n: usize) -> Continuation {
+    pub fn new(n: usize) -> Continuation {
         let zeros = vec![0.0; n];
         Continuation {
             lu: DenseLu::new(n),
@@ -56,7 +56,7 @@ impl Continuation {
     }
 
     /// Replaces x by a solution; `newton` makes the last steps. On failure x is anything.
-    pub(super) fn solve(
+    pub fn solve(
         &mut self,
         newton: &mut Newton,
         equations: &mut dyn Equations,

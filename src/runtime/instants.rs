@@ -3,10 +3,10 @@
 use crate::sim::EventOutcome;
 
 /// Relative distance of times that are one.
-pub(super) const AT_ONCE: f64 = 1e-12;
+pub const AT_ONCE: f64 = 1e-12;
 
 /// Whether two times are the same but for rounding.
-pub(super) fn same_time(a: f64, b: f64) -> bool {
+pub fn same_time(a: f64, b: f64) -> bool {
     (a - b).abs() <= AT_ONCE * a.abs().max(b.abs())
 }
 
@@ -71,7 +71,7 @@ pub(super) enum Change {
 }
 
 /// What two parts of one event did together.
-pub(super) fn either(a: EventOutcome, b: EventOutcome) -> EventOutcome {
+pub fn either(a: EventOutcome, b: EventOutcome) -> EventOutcome {
     match (a, b) {
         (EventOutcome::Continue { y_changed: a }, EventOutcome::Continue { y_changed: b }) => {
             EventOutcome::Continue { y_changed: a || b }

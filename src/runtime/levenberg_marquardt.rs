@@ -20,11 +20,11 @@ const LAST_STEP: f64 = 1e-14;
 
 /// There is no solution, or none that can be reached.
 #[derive(Debug)]
-pub(super) struct NoSolution;
+pub struct NoSolution;
 
 /// The workspace for systems of one size.
 #[derive(Debug, Clone)]
-pub(super) struct LeastSquares {
+pub struct LeastSquares {
     n: usize,
     lu: DenseLu,
     /// By columns.
@@ -39,7 +39,7 @@ pub(super) struct LeastSquares {
 }
 
 impl LeastSquares {
-    pub(super) fn new(n: usize) -> LeastSquares {
+    pub fn new(n: usize) -> LeastSquares {
         let zeros = vec![0.0; n];
         LeastSquares {
             n,
@@ -56,7 +56,7 @@ impl LeastSquares {
     }
 
     /// Improves x until it solves the system; on failure x is the best that was found.
-    pub(super) fn solve(
+    pub fn solve(
         &mut self,
         equations: &mut dyn Equations,
         x: &mut [f64],

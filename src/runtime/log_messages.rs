@@ -2,7 +2,7 @@
 //! systems that somebody listens to look after them.
 
 use super::execution::run;
-use super::simulation_log::{Notices, Recorded, Told};
+use super::simulation_log::{LogMessage, Recorded, SimulationLog};
 use super::system::System;
 use crate::bytecode::Journal;
 use crate::codegen::Program;
@@ -15,7 +15,7 @@ use crate::value::format::text;
 impl System {
     /// From now on what the model tells is kept.
     pub fn listen(&mut self) {
-        self.notices = Some(Notices::default());
+        self.log = Some(SimulationLog::default());
     }
 
     /// What the model would have written in the last simulation, if somebody listened to it.
@@ -24,49 +24,49 @@ impl System {
     }
 
     /// What the model has told in the last simulation, and how much more there was.
-    pub fn told(&self) -> (Vec<Told>, u64) {
-        let Some(notices) = &self.notices else { return (Vec::new(), 0) };
-        let told = notices.told.iter().filter_map(|one| told(&self.program, one));
-        (told.collect(), notices.omitted)
+    pub fn log_messages(&self) -> (Vec<LogMessage>, u64) {
+        let Some(log) = &self.log else { return (Vec::new(), 0) };
+        let messages = log.recorded.iter().filter_map(|one| message(&self.program, one));
+        (messages.collect(), log.omitted)
     }
 
     pub(super) fn forget_notices(&mut self) {
-        if let Some(notices) = &mut self.notices {
+        if let Some(log) = &mut self.log {
             let active = vec![false; self.program.notices.len()];
-            *notices = Notices { active, ..Notices::default() };
+            *log = SimulationLog { active, ..SimulationLog::default() };
         }
     }
 
     /// The warnings that begin to hold now.
     pub(super) fn notice(&mut self, t: f64) -> Result<(), Failure> {
-        let Some(mut notices) = self.notices.take() else { return Ok(()) };
+        let Some(mut log) = self.log.take() else { return Ok(()) };
         let program = self.program.clone();
         let done = program.notices.iter().enumerate().try_for_each(|(at, notice)| {
             let values = self.noticed(notice)?;
             let holds = values.is_some();
-            if let Some(values) = values.filter(|_| !notices.active.get(at).is_some_and(|a| *a)) {
-                notices.record(t, notice.assertion, values);
+            if let Some(values) = values.filter(|_| !log.active.get(at).is_some_and(|a| *a)) {
+                log.record(t, notice.assertion, values);
             }
-            if let Some(active) = notices.active.get_mut(at) {
+            if let Some(active) = log.active.get_mut(at) {
                 *active = holds;
             }
             Ok(())
         });
-        self.notices = Some(notices);
+        self.log = Some(log);
         done
     }
 
     /// What is told at an event.
     pub(super) fn notice_at_event(&mut self, t: f64) -> Result<(), Failure> {
-        let Some(mut notices) = self.notices.take() else { return Ok(()) };
+        let Some(mut log) = self.log.take() else { return Ok(()) };
         let program = self.program.clone();
         let done = program.events.notices.iter().try_for_each(|notice| {
             if let Some(values) = self.noticed(notice)? {
-                notices.record(t, notice.assertion, values);
+                log.record(t, notice.assertion, values);
             }
             Ok(())
         });
-        self.notices = Some(notices);
+        self.log = Some(log);
         done
     }
 
@@ -79,7 +79,7 @@ impl System {
     }
 }
 
-fn told(program: &Program, recorded: &Recorded) -> Option<Told> {
+fn message(program: &Program, recorded: &Recorded) -> Option<LogMessage> {
     let dae = &program.sorted().dae;
     let mut all = dae.assertions.iter().chain(&dae.events.assertions);
     let Assertion { parts, level, span, .. } = all.nth(recorded.assertion as usize)?;
@@ -100,7 +100,7 @@ fn told(program: &Program, recorded: &Recorded) -> Option<Told> {
         words += &text(&value, DIGITS, 0, true).ok()?;
     }
     let is_warning = *level == Level::Warning;
-    Some(Told { time: recorded.time, text: words, is_warning, span: *span })
+    Some(LogMessage { time: recorded.time, text: words, is_warning, span: *span })
 }
 
 /// As `String` writes Reals (MLS §3.7.1).

@@ -37,6 +37,6 @@ mod state_selection;
 mod system;
 
 pub use modes::Treated;
-pub use simulation_log::Told;
+pub use simulation_log::LogMessage;
 pub use singular_systems::Undetermined;
 pub use system::System;

@@ -20,19 +20,19 @@ impl System {
     pub(super) fn find_combination(&mut self, t: f64, stage: Stage) -> bool {
         let before = self.registers.clone();
         let mut group: Vec<usize> = Vec::new();
-        let restless = |group: &[usize], system: &System| {
-            let all = system.restless.iter().enumerate();
-            all.filter(|(at, restless)| **restless && !group.contains(at))
+        let inconsistent = |group: &[usize], system: &System| {
+            let all = system.inconsistent.iter().enumerate();
+            all.filter(|(at, inconsistent)| **inconsistent && !group.contains(at))
                 .map(|(at, _)| at)
                 .collect()
         };
-        let mut added: Vec<usize> = restless(&group, self);
+        let mut added: Vec<usize> = inconsistent(&group, self);
         while !added.is_empty() && group.len() + added.len() <= MOST_RELATIONS {
             group.append(&mut added);
             if self.try_combinations(&group, &before, t, stage) {
                 return true;
             }
-            added = restless(&group, self);
+            added = inconsistent(&group, self);
             if added.is_empty() {
                 added = self.companions(&group);
             }
@@ -69,7 +69,7 @@ impl System {
     }
 
     /// Solves with the relations as they are; whether they then hold. Those that do not are
-    /// restless.
+    /// inconsistent.
     fn holds(&mut self, t: f64, stage: Stage) -> bool {
         for _ in 0..PASSES {
             self.note_lagged();
@@ -89,7 +89,7 @@ impl System {
         for at in 0..self.program.relations.len() {
             let value = self.registers[self.program.relations[at].register as usize] != 0.0;
             if self.relation_value(at, value, t) != value {
-                self.restless[at] = true;
+                self.inconsistent[at] = true;
                 any = true;
             }
         }

@@ -65,11 +65,11 @@ impl System {
         next.choices = self.choices.clone();
         next.clocks = self.clocks.clone();
         next.before = self.before.clone();
-        next.lagged = self.lagged.clone();
+        next.previous_iterate = self.previous_iterate.clone();
         next.sampled = self.sampled;
         next.solves_loops = self.solves_loops;
         next.set = self.set.clone();
-        next.notices = self.notices.take();
+        next.log = self.log.take();
         next.treated = std::mem::take(&mut self.treated);
         next
     }
@@ -91,6 +91,6 @@ impl System {
     /// What was asked of a system since its simulation began.
     fn take_settings(&mut self, changed: System) {
         self.set = changed.set;
-        self.notices = changed.notices;
+        self.log = changed.log;
     }
 }

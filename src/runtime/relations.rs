@@ -58,7 +58,7 @@ impl System {
                 changed = true;
                 self.unstable = register;
                 self.has_changed[at] = true;
-                self.restless[at] = true;
+                self.inconsistent[at] = true;
                 self.excused[at] = 0.0;
                 self.registers[register as usize] = f64::from(u8::from(!before));
             }

@@ -6,12 +6,12 @@ use crate::source::Span;
 /// More are counted only.
 const MOST: usize = 200;
 
-/// What was told in a simulation.
+/// What is recorded of a simulation.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Notices {
-    pub(super) told: Vec<Recorded>,
+pub(super) struct SimulationLog {
+    pub(super) recorded: Vec<Recorded>,
     pub(super) omitted: u64,
-    /// Which warnings hold now, so that each is told when it begins.
+    /// Which warnings hold now, so that each is recorded when it begins.
     pub(super) active: Vec<bool>,
     /// What the equations left open.
     pub(super) open: Vec<Open>,
@@ -24,9 +24,9 @@ pub(super) struct Recorded {
     pub(super) values: Vec<f64>,
 }
 
-/// A text that a model has told.
+/// A message of a model.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Told {
+pub struct LogMessage {
     /// When, seconds.
     pub time: f64,
     /// The text.
@@ -37,10 +37,10 @@ pub struct Told {
     pub span: Span,
 }
 
-impl Notices {
+impl SimulationLog {
     pub(super) fn record(&mut self, time: f64, assertion: u32, values: Vec<f64>) {
-        match self.told.len() < MOST {
-            true => self.told.push(Recorded { time, assertion, values }),
+        match self.recorded.len() < MOST {
+            true => self.recorded.push(Recorded { time, assertion, values }),
             false => self.omitted += 1,
         }
     }
@@ -62,7 +62,7 @@ pub(super) enum OpenLoop {
     Initial { block: u32 },
 }
 
-impl Notices {
+impl SimulationLog {
     pub(super) fn note_open(&mut self, time: f64, what: OpenLoop) {
         let is_same = |known: &Open| match (&known.what, &what) {
             (OpenLoop::Linear { system: a, .. }, OpenLoop::Linear { system: b, .. }) => a == b,

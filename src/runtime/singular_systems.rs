@@ -30,11 +30,11 @@ pub struct Undetermined {
 impl System {
     /// Notes linear systems that had many solutions in the evaluation before.
     pub(super) fn note_open(&mut self, t: f64) {
-        let Some(notices) = &mut self.notices else { return };
+        let Some(log) = &mut self.log else { return };
         for (system, solved) in (0..).zip(&self.registers.systems) {
             let places = solved.open_unknowns();
             if !places.is_empty() {
-                notices.note_open(t, OpenLoop::Linear { system, places });
+                log.note_open(t, OpenLoop::Linear { system, places });
             }
         }
     }
@@ -42,23 +42,23 @@ impl System {
     /// As [`System::note_open`], for the initial system with its torn loops.
     pub(super) fn note_open_at_start(&mut self, t: f64) {
         self.note_open(t);
-        let Some(notices) = &mut self.notices else { return };
+        let Some(log) = &mut self.log else { return };
         let loops = self.program.initial_steps.iter().filter_map(|step| match step {
             Step::Solve(torn) => Some(torn),
             Step::Run(_) => None,
         });
         for (torn, solver) in loops.zip(&self.initial_solvers) {
             if solver.is_singular {
-                notices.note_open(t, OpenLoop::Initial { block: torn.block });
+                log.note_open(t, OpenLoop::Initial { block: torn.block });
             }
         }
     }
 
     /// What the equations left open in the last simulation, if somebody listened to it.
     pub fn undetermined(&self) -> Vec<Undetermined> {
-        let Some(notices) = &self.notices else { return Vec::new() };
+        let Some(log) = &self.log else { return Vec::new() };
         let mut found: Vec<Undetermined> = Vec::new();
-        for open in &notices.open {
+        for open in &log.open {
             let of = match &open.what {
                 OpenLoop::Linear { system, places } => {
                     self.program.open_linear(*system, places, open.time)

@@ -6,7 +6,7 @@ use super::instants::{Change, Clock, Stage, either, same_time};
 use super::modes::{Modes, Treated};
 use super::newton::LoopSolver;
 use super::sensitivity_state::Sensitivity;
-use super::simulation_log::Notices;
+use super::simulation_log::SimulationLog;
 use super::state_selection::Choice;
 use crate::codegen::code::{Outputs, Step};
 use crate::codegen::memory::Memory;
@@ -51,7 +51,7 @@ pub struct System {
     /// Whether relations have changed in the event at hand.
     pub(super) has_changed: Vec<bool>,
     /// Relations that keep changing in the round at hand.
-    pub(super) restless: Vec<bool>,
+    pub(super) inconsistent: Vec<bool>,
     /// Whether relations have been kept at a value that their sides did not quite have.
     pub(super) held: Vec<bool>,
     /// Whether such relations are kept so from the beginning of the event at hand.
@@ -77,7 +77,7 @@ pub struct System {
     /// Values that discrete variables had before an event.
     pub(super) before: Vec<f64>,
     /// Values that variables of discrete loops had in the pass before.
-    pub(super) lagged: Vec<f64>,
+    pub(super) previous_iterate: Vec<f64>,
     /// The past of delayed expressions, and by how much they are delayed.
     pub(super) histories: Vec<History>,
     pub(super) delay_times: Vec<f64>,
@@ -88,7 +88,7 @@ pub struct System {
     /// Derivatives that are carried along, if any are.
     pub(super) sensitivity: Option<Box<Sensitivity>>,
     /// What is told of a simulation, where somebody listens.
-    pub(super) notices: Option<Notices>,
+    pub(super) log: Option<SimulationLog>,
     /// The modes on both sides of relations.
     pub(super) modes: Modes,
     /// What was done about relations that chattered.
@@ -118,7 +118,7 @@ impl System {
             observed_variables: None,
             switches: vec![None; program.relations.len()],
             has_changed: vec![false; program.relations.len()],
-            restless: vec![false; program.relations.len()],
+            inconsistent: vec![false; program.relations.len()],
             held: vec![false; program.relations.len()],
             keeps_held: false,
             uncertainty: vec![0.0; program.relations.len()],
@@ -133,13 +133,13 @@ impl System {
             solves_loops: false,
             clocks: Vec::with_capacity(program.events.samples.len()),
             before: vec![0.0; program.events.discrete.len()],
-            lagged: vec![0.0; program.events.lagged.len()],
+            previous_iterate: vec![0.0; program.events.lagged.len()],
             histories: vec![History::default(); program.events.delays.len()],
             delay_times: vec![0.0; program.events.delays.len()],
             sampled: false,
             unstable: 0,
             sensitivity: None,
-            notices: None,
+            log: None,
             modes: Modes::default(),
             treated: Vec::new(),
             has_means: program.observed.iter().map(|v| program.has_means(*v)).collect(),
@@ -372,7 +372,7 @@ impl System {
             Stage::Event | Stage::Continuous => (&program.steps, &mut self.solvers),
         };
         let initial = stage == Stage::Initial;
-        if initial && self.notices.is_some() {
+        if initial && self.log.is_some() {
             self.registers.forget_solutions();
         }
         let may_jump = stage != Stage::Continuous || program.sorted.states.is_empty();
@@ -628,7 +628,7 @@ impl DaeSystem for System {
     }
 
     fn check(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
-        let tells = self.notices.is_some() && !self.program.notices.is_empty();
+        let tells = self.log.is_some() && !self.program.notices.is_empty();
         if self.program.assertions.is_empty() && !tells {
             return Ok(());
         }
@@ -712,7 +712,7 @@ impl DaeSystem for System {
             let code = &sensitivity.code.observe;
             return read(code, &mut self.registers, out).map_err(|f| self.refine(f));
         }
-        if self.notices.is_some() {
+        if self.log.is_some() {
             self.registers.forget_solutions();
         }
         let observed = self.observed.as_ref().unwrap_or(&self.program.observe);

@@ -25,25 +25,14 @@ const QUIET: u32 = 20;
 /// Width of a layer relative to z where the tolerance is tighter: what rounding makes of z must be
 /// a small part of it.
 const NARROWEST: f64 = 1e-9;
-/// The integrator computes the shares from differences of z, which the narrowest layer makes so inexact.
-const SHARE_NOISE: f64 = 1e-6;
 /// Length of the difference that gives the rate of z, relative to the time in which y changes.
 const DIFFERENCE: f64 = 1e-7;
 /// Rounding of z relative to the error that a change of y by its own size makes.
 const ROUNDING: f64 = 1e-13;
 
-/// The nominal value of a share. Along a surface that moves or is curved the integrator's error of a
-/// share is that of y, divided by the width of the layer and by the step: with an accuracy as that
-/// of y, tests of the error would make steps shorter and this error larger until the steps are used up
-/// (`der(x) = if x > 0.3*sin(3*time) then -2 else 2` at the tolerance 1e-6). What y does follows from
-/// the mean of the shares over time, and their values are computed anew where they are asked for.
-pub(super) fn nominal_share(tolerance: f64) -> f64 {
-    (SHARE_NOISE / tolerance).max(1.0 / tolerance.sqrt())
-}
-
 impl Run<'_> {
     /// Counts the switches of the event at `event` in a step that was searched from `begin`.
-    pub(super) fn count_switches(&mut self, begin: f64, event: f64) -> Result<(), SimErrorKind> {
+    pub fn count_switches(&mut self, begin: f64, event: f64) -> Result<(), SimErrorKind> {
         if self.watch.is_alert {
             // A function may have been large within the step.
             self.watch.y.resize(self.y.len(), 0.0);
@@ -82,7 +71,7 @@ impl Run<'_> {
     }
 
     /// Looks at the relations behind a step without event; y is there.
-    pub(super) fn look_between_steps(&mut self) -> Result<(), SimErrorKind> {
+    pub fn look_between_steps(&mut self) -> Result<(), SimErrorKind> {
         if !self.watch.is_alert {
             return Ok(());
         }
@@ -115,7 +104,7 @@ impl Run<'_> {
 
     /// Does something about the rows that have become long at the event just handled; whether the
     /// integrator was restarted for it.
-    pub(super) fn treat_chattering(&mut self) -> Result<bool, SimErrorKind> {
+    pub fn treat_chattering(&mut self) -> Result<bool, SimErrorKind> {
         let settings = self.problem.settings;
         let span = settings.stop - settings.start;
         if !settings.treats_chattering {
@@ -234,7 +223,7 @@ impl Run<'_> {
     }
 
     /// Slides along what of these surfaces is left, and rests at contacts; without any it restarts.
-    pub(super) fn go_on_constrained(
+    pub fn go_on_constrained(
         &mut self,
         surfaces: &[usize],
         contacts: Vec<Contact>,
@@ -248,7 +237,7 @@ impl Run<'_> {
 
     /// Derivatives follow no solution that slides, rests, or crosses surfaces without events: whoever
     /// asks for them takes differences then.
-    pub(super) fn refuse_with_directions(&self) -> Result<(), SimErrorKind> {
+    pub fn refuse_with_directions(&self) -> Result<(), SimErrorKind> {
         match self.problem.system.n_directions() {
             0 => Ok(()),
             _ => Err(SimErrorKind::Chattering),
@@ -257,7 +246,7 @@ impl Run<'_> {
 
     /// Begins to slide along surfaces, if the fields around them point at them, and to rest at
     /// contacts.
-    pub(super) fn slide(
+    pub fn slide(
         &mut self,
         crossings: &[usize],
         contacts: Vec<Contact>,
@@ -310,13 +299,13 @@ impl Run<'_> {
     }
 
     /// The width of layers relative to the uncertainty of z.
-    pub(super) fn widening(&self) -> f64 {
+    pub fn widening(&self) -> f64 {
         (NARROWEST / self.problem.settings.tolerance).max(1.0)
     }
 
     /// Implicit methods alone know shares; where an explicit one was asked for, one of them goes on
     /// if the system has no loops that it solves itself.
-    pub(super) fn can_slide(&mut self) -> bool {
+    pub fn can_slide(&mut self) -> bool {
         let system = &mut *self.problem.system;
         if !self.is_explicit {
             return system.n_differential() > 0;
@@ -328,7 +317,7 @@ impl Run<'_> {
     }
 
     /// Ends sliding; the surfaces and contacts that the solution has not left.
-    pub(super) fn end_slide(&mut self) -> (Vec<usize>, Vec<Contact>) {
+    pub fn end_slide(&mut self) -> (Vec<usize>, Vec<Contact>) {
         if !self.problem.system.is_constrained() {
             return Default::default();
         }
@@ -341,7 +330,7 @@ impl Run<'_> {
     }
 
     /// How fast y changes relative to its size, per second; at least so fast.
-    pub(super) fn fastest_rate(&mut self, least: f64) -> Option<f64> {
+    pub fn fastest_rate(&mut self, least: f64) -> Option<f64> {
         let n = self.problem.system.n_differential();
         let mut f = vec![0.0; self.y.len()];
         self.problem.system.rhs(self.t, self.y, &mut f).ok()?;

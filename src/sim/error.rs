@@ -61,12 +61,12 @@ pub struct SimError {
     /// Why.
     pub kind: SimErrorKind,
     /// What was in the way, if that is known.
-    pub culprit: Option<Culprit>,
+    pub offending: Option<Offending>,
 }
 
 /// What was in the way of a simulation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Culprit {
+pub enum Offending {
     /// A component of (x, v): it or its derivative is not finite, or it changes faster than the
     /// others, relative to its nominal value.
     Unknown(u32),

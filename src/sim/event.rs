@@ -36,7 +36,7 @@ const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// Crossing functions at both ends of a bracket, and their signs at the last event or step.
 #[derive(Debug, Default)]
-pub(super) struct CrossingSearch {
+pub struct CrossingSearch {
     pub(super) signs: Vec<i8>,
     pub(super) left: Vec<f64>,
     right: Vec<f64>,
@@ -85,12 +85,12 @@ fn vertex([t0, a, b]: [f64; 3], [z0, left, right]: [f64; 3]) -> Option<(f64, f64
     (t > a && t < b && z.is_finite()).then_some((t, z))
 }
 
-pub(super) fn sign(z: f64) -> i8 {
+pub fn sign(z: f64) -> i8 {
     i8::from(z > 0.0) - i8::from(z < 0.0)
 }
 
 impl CrossingSearch {
-    pub(super) fn resize(&mut self, n_crossings: usize) {
+    pub fn resize(&mut self, n_crossings: usize) {
         self.signs.resize(n_crossings, 0);
         self.switched.clear();
         for flags in [&mut self.followed, &mut self.is_rising, &mut self.is_near] {
@@ -107,12 +107,7 @@ impl CrossingSearch {
     }
 
     /// Takes the signs at (t, y) as those to be changed; whether they are others than before.
-    pub(super) fn start(
-        &mut self,
-        problem: &mut Problem,
-        t: f64,
-        y: &[f64],
-    ) -> Result<bool, Failure> {
+    pub fn start(&mut self, problem: &mut Problem, t: f64, y: &[f64]) -> Result<bool, Failure> {
         if self.signs.is_empty() {
             return Ok(false);
         }
@@ -158,11 +153,11 @@ impl CrossingSearch {
 
     /// The end of the bracket of the first event in (`a`, `b`], with y there; `None` if no sign
     /// changes, and then the search goes on from `b`. y must hold y(b).
-    pub(super) fn first_event(
+    pub fn first_event(
         &mut self,
         problem: &mut Problem,
         integrator: &dyn Integrator,
-        (mut a, mut b): (f64, f64),
+        (a, mut b): (f64, f64),
         y: &mut [f64],
     ) -> Result<Option<f64>, Failure> {
         if self.signs.is_empty() {
@@ -187,6 +182,25 @@ impl CrossingSearch {
             let is_far = sign(z) == self.signs[at] && z.abs() > self.margin(at);
             self.is_near[at] = !is_far || self.followed[at];
         }
+        let b = self.narrow(problem, integrator, (a, b), y)?;
+        integrator.interpolate(b, y);
+        self.switched.clear();
+        for at in 0..self.signs.len() {
+            if self.has_changed(at, self.right[at]) {
+                self.switched.push(at);
+            }
+        }
+        Ok(Some(b))
+    }
+
+    /// Narrows a bracket of the first change of sign; its later end, behind the change.
+    fn narrow(
+        &mut self,
+        problem: &mut Problem,
+        integrator: &dyn Integrator,
+        (mut a, mut b): (f64, f64),
+        y: &mut [f64],
+    ) -> Result<f64, Failure> {
         let width = WIDTH * (b - a);
         let resolution = 4.0 * f64::EPSILON * a.abs().max(b.abs());
         let width = width.max(resolution);
@@ -210,14 +224,7 @@ impl CrossingSearch {
                 std::mem::swap(&mut self.left, &mut self.trial);
             }
         }
-        integrator.interpolate(b, y);
-        self.switched.clear();
-        for at in 0..self.signs.len() {
-            if self.has_changed(at, self.right[at]) {
-                self.switched.push(at);
-            }
-        }
-        Ok(Some(b))
+        Ok(b)
     }
 
     /// Counts the steps at whose ends a function has kept another sign and grown.
@@ -331,16 +338,16 @@ impl CrossingSearch {
     }
 
     /// A function that changed its sign at the last event.
-    pub(super) fn last(&self) -> Option<usize> {
+    pub fn last(&self) -> Option<usize> {
         self.switched.first().copied()
     }
 
     /// The functions at the last event.
-    pub(super) fn at_event(&self) -> &[f64] {
+    pub fn at_event(&self) -> &[f64] {
         &self.right
     }
 
-    pub(super) fn margin(&self, at: usize) -> f64 {
+    pub fn margin(&self, at: usize) -> f64 {
         match (self.followed[at], self.lasting[at] >= LASTING) {
             (true, _) => self.uncertainty[at],
             (false, true) => 0.0,

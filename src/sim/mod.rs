@@ -75,7 +75,7 @@ mod system;
 mod tests;
 mod trajectory;
 
-pub use error::{Culprit, Failure, SimError, SimErrorKind};
+pub use error::{Failure, Offending, SimError, SimErrorKind};
 pub use integrators::{INTEGRATORS, Integrator, Problem, find_integrator};
 pub use linear::{DenseLu, Factorization, SingularMatrix};
 pub use newton::{Equations, Newton, NewtonFailure};

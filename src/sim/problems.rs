@@ -4,26 +4,26 @@ use super::{DaeSystem, EventOutcome, Failure, Pattern};
 use crate::elementary;
 
 /// A system given by closures over (t, y), all of y observed; Jacobian by differences.
-pub(super) struct TestProblem {
-    pub(super) initial: Vec<f64>,
-    pub(super) n_differential: usize,
-    pub(super) nominal: Vec<f64>,
-    pub(super) rhs: fn(f64, &[f64], &[f64], &mut [f64]),
+pub struct TestProblem {
+    pub initial: Vec<f64>,
+    pub n_differential: usize,
+    pub nominal: Vec<f64>,
+    pub rhs: fn(f64, &[f64], &[f64], &mut [f64]),
     /// Crossing functions of (t, y, discrete).
-    pub(super) crossings: fn(f64, &[f64], &[f64], &mut [f64]),
-    pub(super) n_crossings: usize,
-    pub(super) time_events: Vec<f64>,
-    pub(super) event: fn(f64, &mut [f64], &mut [f64]) -> EventOutcome,
-    pub(super) discrete: Vec<f64>,
-    pub(super) assertion: fn(&[f64]) -> bool,
+    pub crossings: fn(f64, &[f64], &[f64], &mut [f64]),
+    pub n_crossings: usize,
+    pub time_events: Vec<f64>,
+    pub event: fn(f64, &mut [f64], &mut [f64]) -> EventOutcome,
+    pub discrete: Vec<f64>,
+    pub assertion: fn(&[f64]) -> bool,
     /// All of y unless set.
-    pub(super) observed: Option<fn(f64, &[f64]) -> f64>,
+    pub observed: Option<fn(f64, &[f64]) -> f64>,
     pattern: Pattern,
     start_discrete: Vec<f64>,
 }
 
 impl TestProblem {
-    pub(super) fn new(
+    pub fn new(
         initial: &[f64],
         n_differential: usize,
         rhs: fn(f64, &[f64], &[f64], &mut [f64]),
@@ -55,13 +55,13 @@ impl TestProblem {
         if nominal > 0.0 && nominal.is_finite() { nominal } else { 1.0 }
     }
 
-    pub(super) fn with_discrete(mut self, discrete: &[f64]) -> TestProblem {
+    pub fn with_discrete(mut self, discrete: &[f64]) -> TestProblem {
         self.discrete = discrete.to_vec();
         self.start_discrete = discrete.to_vec();
         self
     }
 
-    pub(super) fn with_crossings(
+    pub fn with_crossings(
         mut self,
         n: usize,
         crossings: fn(f64, &[f64], &[f64], &mut [f64]),
@@ -155,12 +155,12 @@ impl DaeSystem for TestProblem {
 }
 
 /// x' = −x, x(0) = 1: x = exp(−t).
-pub(super) fn decay() -> TestProblem {
+pub fn decay() -> TestProblem {
     TestProblem::new(&[1.0], 1, |_, y, _, out| out[0] = -y[0])
 }
 
 /// x'' = −x: (cos t, −sin t).
-pub(super) fn oscillator() -> TestProblem {
+pub fn oscillator() -> TestProblem {
     TestProblem::new(&[1.0, 0.0], 2, |_, y, _, out| {
         out[0] = y[1];
         out[1] = -y[0];
@@ -168,7 +168,7 @@ pub(super) fn oscillator() -> TestProblem {
 }
 
 /// x' = −1e4 (x − cos t) − sin t, x(0) = 1: x = cos t (Prothero & Robinson).
-pub(super) fn stiff_linear() -> TestProblem {
+pub fn stiff_linear() -> TestProblem {
     TestProblem::new(&[1.0], 1, |t, y, _, out| {
         out[0] = -1e4 * (y[0] - elementary::cos(t)) - elementary::sin(t)
     })
@@ -177,7 +177,7 @@ pub(super) fn stiff_linear() -> TestProblem {
 /// Robertson's reaction with the sum of concentrations as algebraic equation. At t = 40:
 /// y = (0.7158270687, 0.9185534764e-5, 0.2841637457), computed by the authors of LSODE, table in
 /// Hairer & Wanner and in the documentation of SUNDIALS.
-pub(super) fn robertson() -> TestProblem {
+pub fn robertson() -> TestProblem {
     let mut problem = TestProblem::new(&[1.0, 0.0, 0.0], 2, |_, y, _, out| {
         out[0] = -0.04 * y[0] + 1e4 * y[1] * y[2];
         out[1] = 0.04 * y[0] - 1e4 * y[1] * y[2] - 3e7 * y[1] * y[1];
@@ -189,7 +189,7 @@ pub(super) fn robertson() -> TestProblem {
 
 /// Van der Pol's equation with ε = 1e-6, x(0) = (2, 0); at t = 2:
 /// (0.1706167732170469e1, −0.8928097010248125) (test set of Bari).
-pub(super) fn van_der_pol() -> TestProblem {
+pub fn van_der_pol() -> TestProblem {
     TestProblem::new(&[2.0, 0.0], 2, |_, y, _, out| {
         out[0] = y[1];
         out[1] = ((1.0 - y[0] * y[0]) * y[1] - y[0]) / 1e-6;
@@ -197,7 +197,7 @@ pub(super) fn van_der_pol() -> TestProblem {
 }
 
 /// Chemistry of eight species (HIRES); the values at t = 321.8122 are [`HIRES_END`].
-pub(super) fn hires() -> TestProblem {
+pub fn hires() -> TestProblem {
     let start = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0057];
     let mut problem = TestProblem::new(&start, 8, |_, y, _, out| {
         out[0] = -1.71 * y[0] + 0.43 * y[1] + 8.32 * y[2] + 0.0007;
@@ -215,7 +215,7 @@ pub(super) fn hires() -> TestProblem {
 }
 
 /// Test set of Bari.
-pub(super) const HIRES_END: [f64; 8] = [
+pub const HIRES_END: [f64; 8] = [
     0.7371312573325668e-3,
     0.1442485726316185e-3,
     0.5888729740967575e-4,
@@ -227,7 +227,7 @@ pub(super) const HIRES_END: [f64; 8] = [
 ];
 
 /// The Oregonator of Field and Noyes; at t = 360: [`OREGONATOR_END`].
-pub(super) fn oregonator() -> TestProblem {
+pub fn oregonator() -> TestProblem {
     TestProblem::new(&[1.0, 2.0, 3.0], 3, |_, y, _, out| {
         out[0] = 77.27 * (y[1] + y[0] * (1.0 - 8.375e-6 * y[0] - y[1]));
         out[1] = (y[2] - (1.0 + y[0]) * y[1]) / 77.27;
@@ -236,11 +236,11 @@ pub(super) fn oregonator() -> TestProblem {
 }
 
 /// Test set of Bari.
-pub(super) const OREGONATOR_END: [f64; 3] =
+pub const OREGONATOR_END: [f64; 3] =
     [0.1000814870318523e1, 0.1228178521549917e4, 0.1320554942846706e3];
 
 /// A source x = sin t behind 100 Ω and a diode: 0 = (10 x − v)/100 − 1e-9 (exp(v/0.025) − 1).
-pub(super) fn diode() -> TestProblem {
+pub fn diode() -> TestProblem {
     TestProblem::new(&[0.0, 0.0], 1, |t, y, _, out| {
         out[0] = elementary::cos(t);
         out[1] = (10.0 * y[0] - y[1]) / 100.0 - 1e-9 * (elementary::exp(y[1] / 0.025) - 1.0);
@@ -249,7 +249,7 @@ pub(super) fn diode() -> TestProblem {
 
 /// A pendulum of length 1, g = 9.81, in index-1 form: (φ, ω) differential, Cartesian (x, y) and the
 /// force λ of the rod algebraic. Starts horizontally at rest.
-pub(super) fn pendulum() -> TestProblem {
+pub fn pendulum() -> TestProblem {
     TestProblem::new(&[std::f64::consts::FRAC_PI_2, 0.0, 1.0, 0.0, 0.0], 2, |_, y, _, out| {
         let &[angle, speed, px, py, force] = y else { panic!("five unknowns") };
         out[0] = speed;
@@ -261,7 +261,7 @@ pub(super) fn pendulum() -> TestProblem {
 }
 
 /// x' = v, 0 = v + x − 2 exp(−t), x(0) = 0: x = 2 t exp(−t), v = 2 (1 − t) exp(−t).
-pub(super) fn algebraic() -> TestProblem {
+pub fn algebraic() -> TestProblem {
     TestProblem::new(&[0.0, 2.0], 1, |t, y, _, out| {
         out[0] = y[1];
         out[1] = y[1] + y[0] - 2.0 * elementary::exp(-t);
@@ -269,7 +269,7 @@ pub(super) fn algebraic() -> TestProblem {
 }
 
 /// x' = 2 t x (1 − x) + (w − exp(−t)), w' = −w, x(0) = 1/2: x = 1/(1 + exp(−t²)), w = exp(−t).
-pub(super) fn driven_logistic() -> TestProblem {
+pub fn driven_logistic() -> TestProblem {
     TestProblem::new(&[0.5, 1.0], 2, |t, y, _, out| {
         out[0] = 2.0 * t * y[0] * (1.0 - y[0]) + (y[1] - elementary::exp(-t));
         out[1] = -y[1];
@@ -277,7 +277,7 @@ pub(super) fn driven_logistic() -> TestProblem {
 }
 
 /// A ball from height 1 with restitution 0.7 and g = 9.81.
-pub(super) fn bouncing_ball() -> TestProblem {
+pub fn bouncing_ball() -> TestProblem {
     TestProblem::new(&[1.0, 0.0], 2, |_, y, _, out| {
         out[0] = y[1];
         out[1] = -9.81;
@@ -296,7 +296,7 @@ pub(super) fn bouncing_ball() -> TestProblem {
 }
 
 /// x' = u − x with u = 1 before t = 0.5 and −1 after, a time event.
-pub(super) fn switched_input() -> TestProblem {
+pub fn switched_input() -> TestProblem {
     let mut problem =
         TestProblem::new(&[0.0], 1, |_, y, discrete, out| out[0] = discrete[0] - y[0])
             .with_discrete(&[1.0]);
@@ -309,7 +309,7 @@ pub(super) fn switched_input() -> TestProblem {
 }
 
 /// x' = 1 if x < 0.5, otherwise −1, without any hysteresis: nothing but events from t = 0.5 on.
-pub(super) fn chattering() -> TestProblem {
+pub fn chattering() -> TestProblem {
     TestProblem::new(&[0.0], 1, |_, _, discrete, out| out[0] = discrete[0])
         .with_discrete(&[1.0])
         .with_crossings(
@@ -323,25 +323,25 @@ pub(super) fn chattering() -> TestProblem {
 }
 
 /// x' = x², x(0) = 1: x = 1 / (1 − t), which ends at t = 1.
-pub(super) fn blow_up() -> TestProblem {
+pub fn blow_up() -> TestProblem {
     TestProblem::new(&[1.0], 1, |_, y, _, out| out[0] = y[0] * y[0])
 }
 
 /// x' = −1 − √x, x(0) = 1: √x − log(1 + √x) = (1 − log 2) − t/2, which reaches 0, where the root
 /// ends, at t = 2 (1 − log 2).
-pub(super) fn end_of_domain() -> TestProblem {
+pub fn end_of_domain() -> TestProblem {
     TestProblem::new(&[1.0], 1, |_, y, _, out| out[0] = -1.0 - y[0].sqrt())
 }
 
 /// Heat conduction: x'_i = k (x_{i−1} − 2 x_i + x_{i+1}) with zero at both ends, started in its
 /// slowest mode, which decays by exp(−rate t) as a whole.
-pub(super) struct HeatRod {
+pub struct HeatRod {
     pattern: Pattern,
     n: usize,
 }
 
 impl HeatRod {
-    pub(super) fn new(n: usize) -> HeatRod {
+    pub fn new(n: usize) -> HeatRod {
         let mut pattern = Pattern { n, column_starts: vec![0], rows: Vec::new() };
         for j in 0..n {
             pattern.rows.extend(j.saturating_sub(1)..(j + 2).min(n));
@@ -358,11 +358,11 @@ impl HeatRod {
         0.1 * elementary::powi(self.n as f64 + 1.0, 2)
     }
 
-    pub(super) fn rate(&self) -> f64 {
+    pub fn rate(&self) -> f64 {
         self.conductance() * (2.0 - 2.0 * elementary::cos(self.angle()))
     }
 
-    pub(super) fn start(&self, i: usize) -> f64 {
+    pub fn start(&self, i: usize) -> f64 {
         elementary::sin((i as f64 + 1.0) * self.angle())
     }
 }

@@ -15,18 +15,18 @@ const SWITCHES: u32 = 10;
 /// Of these, those in which the difference of its sides turns back that are chattering: `radau5` at the
 /// tolerance 1e-8 stays on one side of a relay, and turns in every other step. No oscillation is
 /// resolved with three steps between its turns.
-const TURNS: u32 = 20;
+const REVERSALS: u32 = 20;
 /// A turn changes the difference by this part of it at least; what rounding changes is less.
 const TURN: f64 = 0.25;
 
 /// What is seen of a relation between steps.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Look {
+pub struct Look {
     /// left − right, and by how much it has changed.
     difference: f64,
     change: f64,
     switches: u32,
-    turns: u32,
+    reversals: u32,
 }
 
 impl Look {
@@ -34,14 +34,14 @@ impl Look {
         let change = difference - self.difference;
         let is_large = change.abs() > TURN * difference.abs().max(self.difference.abs());
         self.switches += u32::from(sign(difference) != sign(self.difference));
-        self.turns += u32::from(is_large && change * self.change < 0.0);
+        self.reversals += u32::from(is_large && change * self.change < 0.0);
         (self.difference, self.change) = (difference, change);
     }
 }
 
 /// How the simulation gets on.
 #[derive(Debug, Default)]
-pub(super) struct Progress {
+pub struct Progress {
     /// Time and attempts where the window at hand began.
     pub(super) begin: Option<(f64, u64)>,
     /// How often relations were looked at, and what was seen of each.
@@ -53,12 +53,12 @@ pub(super) struct Progress {
 }
 
 impl Progress {
-    pub(super) fn end_of_looking(&mut self) {
+    pub fn end_of_looking(&mut self) {
         (self.begin, self.looks) = (None, 0);
         self.relations.clear();
     }
 
-    pub(super) fn look(&mut self) {
+    pub fn look(&mut self) {
         if self.looks == 0 {
             let first = |z: &f64| Look { difference: *z, ..Look::default() };
             self.relations.extend(self.differences.iter().map(first));
@@ -68,7 +68,7 @@ impl Progress {
         self.looks += 1;
     }
 
-    pub(super) fn is_chattering(&self) -> bool {
-        self.relations.iter().any(|seen| seen.switches >= SWITCHES || seen.turns >= TURNS)
+    pub fn is_chattering(&self) -> bool {
+        self.relations.iter().any(|seen| seen.switches >= SWITCHES || seen.reversals >= REVERSALS)
     }
 }

@@ -1,6 +1,6 @@
 //! What is asked of a simulation.
 
-use super::integrators::{Integrator, bdf};
+use super::integrators::{self, Integrator};
 use crate::registry::Entry;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64};
@@ -65,7 +65,7 @@ impl Default for Settings {
             stop: 1.0,
             output: OutputGrid::Intervals(500),
             tolerance: 1e-4,
-            method: &bdf::ENTRY,
+            method: integrators::DEFAULT,
             step: None,
             initial_step: None,
             max_step: f64::INFINITY,

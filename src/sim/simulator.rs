@@ -1,13 +1,13 @@
 //! The loop of a simulation.
 
-use super::chattering::nominal_share;
 use super::event::CrossingSearch;
 use super::integrators::{Integrator, Problem, WithoutUnknowns, bdf};
+use super::norm::nominal_share;
 use super::progress::Progress;
 use super::sliding::{MOST_SURFACES, Sliding};
 use super::switches::Watch;
 use super::{
-    Culprit, DaeSystem, EventOutcome, Failure, Settings, SimError, SimErrorKind, Statistics,
+    DaeSystem, EventOutcome, Failure, Offending, Settings, SimError, SimErrorKind, Statistics,
     Trajectory,
 };
 use crate::registry::Options;
@@ -50,7 +50,7 @@ pub struct Simulator {
 
 /// Nominal values of y, without and with shares of surfaces.
 #[derive(Default)]
-pub(super) struct Nominals {
+pub struct Nominals {
     plain: Vec<f64>,
     with_shares: [OnceCell<Vec<f64>>; MOST_SURFACES],
     /// That of a share.
@@ -58,12 +58,12 @@ pub(super) struct Nominals {
 }
 
 impl Nominals {
-    pub(super) fn plain(&self) -> &[f64] {
+    pub fn plain(&self) -> &[f64] {
         &self.plain
     }
 
     /// With so many shares at a place.
-    pub(super) fn with_shares(&self, place: usize, k: usize) -> &[f64] {
+    pub fn with_shares(&self, place: usize, k: usize) -> &[f64] {
         self.with_shares[k - 1].get_or_init(|| {
             let (before, behind) = self.plain.split_at(place);
             [before, &vec![self.share; k], behind].concat()
@@ -119,7 +119,7 @@ impl Simulator {
         };
         let mut statistics = Statistics::default();
         if let Some(kind) = refused(settings, integrator, system) {
-            return Err(SimError { time: settings.start, kind, culprit: None });
+            return Err(SimError { time: settings.start, kind, offending: None });
         }
         let mut system = Sliding::new(system);
         let mut run = Run {
@@ -151,7 +151,7 @@ impl Simulator {
             progress: Progress::default(),
         };
         let ended = run.run();
-        ended.map_err(|kind| SimError { time: run.t, kind, culprit: run.culprit(kind) })?;
+        ended.map_err(|kind| SimError { time: run.t, kind, offending: run.offending(kind) })?;
         Ok(statistics)
     }
 
@@ -213,7 +213,7 @@ enum After {
 }
 
 /// A simulation in progress; `t` and `y` are how far it has come.
-pub(super) struct Run<'a> {
+pub struct Run<'a> {
     pub(super) problem: Problem<'a>,
     pub(super) integrator: &'a mut dyn Integrator,
     /// Takes the place of an explicit one in slides, and the other way round.
@@ -281,12 +281,12 @@ impl Run<'_> {
         self.restart()
     }
 
-    pub(super) fn restart(&mut self) -> Result<(), SimErrorKind> {
+    pub fn restart(&mut self) -> Result<(), SimErrorKind> {
         self.start_crossings()?;
         self.integrator.restart(&mut self.problem, self.t, self.y)
     }
 
-    pub(super) fn start_crossings(&mut self) -> Result<bool, SimErrorKind> {
+    pub fn start_crossings(&mut self) -> Result<bool, SimErrorKind> {
         self.crossings.start(&mut self.problem, self.t, self.y).map_err(SimErrorKind::Evaluation)
     }
 
@@ -598,7 +598,7 @@ impl Run<'_> {
     }
 
     /// Lets the system handle an event and those that follow it at the same time.
-    pub(super) fn whole_event(&mut self, t: f64) -> Result<EventOutcome, SimErrorKind> {
+    pub fn whole_event(&mut self, t: f64) -> Result<EventOutcome, SimErrorKind> {
         let mut outcome = self.event(t)?;
         while outcome == EventOutcome::Again {
             outcome = match self.event(t)? {
@@ -625,13 +625,13 @@ impl Run<'_> {
     }
 
     /// What is in the way where `kind` does not say it.
-    fn culprit(&mut self, kind: SimErrorKind) -> Option<Culprit> {
+    fn offending(&mut self, kind: SimErrorKind) -> Option<Offending> {
         match kind {
             SimErrorKind::StepSize | SimErrorKind::Singular | SimErrorKind::NotFinite => {
-                self.fastest_unknown().map(|at| Culprit::Unknown(at as u32))
+                self.fastest_unknown().map(|at| Offending::Unknown(at as u32))
             }
             SimErrorKind::Chattering | SimErrorKind::Accumulation => {
-                self.crossings.last().map(|at| Culprit::Crossing(at as u32))
+                self.crossings.last().map(|at| Offending::Crossing(at as u32))
             }
             _ => None,
         }
@@ -696,7 +696,7 @@ impl Run<'_> {
         self.next_output = settings.output.point(settings.start, settings.stop, self.output_number);
     }
 
-    pub(super) fn record(&mut self) -> Result<(), SimErrorKind> {
+    pub fn record(&mut self) -> Result<(), SimErrorKind> {
         let observed = self.problem.system.observe(self.t, self.y, self.observed);
         observed.map_err(|failure: Failure| SimErrorKind::Evaluation(failure))?;
         self.out.push(self.t, self.observed);

@@ -3,7 +3,7 @@
 
 /// Length of a row that is chattering. A relation that is reached and left again at once, such as
 /// the limit of a two-point controller, switches twice.
-pub(super) const ROW: u32 = 4;
+pub const ROW: u32 = 4;
 /// Events of a row whose density tells whether the simulation gets on.
 const LONG_ROW: u32 = 200;
 /// The most events of a row in a whole simulation. Switching that noise causes stays far below it, and
@@ -23,7 +23,7 @@ const RATIO_BAND: f64 = 3.0;
 
 /// The switches of a crossing function one after the other, between which it stayed small.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Row {
+pub struct Row {
     pub(super) length: u32,
     /// When the first switch happened, and every further [`LONG_ROW`]th.
     mark: f64,
@@ -32,11 +32,11 @@ pub(super) struct Row {
 }
 
 impl Row {
-    pub(super) fn end(&mut self) {
+    pub fn end(&mut self) {
         *self = Row::default();
     }
 
-    pub(super) fn lengthen(&mut self, t: f64) {
+    pub fn lengthen(&mut self, t: f64) {
         if self.length > 0 && self.length.is_multiple_of(LONG_ROW) {
             self.duration = Some(t - self.mark);
         }
@@ -47,19 +47,19 @@ impl Row {
     }
 
     /// Whether it would need too many switches for a time as long as `span`.
-    pub(super) fn is_endless(&self, span: f64) -> bool {
+    pub fn is_endless(&self, span: f64) -> bool {
         let switches = |duration: f64| f64::from(LONG_ROW) * span / duration;
         self.duration.is_some_and(|duration| switches(duration) > MOST_EVENTS)
     }
 
-    pub(super) fn is_due(&self) -> bool {
+    pub fn is_due(&self) -> bool {
         self.length >= ROW && self.length.is_multiple_of(ROW)
     }
 }
 
 /// What is known of the switches of crossing functions.
 #[derive(Debug, Default)]
-pub(super) struct Watch {
+pub struct Watch {
     /// For every crossing function its row.
     pub(super) rows: Vec<Row>,
     pub(super) switches: Vec<Switches>,
@@ -78,7 +78,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    pub(super) fn resize(&mut self, n_crossings: usize) {
+    pub fn resize(&mut self, n_crossings: usize) {
         self.rows.clear();
         self.rows.resize(n_crossings, Row::default());
         self.quiet.clear();
@@ -90,7 +90,7 @@ impl Watch {
     }
 
     /// Notes by how much an event that a crossing function led to has changed the states.
-    pub(super) fn note_jump(&mut self, y: &[f64]) {
+    pub fn note_jump(&mut self, y: &[f64]) {
         self.jump.clear();
         let changes = y.iter().zip(&self.before).map(|(y, before)| y - before).enumerate();
         self.jump.extend(changes.filter(|(_, change)| *change != 0.0));
@@ -103,7 +103,7 @@ impl Watch {
 /// ends where it begins: ratios q = I/I' are steady also where ups and downs differ in length. With
 /// a steady q < 1 the times tend to t + I q/(1 − q).
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Switches {
+pub struct Switches {
     last: f64,
     before: f64,
     /// The last interval, and the one that ended a change earlier.
@@ -138,13 +138,13 @@ impl Default for Switches {
 
 impl Switches {
     /// Whether the times of the changes have a limit that is nearer than `reach`.
-    pub(super) fn accumulate(&self, reach: f64) -> bool {
+    pub fn accumulate(&self, reach: f64) -> bool {
         let interval = self.intervals[0];
         let remaining = interval * (1.0 - self.decrease[0]) / self.decrease[0];
         self.steady >= STEADY_RATIOS && interval <= SHRUNK * self.longest && remaining <= reach
     }
 
-    pub(super) fn note(&mut self, t: f64, was_above: bool) {
+    pub fn note(&mut self, t: f64, was_above: bool) {
         let interval = t - self.before;
         let [last, before] = self.intervals;
         self.note_ratio(interval, before);

@@ -13,12 +13,12 @@ const MAGIC: &[u8] = b"gapilib trace 2\n";
 const LONGEST: usize = 1 << 30;
 
 /// What a trace begins with.
-pub(super) fn heading() -> Vec<u8> {
+pub fn heading() -> Vec<u8> {
     MAGIC.to_vec()
 }
 
 /// Adds the frame of `event`.
-pub(super) fn push(frames: &mut Vec<u8>, event: &Event) {
+pub fn push(frames: &mut Vec<u8>, event: &Event) {
     let at = frames.len();
     frames.extend([0; 4]);
     let all = postcard::to_extend(event, std::mem::take(frames));
@@ -36,7 +36,7 @@ pub(super) fn push(frames: &mut Vec<u8>, event: &Event) {
 /// # Errors
 ///
 /// `bad-trace` when it does not begin as a trace.
-pub(super) fn read(bytes: &[u8]) -> Result<(Vec<Event>, bool), Fault> {
+pub fn read(bytes: &[u8]) -> Result<(Vec<Event>, bool), Fault> {
     let Some(mut rest) = bytes.strip_prefix(MAGIC) else {
         bail!(
             BAD_TRACE, "this is not a trace of gapilib, or one of another version";

@@ -6,7 +6,7 @@ use crate::ga::{Gene, Genomes, Mrg32k3a, crossover, mutation, survival};
 
 /// The results of the paper's functions, as the next ones usually get them.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Produced {
+pub struct Produced {
     /// Number of genes of each individual; 0 before the first simulation.
     pub(super) n_genes: usize,
     /// The numbers drawn last.
@@ -94,7 +94,7 @@ fn same(a: &[f64], b: &[f64]) -> bool {
 impl Produced {
     /// Follows one event. A script may call the functions on populations of its own, such as single
     /// genes: where an event does not fit to those before, nothing is expected from there on.
-    pub(super) fn follow(&mut self, event: &Event) {
+    pub fn follow(&mut self, event: &Event) {
         if self.apply(event).is_none() {
             *self = Produced { n_genes: self.n_genes, ..Produced::default() };
         }

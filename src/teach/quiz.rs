@@ -182,32 +182,32 @@ mod tests {
 
     /// The questions of the first generation, and whether these answers are right.
     fn answered(answers: [&str; 3]) -> (Vec<String>, Score) {
-        let (mut walk, mut score, mut texts) = (sample::walk(), Score::default(), Vec::new());
+        let (mut walk, mut score, mut replies) = (sample::walk(), Score::default(), Vec::new());
         let mut answers = answers.into_iter();
         while walk.number() == 0 {
             if let Some(question) = question(&walk) {
                 let verdict = question.judge(answers.next().unwrap());
-                texts.push(format!("{}\n{}", question.text, verdict.text));
+                replies.push(format!("{}\n{}", question.text, verdict.text));
                 score.count(&verdict);
             }
             walk.forward();
         }
-        (texts, score)
+        (replies, score)
     }
 
     #[test]
     fn right_answers_count() {
-        let (texts, score) = answered(["6 3 4, 5", "AB", "no"]);
-        assert_eq!(score, Score { asked: 3, right: 3 }, "{texts:?}");
+        let (replies, score) = answered(["6 3 4, 5", "AB", "no"]);
+        assert_eq!(score, Score { asked: 3, right: 3 }, "{replies:?}");
         assert_eq!(score.to_string(), "3 of 3 answers were correct.");
     }
 
     #[test]
     fn wrong_answers_are_put_right() {
-        let (texts, score) = answered(["1 2", "aa", ""]);
+        let (replies, score) = answered(["1 2", "aa", ""]);
         assert_eq!(score, Score { asked: 3, right: 0 });
-        assert!(texts[0].ends_with("No: the answer is 3 4 5 6."), "{}", texts[0]);
-        assert!(texts[1].ends_with("No: the answer is ab."), "{}", texts[1]);
-        assert!(texts[2].ends_with("No: the answer is no."), "{}", texts[2]);
+        assert!(replies[0].ends_with("No: the answer is 3 4 5 6."), "{}", replies[0]);
+        assert!(replies[1].ends_with("No: the answer is ab."), "{}", replies[1]);
+        assert!(replies[2].ends_with("No: the answer is no."), "{}", replies[2]);
     }
 }

@@ -77,11 +77,7 @@ impl Step {
 }
 
 /// The steps of `generation` number `number`, which `next` follows.
-pub(super) fn steps(
-    number: usize,
-    generation: &Generation,
-    next: Option<&Generation>,
-) -> Vec<Step> {
+pub fn steps(number: usize, generation: &Generation, next: Option<&Generation>) -> Vec<Step> {
     let mut steps = Vec::new();
     if number == 0 && !generation.drawn.is_empty() {
         steps.push(Step::Draw);

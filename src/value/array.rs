@@ -104,7 +104,7 @@ pub fn sizes(dims: &[usize]) -> String {
 }
 
 /// The most bytes that a string may have.
-pub(super) const MAX_BYTES: usize = 1 << 28;
+pub const MAX_BYTES: usize = 1 << 28;
 
 /// A fault if a string of so many bytes is longer than 2^28 bytes, which no string of a script or model may be.
 pub fn check_length(bytes: usize) -> Result<(), Fault> {
@@ -129,7 +129,7 @@ fn is_available(bytes: usize) -> bool {
 }
 
 /// A fault if there is no memory for so many elements.
-pub(super) fn has_room(count: usize, dims: &[usize]) -> Result<(), Fault> {
+pub fn has_room(count: usize, dims: &[usize]) -> Result<(), Fault> {
     // The largest elements, strings, take two words.
     match is_available(count.saturating_mul(16)) {
         true => Ok(()),

@@ -2,10 +2,9 @@
 
 use super::array::{element_count, sizes};
 use super::errors::{DOMAIN_ERROR, SIZE_MISMATCH, TYPE_MISMATCH};
-use super::path::wrong_share;
 use super::{ArrayValue, Elements, Value};
-use crate::bail;
 use crate::diag::Fault;
+use crate::{bail, fault};
 
 /// `{a, b, c}` (MLS §10.4): all of the same sizes, which follow the new first dimension. Without
 /// any element it is `Real[0]`.
@@ -68,6 +67,16 @@ pub fn split(dims: &[usize], value: Value) -> Result<Vec<Value>, Fault> {
         }
         other => Err(wrong_share(dims, &other)),
     }
+}
+
+/// A value that is not one for every record of an array.
+pub(super) fn wrong_share(dims: &[usize], value: &Value) -> Fault {
+    fault!(
+        SIZE_MISMATCH,
+        "cannot distribute a value of type {} over records with the sizes {}",
+        value.type_name(),
+        sizes(dims)
+    )
 }
 
 /// `[a, b; c, d]` (MLS §10.4.2.1): rows put together along dimension 2, then along dimension 1.

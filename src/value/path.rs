@@ -1,9 +1,8 @@
 //! Parts of values: `a[2].b[1, :]` read and overwritten in place (MLS §10.5, slices of arrays of
 //! records included).
 
-use super::array::sizes;
 use super::construct;
-use super::errors::{SIZE_MISMATCH, TYPE_MISMATCH};
+use super::errors::TYPE_MISMATCH;
 use super::{ArrayValue, Elements, Index, RecordValue, Value};
 use crate::diag::{Fault, suggest};
 use crate::name::Ident;
@@ -155,13 +154,4 @@ fn no_such_part(step: &Step, value: &Value) -> Fault {
             fault!(TYPE_MISMATCH, "a value of type {} has no subscripts", value.type_name())
         }
     }
-}
-
-pub(super) fn wrong_share(dims: &[usize], value: &Value) -> Fault {
-    fault!(
-        SIZE_MISMATCH,
-        "cannot distribute a value of type {} over records with the sizes {}",
-        value.type_name(),
-        sizes(dims)
-    )
 }

@@ -109,7 +109,7 @@ fn call_with(name: &str, args: &[Arg<'_>], outside: &mut dyn Outside) -> Result<
         arguments: &slots,
         result: result.as_ref(),
         numbers: &mut numbers,
-        texts: &texts,
+        strings: &texts,
         written: &mut written,
         objects: &mut objects,
         outside,

@@ -58,6 +58,7 @@ mod nist;
 mod nist_problems;
 mod notices;
 mod operators;
+mod oracles;
 mod page;
 mod permissions;
 mod plot;

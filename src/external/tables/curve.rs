@@ -4,14 +4,14 @@ use super::spline::Spline;
 
 /// How points are connected; the order of `Modelica.Blocks.Types.Smoothness`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Smoothness {
+pub enum Smoothness {
     Linear,
     Constant,
     Spline(Spline),
 }
 
 impl Smoothness {
-    pub(super) fn from_ordinal(ordinal: i64) -> Option<Smoothness> {
+    pub fn from_ordinal(ordinal: i64) -> Option<Smoothness> {
         Some(match ordinal {
             1 => Smoothness::Linear,
             2 => Smoothness::Spline(Spline::Akima),
@@ -26,7 +26,7 @@ impl Smoothness {
 
 /// What lies beyond the points; the order of `Modelica.Blocks.Types.Extrapolation`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Extrapolation {
+pub enum Extrapolation {
     Hold,
     LastTwoPoints,
     Periodic,
@@ -34,7 +34,7 @@ pub(super) enum Extrapolation {
 }
 
 impl Extrapolation {
-    pub(super) fn from_ordinal(ordinal: i64) -> Option<Extrapolation> {
+    pub fn from_ordinal(ordinal: i64) -> Option<Extrapolation> {
         Some(match ordinal {
             1 => Extrapolation::Hold,
             2 => Extrapolation::LastTwoPoints,
@@ -47,7 +47,7 @@ impl Extrapolation {
 
 /// Where a number stands among abscissae.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Place {
+pub enum Place {
     /// In the interval of this number, at this abscissa (which differs from the number asked for
     /// in periodic tables).
     Inside(usize, f64),
@@ -59,7 +59,7 @@ pub(super) enum Place {
 
 /// Places `u` among abscissae that do not decrease; `None` where extrapolation is refused. An
 /// abscissa belongs to the interval that it begins; the last one to the last interval.
-pub(super) fn place(x: &[f64], extrapolation: Extrapolation, u: f64) -> Option<Place> {
+pub fn place(x: &[f64], extrapolation: Extrapolation, u: f64) -> Option<Place> {
     let (Some(first), Some(last)) = (x.first().copied(), x.last().copied()) else { return None };
     let inside = |u: f64| {
         let interval = x.partition_point(|x| *x <= u).saturating_sub(1);
@@ -82,7 +82,7 @@ pub(super) fn place(x: &[f64], extrapolation: Extrapolation, u: f64) -> Option<P
 
 /// One column of a table over its first.
 #[derive(Debug, Clone)]
-pub(super) struct Curve {
+pub struct Curve {
     y: Vec<f64>,
     smoothness: Smoothness,
     slopes: Vec<f64>,
@@ -90,7 +90,7 @@ pub(super) struct Curve {
 
 impl Curve {
     /// Through points whose abscissae do not decrease; for splines they increase strictly.
-    pub(super) fn new(x: &[f64], y: Vec<f64>, smoothness: Smoothness) -> Curve {
+    pub fn new(x: &[f64], y: Vec<f64>, smoothness: Smoothness) -> Curve {
         let slopes = match smoothness {
             Smoothness::Spline(spline) if x.len() > 1 => spline.slopes(x, &y),
             _ => Vec::new(),
@@ -99,7 +99,7 @@ impl Curve {
     }
 
     /// Value, first and second derivative.
-    pub(super) fn at(&self, x: &[f64], extrapolation: Extrapolation, place: Place) -> [f64; 3] {
+    pub fn at(&self, x: &[f64], extrapolation: Extrapolation, place: Place) -> [f64; 3] {
         let n = x.len();
         if n == 1 {
             return [self.y[0], 0.0, 0.0];
@@ -123,7 +123,7 @@ impl Curve {
     }
 
     /// The segment of an interval, continued where `u` is not in it.
-    pub(super) fn inside(&self, x: &[f64], interval: usize, u: f64) -> [f64; 3] {
+    pub fn inside(&self, x: &[f64], interval: usize, u: f64) -> [f64; 3] {
         let i = interval;
         let (h, s) = (x[i + 1] - x[i], u - x[i]);
         let (y0, y1) = (self.y[i], self.y[i + 1]);

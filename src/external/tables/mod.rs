@@ -17,7 +17,7 @@ use super::Entry;
 use super::call::Call;
 use crate::diag::Fault;
 
-pub(super) const ENTRIES: &[Entry] = &[
+pub const ENTRIES: &[Entry] = &[
     Entry::pure("ModelicaStandardTables_CombiTimeTable_init", "tfannnannn->o", time::init),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_init2", "ftannnannnnnn->o", time::init2),
     Entry::pure("ModelicaStandardTables_CombiTimeTable_init3", "ftannnannnnnntn->o", time::init3),

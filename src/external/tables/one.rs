@@ -8,7 +8,7 @@ use crate::external::call::Call;
 
 /// Columns of a table over its first column.
 #[derive(Debug)]
-pub(super) struct Table1D {
+pub struct Table1D {
     pub(super) x: Vec<f64>,
     pub(super) curves: Vec<Curve>,
     pub(super) smoothness: Smoothness,
@@ -18,7 +18,7 @@ pub(super) struct Table1D {
 impl Table1D {
     /// From a matrix and arguments of the call: the columns wanted, smoothness, extrapolation.
     /// Abscissae may repeat if `jumps`, but not for splines.
-    pub(super) fn new(
+    pub fn new(
         call: &Call<'_>,
         matrix: &Matrix,
         columns: usize,
@@ -52,14 +52,14 @@ impl Table1D {
     }
 
     /// The curve of a column, from 1.
-    pub(super) fn curve(&self, call: &Call<'_>, column: i64) -> Result<&Curve, Fault> {
+    pub fn curve(&self, call: &Call<'_>, column: i64) -> Result<&Curve, Fault> {
         let position = usize::try_from(column - 1).ok();
         position
             .and_then(|position| self.curves.get(position))
             .ok_or_else(|| call.fault(format!("there is no column {column}")))
     }
 
-    pub(super) fn place(&self, call: &Call<'_>, u: f64) -> Result<Place, Fault> {
+    pub fn place(&self, call: &Call<'_>, u: f64) -> Result<Place, Fault> {
         if u.is_nan() {
             return Err(call.fault("the abscissa is not a number"));
         }
@@ -71,7 +71,7 @@ impl Table1D {
 }
 
 /// Whether abscissae increase, strictly unless `jumps`.
-pub(super) fn ordered(call: &Call<'_>, x: &[f64], what: &str, jumps: bool) -> Result<(), Fault> {
+pub fn ordered(call: &Call<'_>, x: &[f64], what: &str, jumps: bool) -> Result<(), Fault> {
     let wrong = x.windows(2).find(|x| if jumps { x[1] < x[0] } else { x[1] <= x[0] });
     match wrong {
         Some(x) => Err(call.fault(format!(
@@ -85,18 +85,18 @@ pub(super) fn ordered(call: &Call<'_>, x: &[f64], what: &str, jumps: bool) -> Re
 }
 
 /// `(tableName, fileName, table, nRow, nColumn, columns, nCols, smoothness)`
-pub(super) fn init(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn init(call: &mut Call<'_>) -> Result<(), Fault> {
     make(call, Source { name: 0, file: 1, matrix: 2, csv: None }, 2)
 }
 
 /// As [`init`], file before table, with extrapolation and verbosity.
-pub(super) fn init2(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn init2(call: &mut Call<'_>) -> Result<(), Fault> {
     let extrapolation = call.whole(8);
     make(call, Source { name: 1, file: 0, matrix: 2, csv: None }, extrapolation)
 }
 
 /// As [`init2`], with delimiter and header lines of CSV files.
-pub(super) fn init3(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn init3(call: &mut Call<'_>) -> Result<(), Fault> {
     let extrapolation = call.whole(8);
     make(call, Source { name: 1, file: 0, matrix: 2, csv: Some((10, 11)) }, extrapolation)
 }
@@ -116,31 +116,31 @@ fn evaluated(call: &Call<'_>) -> Result<[f64; 3], Fault> {
 }
 
 /// `y = f(u)`
-pub(super) fn value(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn value(call: &mut Call<'_>) -> Result<(), Fault> {
     let [y, ..] = evaluated(call)?;
     call.give(y)
 }
 
 /// `f′(u) u′`
-pub(super) fn derivative(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn derivative(call: &mut Call<'_>) -> Result<(), Fault> {
     let [_, slope, _] = evaluated(call)?;
     call.give(slope * call.number(3))
 }
 
 /// `f″(u) u′² + f′(u) u″`
-pub(super) fn second(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn second(call: &mut Call<'_>) -> Result<(), Fault> {
     let [_, slope, curvature] = evaluated(call)?;
     call.give(curvature * elementary::powi(call.number(3), 2) + slope * call.number(4))
 }
 
 /// The first abscissa.
-pub(super) fn minimum(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn minimum(call: &mut Call<'_>) -> Result<(), Fault> {
     let first = call.object::<Table1D>(0)?.x[0];
     call.give(first)
 }
 
 /// The last abscissa.
-pub(super) fn maximum(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn maximum(call: &mut Call<'_>) -> Result<(), Fault> {
     let x = &call.object::<Table1D>(0)?.x;
     let last = x[x.len() - 1];
     call.give(last)

@@ -6,7 +6,7 @@
 
 /// How slopes are chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Spline {
+pub enum Spline {
     /// Akima's weights.
     Akima,
     /// Akima's weights with the mean slopes added, so that flat parts do not overshoot.
@@ -19,7 +19,7 @@ pub(super) enum Spline {
 
 impl Spline {
     /// The slope at every point; at least two points.
-    pub(super) fn slopes(self, x: &[f64], y: &[f64]) -> Vec<f64> {
+    pub fn slopes(self, x: &[f64], y: &[f64]) -> Vec<f64> {
         let h: Vec<f64> = x.windows(2).map(|x| x[1] - x[0]).collect();
         let m: Vec<f64> = y.windows(2).zip(&h).map(|(y, h)| (y[1] - y[0]) / h).collect();
         if m.len() == 1 {
@@ -36,7 +36,7 @@ impl Spline {
 
 /// Secants with two more at either end, which continue the last two linearly; a single one is
 /// repeated.
-pub(super) fn extended(m: &[f64]) -> Vec<f64> {
+pub fn extended(m: &[f64]) -> Vec<f64> {
     let n = m.len();
     if n == 1 {
         return vec![m[0]; 5];
@@ -52,7 +52,7 @@ pub(super) fn extended(m: &[f64]) -> Vec<f64> {
 
 /// The shares in the slope at a point of the secants before and behind it; `m` are the two secants
 /// on either side.
-pub(super) fn shares(m: &[f64], weight: fn(f64, f64) -> f64) -> [f64; 2] {
+pub fn shares(m: &[f64], weight: fn(f64, f64) -> f64) -> [f64; 2] {
     let (before, behind) = (weight(m[2], m[3]), weight(m[0], m[1]));
     match before + behind {
         0.0 => [0.5, 0.5],
@@ -61,7 +61,7 @@ pub(super) fn shares(m: &[f64], weight: fn(f64, f64) -> f64) -> [f64; 2] {
 }
 
 /// The difference of two secants.
-pub(super) fn difference(a: f64, b: f64) -> f64 {
+pub fn difference(a: f64, b: f64) -> f64 {
     (b - a).abs()
 }
 

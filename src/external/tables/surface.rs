@@ -5,14 +5,14 @@ use super::spline::{Spline, difference, extended, shares};
 
 /// Value, both slopes and the mixed derivative at every point of the grid, row-major.
 #[derive(Debug)]
-pub(super) struct Surface {
+pub struct Surface {
     nodes: Vec<[f64; 4]>,
 }
 
 /// Where an abscissa lies in an interval of its axis: weights of the values and of the slopes at
 /// both ends for the value, the first and the second derivative.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Basis {
+pub struct Basis {
     low: usize,
     high: usize,
     /// By order of the derivative: low value, low slope, high value, high slope.
@@ -21,7 +21,7 @@ pub(super) struct Basis {
 
 impl Basis {
     /// In the interval `low` of the abscissae; an axis of one point has no intervals.
-    pub(super) fn new(x: &[f64], low: usize, u: f64) -> Basis {
+    pub fn new(x: &[f64], low: usize, u: f64) -> Basis {
         if x.len() == 1 {
             let value = [1.0, 0.0, 0.0, 0.0];
             return Basis { low: 0, high: 0, weights: [value, [0.0; 4], [0.0; 4]] };
@@ -44,7 +44,7 @@ impl Basis {
 
 impl Surface {
     /// Through `z`, row-major over `x`, then `y`.
-    pub(super) fn new(x: &[f64], y: &[f64], z: &[f64]) -> Surface {
+    pub fn new(x: &[f64], y: &[f64], z: &[f64]) -> Surface {
         let (rows, columns) = (x.len(), y.len());
         let column = |j: usize| (0..rows).map(|i| z[i * columns + j]).collect::<Vec<f64>>();
         let by_x: Vec<Line> = (0..columns).map(|j| Line::new(x, &column(j))).collect();
@@ -67,14 +67,7 @@ impl Surface {
     }
 
     /// A derivative of orders `p` and `q`, at most 2 each.
-    pub(super) fn derivative(
-        &self,
-        columns: usize,
-        a: &Basis,
-        b: &Basis,
-        p: usize,
-        q: usize,
-    ) -> f64 {
+    pub fn derivative(&self, columns: usize, a: &Basis, b: &Basis, p: usize, q: usize) -> f64 {
         let (wa, wb) = (&a.weights[p], &b.weights[q]);
         let corner = |i: usize, wa: &[f64], j: usize, wb: &[f64]| {
             let [z, zx, zy, zxy] = self.nodes[i * columns + j];

@@ -34,19 +34,19 @@ const NEVER: f64 = f64::MAX;
 
 /// `(tableName, fileName, table, nRow, nColumn, startTime, columns, nCols, smoothness,
 /// extrapolation)`
-pub(super) fn init(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn init(call: &mut Call<'_>) -> Result<(), Fault> {
     let start = call.number(5);
     make(call, Source { name: 0, file: 1, matrix: 2, csv: None }, start, TimeEvents::Always)
 }
 
 /// As [`init`], file before table, with shift, time events and verbosity.
-pub(super) fn init2(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn init2(call: &mut Call<'_>) -> Result<(), Fault> {
     let (shift, events) = (call.number(10), events(call)?);
     make(call, Source { name: 1, file: 0, matrix: 2, csv: None }, shift, events)
 }
 
 /// As [`init2`], with delimiter and header lines of CSV files.
-pub(super) fn init3(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn init3(call: &mut Call<'_>) -> Result<(), Fault> {
     let (shift, events) = (call.number(10), events(call)?);
     make(call, Source { name: 1, file: 0, matrix: 2, csv: Some((13, 14)) }, shift, events)
 }
@@ -106,38 +106,38 @@ fn evaluated(call: &Call<'_>) -> Result<[f64; 3], Fault> {
 }
 
 /// The value at a time.
-pub(super) fn value(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn value(call: &mut Call<'_>) -> Result<(), Fault> {
     let [y, ..] = evaluated(call)?;
     call.give(y)
 }
 
 /// `f′(t) t′`
-pub(super) fn derivative(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn derivative(call: &mut Call<'_>) -> Result<(), Fault> {
     let [_, slope, _] = evaluated(call)?;
     call.give(slope * call.number(5))
 }
 
 /// `f″(t) t′² + f′(t) t″`
-pub(super) fn second(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn second(call: &mut Call<'_>) -> Result<(), Fault> {
     let [_, slope, curvature] = evaluated(call)?;
     call.give(curvature * elementary::powi(call.number(5), 2) + slope * call.number(6))
 }
 
 /// The first abscissa.
-pub(super) fn minimum(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn minimum(call: &mut Call<'_>) -> Result<(), Fault> {
     let first = call.object::<TimeTable>(0)?.table.x[0];
     call.give(first)
 }
 
 /// The last abscissa.
-pub(super) fn maximum(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn maximum(call: &mut Call<'_>) -> Result<(), Fault> {
     let x = &call.object::<TimeTable>(0)?.table.x;
     let last = x[x.len() - 1];
     call.give(last)
 }
 
 /// The first event after a time.
-pub(super) fn next_event(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn next_event(call: &mut Call<'_>) -> Result<(), Fault> {
     let next = call.object::<TimeTable>(0)?.next_event(call.number(1));
     call.give(next)
 }

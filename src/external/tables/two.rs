@@ -31,18 +31,18 @@ enum Shape {
 }
 
 /// `(tableName, fileName, table, nRow, nColumn, smoothness)`
-pub(super) fn init(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn init(call: &mut Call<'_>) -> Result<(), Fault> {
     make(call, Source { name: 0, file: 1, matrix: 2, csv: None }, 2)
 }
 
 /// As [`init`], file before table, with extrapolation and verbosity.
-pub(super) fn init2(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn init2(call: &mut Call<'_>) -> Result<(), Fault> {
     let extrapolation = call.whole(6);
     make(call, Source { name: 1, file: 0, matrix: 2, csv: None }, extrapolation)
 }
 
 /// As [`init2`], with delimiter and header lines of CSV files.
-pub(super) fn init3(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn init3(call: &mut Call<'_>) -> Result<(), Fault> {
     let extrapolation = call.whole(6);
     make(call, Source { name: 1, file: 0, matrix: 2, csv: Some((8, 9)) }, extrapolation)
 }
@@ -198,19 +198,19 @@ fn evaluated(call: &Call<'_>) -> Result<[f64; 6], Fault> {
 }
 
 /// `f(u₁, u₂)`
-pub(super) fn value(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn value(call: &mut Call<'_>) -> Result<(), Fault> {
     let [z, ..] = evaluated(call)?;
     call.give(z)
 }
 
 /// `f₁ u₁′ + f₂ u₂′`
-pub(super) fn derivative(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn derivative(call: &mut Call<'_>) -> Result<(), Fault> {
     let [_, first, second, ..] = evaluated(call)?;
     call.give(first * call.number(3) + second * call.number(4))
 }
 
 /// `f₁₁ u₁′² + 2 f₁₂ u₁′ u₂′ + f₂₂ u₂′² + f₁ u₁″ + f₂ u₂″`
-pub(super) fn second(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn second(call: &mut Call<'_>) -> Result<(), Fault> {
     let [_, first, second, mixed, along, across] = evaluated(call)?;
     let (p, q) = (call.number(3), call.number(4));
     let quadratic = along * p * p + 2.0 * mixed * p * q + across * q * q;
@@ -218,14 +218,14 @@ pub(super) fn second(call: &mut Call<'_>) -> Result<(), Fault> {
 }
 
 /// The first abscissae.
-pub(super) fn minimum(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn minimum(call: &mut Call<'_>) -> Result<(), Fault> {
     let table: &Table2D = call.object(0)?;
     let ends = [table.x[0], table.y[0]];
     write_ends(call, ends)
 }
 
 /// The last abscissae.
-pub(super) fn maximum(call: &mut Call<'_>) -> Result<(), Fault> {
+pub fn maximum(call: &mut Call<'_>) -> Result<(), Fault> {
     let table: &Table2D = call.object(0)?;
     let ends = [table.x[table.x.len() - 1], table.y[table.y.len() - 1]];
     write_ends(call, ends)

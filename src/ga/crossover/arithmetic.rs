@@ -4,13 +4,13 @@
 //!
 //! Reference: [Michalewicz 1996](crate::bibliography#michalewicz-1996), §5.2.
 
-use super::Crossover;
+use super::{Crossover, Parents};
 use crate::diag::Fault;
-use crate::ga::{Gene, Mrg32k3a};
+use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
+pub const ENTRY: Entry<dyn Crossover> = Entry {
     name: "arithmetic",
     aliases: &["intermediate"],
     summary: "arithmetic crossover: children at random on the line between their parents",
@@ -21,13 +21,8 @@ pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
 struct Arithmetic;
 
 impl Crossover for Arithmetic {
-    fn cross(
-        &self,
-        first: &mut [f64],
-        second: &mut [f64],
-        genes: &[Gene],
-        rng: &mut Mrg32k3a,
-    ) -> Result<(), Fault> {
+    fn cross(&self, parents: Parents, rng: &mut Mrg32k3a) -> Result<(), Fault> {
+        let Parents { first, second, genes } = parents;
         let share = rng.uniform();
         for ((a, b), gene) in first.iter_mut().zip(second).zip(genes) {
             let moved = share * (*b - *a);

@@ -4,13 +4,13 @@
 //!
 //! Reference: [Eshelman & Schaffer 1993](crate::bibliography#eshelman-schaffer-1993).
 
-use super::Crossover;
+use super::{Crossover, Parents};
 use crate::diag::Fault;
-use crate::ga::{Gene, Mrg32k3a};
+use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
+pub const ENTRY: Entry<dyn Crossover> = Entry {
     name: "blend",
     aliases: &["blx", "blx_alpha"],
     summary: "BLX-alpha: genes uniform between the parents, extended by `alpha` times their \
@@ -24,13 +24,8 @@ struct Blend {
 }
 
 impl Crossover for Blend {
-    fn cross(
-        &self,
-        first: &mut [f64],
-        second: &mut [f64],
-        genes: &[Gene],
-        rng: &mut Mrg32k3a,
-    ) -> Result<(), Fault> {
+    fn cross(&self, parents: Parents, rng: &mut Mrg32k3a) -> Result<(), Fault> {
+        let Parents { first, second, genes } = parents;
         for ((a, b), gene) in first.iter_mut().zip(second).zip(genes) {
             let beyond = self.alpha * (*a - *b).abs();
             let low = (a.min(*b) - beyond).max(gene.min);

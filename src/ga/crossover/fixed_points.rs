@@ -8,16 +8,16 @@
 //!
 //! Reference: [Rubio et al. 2006](crate::bibliography#rubio-2006), Figure 3.
 
-use super::Crossover;
+use super::{Crossover, Parents};
 use crate::bail;
 use crate::diag::Fault;
 use crate::ga::errors::BAD_CROSS_POINT;
-use crate::ga::{Gene, Genomes, Mrg32k3a};
+use crate::ga::{Genomes, Mrg32k3a};
 use crate::registry::Entry;
 use std::sync::Arc;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
+pub const ENTRY: Entry<dyn Crossover> = Entry {
     name: "fixed_points",
     aliases: &["gapilib2006", "points"],
     summary: "n-point crossover at fixed points: genes after each of `points` points are \
@@ -36,13 +36,8 @@ struct FixedPoints {
 }
 
 impl Crossover for FixedPoints {
-    fn cross(
-        &self,
-        first: &mut [f64],
-        second: &mut [f64],
-        _: &[Gene],
-        _: &mut Mrg32k3a,
-    ) -> Result<(), Fault> {
+    fn cross(&self, parents: Parents, _: &mut Mrg32k3a) -> Result<(), Fault> {
+        let Parents { first, second, .. } = parents;
         // Behind an even number of points genes have changed places and back.
         for &point in &self.points {
             first[point..].swap_with_slice(&mut second[point..]);
@@ -104,6 +99,7 @@ pub fn cross_adjacent(parents: &Genomes, points: &[usize]) -> Genomes {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ga::Gene;
     use proptest::prelude::*;
 
     fn parents() -> Genomes {
@@ -140,7 +136,9 @@ mod tests {
         let mut again = rng.clone();
         let points: Vec<usize> = (0..3).map(|_| 1 + (3.0 * again.uniform()) as usize).collect();
         let run = operator.for_run(4, &mut rng).unwrap();
-        let cross = |a: &mut [f64], b: &mut [f64]| run.cross(a, b, &genes, &mut rng);
+        let cross = |a: &mut [f64], b: &mut [f64]| {
+            run.cross(Parents { first: a, second: b, genes: &genes }, &mut rng)
+        };
         let children = super::super::cross_rows(&parents(), cross).unwrap();
         assert_eq!(children, cross_adjacent(&parents(), &points));
         assert_ne!(children, parents());

@@ -17,6 +17,16 @@ use crate::diag::Fault;
 use crate::registry::Entry;
 use std::sync::Arc;
 
+/// Two genomes that are crossed in place.
+pub struct Parents<'a> {
+    /// One genome.
+    pub first: &'a mut [f64],
+    /// The other one, of the same length.
+    pub second: &'a mut [f64],
+    /// The genes with their ranges.
+    pub genes: &'a [Gene],
+}
+
 /// Makes children from parents.
 pub trait Crossover: Send + Sync {
     /// Turns two parents into two children within the ranges of `genes`.
@@ -24,13 +34,7 @@ pub trait Crossover: Send + Sync {
     /// # Errors
     ///
     /// A user's function that failed or returned what are no genes.
-    fn cross(
-        &self,
-        first: &mut [f64],
-        second: &mut [f64],
-        genes: &[Gene],
-        rng: &mut Mrg32k3a,
-    ) -> Result<(), Fault>;
+    fn cross(&self, parents: Parents, rng: &mut Mrg32k3a) -> Result<(), Fault>;
 
     /// The crossover of one run, for one that draws something once a run; `None` where each pair
     /// is crossed by itself.

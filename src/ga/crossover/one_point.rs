@@ -3,13 +3,13 @@
 //!
 //! Reference: [Holland 1975](crate::bibliography#holland-1975).
 
-use super::{Crossover, place};
+use super::{Crossover, Parents, place};
 use crate::diag::Fault;
-use crate::ga::{Gene, Mrg32k3a};
+use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
+pub const ENTRY: Entry<dyn Crossover> = Entry {
     name: "one_point",
     aliases: &["single_point"],
     summary: "one-point crossover: the genes after a random point are exchanged",
@@ -20,13 +20,8 @@ pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
 struct OnePoint;
 
 impl Crossover for OnePoint {
-    fn cross(
-        &self,
-        first: &mut [f64],
-        second: &mut [f64],
-        _: &[Gene],
-        rng: &mut Mrg32k3a,
-    ) -> Result<(), Fault> {
+    fn cross(&self, parents: Parents, rng: &mut Mrg32k3a) -> Result<(), Fault> {
+        let Parents { first, second, .. } = parents;
         // A single gene has no point inside.
         if first.len() > 1 {
             let point = 1 + place(first.len() - 1, rng);

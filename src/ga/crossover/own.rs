@@ -1,7 +1,7 @@
 //! A crossover that the user wrote in Modelica: any function of two parents, the ranges of the
 //! genes and random numbers.
 
-use super::Crossover;
+use super::{Crossover, Parents};
 use crate::diag::Fault;
 use crate::ga::operators::{Call, NUMBERS, Signature, Size, ranges, within};
 use crate::ga::{Gene, Mrg32k3a};
@@ -24,13 +24,8 @@ pub const SIGNATURE: Signature = Signature {
 pub struct Own(pub Arc<dyn UserFunction>);
 
 impl Crossover for Own {
-    fn cross(
-        &self,
-        first: &mut [f64],
-        second: &mut [f64],
-        genes: &[Gene],
-        rng: &mut Mrg32k3a,
-    ) -> Result<(), Fault> {
+    fn cross(&self, parents: Parents, rng: &mut Mrg32k3a) -> Result<(), Fault> {
+        let Parents { first, second, genes } = parents;
         cross_by(&mut |inputs| self.0.call(inputs), first, second, genes, rng)
     }
 }

@@ -4,14 +4,14 @@
 //!
 //! Reference: [Deb & Agrawal 1995](crate::bibliography#deb-agrawal-1995), §3.
 
-use super::Crossover;
+use super::{Crossover, Parents};
 use crate::diag::Fault;
 use crate::elementary;
-use crate::ga::{Gene, Mrg32k3a};
+use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
+pub const ENTRY: Entry<dyn Crossover> = Entry {
     name: "sbx",
     aliases: &["simulated_binary"],
     summary: "simulated binary crossover: genes near those of the parents, closer for larger `eta`",
@@ -28,13 +28,8 @@ struct Sbx {
 }
 
 impl Crossover for Sbx {
-    fn cross(
-        &self,
-        first: &mut [f64],
-        second: &mut [f64],
-        genes: &[Gene],
-        rng: &mut Mrg32k3a,
-    ) -> Result<(), Fault> {
+    fn cross(&self, parents: Parents, rng: &mut Mrg32k3a) -> Result<(), Fault> {
+        let Parents { first, second, genes } = parents;
         for ((a, b), gene) in first.iter_mut().zip(second).zip(genes) {
             let fractions = [gene.fraction(*a), gene.fraction(*b)];
             if rng.uniform() > 0.5 || (fractions[0] - fractions[1]).abs() < SAME {
@@ -64,6 +59,7 @@ fn children([a, b]: [f64; 2], eta: f64, rng: &mut Mrg32k3a) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ga::Gene;
     use proptest::prelude::*;
 
     fn genes(n: usize, min: f64, max: f64) -> Vec<Gene> {
@@ -83,7 +79,7 @@ mod tests {
         ) {
             let (mut first, mut second) = (a.clone(), a.clone());
             let genes = genes(a.len(), -3.0, 7.0);
-            Sbx { eta }.cross(&mut first, &mut second, &genes, &mut rng()).unwrap();
+            Sbx { eta }.cross(Parents { first: &mut first, second: &mut second, genes: &genes }, &mut rng()).unwrap();
             prop_assert_eq!(&first, &second);
             prop_assert_eq!(&first, &a);
         }
@@ -95,7 +91,10 @@ mod tests {
     fn children_keep_the_mean_of_their_parents() {
         let (mut first, mut second) = (vec![4.9; 100], vec![5.1; 100]);
         Sbx { eta: 15.0 }
-            .cross(&mut first, &mut second, &genes(100, 0.0, 10.0), &mut rng())
+            .cross(
+                Parents { first: &mut first, second: &mut second, genes: &genes(100, 0.0, 10.0) },
+                &mut rng(),
+            )
             .unwrap();
         for (a, b) in first.iter().zip(&second) {
             assert!((a + b - 10.0).abs() < 1e-9, "{a} {b}");
@@ -111,7 +110,12 @@ mod tests {
             let (n, mut rng, mut spreads) = (4000, rng(), Vec::new());
             while spreads.len() < n {
                 let (mut a, mut b) = ([0.4995], [0.5005]);
-                Sbx { eta }.cross(&mut a, &mut b, &genes(1, 0.0, 1.0), &mut rng).unwrap();
+                Sbx { eta }
+                    .cross(
+                        Parents { first: &mut a, second: &mut b, genes: &genes(1, 0.0, 1.0) },
+                        &mut rng,
+                    )
+                    .unwrap();
                 if (a[0], b[0]) != (0.4995, 0.5005) {
                     spreads.push((a[0] - b[0]).abs() / 0.001);
                 }

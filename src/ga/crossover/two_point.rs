@@ -3,13 +3,13 @@
 //!
 //! Reference: [De Jong 1975](crate::bibliography#de-jong-1975).
 
-use super::{Crossover, place};
+use super::{Crossover, Parents, place};
 use crate::diag::Fault;
-use crate::ga::{Gene, Mrg32k3a};
+use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
+pub const ENTRY: Entry<dyn Crossover> = Entry {
     name: "two_point",
     aliases: &["double_point"],
     summary: "two-point crossover: the genes between two random points are exchanged",
@@ -20,13 +20,8 @@ pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
 struct TwoPoint;
 
 impl Crossover for TwoPoint {
-    fn cross(
-        &self,
-        first: &mut [f64],
-        second: &mut [f64],
-        _: &[Gene],
-        rng: &mut Mrg32k3a,
-    ) -> Result<(), Fault> {
+    fn cross(&self, parents: Parents, rng: &mut Mrg32k3a) -> Result<(), Fault> {
+        let Parents { first, second, .. } = parents;
         let n = first.len();
         if n > 1 {
             let one = place(n, rng);

@@ -2,13 +2,13 @@
 //!
 //! Reference: [Syswerda 1989](crate::bibliography#syswerda-1989).
 
-use super::Crossover;
+use super::{Crossover, Parents};
 use crate::diag::Fault;
-use crate::ga::{Gene, Mrg32k3a};
+use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Crossover> = Entry {
+pub const ENTRY: Entry<dyn Crossover> = Entry {
     name: "uniform",
     aliases: &["discrete"],
     summary: "uniform crossover: each gene is exchanged with the probability `swap`",
@@ -21,13 +21,8 @@ struct Uniform {
 }
 
 impl Crossover for Uniform {
-    fn cross(
-        &self,
-        first: &mut [f64],
-        second: &mut [f64],
-        _: &[Gene],
-        rng: &mut Mrg32k3a,
-    ) -> Result<(), Fault> {
+    fn cross(&self, parents: Parents, rng: &mut Mrg32k3a) -> Result<(), Fault> {
+        let Parents { first, second, .. } = parents;
         for (a, b) in first.iter_mut().zip(second) {
             if rng.uniform() < self.swap {
                 std::mem::swap(a, b);

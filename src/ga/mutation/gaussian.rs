@@ -4,13 +4,13 @@
 //!
 //! Reference: [Bäck & Schwefel 1993](crate::bibliography#back-schwefel-1993).
 
-use super::{Course, Mutation};
+use super::{Child, Mutation};
 use crate::diag::Fault;
-use crate::ga::{Gene, Mrg32k3a};
+use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Mutation> = Entry {
+pub const ENTRY: Entry<dyn Mutation> = Entry {
     name: "gaussian",
     aliases: &["normal"],
     summary: "Gaussian mutation: adds a normal random number of `sigma` times the width of the \
@@ -24,20 +24,10 @@ struct Gaussian {
 }
 
 impl Mutation for Gaussian {
-    fn mutate(
-        &self,
-        genome: &mut [f64],
-        genes: &[Gene],
-        rate: f64,
-        _: Course,
-        rng: &mut Mrg32k3a,
-    ) -> Result<(), Fault> {
-        for (value, gene) in genome.iter_mut().zip(genes) {
-            if rng.uniform() < rate {
-                let moved = gene.fraction(*value) + self.sigma * rng.normal();
-                *value = gene.at(reflected(moved));
-            }
-        }
+    fn mutate(&self, child: Child, rng: &mut Mrg32k3a) -> Result<(), Fault> {
+        child.change(rng, |value, gene, rng| {
+            gene.at(reflected(gene.fraction(value) + self.sigma * rng.normal()))
+        });
         Ok(())
     }
 }
@@ -51,6 +41,8 @@ fn reflected(u: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ga::Gene;
+    use crate::ga::mutation::Course;
 
     const START: Course = Course { generation: 0, planned: None };
 
@@ -66,7 +58,12 @@ mod tests {
         let mut rng = Mrg32k3a::new(&Mrg32k3a::DEFAULT_SEED).unwrap();
         let (n, genes) = (20_000, vec![Gene::new("g", -50.0, 50.0).unwrap(); 20_000]);
         let mut genome = vec![0.0; n];
-        Gaussian { sigma: 0.05 }.mutate(&mut genome, &genes, 0.5, START, &mut rng).unwrap();
+        Gaussian { sigma: 0.05 }
+            .mutate(
+                Child { genome: &mut genome, genes: &genes, rate: 0.5, course: START },
+                &mut rng,
+            )
+            .unwrap();
         let changed: Vec<f64> = genome.into_iter().filter(|value| *value != 0.0).collect();
         assert!((changed.len() as f64 - 10_000.0).abs() < 350.0, "{}", changed.len());
         let count = changed.len() as f64;

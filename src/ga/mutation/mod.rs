@@ -13,21 +13,37 @@ use super::{Gene, Mrg32k3a};
 use crate::diag::Fault;
 use crate::registry::Entry;
 
+/// A genome that is mutated in place.
+pub struct Child<'a> {
+    /// The genome.
+    pub genome: &'a mut [f64],
+    /// The genes with their ranges.
+    pub genes: &'a [Gene],
+    /// The probability that a gene changes.
+    pub rate: f64,
+    /// How far the run has come.
+    pub course: Course,
+}
+
+impl Child<'_> {
+    /// Replaces each gene with the probability of the child; `change` gives the new value.
+    fn change(self, rng: &mut Mrg32k3a, mut change: impl FnMut(f64, &Gene, &mut Mrg32k3a) -> f64) {
+        for (value, gene) in self.genome.iter_mut().zip(self.genes) {
+            if rng.uniform() < self.rate {
+                *value = change(*value, gene, rng);
+            }
+        }
+    }
+}
+
 /// Changes genes at random.
 pub trait Mutation: Send + Sync {
-    /// Changes each gene of `genome` with the probability `rate`, within the ranges of `genes`.
+    /// Changes each gene with the probability of the child, within its range.
     ///
     /// # Errors
     ///
     /// A user's function that failed or returned what are no genes.
-    fn mutate(
-        &self,
-        genome: &mut [f64],
-        genes: &[Gene],
-        rate: f64,
-        course: Course,
-        rng: &mut Mrg32k3a,
-    ) -> Result<(), Fault>;
+    fn mutate(&self, child: Child, rng: &mut Mrg32k3a) -> Result<(), Fault>;
 }
 
 /// How far a run is, for mutations that change with it.

@@ -7,14 +7,14 @@
 //!
 //! Reference: [Michalewicz 1996](crate::bibliography#michalewicz-1996), §6.2.
 
-use super::{Course, Mutation};
+use super::{Child, Mutation};
 use crate::diag::Fault;
 use crate::elementary;
-use crate::ga::{Gene, Mrg32k3a};
+use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Mutation> = Entry {
+pub const ENTRY: Entry<dyn Mutation> = Entry {
     name: "non_uniform",
     aliases: &["michalewicz", "nonuniform"],
     summary: "non-uniform mutation: a step towards an end of the range that decreases over \
@@ -34,33 +34,23 @@ struct NonUniform {
 }
 
 impl Mutation for NonUniform {
-    fn mutate(
-        &self,
-        genome: &mut [f64],
-        genes: &[Gene],
-        rate: f64,
-        course: Course,
-        rng: &mut Mrg32k3a,
-    ) -> Result<(), Fault> {
+    fn mutate(&self, child: Child, rng: &mut Mrg32k3a) -> Result<(), Fault> {
         let over = match self.generations {
-            0 => course.fraction(),
-            generations => course.of(generations as f64),
+            0 => child.course.fraction(),
+            generations => child.course.of(generations as f64),
         };
         let power = elementary::powf(1.0 - over, self.exponent);
-        for (value, gene) in genome.iter_mut().zip(genes) {
-            if rng.uniform() >= rate {
-                continue;
-            }
+        child.change(rng, |value, gene, rng| {
             let (upwards, r) = (rng.uniform() < 0.5, rng.uniform());
             let part = 1.0 - elementary::powf(r, power);
-            let u = gene.fraction(*value);
-            *value = match upwards {
+            let u = gene.fraction(value);
+            match upwards {
                 // A part of 0 leaves the gene as it is, bit for bit.
-                _ if part == 0.0 => *value,
+                _ if part == 0.0 => value,
                 true => gene.at((u + part * (1.0 - u)).min(1.0)),
                 false => gene.at((u - part * u).max(0.0)),
-            };
-        }
+            }
+        });
         Ok(())
     }
 }
@@ -68,13 +58,17 @@ impl Mutation for NonUniform {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ga::Gene;
+    use crate::ga::mutation::Course;
 
     fn mutated(operator: &NonUniform, generation: u64, planned: Option<f64>) -> Vec<f64> {
         let mut rng = Mrg32k3a::new(&Mrg32k3a::DEFAULT_SEED).unwrap();
         let genes = vec![Gene::new("g", -1.0, 3.0).unwrap(); 4000];
         let mut genome = vec![1.0; 4000];
         let course = Course { generation, planned };
-        operator.mutate(&mut genome, &genes, 1.0, course, &mut rng).unwrap();
+        operator
+            .mutate(Child { genome: &mut genome, genes: &genes, rate: 1.0, course }, &mut rng)
+            .unwrap();
         genome
     }
 

@@ -1,7 +1,7 @@
 //! A mutation that the user wrote in Modelica: any function of the genes, their ranges, the rate,
 //! how much of the run is over, and random numbers.
 
-use super::{Course, Mutation};
+use super::{Child, Mutation};
 use crate::diag::Fault;
 use crate::ga::operators::{Call, NUMBERS, Signature, Size, ranges, within};
 use crate::ga::{Gene, Mrg32k3a};
@@ -25,14 +25,8 @@ pub const SIGNATURE: Signature = Signature {
 pub struct Own(pub Arc<dyn UserFunction>);
 
 impl Mutation for Own {
-    fn mutate(
-        &self,
-        genome: &mut [f64],
-        genes: &[Gene],
-        rate: f64,
-        course: Course,
-        rng: &mut Mrg32k3a,
-    ) -> Result<(), Fault> {
+    fn mutate(&self, child: Child, rng: &mut Mrg32k3a) -> Result<(), Fault> {
+        let Child { genome, genes, rate, course } = child;
         mutate_by(&mut |inputs| self.0.call(inputs), genome, genes, [rate, course.fraction()], rng)
     }
 }

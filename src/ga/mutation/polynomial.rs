@@ -3,14 +3,14 @@
 //!
 //! Reference: [Deb & Agrawal 1999](crate::bibliography#deb-agrawal-1999).
 
-use super::{Course, Mutation};
+use super::{Child, Mutation};
 use crate::diag::Fault;
 use crate::elementary;
-use crate::ga::{Gene, Mrg32k3a};
+use crate::ga::Mrg32k3a;
 use crate::registry::Entry;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Mutation> = Entry {
+pub const ENTRY: Entry<dyn Mutation> = Entry {
     name: "polynomial",
     aliases: &["deb"],
     summary: "polynomial mutation: a step within the range, smaller for larger `eta`",
@@ -23,21 +23,11 @@ struct Polynomial {
 }
 
 impl Mutation for Polynomial {
-    fn mutate(
-        &self,
-        genome: &mut [f64],
-        genes: &[Gene],
-        rate: f64,
-        _: Course,
-        rng: &mut Mrg32k3a,
-    ) -> Result<(), Fault> {
-        for (value, gene) in genome.iter_mut().zip(genes) {
-            if rng.uniform() >= rate {
-                continue;
-            }
-            let u = gene.fraction(*value);
-            *value = gene.at((u + change(u, self.eta, rng.uniform())).clamp(0.0, 1.0));
-        }
+    fn mutate(&self, child: Child, rng: &mut Mrg32k3a) -> Result<(), Fault> {
+        child.change(rng, |value, gene, rng| {
+            let u = gene.fraction(value);
+            gene.at((u + change(u, self.eta, rng.uniform())).clamp(0.0, 1.0))
+        });
         Ok(())
     }
 }

@@ -4,7 +4,7 @@
 //!
 //! Reference: [Rubio et al. 2006](crate::bibliography#rubio-2006), Table 2.
 
-use super::{Course, Mutation};
+use super::{Child, Mutation};
 use crate::bail;
 use crate::diag::Fault;
 use crate::ga::errors::BAD_MUTATION_FACTOR;
@@ -12,7 +12,7 @@ use crate::ga::{Gene, Genomes, Mrg32k3a};
 use crate::registry::Entry;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Mutation> = Entry {
+pub const ENTRY: Entry<dyn Mutation> = Entry {
     name: "uniform",
     aliases: &["random"],
     summary: "uniform mutation: a gene is replaced by a uniform random value of its range",
@@ -23,16 +23,9 @@ pub(super) const ENTRY: Entry<dyn Mutation> = Entry {
 struct Uniform;
 
 impl Mutation for Uniform {
-    fn mutate(
-        &self,
-        genome: &mut [f64],
-        genes: &[Gene],
-        rate: f64,
-        _: Course,
-        rng: &mut Mrg32k3a,
-    ) -> Result<(), Fault> {
-        for (value, gene) in genome.iter_mut().zip(genes) {
-            replace(value, gene, rate, rng.uniform());
+    fn mutate(&self, child: Child, rng: &mut Mrg32k3a) -> Result<(), Fault> {
+        for (value, gene) in child.genome.iter_mut().zip(child.genes) {
+            replace(value, gene, child.rate, rng.uniform());
         }
         Ok(())
     }

@@ -3,8 +3,8 @@
 
 use super::Setup;
 use crate::diag::Fault;
-use crate::ga::crossover::Crossover;
-use crate::ga::mutation::{Course, Mutation};
+use crate::ga::crossover::{Crossover, Parents};
+use crate::ga::mutation::{Child, Course, Mutation};
 use crate::ga::operators::{self, usual};
 use crate::ga::{Gene, Mrg32k3a};
 use crate::registry::{Choice, Options};
@@ -12,10 +12,10 @@ use std::sync::Arc;
 
 /// The operators that were chosen in place of the usual ones: their kinds, and their names with
 /// the settings given.
-pub(super) type Chosen = Vec<(&'static str, String)>;
+pub type Chosen = Vec<(&'static str, String)>;
 
 /// The choice of this kind, or the usual one.
-pub(super) fn take(
+pub fn take(
     options: &mut Options,
     kind: &'static str,
     usual: Choice,
@@ -32,7 +32,7 @@ pub(super) fn take(
 
 /// Crossover and mutation of a method.
 #[derive(Clone)]
-pub(super) struct Breeding {
+pub struct Breeding {
     crossover: Arc<dyn Crossover>,
     /// How likely a pair is crossed; without a number every pair is, and none is drawn.
     pub(super) probability: Option<f64>,
@@ -46,10 +46,7 @@ pub(super) struct Breeding {
 impl Breeding {
     /// Simulated binary crossover of nine pairs in ten and polynomial mutation of one gene in each
     /// individual, unless others are chosen.
-    pub(super) fn on_real_genes(
-        options: &mut Options,
-        chosen: &mut Chosen,
-    ) -> Result<Breeding, Fault> {
+    pub fn on_real_genes(options: &mut Options, chosen: &mut Chosen) -> Result<Breeding, Fault> {
         let (crossover, probability) = match options.take_choice("crossover") {
             Some(choice) => crossover(choice, 0.9, chosen)?,
             None => {
@@ -71,10 +68,7 @@ impl Breeding {
     }
 
     /// The crossover and the mutation of the paper, unless others are chosen.
-    pub(super) fn of_the_paper(
-        options: &mut Options,
-        chosen: &mut Chosen,
-    ) -> Result<Breeding, Fault> {
+    pub fn of_the_paper(options: &mut Options, chosen: &mut Chosen) -> Result<Breeding, Fault> {
         let (crossover, probability) = match options.take_choice("crossover") {
             Some(choice) => crossover(choice, 1.0, chosen)?,
             None => {
@@ -94,13 +88,13 @@ impl Breeding {
     }
 
     /// These for one run.
-    pub(super) fn for_run(&self, n_genes: usize, rng: &mut Mrg32k3a) -> Breeding {
+    pub fn for_run(&self, n_genes: usize, rng: &mut Mrg32k3a) -> Breeding {
         let crossover = self.crossover.for_run(n_genes, rng);
         Breeding { crossover: crossover.unwrap_or_else(|| self.crossover.clone()), ..self.clone() }
     }
 
     /// Turns two parents into two children, or leaves them as they are.
-    pub(super) fn cross(
+    pub fn cross(
         &self,
         first: &mut [f64],
         second: &mut [f64],
@@ -108,13 +102,13 @@ impl Breeding {
         rng: &mut Mrg32k3a,
     ) -> Result<(), Fault> {
         if self.probability.is_none_or(|probability| rng.uniform() < probability) {
-            self.crossover.cross(first, second, genes, rng)?;
+            self.crossover.cross(Parents { first, second, genes }, rng)?;
         }
         Ok(())
     }
 
     /// Mutates a child.
-    pub(super) fn mutate(
+    pub fn mutate(
         &self,
         child: &mut [f64],
         genes: &[Gene],
@@ -123,7 +117,7 @@ impl Breeding {
     ) -> Result<(), Fault> {
         let one_gene = self.zero_is_one_gene && self.rate == 0.0;
         let rate = if one_gene { 1.0 / genes.len() as f64 } else { self.rate };
-        self.mutation.mutate(child, genes, rate, course, rng)
+        self.mutation.mutate(Child { genome: child, genes, rate, course }, rng)
     }
 }
 
@@ -164,11 +158,11 @@ fn frequency(
 }
 
 /// The generations that a run is to have, where its evaluations are known.
-pub(super) fn planned(setup: &Setup, individuals: usize) -> Option<f64> {
+pub fn planned(setup: &Setup, individuals: usize) -> Option<f64> {
     setup.budget.map(|budget| budget as f64 / individuals.max(1) as f64)
 }
 
 /// The genes in the unit cube.
-pub(super) fn unit(genes: Vec<Gene>) -> Vec<Gene> {
+pub fn unit(genes: Vec<Gene>) -> Vec<Gene> {
     genes.into_iter().map(|gene| Gene { min: 0.0, max: 1.0, ..gene }).collect()
 }

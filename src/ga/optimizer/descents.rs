@@ -5,10 +5,9 @@
 //! descents have ended in w different minima, w (n − 1) / (n − w − 2) are expected in all.
 
 use super::levenberg_marquardt::{Accuracy, COARSE, Descent, FINE};
-use super::{Answers, Wants};
+use super::{Answers, DescentEnd, DescentReport, Wants};
 use crate::elementary;
 use crate::ga::Genomes;
-use serde::{Deserialize, Serialize};
 
 /// Descents from different starts that must agree before a search ends early.
 const AGREEING: usize = 3;
@@ -32,43 +31,8 @@ const STEPS: usize = 40;
 /// Steps to make the best minimum finer.
 const FINE_STEPS: usize = 100;
 
-/// How a descent ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum DescentEnd {
-    /// At a minimum: the test of Bates and Watts holds.
-    Minimum,
-    /// Its steps were used up, or the search ended before it did.
-    StepLimit,
-    /// No step reduces the sum of squares beyond the errors of the simulation.
-    NoDescent,
-    /// Nothing that is varied has an effect there.
-    Flat,
-    /// Its start could not be simulated.
-    Failed,
-}
-
-/// One descent.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DescentReport {
-    /// Where it started and where it ended, in the unit cube.
-    pub start: Vec<f64>,
-    /// Where it stands.
-    pub end: Vec<f64>,
-    /// The sum of squares there.
-    pub objective: f64,
-    /// How it ended.
-    pub ending: DescentEnd,
-    /// The relative offset there, where there are degrees of freedom.
-    pub offset: Option<f64>,
-    /// Steps tried.
-    pub steps: u64,
-    /// The number of the end: descents that ended at the same place share it; 0 is the best.
-    pub group: usize,
-}
-
 /// All descents of a search; those of a round are asked together, trials first, then Jacobians.
-pub(super) struct Pool {
+pub struct Pool {
     descents: Vec<Descent>,
     /// Whether each began at a point that owes nothing to other descents.
     independent: Vec<bool>,
@@ -82,7 +46,7 @@ pub(super) struct Pool {
 }
 
 impl Pool {
-    pub(super) fn new(accuracy: Accuracy) -> Pool {
+    pub fn new(accuracy: Accuracy) -> Pool {
         Pool {
             descents: Vec::new(),
             independent: Vec::new(),
@@ -97,7 +61,7 @@ impl Pool {
     /// Begins a round: descends from these starts, goes on with the best of the descents whose steps
     /// were used up, and makes the best minimum finer. The first `independent` starts owe nothing
     /// to earlier descents.
-    pub(super) fn begin(&mut self, starts: Vec<Vec<f64>>, independent: usize) {
+    pub fn begin(&mut self, starts: Vec<Vec<f64>>, independent: usize) {
         self.active.clear();
         self.rounds.push((self.descents.len(), self.smallest()));
         let open = |k: &usize| !self.descents[*k].has_ended();
@@ -123,7 +87,7 @@ impl Pool {
     }
 
     /// Goes on with the best minimum alone; whether there is anything to do.
-    pub(super) fn finish(&mut self) -> bool {
+    pub fn finish(&mut self) -> bool {
         self.active.clear();
         self.refine();
         self.shares = vec![0; self.active.len()];
@@ -131,7 +95,7 @@ impl Pool {
     }
 
     /// Asks for the next individuals; without any the round is over.
-    pub(super) fn ask(&mut self, batch: &mut Genomes) {
+    pub fn ask(&mut self, batch: &mut Genomes) {
         for wants in [Wants::Residuals, Wants::Jacobians] {
             self.wants = wants;
             for (&k, share) in self.active.iter().zip(&mut self.shares) {
@@ -148,11 +112,11 @@ impl Pool {
         self.active.clear();
     }
 
-    pub(super) fn wants(&self) -> Wants {
+    pub fn wants(&self) -> Wants {
         self.wants
     }
 
-    pub(super) fn tell(&mut self, count: usize, answers: &Answers<'_>) {
+    pub fn tell(&mut self, count: usize, answers: &Answers<'_>) {
         let mut first = 0;
         for (&k, &share) in self.active.iter().zip(&self.shares) {
             if share > 0 {
@@ -163,7 +127,7 @@ impl Pool {
     }
 
     /// Forgets everything, as the ranges have changed.
-    pub(super) fn clear(&mut self) {
+    pub fn clear(&mut self) {
         *self = Pool::new(self.accuracy);
     }
 
@@ -180,17 +144,17 @@ impl Pool {
     }
 
     /// Where the best descent stands.
-    pub(super) fn best_place(&self) -> Option<&[f64]> {
+    pub fn best_place(&self) -> Option<&[f64]> {
         self.best().map(|best| self.descents[best].places()[1])
     }
 
     /// The smallest sum of squares.
-    pub(super) fn smallest(&self) -> f64 {
+    pub fn smallest(&self) -> f64 {
         self.best().map_or(f64::INFINITY, |best| self.descents[best].sum())
     }
 
     /// Where descents have started and ended.
-    pub(super) fn visited(&self) -> impl Iterator<Item = &[f64]> {
+    pub fn visited(&self) -> impl Iterator<Item = &[f64]> {
         self.descents.iter().flat_map(Descent::places)
     }
 
@@ -212,7 +176,7 @@ impl Pool {
 
     /// Whether further descents are not worth their cost: the best minimum was reached often enough,
     /// and few others can be expected; or none comes to a minimum.
-    pub(super) fn is_enough(&self) -> bool {
+    pub fn is_enough(&self) -> bool {
         self.is_reached_often() || self.is_stuck()
     }
 
@@ -254,7 +218,7 @@ impl Pool {
         }
     }
 
-    pub(super) fn reports(&self) -> Vec<DescentReport> {
+    pub fn reports(&self) -> Vec<DescentReport> {
         let groups = self.groups();
         let report =
             |(descent, group): (&Descent, usize)| DescentReport { group, ..descent.report() };

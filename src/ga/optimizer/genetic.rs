@@ -20,7 +20,7 @@ use crate::registry::{BAD_OPTION, Entry, Options};
 use std::sync::Arc;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Method> = Entry {
+pub const ENTRY: Entry<dyn Method> = Entry {
     name: "genetic",
     aliases: &["ga", "genetic_algorithm"],
     summary: "genetic algorithm: Latin hypercube, tournament, SBX, polynomial mutation, elites",

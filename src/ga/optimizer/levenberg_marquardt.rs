@@ -17,7 +17,7 @@ use crate::registry::Entry;
 use nalgebra::DVector;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Method> = Entry {
+pub const ENTRY: Entry<dyn Method> = Entry {
     name: "levenberg_marquardt",
     aliases: &["lm", "levenberg-marquardt"],
     summary: "nonlinear least squares from one point: the start values if given, otherwise the \
@@ -32,10 +32,10 @@ pub(super) const ENTRY: Entry<dyn Method> = Entry {
 /// within a thousandth of their standard errors.
 pub const MINIMUM: f64 = 1e-3;
 /// Relative offset at which the best descent stops: parameters to 1e-7 of their standard errors.
-pub(super) const FINE: f64 = 1e-7;
+pub const FINE: f64 = 1e-7;
 /// Relative offset at which the others stop. Problems with large residuals converge slowly from here
 /// (ENSO takes as many steps again).
-pub(super) const COARSE: f64 = 3e-4;
+pub const COARSE: f64 = 3e-4;
 /// A minimum whose residuals come near to the errors of the simulation can be told to this offset at
 /// best (Lanczos1: residuals of 1e-13).
 const COARSEST: f64 = 0.02;
@@ -77,7 +77,7 @@ impl Method for LevenbergMarquardt {
 
 /// How exact the answers are.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Accuracy {
+pub struct Accuracy {
     /// Relative error of the simulated values.
     pub(super) noise: f64,
     /// Root of the sum of squares of the measured values, weighted as the residuals are.
@@ -85,7 +85,7 @@ pub(super) struct Accuracy {
 }
 
 impl Accuracy {
-    pub(super) fn of(setup: &Setup) -> Accuracy {
+    pub fn of(setup: &Setup) -> Accuracy {
         Accuracy { noise: setup.noise, size: setup.size }
     }
 
@@ -95,7 +95,7 @@ impl Accuracy {
     }
 
     /// Singular values below this are those of errors of the derivatives.
-    pub(super) fn rank_tolerance(self) -> f64 {
+    pub fn rank_tolerance(self) -> f64 {
         elementary::powf(self.noise, 2.0 / 3.0).clamp(1e-9, 1e-4)
     }
 }
@@ -110,7 +110,7 @@ enum Asked {
 }
 
 /// One descent.
-pub(super) struct Descent {
+pub struct Descent {
     start: Vec<f64>,
     x: Vec<f64>,
     sum: f64,
@@ -135,7 +135,7 @@ pub(super) struct Descent {
 }
 
 impl Descent {
-    pub(super) fn new(start: Vec<f64>, accuracy: Accuracy, steps: usize, goal: f64) -> Descent {
+    pub fn new(start: Vec<f64>, accuracy: Accuracy, steps: usize, goal: f64) -> Descent {
         Descent {
             x: start.clone(),
             trial: start.clone(),
@@ -159,13 +159,13 @@ impl Descent {
     }
 
     /// Whether it has ended by itself.
-    pub(super) fn has_ended(&self) -> bool {
+    pub fn has_ended(&self) -> bool {
         self.end.is_some()
     }
 
     /// Allows further steps, up to a relative offset; one that has ended at a minimum goes on where
     /// it has not been as near.
-    pub(super) fn grant(&mut self, steps: usize, goal: f64) {
+    pub fn grant(&mut self, steps: usize, goal: f64) {
         self.left = steps;
         if goal < self.goal && self.end == Some(DescentEnd::Minimum) {
             self.goal = goal;
@@ -176,22 +176,22 @@ impl Descent {
     }
 
     /// Whether a finer goal is open to it.
-    pub(super) fn can_be_refined(&self) -> bool {
+    pub fn can_be_refined(&self) -> bool {
         self.end == Some(DescentEnd::Minimum) && self.goal > FINE
     }
 
     /// Whether a bound holds a gene where it stands.
-    pub(super) fn is_held(&self) -> bool {
+    pub fn is_held(&self) -> bool {
         self.offset.is_some_and(|offset| offset.held > 0)
     }
 
     /// The sum of squares where it stands.
-    pub(super) fn sum(&self) -> f64 {
+    pub fn sum(&self) -> f64 {
         self.sum
     }
 
     /// Where it started, where it stands and how it ended.
-    pub(super) fn report(&self) -> DescentReport {
+    pub fn report(&self) -> DescentReport {
         DescentReport {
             start: self.start.clone(),
             end: self.x.clone(),
@@ -206,7 +206,7 @@ impl Descent {
     /// Whether another descent has ended at the same minimum: the sums of squares agree, and so do
     /// the places, by their effect on the residuals, or the residuals themselves where the data do
     /// not determine the place.
-    pub(super) fn agrees(&self, other: &Descent) -> bool {
+    pub fn agrees(&self, other: &Descent) -> bool {
         let (Some(model), Some(offset)) = (&self.model, self.offset) else { return false };
         let floor = self.accuracy.floor().max(self.accuracy.noise * self.accuracy.size);
         let freedom = self.residuals.len().saturating_sub(offset.rank).max(1);
@@ -357,7 +357,7 @@ const SAME_PLACE: f64 = 1e-5;
 const AGREED: f64 = 0.03;
 
 /// Whether a point with such an offset and residuals of such a length is a minimum.
-pub(super) fn is_minimum(offset: &Offset, length: f64, accuracy: Accuracy, limit: f64) -> bool {
+pub fn is_minimum(offset: &Offset, length: f64, accuracy: Accuracy, limit: f64) -> bool {
     if offset.blind || offset.rank == 0 && offset.held == 0 {
         return false;
     }
@@ -377,7 +377,7 @@ pub(super) fn is_minimum(offset: &Offset, length: f64, accuracy: Accuracy, limit
 
 impl Descent {
     /// What the next question wants to know.
-    pub(super) fn wants_now(&self) -> Wants {
+    pub fn wants_now(&self) -> Wants {
         match self.asked {
             Asked::Start | Asked::Jacobian => Wants::Jacobians,
             Asked::Probe | Asked::Trial => Wants::Residuals,
@@ -385,7 +385,7 @@ impl Descent {
     }
 
     /// Asks for one individual; for none when it has ended or its steps are used up.
-    pub(super) fn ask_next(&self, batch: &mut Genomes) {
+    pub fn ask_next(&self, batch: &mut Genomes) {
         if self.end.is_some() || self.left == 0 && self.asked != Asked::Jacobian {
             return;
         }
@@ -396,7 +396,7 @@ impl Descent {
     }
 
     /// Takes the answers about it.
-    pub(super) fn take(&mut self, answers: &Answers<'_>) {
+    pub fn take(&mut self, answers: &Answers<'_>) {
         match self.asked {
             Asked::Start => {
                 self.sum = answers.residuals.iter().map(|r| r * r).sum();
@@ -415,7 +415,7 @@ impl Descent {
     }
 
     /// Where it started and where it stands.
-    pub(super) fn places(&self) -> [&[f64]; 2] {
+    pub fn places(&self) -> [&[f64]; 2] {
         [&self.start, &self.x]
     }
 }

@@ -26,7 +26,7 @@ const ON_BOUND: f64 = 1e-13;
 const AT: f64 = 1e-3;
 
 /// The model at a point.
-pub(super) struct LinearModel {
+pub struct LinearModel {
     /// R, at most as many rows as columns.
     factor: DMatrix<f64>,
     /// Qᵀr.
@@ -44,7 +44,7 @@ pub(super) struct LinearModel {
 }
 
 /// A step and what the model says of it.
-pub(super) struct Step {
+pub struct Step {
     /// The step.
     pub(super) by: Vec<f64>,
     /// Its scaled length.
@@ -79,7 +79,7 @@ pub struct Offset {
 impl LinearModel {
     /// From residuals and their derivatives, residuals × genes; `rank_tolerance`: relative error of
     /// the derivatives.
-    pub(super) fn new(residuals: &[f64], jacobian: &[f64], n: usize, rank_tolerance: f64) -> Self {
+    pub fn new(residuals: &[f64], jacobian: &[f64], n: usize, rank_tolerance: f64) -> Self {
         let m = residuals.len();
         let mut jacobian = DMatrix::from_row_slice(m, n, jacobian);
         let mut blind = false;
@@ -120,7 +120,7 @@ impl LinearModel {
 
     /// The step from `x` of at most `radius` in the scales, within the unit cube; `None` where no
     /// gene can move.
-    pub(super) fn step(&self, x: &[f64], scales: &[f64], radius: f64) -> Option<Step> {
+    pub fn step(&self, x: &[f64], scales: &[f64], radius: f64) -> Option<Step> {
         let projected = self.projected_step(x, scales, radius)?;
         if projected.free.len() == self.free(x).len() {
             return Some(projected);
@@ -199,7 +199,7 @@ impl LinearModel {
 
     /// The geodesic acceleration of a step; `gradient`: Jᵀ times the second derivative of the
     /// residuals in its direction.
-    pub(super) fn acceleration(
+    pub fn acceleration(
         &self,
         step: &Step,
         scales: &[f64],
@@ -223,7 +223,7 @@ impl LinearModel {
     }
 
     /// How near `x` is to a minimum.
-    pub(super) fn offset(&self, x: &[f64]) -> Offset {
+    pub fn offset(&self, x: &[f64]) -> Offset {
         let free = self.free(x);
         let flat = self.norms.iter().filter(|norm| **norm == 0.0).count();
         let held = x.len() - free.len() - flat;
@@ -250,7 +250,7 @@ impl LinearModel {
     }
 
     /// Length of J (a − b) over the genes.
-    pub(super) fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
+    pub fn distance(&self, a: &[f64], b: &[f64]) -> f64 {
         let between = DVector::from_fn(a.len(), |j, _| a[j] - b[j]);
         (&self.factor * between).norm()
     }

@@ -7,6 +7,7 @@
 
 mod breeding;
 mod cma_es;
+mod descent_report;
 mod descents;
 mod exchange;
 mod gapilib2006;
@@ -19,7 +20,8 @@ mod nelder_mead;
 mod nsga2;
 mod polish;
 
-pub use descents::{DescentEnd, DescentReport, reached};
+pub use descent_report::{DescentEnd, DescentReport};
+pub use descents::reached;
 pub use exchange::Scale;
 pub use levenberg_marquardt::MINIMUM;
 pub use linear_model::Offset;

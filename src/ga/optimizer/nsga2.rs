@@ -16,7 +16,7 @@ use std::cmp::Ordering;
 use std::sync::Arc;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Method> = Entry {
+pub const ENTRY: Entry<dyn Method> = Entry {
     name: "nsga2",
     aliases: &["nsga-ii"],
     summary: "several fitness functions: a Pareto front",

@@ -8,7 +8,7 @@ use crate::elementary;
 use crate::registry::Entry;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Fitness> = Entry {
+pub const ENTRY: Entry<dyn Fitness> = Entry {
     name: "log_likelihood",
     aliases: &["likelihood", "nll"],
     summary: "negative log-likelihood of normal errors of unknown variance",

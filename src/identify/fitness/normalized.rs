@@ -6,7 +6,7 @@ use super::{Fitness, checked, differences};
 use crate::registry::Entry;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Fitness> = Entry {
+pub const ENTRY: Entry<dyn Fitness> = Entry {
     name: "nrmse",
     aliases: &["normalized"],
     summary: "root of the mean squared difference relative to the measured range",

@@ -6,7 +6,7 @@ use super::{Fitness, checked, differences};
 use crate::registry::Entry;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Fitness> = Entry {
+pub const ENTRY: Entry<dyn Fitness> = Entry {
     name: "relative",
     aliases: &["mean_relative"],
     summary: "mean squared relative difference",

@@ -6,7 +6,7 @@ use super::{Fitness, checked, differences};
 use crate::registry::Entry;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Fitness> = Entry {
+pub const ENTRY: Entry<dyn Fitness> = Entry {
     name: "rmse",
     aliases: &["root_mean_square"],
     summary: "root of the mean squared difference",

@@ -7,7 +7,7 @@ use crate::ga::FAILED_FITNESS;
 use crate::registry::Entry;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Fitness> = Entry {
+pub const ENTRY: Entry<dyn Fitness> = Entry {
     name: "sum_of_squares",
     aliases: &["sse", "wsse"],
     summary: "sum of the squared differences",

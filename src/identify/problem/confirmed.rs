@@ -1,7 +1,7 @@
 //! Whether parameters that cancel each other by their derivatives do so at finite distances: where one
 //! of them also acts in steps, or derivatives vanish at the best point alone, they do not.
 
-use super::inseparable::{Form, Inseparable};
+use super::non_identifiable::{Form, NonIdentifiable};
 use super::{Evaluation, Problem};
 use crate::elementary;
 
@@ -15,11 +15,11 @@ const OF_DIRECTION: f64 = 1e-5;
 
 /// Whether finite changes of the group have no effect, and the simulations that it took. `simulated`:
 /// the points at the best `values`; `limit`: whether a simulation is within the 95 % limit.
-pub(super) fn is_confirmed(
+pub fn is_confirmed(
     problem: &Problem,
     evaluation: &Evaluation,
     (values, simulated): (&[f64], &[f64]),
-    group: &Inseparable,
+    group: &NonIdentifiable,
     is_within: &dyn Fn(&[f64]) -> bool,
 ) -> (bool, u64) {
     let is_local = group.form == Form::Local;
@@ -44,7 +44,7 @@ pub(super) fn is_confirmed(
 fn moved(
     problem: &Problem,
     values: &[f64],
-    group: &Inseparable,
+    group: &NonIdentifiable,
     direction: &[f64],
     change: f64,
 ) -> Option<Vec<f64>> {

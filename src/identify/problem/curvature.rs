@@ -6,8 +6,9 @@
 //!
 //! Reference: [Nocedal & Wright 2006](crate::bibliography#nocedal-wright-2006), §2.1 and §3.4.
 
-use super::ending::{Cause, is_at_minimum};
 use super::limits::along;
+use super::minimum_test::is_at_minimum;
+use super::run::Cause;
 use super::{Best, Run};
 use crate::elementary;
 use crate::ga::optimizer::MINIMUM;
@@ -63,7 +64,7 @@ impl Curvature {
 
 /// Goes to a minimum that the linear model cannot find, if the best point lies beside one. Only where
 /// the search ended by itself.
-pub(super) fn finish(run: &mut Run) {
+pub fn finish(run: &mut Run) {
     if run.cause() != Cause::Converged || run.problem.parameters.len() > MOST {
         return;
     }
@@ -91,7 +92,7 @@ pub(super) fn finish(run: &mut Run) {
 
 /// The offset at the best point, if [`finish`] has found it a minimum and it still is one, and the
 /// simulations of the test.
-pub(super) fn offset(run: &Run, values: &[f64]) -> Option<(f64, u64)> {
+pub fn offset(run: &Run, values: &[f64]) -> Option<(f64, u64)> {
     let reach = run.conclusion.by_curvature?;
     let (found, simulations) = about(run, values, reach)?;
     found.offset().filter(|offset| *offset <= MINIMUM).map(|offset| (offset, simulations))

@@ -28,7 +28,7 @@ const STEPS: usize = 40;
 
 /// What a parameter without derivative does.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Effect {
+pub enum Effect {
     /// Nothing, in its whole range.
     None,
     /// It acts at finite distances.
@@ -37,7 +37,7 @@ pub(super) enum Effect {
 
 /// The effect of finite changes.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Finite {
+pub struct Finite {
     /// The ends of the values whose sum of squares is within the 95 % limit, the others fitted anew;
     /// `None` where the range ends before.
     pub ends: [Option<f64>; 2],
@@ -49,7 +49,7 @@ pub(super) struct Finite {
 
 /// Why a parameter has no derivative to go by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum How {
+pub enum How {
     /// Small changes change nothing.
     InSteps,
     /// The derivative is zero at the best values.
@@ -60,7 +60,7 @@ pub(super) enum How {
 
 /// A fit within the limit, with the parameter held.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Within {
+pub struct Within {
     /// Values of all parameters.
     pub values: Vec<f64>,
     /// What is left of the way to the limit: the root of the part of the rise that remains, 1 at the
@@ -76,7 +76,7 @@ pub(super) struct Within {
 /// # Errors
 ///
 /// Those of the method's maker.
-pub(super) fn effect(
+pub fn effect(
     problem: &Problem,
     evaluation: &Evaluation,
     statistics: &Statistics,

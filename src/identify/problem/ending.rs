@@ -8,9 +8,11 @@
 //!
 //! Reference: [Bates & Watts 1981](crate::bibliography#bates-watts-1981).
 
-use super::{Evaluation, Finding, FindingKind, Linearization, Problem, Run, Severity, Solution};
+use super::minimum_test::tested;
+use super::run::Cause;
+use super::{Linearization, Problem, Run};
 use super::{curvature, limits};
-use crate::ga::optimizer::{DescentEnd, DescentReport, MINIMUM, Offset, reached, test_minimum};
+use crate::ga::optimizer::{DescentEnd, DescentReport, MINIMUM, Offset, reached};
 use crate::identify::table::significant;
 use serde::{Deserialize, Serialize};
 
@@ -85,14 +87,6 @@ pub struct OtherMinimum {
     pub reached: usize,
 }
 
-/// What ended the search, as far as it is known.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Cause {
-    Condition,
-    Converged,
-    User,
-}
-
 impl Ending {
     /// Tests the best point of a run.
     pub(super) fn of(run: &Run, values: &[f64]) -> Ending {
@@ -137,30 +131,6 @@ impl Ending {
             simulations: found.simulations,
         }
     }
-}
-
-/// Whether the best point of a run is a minimum, and the simulations of the test; `None` where that
-/// cannot be tested.
-pub(super) fn is_at_minimum(run: &Run) -> Option<(bool, u64)> {
-    if !run.evaluation.has_residuals() || run.problem.objectives.len() > 1 {
-        return None;
-    }
-    let values = &run.best.as_ref()?.values;
-    let found = run.evaluation.linearize(&run.problem, std::slice::from_ref(values)).pop()?.ok()?;
-    Some((tested(&run.problem, &run.evaluation, values, &found).1, found.simulations))
-}
-
-fn tested(
-    problem: &Problem,
-    evaluation: &Evaluation,
-    values: &[f64],
-    found: &Linearization,
-) -> (Offset, bool) {
-    let parameters = &problem.parameters;
-    let point: Vec<f64> = parameters.iter().zip(values).map(|(f, v)| f.fraction(*v)).collect();
-    let residuals = evaluation.residuals(problem, &found.simulated);
-    let jacobian = evaluation.weighted(problem, values, found);
-    test_minimum(&point, &residuals, &jacobian, [problem.noise, evaluation.size()])
 }
 
 fn derivatives(found: &Linearization) -> String {
@@ -232,8 +202,10 @@ fn at_limits(
 ) -> Option<Ending> {
     let along = limits::along(&run.problem, values)?;
     let tested = limits::test(run, values, &along, found).filter(|tested| tested.is_minimum)?;
-    let texts: Vec<String> =
-        limits::texts(&run.problem, values).iter().map(|text| format!("`{text}`")).collect();
+    let constraints: Vec<String> = limits::active_constraints(&run.problem, values)
+        .iter()
+        .map(|text| format!("`{text}`"))
+        .collect();
     let relative = tested.offset.and_then(|offset| offset.relative);
     let measure = relative.map_or_else(String::new, |relative| {
         format!(" (relative offset along it {})", significant(relative, 2))
@@ -242,7 +214,7 @@ fn at_limits(
         kind: EndingKind::Minimum,
         relative_offset: relative,
         reached,
-        words: format!("Minimum found at the limit of {}{measure}.", texts.join(" and ")),
+        words: format!("Minimum found at the limit of {}{measure}.", constraints.join(" and ")),
         derivatives: Some(derivatives(found)),
         simulations: found.simulations,
     })
@@ -257,7 +229,7 @@ fn by_curvature(offset: f64) -> String {
 }
 
 /// The descents of a run, in their order.
-pub(super) fn descents(run: &Run) -> Vec<SolvedDescent> {
+pub fn descents(run: &Run) -> Vec<SolvedDescent> {
     let one = |report: DescentReport| SolvedDescent {
         start: run.problem.values(&report.start),
         end: run.problem.values(&report.end),
@@ -271,7 +243,7 @@ pub(super) fn descents(run: &Run) -> Vec<SolvedDescent> {
 }
 
 /// Minima whose sum of squares is below `limit`, but for the best, best first.
-pub(super) fn other_minima(descents: &[SolvedDescent], limit: f64) -> Vec<OtherMinimum> {
+pub fn other_minima(descents: &[SolvedDescent], limit: f64) -> Vec<OtherMinimum> {
     let is_near = |descent: &&SolvedDescent| {
         descent.group > 0
             && descent.ending == DescentEnd::Minimum
@@ -293,51 +265,4 @@ pub(super) fn other_minima(descents: &[SolvedDescent], limit: f64) -> Vec<OtherM
     }
     others.sort_by(|a, b| a.1.objective.total_cmp(&b.1.objective));
     others.into_iter().map(|(_, other)| other).collect()
-}
-
-/// Findings that rest on standard errors and intervals.
-pub(super) fn is_about_intervals(kind: FindingKind) -> bool {
-    matches!(
-        kind,
-        FindingKind::StructurallyNonIdentifiable
-            | FindingKind::PracticallyNonIdentifiable
-            | FindingKind::Interval
-            | FindingKind::AtBound
-            | FindingKind::Correlated
-            | FindingKind::IllConditioned
-            | FindingKind::Dominant
-            | FindingKind::Sigma
-            | FindingKind::Prior
-    )
-}
-
-/// Findings that need no minimum.
-pub(super) fn holds_anywhere(kind: FindingKind) -> bool {
-    matches!(
-        kind,
-        FindingKind::MissingPoints
-            | FindingKind::ColumnsEqual
-            | FindingKind::ScaleOfOutputs
-            | FindingKind::ErrorModel
-            | FindingKind::SolverTolerance
-            | FindingKind::Failures
-            | FindingKind::Missing
-    )
-}
-
-/// A finding for each other minimum.
-pub(super) fn about_other_minima(solution: &Solution) -> Vec<Finding> {
-    let one = |other: &OtherMinimum| {
-        let pairs = solution.parameters.iter().zip(&other.values);
-        let values: Vec<String> =
-            pairs.map(|(p, value)| format!("{} = {}", p.name, significant(*value, 5))).collect();
-        let sentence = format!(
-            "Another minimum fits these data as well within the 95 % limit ({} against {}): {}.",
-            significant(other.objective, 6),
-            significant(solution.fitness, 6),
-            values.join(", ")
-        );
-        Finding::new(FindingKind::OtherMinimum, sentence).severity(Severity::Serious)
-    };
-    solution.other_minima.iter().map(one).collect()
 }

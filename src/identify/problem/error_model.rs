@@ -117,7 +117,7 @@ fn units_differ(series: &[Series]) -> bool {
 }
 
 /// Says which deviations were estimated without being asked for.
-pub(super) fn decided(series: &[Series]) -> Option<Finding> {
+pub fn decided(series: &[Series]) -> Option<Finding> {
     let own: Vec<&Series> = series.iter().filter(|own| own.sigma == Sigma::Automatic).collect();
     if own.is_empty() {
         return None;

@@ -70,6 +70,38 @@ pub enum FindingKind {
     Search,
 }
 
+impl FindingKind {
+    /// Findings that rest on standard errors and intervals.
+    pub(super) fn is_about_intervals(self) -> bool {
+        matches!(
+            self,
+            FindingKind::StructurallyNonIdentifiable
+                | FindingKind::PracticallyNonIdentifiable
+                | FindingKind::Interval
+                | FindingKind::AtBound
+                | FindingKind::Correlated
+                | FindingKind::IllConditioned
+                | FindingKind::Dominant
+                | FindingKind::Sigma
+                | FindingKind::Prior
+        )
+    }
+
+    /// Findings that need no minimum.
+    pub(super) fn holds_anywhere(self) -> bool {
+        matches!(
+            self,
+            FindingKind::MissingPoints
+                | FindingKind::ColumnsEqual
+                | FindingKind::ScaleOfOutputs
+                | FindingKind::ErrorModel
+                | FindingKind::SolverTolerance
+                | FindingKind::Failures
+                | FindingKind::Missing
+        )
+    }
+}
+
 /// How much a finding changes what the numbers mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

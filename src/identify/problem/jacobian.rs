@@ -9,7 +9,7 @@
 //!
 //! Reference: [Nocedal & Wright 2006](crate::bibliography#nocedal-wright-2006), §8.1.
 
-use super::{Evaluation, Failed, Free, NOISE_OF_FORMULAS, Problem};
+use super::{Evaluation, Failed, Free, Linearization, NOISE_OF_FORMULAS, Problem};
 use crate::elementary;
 
 /// The tolerance of the solver counts times this while differences are taken. Chosen, not
@@ -19,22 +19,6 @@ const TIGHTER: f64 = 0.01;
 const SMALLEST: f64 = 1e-4;
 /// Limits of the relative step.
 const STEPS: [f64; 2] = [1e-6, 1e-2];
-
-/// The simulated points and their derivatives at one place.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Linearization {
-    /// The simulated points.
-    pub simulated: Vec<f64>,
-    /// Derivatives by the values of the parameters, points × parameters; NaN in the column of a
-    /// parameter beside which nothing can be simulated.
-    pub derivatives: Vec<f64>,
-    /// Whether they are exact, not differences.
-    pub exact: bool,
-    /// Why they are not, in words that follow on "because"; `None` where no reason is known.
-    pub refusal: Option<String>,
-    /// Simulations that they took; one with sensitivities counts once.
-    pub simulations: u64,
-}
 
 /// Which points beside a value are compared.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,8 +7,9 @@
 //!
 //! Reference: [Nocedal & Wright 2006](crate::bibliography#nocedal-wright-2006), §12.3 and §15.3.
 
-use super::ending::{Cause, is_at_minimum};
 use super::inference::Constraint;
+use super::minimum_test::is_at_minimum;
+use super::run::Cause;
 use super::{Best, Linearization, Problem, Run};
 use crate::ga::optimizer::{Offset, test_minimum};
 use crate::singular_values::SingularValues;
@@ -31,7 +32,7 @@ const DIFFERENCE: f64 = 1e-6;
 const NULL: f64 = 1e-9;
 
 /// The space along the limits that hold a point.
-pub(super) struct Along {
+pub struct Along {
     /// Gradients of the margins by the fractions of the ranges, a row for each constraint.
     gradients: DMatrix<f64>,
     /// An orthonormal basis of the directions along the limits, in columns.
@@ -45,13 +46,13 @@ fn active<'a>(problem: &'a Problem, values: &[f64], within: f64) -> Vec<&'a Cons
 }
 
 /// The directions along the limits at which the values stand; `None` where they stand at none.
-pub(super) fn along(problem: &Problem, values: &[f64]) -> Option<Along> {
+pub fn along(problem: &Problem, values: &[f64]) -> Option<Along> {
     let held = active(problem, values, ON);
     (!held.is_empty()).then(|| Along::of(problem, values, &held)).flatten()
 }
 
 /// The constraints at whose limits the values stand, as they are written.
-pub(super) fn texts(problem: &Problem, values: &[f64]) -> Vec<String> {
+pub fn active_constraints(problem: &Problem, values: &[f64]) -> Vec<String> {
     active(problem, values, ON).into_iter().map(|own| own.text.clone()).collect()
 }
 
@@ -105,7 +106,7 @@ impl Along {
 }
 
 /// What is known of a point at limits.
-pub(super) struct AtLimits {
+pub struct AtLimits {
     /// The relative offset along the limits.
     pub offset: Option<Offset>,
     /// Whether it is a minimum there: stationary along them, and held by each.
@@ -117,12 +118,7 @@ pub(super) struct AtLimits {
 }
 
 /// Tests a point that stands at limits.
-pub(super) fn test(
-    run: &Run,
-    values: &[f64],
-    along: &Along,
-    found: &Linearization,
-) -> Option<AtLimits> {
+pub fn test(run: &Run, values: &[f64], along: &Along, found: &Linearization) -> Option<AtLimits> {
     let residuals = run.evaluation.residuals(&run.problem, &found.simulated);
     let jacobian = run.evaluation.weighted(&run.problem, values, found);
     if jacobian.iter().any(|entry| !entry.is_finite()) {
@@ -151,16 +147,16 @@ pub(super) fn test(
 }
 
 /// Goes to the minimum at the limits beside which the search has ended, if it has ended by itself.
-pub(super) fn finish(run: &mut Run) {
+pub fn finish(run: &mut Run) {
     if run.problem.inference.constraints.is_empty() || run.cause() != Cause::Converged {
         return;
     }
     let Some((false, simulations)) = is_at_minimum(run) else { return };
     run.conclusion.simulations += simulations;
     let Some(first) = run.best.clone() else { return };
-    let texts: Vec<String> =
+    let constraints: Vec<String> =
         active(&run.problem, &first.values, NEAR).iter().map(|own| own.text.clone()).collect();
-    let Some(reached) = descend(run, &first, texts) else { return };
+    let Some(reached) = descend(run, &first, constraints) else { return };
     // Beside the limit the point may have been lower by the errors of the simulation.
     if reached.fitness <= first.fitness * (1.0 + 1e-6) {
         run.best = Some(reached);
@@ -168,15 +164,15 @@ pub(super) fn finish(run: &mut Run) {
 }
 
 /// Steps along the limits of these constraints, which are left where they do not hold.
-fn descend(run: &mut Run, first: &Best, mut texts: Vec<String>) -> Option<Best> {
+fn descend(run: &mut Run, first: &Best, mut constraints: Vec<String>) -> Option<Best> {
     let mut best: Option<Best> = None;
     for _ in 0..STEPS {
-        if texts.is_empty() {
+        if constraints.is_empty() {
             break;
         }
         let from = best.as_ref().map_or(&first.values, |best| &best.values).clone();
-        let values = onto(run, &from, &texts)?;
-        let along = Along::of(&run.problem, &values, &named(&run.problem, &texts))?;
+        let values = onto(run, &from, &constraints)?;
+        let along = Along::of(&run.problem, &values, &named(&run.problem, &constraints))?;
         let linearized =
             run.evaluation.linearize(&run.problem, std::slice::from_ref(&values)).pop()?.ok()?;
         run.conclusion.simulations += linearized.simulations;
@@ -189,11 +185,13 @@ fn descend(run: &mut Run, first: &Best, mut texts: Vec<String>) -> Option<Best> 
             break;
         }
         // Multipliers say something only where nothing is better along the limits.
-        match lower(run, (&values, fitness), &found.step, &texts).filter(|_| !found.is_stationary) {
+        match lower(run, (&values, fitness), &found.step, &constraints)
+            .filter(|_| !found.is_stationary)
+        {
             Some(lower) => best = Some(lower),
             None => match found.multipliers.iter().position(|own| *own < 0.0) {
                 Some(loose) => {
-                    texts.remove(loose);
+                    constraints.remove(loose);
                 }
                 None => break,
             },
@@ -207,7 +205,7 @@ fn lower(
     run: &mut Run,
     (values, fitness): (&[f64], f64),
     step: &DVector<f64>,
-    texts: &[String],
+    constraints: &[String],
 ) -> Option<Best> {
     let parameters = &run.problem.parameters;
     let moved = |part: &f64| {
@@ -215,7 +213,7 @@ fn lower(
         let place = pairs.map(|((free, value), by)| {
             free.value((free.fraction(*value) + part * by).clamp(0.0, 1.0))
         });
-        onto(run, &place.collect::<Vec<f64>>(), texts)
+        onto(run, &place.collect::<Vec<f64>>(), constraints)
     };
     let places: Vec<Vec<f64>> = PARTS.iter().filter_map(moved).collect();
     let rows = run.evaluation.simulate_all(&places);
@@ -228,14 +226,14 @@ fn lower(
     (lowest.fitness < fitness).then_some(lowest)
 }
 
-fn named<'a>(problem: &'a Problem, texts: &[String]) -> Vec<&'a Constraint> {
-    problem.inference.constraints.iter().filter(|own| texts.contains(&own.text)).collect()
+fn named<'a>(problem: &'a Problem, constraints: &[String]) -> Vec<&'a Constraint> {
+    problem.inference.constraints.iter().filter(|own| constraints.contains(&own.text)).collect()
 }
 
 /// The values moved onto the limits of these constraints, just inside.
-fn onto(run: &Run, values: &[f64], texts: &[String]) -> Option<Vec<f64>> {
+fn onto(run: &Run, values: &[f64], constraints: &[String]) -> Option<Vec<f64>> {
     let problem = &run.problem;
-    let held = named(problem, texts);
+    let held = named(problem, constraints);
     let mut values = values.to_vec();
     for _ in 0..CORRECTIONS {
         let missing =
@@ -255,44 +253,4 @@ fn onto(run: &Run, values: &[f64], texts: &[String]) -> Option<Vec<f64>> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::inference::{Adjustments, adjust};
-    use super::super::tests::problem;
-    use super::super::{EndingKind, Run, Solution, Stop, conclude};
-    use super::*;
-    use std::sync::Arc;
-
-    const NOISE: [f64; 12] = [0.3, -0.2, 0.1, 0.25, -0.3, 0.05, -0.15, 0.2, -0.1, 0.0, -0.25, 0.15];
-
-    fn line(p: &[f64], x: f64) -> f64 {
-        p[0] + p[1] * x
-    }
-
-    /// A straight line a + b x with a + b at most 2.5, where the data want 2.7: the minimum along the
-    /// limit is that of the one slope b of y - 2.5 over x - 1.
-    #[test]
-    fn a_line_at_the_limit_of_its_parameters_is_the_textbook_slope() {
-        let mut own = problem("genetic", line, &[2.0, 0.7], &NOISE);
-        let sides = |p: &[f64]| [p[0] + p[1], 2.5];
-        let constraints = vec![Constraint::new("a + b <= 2.5", Arc::new(sides))];
-        adjust(&mut own, Adjustments { constraints, ..Adjustments::default() }).unwrap();
-        own.stop = Stop { evaluations: Some(20_000), ..Stop::default() };
-        let points: Vec<(f64, f64)> =
-            own.series[0].x.iter().zip(&own.series[0].y).map(|(x, y)| (*x, *y)).collect();
-        let mut run = Run::new(own, 1).unwrap();
-        while run.stop().is_none() {
-            run.step(0.0);
-        }
-        conclude(&mut run);
-        let solution = Solution::of(&run, "done", Vec::new()).unwrap();
-        assert_eq!(solution.ending.kind, EndingKind::Minimum, "{:?}", solution.ending);
-        let square: f64 = points.iter().map(|(x, _)| (x - 1.0) * (x - 1.0)).sum();
-        let slope: f64 = points.iter().map(|(x, y)| (x - 1.0) * (y - 2.5)).sum::<f64>() / square;
-        let found = solution.parameters[1].value;
-        assert!((found - slope).abs() < 1e-4 * slope, "{found} {slope}");
-        for parameter in &solution.parameters {
-            assert!(parameter.deviation.is_none() && parameter.interval.is_none());
-            assert!(parameter.verdict.is_none());
-        }
-    }
-}
+mod tests;

@@ -7,6 +7,7 @@
 //! simulating, and then on: that is how an interrupted run is resumed to the same end.
 
 mod checks;
+mod conclude;
 mod conclusion;
 mod confirmed;
 mod curvature;
@@ -22,10 +23,12 @@ mod finding;
 mod fingerprint;
 mod importance;
 pub mod inference;
-mod inseparable;
 mod jacobian;
 mod journal;
 mod limits;
+mod linearization;
+mod minimum_test;
+mod non_identifiable;
 mod nonlinear;
 mod notes;
 mod profile;
@@ -35,12 +38,14 @@ mod run;
 mod saddle;
 mod saved;
 mod script_result;
+mod solution;
 mod space;
 mod statistics;
 mod summary;
 mod text;
 
-pub use conclusion::{Conclusion, conclude};
+pub use conclude::conclude;
+pub use conclusion::Conclusion;
 pub use curve::draw_curves;
 pub use ending::{Ending, EndingKind, OtherMinimum, SolvedDescent};
 pub use error_model::{ErrorModel, Sigma, SigmaFormula, decide, likelihood};
@@ -52,15 +57,15 @@ pub use finding::{Finding, FindingKind, Severity};
 pub use fingerprint::{Fingerprint, Origins, listed};
 pub use importance::{ANALYSES, Analysis, Importance, ParameterImportance, analysis};
 pub use inference::{Band, BandPoint, Inference, Inferred, infer};
-pub use inseparable::{Form, Inseparable};
-pub use jacobian::Linearization;
 pub use journal::{Journal, Record, decode, encode, first_frame, frame, header};
+pub use linearization::Linearization;
+pub use non_identifiable::{Form, NonIdentifiable};
 pub use profile::{Profile, Profiles};
 pub use run::{Best, Run};
 pub use script_result::ScriptResult;
+pub use solution::{ChiSquare, Solution, SolvedParameter, SolvedSeries, Verdict};
 pub use space::Free;
 pub use statistics::{ResidualTest, Statistics, distributions, residual_test};
-pub use summary::{ChiSquare, Solution, SolvedParameter, SolvedSeries, Verdict};
 
 use super::fitness::Fitness;
 use crate::diag::Fault;

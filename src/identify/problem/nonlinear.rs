@@ -9,7 +9,6 @@
 
 use super::notes::undetermined;
 use super::profile::{Known, Profile, profiles};
-use super::summary::is_narrow;
 use super::{Finding, FindingKind, Run, Severity, Solution, SolvedParameter, Statistics, Verdict};
 use crate::diag::Fault;
 use crate::elementary;
@@ -56,7 +55,7 @@ impl Solution {
         };
         self.simulations_for_statistics += found.simulations;
         for (&k, profile) in curved.iter().zip(&found.profiles) {
-            self.adopt(k, profile, statistics.factor);
+            self.adopt(k, profile, statistics.quantile);
         }
         Ok(())
     }
@@ -67,8 +66,9 @@ impl Solution {
         let held = statistics.at_bounds.as_ref().map(|own| &own.held);
         let Some(found) = held.or(statistics.uncertainty.as_ref()) else { return Vec::new() };
         let n = self.parameters.len();
-        let is_grouped =
-            |k: usize| statistics.inseparable.iter().any(|group| group.parameters.contains(&k));
+        let is_grouped = |k: usize| {
+            statistics.non_identifiable.iter().any(|group| group.parameters.contains(&k))
+        };
         let is_linear = |k: &usize| {
             let deviation = found.standard_deviations[*k];
             deviation.is_finite() && self.parameters[*k].interval.is_some() && !is_grouped(*k)
@@ -81,7 +81,7 @@ impl Solution {
                 let direction: Vec<f64> = (0..n)
                     .map(|j| {
                         let own = found.correlations[j * n + k] * found.standard_deviations[j];
-                        if own.is_finite() { side * statistics.factor * own } else { 0.0 }
+                        if own.is_finite() { side * statistics.quantile * own } else { 0.0 }
                     })
                     .collect();
                 let (place, part) = self.within_ranges(&direction);
@@ -91,7 +91,7 @@ impl Solution {
         }
         let rows = run.evaluation.simulate_all(&places);
         self.simulations_for_statistics += rows.len() as u64;
-        let allowed = elementary::powi(statistics.factor, 2) * statistics.variance;
+        let allowed = elementary::powi(statistics.quantile, 2) * statistics.variance;
         let smallest = statistics.residuals.iter().map(|r| r * r).sum::<f64>();
         // What a constraint forbids tells nothing of the model.
         let is_forbidden = |at: usize| {
@@ -165,7 +165,7 @@ impl Solution {
             true => 0.5 * elementary::ln(interval[1] / interval[0]) * own.value / factor,
             false => 0.5 * width / factor,
         };
-        let is_identifiable = bounded && is_narrow(own, deviation, factor);
+        let is_identifiable = bounded && own.is_narrow(deviation, factor);
         own.verdict = Some(match is_identifiable {
             true => Verdict::Identifiable,
             false => Verdict::PracticallyNonIdentifiable,

@@ -2,10 +2,10 @@
 
 use super::checks::residual_findings;
 use super::effects::{Effect, How};
-use super::summary::BEYOND;
+use super::statistics::BEYOND;
 use super::{
-    ErrorModel, FailureRegion, Finding, FindingKind, Form, Inseparable, Profiles, Run, Severity,
-    Solution, SolvedParameter, SolvedSeries, Statistics, Verdict,
+    ErrorModel, FailureRegion, Finding, FindingKind, Form, NonIdentifiable, OtherMinimum, Profiles,
+    Run, Severity, Solution, SolvedParameter, SolvedSeries, Statistics, Verdict,
 };
 use crate::elementary;
 use crate::identify::table::significant;
@@ -25,7 +25,7 @@ const DOMINANT: f64 = 3.0;
 const RATIOS: [f64; 2] = [1.5, 10.0];
 
 /// All findings, most important first.
-pub(super) fn findings(
+pub fn findings(
     solution: &Solution,
     run: &Run,
     statistics: &Statistics,
@@ -133,18 +133,18 @@ fn about_effects(solution: &Solution, effects: &[(usize, Effect)]) -> Vec<Findin
 fn about_parameters(solution: &Solution, statistics: &Statistics) -> Vec<Finding> {
     let mut findings = Vec::new();
     let name = |k: usize| solution.parameters[k].name.as_str();
-    for group in &statistics.inseparable {
+    for group in &statistics.non_identifiable {
         let kind = match group.form {
             Form::Sum | Form::Product => FindingKind::StructurallyNonIdentifiable,
             Form::Local => FindingKind::PracticallyNonIdentifiable,
         };
         let names = group.parameters.iter().map(|&k| name(k));
-        let sentence = inseparable(group, &name) + &determined(group, solution, statistics);
+        let sentence = non_identifiable(group, &name) + &determined(group, solution, statistics);
         findings.push(Finding::new(kind, sentence).parameters(names));
     }
     let alone = |k: usize| {
         !statistics.without_effect.contains(&k)
-            && !statistics.inseparable.iter().any(|group| group.parameters.contains(&k))
+            && !statistics.non_identifiable.iter().any(|group| group.parameters.contains(&k))
     };
     for (k, parameter) in solution.parameters.iter().enumerate() {
         if parameter.verdict == Some(Verdict::PracticallyNonIdentifiable) && alone(k) {
@@ -167,7 +167,7 @@ fn about_parameters(solution: &Solution, statistics: &Statistics) -> Vec<Finding
             .push(Finding::new(FindingKind::Correlated, sentence).severity(Severity::Information));
     }
     // A lack of rank has been reported.
-    let condition = solution.condition.filter(|_| statistics.inseparable.is_empty());
+    let condition = solution.condition.filter(|_| statistics.non_identifiable.is_empty());
     if let Some(condition) = condition.filter(|condition| *condition > ILL_CONDITIONED) {
         let sentence = format!(
             "The sensitivities are ill-conditioned ({}): small errors in the data cause large \
@@ -384,7 +384,7 @@ fn about_missing(run: &Run) -> Vec<Finding> {
     run.problem.series.iter().filter(|series| !series.missing.is_empty()).map(one).collect()
 }
 
-fn inseparable<'a>(group: &Inseparable, name: &impl Fn(usize) -> &'a str) -> String {
+fn non_identifiable<'a>(group: &NonIdentifiable, name: &impl Fn(usize) -> &'a str) -> String {
     let names: Vec<&str> = group.parameters.iter().map(|&k| name(k)).collect();
     let all = names.join(", ");
     let what = |combination: &Vec<f64>| {
@@ -420,7 +420,7 @@ fn inseparable<'a>(group: &Inseparable, name: &impl Fn(usize) -> &'a str) -> Str
 }
 
 /// Value and interval of what the model depends on: " a + b is 0.7005 (95 % interval 0.696 .. 0.705)."
-fn determined(group: &Inseparable, solution: &Solution, statistics: &Statistics) -> String {
+fn determined(group: &NonIdentifiable, solution: &Solution, statistics: &Statistics) -> String {
     let name = |k: usize| solution.parameters[k].name.as_str();
     let names: Vec<&str> = group.parameters.iter().map(|&k| name(k)).collect();
     let one = |combination: &Vec<f64>| -> Option<String> {
@@ -437,7 +437,7 @@ fn determined(group: &Inseparable, solution: &Solution, statistics: &Statistics)
             value =
                 if is_product { value * elementary::powf(own, *part) } else { value + part * own };
         }
-        let reach = statistics.factor * statistics.error_of(&weights)?;
+        let reach = statistics.quantile * statistics.error_of(&weights)?;
         let [low, high] = match (is_product, is_ratio) {
             (true, true) => [-reach, reach].map(|reach| value * elementary::exp(reach)),
             (true, false) => [-reach, reach].map(|reach| value + value.abs() * reach),
@@ -487,7 +487,7 @@ fn product<'a>(parts: impl Iterator<Item = (&'a &'a str, &'a f64)>) -> String {
     }
 }
 
-pub(super) fn undetermined(parameter: &SolvedParameter) -> String {
+pub fn undetermined(parameter: &SolvedParameter) -> String {
     let [min, max] = parameter.range;
     let (low, high) = match parameter.interval {
         Some([low, high]) => (low.clamp(min, max), high.clamp(min, max)),
@@ -504,7 +504,7 @@ pub(super) fn undetermined(parameter: &SolvedParameter) -> String {
 }
 
 /// What the profiles say beyond the linear intervals.
-pub(super) fn profile_findings(solution: &Solution, found: &Profiles) -> Vec<Finding> {
+pub fn profile_findings(solution: &Solution, found: &Profiles) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (parameter, profile) in solution.parameters.iter().zip(&found.profiles) {
         let [min, max] = parameter.range.map(|end| significant(end, 4));
@@ -562,4 +562,21 @@ fn about_failures(region: &FailureRegion) -> Finding {
     );
     let finding = Finding::new(FindingKind::Failures, sentence).severity(Severity::Information);
     finding.parameters([region.parameter.as_str()])
+}
+
+/// A finding for each other minimum.
+pub fn about_other_minima(solution: &Solution) -> Vec<Finding> {
+    let one = |other: &OtherMinimum| {
+        let pairs = solution.parameters.iter().zip(&other.values);
+        let values: Vec<String> =
+            pairs.map(|(p, value)| format!("{} = {}", p.name, significant(*value, 5))).collect();
+        let sentence = format!(
+            "Another minimum fits these data as well within the 95 % limit ({} against {}): {}.",
+            significant(other.objective, 6),
+            significant(solution.fitness, 6),
+            values.join(", ")
+        );
+        Finding::new(FindingKind::OtherMinimum, sentence).severity(Severity::Serious)
+    };
+    solution.other_minima.iter().map(one).collect()
 }

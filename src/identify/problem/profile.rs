@@ -65,7 +65,7 @@ pub struct Profiles {
 }
 
 /// What the profiles start from.
-pub(super) struct Known<'a> {
+pub struct Known<'a> {
     /// The minimum.
     pub best: &'a [f64],
     /// Half-widths of the linear intervals where they are known.
@@ -81,7 +81,7 @@ pub(super) struct Known<'a> {
 /// # Errors
 ///
 /// Those of the method's maker.
-pub(super) fn profiles(
+pub fn profiles(
     problem: &Problem,
     evaluation: &Evaluation,
     known: &Known<'_>,
@@ -121,12 +121,7 @@ pub(super) fn profiles(
 /// χ²; else the ratio of S to the smallest is compared, with Student's quantile, which for estimated
 /// sigmas is the likelihood ratio as well, for S is n G with n ln G = -2 log L.
 /// Robust sums rise by a factor of their own.
-pub(super) fn limit(
-    problem: &Problem,
-    smallest: f64,
-    freedom: f64,
-    residuals: Option<&[f64]>,
-) -> f64 {
+pub fn limit(problem: &Problem, smallest: f64, freedom: f64, residuals: Option<&[f64]>) -> f64 {
     let fitness = problem.objectives.first().map(|(_, fitness)| fitness);
     let robust = fitness.zip(residuals).and_then(|(own, r)| own.robustness(r, freedom));
     if let Some(robust) = robust {

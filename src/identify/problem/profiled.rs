@@ -1,6 +1,5 @@
 //! Profiles of a solution: what they say, and the better fits that they come upon.
 
-use super::conclusion::{continue_from, refit};
 use super::ending::SolvedDescent;
 use super::notes::profile_findings;
 use super::profile::{Known, profiles};
@@ -29,14 +28,14 @@ impl Solution {
         again: impl Fn(&Run) -> Result<Solution, Fault>,
     ) -> Result<Solution, Fault> {
         let (importance, searched) = (self.importance.take(), self.fitness);
-        if self.is_short_of_minimum(run) && refit(run)? {
+        if self.is_short_of_minimum(run) && run.refit()? {
             self = again(run)?;
         }
         for _ in 0..BETTER_FITS {
             self.add_profiles(run);
             let better = self.profiles.as_ref().and_then(|found| found.better.clone());
             let Some((values, _)) = better else { break };
-            if !continue_from(run, &values)? {
+            if !run.continue_from(&values)? {
                 break;
             }
             let simulations = self.profiles.as_ref().map_or(0, |found| found.simulations);

@@ -1,6 +1,6 @@
 //! Least squares of some parameters from a known point, the others held.
 
-use super::{Evaluation, Problem};
+use super::{Best, Evaluation, Problem, Run};
 use crate::diag::Fault;
 use crate::ga::optimizer::{Answers, METHODS, Setup, Wants};
 use crate::ga::{FAILED_FITNESS, Gene, Genomes, Mrg32k3a};
@@ -10,7 +10,7 @@ use crate::registry::{self, Options};
 const BUDGET: u64 = 400;
 
 /// Fits again and again about the same problem.
-pub(super) struct Refit<'a> {
+pub struct Refit<'a> {
     problem: &'a Problem,
     evaluation: &'a Evaluation,
     n_points: usize,
@@ -19,11 +19,11 @@ pub(super) struct Refit<'a> {
 }
 
 /// Values of all parameters and their sum of squares.
-pub(super) type Fitted = (Vec<f64>, f64);
+pub type Fitted = (Vec<f64>, f64);
 
 impl<'a> Refit<'a> {
     /// `None` where the first objective is no sum of squares.
-    pub(super) fn new(problem: &'a Problem, evaluation: &'a Evaluation) -> Option<Refit<'a>> {
+    pub fn new(problem: &'a Problem, evaluation: &'a Evaluation) -> Option<Refit<'a>> {
         evaluation.scales()?;
         Some(Refit { problem, evaluation, n_points: problem.n_points(), simulations: 0 })
     }
@@ -34,11 +34,7 @@ impl<'a> Refit<'a> {
     /// # Errors
     ///
     /// Those of the method's maker.
-    pub(super) fn from(
-        &mut self,
-        start: &[f64],
-        held: Option<usize>,
-    ) -> Result<Option<Fitted>, Fault> {
+    pub fn from(&mut self, start: &[f64], held: Option<usize>) -> Result<Option<Fitted>, Fault> {
         let Some(first) = self.residuals(&[start.to_vec()]).pop().flatten() else {
             return Ok(None);
         };
@@ -85,7 +81,7 @@ impl<'a> Refit<'a> {
     }
 
     /// Weighted residuals, measured less simulated, without the factors of a robust fitness.
-    pub(super) fn plain_residuals(&self, values: &[f64]) -> Option<Vec<f64>> {
+    pub fn plain_residuals(&self, values: &[f64]) -> Option<Vec<f64>> {
         let simulated = self.evaluation.simulate(values).ok()?;
         let weights = self.evaluation.error_weights(self.problem, &simulated);
         let measured = self.problem.series.iter().flat_map(|series| &series.y);
@@ -156,4 +152,43 @@ impl<'a> Refit<'a> {
 
 fn square(row: &[f64]) -> f64 {
     row.iter().map(|r| r * r).sum()
+}
+
+impl Run {
+    /// Goes to a better point that was found beside the search, as by a profile, and on from there by
+    /// least squares; returns whether it was better.
+    ///
+    /// # Errors
+    ///
+    /// Those of the method's maker.
+    pub(super) fn continue_from(&mut self, values: &[f64]) -> Result<bool, Fault> {
+        let is_better = self.go_to(values);
+        if is_better {
+            self.refit()?;
+        }
+        Ok(is_better)
+    }
+
+    /// Least squares from the best point, which it replaces; without least squares only the objective
+    /// is computed anew. Returns whether that is smaller.
+    ///
+    /// # Errors
+    ///
+    /// Those of the method's maker.
+    pub(super) fn refit(&mut self) -> Result<bool, Fault> {
+        let Some(best) = &self.best else { return Ok(false) };
+        let before = best.fitness;
+        let found = match Refit::new(&self.problem, &self.evaluation) {
+            Some(mut refit) => {
+                let found = refit.from(&best.values, None)?;
+                self.conclusion.simulations += refit.simulations;
+                found.map_or_else(|| best.values.clone(), |(values, _)| values)
+            }
+            None => best.values.clone(),
+        };
+        let Ok(simulated) = self.evaluation.simulate(&found) else { return Ok(false) };
+        let fitness = self.evaluation.objective(&self.problem, &simulated);
+        self.best = Some(Best { values: found, fitness });
+        Ok(fitness < before)
+    }
 }

@@ -1,6 +1,5 @@
 //! A run: the method asks, the simulator answers, until a stop condition holds.
 
-use super::ending::Cause;
 use super::evaluation::{Answered, Evaluation};
 use super::{FailureKind, Fingerprint, Problem, Record, Stop};
 use crate::bail;
@@ -30,6 +29,14 @@ pub struct Best {
     pub values: Vec<f64>,
     /// Its first objective.
     pub fitness: f64,
+}
+
+/// What ended the search, as far as it is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Cause {
+    Condition,
+    Converged,
+    User,
 }
 
 /// A run under way.

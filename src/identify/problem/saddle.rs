@@ -6,7 +6,6 @@
 //! parameters has no effect), rises, or falls, as beside the symmetric point of two exponentials with
 //! equal rates. Where it falls, least squares go on from there.
 
-use super::conclusion::refit;
 use super::{Best, Finding, FindingKind, Run, Severity};
 use crate::diag::Fault;
 use crate::identify::table::significant;
@@ -27,7 +26,7 @@ const BETTER: f64 = 1e-6;
 /// # Errors
 ///
 /// Those of least squares.
-pub(super) fn leave(run: &mut Run) -> Result<(), Fault> {
+pub fn leave(run: &mut Run) -> Result<(), Fault> {
     if !run.evaluation.has_residuals() || run.problem.objectives.len() > 1 {
         return Ok(());
     }
@@ -36,7 +35,7 @@ pub(super) fn leave(run: &mut Run) -> Result<(), Fault> {
     for _ in 0..MOST {
         let Some(lower) = lower_beside(run) else { break };
         let before = run.best.replace(lower);
-        refit(run)?;
+        run.refit()?;
         let is_lower = |now: &Best, old: &Best| now.fitness < old.fitness;
         if !run.best.as_ref().zip(before.as_ref()).is_some_and(|(now, old)| is_lower(now, old)) {
             run.best = before;

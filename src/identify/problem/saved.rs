@@ -5,7 +5,6 @@ use crate::diag::Fault;
 use crate::fault;
 use crate::ga::Generation;
 use crate::registry::BAD_OPTION;
-use serde::{Deserialize, Deserializer};
 
 impl Solution {
     /// The solution that `result.json`, `history.csv` and `individuals.csv` hold.
@@ -44,14 +43,4 @@ fn rows(name: &str, text: &str, columns: usize) -> Result<Vec<Vec<f64>>, Fault> 
         rows.push(row.ok_or_else(|| fault!(BAD_OPTION, "line {} of `{name}` is damaged", k + 2))?);
     }
     Ok(rows)
-}
-
-/// What is not a number is written as null.
-pub(super) fn number<'de, D: Deserializer<'de>>(reader: D) -> Result<f64, D::Error> {
-    Ok(Option::<f64>::deserialize(reader)?.unwrap_or(f64::NAN))
-}
-
-pub(super) fn points<'de, D: Deserializer<'de>>(reader: D) -> Result<Vec<[f64; 3]>, D::Error> {
-    let points = Vec::<[Option<f64>; 3]>::deserialize(reader)?;
-    Ok(points.into_iter().map(|point| point.map(|value| value.unwrap_or(f64::NAN))).collect())
 }

@@ -1,7 +1,7 @@
 //! The solution as text: for people, as CSV, as Modelica and as script.
 
 use super::{EndingKind, Profile, Solution, SolvedParameter, SolvedSeries, Verdict};
-use crate::identify::table::significant;
+use crate::identify::table::{quoted, significant};
 use crate::plot::{self, Comparison, Figure};
 use std::fmt::Write;
 
@@ -37,6 +37,7 @@ impl Solution {
         text
     }
 
+    /// Labels and values of the report.
     fn facts(&self) -> Vec<(&'static str, String)> {
         let mut facts = vec![("model", self.model.clone()), ("objective", self.objective_values())];
         facts.extend(self.series.iter().map(|series| ("series", series_line(series))));
@@ -66,7 +67,35 @@ impl Solution {
             });
             facts.push(("front", format!("{} points{knee}{volume}", self.front.len())));
         }
-        facts.push(("method", self.method.clone()));
+        facts.extend(self.search_facts());
+        facts.push(("version", format!("gapilib {}", self.version)));
+        if let Some(seed) = self.seed {
+            facts.push(("seed", seed.map(|entry| entry.to_string()).join(" ")));
+        }
+        facts
+    }
+
+    fn evaluations_line(&self) -> String {
+        let failed: u64 = self.failures.values().sum();
+        let share = 100.0 * failed as f64 / self.evaluations.max(1) as f64;
+        let statistics = match self.script {
+            Some(_) => "least squares and standard errors",
+            None => "the standard errors",
+        };
+        let profiles = self
+            .profiles
+            .as_ref()
+            .map_or(String::new(), |all| format!(", {} for the profiles", all.simulations));
+        format!(
+            "{} in {} generations, {failed} failed ({share:.1} %); {} simulations, {} more for \
+             {statistics}{profiles}",
+            self.evaluations, self.generations, self.simulations, self.simulations_for_statistics
+        )
+    }
+
+    /// How the search went.
+    fn search_facts(&self) -> Vec<(&'static str, String)> {
+        let mut facts = vec![("method", self.method.clone())];
         let operator = |(kind, label): (&String, &String)| format!("{kind} {label}");
         let operators: Vec<String> = self.operators.iter().map(operator).collect();
         if !operators.is_empty() {
@@ -77,12 +106,7 @@ impl Solution {
             facts.push(("ending", self.ending.words.clone()));
         }
         facts.extend(self.ending.derivatives.clone().map(|how| ("derivatives", how)));
-        let failed: u64 = self.failures.values().sum();
-        let share = 100.0 * failed as f64 / self.evaluations.max(1) as f64;
-        facts.push((
-            "evaluations",
-            format!("{} in {} generations, {failed} failed ({share:.1} %); {} simulations, {} more for {}{}", self.evaluations, self.generations, self.simulations, self.simulations_for_statistics, if self.script.is_some() { "least squares and standard errors" } else { "the standard errors" }, self.profiles.as_ref().map_or(String::new(), |all| format!(", {} for the profiles", all.simulations))),
-        ));
+        facts.push(("evaluations", self.evaluations_line()));
         let mut causes: Vec<(&String, &u64)> = self.causes.iter().collect();
         causes.sort_by(|a, b| b.1.cmp(a.1));
         facts.extend(
@@ -93,10 +117,6 @@ impl Solution {
         }
         for (generation, setting, value) in &self.changes {
             facts.push(("changed", format!("{setting} = {value} after generation {generation}")));
-        }
-        facts.push(("version", format!("gapilib {}", self.version)));
-        if let Some(seed) = self.seed {
-            facts.push(("seed", seed.map(|entry| entry.to_string()).join(" ")));
         }
         facts
     }
@@ -268,13 +288,6 @@ fn modelica_number(value: f64) -> String {
 
 fn objectives(values: &[f64]) -> String {
     values.iter().map(|value| significant(*value, 4)).collect::<Vec<_>>().join(", ")
-}
-
-pub(super) fn quoted(text: &str) -> String {
-    match text.contains([',', '"', '\n']) || text.starts_with(['=', '+', '-', '@', '\t', '\r']) {
-        true => crate::results::quoted(text),
-        false => text.to_owned(),
-    }
 }
 
 fn series_line(series: &SolvedSeries) -> String {

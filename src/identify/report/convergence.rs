@@ -8,7 +8,7 @@ use crate::ga::has_failed;
 use crate::plot::{Axis, Figure, Mark};
 use maud::html;
 
-pub(super) fn section(view: &View) -> Option<Section> {
+pub fn section(view: &View) -> Option<Section> {
     let history = &view.solution.history;
     if history.len() < 2 {
         return None;

@@ -8,7 +8,7 @@ use crate::identify::problem::{Band, SolvedSeries};
 use crate::plot::{Axis, Figure, Mark, Panel, Series};
 use maud::{Markup, html};
 
-pub(super) fn section(view: &View) -> Option<Section> {
+pub fn section(view: &View) -> Option<Section> {
     let solution = view.solution;
     let fitted =
         solution.series.iter().zip(&view.curves).map(|(series, curve)| (series, curve, ""));

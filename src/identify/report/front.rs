@@ -7,7 +7,7 @@ use super::view::View;
 use crate::plot::{Axis, Mark};
 use maud::html;
 
-pub(super) fn section(view: &View) -> Option<Section> {
+pub fn section(view: &View) -> Option<Section> {
     let solution = view.solution;
     let [across, up] = solution.objectives.as_slice() else { return None };
     if solution.front.len() < 2 {

@@ -9,12 +9,12 @@ use maud::{Markup, html};
 const CHAPTER: &str = include_str!("../../../docs/src/report.md");
 
 /// The chapter below its title.
-pub(super) fn chapter() -> Markup {
+pub fn chapter() -> Markup {
     html! { @for block in blocks(CHAPTER) { (block.markup()) } }
 }
 
 /// The id of a section; mdBook makes the same of a heading, without what stands before.
-pub(super) fn anchor(heading: &str) -> String {
+pub fn anchor(heading: &str) -> String {
     let letters = heading.to_lowercase();
     let kept = letters.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
     format!("guide-{}", kept.collect::<String>().replace(' ', "-"))
@@ -81,32 +81,4 @@ fn inline(text: &str) -> Markup {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::explanations::ALL;
-    use super::*;
-
-    #[test]
-    fn the_guide_has_a_section_on_every_statistic() {
-        let headings: Vec<String> = blocks(CHAPTER)
-            .iter()
-            .filter_map(|block| match block {
-                Block::Heading(_, text) => Some(anchor(text)),
-                _ => None,
-            })
-            .collect();
-        for explanation in ALL {
-            assert!(headings.contains(&explanation.anchor()), "{}", explanation.topic);
-        }
-    }
-
-    #[test]
-    fn markdown_of_the_chapter_is_read() {
-        let text = "# T\n\n## A b\n\nOne *two* `x*y` < 3.\n\n- p\n- q\n\n```console\n$ z\n```\n";
-        let read = blocks(text);
-        assert_eq!(read.len(), 3, "{read:?}");
-        let all: String = read.iter().map(|block| block.markup().into_string()).collect();
-        let wanted = "<h3 id=\"guide-a-b\">A b</h3><p>One <em>two</em> <code>x*y</code> &lt; 3.</p>\
-                      <ul><li>p</li><li>q</li></ul>";
-        assert_eq!(all, wanted);
-    }
-}
+mod tests;

@@ -6,7 +6,7 @@ use super::parts::{explained, number, quantity, scrolling};
 use super::view::View;
 use maud::html;
 
-pub(super) fn section(view: &View) -> Option<Section> {
+pub fn section(view: &View) -> Option<Section> {
     let solution = view.solution;
     if view.minima.is_empty() {
         return None;

@@ -20,7 +20,7 @@ const CORNERS: usize = 72;
 /// The best so many individuals of a hundred are drawn in the strong colour.
 const BEST_PERCENT: usize = 10;
 
-pub(super) fn section(view: &View) -> Option<Section> {
+pub fn section(view: &View) -> Option<Section> {
     let rows = view.solution.correlations.as_ref()?;
     if view.solution.parameters.len() < 2 {
         return None;

@@ -7,7 +7,7 @@ use crate::plot::{Axis, Figure, Mark, Panel, Scale, Series};
 use maud::{Markup, PreEscaped, html};
 
 /// A figure with a caption; `label` says in words what it shows.
-pub(super) fn figure(figure: &Figure, label: &str, caption: &Markup) -> Markup {
+pub fn figure(figure: &Figure, label: &str, caption: &Markup) -> Markup {
     html! {
         figure {
             (PreEscaped(figure.inline(label)))
@@ -17,7 +17,7 @@ pub(super) fn figure(figure: &Figure, label: &str, caption: &Markup) -> Markup {
 }
 
 /// The same for figures that stand side by side.
-pub(super) fn small_figure(figure: &Figure, label: &str, caption: &Markup) -> Markup {
+pub fn small_figure(figure: &Figure, label: &str, caption: &Markup) -> Markup {
     html! {
         figure {
             (PreEscaped(figure.small(label)))
@@ -27,12 +27,12 @@ pub(super) fn small_figure(figure: &Figure, label: &str, caption: &Markup) -> Ma
 }
 
 /// A table, or anything else that may be wider than the screen; `label` names it.
-pub(super) fn scrolling(label: &str, content: &Markup) -> Markup {
+pub fn scrolling(label: &str, content: &Markup) -> Markup {
     html! { div.scroll tabindex="0" role="region" aria-label=(label) { (content) } }
 }
 
 /// What a statistic means, with its threshold, and where the guide says more.
-pub(super) fn explained(explanation: &Explanation) -> Markup {
+pub fn explained(explanation: &Explanation) -> Markup {
     html! {
         p.explanation {
             (explanation.line) " "
@@ -42,7 +42,7 @@ pub(super) fn explained(explanation: &Explanation) -> Markup {
 }
 
 /// A number with its unit.
-pub(super) fn quantity(value: f64, digits: usize, unit: &str) -> String {
+pub fn quantity(value: f64, digits: usize, unit: &str) -> String {
     let unit = crate::plot::shown_unit(unit);
     match unit.is_empty() {
         true => number(value, digits),
@@ -51,7 +51,7 @@ pub(super) fn quantity(value: f64, digits: usize, unit: &str) -> String {
 }
 
 /// A number as it is read: 1.2 × 10⁻⁷.
-pub(super) fn number(value: f64, digits: usize) -> String {
+pub fn number(value: f64, digits: usize) -> String {
     let text = significant(value, digits).replace('-', "\u{2212}");
     let parts = text.split_once('e');
     match parts
@@ -63,18 +63,18 @@ pub(super) fn number(value: f64, digits: usize) -> String {
 }
 
 /// The axis of a parameter.
-pub(super) fn axis(parameter: &SolvedParameter, logarithmic: bool) -> Axis {
+pub fn axis(parameter: &SolvedParameter, logarithmic: bool) -> Axis {
     let scale = if logarithmic { Scale::Logarithmic } else { Scale::Linear };
     Axis { scale, ..Axis::linear(&parameter.name, &parameter.unit) }
 }
 
-pub(super) fn series(name: &str, points: &[(f64, f64)], mark: Mark, colour: usize) -> Series {
+pub fn series(name: &str, points: &[(f64, f64)], mark: Mark, colour: usize) -> Series {
     let (x, y) = points.iter().copied().unzip();
     Series { name: name.to_owned(), x, y, mark, colour }
 }
 
 /// A figure of one panel without a title: headings are those of the page.
-pub(super) fn one_panel(x: Axis, y: Axis, height: f64, series: Vec<Series>) -> Figure {
+pub fn one_panel(x: Axis, y: Axis, height: f64, series: Vec<Series>) -> Figure {
     let panel = Panel { x, y, height, zero_line: false, series };
     Figure { title: String::new(), panels: vec![panel] }
 }

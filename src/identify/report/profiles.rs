@@ -15,7 +15,7 @@ const SHOWN: f64 = 2.5;
 /// Points of the parabola of the linearized model.
 const PARABOLA: usize = 60;
 
-pub(super) fn section(view: &View) -> Option<Section> {
+pub fn section(view: &View) -> Option<Section> {
     let profiles = view.solution.profiles.as_ref()?;
     let pairs = || view.solution.parameters.iter().zip(&profiles.profiles);
     let content = html! {

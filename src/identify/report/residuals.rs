@@ -7,7 +7,7 @@ use super::view::View;
 use crate::identify::problem::{Finding, FindingKind, Solution, SolvedSeries};
 use maud::{Markup, html};
 
-pub(super) fn section(view: &View) -> Option<Section> {
+pub fn section(view: &View) -> Option<Section> {
     let solution = view.solution;
     if solution.series.is_empty() && solution.validation.is_empty() {
         return None;

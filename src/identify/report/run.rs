@@ -11,7 +11,7 @@ const ROWS: usize = 200;
 /// Causes of failure that are named.
 const CAUSES: usize = 5;
 
-pub(super) fn section(view: &View) -> Option<Section> {
+pub fn section(view: &View) -> Option<Section> {
     let solution = view.solution;
     let content = html! {
         (counts(solution))

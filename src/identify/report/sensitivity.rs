@@ -6,7 +6,7 @@ use super::parts::{explained, number, scrolling};
 use super::view::View;
 use maud::html;
 
-pub(super) fn section(view: &View) -> Option<Section> {
+pub fn section(view: &View) -> Option<Section> {
     let found = view.solution.importance.as_ref()?;
     let figure = |figure: Option<f64>, error: Option<f64>| match (figure, error) {
         (Some(figure), Some(error)) => format!("{} ± {}", number(figure, 3), number(error, 1)),

@@ -5,7 +5,7 @@ use super::view::View;
 use crate::identify::problem::Verdict;
 use maud::{Markup, html};
 
-pub(super) fn head(view: &View) -> Markup {
+pub fn head(view: &View) -> Markup {
     let solution = view.solution;
     let points: usize = solution.series.iter().map(|series| series.points.len()).sum();
     html! {

@@ -11,7 +11,7 @@ use maud::{Markup, html};
 const COLUMNS: [&str; 6] =
     ["Parameter", "Value", "95 % interval", "Standard error", "Verdict", "Search range"];
 
-pub(super) fn section(view: &View) -> Option<Section> {
+pub fn section(view: &View) -> Option<Section> {
     let content = html! {
         (scrolling("Estimated parameters", &table(view)))
         (explained(&INTERVAL))

@@ -7,7 +7,7 @@ use crate::identify::problem::SolvedParameter;
 use crate::plot::{Axis, Mark};
 use maud::{Markup, html};
 
-pub(super) fn section(view: &View) -> Option<Section> {
+pub fn section(view: &View) -> Option<Section> {
     let solution = view.solution;
     if solution.trace.len() < 2 {
         return None;

@@ -14,7 +14,7 @@ const CORRELATED: f64 = 0.5;
 const CHI_SQUARE: f64 = 5.991_464_547_107_98;
 
 /// What the page shows.
-pub(super) struct View<'a> {
+pub struct View<'a> {
     pub(super) solution: &'a Solution,
     /// How the search ended.
     pub(super) ending: Ending<'a>,
@@ -39,14 +39,14 @@ pub(super) struct View<'a> {
 }
 
 /// How the search ended.
-pub(super) struct Ending<'a> {
+pub struct Ending<'a> {
     /// The class of the style.
     pub(super) class: &'static str,
     pub(super) sentence: &'a str,
 }
 
 /// Something that must be known.
-pub(super) struct Note<'a> {
+pub struct Note<'a> {
     pub(super) sentence: &'a str,
     /// The class of the style: how much it changes what the numbers mean.
     pub(super) weight: &'static str,
@@ -54,7 +54,7 @@ pub(super) struct Note<'a> {
 
 /// A point of a simulated curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct CurvePoint {
+pub struct CurvePoint {
     pub(super) x: f64,
     pub(super) y: f64,
     /// Half-width of the 95 % confidence band of the curve.
@@ -65,7 +65,7 @@ pub(super) struct CurvePoint {
 
 /// A local search.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Descent {
+pub struct Descent {
     /// Objective where it ended.
     pub(super) objective: f64,
     /// Whether it ended at a minimum.
@@ -76,14 +76,14 @@ pub(super) struct Descent {
 
 /// Two parameters and the correlation of their estimates.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Pair {
+pub struct Pair {
     pub(super) first: usize,
     pub(super) second: usize,
     pub(super) correlation: f64,
 }
 
 impl View<'_> {
-    pub(super) fn of(solution: &Solution) -> View<'_> {
+    pub fn of(solution: &Solution) -> View<'_> {
         View {
             solution,
             ending: ending(solution),
@@ -105,7 +105,7 @@ impl View<'_> {
     }
 
     /// Measured points less estimated parameters; 0 where there are no more points.
-    pub(super) fn freedom(&self) -> usize {
+    pub fn freedom(&self) -> usize {
         let points: usize = self.solution.series.iter().map(|series| series.points.len()).sum();
         points.saturating_sub(self.solution.parameters.len())
     }
@@ -113,7 +113,7 @@ impl View<'_> {
     /// Square of the radius of the joint 95 % ellipse of two parameters, in standard errors: the
     /// quantile of the chi-square distribution where the standard deviations of the data are known;
     /// else twice that of F(2, ν), which has the closed form ν (0.05^(−2/ν) − 1).
-    pub(super) fn ellipse_radius_squared(&self) -> f64 {
+    pub fn ellipse_radius_squared(&self) -> f64 {
         match self.freedom() {
             0 => CHI_SQUARE,
             _ if self.solution.chi_square.is_some() => CHI_SQUARE,
@@ -167,7 +167,7 @@ fn banded(solution: &Solution, place: usize, series: &SolvedSeries) -> Vec<Curve
 }
 
 /// The points of a band.
-pub(super) fn points(band: &Band) -> Vec<CurvePoint> {
+pub fn points(band: &Band) -> Vec<CurvePoint> {
     let point = |at: &BandPoint| CurvePoint {
         x: at.x,
         y: at.y,
@@ -196,12 +196,12 @@ fn pairs(solution: &Solution) -> Vec<Pair> {
 }
 
 /// Whether the axis of a parameter between two of its values is better drawn logarithmic.
-pub(super) fn is_logarithmic(parameter: &SolvedParameter, low: f64, high: f64) -> bool {
+pub fn is_logarithmic(parameter: &SolvedParameter, low: f64, high: f64) -> bool {
     parameter.logarithmic && low > 0.0 && high > 3.0 * low
 }
 
 /// Where in its range a value lies, from 0 to 1.
-pub(super) fn fraction(parameter: &SolvedParameter, value: f64) -> f64 {
+pub fn fraction(parameter: &SolvedParameter, value: f64) -> f64 {
     let [min, max] = parameter.range;
     let fraction = match parameter.logarithmic {
         true => elementary::ln(value / min) / elementary::ln(max / min),

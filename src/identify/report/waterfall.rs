@@ -7,7 +7,7 @@ use super::view::{Descent, View};
 use crate::plot::{Axis, Figure, Mark};
 use maud::html;
 
-pub(super) fn section(view: &View) -> Option<Section> {
+pub fn section(view: &View) -> Option<Section> {
     // One descent is a point, and said elsewhere.
     if view.descents.len() < 2 {
         return None;

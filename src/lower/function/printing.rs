@@ -26,14 +26,14 @@ fn tell(call: &mut Call<'_>) -> Result<(), Fault> {
     let mut words = String::new();
     for slot in &call.arguments[1..] {
         match slot.kind {
-            Kind::Text => words += &call.texts[slot.first as usize],
+            Kind::Text => words += &call.strings[slot.first as usize],
             Kind::Number | Kind::Object => {
                 let value = Value::Real(call.numbers[slot.first as usize]);
                 words += &text(&value, SIGNIFICANT_DIGITS, 0, true)?;
             }
         }
     }
-    match &*call.texts[call.arguments[0].first as usize].clone() {
+    match &*call.strings[call.arguments[0].first as usize].clone() {
         "" => call.outside.print(words.trim_end_matches('\n')),
         path => call.outside.append(path, format!("{words}\n").as_bytes()),
     }

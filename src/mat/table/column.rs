@@ -9,7 +9,7 @@ use crate::fault;
 use crate::mat::errors::BAD_TABLE;
 
 /// What a column holds.
-pub(super) enum Content {
+pub enum Content {
     /// Numbers; NaN where there is none.
     Numbers(Vec<f64>),
     /// Dates and times of day.
@@ -17,14 +17,14 @@ pub(super) enum Content {
 }
 
 /// A column as it was read, and what is to be said of it.
-pub(super) struct Parsed {
+pub struct Parsed {
     pub content: Content,
     pub notes: Vec<String>,
 }
 
 /// Where the cells of a column are.
 #[derive(Clone, Copy)]
-pub(super) struct Cells<'r, 'a> {
+pub struct Cells<'r, 'a> {
     pub rows: &'r [Record<'a>],
     pub column: usize,
     pub name: &'r str,
@@ -57,12 +57,12 @@ impl<'r> Cells<'r, '_> {
     }
 
     /// Whether all cells are empty.
-    pub(super) fn is_empty(self) -> bool {
+    pub fn is_empty(self) -> bool {
         self.all().all(|(_, cell)| cell.is_empty())
     }
 
     /// The column as numbers or moments; `usual` is the decimal mark of the file.
-    pub(super) fn parse(self, usual: Option<char>) -> Result<Parsed, Fault> {
+    pub fn parse(self, usual: Option<char>) -> Result<Parsed, Fault> {
         let first = self.all().find(|(_, cell)| missing(cell).is_none());
         match first {
             Some((_, cell)) if form(cell).is_none() && moment(cell).is_some() => self.moments(),
@@ -209,7 +209,7 @@ impl<'r> Cells<'r, '_> {
 }
 
 /// The decimal mark of which the columns leave no doubt, if they agree.
-pub(super) fn usual_mark(rows: &[Record<'_>], columns: usize) -> Option<char> {
+pub fn usual_mark(rows: &[Record<'_>], columns: usize) -> Option<char> {
     let mut usual = None;
     for row in rows {
         for cell in row.cells.iter().take(columns) {
@@ -224,7 +224,7 @@ pub(super) fn usual_mark(rows: &[Record<'_>], columns: usize) -> Option<char> {
 }
 
 /// Moments of one column as seconds, with the dates of another.
-pub(super) fn in_seconds(
+pub fn in_seconds(
     name: &str,
     moments: &[Option<Moment>],
     dates: Option<(&str, &[Option<Moment>])>,

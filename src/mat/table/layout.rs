@@ -20,7 +20,7 @@ const SAMPLE: usize = 200;
 const OTHER_TABLE: usize = 3;
 
 /// The rows of a table by what they are.
-pub(super) struct Layout<'a> {
+pub struct Layout<'a> {
     pub head: Record<'a>,
     pub units: Option<Record<'a>>,
     pub rows: Vec<Record<'a>>,
@@ -29,7 +29,7 @@ pub(super) struct Layout<'a> {
 }
 
 /// The separator with which the most rows fall into numbers.
-pub(super) fn separator(text: &str) -> Separator {
+pub fn separator(text: &str) -> Separator {
     let count = lines(text).count();
     let sample = || {
         let near = |(number, _): &(usize, _)| *number < SAMPLE || *number + SAMPLE >= count;
@@ -97,7 +97,7 @@ fn has_value(record: &Record<'_>) -> bool {
 }
 
 /// Finds out which rows are what; `text` is where the names may stand in a comment.
-pub(super) fn layout<'a>(
+pub fn layout<'a>(
     mut records: Vec<Record<'a>>,
     source: Option<(&'a str, Separator)>,
     places: Places,
@@ -292,6 +292,6 @@ fn checked<'a>(
 }
 
 /// The name of a column of the head, without a comma that stands before blanks.
-pub(super) fn name(cell: &str) -> &str {
+pub fn name(cell: &str) -> &str {
     without_brackets(cell.trim().trim_end_matches([',', ';']).trim())
 }

@@ -66,7 +66,7 @@ impl Places {
 ///
 /// `bad-table`: no table, no names, rows that are shorter or longer than the head. Faults name line
 /// and column.
-pub(super) fn read_text(bytes: &[u8], strict: bool) -> Result<MatFile, Fault> {
+pub fn read_text(bytes: &[u8], strict: bool) -> Result<MatFile, Fault> {
     let text = decode::lines_of(bytes)?;
     let separator = layout::separator(&text);
     let records = records::records(&text, separator);
@@ -80,7 +80,7 @@ pub(super) fn read_text(bytes: &[u8], strict: bool) -> Result<MatFile, Fault> {
 /// # Errors
 ///
 /// As [`read_text`]; faults name the cell.
-pub(super) fn read_rows(rows: Vec<(usize, Vec<String>)>) -> Result<MatFile, Fault> {
+pub fn read_rows(rows: Vec<(usize, Vec<String>)>) -> Result<MatFile, Fault> {
     let record = |(line, cells): (usize, Vec<String>)| Record {
         line,
         cells: cells.into_iter().map(Cow::Owned).collect(),

@@ -13,7 +13,7 @@ const DAY: i64 = 86_400 * SECOND;
 
 /// A date, a time of day, or both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Moment {
+pub struct Moment {
     date: Option<Date>,
     /// Nanoseconds, and whether the seconds are written.
     clock: Option<(i64, bool)>,
@@ -28,14 +28,14 @@ enum Date {
 
 /// What the first cell of a column of moments holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub enum Kind {
     Date,
     Clock,
     Both,
 }
 
 impl Moment {
-    pub(super) fn kind(self) -> Kind {
+    pub fn kind(self) -> Kind {
         match (self.date, self.clock) {
             (Some(_), Some(_)) => Kind::Both,
             (Some(_), None) => Kind::Date,
@@ -45,7 +45,7 @@ impl Moment {
 }
 
 /// The moment that a cell holds.
-pub(super) fn moment(cell: &str) -> Option<Moment> {
+pub fn moment(cell: &str) -> Option<Moment> {
     // Most cells are numbers; the longest moment has 35 characters.
     if cell.len() < 4 || cell.len() > 40 || !cell.is_ascii() {
         return None;
@@ -216,7 +216,7 @@ fn civil(days: i64) -> [i64; 3] {
 }
 
 /// What moments of a column mean as seconds.
-pub(super) struct Seconds {
+pub struct Seconds {
     /// NaN where there is none.
     pub values: Vec<f64>,
     /// From what they were made, as the end of a sentence about the column.
@@ -226,7 +226,7 @@ pub(super) struct Seconds {
 /// Moments of a column as seconds. Dates count from the first point; clocks without a date as they
 /// are, unless they show the time of a day. `dates` are of another column, `hint` is the name of
 /// the column with its unit.
-pub(super) fn seconds(
+pub fn seconds(
     moments: &[Option<Moment>],
     dates: Option<&[Option<Moment>]>,
     hint: &str,

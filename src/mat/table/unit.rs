@@ -7,7 +7,7 @@ const OTHER: [&str; 9] = ["#", "-", "1", "bits", "a.u.", "arb.u.", "counts", "pH
 
 /// The name and the unit of a column's head. The unit is one that is known; what else stands in
 /// brackets belongs to the head, but the name alone means the column, too.
-pub(super) fn split(head: &str) -> (Option<&str>, Option<String>) {
+pub fn split(head: &str) -> (Option<&str>, Option<String>) {
     for (open, close) in [('[', ']'), ('(', ')')] {
         let Some(inner) = head.strip_suffix(close) else { continue };
         let Some((name, unit)) = inner.rsplit_once(open) else { continue };
@@ -33,12 +33,12 @@ pub(super) fn split(head: &str) -> (Option<&str>, Option<String>) {
 }
 
 /// The unit of a cell in a row of units; none where it does not convert.
-pub(super) fn of_cell(cell: &str) -> Option<String> {
+pub fn of_cell(cell: &str) -> Option<String> {
     known(without_brackets(cell))
 }
 
 /// Whether a cell of the row below the names may be a unit.
-pub(super) fn is_unit(cell: &str) -> bool {
+pub fn is_unit(cell: &str) -> bool {
     let inner = without_brackets(cell);
     OTHER.contains(&inner) || inner.len() < cell.len() || known(inner).is_some()
 }
@@ -56,7 +56,7 @@ fn known(text: &str) -> Option<String> {
 }
 
 /// `[V]`, `(V)` and `<I>` without the brackets.
-pub(super) fn without_brackets(text: &str) -> &str {
+pub fn without_brackets(text: &str) -> &str {
     for (open, close) in [('[', ']'), ('(', ')')] {
         if let Some(inner) = text.strip_prefix(open).and_then(|rest| rest.strip_suffix(close)) {
             return inner.trim();

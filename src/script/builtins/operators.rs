@@ -8,8 +8,9 @@ use super::gapilib::{WholeNumbers, check_size, genes, genomes_value, row, take_g
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{Diagnostic, Fault};
 use crate::eval;
+use crate::ga::crossover::Parents;
 use crate::ga::errors::{BAD_OPERATOR, BAD_POPULATION, SIZE_MISMATCH};
-use crate::ga::mutation::Course;
+use crate::ga::mutation::{Child, Course};
 use crate::ga::operators::{self, Kind, Size};
 use crate::ga::survival::{Brood, Rated, Wanted};
 use crate::ga::{Genomes, Mrg32k3a, crossover, mutation, sampling, selection, survival};
@@ -248,7 +249,7 @@ fn cross(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
             let own = own.for_run(n_genes, &mut rng).unwrap_or(own);
             crossover::cross_rows(&parents, |first, second| {
                 if probability == 1.0 || rng.uniform() < probability {
-                    own.cross(first, second, &genes, &mut rng)?;
+                    own.cross(Parents { first, second, genes: &genes }, &mut rng)?;
                 }
                 Ok(())
             })
@@ -301,7 +302,7 @@ fn mutate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     for k in elites..genomes.len() {
         let genome = genomes.row_mut(k);
         let mutated = match (&own, operator.function.clone()) {
-            (Some(own), _) => own.mutate(genome, &genes, rate, course, &mut rng),
+            (Some(own), _) => own.mutate(Child { genome, genes: &genes, rate, course }, &mut rng),
             (None, Some(function)) => mutation::mutate_by(
                 &mut |inputs| operator.call(session, &function, n_genes, inputs),
                 genome,

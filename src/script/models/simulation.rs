@@ -8,7 +8,7 @@ use crate::diag::{At, Diagnostic, Fault, suggest};
 use crate::flatten::{self, BaseType, Experiment, FlatModel, Variability};
 use crate::name::Ident;
 use crate::results::{ResultTable, Series, Values};
-use crate::runtime::{System, Told, Treated, Undetermined};
+use crate::runtime::{LogMessage, System, Treated, Undetermined};
 use crate::script::Session;
 use crate::script::errors::{BAD_PARAMETER_VALUE, INTERRUPTED, SHARED_NAME, UNKNOWN_PARAMETER};
 use crate::sim::{self, OutputGrid, Settings, Simulator, Statistics, Trajectory, Treatment};
@@ -405,8 +405,8 @@ fn report_undetermined(session: &mut Session, system: &System) {
 
 /// What the model has told while it was simulated.
 fn tell(session: &mut Session, system: &System) {
-    let (told, omitted) = system.told();
-    for Told { time, text, is_warning, span } in told {
+    let (told, omitted) = system.log_messages();
+    for LogMessage { time, text, is_warning, span } in told {
         if is_warning {
             let message = format!("{text} (at t = {time})");
             session.report(Fault::new(ASSERTION_FAILED, message).at(span).warning());

@@ -13,7 +13,7 @@
 //! columns are scaled by the nominal values. The Jacobian is kept until the corrector converges
 //! slowly: at once if it fails, with the next change of c if it needed more than two iterations.
 //! Between steps the interpolating polynomial of the differences gives y. The first step after a
-//! restart has order 1; v has no slope there and takes no part in its error test.
+//! restart has order 1; v has no derivative there and takes no part in its error test.
 //!
 //! This is what `dassl` and its relatives name here: our own method of the same family, not
 //! anybody's code.
@@ -23,6 +23,7 @@
 
 mod sensitivities;
 
+use super::step_control::{Attempt, FAILURE_FACTOR, error_factor, newton_safety};
 use super::{Integrator, Problem};
 use crate::elementary;
 use crate::registry::Entry;
@@ -249,17 +250,14 @@ impl Bdf {
         self.rescale(h_new);
     }
 
-    /// Shortens the step to one or two equal ones to the limit if it comes near; whether the next
-    /// one reaches it.
-    fn approach(&mut self, limit: f64) -> bool {
-        let remaining = limit - self.t;
-        let reaches_limit = self.h * (1.0 + 1e-9) >= remaining;
-        if reaches_limit && self.h != remaining {
-            self.rescale(remaining);
-        } else if !reaches_limit && 2.0 * self.h > remaining * (1.0 + 1e-9) {
-            self.rescale(0.5 * remaining);
+    /// Shortens the step to one or two equal ones to the limit if it comes near; where the next one
+    /// ends.
+    fn approach(&mut self, limit: f64) -> f64 {
+        let attempt = Attempt::towards(limit, self.t, self.h);
+        if attempt.h != self.h {
+            self.rescale(attempt.h);
         }
-        reaches_limit
+        attempt.end
     }
 
     /// Computes predictor and ψ.
@@ -497,26 +495,24 @@ impl Integrator for Bdf {
         let mut failures = 0;
         loop {
             problem.may_continue()?;
-            let reaches_limit = self.approach(limit);
-            let t_new = if reaches_limit { limit } else { self.t + self.h };
+            let t_new = self.approach(limit);
             self.predict();
             let corrected = self.attempt(problem, t_new, failures >= MOST_FAILURES);
             let (failure, factor) = match corrected {
                 Ok(iterations) => {
-                    let budget = 2.0 * MAX_ITERATIONS as f64 + 1.0;
-                    self.safety = 0.9 * budget / (budget - 1.0 + iterations as f64);
+                    self.safety = newton_safety(iterations, MAX_ITERATIONS);
                     if self.error <= 1.0 {
                         self.accept(t_new);
                         problem.statistics.steps += 1;
                         return Ok(());
                     }
                     problem.statistics.error_failures += 1;
-                    let gain = elementary::powf(self.error, -1.0 / (self.order as f64 + 1.0));
-                    (SimErrorKind::StepSize, (self.safety * gain).max(0.2))
+                    let factor = error_factor(self.error, self.order as i32, self.safety, 1.0);
+                    (SimErrorKind::StepSize, factor)
                 }
                 Err(failure) => {
                     problem.statistics.newton_failures += 1;
-                    (failure, 0.25)
+                    (failure, FAILURE_FACTOR)
                 }
             };
             if self.h * factor < smallest {

@@ -8,7 +8,7 @@ use super::Integrator;
 use super::explicit::{Embedded, ExplicitRungeKutta, Tableau};
 use crate::registry::Entry;
 
-pub(super) const ENTRY: Entry<dyn Integrator> = Entry {
+pub const ENTRY: Entry<dyn Integrator> = Entry {
     name: "dopri5",
     aliases: &["dopri45", "rkf45"],
     summary: "explicit Runge-Kutta method of Dormand and Prince, order 5, variable step",

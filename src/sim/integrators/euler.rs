@@ -4,7 +4,7 @@ use super::Integrator;
 use super::explicit::{ExplicitRungeKutta, Tableau};
 use crate::registry::Entry;
 
-pub(super) const ENTRY: Entry<dyn Integrator> = Entry {
+pub const ENTRY: Entry<dyn Integrator> = Entry {
     name: "euler",
     aliases: &[],
     summary: "explicit Euler method, order 1, fixed step",

@@ -7,13 +7,13 @@
 //! Between steps: cubic Hermite interpolation, with the term of order 4 where the tableau has one.
 //! For systems without algebraic unknowns.
 
+use super::step_control::{Attempt, SAFETY, StepControl, error_factor};
 use super::{Integrator, Problem};
-use crate::elementary;
 use crate::sim::SimErrorKind;
 use crate::sim::norm::{set_weights, weighted_rms};
 
 /// The coefficients of a method.
-pub(super) struct Tableau {
+pub struct Tableau {
     /// cᵢ
     pub(super) nodes: &'static [f64],
     /// aᵢⱼ, j < i
@@ -24,9 +24,9 @@ pub(super) struct Tableau {
     pub(super) embedded: Option<Embedded>,
 }
 
-/// What a method with variable step knows besides. The last of the seven slopes is the one at the
+/// What a method with variable step knows besides. The last of the seven derivatives is the one at the
 /// end of the step.
-pub(super) struct Embedded {
+pub struct Embedded {
     /// Order of the method the error is measured against.
     pub(super) order: i32,
     /// Error = h Σ eᵢ kᵢ
@@ -35,39 +35,42 @@ pub(super) struct Embedded {
     pub(super) dense: [f64; 7],
 }
 
+/// A step is at most so many times longer than the one before.
+const MOST_FACTOR: f64 = 5.0;
+
 /// An explicit method with its workspace.
-pub(super) struct ExplicitRungeKutta {
+pub struct ExplicitRungeKutta {
     tableau: &'static Tableau,
     t: f64,
     t_old: f64,
-    h: f64,
+    control: StepControl,
     y: Vec<f64>,
     y_old: Vec<f64>,
     stage: Vec<f64>,
     weights: Vec<f64>,
-    /// Slopes of the stages, the first at the start of the step.
-    slopes: Vec<Vec<f64>>,
-    /// Slope at the end of the step.
-    slope_end: Vec<f64>,
-    /// Whether the slope at the end is another one since.
+    /// Derivatives of the stages, the first at the start of the step.
+    derivatives: Vec<Vec<f64>>,
+    /// Derivative at the end of the step.
+    derivative_end: Vec<f64>,
+    /// Whether the derivative at the end is another one since.
     is_outdated: bool,
     /// Error estimate, then term of order 4 of the interpolation.
     combined: Vec<f64>,
 }
 
 impl ExplicitRungeKutta {
-    pub(super) fn new(tableau: &'static Tableau) -> ExplicitRungeKutta {
+    pub fn new(tableau: &'static Tableau) -> ExplicitRungeKutta {
         ExplicitRungeKutta {
             tableau,
             t: 0.0,
             t_old: 0.0,
-            h: 0.0,
+            control: StepControl::default(),
             y: Vec::new(),
             y_old: Vec::new(),
             stage: Vec::new(),
             weights: Vec::new(),
-            slopes: vec![Vec::new(); tableau.nodes.len()],
-            slope_end: Vec::new(),
+            derivatives: vec![Vec::new(); tableau.nodes.len()],
+            derivative_end: Vec::new(),
             is_outdated: false,
             combined: Vec::new(),
         }
@@ -79,62 +82,58 @@ impl ExplicitRungeKutta {
             &mut self.y_old,
             &mut self.stage,
             &mut self.weights,
-            &mut self.slope_end,
+            &mut self.derivative_end,
             &mut self.combined,
         ];
-        for vector in workspaces.into_iter().chain(&mut self.slopes) {
+        for vector in workspaces.into_iter().chain(&mut self.derivatives) {
             vector.resize(n, 0.0);
         }
     }
 
-    /// Computes y and its slope at t + h from y_old.
-    fn advance(&mut self, problem: &mut Problem, t_new: f64) -> Result<(), SimErrorKind> {
-        let h = t_new - self.t_old;
+    /// Computes y and its derivative at t + h from y_old.
+    fn advance(&mut self, problem: &mut Problem, attempt: Attempt) -> Result<(), SimErrorKind> {
+        let h = attempt.h;
         for i in 1..self.tableau.nodes.len() {
-            combine(&self.y_old, h, self.tableau.stages[i], &self.slopes, &mut self.stage);
+            combine(&self.y_old, h, self.tableau.stages[i], &self.derivatives, &mut self.stage);
             let t = self.t_old + h * self.tableau.nodes[i];
-            problem.rhs(t, &self.stage, &mut self.slopes[i])?;
+            problem.rhs(t, &self.stage, &mut self.derivatives[i])?;
         }
-        combine(&self.y_old, h, self.tableau.weights, &self.slopes, &mut self.y);
-        problem.rhs(t_new, &self.y, &mut self.slope_end)
+        combine(&self.y_old, h, self.tableau.weights, &self.derivatives, &mut self.y);
+        problem.rhs(attempt.end, &self.y, &mut self.derivative_end)
     }
 
-    /// Writes h Σ cᵢ kᵢ over all slopes and the one at the end.
+    /// Writes h Σ cᵢ kᵢ over all derivatives and the one at the end.
     fn combine_all(&mut self, h: f64, coefficients: &[f64; 7]) {
         for (i, combined) in self.combined.iter_mut().enumerate() {
-            let slopes = self.slopes.iter().chain([&self.slope_end]);
-            let sum: f64 = coefficients.iter().zip(slopes).map(|(c, slope)| c * slope[i]).sum();
+            let derivatives = self.derivatives.iter().chain([&self.derivative_end]);
+            let sum: f64 =
+                coefficients.iter().zip(derivatives).map(|(c, derivative)| c * derivative[i]).sum();
             *combined = h * sum;
         }
     }
 
-    /// The error of the attempt relative to the tolerance, and the exponent by which it depends on
-    /// h; `None` for fixed steps.
-    fn error(&mut self, problem: &Problem, h: f64) -> Option<(f64, f64)> {
-        let embedded = self.tableau.embedded.as_ref()?;
+    /// The error of the attempt relative to the tolerance.
+    fn error(&mut self, problem: &Problem, h: f64, embedded: &Embedded) -> f64 {
         self.combine_all(h, &embedded.error);
         set_weights(problem.settings.tolerance, &self.y_old, problem.nominal, &mut self.weights);
-        let norm = weighted_rms(&self.combined, &self.weights);
-        Some((norm, -1.0 / f64::from(embedded.order + 1)))
+        weighted_rms(&self.combined, &self.weights)
     }
 
-    fn accept(&mut self, problem: &mut Problem, t_new: f64) {
-        if let Some(embedded) = &self.tableau.embedded {
-            self.combine_all(t_new - self.t_old, &embedded.dense);
-        } else {
-            self.combined.fill(0.0);
+    fn accept(&mut self, attempt: Attempt) {
+        match &self.tableau.embedded {
+            Some(embedded) => self.combine_all(attempt.h, &embedded.dense),
+            None => self.combined.fill(0.0),
         }
-        self.t = t_new;
-        problem.statistics.steps += 1;
+        self.t = attempt.end;
     }
 }
 
 /// out = y + h Σ cᵢ kᵢ
-fn combine(y: &[f64], h: f64, coefficients: &[f64], slopes: &[Vec<f64>], out: &mut [f64]) {
+fn combine(y: &[f64], h: f64, coefficients: &[f64], derivatives: &[Vec<f64>], out: &mut [f64]) {
     out.copy_from_slice(y);
-    for (coefficient, slope) in coefficients.iter().zip(slopes) {
-        for (out, slope) in out.iter_mut().zip(slope) {
-            *out += h * coefficient * slope;
+    for (coefficient, derivative) in coefficients.iter().zip(derivatives) {
+        for (out, derivative) in out.iter_mut().zip(derivative) {
+            *out += h * coefficient * derivative;
         }
     }
 }
@@ -148,12 +147,12 @@ impl Integrator for ExplicitRungeKutta {
         self.resize(y.len());
         self.y.copy_from_slice(y);
         (self.t, self.t_old) = (t, t);
-        problem.rhs(t, &self.y, &mut self.slope_end)?;
+        problem.rhs(t, &self.y, &mut self.derivative_end)?;
         self.is_outdated = false;
-        self.h = match self.tableau.embedded {
-            None => problem.settings.fixed_step(),
-            Some(_) => problem.first_step(t, &self.y, &self.slope_end),
-        };
+        match self.tableau.embedded {
+            None => self.control = StepControl::fixed(problem.settings.fixed_step()),
+            Some(_) => self.control.start(problem, t, &self.y, &self.derivative_end),
+        }
         Ok(())
     }
 
@@ -161,45 +160,32 @@ impl Integrator for ExplicitRungeKutta {
         self.t_old = self.t;
         self.y_old.copy_from_slice(&self.y);
         if std::mem::take(&mut self.is_outdated) {
-            problem.rhs(self.t, &self.y, &mut self.slope_end)?;
+            problem.rhs(self.t, &self.y, &mut self.derivative_end)?;
         }
-        self.slopes[0].copy_from_slice(&self.slope_end);
-        let (smallest, fixed) = (problem.smallest_step(self.t), self.tableau.embedded.is_none());
+        self.derivatives[0].copy_from_slice(&self.derivative_end);
+        self.control.begin(problem, self.t);
         loop {
             problem.may_continue()?;
-            let truncated = self.t_old + self.h * (1.0 + 1e-9) >= limit;
-            let t_new = if truncated { limit } else { self.t_old + self.h };
-            let h = t_new - self.t_old;
-            let failure = match self.advance(problem, t_new) {
-                Ok(()) => match self.error(problem, h) {
-                    None => {
-                        return {
-                            self.accept(problem, t_new);
-                            Ok(())
-                        };
-                    }
-                    Some((error, exponent)) if error <= 1.0 => {
-                        let factor = (0.9 * elementary::powf(error, exponent)).clamp(0.2, 5.0);
-                        if !truncated || factor < 1.0 {
-                            self.h = (h * factor).min(problem.settings.max_step);
-                        }
-                        self.accept(problem, t_new);
+            let attempt = Attempt::cut(limit, self.t_old, self.control.h());
+            let advanced = self.advance(problem, attempt);
+            let Some(embedded) = &self.tableau.embedded else {
+                advanced.inspect_err(|_| problem.statistics.newton_failures += 1)?;
+                self.accept(attempt);
+                problem.statistics.steps += 1;
+                return Ok(());
+            };
+            match advanced {
+                Ok(()) => {
+                    let error = self.error(problem, attempt.h, embedded);
+                    let factor = error_factor(error, embedded.order, SAFETY, MOST_FACTOR);
+                    if error <= 1.0 {
+                        self.accept(attempt);
+                        self.control.accept(problem, attempt, factor);
                         return Ok(());
                     }
-                    Some((error, exponent)) => {
-                        problem.statistics.error_failures += 1;
-                        self.h = h * (0.9 * elementary::powf(error, exponent)).max(0.2);
-                        SimErrorKind::StepSize
-                    }
-                },
-                Err(failure) => {
-                    problem.statistics.newton_failures += 1;
-                    self.h = 0.25 * h;
-                    failure
+                    self.control.reject(problem, attempt, factor)?;
                 }
-            };
-            if fixed || self.h.is_nan() || self.h < smallest {
-                return Err(failure);
+                Err(failure) => self.control.fail(problem, attempt, failure)?,
             }
         }
     }
@@ -225,8 +211,8 @@ impl Integrator for ExplicitRungeKutta {
         let rest = 1.0 - theta;
         for (i, y) in y.iter_mut().enumerate() {
             let difference = self.y[i] - self.y_old[i];
-            let start = h * self.slopes[0][i] - difference;
-            let end = difference - h * self.slope_end[i] - start;
+            let start = h * self.derivatives[0][i] - difference;
+            let end = difference - h * self.derivative_end[i] - start;
             let inner = start + theta * (end + rest * self.combined[i]);
             *y = self.y_old[i] + theta * (difference + rest * inner);
         }

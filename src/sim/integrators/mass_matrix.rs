@@ -6,7 +6,7 @@ use crate::sim::{DaeSystem, Pattern, SimErrorKind};
 
 /// s M − J for a Jacobian that is kept, columns scaled by nominal values.
 #[derive(Default)]
-pub(super) struct ShiftedMatrix {
+pub struct ShiftedMatrix {
     pattern: Pattern,
     factors: Option<Factorization>,
     jacobian: Vec<f64>,
@@ -15,7 +15,7 @@ pub(super) struct ShiftedMatrix {
 
 impl ShiftedMatrix {
     /// For the Jacobians of a problem, whose pattern holds the diagonal of the differential variables.
-    pub(super) fn prepare(&mut self, problem: &Problem) {
+    pub fn prepare(&mut self, problem: &Problem) {
         let pattern = problem.system.pattern();
         if self.factors.is_none() || self.pattern != *pattern {
             self.pattern = pattern.clone();
@@ -29,7 +29,7 @@ impl ShiftedMatrix {
     }
 
     /// Evaluates the Jacobian.
-    pub(super) fn evaluate(
+    pub fn evaluate(
         &mut self,
         problem: &mut Problem,
         t: f64,
@@ -39,12 +39,12 @@ impl ShiftedMatrix {
     }
 
     /// The nonzeros of a column of J.
-    pub(super) fn column(&self, column: usize) -> &[f64] {
+    pub fn column(&self, column: usize) -> &[f64] {
         &self.jacobian[self.pattern.column(column)]
     }
 
     /// Factorises s M − J.
-    pub(super) fn factorize(
+    pub fn factorize(
         &mut self,
         problem: &mut Problem,
         s: f64,
@@ -65,7 +65,7 @@ impl ShiftedMatrix {
     }
 
     /// Replaces b by the solution.
-    pub(super) fn solve(&mut self, nominal: &[f64], b: &mut [f64]) {
+    pub fn solve(&mut self, nominal: &[f64], b: &mut [f64]) {
         self.factors.as_mut().expect("prepared at the restart").solve(b);
         b.iter_mut().zip(nominal).for_each(|(b, nominal)| *b *= nominal);
     }

@@ -8,6 +8,7 @@ mod mass_matrix;
 mod radau;
 mod rodas;
 mod rungekutta;
+mod step_control;
 mod without_unknowns;
 
 use super::sliding::Sliding;
@@ -28,6 +29,9 @@ pub const INTEGRATORS: &[&Entry<dyn Integrator>] = &[
     &rungekutta::ORDER_3,
     &rungekutta::ENTRY,
 ];
+
+/// The method where none is asked for.
+pub const DEFAULT: &Entry<dyn Integrator> = &bdf::ENTRY;
 
 /// The method of this name or alias.
 ///
@@ -151,7 +155,7 @@ impl Problem<'_> {
     }
 
     /// A first step over which x changes little, from the relative speed of x at (t, y). It is not
-    /// longer than the distance of output points: slopes that are zero at first tell nothing about
+    /// longer than the distance of output points: derivatives that are zero at first tell nothing about
     /// what comes, and whoever asks for points expects something between them.
     fn first_step(&self, t: f64, y: &[f64], rhs: &[f64]) -> f64 {
         let settings = self.settings;

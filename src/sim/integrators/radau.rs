@@ -16,6 +16,7 @@
 //! Reference: [Hairer & Wanner 1996](crate::bibliography#hairer-wanner-1996), section IV.8.
 
 use super::mass_matrix::ShiftedMatrix;
+use super::step_control::{Attempt, StepControl, error_factor, newton_safety};
 use super::{Integrator, Problem};
 use crate::elementary;
 use crate::registry::Entry;
@@ -23,7 +24,7 @@ use crate::sim::linear::Factorization;
 use crate::sim::norm::{set_weights, weighted_rms};
 use crate::sim::{DaeSystem, Pattern, SimErrorKind};
 
-pub(super) const ENTRY: Entry<dyn Integrator> = Entry {
+pub const ENTRY: Entry<dyn Integrator> = Entry {
     name: "radau",
     aliases: &["radau5", "radauIIa"],
     summary: "implicit Runge-Kutta method Radau IIA, L-stable, order 5, variable step",
@@ -48,6 +49,14 @@ const E: [f64; STAGES] = [-(13.0 + 7.0 * SQRT6) / 3.0, (-13.0 + 7.0 * SQRT6) / 3
 /// The iteration error relative to the local error allowed.
 const NEWTON_TOLERANCE: f64 = 0.01;
 
+/// Order of the embedded method, which the error is measured against.
+const ERROR_ORDER: i32 = 3;
+/// A step is at most so many times longer than the one before; the choice of Hairer & Wanner.
+const MOST_FACTOR: f64 = 8.0;
+/// Steps that are longer by such a factor are not worth new factors of the matrices; the choice of
+/// Hairer & Wanner.
+const NOT_WORTH: std::ops::RangeInclusive<f64> = 1.0..=1.2;
+
 /// The method with its workspace.
 #[derive(Default)]
 struct Radau {
@@ -55,7 +64,7 @@ struct Radau {
     n_differential: usize,
     t: f64,
     t_old: f64,
-    h: f64,
+    control: StepControl,
     y: Vec<f64>,
     y_old: Vec<f64>,
     /// z₁, z₂, z₃ one behind the other, of the last step or the attempt.
@@ -147,11 +156,11 @@ impl StageMatrix {
                     true => B[block][stage] / h,
                     false => 0.0,
                 };
-                let slope = match block == stage {
+                let entry = match block == stage {
                     true => *entries.next().expect("the block has the pattern of J"),
                     false => 0.0,
                 };
-                self.values[k] = scale * (shift - slope);
+                self.values[k] = scale * (shift - entry);
             }
         }
         problem.statistics.factorizations += 1;
@@ -250,12 +259,7 @@ impl Radau {
     }
 
     /// The error of the attempt relative to the tolerance.
-    fn estimate(
-        &mut self,
-        problem: &mut Problem,
-        h: f64,
-        again: bool,
-    ) -> Result<f64, SimErrorKind> {
+    fn estimate(&mut self, problem: &mut Problem, h: f64) -> Result<f64, SimErrorKind> {
         let n = self.n;
         self.matrix.factorize(problem, REAL_EIGENVALUE / h, self.n_differential)?;
         let sum = |radau: &Radau, k: usize| -> f64 {
@@ -267,7 +271,7 @@ impl Radau {
         }
         self.matrix.solve(problem.nominal, &mut self.error);
         let mut norm = weighted_rms(&self.error, &self.weights);
-        if norm >= 1.0 && again {
+        if norm >= 1.0 && self.control.is_cautious() {
             for k in 0..n {
                 self.point[k] = self.y[k] + self.error[k];
             }
@@ -278,15 +282,21 @@ impl Radau {
             self.matrix.solve(problem.nominal, &mut self.error);
             norm = weighted_rms(&self.error, &self.weights);
         }
-        Ok(norm.max(1e-10))
+        Ok(norm)
     }
 
-    fn attempt(
-        &mut self,
-        problem: &mut Problem,
-        h: f64,
-        again: bool,
-    ) -> Result<(f64, usize), SimErrorKind> {
+    /// Evaluates the Jacobian at the start of the step, unless the last one is still good.
+    fn update_jacobian(&mut self, problem: &mut Problem) -> Result<(), SimErrorKind> {
+        if !self.is_good && !self.is_current {
+            self.matrix.evaluate(problem, self.t, &self.y)?;
+            self.stages.factorized_for = None;
+            self.is_current = true;
+        }
+        Ok(())
+    }
+
+    /// The error relative to the tolerance, and the iterations of Newton's method.
+    fn attempt(&mut self, problem: &mut Problem, h: f64) -> Result<(f64, usize), SimErrorKind> {
         self.stages.factorize(problem, &self.matrix, h, self.n_differential)?;
         self.predict(h);
         let iterations = match self.iterate(problem, h) {
@@ -297,7 +307,7 @@ impl Radau {
             }
             iterated => iterated?,
         };
-        let error = self.estimate(problem, h, again)?;
+        let error = self.estimate(problem, h)?;
         if error <= 1.0 {
             self.evaluate_end(problem, self.t + h)?;
         }
@@ -348,7 +358,6 @@ impl Integrator for Radau {
         self.n_differential = problem.system.n_differential();
         self.matrix.prepare(problem);
         self.stages.prepare(problem);
-        let is_first = self.h == 0.0 || t <= problem.settings.start;
         (self.t, self.t_old) = (t, t);
         self.y.copy_from_slice(y);
         self.y_old.copy_from_slice(y);
@@ -357,53 +366,34 @@ impl Integrator for Radau {
         (self.is_current, self.is_good) = (false, false);
         problem.rhs(t, y, &mut self.first)?;
         self.knows_first = true;
-        let first = problem.first_step(t, y, &self.first);
-        // Behind an event the step that was good before it is at most ten times too long.
-        self.h = if is_first { first } else { first.max(0.1 * self.h) };
+        self.control.restart(problem, t, y, &self.first);
         Ok(())
     }
 
     fn step(&mut self, problem: &mut Problem, limit: f64) -> Result<(), SimErrorKind> {
-        let smallest = problem.smallest_step(self.t);
+        self.control.begin(problem, self.t);
+        if !self.has_past {
+            self.control.be_cautious();
+        }
         set_weights(problem.settings.tolerance, &self.y, problem.nominal, &mut self.weights);
         if !std::mem::take(&mut self.knows_first) {
             problem.rhs(self.t, &self.y, &mut self.first)?;
         }
-        let mut again = !self.has_past;
         loop {
             problem.may_continue()?;
-            if !self.is_good && !self.is_current {
-                self.matrix.evaluate(problem, self.t, &self.y)?;
-                self.stages.factorized_for = None;
-                self.is_current = true;
-            }
-            let remaining = limit - self.t;
-            let reaches_limit = self.h * (1.0 + 1e-9) >= remaining;
-            let h = match reaches_limit {
-                true => remaining,
-                false if 2.0 * self.h > remaining * (1.0 + 1e-9) => 0.5 * remaining,
-                false => self.h,
-            };
-            let (failure, factor) = match self.attempt(problem, h, again) {
+            self.update_jacobian(problem)?;
+            let attempt = Attempt::towards(limit, self.t, self.control.h());
+            match self.attempt(problem, attempt.h) {
                 Ok((error, iterations)) => {
-                    let budget = 2.0 * MAX_ITERATIONS as f64 + 1.0;
-                    let safety = 0.9 * budget / (budget - 1.0 + iterations as f64);
-                    let factor = (safety * elementary::powf(error, -0.25)).clamp(0.2, 8.0);
+                    let safety = newton_safety(iterations, MAX_ITERATIONS);
+                    let factor = error_factor(error, ERROR_ORDER, safety, MOST_FACTOR);
                     if error <= 1.0 {
-                        self.accept(if reaches_limit { limit } else { self.t + h });
-                        problem.statistics.steps += 1;
-                        // A step cut short at the limit says little about longer ones; a little
-                        // longer one is not worth new factors.
-                        let next = match factor {
-                            1.0..=1.2 => h,
-                            factor => h * if again { factor.min(1.0) } else { factor },
-                        };
-                        self.h = if reaches_limit { next.max(self.h) } else { next };
-                        self.h = self.h.min(problem.settings.max_step);
+                        self.accept(attempt.end);
+                        let factor = if NOT_WORTH.contains(&factor) { 1.0 } else { factor };
+                        self.control.accept(problem, attempt, factor);
                         return Ok(());
                     }
-                    problem.statistics.error_failures += 1;
-                    (SimErrorKind::StepSize, factor)
+                    self.control.reject(problem, attempt, factor)?;
                 }
                 Err(_) if !self.is_current => {
                     // With a new Jacobian the same step may do.
@@ -411,17 +401,9 @@ impl Integrator for Radau {
                     self.is_good = false;
                     continue;
                 }
-                Err(failure) => {
-                    problem.statistics.newton_failures += 1;
-                    (failure, 0.25)
-                }
-            };
-            again = true;
-            self.is_good = self.is_current;
-            self.h = h * factor;
-            if self.h < smallest {
-                return Err(failure);
+                Err(failure) => self.control.fail(problem, attempt, failure)?,
             }
+            self.is_good = self.is_current;
         }
     }
 

@@ -16,13 +16,13 @@
 //! Reference: [Hairer & Wanner 1996](crate::bibliography#hairer-wanner-1996), sections IV.7 and VI.4.
 
 use super::mass_matrix::ShiftedMatrix;
+use super::step_control::{Attempt, SAFETY, StepControl, error_factor};
 use super::{Integrator, Problem};
-use crate::elementary;
 use crate::registry::Entry;
 use crate::sim::norm::{set_weights, weighted_rms};
 use crate::sim::{DaeSystem, SimErrorKind};
 
-pub(super) const ENTRY: Entry<dyn Integrator> = Entry {
+pub const ENTRY: Entry<dyn Integrator> = Entry {
     name: "rodas4",
     aliases: &["rodas", "rosenbrock"],
     summary: "Rosenbrock method Rodas4, L-stable, order 4, variable step",
@@ -75,7 +75,12 @@ const DENSE: [[f64; 5]; 2] = [
     ],
 ];
 /// The local error is kept below this part of the tolerance, so that the global one meets it.
-const SAFETY: f64 = 0.5;
+const ERROR_PART: f64 = 0.5;
+
+/// Order of the embedded method, which the error is measured against.
+const ERROR_ORDER: i32 = 3;
+/// A step is at most so many times longer than the one before; the choice of Hairer & Wanner.
+const MOST_FACTOR: f64 = 6.0;
 
 /// The method with its workspace.
 #[derive(Default)]
@@ -84,15 +89,15 @@ struct Rodas {
     n_differential: usize,
     t: f64,
     t_old: f64,
-    h: f64,
+    control: StepControl,
     y: Vec<f64>,
     y_old: Vec<f64>,
     trial: Vec<f64>,
     rhs: Vec<f64>,
-    /// F at the start of the step, whether it is known, and its slope in time.
+    /// F at the start of the step, whether it is known, and its derivative by time.
     first: Vec<f64>,
     knows_first: bool,
-    time_slope: Vec<f64>,
+    time_derivative: Vec<f64>,
     stages: [Vec<f64>; STAGES],
     dense: [Vec<f64>; 2],
     weights: Vec<f64>,
@@ -108,7 +113,7 @@ impl Rodas {
             &mut self.trial,
             &mut self.rhs,
             &mut self.first,
-            &mut self.time_slope,
+            &mut self.time_derivative,
         ];
         for vector in single.into_iter().chain(&mut self.stages).chain(&mut self.dense) {
             vector.resize(n, 0.0);
@@ -120,14 +125,14 @@ impl Rodas {
         if !std::mem::take(&mut self.knows_first) {
             problem.rhs(self.t, &self.y, &mut self.first)?;
         }
-        let mut delta = (f64::EPSILON * self.t.abs().max(1e-5)).sqrt().min(self.h);
-        if problem.rhs(self.t + delta, &self.y, &mut self.time_slope).is_err() {
+        let mut delta = (f64::EPSILON * self.t.abs().max(1e-5)).sqrt().min(self.control.h());
+        if problem.rhs(self.t + delta, &self.y, &mut self.time_derivative).is_err() {
             // The domain of F may end here, as that of sqrt(1 - t) at t = 1.
             delta = -delta;
-            problem.rhs(self.t + delta, &self.y, &mut self.time_slope)?;
+            problem.rhs(self.t + delta, &self.y, &mut self.time_derivative)?;
         }
-        for (slope, first) in self.time_slope.iter_mut().zip(&self.first) {
-            *slope = (*slope - first) / delta;
+        for (derivative, first) in self.time_derivative.iter_mut().zip(&self.first) {
+            *derivative = (*derivative - first) / delta;
         }
         self.matrix.evaluate(problem, self.t, &self.y)
     }
@@ -145,7 +150,7 @@ impl Rodas {
             let (done, rest) = self.stages.split_at_mut(i);
             let stage = &mut rest[0];
             for (k, stage) in stage.iter_mut().enumerate() {
-                let mut sum = self.rhs[k] + TIME[i] * h * self.time_slope[k];
+                let mut sum = self.rhs[k] + TIME[i] * h * self.time_derivative[k];
                 if k < self.n_differential {
                     let before: f64 = done.iter().zip(&C[i]).map(|(u, c)| c * u[k]).sum();
                     sum += before / h;
@@ -170,9 +175,9 @@ impl Rodas {
     }
 
     fn error(&mut self, tolerance: f64, nominal: &[f64]) -> f64 {
-        set_weights(SAFETY * tolerance, &self.y, nominal, &mut self.weights);
+        set_weights(ERROR_PART * tolerance, &self.y, nominal, &mut self.weights);
         for (weight, y) in self.weights.iter_mut().zip(&self.trial) {
-            *weight = weight.max(SAFETY * tolerance * y.abs());
+            *weight = weight.max(ERROR_PART * tolerance * y.abs());
         }
         weighted_rms(&self.stages[5], &self.weights)
     }
@@ -180,7 +185,7 @@ impl Rodas {
     /// Tries a step to `t_new`; the error relative to the tolerance.
     fn try_step(&mut self, problem: &mut Problem, t_new: f64, h: f64) -> Result<f64, SimErrorKind> {
         self.attempt(problem, h)?;
-        let error = self.error(problem.settings.tolerance, problem.nominal).max(1e-10);
+        let error = self.error(problem.settings.tolerance, problem.nominal);
         if error <= 1.0 {
             problem.rhs(t_new, &self.trial, &mut self.rhs)?;
             // What a delay gives at the end is known only behind it.
@@ -212,58 +217,33 @@ impl Integrator for Rodas {
         self.weights.resize(problem.n_tested(), 0.0);
         self.n_differential = problem.system.n_differential();
         self.matrix.prepare(problem);
-        let is_first = self.h == 0.0 || t <= problem.settings.start;
         (self.t, self.t_old) = (t, t);
         self.y.copy_from_slice(y);
         self.y_old.copy_from_slice(y);
         self.dense.iter_mut().for_each(|dense| dense.fill(0.0));
         problem.rhs(t, y, &mut self.first)?;
         self.knows_first = true;
-        let first = problem.first_step(t, y, &self.first);
-        // Behind an event the step that was good before it is at most ten times too long.
-        self.h = if is_first { first } else { first.max(0.1 * self.h) };
+        self.control.restart(problem, t, y, &self.first);
         Ok(())
     }
 
     fn step(&mut self, problem: &mut Problem, limit: f64) -> Result<(), SimErrorKind> {
-        let smallest = problem.smallest_step(self.t);
+        self.control.begin(problem, self.t);
         self.linearize(problem)?;
-        let mut was_rejected = false;
         loop {
             problem.may_continue()?;
-            let remaining = limit - self.t;
-            let reaches_limit = self.h * (1.0 + 1e-9) >= remaining;
-            let h = match reaches_limit {
-                true => remaining,
-                false if 2.0 * self.h > remaining * (1.0 + 1e-9) => 0.5 * remaining,
-                false => self.h,
-            };
-            let t_new = if reaches_limit { limit } else { self.t + h };
-            let (failure, factor) = match self.try_step(problem, t_new, h) {
+            let attempt = Attempt::towards(limit, self.t, self.control.h());
+            match self.try_step(problem, attempt.end, attempt.h) {
                 Ok(error) => {
-                    let factor = (0.9 * elementary::powf(error, -0.25)).clamp(0.2, 6.0);
+                    let factor = error_factor(error, ERROR_ORDER, SAFETY, MOST_FACTOR);
                     if error <= 1.0 {
-                        self.accept(t_new);
-                        problem.statistics.steps += 1;
-                        let factor = if was_rejected { factor.min(1.0) } else { factor };
-                        // A step cut short at the limit says little about longer ones.
-                        let next = h * factor;
-                        self.h = if reaches_limit { next.max(self.h) } else { next };
-                        self.h = self.h.min(problem.settings.max_step);
+                        self.accept(attempt.end);
+                        self.control.accept(problem, attempt, factor);
                         return Ok(());
                     }
-                    problem.statistics.error_failures += 1;
-                    (SimErrorKind::StepSize, factor)
+                    self.control.reject(problem, attempt, factor)?;
                 }
-                Err(failure) => {
-                    problem.statistics.newton_failures += 1;
-                    (failure, 0.25)
-                }
-            };
-            was_rejected = true;
-            self.h = h * factor;
-            if self.h < smallest {
-                return Err(failure);
+                Err(failure) => self.control.fail(problem, attempt, failure)?,
             }
         }
     }

@@ -1,4 +1,9 @@
-//! Dense LU with partial pivoting, in place: nothing is allocated after construction.
+//! Dense LU with partial pivoting, in place: nothing is allocated after construction. The one of the
+//! simulation: Newton's methods, loops within tapes and integrators use it.
+//!
+//! Not nalgebra's, which takes its matrix by value and allocates a permutation for each factorization:
+//! here factorizations are repeated in the innermost loops. Where a matrix is factorised once and may
+//! be rectangular or singular, as for LAPACK's routines in `external`, nalgebra's is used.
 
 use super::SingularMatrix;
 

@@ -17,6 +17,9 @@
 //! them are eliminated last, by a dense LU that exchanges their rows as the values ask for. Where a
 //! pivot is too small for its row, others are chosen for the values at hand, until
 //! [`SparseLu::forget`].
+//!
+//! Not the one of a crate: those choose pivots from the values of the first matrix, so that a simulation
+//! would depend on what was simulated before with the same workspace.
 
 use super::{DenseLu, SingularMatrix};
 use crate::elementary;

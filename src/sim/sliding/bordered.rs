@@ -3,7 +3,7 @@
 use crate::sim::Pattern;
 
 /// A pattern with k full rows and columns more at a place.
-pub(super) fn bordered(inner: &Pattern, at: usize, k: usize) -> Pattern {
+pub fn bordered(inner: &Pattern, at: usize, k: usize) -> Pattern {
     let n = inner.n + k;
     let mut pattern = Pattern { n, column_starts: vec![0], rows: Vec::new() };
     for column in 0..n {

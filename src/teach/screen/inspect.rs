@@ -10,7 +10,7 @@ use ratatui::text::Line;
 use ratatui::widgets::{Axis, Block, Borders, Chart, Dataset, GraphType, Paragraph, Wrap};
 
 /// Draws individual `k` of the generation.
-pub(super) fn draw(screen: &Screen, k: usize, frame: &mut Frame, area: Rect) {
+pub fn draw(screen: &Screen, k: usize, frame: &mut Frame, area: Rect) {
     let [left, right] =
         Layout::horizontal([Constraint::Min(30), Constraint::Length(36)]).areas(area);
     let (x, y) = &screen.walk.trace().measured;
@@ -49,7 +49,7 @@ fn kept(screen: &Screen, k: usize) -> Option<&[f64]> {
 }
 
 /// Whether the curve of an individual is known from a simulation alone.
-pub(super) fn must_simulate(screen: &Screen, k: usize) -> bool {
+pub fn must_simulate(screen: &Screen, k: usize) -> bool {
     kept(screen, k).is_none() && screen.walk.generation().failure(k).is_none()
 }
 

@@ -9,7 +9,7 @@ use ratatui::style::{Color, Modifier, Style};
 use ratatui::text::{Line, Span};
 
 /// Lines of the panel, and the one that should be seen.
-pub(super) fn lines(screen: &Screen) -> (Vec<Line<'static>>, usize) {
+pub fn lines(screen: &Screen) -> (Vec<Line<'static>>, usize) {
     let walk = &screen.walk;
     match walk.step() {
         Step::Cross(rank) => (crossover(screen, rank), 0),

@@ -2,14 +2,12 @@
 
 use super::elementwise::{added, divided, multiplied, subtracted};
 use super::matrix;
+use super::scalar::{overflow, real_add, real_divide, real_multiply, real_power, real_subtract};
 use super::unsuitable;
 use crate::diag::Fault;
-use crate::elementary;
-use crate::value::errors::{
-    DIVISION_BY_ZERO, DOMAIN_ERROR, INTEGER_OVERFLOW, REAL_OVERFLOW, TYPE_MISMATCH,
-};
+use crate::fault;
+use crate::value::errors::TYPE_MISMATCH;
 use crate::value::{ArrayValue, Elements, Value};
-use crate::{bail, fault};
 
 /// `a + b` (MLS §10.6.2): numbers, arrays of equal sizes, Strings.
 pub fn add(left: &Value, right: &Value) -> Result<Value, Fault> {
@@ -114,52 +112,8 @@ pub fn plus(value: Value) -> Result<Value, Fault> {
     if value.is_numeric() { Ok(value) } else { Err(not_a_number("+", &value)) }
 }
 
-pub(super) fn real_add(a: f64, b: f64) -> Result<f64, Fault> {
-    representable("+", a, b, a + b)
-}
-
-pub(super) fn real_subtract(a: f64, b: f64) -> Result<f64, Fault> {
-    representable("-", a, b, a - b)
-}
-
-pub(super) fn real_multiply(a: f64, b: f64) -> Result<f64, Fault> {
-    representable("*", a, b, a * b)
-}
-
-/// `a / b` of two Reals; a fault if `b` is zero or the quotient exceeds the largest Real.
-pub fn real_divide(a: f64, b: f64) -> Result<f64, Fault> {
-    if b == 0.0 {
-        bail!(DIVISION_BY_ZERO, "division of {a:?} by zero");
-    }
-    representable("/", a, b, a / b)
-}
-
-/// The result of an operator, a fault if it is infinite and neither operand is.
-fn representable(symbol: &str, a: f64, b: f64, result: f64) -> Result<f64, Fault> {
-    if result.is_infinite() && a.is_finite() && b.is_finite() {
-        bail!(REAL_OVERFLOW, "{a:?} {symbol} {b:?} exceeds the largest Real, 1.8e308");
-    }
-    Ok(result)
-}
-
-/// `a ^ b` of two Reals; a fault where that is not a real number.
-pub fn real_power(a: f64, b: f64) -> Result<f64, Fault> {
-    if a == 0.0 && b < 0.0 {
-        bail!(DIVISION_BY_ZERO, "zero to the negative power {b:?}");
-    }
-    if a < 0.0 && b.is_finite() && b.fract() != 0.0 {
-        bail!(DOMAIN_ERROR, "the negative number {a:?} to the power {b:?} is not real");
-    }
-    representable("^", a, b, elementary::powf(a, b))
-}
-
 fn scalars(left: &Value, right: &Value) -> Option<(f64, f64)> {
     Some((left.as_real()?, right.as_real()?))
-}
-
-pub(super) fn overflow(symbol: &str, a: i64, b: i64) -> Fault {
-    fault!(INTEGER_OVERFLOW, "{a} {symbol} {b} does not fit in an Integer";
-        help: "write one operand as a Real, such as `{a}.0`")
 }
 
 fn same_rank(symbol: &str, left: &Value, right: &Value) -> Result<(), Fault> {

@@ -2,9 +2,7 @@
 //! the others: an operation of two scalars applied to arrays of equal sizes, or to a scalar and an
 //! array.
 
-use super::arithmetic::{
-    overflow, real_add, real_divide, real_multiply, real_power, real_subtract,
-};
+use super::scalar::{overflow, real_add, real_divide, real_multiply, real_power, real_subtract};
 use super::unsuitable;
 use crate::diag::Fault;
 use crate::fault;
@@ -20,7 +18,7 @@ pub fn elementwise_add(left: &Value, right: &Value) -> Result<Value, Fault> {
     added(".+", left, right)
 }
 
-pub(super) fn added(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
+pub fn added(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
     if left.is_text() && right.is_text() {
         return join(left, right);
     }
@@ -34,7 +32,7 @@ pub fn elementwise_subtract(left: &Value, right: &Value) -> Result<Value, Fault>
     subtracted(".-", left, right)
 }
 
-pub(super) fn subtracted(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
+pub fn subtracted(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
     numeric(symbol, left, right, real_subtract, |a, b| {
         a.checked_sub(b).ok_or_else(|| overflow("-", a, b))
     })
@@ -45,7 +43,7 @@ pub fn elementwise_multiply(left: &Value, right: &Value) -> Result<Value, Fault>
     multiplied(".*", left, right)
 }
 
-pub(super) fn multiplied(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
+pub fn multiplied(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
     numeric(symbol, left, right, real_multiply, |a, b| {
         a.checked_mul(b).ok_or_else(|| overflow("*", a, b))
     })
@@ -56,7 +54,7 @@ pub fn elementwise_divide(left: &Value, right: &Value) -> Result<Value, Fault> {
     divided("./", left, right)
 }
 
-pub(super) fn divided(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
+pub fn divided(symbol: &str, left: &Value, right: &Value) -> Result<Value, Fault> {
     real(symbol, left, right, real_divide)
 }
 
@@ -66,7 +64,7 @@ pub fn elementwise_power(left: &Value, right: &Value) -> Result<Value, Fault> {
 }
 
 /// Applies `on_reals`, or `on_integers` where both sides are Integer.
-pub(super) fn numeric(
+pub fn numeric(
     symbol: &str,
     left: &Value,
     right: &Value,

@@ -1,6 +1,6 @@
 //! Products of vectors and matrices (MLS §10.6.4) and powers of square matrices (MLS §10.6.8).
 
-use super::arithmetic::overflow;
+use super::scalar::overflow;
 use crate::diag::Fault;
 use crate::value::array::{element_count, sizes};
 use crate::value::errors::{
@@ -12,7 +12,7 @@ use nalgebra::DMatrixView;
 
 /// `a * b`: vector · vector is a scalar, matrix · vector and vector · matrix are vectors,
 /// matrix · matrix is a matrix.
-pub(super) fn product(a: &ArrayValue, b: &ArrayValue) -> Result<Value, Fault> {
+pub fn product(a: &ArrayValue, b: &ArrayValue) -> Result<Value, Fault> {
     let (rows, inner, dims_left) = match a.dims.as_slice() {
         [n] => (1, *n, vec![]),
         [m, n] => (*m, *n, vec![*m]),
@@ -52,7 +52,7 @@ pub(super) fn product(a: &ArrayValue, b: &ArrayValue) -> Result<Value, Fault> {
 }
 
 /// `a ^ n` by repeated squaring; `n = 0` gives the identity.
-pub(super) fn power(base: &ArrayValue, exponent: i64) -> Result<Value, Fault> {
+pub fn power(base: &ArrayValue, exponent: i64) -> Result<Value, Fault> {
     let size = match base.dims.as_slice() {
         [n, m] if n == m => *n,
         _ => bail!(

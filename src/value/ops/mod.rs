@@ -6,9 +6,9 @@ mod arithmetic;
 mod elementwise;
 mod matrix;
 mod relation;
+mod scalar;
 
 pub use arithmetic::{add, divide, multiply, negate, plus, power, subtract};
-pub use arithmetic::{real_divide, real_power};
 pub use elementwise::{
     elementwise_add, elementwise_divide, elementwise_multiply, elementwise_power,
     elementwise_subtract,
@@ -16,6 +16,7 @@ pub use elementwise::{
 pub use relation::{
     and, equal, greater, greater_equal, less, less_equal, not, not_equal, or, order,
 };
+pub use scalar::{real_divide, real_power};
 
 use super::Value;
 use super::errors::TYPE_MISMATCH;

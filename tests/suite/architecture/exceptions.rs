@@ -5,7 +5,6 @@
 /// files together.
 pub(super) const CYCLES: &[(&str, &[usize], &str)] = &[
     ("flatten", &[16], "`Instantiation` is one structure for the tree, scopes, types and values"),
-    ("identify", &[11], "the summary of a run is made by the steps that conclude it"),
     ("script", &[11], "`Session` has the state of all its parts in one structure"),
 ];
 
@@ -30,21 +29,14 @@ pub(super) const LONG_FUNCTIONS: &[(&str, &str, &str)] = &[
     ("flatten/paths.rs", "walk", PER_CASE),
     ("flatten/resolve.rs", "resolve_kind", PER_CASE),
     ("flatten/resolve.rs", "call", ONE_TABLE),
-    ("identify/problem/statistics/distributions.rs", "normal_quantile", "coefficients"),
-    ("identify/problem/statistics/mod.rs", "at", IN_ORDER),
-    ("identify/problem/summary.rs", "of", IN_ORDER),
-    ("identify/problem/text.rs", "facts", ONE_TABLE),
     ("lower/build.rs", "build", IN_ORDER),
     ("lower/expressions/expression.rs", "lower_kind", PER_CASE),
     ("flatten/vectorization.rs", "vectorized", IN_ORDER),
     ("lower/inline.rs", "statement", PER_CASE),
-    ("mat/v73.rs", "dataset", IN_ORDER),
     ("script/runs/problem/build.rs", "build", IN_ORDER),
     ("script/runs/problem/build.rs", "experiment", IN_ORDER),
     ("script/runs/problem/draft.rs", "experiment", IN_ORDER),
     ("script/runs/problem/mod.rs", "solve_built", IN_ORDER),
-    ("sim/event.rs", "first_event", IN_ORDER),
-    ("sim/integrators/radau.rs", "step", IN_ORDER),
     ("syntax/failure.rs", "described", PER_CASE),
     ("syntax/print/expression.rs", "expression", PER_CASE),
 ];

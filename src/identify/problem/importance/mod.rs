@@ -8,7 +8,7 @@ mod sobol;
 use super::{Evaluation, Problem};
 use crate::diag::Fault;
 use crate::elementary;
-use crate::identify::table::significant;
+use crate::identify::table::{quoted, significant};
 use crate::registry::{Entry, Options};
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
@@ -109,7 +109,7 @@ impl Importance {
         let [first, second] = self.headings.clone().map(|heading| heading.replace(' ', "_"));
         let mut text = format!("parameter,{first},{second},{first}_deviation,{second}_deviation\n");
         for parameter in &self.parameters {
-            text += &super::text::quoted(&parameter.name);
+            text += &quoted(&parameter.name);
             for value in parameter.figures.iter().chain(&parameter.errors) {
                 _ = write!(text, ",{}", value.map_or(String::new(), |value| value.to_string()));
             }

@@ -11,7 +11,7 @@ use crate::identify::problem::{Evaluation, Problem};
 use crate::registry::Entry;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Analysis> = Entry {
+pub const ENTRY: Entry<dyn Analysis> = Entry {
     name: "morris",
     aliases: &["screening"],
     summary: "Morris method: screening by elementary effects; cheap",

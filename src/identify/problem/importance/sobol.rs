@@ -21,7 +21,7 @@ use crate::identify::problem::{Evaluation, Failed, Problem};
 use crate::registry::Entry;
 
 /// The table entry.
-pub(super) const ENTRY: Entry<dyn Analysis> = Entry {
+pub const ENTRY: Entry<dyn Analysis> = Entry {
     name: "sobol",
     aliases: &["variance"],
     summary: "Sobol indices: shares of the variance",

@@ -8,7 +8,7 @@
 //! Reference: [Seber & Wild 1989](crate::bibliography#seber-wild-1989), section 5.1.
 
 use super::predictions::linear;
-use super::{Inferred, Local, Predict, Reach, Wanted};
+use super::{Local, Predict, Reach, Wanted};
 use crate::diag::Fault;
 use crate::identify::problem::Problem;
 use crate::identify::table::significant;
@@ -46,25 +46,25 @@ pub struct BandPoint {
     pub prediction: Option<f64>,
 }
 
-/// Adds the bands of all experiments.
-pub(super) fn add(
+/// The bands of all experiments.
+pub fn bands(
     problem: &Problem,
     predict: &dyn Predict,
     local: &Local,
-    found: &mut Inferred,
-) -> Result<(), Fault> {
+    refusals: &mut Vec<String>,
+) -> Result<Vec<Band>, Fault> {
     let variables = &problem.inference.band_variables;
     let wanted = Wanted { variables, reach: Reach::Measured, points: POINTS };
     let (curves, linear) = linear(problem, predict, &local.values, &wanted)?;
-    found.refusals.extend(curves.refusals);
+    refusals.extend(curves.refusals);
     let linear = match linear {
         Ok(linear) => linear,
         Err(failed) => {
-            found.refusals.push(format!("There are no bands: {}.", failed.cause));
-            return Ok(());
+            refusals.push(format!("There are no bands: {}.", failed.cause));
+            return Ok(Vec::new());
         }
     };
-    let mut place = 0;
+    let (mut place, mut bands) = (0, Vec::new());
     for curve in curves.curves {
         let point = |(k, x): (usize, &f64)| {
             let variance = local.information.variance_of(&linear.gradients[place + k]);
@@ -82,9 +82,9 @@ pub(super) fn add(
         let points = curve.points.iter().enumerate().map(point).collect();
         place += curve.points.len();
         let (experiment, series) = (curve.experiment, curve.series);
-        found.bands.push(Band { experiment, y: curve.y, x: curve.x, series, points });
+        bands.push(Band { experiment, y: curve.y, x: curve.x, series, points });
     }
-    Ok(())
+    Ok(bands)
 }
 
 impl Band {
@@ -113,25 +113,5 @@ impl Band {
             self.y[1],
             significant(widest.x, 3),
         ))
-    }
-}
-
-impl Inferred {
-    /// `bands.csv`: all bands.
-    pub fn bands_csv(&self) -> String {
-        let mut text = String::from("experiment,variable,x,y,confidence_95,prediction_95\n");
-        let number = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
-        for band in &self.bands {
-            for BandPoint { x, y, confidence, prediction } in &band.points {
-                text += &format!(
-                    "{},{},{x},{y},{},{}\n",
-                    crate::identify::problem::text::quoted(&band.experiment),
-                    crate::identify::problem::text::quoted(&band.y[0]),
-                    number(*confidence),
-                    number(*prediction)
-                );
-            }
-        }
-        text
     }
 }

@@ -11,7 +11,7 @@
 //! 13 and 14; [Davison & Hinkley 1997](crate::bibliography#davison-hinkley-1997), chapter 6.
 
 use super::least_squares::Data;
-use super::{Inferred, Local, PRIOR};
+use super::{Local, PRIOR};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::Mrg32k3a;
@@ -91,13 +91,13 @@ pub struct Bootstrapped {
     pub interval: [f64; 2],
 }
 
-/// Adds the bootstrap.
-pub(super) fn add(
+/// The bootstrap; `None` where it is refused.
+pub fn bootstrap(
     run: &Run,
     settings: &BootstrapSettings,
     local: &Local,
-    found: &mut Inferred,
-) -> Result<(), Fault> {
+    refusals: &mut Vec<String>,
+) -> Result<Option<Bootstrap>, Fault> {
     let problem = &run.problem;
     let measured: Vec<f64> = problem.series.iter().flat_map(|series| series.y.clone()).collect();
     let source = Mrg32k3a::new(&problem.seed)?.stream(STREAM);
@@ -113,16 +113,16 @@ pub(super) fn add(
         data.fit(simulator, &local.values).filter(|fit| fit.converged).map(|fit| fit.values)
     });
     if run.evaluation.is_cancelled() {
-        return Ok(());
+        return Ok(None);
     }
     let estimates: Vec<Vec<f64>> = fits.into_iter().flatten().collect();
     let failed = settings.samples - estimates.len();
     if failed as f64 > FAILED * settings.samples as f64 {
-        found.refusals.push(format!(
+        refusals.push(format!(
             "There is no bootstrap: {failed} of {} fits to resampled data did not reach a minimum.",
             settings.samples
         ));
-        return Ok(());
+        return Ok(None);
     }
     let one = |k: usize| {
         let mut values: Vec<f64> = estimates.iter().map(|values| values[k]).collect();
@@ -137,15 +137,14 @@ pub(super) fn add(
         }
     };
     let parameters = (0..local.values.len()).map(one).collect();
-    found.bootstrap = Some(Bootstrap {
+    Ok(Some(Bootstrap {
         resampling: settings.resampling,
         interval: settings.interval,
         samples: estimates.len(),
         failed,
         parameters,
         estimates,
-    });
-    Ok(())
+    }))
 }
 
 /// Data of one replicate and their scales.
@@ -229,7 +228,7 @@ fn interval(kind: IntervalKind, ordered: &[f64], estimate: f64, acceleration: f6
 }
 
 /// The quantile of ordered values, linear between them (type 7 of Hyndman and Fan).
-pub(super) fn quantile(ordered: &[f64], p: f64) -> f64 {
+pub fn quantile(ordered: &[f64], p: f64) -> f64 {
     let place = p.clamp(0.0, 1.0) * (ordered.len() - 1) as f64;
     let low = place.floor() as usize;
     let high = (low + 1).min(ordered.len() - 1);
@@ -267,7 +266,10 @@ impl Bootstrap {
 
     /// `bootstrap.csv`: the estimates of all replicates.
     pub fn csv(&self) -> String {
-        super::table_csv(self.parameters.iter().map(|p| p.name.as_str()), &self.estimates)
+        crate::identify::table::table_csv(
+            self.parameters.iter().map(|p| p.name.as_str()),
+            &self.estimates,
+        )
     }
 }
 

@@ -7,17 +7,16 @@
 //!
 //! Reference: [Burnham & Anderson 2002](crate::bibliography#burnham-anderson-2002).
 
-use super::PRIOR;
+use super::Likelihood;
 use crate::bail;
 use crate::diag::Fault;
 use crate::elementary;
 use crate::fault;
 use crate::identify::problem::distributions::chi_square_tails;
-use crate::identify::problem::{EndingKind, ErrorModel, Run, Solution};
+use crate::identify::problem::{EndingKind, Solution};
 use crate::identify::table::significant;
 use crate::registry::BAD_OPTION;
-use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
+use serde::Serialize;
 use std::fmt::Write;
 
 /// A model of at least this Akaike weight is called the better one (evidence ratio 19 to 1).
@@ -26,19 +25,6 @@ const DECIDED: f64 = 0.95;
 const SIGNIFICANT: f64 = 0.05;
 /// A larger model whose ln L is lower by more than this has not reached its minimum.
 const NOT_REACHED: f64 = 1e-3;
-
-/// The likelihood of a fit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Likelihood {
-    /// Logarithm of the largest likelihood.
-    pub log: f64,
-    /// Measured points.
-    pub points: usize,
-    /// Estimated quantities: parameters, and the standard deviation where it is not given.
-    pub estimated: usize,
-    /// Whether the standard deviations of the measurements are given.
-    pub known_sigma: bool,
-}
 
 /// The models side by side.
 #[derive(Debug, Clone, Serialize)]
@@ -83,38 +69,6 @@ pub struct Nested {
     /// Probability of such a difference if the special case is right; `None` where the larger
     /// model fits worse, so that its minimum was not reached, or one of both is not at a minimum.
     pub probability: Option<f64>,
-}
-
-/// The likelihood at the best point; `None` where the fitness is not a sum of squares.
-pub(super) fn likelihood(run: &Run, values: &[f64]) -> Option<Likelihood> {
-    let problem = &run.problem;
-    run.evaluation.scales()?;
-    let simulated = run.evaluation.simulate(values).ok()?;
-    let weights = run.evaluation.error_weights(problem, &simulated);
-    let data = || problem.series.iter().filter(|series| series.experiment != PRIOR);
-    let measured: Vec<f64> = data().flat_map(|series| series.y.iter().copied()).collect();
-    let n = measured.len() as f64;
-    let points = measured.iter().zip(&simulated).zip(&weights);
-    let square: f64 = points.map(|((m, s), w)| elementary::powi(w * (m - s), 2)).sum();
-    let of_weights: f64 =
-        weights[..measured.len()].iter().map(|weight| elementary::ln(*weight)).sum();
-    let error_model = ErrorModel::of(problem);
-    let mut names: Vec<&str> = data()
-        .filter(|series| series.sigma.is_estimated())
-        .map(|series| series.y_name.as_str())
-        .collect();
-    names.sort_unstable();
-    names.dedup();
-    let (of_residuals, deviations) = match error_model {
-        ErrorModel::OneVariance => (0.5 * n * (elementary::ln(square / n) + 1.0), 1),
-        ErrorModel::Known => (0.5 * square, 0),
-        ErrorModel::Estimated => (0.5 * square, names.len()),
-    };
-    let log = of_weights - of_residuals - 0.5 * n * elementary::ln(TAU);
-    let estimated = values.len() + deviations;
-    let known_sigma = error_model == ErrorModel::Known;
-    let found = Likelihood { log, points: measured.len(), estimated, known_sigma };
-    log.is_finite().then_some(found)
 }
 
 /// Compares solutions by name.

@@ -14,7 +14,7 @@
 
 use super::local::{Information, quantile};
 use super::predictions::{Linear, linear};
-use super::{Curve, Inferred, Local, PRIOR, Reach, Wanted};
+use super::{Curve, Local, PRIOR, Reach, Wanted};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::fault;
@@ -109,14 +109,14 @@ struct Search<'a> {
     points: usize,
 }
 
-/// Adds the next measurement.
-pub(super) fn add(
+/// The next measurement; `None` where nothing can be predicted.
+pub fn next_measurement(
     problem: &Problem,
     settings: &DesignSettings,
     local: &Local,
-    found: &mut Inferred,
-) -> Result<(), Fault> {
-    let Some(predict) = &problem.inference.predict else { return Ok(()) };
+    refusals: &mut Vec<String>,
+) -> Result<Option<NextMeasurement>, Fault> {
+    let Some(predict) = &problem.inference.predict else { return Ok(None) };
     let variables: Vec<String> = settings.outputs.iter().map(|(name, _)| name.clone()).collect();
     let reach = settings.range.map_or(Reach::Simulated, Reach::Range);
     let wanted = Wanted { variables: &variables, reach, points: GRID };
@@ -124,29 +124,28 @@ pub(super) fn add(
     let linear = match linear {
         Ok(linear) if !curves.curves.is_empty() => linear,
         Ok(_) => {
-            found.refusals.extend(curves.refusals);
-            return Ok(());
+            refusals.extend(curves.refusals);
+            return Ok(None);
         }
         Err(failed) => {
-            found.refusals.push(format!("There is no experiment design: {}.", failed.cause));
-            return Ok(());
+            refusals.push(format!("There is no experiment design: {}.", failed.cause));
+            return Ok(None);
         }
     };
     let search = Search::new(problem, local, settings.points);
     let candidates = candidates(problem, settings, &search, curves.curves, &linear)?;
     let mut proposals = search.windows(&candidates);
     let optimal = ["D", "A"].map(|criterion| search.exchange(&candidates, criterion));
-    found.refusals.extend(unbounded(problem, &optimal[0]));
+    refusals.extend(unbounded(problem, &optimal[0]));
     // Determinant and sum of variances compare plans only where all variances are finite.
     proposals.extend(optimal.into_iter().filter(|plan| plan.after.iter().all(Option::is_some)));
     proposals.extend(search.repeats(problem));
-    found.next_measurement = Some(NextMeasurement {
+    Ok(Some(NextMeasurement {
         points: settings.points,
         parameters: problem.parameters.iter().map(|free| free.name.clone()).collect(),
         now: search.half_widths(&search.information(&search.present), 0),
         proposals,
-    });
-    Ok(())
+    }))
 }
 
 /// That there is no optimal plan, because some parameters stay unbounded with every point tried.

@@ -16,7 +16,7 @@ const STEPS: usize = 60;
 const MOST_DAMPING: f64 = 1e12;
 
 /// Data of one fit.
-pub(super) struct Data<'a> {
+pub struct Data<'a> {
     pub parameters: &'a [Free],
     pub measured: &'a [f64],
     /// What differences are multiplied with; 0 leaves a point out.
@@ -26,14 +26,14 @@ pub(super) struct Data<'a> {
 }
 
 /// The end of a fit.
-pub(super) struct Fit {
+pub struct Fit {
     pub values: Vec<f64>,
     pub converged: bool,
 }
 
 impl Data<'_> {
     /// The minimum near `start`; `None` where it cannot be simulated.
-    pub(super) fn fit(&self, simulator: &mut dyn Simulate, start: &[f64]) -> Option<Fit> {
+    pub fn fit(&self, simulator: &mut dyn Simulate, start: &[f64]) -> Option<Fit> {
         let mut u: Vec<f64> =
             self.parameters.iter().zip(start).map(|(free, value)| free.fraction(*value)).collect();
         let mut residuals = self.residuals(simulator, &u)?;

@@ -129,7 +129,7 @@ impl Local {
             freedom,
             known: believed,
             robust,
-            quantile: found.factor,
+            quantile: found.quantile,
             information,
         })
     }
@@ -170,7 +170,7 @@ fn offset(
 }
 
 /// The 97.5 % quantile of the normal distribution where sigma is known, else of Student's.
-pub(super) fn quantile(known: bool, freedom: f64) -> f64 {
+pub fn quantile(known: bool, freedom: f64) -> f64 {
     if known { normal_quantile(UPPER) } else { student_quantile(UPPER, freedom) }
 }
 

@@ -11,7 +11,9 @@ mod bootstrap;
 mod comparison;
 mod constraint;
 mod design;
+mod inferred;
 mod least_squares;
+mod likelihood;
 mod local;
 mod posterior;
 mod predictions;
@@ -20,16 +22,17 @@ mod prior_data;
 pub use adjusted::{Adjustments, Distribution, PRIOR, Prior, adjust};
 pub use bands::{Band, BandPoint};
 pub use bootstrap::{Bootstrap, BootstrapSettings, Bootstrapped, IntervalKind, Resampling};
-pub use comparison::{Compared, Comparison, Likelihood, Nested, compare};
+pub use comparison::{Compared, Comparison, Nested, compare};
 pub use constraint::{Constraint, Sides};
 pub use design::{DesignSettings, NextMeasurement, Plan, Proposal};
+pub use inferred::Inferred;
+pub use likelihood::Likelihood;
 pub use local::Local;
 pub use posterior::{Posterior, PosteriorSettings, Sampled, diagnostics};
 pub use predictions::{Curve, Curves, ModelPredictions, Predict, Reach, Wanted};
 
-use super::{Finding, FindingKind, Run, Solution};
+use super::{FindingKind, Run, Solution};
 use crate::diag::Fault;
-use serde::{Deserialize, Serialize};
 
 /// What a problem wants to know beyond the estimates.
 #[derive(Default)]
@@ -55,32 +58,6 @@ pub struct Inference {
     pub logarithmic: Vec<usize>,
 }
 
-/// What inference has found.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-pub struct Inferred {
-    /// The likelihood of the fit, for comparisons; `None` where there is none.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub likelihood: Option<Likelihood>,
-    /// Bands about the curves, for each experiment and variable.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub bands: Vec<Band>,
-    /// The next measurement.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub next_measurement: Option<NextMeasurement>,
-    /// The bootstrap.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub bootstrap: Option<Bootstrap>,
-    /// The posterior.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub posterior: Option<Posterior>,
-    /// About priors and constraints; they go to the findings of the solution.
-    #[serde(skip)]
-    pub findings: Vec<Finding>,
-    /// What could not be inferred, and why.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub refusals: Vec<String>,
-}
-
 /// Infers at the best point of a run what the problem asks for.
 ///
 /// # Errors
@@ -90,7 +67,7 @@ pub fn infer(run: &Run) -> Result<Inferred, Fault> {
     let wanted = &run.problem.inference;
     let mut found = Inferred::default();
     let Some(best) = &run.best else { return Ok(found) };
-    found.likelihood = comparison::likelihood(run, &best.values);
+    found.likelihood = Likelihood::of(run, &best.values);
     found.findings.extend(prior_data::at_constraints(&run.problem, &best.values));
     if wanted.is_empty() {
         return Ok(found);
@@ -107,10 +84,13 @@ pub fn infer(run: &Run) -> Result<Inferred, Fault> {
     if wanted.bands
         && let Some(predict) = &wanted.predict
     {
-        bands::add(&run.problem, predict.as_ref(), &local, &mut found)?;
+        let refusals = &mut found.refusals;
+        found.bands = bands::bands(&run.problem, predict.as_ref(), &local, refusals)?;
     }
     if let Some(settings) = &wanted.design {
-        design::add(&run.problem, settings, &local, &mut found)?;
+        let refusals = &mut found.refusals;
+        found.next_measurement =
+            design::next_measurement(&run.problem, settings, &local, refusals)?;
     }
     found.findings.extend(prior_data::compared(&run.problem, &local));
     if local.robust {
@@ -125,10 +105,10 @@ pub fn infer(run: &Run) -> Result<Inferred, Fault> {
         return Ok(found);
     }
     if let Some(settings) = &wanted.bootstrap {
-        bootstrap::add(run, settings, &local, &mut found)?;
+        found.bootstrap = bootstrap::bootstrap(run, settings, &local, &mut found.refusals)?;
     }
     if let Some(settings) = &wanted.posterior {
-        posterior::add(run, settings, &local, &mut found)?;
+        found.posterior = posterior::posterior(run, settings, &local, &mut found.refusals)?;
     }
     Ok(found)
 }
@@ -181,59 +161,6 @@ impl Inference {
             || self.design.is_some()
             || self.bootstrap.is_some()
             || self.posterior.is_some()
-    }
-}
-
-/// A table of numbers below names.
-fn table_csv<'a>(names: impl Iterator<Item = &'a str>, rows: &[Vec<f64>]) -> String {
-    let names: Vec<String> = names.map(super::text::quoted).collect();
-    let mut text = names.join(",") + "\n";
-    for row in rows {
-        let cells: Vec<String> = row.iter().map(f64::to_string).collect();
-        text += &(cells.join(",") + "\n");
-    }
-    text
-}
-
-impl Inferred {
-    /// The tables for files: names and contents.
-    pub fn tables(&self) -> Vec<(&'static str, String)> {
-        let mut tables = Vec::new();
-        if !self.bands.is_empty() {
-            tables.push(("bands.csv", self.bands_csv()));
-        }
-        tables.extend(self.bootstrap.as_ref().map(|found| ("bootstrap.csv", found.csv())));
-        tables.extend(self.posterior.as_ref().map(|found| ("posterior.csv", found.csv())));
-        tables
-    }
-
-    /// Bootstrap and posterior in words, under their headings.
-    pub fn intervals(&self) -> Vec<(&'static str, Vec<String>)> {
-        let bootstrap = self.bootstrap.iter().map(|found| ("Bootstrap", found.sentences()));
-        let posterior = self.posterior.iter().map(|found| ("Posterior", found.sentences()));
-        bootstrap.chain(posterior).collect()
-    }
-
-    /// The sentences of the report, with an empty line before each group.
-    pub fn text(&self) -> String {
-        let mut text = String::new();
-        let mut group = |heading: &str, sentences: &[String]| {
-            if sentences.is_empty() {
-                return;
-            }
-            text += &format!("\n{heading}");
-            sentences.iter().for_each(|sentence| text += &format!("  {sentence}\n"));
-        };
-        if let Some(next) = &self.next_measurement {
-            group("  The next measurement\n", &next.sentences());
-        }
-        let bands: Vec<String> = self.bands.iter().filter_map(Band::sentence).collect();
-        group("", &bands);
-        for (heading, sentences) in self.intervals() {
-            group(&format!("  {heading}\n"), &sentences);
-        }
-        group("", &self.refusals);
-        text
     }
 }
 

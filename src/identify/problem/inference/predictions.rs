@@ -68,7 +68,7 @@ pub trait Predict: Send + Sync {
 }
 
 /// Values of curves and how they change with the parameters.
-pub(super) struct Linear {
+pub struct Linear {
     /// The points of all curves, one curve after the other.
     pub values: Vec<f64>,
     /// Derivatives by the parameters, point by point.
@@ -80,7 +80,7 @@ pub(super) struct Linear {
 /// # Errors
 ///
 /// Those of [`Predict::curves`].
-pub(super) fn linear(
+pub fn linear(
     problem: &Problem,
     predict: &dyn Predict,
     values: &[f64],

@@ -12,7 +12,7 @@ const DOMINATES: f64 = 0.9;
 const CONTRADICTS: f64 = 3.0;
 
 /// Priors that dominate the data, and priors that contradict them.
-pub(super) fn compared(problem: &Problem, local: &Local) -> Vec<Finding> {
+pub fn compared(problem: &Problem, local: &Local) -> Vec<Finding> {
     let mut remarks = Vec::new();
     let finding = |sentence: String, name: &str, value: f64, threshold: f64| Finding {
         parameters: vec![name.to_owned()],
@@ -54,7 +54,7 @@ pub(super) fn compared(problem: &Problem, local: &Local) -> Vec<Finding> {
 }
 
 /// Constraints at whose limit the estimates lie.
-pub(super) fn at_constraints(problem: &Problem, values: &[f64]) -> Vec<Finding> {
+pub fn at_constraints(problem: &Problem, values: &[f64]) -> Vec<Finding> {
     let active =
         problem.inference.constraints.iter().filter(|constraint| constraint.is_active(values));
     let remark = |text: &str| {

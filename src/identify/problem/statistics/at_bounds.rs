@@ -12,6 +12,8 @@
 use crate::identify::{Uncertainty, uncertainty_given};
 use nalgebra::{DMatrix, DVector};
 
+/// A bound is contradicted by the data where the fit would go beyond it by so many standard errors.
+pub(in crate::identify::problem) const BEYOND: f64 = 2.0;
 /// Sweeps over the parameters at ends; they converge linearly, and there are few.
 const SWEEPS: usize = 400;
 /// Doublings that bracket the end of an interval, and halvings that locate it.
@@ -44,7 +46,7 @@ impl AtBounds {
     /// From the weighted sensitivities, column by column, their variance, and the rise of the sum
     /// of squares that a 95 % interval allows. `None` where no parameter stands at an end, or the
     /// data leave a direction open.
-    pub(super) fn of(
+    pub fn of(
         columns: &[Vec<f64>],
         residuals: Option<&[f64]>,
         inward: &[Option<f64>],

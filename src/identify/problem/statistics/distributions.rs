@@ -1,5 +1,8 @@
 //! Quantiles and probabilities of the distributions that tests need.
 //!
+//! Not those of the crate statrs: its normal probabilities have an error of 4e-11 (version 0.19, erfc
+//! of 1.96/√2), and its logarithms and exponentials are those of the platform.
+//!
 //! Where a distribution does not exist (no degree of freedom) the answer is NaN, which no test
 //! takes for significant.
 
@@ -8,15 +11,10 @@ use crate::elementary;
 
 /// The `p` quantile of Student's distribution with `freedom` degrees of freedom.
 pub fn student_quantile(p: f64, freedom: f64) -> f64 {
-    if !exists(freedom) || !(0.0..=1.0).contains(&p) {
-        return f64::NAN;
+    match exists(freedom) {
+        true => symmetric_quantile(p, |t| student_two_sided(t, freedom)),
+        false => f64::NAN,
     }
-    let outside = 2.0 * p.min(1.0 - p);
-    if outside == 1.0 {
-        return 0.0;
-    }
-    let size = falls_to(outside, |t| student_two_sided(t, freedom));
-    if p < 0.5 { -size } else { size }
 }
 
 /// Probability that a Student variable is farther from 0 than `t`.
@@ -29,93 +27,24 @@ pub fn student_two_sided(t: f64, freedom: f64) -> f64 {
     beta_tails(0.5 * freedom, 0.5, x)[0]
 }
 
-/// The `p` quantile of the standard normal distribution, to 16 digits by the rational functions of
-/// Wichura (Applied Statistics 37 (1988), algorithm AS 241).
+/// The `p` quantile of the standard normal distribution.
 pub fn normal_quantile(p: f64) -> f64 {
-    const CENTRE: [[f64; 8]; 2] = [
-        [
-            3.387_132_872_796_366_5,
-            133.141_667_891_784_38,
-            1_971.590_950_306_551_4,
-            13_731.693_765_509_46,
-            45_921.953_931_549_87,
-            67_265.770_927_008_7,
-            33_430.575_583_588_13,
-            2_509.080_928_730_122_7,
-        ],
-        [
-            1.0,
-            42.313_330_701_600_91,
-            687.187_007_492_057_9,
-            5_394.196_021_424_751,
-            21_213.794_301_586_597,
-            39_307.895_800_092_71,
-            28_729.085_735_721_943,
-            5_226.495_278_852_854,
-        ],
-    ];
-    const TAIL: [[f64; 8]; 2] = [
-        [
-            1.423_437_110_749_683_5,
-            4.630_337_846_156_546,
-            5.769_497_221_460_691,
-            3.647_848_324_763_204_5,
-            1.270_458_252_452_368_4,
-            0.241_780_725_177_450_6,
-            0.022_723_844_989_269_184,
-            7.745_450_142_783_414e-4,
-        ],
-        [
-            1.0,
-            2.053_191_626_637_759,
-            1.676_384_830_183_803_8,
-            0.689_767_334_985_1,
-            0.148_103_976_427_480_08,
-            0.015_198_666_563_616_457,
-            5.475_938_084_995_345e-4,
-            1.050_750_071_644_416_9e-9,
-        ],
-    ];
-    const FAR: [[f64; 8]; 2] = [
-        [
-            6.657_904_643_501_103,
-            5.463_784_911_164_114,
-            1.784_826_539_917_291_3,
-            0.296_560_571_828_504_87,
-            0.026_532_189_526_576_124,
-            0.001_242_660_947_388_078_4,
-            2.711_555_568_743_487_6e-5,
-            2.010_334_399_292_288_1e-7,
-        ],
-        [
-            1.0,
-            0.599_832_206_555_888,
-            0.136_929_880_922_735_8,
-            0.014_875_361_290_850_615,
-            7.868_691_311_456_133e-4,
-            1.846_318_317_510_054_8e-5,
-            1.421_511_758_316_446e-7,
-            2.044_263_103_389_939_8e-15,
-        ],
-    ];
-    let ratio = |[above, below]: [[f64; 8]; 2], x: f64| {
-        let polynomial = |all: [f64; 8]| all.iter().rev().fold(0.0, |sum, next| sum * x + next);
-        polynomial(above) / polynomial(below)
-    };
+    symmetric_quantile(p, normal_two_sided)
+}
+
+/// The `p` quantile of a distribution that is symmetric to 0, from the probability that a variable
+/// is farther from 0 than a number.
+fn symmetric_quantile(p: f64, two_sided: impl Fn(f64) -> f64) -> f64 {
     if !(0.0..=1.0).contains(&p) {
         return f64::NAN;
     }
-    let off = p - 0.5;
-    if off.abs() <= 0.425 {
-        return off * ratio(CENTRE, 0.180_625 - off * off);
-    }
-    let tail = p.min(1.0 - p);
-    if tail <= 0.0 {
-        return f64::INFINITY.copysign(off);
-    }
-    let root = (-elementary::ln(tail)).sqrt();
-    let size = if root <= 5.0 { ratio(TAIL, root - 1.6) } else { ratio(FAR, root - 5.0) };
-    size.copysign(off)
+    let outside = 2.0 * p.min(1.0 - p);
+    let size = match outside {
+        0.0 => f64::INFINITY,
+        1.0 => return 0.0,
+        _ => falls_to(outside, two_sided),
+    };
+    if p < 0.5 { -size } else { size }
 }
 
 /// Probability that a standard normal variable is less than `z`.

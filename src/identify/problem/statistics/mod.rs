@@ -21,9 +21,10 @@ use at_bounds::AtBounds;
 pub use residuals::{ResidualTest, residual_test};
 
 use super::confirmed::is_confirmed;
-use super::inseparable::{self, Form, Inseparable, Sensitivities};
+use super::non_identifiable::{self, Form, NonIdentifiable, Sensitivities};
 use super::{ErrorModel, Evaluation, Problem, Series};
 use crate::identify::{Uncertainty, error_of_combination, uncertainty_given};
+pub(super) use at_bounds::BEYOND;
 use distributions::normal_quantile;
 pub(super) use distributions::student_quantile;
 
@@ -52,7 +53,7 @@ pub struct Statistics {
     pub(super) at_bounds: Option<AtBounds>,
     /// Half-widths of the 95 % intervals, as multiples of a standard error: a quantile of
     /// Student's distribution, or of the normal one where sigma is given.
-    pub factor: f64,
+    pub quantile: f64,
     /// Points less parameters; equal series count once.
     pub freedom: f64,
     /// Whether the deviations of the measurements are known and believed.
@@ -71,7 +72,7 @@ pub struct Statistics {
     /// Condition number of the sensitivities, columns of unit length.
     pub condition: Option<f64>,
     /// Groups of parameters that only together have an effect.
-    pub inseparable: Vec<Inseparable>,
+    pub non_identifiable: Vec<NonIdentifiable>,
     /// Parameters whose derivatives cancel each other, while finite changes do not.
     pub(super) cancelling: Vec<usize>,
     /// Parameters without any effect on the compared points at the best values.
@@ -87,6 +88,16 @@ pub struct Statistics {
 }
 
 impl Statistics {
+    /// The largest weighted sum of squares within the 95 % limit of the likelihood.
+    pub(super) fn limit_of_squares(&self) -> f64 {
+        let square: f64 = self.residuals.iter().map(|r| r * r).sum();
+        let rise = elementary::powi(self.quantile, 2);
+        match self.believed {
+            true => square + rise,
+            false => square * (1.0 + rise / self.freedom),
+        }
+    }
+
     /// Computes them at `values`, where the simulated points are `simulated`. `others`: points
     /// elsewhere in the search space, which tell how far a lack of rank goes.
     pub fn at(
@@ -97,91 +108,154 @@ impl Statistics {
         others: &[Vec<f64>],
     ) -> Statistics {
         let repeated = repeated(&problem.series);
-        let shares = shares(&problem.series, &repeated);
+        let data = Data::at(problem, evaluation, simulated, &repeated);
+        let spread = Spread::of(problem, evaluation, &data, values.len());
+        let (jacobian, simulations) = sensitivities(problem, evaluation, values);
+        let columns = weighted(&jacobian, &data.scales);
+        let uncertainty = match spread.freedom > 0.0 || spread.believed && spread.freedom == 0.0 {
+            true => uncertainty_given(&columns, spread.variance),
+            false => None,
+        };
+        let at_bounds = uncertainty.as_ref().and_then(|_| {
+            let plain = (!spread.robust).then(|| data.shared_residuals());
+            let variances = [spread.variance, spread.rise()];
+            AtBounds::of(&columns, plain.as_deref(), &inward(problem, values), variances)
+        });
+        let best = Sensitivities { values: values.to_vec(), columns };
+        let rank_tolerance = elementary::powf(problem.noise, 2.0 / 3.0).clamp(RANK[0], RANK[1]);
+        let limit = data.square + spread.rise();
+        let mut found = Statistics {
+            uncertainty,
+            at_bounds,
+            quantile: spread.quantile,
+            freedom: spread.freedom,
+            believed: spread.believed,
+            variance: spread.variance,
+            robust: spread.robust,
+            weights: data.weights,
+            residuals: data.residuals,
+            repeated,
+            condition: None,
+            non_identifiable: Vec::new(),
+            cancelling: Vec::new(),
+            without_effect: Vec::new(),
+            jacobian,
+            simulations,
+            shares: data.shares,
+            rank_tolerance,
+        };
+        found.find_rank(problem, evaluation, (&best, simulated), others, &data.scales, limit);
+        found
+    }
+
+    /// Finds which parameters have no effect, and which act only together, where the weighted sum of
+    /// squares may rise up to `limit`.
+    fn find_rank(
+        &mut self,
+        problem: &Problem,
+        evaluation: &Evaluation,
+        (best, simulated): (&Sensitivities, &[f64]),
+        others: &[Vec<f64>],
+        scales: &[f64],
+        limit: f64,
+    ) {
+        let mut rank = non_identifiable::rank(best, &[], self.rank_tolerance);
+        if !rank.non_identifiable.is_empty() {
+            let elsewhere = elsewhere(problem, evaluation, others, scales, &mut self.simulations);
+            rank = non_identifiable::rank(best, &elsewhere, self.rank_tolerance);
+            rank.non_identifiable
+                .retain(|group| problem.noise <= EXACT || group.form != Form::Local);
+        }
+        let measured: Vec<f64> =
+            problem.series.iter().flat_map(|series| series.y.iter().copied()).collect();
+        let is_within = |row: &[f64]| {
+            let points = measured.iter().zip(row).zip(scales);
+            points.map(|((m, s), w)| elementary::powi(w * (m - s), 2)).sum::<f64>() <= limit
+        };
+        for group in rank.non_identifiable {
+            let at = (&best.values[..], simulated);
+            let (holds, took) = is_confirmed(problem, evaluation, at, &group, &is_within);
+            self.simulations += took;
+            match holds {
+                true => self.non_identifiable.push(group),
+                false => self.cancelling.extend(group.parameters),
+            }
+        }
+        (self.condition, self.without_effect) = (rank.condition, rank.without_effect);
+    }
+}
+
+/// The data as they count at one place.
+struct Data {
+    weights: Vec<f64>,
+    /// What each point counts: less than 1 where several series hold the same numbers.
+    shares: Vec<f64>,
+    /// Weights with shares.
+    scales: Vec<f64>,
+    residuals: Vec<f64>,
+    /// Weighted sum of squares.
+    square: f64,
+}
+
+impl Data {
+    fn at(
+        problem: &Problem,
+        evaluation: &Evaluation,
+        simulated: &[f64],
+        repeated: &[(usize, usize)],
+    ) -> Data {
+        let shares = shares(&problem.series, repeated);
         let weights: Vec<f64> = evaluation.error_weights(problem, simulated);
-        let scales: Vec<f64> = weights.iter().zip(&shares).map(|(w, s)| w * s.sqrt()).collect();
-        let (jacobian, mut simulations) = sensitivities(problem, evaluation, values);
-        let columns = weighted(&jacobian, &scales);
+        let scales = weights.iter().zip(&shares).map(|(w, s)| w * s.sqrt()).collect();
         let measured = problem.series.iter().flat_map(|series| &series.y);
         let pairs = measured.zip(simulated).zip(&weights);
         let residuals: Vec<f64> = pairs.map(|((m, s), w)| w * (m - s)).collect();
-        let freedom = shares.iter().sum::<f64>() - values.len() as f64;
+        let square = residuals.iter().zip(&shares).map(|(r, share)| share * r * r).sum();
+        Data { weights, shares, scales, residuals, square }
+    }
+
+    fn shared_residuals(&self) -> Vec<f64> {
+        self.residuals.iter().zip(&self.shares).map(|(r, share)| r * share.sqrt()).collect()
+    }
+}
+
+/// What the variance of the errors is, and how it is known.
+struct Spread {
+    freedom: f64,
+    robust: bool,
+    believed: bool,
+    variance: f64,
+    /// The quantile of a 95 % interval.
+    quantile: f64,
+}
+
+impl Spread {
+    /// From the residuals of a fit of `n` parameters.
+    fn of(problem: &Problem, evaluation: &Evaluation, data: &Data, n: usize) -> Spread {
+        let freedom = data.shares.iter().sum::<f64>() - n as f64;
         let robust = problem.objectives.first().and_then(|(_, fitness)| {
-            fitness.robustness(&residuals, freedom).filter(|_| freedom > 0.0)
+            fitness.robustness(&data.residuals, freedom).filter(|_| freedom > 0.0)
         });
         let plain =
             robust.is_none() && evaluation.scales().is_some_and(|own| own == evaluation.weights());
         let believed = plain
             && ErrorModel::of(problem) == ErrorModel::Known
             && problem.objectives[0].0 != "log_likelihood";
-        let square: f64 = residuals.iter().zip(&shares).map(|(r, share)| share * r * r).sum();
         let variance = match robust {
             Some(robust) => robust.variance,
             None if believed => 1.0,
-            None => square / freedom,
+            None => data.square / freedom,
         };
-        let uncertainty = if freedom > 0.0 || believed && freedom == 0.0 {
-            uncertainty_given(&columns, variance)
-        } else {
-            None
-        };
-        let factor = match believed {
+        let quantile = match believed {
             true => normal_quantile(UPPER),
             false => student_quantile(UPPER, robust.map_or(freedom, |robust| robust.freedom)),
         };
-        let at_bounds = uncertainty.as_ref().and_then(|_| {
-            let plain = robust.is_none().then(|| {
-                residuals.iter().zip(&shares).map(|(r, share)| r * share.sqrt()).collect::<Vec<_>>()
-            });
-            let rise = factor * factor * variance;
-            AtBounds::of(&columns, plain.as_deref(), &inward(problem, values), [variance, rise])
-        });
-        let best = Sensitivities { values: values.to_vec(), columns };
-        let tolerance = elementary::powf(problem.noise, 2.0 / 3.0).clamp(RANK[0], RANK[1]);
-        let mut rank = inseparable::rank(&best, &[], tolerance);
-        if !rank.inseparable.is_empty() {
-            let elsewhere = elsewhere(problem, evaluation, others, &scales, &mut simulations);
-            rank = inseparable::rank(&best, &elsewhere, tolerance);
-            rank.inseparable.retain(|group| problem.noise <= EXACT || group.form != Form::Local);
-        }
-        let rise = factor * factor * variance;
-        let measured: Vec<f64> =
-            problem.series.iter().flat_map(|series| series.y.iter().copied()).collect();
-        let is_within = |row: &[f64]| {
-            let points = measured.iter().zip(row).zip(&scales);
-            points.map(|((m, s), w)| elementary::powi(w * (m - s), 2)).sum::<f64>() <= square + rise
-        };
-        let (mut cancelling, mut kept) = (Vec::new(), Vec::new());
-        for group in rank.inseparable {
-            let at = (values, simulated);
-            let (holds, took) = is_confirmed(problem, evaluation, at, &group, &is_within);
-            simulations += took;
-            if holds {
-                kept.push(group);
-            } else {
-                cancelling.extend(group.parameters);
-            }
-        }
-        Statistics {
-            uncertainty,
-            at_bounds,
-            factor,
-            freedom,
-            believed,
-            variance,
-            robust: robust.is_some(),
-            weights,
-            residuals,
-            repeated,
-            condition: rank.condition,
-            inseparable: kept,
-            cancelling,
-            without_effect: rank.without_effect,
-            jacobian,
-            simulations,
-            shares,
-            rank_tolerance: tolerance,
-        }
+        Spread { freedom, robust: robust.is_some(), believed, variance, quantile }
+    }
+
+    /// By how much the weighted sum of squares may rise within the 95 % limit of one parameter.
+    fn rise(&self) -> f64 {
+        self.quantile * self.quantile * self.variance
     }
 }
 
@@ -271,7 +345,7 @@ fn size(simulated: &[f64], scales: &[f64]) -> f64 {
 
 /// Derivatives of the simulated points, column by column, and the simulations that they took.
 /// Columns that do not exceed the errors of the simulation are zero.
-pub(super) fn sensitivities(
+pub fn sensitivities(
     problem: &Problem,
     evaluation: &Evaluation,
     values: &[f64],

@@ -13,7 +13,7 @@
 pub mod diagnostics;
 mod sampler;
 
-use super::{Distribution, Inferred, Local};
+use super::{Distribution, Local};
 use crate::diag::Fault;
 use crate::elementary;
 use crate::ga::Mrg32k3a;
@@ -84,13 +84,13 @@ pub struct Sampled {
     pub tail_ess: Option<f64>,
 }
 
-/// Adds the posterior.
-pub(super) fn add(
+/// The posterior; `None` where it is refused.
+pub fn posterior(
     run: &Run,
     settings: &PosteriorSettings,
     local: &Local,
-    found: &mut Inferred,
-) -> Result<(), Fault> {
+    refusals: &mut Vec<String>,
+) -> Result<Option<Posterior>, Fault> {
     let problem = &run.problem;
     let source = Mrg32k3a::new(&problem.seed)?.stream(STREAM);
     let centre: Vec<f64> =
@@ -106,11 +106,11 @@ pub(super) fn add(
     };
     let begun: Option<Vec<Chain>> = run.evaluation.each(CHAINS, begin).into_iter().collect();
     let Some(chains) = begun else {
-        found.refusals.push(
+        refusals.push(
             "There is no posterior: the covariance at the best point is not positive definite."
                 .to_owned(),
         );
-        return Ok(());
+        return Ok(None);
     };
     let chains: Vec<std::sync::Mutex<Chain>> =
         chains.into_iter().map(std::sync::Mutex::new).collect();
@@ -123,13 +123,12 @@ pub(super) fn add(
             chain.draw(count, &mut |u| density.at(simulator, u));
         });
         if run.evaluation.is_cancelled() {
-            return Ok(());
+            return Ok(None);
         }
         drawn += count;
         let posterior = summary(problem, &chains);
         if posterior.converged || drawn >= settings.samples {
-            found.posterior = Some(posterior);
-            return Ok(());
+            return Ok(Some(posterior));
         }
     }
 }
@@ -306,7 +305,10 @@ impl Posterior {
 
     /// `posterior.csv`: draws of all chains, evenly thinned.
     pub fn csv(&self) -> String {
-        super::table_csv(self.parameters.iter().map(|p| p.name.as_str()), &self.rows)
+        crate::identify::table::table_csv(
+            self.parameters.iter().map(|p| p.name.as_str()),
+            &self.rows,
+        )
     }
 }
 

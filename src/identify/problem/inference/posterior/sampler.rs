@@ -109,7 +109,7 @@ impl Chain {
     }
 
     /// Share of the steps that moved.
-    pub(super) fn acceptance(&self) -> f64 {
+    pub fn acceptance(&self) -> f64 {
         self.accepted as f64 / self.tried.max(1) as f64
     }
 

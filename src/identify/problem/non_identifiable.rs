@@ -16,7 +16,7 @@ const PART: f64 = 0.02;
 
 /// Sensitivities at a point: one column for each parameter.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Sensitivities {
+pub struct Sensitivities {
     /// Where.
     pub values: Vec<f64>,
     /// Derivatives of the weighted points.
@@ -36,7 +36,7 @@ pub enum Form {
 
 /// Parameters that cannot be determined separately.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Inseparable {
+pub struct NonIdentifiable {
     /// Their places.
     pub parameters: Vec<usize>,
     /// How many of them must be fixed.
@@ -53,9 +53,9 @@ pub struct Inseparable {
 
 /// What the sensitivities tell of the rank.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Rank {
+pub struct Rank {
     /// Groups without full rank.
-    pub inseparable: Vec<Inseparable>,
+    pub non_identifiable: Vec<NonIdentifiable>,
     /// Parameters without any effect.
     pub without_effect: Vec<usize>,
     /// Condition number, columns of unit length; `None` where there is none.
@@ -64,7 +64,7 @@ pub(super) struct Rank {
 
 /// The rank at `best`, and how far it holds at the points `others`. Singular values below
 /// `tolerance` times the largest are none.
-pub(super) fn rank(best: &Sensitivities, others: &[Sensitivities], tolerance: f64) -> Rank {
+pub fn rank(best: &Sensitivities, others: &[Sensitivities], tolerance: f64) -> Rank {
     let finite = best.columns.iter().flatten().all(|value| value.is_finite());
     let points = best.columns.first().map_or(0, Vec::len);
     if points == 0 || !finite {
@@ -93,9 +93,9 @@ pub(super) fn rank(best: &Sensitivities, others: &[Sensitivities], tolerance: f6
     let group = |members: &Vec<usize>| {
         let parameters: Vec<usize> = members.iter().map(|&k| used[k]).collect();
         let own = projector.select_rows(members).select_columns(members);
-        inseparable(best, others, &norms, parameters, own, tolerance)
+        non_identifiable(best, others, &norms, parameters, own, tolerance)
     };
-    Rank { inseparable: groups.iter().map(group).collect(), without_effect, condition }
+    Rank { non_identifiable: groups.iter().map(group).collect(), without_effect, condition }
 }
 
 fn norm(column: &[f64]) -> f64 {
@@ -124,14 +124,14 @@ fn components(projector: &DMatrix<f64>) -> Vec<Vec<usize>> {
     groups
 }
 
-fn inseparable(
+fn non_identifiable(
     best: &Sensitivities,
     others: &[Sensitivities],
     norms: &[f64],
     parameters: Vec<usize>,
     projector: DMatrix<f64>,
     tolerance: f64,
-) -> Inseparable {
+) -> NonIdentifiable {
     let n = parameters.len();
     let eigen = projector.symmetric_eigen();
     let null: Vec<usize> = (0..n).filter(|&d| eigen.eigenvalues[d] > 0.5).collect();
@@ -164,7 +164,7 @@ fn inseparable(
         Form::Local => relative.iter().map(|direction| largest_is_one(direction)).collect(),
     };
     let directions = if form == Form::Product { relative } else { changes };
-    Inseparable { excess: null.len(), parameters, form, combinations, directions }
+    NonIdentifiable { excess: null.len(), parameters, form, combinations, directions }
 }
 
 fn nonzero(value: f64) -> f64 {
@@ -259,7 +259,7 @@ mod tests {
         let gradient = |p: &[f64], x: f64| vec![p[1] * p[1] * x, 2.0 * p[0] * p[1] * x, 1.0, 0.0];
         let rank = found(gradient, &[&[2.0, 5.0, 1.0, 1.0], &[3.0, 1.0, 2.0, 0.5]]);
         assert_eq!(rank.without_effect, [3]);
-        let [group] = &rank.inseparable[..] else { panic!("{rank:?}") };
+        let [group] = &rank.non_identifiable[..] else { panic!("{rank:?}") };
         assert_eq!((&group.parameters[..], group.excess), (&[0, 1][..], 1));
         assert_eq!(group.form, Form::Product);
         let [exponents] = &group.combinations[..] else { panic!("{group:?}") };
@@ -271,7 +271,7 @@ mod tests {
         // y = a + 300 b + 4 c + d x: two of three constants are too many.
         let gradient = |_: &[f64], x: f64| vec![1.0, 300.0, 4.0, x];
         let rank = found(gradient, &[&[1.0, 2.0, 3.0, 4.0], &[5.0, 1.0, 2.0, 0.5]]);
-        let [group] = &rank.inseparable[..] else { panic!("{rank:?}") };
+        let [group] = &rank.non_identifiable[..] else { panic!("{rank:?}") };
         assert_eq!((&group.parameters[..], group.excess), (&[0, 1, 2][..], 2));
         assert_eq!(group.form, Form::Sum);
         let [factors] = &group.combinations[..] else { panic!("{group:?}") };
@@ -284,7 +284,7 @@ mod tests {
     fn two_groups_are_two() {
         let gradient = |p: &[f64], x: f64| vec![p[1] * x, p[0] * x, p[3], p[2]];
         let rank = found(gradient, &[&[2.0, 5.0, 1.0, 3.0], &[3.0, 1.0, 2.0, 0.5]]);
-        let groups: Vec<_> = rank.inseparable.iter().map(|g| g.parameters.clone()).collect();
+        let groups: Vec<_> = rank.non_identifiable.iter().map(|g| g.parameters.clone()).collect();
         assert_eq!(groups, [vec![0, 1], vec![2, 3]]);
     }
 
@@ -293,8 +293,8 @@ mod tests {
         // y = (a² + b²) x: neither a sum nor a product of powers of a and b.
         let gradient = |p: &[f64], x: f64| vec![2.0 * p[0] * x, 2.0 * p[1] * x];
         let rank = found(gradient, &[&[1.0, 2.0], &[3.0, 0.5]]);
-        assert_eq!(rank.inseparable[0].form, Form::Local);
+        assert_eq!(rank.non_identifiable[0].form, Form::Local);
         let full = found(|p, x| vec![x, p[0] * x * x], &[&[1.0, 2.0], &[3.0, 0.5]]);
-        assert!(full.inseparable.is_empty() && full.condition.is_some());
+        assert!(full.non_identifiable.is_empty() && full.condition.is_some());
     }
 }

@@ -1,0 +1,54 @@
+//! The likelihood of a fit with normal errors.
+
+use super::PRIOR;
+use crate::elementary;
+use crate::identify::problem::{ErrorModel, Run};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// The likelihood of a fit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Likelihood {
+    /// Logarithm of the largest likelihood.
+    pub log: f64,
+    /// Measured points.
+    pub points: usize,
+    /// Estimated quantities: parameters, and the standard deviation where it is not given.
+    pub estimated: usize,
+    /// Whether the standard deviations of the measurements are given.
+    pub known_sigma: bool,
+}
+
+impl Likelihood {
+    /// The likelihood at the best point; `None` where the fitness is not a sum of squares.
+    pub(super) fn of(run: &Run, values: &[f64]) -> Option<Likelihood> {
+        let problem = &run.problem;
+        run.evaluation.scales()?;
+        let simulated = run.evaluation.simulate(values).ok()?;
+        let weights = run.evaluation.error_weights(problem, &simulated);
+        let data = || problem.series.iter().filter(|series| series.experiment != PRIOR);
+        let measured: Vec<f64> = data().flat_map(|series| series.y.iter().copied()).collect();
+        let n = measured.len() as f64;
+        let points = measured.iter().zip(&simulated).zip(&weights);
+        let square: f64 = points.map(|((m, s), w)| elementary::powi(w * (m - s), 2)).sum();
+        let of_weights: f64 =
+            weights[..measured.len()].iter().map(|weight| elementary::ln(*weight)).sum();
+        let error_model = ErrorModel::of(problem);
+        let mut names: Vec<&str> = data()
+            .filter(|series| series.sigma.is_estimated())
+            .map(|series| series.y_name.as_str())
+            .collect();
+        names.sort_unstable();
+        names.dedup();
+        let (of_residuals, deviations) = match error_model {
+            ErrorModel::OneVariance => (0.5 * n * (elementary::ln(square / n) + 1.0), 1),
+            ErrorModel::Known => (0.5 * square, 0),
+            ErrorModel::Estimated => (0.5 * square, names.len()),
+        };
+        let log = of_weights - of_residuals - 0.5 * n * elementary::ln(TAU);
+        let estimated = values.len() + deviations;
+        let known_sigma = error_model == ErrorModel::Known;
+        let found = Likelihood { log, points: measured.len(), estimated, known_sigma };
+        log.is_finite().then_some(found)
+    }
+}

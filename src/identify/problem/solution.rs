@@ -1,0 +1,310 @@
+//! The solution: what was found, how well it fits, and what the data cannot tell.
+
+use super::{
+    Ending, ErrorModel, FailureRegion, Finding, FindingKind, Importance, Inferred, OtherMinimum,
+    Profiles, Severity, SolvedDescent, residual_test,
+};
+use crate::elementary;
+use crate::ga::Generation;
+use serde::{Deserialize, Deserializer, Serialize};
+
+/// A parameter counts as identifiable when its standard error is below this fraction of its value:
+/// the 95 % interval then excludes 0, and on a logarithmic scale spans less than a decade.
+const RELATIVE: f64 = 0.5;
+/// Or, on a linear scale, when its 95 % interval is below this fraction of the search range: a
+/// parameter near 0 may be known well.
+pub const OF_RANGE: f64 = 0.25;
+/// Correlations above this are worth a word.
+const STRONG: f64 = 0.95;
+
+/// The solution of a problem.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Solution {
+    /// The heading.
+    pub title: String,
+    /// The model.
+    pub model: String,
+    /// The method.
+    pub method: String,
+    /// The operators that were chosen in place of the method's usual ones: kind, and name with
+    /// settings.
+    #[serde(default, skip_serializing_if = "indexmap::IndexMap::is_empty")]
+    pub operators: indexmap::IndexMap<String, String>,
+    /// The first objective: its name and the smallest value found.
+    pub fitness_name: String,
+    /// Its smallest value.
+    pub fitness: f64,
+    /// The parameters.
+    pub parameters: Vec<SolvedParameter>,
+    /// The series with their residuals.
+    pub series: Vec<SolvedSeries>,
+    /// Series that were not used for the fit.
+    pub validation: Vec<SolvedSeries>,
+    /// Correlations of the parameters, row by row; `None` where they could not be computed.
+    pub correlations: Option<Vec<Vec<Option<f64>>>>,
+    /// Condition number of the sensitivities.
+    pub condition: Option<f64>,
+    /// What must be known about these numbers, most important first.
+    #[serde(default)]
+    pub findings: Vec<Finding>,
+    /// What was known of the errors of measurement.
+    #[serde(default = "one_variance")]
+    pub error_model: ErrorModel,
+    /// The residuals against the given sigmas; `None` where not all are given.
+    #[serde(default)]
+    pub chi_square: Option<ChiSquare>,
+    /// Negative logarithm of the likelihood of normal errors with the given or estimated standard
+    /// deviations (maximum likelihood ones); `None` where the fitness is not one of normal errors.
+    #[serde(default)]
+    pub negative_log_likelihood: Option<f64>,
+    /// Why the run ended.
+    pub stop: String,
+    /// Whether it ended at a minimum, and how that is known.
+    #[serde(default)]
+    pub ending: Ending,
+    /// The descents by least squares, in their order.
+    #[serde(default)]
+    pub descents: Vec<SolvedDescent>,
+    /// Minima beside the best whose sum of squares lies within the 95 % limit of the likelihood.
+    #[serde(default)]
+    pub other_minima: Vec<OtherMinimum>,
+    /// Questions of the method.
+    pub generations: u64,
+    /// Individuals evaluated.
+    pub evaluations: u64,
+    /// Simulations that it took; equal genes are simulated once.
+    pub simulations: u64,
+    /// Further simulations for the statistics.
+    pub simulations_for_statistics: u64,
+    /// Failed individuals by kind.
+    pub failures: indexmap::IndexMap<String, u64>,
+    /// Failed individuals by cause.
+    pub causes: indexmap::IndexMap<String, u64>,
+    /// Where in the search space simulations failed, if that is a region.
+    pub failure_region: Option<FailureRegion>,
+    /// Settings changed during the run.
+    pub changes: Vec<(u64, String, f64)>,
+    /// How much each parameter matters, where that was asked before the fit.
+    pub importance: Option<Importance>,
+    /// Profiles of the parameters, where they were asked.
+    pub profiles: Option<Profiles>,
+    /// What was inferred beyond the estimates.
+    #[serde(default)]
+    pub inferred: Inferred,
+    /// Points of the front, where there are several objectives: parameters and objectives.
+    pub front: Vec<(Vec<f64>, Vec<f64>)>,
+    /// The place in the front that is farthest from the line between its ends.
+    pub knee: Option<usize>,
+    /// The hypervolume of the front, and the reference point that it is measured from: a tenth of
+    /// the front's width beyond its worst values.
+    pub hypervolume: Option<(f64, Vec<f64>)>,
+    /// Names of the objectives.
+    pub objectives: Vec<String>,
+    /// What the script has found whose search least squares have ended; `None` where the problem
+    /// was solved without a script of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub script: Option<super::ScriptResult>,
+    /// The seed; `None` where no random numbers were drawn.
+    pub seed: Option<[f64; 6]>,
+    /// Version of the program.
+    pub version: String,
+    /// The problem as it was written; empty where it was put in Rust.
+    pub problem: String,
+    /// Every generation: best, mean, worst, failures.
+    #[serde(skip)]
+    pub history: Vec<Generation>,
+    /// The best values after each generation.
+    #[serde(skip)]
+    pub trace: Vec<Vec<f64>>,
+    /// Evenly chosen individuals.
+    #[serde(skip)]
+    pub individuals: Vec<(Vec<f64>, f64)>,
+}
+
+/// An identified parameter.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct SolvedParameter {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// Its value.
+    pub value: f64,
+    /// The range that was searched.
+    pub range: [f64; 2],
+    /// Whether its logarithm was searched.
+    pub logarithmic: bool,
+    /// One standard deviation; `None` where infinite or unknown.
+    pub deviation: Option<f64>,
+    /// The 95 % interval, not cut at the range.
+    pub interval: Option<[f64; 2]>,
+    /// Whether the data determine it; `None` where unknown.
+    pub determined: Option<bool>,
+    /// Whether it lies at an end of its range.
+    pub at_bound: bool,
+    /// Whether the interval is that of its profile, because the linear one does not hold.
+    #[serde(default)]
+    pub by_profile: bool,
+    /// Whether finite changes have told what its derivative does not.
+    #[serde(default)]
+    pub in_steps: bool,
+    /// What the data say about it; `None` where unknown.
+    #[serde(default)]
+    pub verdict: Option<Verdict>,
+}
+
+/// What the data say about a parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// The data bound it.
+    Identifiable,
+    /// These data do not bound it; others of the kind may.
+    PracticallyNonIdentifiable,
+    /// No data of this kind bound it: it acts only in a combination with others.
+    StructurallyNonIdentifiable,
+    /// It changes nothing that was compared.
+    WithoutEffect,
+}
+
+impl Verdict {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Verdict::Identifiable => "identifiable",
+            Verdict::PracticallyNonIdentifiable => "practically non-identifiable from these data",
+            Verdict::StructurallyNonIdentifiable => "structurally non-identifiable combination",
+            Verdict::WithoutEffect => "without effect",
+        }
+    }
+}
+
+/// Weighted sum of squares where the standard deviations of the measurements are given.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ChiSquare {
+    /// The sum.
+    pub value: f64,
+    /// Points less parameters.
+    pub freedom: f64,
+    /// Probability of a larger sum by chance.
+    pub probability: f64,
+}
+
+fn one_variance() -> ErrorModel {
+    ErrorModel::OneVariance
+}
+
+/// A series with its simulation.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct SolvedSeries {
+    /// The experiment.
+    pub experiment: String,
+    /// The variable and its unit.
+    pub y: [String; 2],
+    /// What it is given over, and the unit.
+    pub x: [String; 2],
+    /// Where the data come from.
+    pub file: String,
+    /// Root of the mean squared residual.
+    #[serde(deserialize_with = "number")]
+    pub rmse: f64,
+    /// Coefficient of determination.
+    pub r_squared: Option<f64>,
+    /// Standard deviation of the measurements, root mean square; `None` where it is not known.
+    #[serde(default)]
+    pub sigma: Option<f64>,
+    /// Whether that was estimated with the parameters.
+    #[serde(default)]
+    pub sigma_estimated: bool,
+    /// Runs of equal sign, how many are expected, the probability of that by chance, and the
+    /// correlation of neighbours.
+    pub residual_test: Option<[f64; 4]>,
+    /// The simulated curve between the points, by ascending X, where it was simulated.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub curve: Vec<[f64; 2]>,
+    /// X, measured, simulated.
+    #[serde(deserialize_with = "points")]
+    pub points: Vec<[f64; 3]>,
+}
+
+impl SolvedSeries {
+    /// Puts a series beside its simulation.
+    pub fn new(series: &super::Series, simulated: &[f64]) -> SolvedSeries {
+        let n = series.y.len() as f64;
+        let points: Vec<[f64; 3]> =
+            series.x.iter().zip(&series.y).zip(simulated).map(|((x, y), s)| [*x, *y, *s]).collect();
+        let square: f64 = points.iter().map(|p| elementary::powi(p[1] - p[2], 2)).sum();
+        let mean = series.y.iter().sum::<f64>() / n;
+        let total: f64 = series.y.iter().map(|y| elementary::powi(y - mean, 2)).sum();
+        let mut ordered = points.clone();
+        ordered.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let residuals: Vec<f64> = ordered.iter().map(|p| p[1] - p[2]).collect();
+        let test = residual_test(&residuals);
+        SolvedSeries {
+            experiment: series.experiment.clone(),
+            y: [series.y_name.clone(), series.y_unit.clone()],
+            x: [series.x_name.clone(), series.x_unit.clone()],
+            file: series.file.clone(),
+            rmse: (square / n).sqrt(),
+            r_squared: (total > 0.0).then(|| 1.0 - square / total),
+            sigma: None,
+            sigma_estimated: series.sigma.is_estimated(),
+            residual_test: test
+                .map(|t| [t.runs as f64, t.expected_runs, t.runs_probability, t.autocorrelation]),
+            curve: Vec::new(),
+            points,
+        }
+    }
+}
+
+impl Solution {
+    /// Takes standard errors and intervals away, and what was said of them. At the limit of a
+    /// constraint they would be too small along it: the data may as well hold inside.
+    pub(super) fn drop_intervals(&mut self) {
+        for parameter in &mut self.parameters {
+            (parameter.deviation, parameter.interval) = (None, None);
+            (parameter.determined, parameter.verdict) = (None, None);
+        }
+        (self.correlations, self.condition) = (None, None);
+        self.findings.retain(|finding| !finding.kind.is_about_intervals());
+    }
+
+    /// Takes away everything that holds at a minimum only, and says that this is none.
+    pub(super) fn drop_verdicts(&mut self) {
+        self.drop_intervals();
+        self.findings.retain(|finding| finding.kind.holds_anywhere());
+        let words = self.ending.words.clone();
+        let finding = Finding::new(FindingKind::NotAMinimum, words).severity(Severity::Serious);
+        self.findings.insert(0, finding);
+    }
+
+    /// Pairs of parameters that the data can hardly tell apart.
+    pub fn strongly_correlated(&self) -> Vec<(usize, usize, f64)> {
+        let Some(rows) = &self.correlations else { return Vec::new() };
+        let n = self.parameters.len();
+        let pairs = (0..n).flat_map(|k| (k + 1..n).map(move |l| (k, l)));
+        pairs
+            .filter_map(|(k, l)| Some((k, l, rows[k][l]?)))
+            .filter(|(_, _, correlation)| correlation.abs() > STRONG)
+            .collect()
+    }
+}
+
+impl SolvedParameter {
+    /// Whether a standard error is small against the value, or on a linear scale against the range.
+    pub(super) fn is_narrow(&self, deviation: f64, factor: f64) -> bool {
+        let [min, max] = self.range;
+        let small = deviation <= RELATIVE * self.value.abs() && deviation <= max - min;
+        small || !self.logarithmic && 2.0 * factor * deviation <= OF_RANGE * (max - min)
+    }
+}
+
+/// What is not a number is written as null.
+fn number<'de, D: Deserializer<'de>>(reader: D) -> Result<f64, D::Error> {
+    Ok(Option::<f64>::deserialize(reader)?.unwrap_or(f64::NAN))
+}
+
+fn points<'de, D: Deserializer<'de>>(reader: D) -> Result<Vec<[f64; 3]>, D::Error> {
+    let points = Vec::<[Option<f64>; 3]>::deserialize(reader)?;
+    Ok(points.into_iter().map(|point| point.map(|value| value.unwrap_or(f64::NAN))).collect())
+}
