@@ -13,7 +13,7 @@ use crate::script::access::policy::Grant;
 use crate::script::errors::FILE_ERROR;
 use crate::script::models::simulation;
 use crate::script::models::simulation::{Simulated, Translated, Wishes};
-use crate::script::world::Progress;
+use crate::script::runs::view::Progress;
 use crate::sim::Statistics;
 use crate::source::Span;
 use clap::{Args, ValueHint};

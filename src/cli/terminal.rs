@@ -4,8 +4,8 @@
 use super::live::Live;
 use super::options::Colour;
 use crate::diag::visible;
+use crate::script::runs::view::Progress;
 use crate::script::runs::view::View;
-use crate::script::world::Progress;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::borrow::Cow;
 use std::io::{IsTerminal, Write as _};

@@ -13,7 +13,7 @@ mod steps;
 
 use crate::models;
 use crate::script::access::policy::{Access, Grant, Policy, RECORD, Refusal};
-use crate::script::world::{Content, Files, normalized};
+use crate::script::world::{Content, FileReader, normalized};
 use place::Place;
 use record::{Lines, Record};
 use std::collections::BTreeSet;
@@ -198,7 +198,7 @@ fn written_down(own: &Path, lines: Lines) -> io::Result<()> {
     }
 }
 
-impl Files for Disk {
+impl FileReader for Disk {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         if let Some(bytes) = models::read(path) {
             return Ok(bytes.to_vec());

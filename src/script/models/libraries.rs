@@ -7,7 +7,7 @@ use crate::name::{Ident, Name};
 use crate::script::Session;
 use crate::script::access::files::cannot;
 use crate::script::errors::OTHER_VERSION;
-use crate::script::world::{Files, normalized};
+use crate::script::world::{FileReader, normalized};
 use crate::source::{SourceId, SourceMap, Span};
 use crate::syntax;
 use crate::syntax::ast::{
@@ -21,7 +21,7 @@ use std::sync::{Arc, Mutex, OnceLock};
 /// The texts of one library: decoded, and put among the sources of the session.
 #[derive(Debug)]
 pub(super) struct LibraryTexts {
-    files: Arc<dyn Files>,
+    files: Arc<dyn FileReader>,
     sources: SourceMap,
     /// The working directory, to which shown paths are relative.
     current: PathBuf,
@@ -70,7 +70,7 @@ impl Session {
     /// The files of a library that is going to be loaded.
     pub(super) fn library_texts(&self) -> Arc<dyn LibraryFiles> {
         Arc::new(LibraryTexts {
-            files: self.world.files(),
+            files: self.world.reader(),
             sources: self.sources.clone(),
             current: self.world.current_dir(),
             encoding: OnceLock::new(),

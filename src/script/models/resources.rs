@@ -6,7 +6,7 @@ use crate::name::{Ident, Name};
 use crate::script::Session;
 use crate::script::access::files::{cannot, plain};
 use crate::script::errors::FILE_ERROR;
-use crate::script::world::{Files, normalized};
+use crate::script::world::{FileReader, normalized};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// Files of a session as they are looked for in one model.
 #[derive(Debug)]
 struct ModelFiles {
-    files: Arc<dyn Files>,
+    files: Arc<dyn FileReader>,
     /// Where relative paths start: the first folder that has the file.
     folders: Vec<PathBuf>,
     /// The file or folder of each loaded top-level class.
@@ -43,7 +43,7 @@ impl Session {
         folders.extend(self.frames.iter().rev().map(|frame| frame.folder.clone()));
         folders.extend(folder.map(Path::to_path_buf));
         let packages = self.classes.packages();
-        let files = self.world.files();
+        let files = self.world.reader();
         Resources::new(Arc::new(ModelFiles { files, folders, packages }))
     }
 }

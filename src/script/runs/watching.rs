@@ -7,7 +7,7 @@ use crate::ga::Genomes;
 use crate::identify::{Compared, Quantity, Recorder, Study};
 use crate::script::Session;
 use crate::script::builtins::Failure;
-use crate::script::world::Progress;
+use crate::script::runs::view::Progress;
 use crate::syntax;
 
 const HELP: &str = "\
