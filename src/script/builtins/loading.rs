@@ -108,7 +108,7 @@ fn is_loaded(session: &mut Session, name: &Name) -> bool {
     let found = session.find_class(name);
     let found = session.or_report_all(found);
     if found == Some(false) {
-        let fault = session.unknown_class(name);
+        let fault = session.classes.unknown_class(name);
         session.report_fault(fault);
     }
     found == Some(true)

@@ -9,6 +9,7 @@ mod conversion;
 mod data_files;
 mod executable;
 mod extended;
+pub mod extensions;
 mod files;
 mod gapilib;
 mod header;

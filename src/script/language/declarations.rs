@@ -21,7 +21,7 @@ impl Session {
             let dims = [component.subscripts.as_slice(), &clause.subscripts, &own_dims].concat();
             self.declare_one(component, value_type.clone(), &dims)?;
             if clause.type_prefixes.variability == Some(VariabilityPrefix::Constant) {
-                self.scope.freeze(component.name.node);
+                self.workspace.variables.freeze(component.name.node);
             }
             self.follow_ups.found(component.name.node);
         }

@@ -1,64 +1,20 @@
 //! Libraries: where they are found, and their files as classes are read from them.
 
+use super::library_files::SourceFiles;
 use crate::diag::{Diagnostic, Fault};
 use crate::flatten::LibraryFiles;
 use crate::models;
 use crate::name::{Ident, Name};
 use crate::script::Session;
-use crate::script::access::files::cannot;
 use crate::script::errors::OTHER_VERSION;
-use crate::script::world::{FileReader, normalized};
-use crate::source::{SourceId, SourceMap, Span};
-use crate::syntax;
+use crate::script::world::normalized;
 use crate::syntax::ast::{
     Annotation, Argument, Binding, ClassDefinition, ClassSpecifier, ExpressionKind, Modification,
     Section,
 };
 use crate::{fault, flatten::Library};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, OnceLock};
-
-/// The texts of one library: decoded, and put among the sources of the session.
-#[derive(Debug)]
-pub(super) struct LibraryTexts {
-    files: Arc<dyn FileReader>,
-    sources: SourceMap,
-    /// The working directory, to which shown paths are relative.
-    current: PathBuf,
-    /// The warning about the first file that is not UTF-8.
-    encoding: OnceLock<Diagnostic>,
-    warnings: Warnings,
-}
-
-/// What is to be told about the encodings of libraries.
-pub(super) type Warnings = Arc<Mutex<Vec<Diagnostic>>>;
-
-impl LibraryFiles for LibraryTexts {
-    fn read(&self, path: &Path) -> Result<(SourceId, Arc<str>), Fault> {
-        let bytes = self.files.read(path).map_err(|error| cannot("read", path, &error))?;
-        let (text, warning) = syntax::decode(&bytes);
-        let shown = path.strip_prefix(&self.current).unwrap_or(path).display().to_string();
-        let text: Arc<str> = text.into();
-        let source = self.sources.add(shown, text.clone());
-        if let Some(warning) = warning {
-            let warning = warning.at(Span::new(source, 0, 0)).warning();
-            if self.encoding.set(warning.clone()).is_ok()
-                && let Ok(mut warnings) = self.warnings.lock()
-            {
-                warnings.push(warning);
-            }
-        }
-        Ok((source, text))
-    }
-
-    fn list(&self, folder: &Path) -> Vec<String> {
-        self.files.list_dir(folder).unwrap_or_default()
-    }
-
-    fn is_file(&self, path: &Path) -> bool {
-        self.files.is_file(path)
-    }
-}
+use std::sync::Arc;
 
 impl Session {
     /// Makes the packages in a folder loadable by name.
@@ -69,13 +25,12 @@ impl Session {
 
     /// The files of a library that is going to be loaded.
     pub(super) fn library_texts(&self) -> Arc<dyn LibraryFiles> {
-        Arc::new(LibraryTexts {
-            files: self.world.reader(),
-            sources: self.sources.clone(),
-            current: self.world.current_dir(),
-            encoding: OnceLock::new(),
-            warnings: self.classes.warnings.clone(),
-        })
+        Arc::new(SourceFiles::new(
+            self.world.reader(),
+            self.sources.clone(),
+            self.world.current_dir(),
+            self.classes.warnings.clone(),
+        ))
     }
 
     /// The answer of the library to a question, or what is wrong with the texts that it needed for
@@ -132,7 +87,7 @@ impl Session {
 
     fn folders(&self) -> Vec<PathBuf> {
         let current = self.world.current_dir();
-        let frames = self.frames.iter().rev().flat_map(|frame| frame.folder.ancestors());
+        let frames = self.execution.folders().flat_map(Path::ancestors);
         let models = frames.chain(current.ancestors()).map(|folder| folder.join("models"));
         let own = self.classes.directories().iter().cloned().chain([current.clone()]);
         let all = own.chain(models).chain([PathBuf::from(models::FOLDER)]);
@@ -182,7 +137,7 @@ impl Session {
         }
         for name in names.iter().filter(|name| name.is_simple()) {
             if let Some(fault) = self.other_version(name) {
-                self.report(fault.at(self.call).warning());
+                self.report(fault.at(self.call_site()).warning());
             }
         }
     }
@@ -190,7 +145,7 @@ impl Session {
     /// The `version` annotation of a loaded package; empty without.
     pub(in crate::script) fn class_version(&self, name: &Name) -> Result<String, Fault> {
         let definition = self.classes.library.definition(name);
-        let definition = definition.ok_or_else(|| self.unknown_class(name))?;
+        let definition = definition.ok_or_else(|| self.classes.unknown_class(name))?;
         Ok(version(&definition).unwrap_or_default())
     }
 

@@ -10,7 +10,7 @@
 //! columns of x and u are found in the same way. The slope of each is a state too: where something
 //! depends on it, the model is no system of this form and is refused.
 
-use super::simulation::{self, Translated, Wishes, state_names};
+use super::simulation::{self, Translated, Wishes};
 use crate::causalize;
 use crate::codegen::{Access, Program};
 use crate::diag::{At, Diagnostic, Fault};
@@ -67,7 +67,7 @@ fn linearized_variant(session: &mut Session, wishes: &Wishes) -> Result<Linear, 
     let time = done.table.time.last().copied().unwrap_or(0.0);
     let last =
         |name: &str| Ok::<f64, Fault>(done.table.column(name)?.last().copied().unwrap_or(f64::NAN));
-    let y0: Result<Vec<f64>, Fault> = state_names(&model).map(|name| last(name)).collect();
+    let y0: Result<Vec<f64>, Fault> = model.state_names().map(|name| last(name)).collect();
     let y0 = y0.at(at).map_err(one)?;
     let system = session.system_with_values(&model).map_err(one)?;
     let places = Places::of(&model, &inputs).at(at).map_err(one)?;
@@ -220,7 +220,7 @@ struct Places {
 
 impl Places {
     fn of(model: &Translated, inputs: &[String]) -> Result<Places, Fault> {
-        let names: Vec<String> = state_names(model).map(|name| name.to_string()).collect();
+        let names: Vec<String> = model.state_names().map(|name| name.to_string()).collect();
         let access = |name: &str| {
             let at = model.program.find_variable(name)?;
             match model.program.variables()[at].access {
@@ -286,7 +286,7 @@ impl Places {
         };
         let of_x: Vec<(usize, f64)> = self.states.iter().map(|at| (*at, 1.0)).collect();
         let of_y: Vec<usize> = (n..slopes.nrows()).collect();
-        let names: Vec<String> = state_names(model).map(|name| name.to_string()).collect();
+        let names: Vec<String> = model.state_names().map(|name| name.to_string()).collect();
         let states = self.states.iter().map(|at| names[*at].clone()).collect();
         let variables = model.program.variables();
         let outputs = outputs.iter().map(|at| variables[*at].name.to_string()).collect();

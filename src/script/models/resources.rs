@@ -4,7 +4,7 @@ use crate::diag::Fault;
 use crate::external::{Provide, Resources};
 use crate::name::{Ident, Name};
 use crate::script::Session;
-use crate::script::access::files::{cannot, plain};
+use crate::script::access::faults::{cannot, plain};
 use crate::script::errors::FILE_ERROR;
 use crate::script::world::{FileReader, normalized};
 use std::collections::BTreeMap;
@@ -40,7 +40,7 @@ impl Session {
 
     fn resources_below(&self, folder: Option<&Path>) -> Resources {
         let mut folders = vec![self.world.current_dir()];
-        folders.extend(self.frames.iter().rev().map(|frame| frame.folder.clone()));
+        folders.extend(self.execution.folders().map(Path::to_path_buf));
         folders.extend(folder.map(Path::to_path_buf));
         let packages = self.classes.packages();
         let files = self.world.reader();

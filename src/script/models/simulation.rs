@@ -1,73 +1,25 @@
 //! Models of a session: translated once, simulated many times with other parameters.
 
+use super::changes::Changes;
+use super::compiled::{Current, End};
 use super::continuation::Continued;
-use super::retranslation::{self, Changed, Changes};
+pub use super::translated::Translated;
 use crate::codegen::errors::{ASSERTION_FAILED, CHATTERING, UNDETERMINED};
 use crate::codegen::{Access, Program};
-use crate::diag::{At, Diagnostic, Fault, suggest};
-use crate::flatten::{self, BaseType, Experiment, FlatModel, Variability};
-use crate::name::Ident;
+use crate::diag::{At, Diagnostic, Fault};
+use crate::flatten::{self, Experiment, FlatModel, Variability};
 use crate::results::{ResultTable, Series, Values};
 use crate::runtime::{System, Told, Treated, Undetermined};
 use crate::script::Session;
-use crate::script::errors::{BAD_PARAMETER_VALUE, INTERRUPTED, SHARED_NAME, UNKNOWN_PARAMETER};
+use crate::script::errors::{BAD_PARAMETER_VALUE, INTERRUPTED};
 use crate::sim::{self, OutputGrid, Settings, Simulator, Statistics, Trajectory, Treatment};
 use crate::source::Span;
-use crate::value::Value;
 use crate::{bail, causalize, fault, syntax};
 use indexmap::IndexMap;
 use regex::Regex;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
-
-/// A model ready to be simulated.
-#[derive(Debug)]
-pub struct Translated {
-    /// The class with its modification, as it was asked for.
-    pub problem: String,
-    /// The flat model.
-    pub flat: FlatModel,
-    /// The compiled model.
-    pub program: Arc<Program>,
-}
-
-/// The translated models of a session.
-#[derive(Default)]
-pub(in crate::script) struct Models {
-    known: FxHashMap<String, (u64, Arc<Translated>)>,
-    last: Option<Current>,
-    /// The warnings reported so far.
-    told: FxHashSet<(Span, String)>,
-    /// Where the last simulation ended.
-    end: Option<End>,
-}
-
-/// The end of a simulation: what a later one may begin with.
-#[derive(Debug, Clone)]
-pub(in crate::script) struct End {
-    /// Start and stop time, seconds.
-    pub(in crate::script) span: (f64, f64),
-    /// The states.
-    pub(in crate::script) states: IndexMap<Arc<str>, f64>,
-}
-
-/// The model translated last, with the values that scripts gave to its parameters.
-#[derive(Clone)]
-pub(in crate::script) struct Current {
-    model: Arc<Translated>,
-    overrides: IndexMap<usize, f64>,
-    changes: Changes,
-    /// Values that the states have at the start in place of those of the initial equations.
-    imported: IndexMap<Arc<str>, f64>,
-}
-
-impl Current {
-    fn of(model: Arc<Translated>) -> Current {
-        let (overrides, imported) = (IndexMap::new(), IndexMap::new());
-        Current { model, overrides, changes: Changes::default(), imported }
-    }
-}
 
 /// What a simulation is asked for; `None` where the model's experiment annotation, or else the
 /// default, decides.
@@ -104,20 +56,6 @@ pub struct Simulated {
     pub statistics: Statistics,
 }
 
-impl Models {
-    /// Forgets all models.
-    pub(super) fn forget(&mut self) {
-        self.known.clear();
-        self.told.clear();
-        self.last = None;
-    }
-
-    /// The model translated last.
-    pub(in crate::script) fn last(&self) -> Option<&Arc<Translated>> {
-        self.last.as_ref().map(|current| &current.model)
-    }
-}
-
 /// Translates a model, `Class` or `Class(modification)`: at most once as long as no class changes.
 /// It becomes the model that dotted names of scripts refer to.
 ///
@@ -131,10 +69,7 @@ pub fn translate(session: &mut Session, problem: &str) -> Result<Arc<Translated>
 
 /// Makes a translated model the one that dotted names of scripts refer to.
 pub(in crate::script) fn look_at(session: &mut Session, model: &Arc<Translated>) {
-    let is_last = session.models.last().is_some_and(|last| Arc::ptr_eq(last, model));
-    if !is_last {
-        session.models.last = Some(Current::of(model.clone()));
-    }
+    session.models.refer_to(model);
 }
 
 /// As [`translate`]; the parameters have the values that the model gives them, whatever scripts set
@@ -147,7 +82,7 @@ pub fn translate_anew(
     problem: &str,
 ) -> Result<Arc<Translated>, Vec<Diagnostic>> {
     let model = translated(session, problem)?;
-    session.models.last = Some(Current::of(model.clone()));
+    session.models.refer_anew_to(&model);
     Ok(model)
 }
 
@@ -160,15 +95,13 @@ pub fn translated(
     problem: &str,
 ) -> Result<Arc<Translated>, Vec<Diagnostic>> {
     let revision = session.library_revision();
-    if let Some((then, model)) = session.models.known.get(problem)
-        && *then == revision
-    {
-        return Ok(model.clone());
+    if let Some(model) = session.models.get(problem, revision) {
+        return Ok(model);
     }
     let model = Arc::new(compiled(session, problem)?);
     // Flattening may have loaded packages, which is what the revision counts.
     let revision = session.library_revision();
-    session.models.known.insert(problem.to_owned(), (revision, model.clone()));
+    session.models.keep(revision, &model);
     Ok(model)
 }
 
@@ -187,7 +120,7 @@ pub(super) fn compiled(
 /// Reports the warnings about a model that were not reported yet, whatever it was asked before.
 fn warn(session: &mut Session, warnings: &[Diagnostic]) {
     for warning in warnings {
-        if session.models.told.insert((warning.span(), warning.message.clone())) {
+        if session.models.is_new_warning(warning.span(), &warning.message) {
             session.report(warning.clone());
         }
     }
@@ -232,8 +165,9 @@ pub(in crate::script) fn flattened(
             continue;
         }
         let (flattened, imbalance) = found.map_err(|errors| {
-            let errors = errors.into_iter().map(|error| session.with_misnamed_file(error, &name));
-            errors.map(|error| placed(error, session.call)).collect::<Vec<_>>()
+            let errors =
+                errors.into_iter().map(|error| session.classes.with_misnamed_file(error, &name));
+            errors.map(|error| placed(error, session.call_site())).collect::<Vec<_>>()
         })?;
         if let Some(imbalance) = imbalance {
             return Err(vec![causalize::explain_imbalance(&flattened.model, imbalance)]);
@@ -318,7 +252,7 @@ pub fn simulate(
     model: &Translated,
     wishes: &Wishes,
 ) -> Result<Simulated, Diagnostic> {
-    let call = session.call;
+    let call = session.call_site();
     let mut settings = settings(&model.program.experiment(), wishes).at(call)?;
     settings.cancel = session.world.interrupt_flag();
     settings.reached = wishes.reached.clone();
@@ -365,7 +299,7 @@ fn report_treatments(session: &mut Session, system: &System) {
                  rest there"
             }
         };
-        if session.models.told.insert((*span, words.to_owned())) {
+        if session.models.is_new_warning(*span, words) {
             let message = format!("{words} (from t = {time})");
             session.report(Fault::new(CHATTERING, message).at(*span).warning());
         }
@@ -396,7 +330,7 @@ fn report_undetermined(session: &mut Session, system: &System) {
                 "check whether one of the equations follows from the others",
             )
         };
-        if session.models.told.insert((span, words.clone())) {
+        if session.models.is_new_warning(span, &words) {
             let message = format!("{words} (from t = {time})");
             session.report(Fault::new(UNDETERMINED, message).help(help).at(span).warning());
         }
@@ -425,11 +359,11 @@ fn prepared(
     session: &mut Session,
     model: &Translated,
 ) -> Result<(Option<Arc<Translated>>, Continued), Diagnostic> {
-    let call = session.call;
+    let call = session.call_site();
     let untouched = Continued { system: model.program.system(), states: Vec::new() };
-    let Some(mut current) = session.models.last.take() else { return Ok((None, untouched)) };
+    let Some(mut current) = session.models.current.take() else { return Ok((None, untouched)) };
     if !std::ptr::eq(&*current.model, model) {
-        session.models.last = Some(current);
+        session.models.current = Some(current);
         return Ok((None, untouched));
     }
     let changed = match current.changes.is_empty() {
@@ -437,7 +371,7 @@ fn prepared(
         false => session.changed_model(&current.model.clone(), &mut current.changes),
     };
     let system = changed.map(|changed| (with_values(&current, &changed), changed));
-    session.models.last = Some(current);
+    session.models.current = Some(current);
     match system {
         Ok((system, changed)) => Ok((Some(changed), system.at(call)?)),
         Err(mut errors) => {
@@ -455,7 +389,7 @@ fn with_values(current: &Current, model: &Translated) -> Result<Continued, Fault
         let name = &current.model.program.parameters()[*parameter].name;
         system.set_parameter(model.program.find_parameter(name)?, *value)?;
     }
-    let names = state_names(model);
+    let names = model.state_names();
     let states =
         names.enumerate().filter_map(|(at, name)| Some((at, *current.imported.get(name)?)));
     Ok(Continued { states: states.collect(), system })
@@ -472,7 +406,7 @@ pub fn begin_with(
     time: f64,
 ) -> Result<(), Fault> {
     let mut states = IndexMap::new();
-    for name in state_names(model) {
+    for name in model.state_names() {
         states.insert(name.clone(), result.interpolate(name, &[time])?[0]);
     }
     for parameter in model.program.parameters() {
@@ -482,12 +416,6 @@ pub fn begin_with(
     }
     session.import_states(states);
     Ok(())
-}
-
-/// The names of the states, in their order.
-pub(in crate::script) fn state_names(model: &Translated) -> impl Iterator<Item = &Arc<str>> {
-    let sorted = model.program.sorted();
-    sorted.states.iter().map(|state| &sorted.dae.variable(*state).name)
 }
 
 fn end(model: &Translated, settings: &Settings, trajectory: &Trajectory) -> End {
@@ -502,7 +430,7 @@ fn end(model: &Translated, settings: &Settings, trajectory: &Trajectory) -> End 
         Some((name.clone(), sign * trajectory.column(column).last()?))
     };
     let stop = trajectory.time().last().copied().unwrap_or(settings.stop);
-    End { span: (settings.start, stop), states: state_names(model).filter_map(last).collect() }
+    End { span: (settings.start, stop), states: model.state_names().filter_map(last).collect() }
 }
 
 /// Which columns hold a variable that is wanted.
@@ -561,43 +489,6 @@ fn result_table(
 }
 
 impl Session {
-    /// Gives a parameter of the model translated last a value, by its full name.
-    ///
-    /// # Errors
-    /// A name that is no parameter, or one that cannot be set without translating again.
-    pub fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), Fault> {
-        let Some(current) = &mut self.models.last else {
-            bail!(
-                crate::script::errors::NO_TRANSLATED_MODEL,
-                "`{name}` refers to a component of a model, but no model has been translated";
-                help: "call `translateModel(\"Package.Model\")` first"
-            )
-        };
-        match current.model.program.find_parameter(name) {
-            Ok(index) => {
-                check_value(&current.model, index, value)?;
-                current.overrides.insert(index, value);
-                Ok(())
-            }
-            Err(_) => {
-                match retranslation::change(&mut current.changes, &current.model, name, value) {
-                    Some(Changed::Structure) => {
-                        let problem = current.model.problem.clone();
-                        self.note_structural(name, &problem);
-                        Ok(())
-                    }
-                    Some(Changed::Start) => Ok(()),
-                    None => Err(not_tunable(&current.model, name)),
-                }
-            }
-        }
-    }
-
-    /// The model translated last and the values that it has, to be restored.
-    pub(in crate::script) fn current_values(&self) -> Option<Current> {
-        self.models.last.clone()
-    }
-
     /// Puts a variant of the model translated last, or of what scripts changed it to, in its place;
     /// its parameters have the values that scripts gave. `None`: it stays as it is.
     /// [`Session::restore_values`] takes it back.
@@ -605,8 +496,8 @@ impl Session {
         &mut self,
         variant: impl FnOnce(&Translated) -> Result<Option<Translated>, Diagnostic>,
     ) -> Result<Arc<Translated>, Vec<Diagnostic>> {
-        let (call, one) = (self.call, |error: Diagnostic| vec![error]);
-        let Some(mut current) = self.models.last.clone() else {
+        let (call, one) = (self.call_site(), |error: Diagnostic| vec![error]);
+        let Some(mut current) = self.models.current.clone() else {
             return Err(vec![no_model().at(call)]);
         };
         let changed = match current.changes.is_empty() {
@@ -622,13 +513,8 @@ impl Session {
         }
         let imported = current.imported;
         let changes = Changes::default();
-        self.models.last = Some(Current { model: model.clone(), overrides, changes, imported });
+        self.models.current = Some(Current { model: model.clone(), overrides, changes, imported });
         Ok(model)
-    }
-
-    /// Takes back what was set since.
-    pub(in crate::script) fn restore_values(&mut self, before: Option<Current>) {
-        self.models.last = before;
     }
 
     /// A system of the model with the values that scripts gave to it.
@@ -636,130 +522,22 @@ impl Session {
         Ok(prepared(self, model)?.1.system)
     }
 
-    /// Where the last simulation ended.
-    pub(in crate::script) fn last_end(&self) -> Option<&End> {
-        self.models.end.as_ref()
-    }
-
-    /// Gives the states of the model translated last values at the start of its next simulations,
-    /// whatever its initial equations say; none to take them back.
-    pub(in crate::script) fn import_states(&mut self, states: IndexMap<Arc<str>, f64>) {
-        if let Some(current) = &mut self.models.last {
-            current.imported = states;
-        }
-    }
-
-    /// A script variable with the name of a parameter of the model translated last gives the
-    /// parameter its value too; said once for each name.
-    pub(in crate::script) fn share_with_model(
+    /// The model with these changes, translated again if need be.
+    fn changed_model(
         &mut self,
-        name: Ident,
-        value: &Value,
-    ) -> Result<(), Fault> {
-        let Some(current) = &self.models.last else { return Ok(()) };
-        let model = current.model.clone();
-        let declared = model.flat.variables.get(name.as_str());
-        let is_parameter =
-            declared.is_some_and(|v| v.top_level && v.variability == Variability::Parameter);
-        if !is_parameter {
-            return Ok(());
+        model: &Arc<Translated>,
+        changes: &mut Changes,
+    ) -> Result<Arc<Translated>, Vec<Diagnostic>> {
+        if let Some(known) = changes.model() {
+            return Ok(known.clone());
         }
-        let is_tunable = model.program.find_parameter(name.as_str()).is_ok();
-        let number = value.as_real().or(match value {
-            Value::Boolean(value) => Some(f64::from(*value)),
-            _ => None,
-        });
-        let set = match number {
-            Some(number) if is_tunable => self.set_parameter(name.as_str(), number).map(|()| true),
-            Some(number) => Ok(self.set_parameter(name.as_str(), number).is_ok()),
-            None => Ok(false),
-        };
-        let consequence = match set? {
-            true => "the parameter is set as well".to_owned(),
-            false => {
-                format!("the parameter keeps its value: {}", not_tunable(&model, name.as_str()))
-            }
-        };
-        if self.shared.insert(name) {
-            let problem = &model.problem;
-            self.note(
-                SHARED_NAME,
-                format!("`{name}` is also a parameter of `{problem}`: {consequence}"),
-            );
-        }
-        Ok(())
-    }
-
-    /// The value that a parameter of the model translated last has, or `None` if the model has no
-    /// such parameter.
-    pub(super) fn parameter_value(&self, name: &str) -> Option<f64> {
-        let current = self.models.last.as_ref()?;
-        let index = current.model.program.find_parameter(name).ok()?;
-        let default = current.model.program.parameters()[index].default;
-        Some(current.overrides.get(&index).copied().unwrap_or(default))
+        let changed = Arc::new(compiled(self, &changes.problem(model)?)?);
+        changes.keep_model(changed.clone());
+        Ok(changed)
     }
 }
 
 fn no_model() -> Fault {
     fault!(crate::script::errors::NO_TRANSLATED_MODEL, "no model has been translated";
         help: "call `translateModel(\"Package.Model\")` first")
-}
-
-fn check_value(model: &Translated, index: usize, value: f64) -> Result<(), Fault> {
-    let parameter = &model.program.parameters()[index];
-    let name = &parameter.name;
-    if value.is_nan() {
-        bail!(BAD_PARAMETER_VALUE, "`{name}` cannot be NaN");
-    }
-    if value.fract() != 0.0 && parameter.base != BaseType::Real {
-        bail!(BAD_PARAMETER_VALUE, "`{name}` needs a whole number, but the value is {value}");
-    }
-    let domain = match (parameter.min.is_finite(), parameter.max.is_finite()) {
-        (true, true) => format!("outside {} to {}", parameter.min, parameter.max),
-        (true, false) => format!("less than {}", parameter.min),
-        _ => format!("more than {}", parameter.max),
-    };
-    if value < parameter.min || value > parameter.max {
-        bail!(
-            BAD_PARAMETER_VALUE,
-            "`{name}` is {value}, {domain}, outside the range declared in the model";
-            help: "choose another value, or change `min` and `max` in the model"
-        );
-    }
-    Ok(())
-}
-
-/// A modification of an element at some depth: `a(b(c = …))`.
-fn nested_modification(name: &str) -> String {
-    let parts: Vec<&str> = name.split('.').collect();
-    format!("{} = …{}", parts.join("("), ")".repeat(parts.len() - 1))
-}
-
-/// Why a name cannot be assigned in the model.
-fn not_tunable(model: &Translated, name: &str) -> Fault {
-    let problem = &model.problem;
-    match model.flat.variables.get(name) {
-        Some(variable) if variable.variability <= Variability::Parameter => {
-            let reason = match () {
-                () if variable.variability == Variability::Constant => "it is a constant",
-                () if variable.is_final => "it is final",
-                () if variable.structural || variable.evaluate => {
-                    "it is a structural parameter, evaluated at translation"
-                }
-                () => "it is an array or not a number",
-            };
-            fault!(BAD_PARAMETER_VALUE, "`{name}` of `{problem}` cannot be set: {reason}";
-                help: "set it by a modification, `{problem}({})`", nested_modification(name))
-        }
-        Some(_) => fault!(UNKNOWN_PARAMETER, "`{name}` of `{problem}` is not a parameter";
-            help: "the equations determine its value; set the parameters that it depends on"),
-        None => {
-            let names = model.program.parameters().iter().map(|parameter| &*parameter.name);
-            let own = name.strip_prefix(problem.as_str()).and_then(|rest| rest.strip_prefix('.'));
-            let own = own.filter(|own| model.program.find_parameter(own).is_ok());
-            fault!(UNKNOWN_PARAMETER, "`{problem}` has no parameter `{name}`")
-                .help_if(own.map(|own| format!("write `{own}`, without the name of the model")))
-                .help_if(suggest::did_you_mean(name, names))
-        }
-    }
 }

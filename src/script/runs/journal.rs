@@ -16,7 +16,7 @@ use crate::identify::problem::{Fingerprint, Origins, first_frame, frame, listed}
 use crate::identify::{FailedSimulation, Simulated};
 use crate::registry::BAD_OPTION;
 use crate::script::builtins::Failure;
-use crate::script::session::Stop;
+use crate::script::language::execution::Stop;
 use crate::script::{Journaling, Session};
 use crate::source::SourceId;
 use serde::{Deserialize, Serialize};
@@ -181,7 +181,7 @@ impl Session {
     /// The earlier run is another one: nothing more is done, and its checkpoint stays as it is.
     pub(super) fn refuse_to_resume(&mut self) {
         self.extension::<Journal>().checkpoint = None;
-        self.stop.get_or_insert(Stop::Error);
+        self.execution.stop_for(Stop::Error);
     }
 
     /// Whether the answer taken last from the earlier run is to be computed again: the first and
@@ -249,7 +249,7 @@ fn close(session: &mut Session) -> Result<(), Diagnostic> {
         return Ok(());
     };
     let is_written = session.world.exists(checkpoint.path());
-    let has_errors = session.messages.unread_errors() > 0;
+    let has_errors = session.output.messages.unread_errors() > 0;
     if session.is_interrupted() || (has_errors && is_written) {
         let now = session.world.monotonic_seconds();
         checkpoint.flush(session, now);

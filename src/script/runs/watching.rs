@@ -20,7 +20,7 @@ impl Session {
     /// How far the run is: the generations seen, of as many as the loop that the script is in has
     /// turns.
     pub(super) fn show_run(&mut self, study: &Study, genomes: &Genomes) {
-        let turns = match self.loop_turn() {
+        let turns = match self.loop_iteration() {
             Some((_, Some(turns))) => turns as u64,
             _ => 0,
         };
@@ -48,7 +48,7 @@ impl Session {
         if !self.world.wants_pause() {
             return Ok(());
         }
-        if self.in_function {
+        if self.execution.is_in_function() {
             self.world
                 .eprint("`Eval` is called in a function, whose variables cannot be changed\n");
             return Ok(());

@@ -23,7 +23,6 @@ pub(super) const CYCLES: &[(&str, &[usize], &str)] = &[
         &[20],
         "`Builder` is the target of all lowering, and lowers functions through itself",
     ),
-    ("script", &[11], "`Session` has the state of all its parts in one structure"),
 ];
 
 const PER_CASE: &str = "one arm for every case of the enumeration, each short";
