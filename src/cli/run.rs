@@ -163,7 +163,7 @@ fn write_transcript(
         .map_err(|error| format!("error: `{}` cannot be written: {error}\n", path.display()))
 }
 
-/// A transcript does not tell where it was made.
+/// A transcript does not say where it was made.
 pub(super) fn without_folders(text: &str, start: &Path, output: &Path) -> String {
     let output = crate::script::world::normalized(output);
     let text = text.replace(&*output.to_string_lossy(), "<output>");

@@ -103,7 +103,7 @@ impl SystemWorld {
         self.stopping.clone()
     }
 
-    /// Makes Ctrl-C and the system's wishes to end ask the run to stop; a second one ends the
+    /// Makes Ctrl-C and the requests of the system to end ask the run to stop; a second one ends the
     /// process at once.
     pub(super) fn catch_interrupts(&self) {
         let flag = Arc::clone(&self.stopping.flag);

@@ -59,7 +59,7 @@ pub struct Options {
     pub echo: Echo,
     /// What an error does.
     pub strictness: Strictness,
-    /// Whether errors alone are told on standard error, no warnings and notes.
+    /// Whether only errors are written to standard error, no warnings and notes.
     pub quiet: bool,
     /// What scripts may do outside.
     pub permissions: Permissions,

@@ -204,7 +204,7 @@ impl FileReader for Disk {
             return Ok(bytes.to_vec());
         }
         match self.is_named_device(Access::Read, path) {
-            true => super::named::read(path),
+            true => super::device::read(path),
             false => self.to_read(path)?.read(),
         }
     }

@@ -188,7 +188,7 @@ impl Place {
     }
 
     /// Writes beside the file and renames, so that an interrupted write leaves the old file whole.
-    /// `note` is told of the new file before it takes the name.
+    /// `note` is called with the new file before it takes the name.
     pub(super) fn write(
         &self,
         content: Content<'_>,

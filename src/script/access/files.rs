@@ -75,7 +75,7 @@ impl Session {
     }
 
     /// Whether a folder (`Some(true)`) or a file has this path, as a script asks: what may not be
-    /// read is not told either. That the folders above the working directory exist is no secret.
+    /// read stays unknown. That the folders above the working directory exist is no secret.
     pub(in crate::script) fn kind_of(&self, path: &Path) -> Result<Option<bool>, Fault> {
         let path = normalized(&self.world.absolute(&self.expanded(path)));
         if !self.world.current_dir().starts_with(&path) {

@@ -48,8 +48,8 @@ impl Session {
             Ok(value) => Some(value),
             Err(errors) => {
                 // The script that is being stopped says that it was interrupted.
-                let told = errors.into_iter().filter(|error| error.code != INTERRUPTED);
-                told.for_each(|error| self.report(error));
+                let reported = errors.into_iter().filter(|error| error.code != INTERRUPTED);
+                reported.for_each(|error| self.report(error));
                 None
             }
         }

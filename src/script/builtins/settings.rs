@@ -145,7 +145,7 @@ end setDebugFlags;
 "#;
 
 const SET_COMPILER_FLAGS: &str = r#"
-function setCompilerFlags "Accepts flags of a C compiler; they have no effect: there is no C compiler here."
+function setCompilerFlags "Accepts flags of a C compiler; they have no effect: models are compiled to machine code without a C compiler."
   input String compilerFlags;
   output Boolean success;
 end setCompilerFlags;

@@ -172,11 +172,11 @@ fn convert_clear(_: &mut Session, _: Args) -> Result<Value, Failure> {
 
 fn names(args: &mut Args, input: &str) -> Result<Vec<Name>, Fault> {
     let value: Value = args.take(input)?;
-    let texts: Vec<String> = match value {
+    let names: Vec<String> = match value {
         Value::String(text) => vec![text.to_string()],
         other => crate::value::FromValue::from_value(other)?,
     };
-    Ok(texts.iter().map(|text| Name::parse(text)).collect())
+    Ok(names.iter().map(|name| Name::parse(name)).collect())
 }
 
 /// `p=value`, or `p` alone.

@@ -12,7 +12,7 @@ pub struct FollowUps {
     missing: HashSet<Ident>,
     /// A script that was not run to its end ran others: anything may be missing.
     anything: bool,
-    told: bool,
+    reported: bool,
 }
 
 impl FollowUps {
@@ -28,12 +28,12 @@ impl FollowUps {
         }
     }
 
-    /// Whether this is the first follow-up, the only one that is told.
+    /// Whether this is the first follow-up, the only one that is reported.
     pub fn is_first(&mut self) -> bool {
-        !std::mem::replace(&mut self.told, true)
+        !std::mem::replace(&mut self.reported, true)
     }
 
-    /// The statement was executed, but not to its end: the scripts that it runs told themselves
+    /// The statement was executed, but not to its end: the scripts that it runs noted themselves
     /// what they did not do.
     pub fn failed(&mut self, statement: &InteractiveStatement) {
         let anything = self.anything;

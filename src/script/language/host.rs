@@ -143,8 +143,8 @@ impl Host for Session {
         names
     }
 
-    fn loop_turn(&mut self, turn: usize, turns: Option<usize>) {
-        self.execution.iterate((turn, turns));
+    fn loop_turn(&mut self, iteration: usize, iterations: Option<usize>) {
+        self.execution.iterate((iteration, iterations));
     }
 
     fn interrupted(&mut self) -> Option<Fault> {

@@ -40,7 +40,7 @@ impl Log {
         each.filter(|text| !text.is_empty()).map(|text| format!("{text};\n")).collect()
     }
 
-    /// Statements and answers in turn, as a transcript has them.
+    /// Statements and answers alternately, as a transcript has them.
     pub fn text(&self, sources: &SourceMap) -> String {
         let starts = self.statements.iter().map(|(_, start)| *start);
         let ends = starts.clone().skip(1).chain([self.answers.len()]);

@@ -215,7 +215,7 @@ impl Session {
             self.note(SCRIPT_NOT_FOUND, message);
             return Ok(path);
         }
-        // Whether there is a file that may not be read is not told.
+        // Whether there is a file that may not be read stays unknown.
         self.may(Access::Read, &plain)?;
         let fault = Fault::new(SCRIPT_NOT_FOUND, format!("there is no script `{name}`"));
         let [own, working] = folders.each_ref().map(|folder| folder.display());

@@ -21,7 +21,7 @@ pub struct Classes {
     /// Those that are nowhere.
     nowhere: HashSet<Ident>,
     /// Files that were loaded for the class that they are named after and do not define it. They
-    /// stay here when other classes are loaded, or two of them would be loaded in turn for ever.
+    /// stay here when other classes are loaded, or two of them would be loaded alternately without end.
     misnamed: BTreeMap<Ident, PathBuf>,
     /// Functions that loaded ones call and that are no classes: copies for functions passed to them.
     copies: HashMap<Name, Arc<Function>>,
@@ -35,7 +35,7 @@ pub struct Classes {
     files: BTreeMap<Name, PathBuf>,
     /// The versions of libraries that were asked for.
     pub(super) versions: BTreeMap<Ident, String>,
-    /// What is to be told about the encodings of libraries.
+    /// Warnings about the encodings of libraries.
     pub(super) warnings: Warnings,
 }
 

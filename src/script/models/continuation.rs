@@ -7,7 +7,7 @@ use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
 /// other variables follow from them. Discrete variables keep the values that initialization gave
 /// them.
 pub(super) struct Continued {
-    /// The system, which can tell its parameters afterwards.
+    /// The system, whose parameters can be read afterwards.
     pub(super) system: System,
     /// Positions among the states, and values.
     pub(super) states: Vec<(usize, f64)>,

@@ -24,7 +24,7 @@ impl Session {
     }
 
     /// The files of a library that is going to be loaded.
-    pub(super) fn library_texts(&self) -> Arc<dyn LibraryFiles> {
+    pub(super) fn library_files(&self) -> Arc<dyn LibraryFiles> {
         Arc::new(SourceFiles::new(
             self.world.reader(),
             self.sources.clone(),
@@ -33,7 +33,7 @@ impl Session {
         ))
     }
 
-    /// The answer of the library to a question, or what is wrong with the texts that it needed for
+    /// The answer of the library to a question, or what is wrong with the files that it needed for
     /// it. Tells the warnings about them.
     pub(in crate::script) fn ask_library<T>(
         &mut self,
@@ -174,9 +174,9 @@ impl Session {
             return Ok(());
         }
         let path = Path::new(models::FOLDER).join("Modelica").join("SIunits.mo");
-        let texts = self.library_texts();
-        if texts.is_file(&path) {
-            self.classes.library.load_lazily(&texts, &path, &modelica)?;
+        let files = self.library_files();
+        if files.is_file(&path) {
+            self.classes.library.load_lazily(&files, &path, &modelica)?;
         }
         Ok(())
     }

@@ -35,7 +35,7 @@ impl Session {
     /// folder, and reads all of it. Returns the names of the classes.
     ///
     /// # Errors
-    /// What is wrong with the texts; then nothing may be relied on of what they define.
+    /// What is wrong with the files; then nothing may be relied on of what they define.
     pub fn load_path(&mut self, path: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {
         let Some(mut found) = self.find_file(path) else {
             return Err(vec![self.missing_file(path).at(self.call_site())]);
@@ -111,10 +111,10 @@ impl Session {
     /// Loads a package from its folder; its classes are read when they are needed.
     fn load_library(&mut self, folder: &Path, around: &Name) -> Result<Vec<Name>, Vec<Diagnostic>> {
         self.classes.invalidate();
-        let texts = self.library_texts();
+        let files = self.library_files();
         let one = |error: Diagnostic| vec![error];
         let names =
-            self.ask_library(|library| library.load_lazily(&texts, folder, around).map_err(one))?;
+            self.ask_library(|library| library.load_lazily(&files, folder, around).map_err(one))?;
         self.classes.note_files(&names, folder);
         self.supply_units(&names).map_err(one)?;
         self.note_versions(&names);
@@ -189,7 +189,7 @@ impl Session {
     /// Whether a class of this name is loaded or can be.
     ///
     /// # Errors
-    /// What is wrong with the texts that would tell.
+    /// What is wrong with the files that were read.
     pub(in crate::script) fn find_class(&mut self, name: &Name) -> Result<bool, Vec<Diagnostic>> {
         self.autoload(name)?;
         self.ask_library(|library| Ok(library.contains(name)))

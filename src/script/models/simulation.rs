@@ -24,7 +24,7 @@ use std::sync::atomic::AtomicU64;
 /// What a simulation is asked for; `None` where the model's experiment annotation, or else the
 /// default, decides.
 #[derive(Debug, Clone, Default)]
-pub struct Wishes {
+pub struct SimulationOptions {
     /// Start time, seconds (0).
     pub start: Option<f64>,
     /// Stop time, seconds (1).
@@ -43,7 +43,7 @@ pub struct Wishes {
     pub stops_at_chattering: bool,
     /// Which variables the results hold, by their names; all where nothing is said.
     pub only: Option<Regex>,
-    /// Where the time reached is told, as the bits of an `f64`.
+    /// Where the time reached is written, as the bits of an `f64`.
     pub reached: Option<Arc<AtomicU64>>,
 }
 
@@ -198,14 +198,14 @@ pub(super) fn placed(diagnostic: Diagnostic, call: Span) -> Diagnostic {
 /// The most intervals of an output: its columns are arrays of scripts, which have no more elements.
 const MOST_INTERVALS: usize = crate::value::MAX_ELEMENTS - 1;
 
-/// The settings that wishes, the experiment annotation and the defaults make together.
+/// The settings that options, the experiment annotation and the defaults make together.
 ///
 /// # Errors
 /// An unknown method, or a number outside its domain.
-pub fn settings(experiment: &Experiment, wishes: &Wishes) -> Result<Settings, Fault> {
+pub fn settings(experiment: &Experiment, options: &SimulationOptions) -> Result<Settings, Fault> {
     let defaults = Settings::default();
-    let start = wishes.start.or(experiment.start_time).unwrap_or(defaults.start);
-    let stop = wishes.stop.or(experiment.stop_time).unwrap_or(start + defaults.stop);
+    let start = options.start.or(experiment.start_time).unwrap_or(defaults.start);
+    let stop = options.stop.or(experiment.stop_time).unwrap_or(start + defaults.stop);
     if !(start.is_finite() && stop.is_finite() && start <= stop) {
         bail!(
             crate::registry::BAD_OPTION,
@@ -213,7 +213,7 @@ pub fn settings(experiment: &Experiment, wishes: &Wishes) -> Result<Settings, Fa
         );
     }
     let of_interval = |interval: f64| ((stop - start) / interval).round().max(1.0) as usize;
-    let intervals = match (wishes.intervals, wishes.interval.or(experiment.interval)) {
+    let intervals = match (options.intervals, options.interval.or(experiment.interval)) {
         (Some(intervals), _) => Some(intervals),
         (None, Some(interval)) if interval > 0.0 => Some(of_interval(interval)),
         _ => None,
@@ -223,11 +223,11 @@ pub fn settings(experiment: &Experiment, wishes: &Wishes) -> Result<Settings, Fa
             "the output from {start} to {stop} has more than {MOST_INTERVALS} intervals";
             help: "use a longer `outputInterval` or a smaller `numberOfIntervals`");
     }
-    let tolerance = wishes.tolerance.or(experiment.tolerance).unwrap_or(defaults.tolerance);
+    let tolerance = options.tolerance.or(experiment.tolerance).unwrap_or(defaults.tolerance);
     if !(1e-14..=0.1).contains(&tolerance) {
         bail!(crate::registry::BAD_OPTION, "`tolerance` is {tolerance}, outside 1e-14 to 0.1");
     }
-    let method = match &wishes.method {
+    let method = match &options.method {
         Some(name) => sim::find_integrator(name)?,
         None => defaults.method,
     };
@@ -237,8 +237,8 @@ pub fn settings(experiment: &Experiment, wishes: &Wishes) -> Result<Settings, Fa
         output: intervals.map_or(defaults.output, OutputGrid::Intervals),
         tolerance,
         method,
-        step: wishes.fixed_step.filter(|step| *step > 0.0),
-        treats_chattering: !wishes.stops_at_chattering,
+        step: options.fixed_step.filter(|step| *step > 0.0),
+        treats_chattering: !options.stops_at_chattering,
         ..Settings::default()
     })
 }
@@ -250,21 +250,21 @@ pub fn settings(experiment: &Experiment, wishes: &Wishes) -> Result<Settings, Fa
 pub fn simulate(
     session: &mut Session,
     model: &Translated,
-    wishes: &Wishes,
+    options: &SimulationOptions,
 ) -> Result<Simulated, Diagnostic> {
     let call = session.call_site();
-    let mut settings = settings(&model.program.experiment(), wishes).at(call)?;
+    let mut settings = settings(&model.program.experiment(), options).at(call)?;
     settings.cancel = session.world.interrupt_flag();
-    settings.reached = wishes.reached.clone();
+    settings.reached = options.reached.clone();
     let (changed, mut system) = prepared(session, model)?;
     let model = changed.as_deref().unwrap_or(model);
-    let mut trajectory = match &wishes.only {
+    let mut trajectory = match &options.only {
         Some(only) => Trajectory::keeping(wanted_columns(model, only)),
         None => Trajectory::default(),
     };
     system.system.listen();
     let run = Simulator::new().run(&mut system, &settings, &mut trajectory);
-    tell(session, &system.system);
+    report_log(session, &system.system);
     report_treatments(session, &system.system);
     report_undetermined(session, &system.system);
     let written = system.system.journal().carry_out(session).at(call);
@@ -272,7 +272,7 @@ pub fn simulate(
         Ok(statistics) => {
             written?;
             session.models.end = Some(end(model, &settings, &trajectory));
-            let table = result_table(model, &system.system, trajectory, wishes.only.as_ref());
+            let table = result_table(model, &system.system, trajectory, options.only.as_ref());
             Ok(Simulated { table, statistics })
         }
         Err(_) if session.world.interrupted() => {
@@ -337,10 +337,10 @@ fn report_undetermined(session: &mut Session, system: &System) {
     }
 }
 
-/// What the model has told while it was simulated.
-fn tell(session: &mut Session, system: &System) {
-    let (told, omitted) = system.told();
-    for Told { time, text, is_warning, span } in told {
+/// The log messages of the simulation.
+fn report_log(session: &mut Session, system: &System) {
+    let (messages, omitted) = system.told();
+    for Told { time, text, is_warning, span } in messages {
         if is_warning {
             let message = format!("{text} (at t = {time})");
             session.report(Fault::new(ASSERTION_FAILED, message).at(span).warning());

@@ -32,7 +32,7 @@ pub(super) struct Journal {
     replay: VecDeque<Entry>,
     /// What the entries depend on, as it was noted last.
     noted: Origins,
-    /// What the next entry depends on, and how many texts were looked at for it.
+    /// What the next entry depends on, and how many sources were looked at for it.
     origins: Option<(Origins, u32)>,
     /// Answers taken from the earlier run.
     answered: usize,
@@ -44,7 +44,7 @@ enum Entry {
     Simulated { asked: u64, rows: Vec<f64>, failures: Vec<(u32, String, Option<f64>)> },
     /// The user typed this.
     Typed(String),
-    /// What the next answers depend on: the Modelica texts read so far, and the program.
+    /// What the next answers depend on: the Modelica sources read so far, and the program.
     From(Origins),
 }
 
@@ -148,7 +148,7 @@ impl Session {
         origins
     }
 
-    /// The Modelica texts that were read from the text number `seen` on, as files to name when they
+    /// The Modelica sources that were read from the source number `seen` on, as files to name when they
     /// change.
     pub(super) fn add_models_read(&self, origins: &mut Origins, seen: &mut u32) {
         while let Some(source) = self.sources.get(SourceId(*seen)) {

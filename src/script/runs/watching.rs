@@ -18,17 +18,17 @@ const PROMPT: &str = "> ";
 
 impl Session {
     /// How far the run is: the generations seen, of as many as the loop that the script is in has
-    /// turns.
+    /// iterations.
     pub(super) fn show_run(&mut self, study: &Study, genomes: &Genomes) {
-        let turns = match self.loop_iteration() {
-            Some((_, Some(turns))) => turns as u64,
+        let iterations = match self.loop_iteration() {
+            Some((_, Some(iterations))) => iterations as u64,
             _ => 0,
         };
         let recorder = &self.identification().recorder;
         let progress = Progress {
             label: "generation".to_owned(),
             done: recorder.history.generations.len() as u64,
-            total: turns,
+            total: iterations,
             best: recorder.best.as_ref().map(|best| best.fitness),
             failures: recorder.failures,
         };
