@@ -28,11 +28,11 @@ const DEFAULT: &str = ", three quarters of the available memory (change it with 
 #[derive(Debug, Clone, Default)]
 pub(super) struct Stopping {
     /// Set when it has to stop.
-    pub(super) flag: Arc<AtomicBool>,
+    pub flag: Arc<AtomicBool>,
     /// Why, where it was not the user who asked.
-    pub(super) reason: Arc<Mutex<Option<String>>>,
+    pub reason: Arc<Mutex<Option<String>>>,
     /// Set when the run has seen the flag.
-    pub(super) noticed: Arc<AtomicBool>,
+    pub noticed: Arc<AtomicBool>,
 }
 
 impl Stopping {

@@ -40,7 +40,7 @@ pub struct Session {
     pub(super) classes: Classes,
     pub(super) models: CompiledModels,
     /// The dialect that the outermost script shows, where none was asked for.
-    pub(super) recognized: Dialect,
+    pub recognized: Dialect,
     extensions: Extensions,
     at_end: Vec<AtEnd>,
 }
@@ -158,7 +158,7 @@ impl Session {
     }
 
     /// What remains to be done when the outermost script ends, and how it ended.
-    pub(super) fn finish(&mut self) -> RunStatus {
+    pub fn finish(&mut self) -> RunStatus {
         for work in std::mem::take(&mut self.at_end) {
             if let Err(diagnostic) = work(self) {
                 self.report(diagnostic);

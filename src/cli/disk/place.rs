@@ -29,7 +29,7 @@ pub(super) struct Place {
     missing: Vec<OsString>,
     name: OsString,
     /// The path without links and dots.
-    pub(super) real: PathBuf,
+    pub real: PathBuf,
     kind: Option<FileType>,
     mode: u32,
 }

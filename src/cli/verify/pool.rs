@@ -19,7 +19,7 @@ pub(super) struct Watch {
     /// The stages entered and when, seconds after the beginning.
     entered: Mutex<Vec<(Stage, Instant)>>,
     /// Whether the work is no longer wanted.
-    pub(super) cancel: Arc<AtomicBool>,
+    pub cancel: Arc<AtomicBool>,
 }
 
 /// How the work on a case ended.

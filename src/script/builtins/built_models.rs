@@ -14,15 +14,15 @@ use std::sync::Arc;
 #[derive(Clone)]
 pub(super) struct Executable {
     /// The model, whatever becomes of its class afterwards.
-    pub(super) model: Arc<Translated>,
+    pub model: Arc<Translated>,
     /// The settings of the simulation.
-    pub(super) options: SimulationOptions,
+    pub options: SimulationOptions,
     /// The ending of its result file.
-    pub(super) format: String,
+    pub format: String,
     /// The names that are stored.
-    pub(super) filter: Regex,
+    pub filter: Regex,
     /// Flags that every run has.
-    pub(super) flags: String,
+    pub flags: String,
 }
 
 /// The models that were built, by the names of their programs, and what scripts wrote into their

@@ -140,9 +140,9 @@ fn get_component_count(session: &mut Session, mut args: Args) -> Result<Value, F
 
 /// A component with its clause and the section it stands in.
 pub(super) struct Component<'c> {
-    pub(super) clause: &'c ComponentClause,
-    pub(super) one: &'c ComponentDeclaration,
-    pub(super) protected: bool,
+    pub clause: &'c ComponentClause,
+    pub one: &'c ComponentDeclaration,
+    pub protected: bool,
 }
 
 /// The names of the components that a class declares itself.

@@ -17,9 +17,9 @@ pub(super) struct SimulationFlags {
     tolerance: Option<f64>,
     method: Option<String>,
     /// `-r`: the file for the results.
-    pub(super) result: Option<String>,
+    pub result: Option<String>,
     /// `-f`: the init file, of which the values are known that scripts wrote into it.
-    pub(super) init_file: Option<String>,
+    pub init_file: Option<String>,
     idle: Vec<String>,
 }
 

@@ -47,11 +47,11 @@ pub(super) fn begin_at(session: &mut Session, start: f64, stop: Option<f64>) {
 /// What `simulateModel` and its relatives are asked for.
 pub(super) struct Request {
     /// The model; empty for the one used last.
-    pub(super) problem: String,
+    pub problem: String,
     /// How it is simulated.
-    pub(super) options: SimulationOptions,
+    pub options: SimulationOptions,
     /// The result file.
-    pub(super) file: String,
+    pub file: String,
 }
 
 impl Request {

@@ -16,10 +16,7 @@ const ASKING: &str = "'a question'";
 impl Session {
     /// What a dotted name or the name of an import stands for, if that is a constant of a package,
     /// a field of one, a literal of an enumeration, or an enumeration: all its values.
-    pub(super) fn constant(
-        &mut self,
-        reference: &ComponentReference,
-    ) -> Result<Option<Value>, Fault> {
+    pub fn constant(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Fault> {
         if reference.parts.iter().any(|part| !part.subscripts.is_empty()) {
             return Ok(None);
         }
@@ -67,7 +64,7 @@ impl Session {
     ///
     /// # Errors
     /// There is no such class, or it is no type with values.
-    pub(super) fn declared_type(
+    pub fn declared_type(
         &mut self,
         name: &Name,
         span: Span,

@@ -14,7 +14,7 @@ impl Session {
     }
 
     /// The statement itself, which Dymola repeats in its log.
-    pub(super) fn echo_input(&mut self, span: Span) {
+    pub fn echo_input(&mut self, span: Span) {
         let wanted = self.options.echo == Echo::Everything && self.dialect() == Dialect::Dymola;
         if wanted && self.may_echo() {
             let end = if self.sources.is_followed_by(span, ';') { ";" } else { "" };
@@ -24,7 +24,7 @@ impl Session {
     }
 
     /// The value of an expression that is a statement.
-    pub(super) fn echo_value(&mut self, expression: &Expression, value: &Value) {
+    pub fn echo_value(&mut self, expression: &Expression, value: &Value) {
         if !self.execution.is_at_top() || self.output.is_muted() {
             return;
         }
@@ -88,7 +88,7 @@ impl Session {
     }
 
     /// A first assignment, which Dymola announces; the value, which OpenModelica shows.
-    pub(super) fn echo_assignment(&mut self, name: Ident, is_new: bool) {
+    pub fn echo_assignment(&mut self, name: Ident, is_new: bool) {
         match self.dialect() {
             Dialect::OpenModelica if self.may_echo() => {
                 if let Some(value) = self.workspace.variables.get(name).cloned() {
@@ -101,7 +101,7 @@ impl Session {
     }
 
     /// A variable that an assignment made, as Dymola announces it.
-    pub(super) fn echo_declaration(&mut self, name: Ident) {
+    pub fn echo_declaration(&mut self, name: Ident) {
         let wanted = self.dialect() == Dialect::Dymola
             && matches!(self.options.echo, Echo::Everything | Echo::Dialogue)
             && self.may_echo();
@@ -118,7 +118,7 @@ impl Session {
     }
 
     /// The empty line that OpenModelica prints for a statement without a value.
-    pub(super) fn echo_nothing(&mut self) {
+    pub fn echo_nothing(&mut self) {
         if self.dialect() == Dialect::OpenModelica && self.may_echo() {
             self.print("\n");
         }

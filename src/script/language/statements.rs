@@ -80,7 +80,7 @@ impl Session {
     }
 
     /// The value of an expression among the script's variables.
-    pub(super) fn evaluate(&mut self, expression: &Expression) -> Result<Value, Diagnostic> {
+    pub fn evaluate(&mut self, expression: &Expression) -> Result<Value, Diagnostic> {
         self.with_scope(|scope, session| eval::evaluate(expression, scope, session))
     }
 
@@ -188,7 +188,7 @@ impl Session {
     }
 
     /// What a name without a variable stands for in the model translated last, or why nothing.
-    pub(super) fn follow_up(&self, name: Ident, span: Span) -> Option<Diagnostic> {
+    pub fn follow_up(&self, name: Ident, span: Span) -> Option<Diagnostic> {
         if !self.follow_ups.is_missing(name) {
             return None;
         }

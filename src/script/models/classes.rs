@@ -34,9 +34,9 @@ pub struct Classes {
     /// The file of each top-level class that came from one.
     files: BTreeMap<Name, PathBuf>,
     /// The versions of libraries that were asked for.
-    pub(super) versions: BTreeMap<Ident, String>,
+    pub versions: BTreeMap<Ident, String>,
     /// Warnings about the encodings of libraries.
-    pub(super) warnings: Warnings,
+    pub warnings: Warnings,
 }
 
 impl Classes {
@@ -51,7 +51,7 @@ impl Classes {
     }
 
     /// Folders whose packages are loaded when somebody names them.
-    pub(super) fn directories(&self) -> &[PathBuf] {
+    pub fn directories(&self) -> &[PathBuf] {
         &self.directories
     }
 
@@ -62,13 +62,13 @@ impl Classes {
     }
 
     /// The files or folders of all classes at the top level.
-    pub(super) fn packages(&self) -> BTreeMap<Ident, PathBuf> {
+    pub fn packages(&self) -> BTreeMap<Ident, PathBuf> {
         let own = |(name, path): (&Name, &PathBuf)| Some((name.first()?, path.clone()));
         self.files.iter().filter_map(own).collect()
     }
 
     /// The file or folder of a class at the top level.
-    pub(super) fn file_of(&self, name: &Name) -> Option<&PathBuf> {
+    pub fn file_of(&self, name: &Name) -> Option<&PathBuf> {
         self.files.get(name)
     }
 

@@ -8,9 +8,9 @@ use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
 /// them.
 pub(super) struct Continued {
     /// The system, whose parameters can be read afterwards.
-    pub(super) system: System,
+    pub system: System,
     /// Positions among the states, and values.
-    pub(super) states: Vec<(usize, f64)>,
+    pub states: Vec<(usize, f64)>,
 }
 
 impl DaeSystem for Continued {

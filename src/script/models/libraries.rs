@@ -24,7 +24,7 @@ impl Session {
     }
 
     /// The files of a library that is going to be loaded.
-    pub(super) fn library_files(&self) -> Arc<dyn LibraryFiles> {
+    pub fn library_files(&self) -> Arc<dyn LibraryFiles> {
         Arc::new(SourceFiles::new(
             self.world.reader(),
             self.sources.clone(),
@@ -54,7 +54,7 @@ impl Session {
     /// Where the top-level class of this name is: in the library folders, the working directory,
     /// a folder `models` beside the scripts being run or above them, or in the program. A folder
     /// of the version that was asked for comes first, one with the name in other case last.
-    pub(super) fn search_class(&self, name: Ident) -> Option<PathBuf> {
+    pub fn search_class(&self, name: Ident) -> Option<PathBuf> {
         let folders = self.folders();
         let exact = self.classes.versions.get(&name).and_then(|version| {
             let wanted = format!("{name} {version}");
@@ -128,7 +128,7 @@ impl Session {
     }
 
     /// Notes the versions that loaded packages ask for, and tells if another one is loaded.
-    pub(super) fn note_versions(&mut self, names: &[Name]) {
+    pub fn note_versions(&mut self, names: &[Name]) {
         for name in names {
             let Some(definition) = self.classes.library.definition(name) else { continue };
             for (library, version) in uses(&definition) {
@@ -166,7 +166,7 @@ impl Session {
     }
 
     /// Puts the types under their former name into a standard library that lacks them.
-    pub(super) fn supply_units(&mut self, names: &[Name]) -> Result<(), Diagnostic> {
+    pub fn supply_units(&mut self, names: &[Name]) -> Result<(), Diagnostic> {
         let modelica = Name::parse("Modelica");
         let library: &mut Library = &mut self.classes.library;
         let has = |part: &str| library.contains(&modelica.child(Ident::new(part)));

@@ -149,7 +149,7 @@ impl Session {
 
     /// Loads the top-level class that a name begins with, if it is not loaded and can be found.
     /// Returns whether something was loaded.
-    pub(super) fn autoload(&mut self, name: &Name) -> Result<bool, Vec<Diagnostic>> {
+    pub fn autoload(&mut self, name: &Name) -> Result<bool, Vec<Diagnostic>> {
         match name.first() {
             Some(first) => self.autoload_class(first),
             None => Ok(false),
@@ -178,7 +178,7 @@ impl Session {
 
     /// Loads what the library asked for and did not have. Returns whether something was loaded:
     /// then what failed is worth another attempt.
-    pub(super) fn load_wanted(&mut self) -> Result<bool, Vec<Diagnostic>> {
+    pub fn load_wanted(&mut self) -> Result<bool, Vec<Diagnostic>> {
         let mut loaded = false;
         for name in self.classes.library.take_missing() {
             loaded |= self.autoload_class(name)?;

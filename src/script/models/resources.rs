@@ -34,7 +34,7 @@ impl Session {
 
     /// Files for any model: relative paths start from the working directory and the folder of the
     /// script.
-    pub(super) fn resources(&self) -> Resources {
+    pub fn resources(&self) -> Resources {
         self.resources_below(None)
     }
 

@@ -13,8 +13,8 @@ const MAX_NODES: usize = 1 << 18;
 /// The sizes of an expression and its scalars, row-major.
 #[derive(Debug, Clone)]
 pub(super) struct Parts {
-    pub(super) dims: Vec<usize>,
-    pub(super) scalars: Vec<Expression>,
+    pub dims: Vec<usize>,
+    pub scalars: Vec<Expression>,
 }
 
 impl Parts {

@@ -252,15 +252,15 @@ fn size(e: &Expression) -> Option<usize> {
 }
 
 /// The expression with a value in place of a loop variable.
-pub(super) fn with_value(mut e: Expression, name: Ident, value: &Expression) -> Expression {
+fn with_value(mut e: Expression, name: Ident, value: &Expression) -> Expression {
     Value { name, value }.expression(&mut e);
     e
 }
 
 /// Writes a value in place of a loop variable.
 pub(super) struct Value<'v> {
-    pub(super) name: Ident,
-    pub(super) value: &'v Expression,
+    pub name: Ident,
+    pub value: &'v Expression,
 }
 
 impl Rewrite for Value<'_> {
