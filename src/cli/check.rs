@@ -88,7 +88,7 @@ fn component(session: &mut Session, model: &str, errors: &[Diagnostic]) -> Optio
 }
 
 fn check_all(session: &mut Session, loaded: &[Name]) -> ExitCode {
-    session.tell_warnings_once();
+    session.output.report_warnings_once();
     let (models, classes) = checking::models(session, loaded);
     let mut wrong = 0;
     for model in &models {

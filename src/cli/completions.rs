@@ -1,9 +1,7 @@
 //! `gapi completions SHELL`: completions for the user's shell.
 
-use super::args::Cli;
 use super::terminal;
 use clap::Args;
-use clap::CommandFactory;
 use std::process::ExitCode;
 
 /// Arguments of `gapi completions`.
@@ -17,9 +15,9 @@ pub(super) struct CompletionsArgs {
 }
 
 /// Prints the completion script of a shell.
-pub(super) fn completions(arguments: &CompletionsArgs) -> ExitCode {
+pub(super) fn completions(arguments: &CompletionsArgs, mut gapi: clap::Command) -> ExitCode {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut Cli::command(), "gapi", &mut script);
+    clap_complete::generate(arguments.shell, &mut gapi, "gapi", &mut script);
     terminal::print(&String::from_utf8_lossy(&script));
     ExitCode::SUCCESS
 }

@@ -1,6 +1,5 @@
 //! `gapi identify`: solves a problem that is written in a file.
 
-use super::comparison;
 use super::options::{Global, Limits};
 use super::output::Output;
 use super::terminal::{self, Terminal};
@@ -118,11 +117,8 @@ pub(super) enum Ended {
     Not(ExitCode),
 }
 
-/// Solves the problem, or several and compares them.
+/// Solves the problem.
 pub(super) fn identify(arguments: &IdentifyArgs, global: &Global) -> ExitCode {
-    if !arguments.others.is_empty() {
-        return comparison::identify_all(arguments, global);
-    }
     match solve_one(arguments, global, (&arguments.problem, Path::new("")), Instant::now()) {
         Ended::Solved(_) => ExitCode::SUCCESS,
         Ended::Not(code) => code,

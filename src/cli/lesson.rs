@@ -83,14 +83,14 @@ pub(super) fn lesson(arguments: &LessonArgs, global: &Global) -> ExitCode {
 /// How to go on.
 fn ending(file: &Path, text: &str, number: usize) -> String {
     let file = file.display();
-    let mut told = format!("\nTo experiment, edit {file} and repeat the command.\n");
+    let mut hints = format!("\nTo experiment, edit {file} and repeat the command.\n");
     if text.contains("Cross(") && text.contains("Eval(") {
-        told.push_str(&format!("Step by step: gapi teach {file}\n"));
+        hints.push_str(&format!("Step by step: gapi teach {file}\n"));
     }
     if number < LESSONS.len() {
-        told.push_str(&format!("The next lesson: gapi lesson {}\n", number + 1));
+        hints.push_str(&format!("The next lesson: gapi lesson {}\n", number + 1));
     }
-    told
+    hints
 }
 
 fn list() {

@@ -28,11 +28,11 @@ const DEFAULT: &str = ", three quarters of the available memory (change it with 
 #[derive(Debug, Clone, Default)]
 pub(super) struct Stopping {
     /// Set when it has to stop.
-    pub(super) flag: Arc<AtomicBool>,
+    pub flag: Arc<AtomicBool>,
     /// Why, where it was not the user who asked.
-    pub(super) reason: Arc<Mutex<Option<String>>>,
+    pub reason: Arc<Mutex<Option<String>>>,
     /// Set when the run has seen the flag.
-    pub(super) noticed: Arc<AtomicBool>,
+    pub noticed: Arc<AtomicBool>,
 }
 
 impl Stopping {
@@ -201,7 +201,7 @@ mod tests {
         let total = total.expect("a number of kibibytes") / 1024;
         let limit = watched.limits.memory_limit.expect("a limit");
         assert!(watched.is_default && limit > 0 && u64::from(limit) <= total / 4 * 3, "{limit}");
-        // A process that has more than such a limit is told that it was nobody's wish.
+        // A process that has more than such a limit reports that nobody asked for it.
         let reached = Watched { limits: limits(Some(1)), is_default: true };
         let message = wait(&reached, Instant::now(), &AtomicBool::new(false)).expect("reached");
         assert!(message.contains("1 MiB, three quarters of the available memory"), "{message}");

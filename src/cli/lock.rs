@@ -9,13 +9,13 @@ use std::path::Path;
 /// The file that is locked.
 pub(super) const FILE: &str = "run.lock";
 
-/// The lock on an output folder, held until it is dropped.
+/// The lock on an output folder, released when it is dropped.
 #[derive(Debug)]
 pub(super) struct Lock(File);
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // Equal runs leave equal files: who held it is of no use any more.
+        // Equal runs leave equal files: who had it is of no use any more.
         let _ = self.0.set_len(0);
         // A process that is being started holds the file, too, until it begins its program: closing
         // alone would leave it locked so long.
@@ -38,7 +38,7 @@ impl Lock {
             OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path)?;
         match file.try_lock() {
             Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(held(&mut file, folder)),
+            Err(TryLockError::WouldBlock) => return Err(locked(&mut file, folder)),
             // Some file systems have no locks; they are used as before.
             Err(TryLockError::Error(_)) => return Ok(Lock(file)),
         }
@@ -50,7 +50,7 @@ impl Lock {
     }
 }
 
-fn held(file: &mut File, folder: &Path) -> io::Error {
+fn locked(file: &mut File, folder: &Path) -> io::Error {
     let mut holder = String::new();
     // Without its name the message still says what is wrong.
     let _ = file.read_to_string(&mut holder);
@@ -76,7 +76,7 @@ mod tests {
     fn the_second_run_is_told_who_holds_the_folder() {
         let folder = tempfile::tempdir().expect("a folder");
         let first = Lock::of(folder.path()).expect("free");
-        let refused = Lock::of(folder.path()).expect_err("held").to_string();
+        let refused = Lock::of(folder.path()).expect_err("locked").to_string();
         assert!(refused.contains(&format!("process {}", std::process::id())), "{refused}");
         drop(first);
         Lock::of(folder.path()).expect("free again");

@@ -6,6 +6,7 @@ mod check;
 mod compare;
 mod comparison;
 mod completions;
+mod device;
 mod disk;
 mod explain;
 mod help;
@@ -37,7 +38,7 @@ mod world;
 
 use crate::script::with_stack;
 use args::{Cli, Command};
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 use std::process::ExitCode;
 
 /// Stack of the thread that works, in bytes: functions written in Modelica may call themselves
@@ -69,13 +70,16 @@ fn dispatch(cli: &Cli) -> ExitCode {
         Command::Run(arguments) => run::run(arguments, &cli.global),
         Command::Teach(arguments) => teach::teach(arguments, &cli.global),
         Command::Lesson(arguments) => lesson::lesson(arguments, &cli.global),
+        Command::Identify(arguments) if !arguments.others.is_empty() => {
+            comparison::identify_all(arguments, &cli.global)
+        }
         Command::Identify(arguments) => identify::identify(arguments, &cli.global),
         Command::New(arguments) => new::new(arguments, &cli.global),
         Command::Test(arguments) => test::test(arguments, &cli.global),
         Command::Repl(arguments) => repl::repl(arguments, &cli.global),
         Command::Help(arguments) => help::help(arguments),
         Command::Explain(arguments) => explain::explain(arguments),
-        Command::Completions(arguments) => completions::completions(arguments),
+        Command::Completions(arguments) => completions::completions(arguments, Cli::command()),
         Command::Simulate(arguments) => simulate::simulate(arguments, &cli.global),
         Command::Check(arguments) => check::check(arguments, &cli.global),
         Command::Report(arguments) => report::report(arguments, &cli.global),

@@ -25,7 +25,7 @@ const MOST: usize = 10_000;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Output {
     /// The folder, absolute.
-    pub(super) folder: PathBuf,
+    pub folder: PathBuf,
     origin: String,
     /// The link that is to lead to it.
     latest: Option<PathBuf>,

@@ -116,7 +116,7 @@ pub(super) fn run(arguments: &RunArgs, global: &Global) -> ExitCode {
     let start = session.world.current_dir();
     if let Some(file) = &arguments.transcript {
         session.world.grant(Grant::Named(&start.join(file)));
-        session.transcript = Some(Transcript::default());
+        session.output.transcript = Some(Transcript::default());
     }
     if let Some(fault) = arguments.trace.as_deref().and_then(|path| session.trace_to(path).err()) {
         return session::failed(&mut session, vec![fault.at(Span::NONE)]);
@@ -155,7 +155,7 @@ fn write_transcript(
     path: Option<&Path>,
     start: &Path,
 ) -> Result<(), String> {
-    let (Some(path), Some(transcript)) = (path, &session.transcript) else { return Ok(()) };
+    let (Some(path), Some(transcript)) = (path, &session.output.transcript) else { return Ok(()) };
     let text = without_folders(&transcript.to_string(), start, &session.world.output_dir());
     session
         .world
@@ -163,7 +163,7 @@ fn write_transcript(
         .map_err(|error| format!("error: `{}` cannot be written: {error}\n", path.display()))
 }
 
-/// A transcript does not tell where it was made.
+/// A transcript does not say where it was made.
 pub(super) fn without_folders(text: &str, start: &Path, output: &Path) -> String {
     let output = crate::script::world::normalized(output);
     let text = text.replace(&*output.to_string_lossy(), "<output>");

@@ -2,7 +2,8 @@
 
 use super::world::SystemWorld;
 use crate::script::access::policy::{Access, Grant, Policy};
-use crate::script::world::{Files, Progress, Stamp, World};
+use crate::script::runs::view::Progress;
+use crate::script::world::{Environment, FileReader, Files, Screen, Stamp};
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -52,7 +53,7 @@ fn missing(path: &Path) -> io::Error {
     io::Error::new(io::ErrorKind::NotFound, format!("no such file: {}", path.display()))
 }
 
-impl World for ScratchWorld {
+impl Files for ScratchWorld {
     fn grant(&mut self, grant: Grant<'_>) {
         let path = grant.path().map(|path| self.absolute(path)).unwrap_or_default();
         self.disk.grant(grant.with_path(&path));
@@ -141,8 +142,8 @@ impl World for ScratchWorld {
         }
     }
 
-    fn files(&self) -> Arc<dyn Files> {
-        self.disk.files()
+    fn reader(&self) -> Arc<dyn FileReader> {
+        self.disk.reader()
     }
 
     fn create_dirs(&mut self, path: &Path) -> io::Result<()> {
@@ -169,17 +170,15 @@ impl World for ScratchWorld {
         Ok(())
     }
 
+    fn output_dir(&self) -> PathBuf {
+        self.output.clone()
+    }
+}
+
+impl Environment for ScratchWorld {
     fn env(&self, name: &str) -> Option<String> {
         self.disk.env(name)
     }
-
-    fn print(&mut self, text: &str) {
-        if let Ok(mut printed) = self.printed.lock() {
-            printed.push_str(text);
-        }
-    }
-
-    fn eprint(&mut self, _text: &str) {}
 
     fn monotonic_seconds(&self) -> f64 {
         0.0
@@ -204,10 +203,16 @@ impl World for ScratchWorld {
     fn threads(&self) -> usize {
         1
     }
+}
 
-    fn output_dir(&self) -> PathBuf {
-        self.output.clone()
+impl Screen for ScratchWorld {
+    fn print(&mut self, text: &str) {
+        if let Ok(mut printed) = self.printed.lock() {
+            printed.push_str(text);
+        }
     }
+
+    fn eprint(&mut self, _text: &str) {}
 
     fn progress(&mut self, _progress: &Progress) {}
 }

@@ -1,4 +1,4 @@
-//! A session for the commands that work on models, and how they tell what is wrong.
+//! A session for the commands that work on models, and how they report what is wrong.
 
 use super::options::{EVERYWHERE, Global};
 use super::terminal::{self, Terminal};

@@ -12,8 +12,8 @@ use crate::script::Session;
 use crate::script::access::policy::Grant;
 use crate::script::errors::FILE_ERROR;
 use crate::script::models::simulation;
-use crate::script::models::simulation::{Simulated, Translated, Wishes};
-use crate::script::world::Progress;
+use crate::script::models::simulation::{Simulated, SimulationOptions, Translated};
+use crate::script::runs::view::Progress;
 use crate::sim::Statistics;
 use crate::source::Span;
 use clap::{Args, ValueHint};
@@ -160,18 +160,18 @@ fn run(
     }
     let filter = arguments.variable_filter.as_deref().map(filter).transpose().map_err(one)?;
     let model = simulation::translate(session, class)?;
-    let mut wishes = Wishes { only: filter, ..wishes(arguments) };
+    let mut options = SimulationOptions { only: filter, ..options(arguments) };
     if let Some(path) = &arguments.from {
-        let begin = begin_with(session, &model, path, wishes.start).map_err(one)?;
-        wishes.start = Some(begin);
+        let begin = begin_with(session, &model, path, options.start).map_err(one)?;
+        options.start = Some(begin);
     }
     for (name, value) in &arguments.set {
         session.set_parameter(name, *value).map_err(one)?;
     }
-    let settings = simulation::settings(&model.program.experiment(), &wishes).map_err(one)?;
+    let settings = simulation::settings(&model.program.experiment(), &options).map_err(one)?;
     let span = (settings.start, settings.stop);
-    let simulated = with_progress(span, wishes, global, |wishes| {
-        simulation::simulate(session, &model, &wishes).map_err(|error| vec![error])
+    let simulated = with_progress(span, options, global, |options| {
+        simulation::simulate(session, &model, &options).map_err(|error| vec![error])
     })?;
     session.print(&summary(class, &simulated));
     if arguments.stats {
@@ -221,12 +221,12 @@ fn begin_with(
 /// Simulates beside a thread that shows how far it is, by simulated time.
 fn with_progress<T>(
     (start, stop): (f64, f64),
-    wishes: Wishes,
+    options: SimulationOptions,
     global: &Global,
-    simulate: impl FnOnce(Wishes) -> T,
+    simulate: impl FnOnce(SimulationOptions) -> T,
 ) -> T {
     let reached = Arc::new(AtomicU64::new(start.to_bits()));
-    let wishes = Wishes { reached: Some(reached.clone()), ..wishes };
+    let options = SimulationOptions { reached: Some(reached.clone()), ..options };
     let (stopped, is_stopped) = mpsc::channel::<()>();
     std::thread::scope(|scope| {
         scope.spawn(move || {
@@ -244,21 +244,21 @@ fn with_progress<T>(
             }
             terminal.finish_progress();
         });
-        let simulated = simulate(wishes);
+        let simulated = simulate(options);
         drop(stopped);
         simulated
     })
 }
 
-fn wishes(arguments: &SimulateArgs) -> Wishes {
-    Wishes {
+fn options(arguments: &SimulateArgs) -> SimulationOptions {
+    SimulationOptions {
         start: arguments.start_time,
         stop: arguments.stop_time,
         intervals: arguments.intervals.map(|n| n as usize),
         tolerance: arguments.tolerance,
         method: arguments.method.clone(),
         stops_at_chattering: arguments.no_sliding,
-        ..Wishes::default()
+        ..SimulationOptions::default()
     }
 }
 

@@ -68,7 +68,7 @@ type Change<'a> = (usize, &'a str);
 pub(super) fn teach(arguments: &TeachArgs, global: &Global) -> ExitCode {
     match taught(arguments, global) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(Trouble::Told(code)) => code,
+        Err(Trouble::Reported(code)) => code,
         Err(Trouble::Message(message)) => {
             terminal::eprint(&format!("error: {message}\n"));
             ExitCode::FAILURE
@@ -78,8 +78,8 @@ pub(super) fn teach(arguments: &TeachArgs, global: &Global) -> ExitCode {
 
 /// Why there is nothing to show.
 enum Trouble {
-    /// The session has told it.
-    Told(ExitCode),
+    /// The session has reported it.
+    Reported(ExitCode),
     Message(String),
 }
 
@@ -146,11 +146,11 @@ fn recorded(
         None => Ok(()),
     });
     if let Err(error) = prepared {
-        return Err(Trouble::Told(session::failed(&mut session, vec![error])));
+        return Err(Trouble::Reported(session::failed(&mut session, vec![error])));
     }
     let status = session.run_file(&arguments.input);
     if status.code != 0 && !status.interrupted {
-        return Err(Trouble::Told(status.code.into()));
+        return Err(Trouble::Reported(status.code.into()));
     }
     if session.branch_is_pending() {
         let generation = change.map_or(0, |(generation, _)| generation);
@@ -235,7 +235,7 @@ fn show(
     let colour = Terminal::new(global.color, true).colour();
     let run_again = |generation, statement: &str| {
         branch(arguments, global, (generation, statement)).map_err(|trouble| match trouble {
-            Trouble::Told(_) => {
+            Trouble::Reported(_) => {
                 "the changed run failed; the reason is printed after this screen closes".to_owned()
             }
             Trouble::Message(message) => message,

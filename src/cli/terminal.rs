@@ -4,8 +4,8 @@
 use super::live::Live;
 use super::options::Colour;
 use crate::diag::visible;
+use crate::script::runs::view::Progress;
 use crate::script::runs::view::View;
-use crate::script::world::Progress;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::borrow::Cow;
 use std::io::{IsTerminal, Write as _};
@@ -27,7 +27,7 @@ pub(super) struct Terminal {
 }
 
 impl Terminal {
-    /// A terminal that follows the user's wishes about colours.
+    /// A terminal that follows the user's options about colours.
     pub(super) fn new(colour: Colour, quiet: bool) -> Terminal {
         let wanted = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
         let colour = match colour {
@@ -107,7 +107,7 @@ impl Terminal {
         let text = on_terminal(std::io::stdout().is_terminal(), text);
         self.suspended(|| {
             let mut out = std::io::stdout().lock();
-            told(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
+            checked(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
         });
     }
 
@@ -192,7 +192,7 @@ fn round_up(duration: Duration) -> Duration {
 /// Writes to standard output where there is no session.
 pub(super) fn print(text: &str) {
     let mut out = std::io::stdout().lock();
-    told(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
+    checked(out.write_all(text.as_bytes()).and_then(|()| out.flush()));
 }
 
 /// Whether something could not be written to standard output.
@@ -205,7 +205,7 @@ pub(super) fn output_failed() -> bool {
 
 /// Says once that standard output cannot be written. A reader that went away (`| head`) has what it
 /// wanted.
-fn told(written: std::io::Result<()>) {
+fn checked(written: std::io::Result<()>) {
     let Err(error) = written else { return };
     let is_new = error.kind() != std::io::ErrorKind::BrokenPipe
         && !OUTPUT_FAILED.swap(true, Ordering::SeqCst);

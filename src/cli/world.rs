@@ -9,8 +9,9 @@ use super::signals;
 use super::terminal::Terminal;
 use crate::models;
 use crate::script::access::policy::{Access, Grant};
+use crate::script::runs::view::Progress;
 use crate::script::runs::view::View;
-use crate::script::world::{Content, Files, Progress, Stamp, World};
+use crate::script::world::{Content, Environment, FileReader, Files, Screen, Stamp};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
@@ -102,7 +103,7 @@ impl SystemWorld {
         self.stopping.clone()
     }
 
-    /// Makes Ctrl-C and the system's wishes to end ask the run to stop; a second one ends the
+    /// Makes Ctrl-C and the requests of the system to end ask the run to stop; a second one ends the
     /// process at once.
     pub(super) fn catch_interrupts(&self) {
         let flag = Arc::clone(&self.stopping.flag);
@@ -123,7 +124,7 @@ impl SystemWorld {
     }
 }
 
-impl World for SystemWorld {
+impl Files for SystemWorld {
     fn grant(&mut self, grant: Grant<'_>) {
         let path = grant.path().map(|path| self.at(path)).unwrap_or_default();
         self.disk.grant(grant.with_path(&path));
@@ -186,7 +187,7 @@ impl World for SystemWorld {
         self.disk.list_dir(&self.at(path))
     }
 
-    fn files(&self) -> Arc<dyn Files> {
+    fn reader(&self) -> Arc<dyn FileReader> {
         self.disk.clone()
     }
 
@@ -207,16 +208,14 @@ impl World for SystemWorld {
         Ok(())
     }
 
+    fn output_dir(&self) -> PathBuf {
+        self.output.clone()
+    }
+}
+
+impl Environment for SystemWorld {
     fn env(&self, name: &str) -> Option<String> {
         std::env::var(name).ok()
-    }
-
-    fn print(&mut self, text: &str) {
-        self.terminal.print(text);
-    }
-
-    fn eprint(&mut self, text: &str) {
-        self.terminal.eprint(text);
     }
 
     fn monotonic_seconds(&self) -> f64 {
@@ -289,9 +288,15 @@ impl World for SystemWorld {
     fn threads(&self) -> usize {
         self.threads
     }
+}
 
-    fn output_dir(&self) -> PathBuf {
-        self.output.clone()
+impl Screen for SystemWorld {
+    fn print(&mut self, text: &str) {
+        self.terminal.print(text);
+    }
+
+    fn eprint(&mut self, text: &str) {
+        self.terminal.eprint(text);
     }
 
     fn progress(&mut self, progress: &Progress) {

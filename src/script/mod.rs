@@ -14,13 +14,16 @@ pub mod errors;
 pub mod language;
 pub mod models;
 mod openmodelica;
+mod options;
 pub mod runs;
 mod session;
 pub mod world;
 
 pub use access::permissions::Permissions;
+pub use language::execution::RunStatus;
 pub use language::messages::Messages;
 pub use language::transcript::{Exchange, Transcript};
-pub use session::{Dialect, Echo, Journaling, Options, RunStatus, Session, Strictness};
+pub use options::{Dialect, Echo, Journaling, Options, Strictness};
+pub use session::Session;
 
 pub use crate::eval::with_stack;

@@ -39,11 +39,11 @@ fn scripts_show_their_codes() {
             world = world.interrupted_after(20);
         }
         let mut session = Session::new(Box::new(world));
-        session.transcript = Some(Transcript::default());
+        session.output.transcript = Some(Transcript::default());
         let status = session.run_file(Path::new(path.file_name().expect("a name")));
-        let shown = session.transcript.take().unwrap_or_default().to_string();
+        let shown = session.output.transcript.take().unwrap_or_default().to_string();
         assert!(shown.contains(&format!("[{slug}]")), "`{slug}` is not shown:\n{shown}");
-        let asked = session.messages.take_text(&session.sources, false);
+        let asked = session.output.messages.take_text(&session.sources, false);
         let text = format!("{shown}[exit code {}]\n\ngetErrorString():\n{asked}", status.code);
         let mut settings = insta::Settings::clone_current();
         settings.set_snapshot_path(path.parent().expect("a folder"));

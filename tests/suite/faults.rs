@@ -11,8 +11,9 @@
 
 use gapilib::script::access::policy::{Access, Grant};
 use gapilib::script::runs::problem::{RunOptions, solve};
+use gapilib::script::runs::view::Progress;
 use gapilib::script::runs::view::View;
-use gapilib::script::world::{Files, MemoryWorld, Progress, Stamp, World};
+use gapilib::script::world::{Environment, FileReader, Files, MemoryWorld, Screen, Stamp};
 use gapilib::script::{Journaling, Options, Session};
 use std::cell::RefCell;
 use std::io;
@@ -98,7 +99,7 @@ impl FaultyWorld {
     }
 }
 
-impl World for FaultyWorld {
+impl Files for FaultyWorld {
     fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         if self.fails(|_| {}) { Err(full()) } else { self.inner.borrow_mut().write(path, bytes) }
     }
@@ -117,15 +118,6 @@ impl World for FaultyWorld {
     }
     fn create_dirs(&mut self, path: &Path) -> io::Result<()> {
         if self.fails(|_| {}) { Err(full()) } else { self.inner.borrow_mut().create_dirs(path) }
-    }
-    fn interrupted(&self) -> bool {
-        // The process is no more: it ends as soon as it asks.
-        self.calls.borrow().frozen.is_some()
-    }
-    fn monotonic_seconds(&self) -> f64 {
-        let mut calls = self.calls.borrow_mut();
-        calls.seconds += 1.0;
-        calls.seconds
     }
     fn grant(&mut self, grant: Grant<'_>) {
         self.inner.borrow_mut().grant(grant);
@@ -148,8 +140,8 @@ impl World for FaultyWorld {
     fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
         self.inner.borrow().list_dir(path)
     }
-    fn files(&self) -> Arc<dyn Files> {
-        self.inner.borrow().files()
+    fn reader(&self) -> Arc<dyn FileReader> {
+        self.inner.borrow().reader()
     }
     fn current_dir(&self) -> PathBuf {
         self.inner.borrow().current_dir()
@@ -157,14 +149,23 @@ impl World for FaultyWorld {
     fn set_current_dir(&mut self, path: &Path) -> io::Result<()> {
         self.inner.borrow_mut().set_current_dir(path)
     }
+    fn output_dir(&self) -> PathBuf {
+        self.inner.borrow().output_dir()
+    }
+}
+
+impl Environment for FaultyWorld {
+    fn interrupted(&self) -> bool {
+        // The process is no more: it ends as soon as it asks.
+        self.calls.borrow().frozen.is_some()
+    }
+    fn monotonic_seconds(&self) -> f64 {
+        let mut calls = self.calls.borrow_mut();
+        calls.seconds += 1.0;
+        calls.seconds
+    }
     fn env(&self, name: &str) -> Option<String> {
         self.inner.borrow().env(name)
-    }
-    fn print(&mut self, text: &str) {
-        self.inner.borrow_mut().print(text);
-    }
-    fn eprint(&mut self, text: &str) {
-        self.inner.borrow_mut().eprint(text);
     }
     fn unix_seconds(&self) -> u64 {
         self.inner.borrow().unix_seconds()
@@ -172,8 +173,14 @@ impl World for FaultyWorld {
     fn threads(&self) -> usize {
         1
     }
-    fn output_dir(&self) -> PathBuf {
-        self.inner.borrow().output_dir()
+}
+
+impl Screen for FaultyWorld {
+    fn print(&mut self, text: &str) {
+        self.inner.borrow_mut().print(text);
+    }
+    fn eprint(&mut self, text: &str) {
+        self.inner.borrow_mut().eprint(text);
     }
     fn progress(&mut self, progress: &Progress) {
         self.inner.borrow_mut().progress(progress);

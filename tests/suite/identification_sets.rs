@@ -27,9 +27,9 @@ fn printed(transcript: &str, key: &str) -> Option<f64> {
 fn problems(folder: &Path) -> Vec<String> {
     let options = Options { probe: gapilib::identify::Probe::Off, ..Options::default() };
     let mut session = Session::new(Box::new(world_of(folder))).with_options(options);
-    session.transcript = Some(Transcript::default());
+    session.output.transcript = Some(Transcript::default());
     let status = session.run_file(Path::new("run.mos"));
-    let transcript = session.transcript.take().unwrap_or_default().to_string();
+    let transcript = session.output.transcript.take().unwrap_or_default().to_string();
     let mut wrong = Vec::new();
     if status.code != 0 {
         wrong.push(format!("exit code {}\n{transcript}", status.code));

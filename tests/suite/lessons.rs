@@ -13,9 +13,9 @@ fn lessons_say_what_is_recorded() {
     for path in lessons {
         let name = path.file_name().unwrap().to_str().unwrap();
         let mut session = Session::new(Box::new(shipped::world()));
-        session.transcript = Some(Transcript::default());
+        session.output.transcript = Some(Transcript::default());
         let status = session.run_file(&Path::new("scripts/lessons").join(name));
-        let transcript = session.transcript.take().unwrap_or_default().to_string();
+        let transcript = session.output.transcript.take().unwrap_or_default().to_string();
         let number: u32 = name[..2].parse().unwrap();
         assert_eq!(status.code, 0, "{name}: {transcript}");
         assert!(transcript.contains(&format!("\nLesson {number} passed.")), "{name}: {transcript}");

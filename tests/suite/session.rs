@@ -174,9 +174,9 @@ fn flags_are_stored_and_read() {
 fn a_transcript_is_the_same_each_time() {
     let transcript = || {
         let mut session = Session::new(Box::new(MemoryWorld::new()));
-        session.transcript = Some(Transcript::default());
+        session.output.transcript = Some(Transcript::default());
         session.run_text("test.mos", "x = {1/3, 2};\nx\nlist()\ny = z");
-        session.transcript.take().map(|transcript| transcript.to_string())
+        session.output.transcript.take().map(|transcript| transcript.to_string())
     };
     assert_eq!(transcript(), transcript());
 }

@@ -29,9 +29,9 @@ pub(crate) fn transcript_of(path: &Path, options: Options) -> String {
     let folder = path.parent().expect("a script lies in a folder");
     let name = path.file_name().expect("a script has a name");
     let mut session = Session::new(Box::new(world_of(folder))).with_options(options);
-    session.transcript = Some(Transcript::default());
+    session.output.transcript = Some(Transcript::default());
     let status = session.run_file(Path::new(name));
-    let transcript = session.transcript.take().unwrap_or_default();
+    let transcript = session.output.transcript.take().unwrap_or_default();
     format!("{transcript}[exit code {}]\n", status.code)
 }
 

@@ -10,7 +10,8 @@
 use super::steps::failing::{Failure, PLAN, Plan, has_crashed};
 use super::*;
 use crate::script::runs::problem::{RunOptions, solve};
-use crate::script::world::{MemoryWorld, Progress, Stamp, World};
+use crate::script::runs::view::Progress;
+use crate::script::world::{Environment, Files, MemoryWorld, Screen, Stamp};
 use crate::script::{Journaling, Options, Session};
 use std::cell::Cell;
 use std::sync::Arc;
@@ -69,7 +70,7 @@ impl DiskWorld {
     }
 }
 
-impl World for DiskWorld {
+impl Files for DiskWorld {
     fn grant(&mut self, grant: Grant<'_>) {
         let path = grant.path().map(|path| self.at(path)).unwrap_or_default();
         self.disk.grant(grant.with_path(&path));
@@ -110,7 +111,7 @@ impl World for DiskWorld {
     fn list_dir(&self, path: &Path) -> io::Result<Vec<String>> {
         self.disk.list_dir(&self.at(path))
     }
-    fn files(&self) -> Arc<dyn Files> {
+    fn reader(&self) -> Arc<dyn FileReader> {
         self.disk.clone()
     }
     fn current_dir(&self) -> PathBuf {
@@ -122,6 +123,9 @@ impl World for DiskWorld {
     fn output_dir(&self) -> PathBuf {
         self.root.join("results")
     }
+}
+
+impl Environment for DiskWorld {
     fn interrupted(&self) -> bool {
         // The process is no more: it ends as soon as it asks.
         has_crashed()
@@ -136,14 +140,17 @@ impl World for DiskWorld {
     fn env(&self, _: &str) -> Option<String> {
         None
     }
+    fn unix_seconds(&self) -> u64 {
+        self.rest.unix_seconds()
+    }
+}
+
+impl Screen for DiskWorld {
     fn print(&mut self, text: &str) {
         self.rest.print(text);
     }
     fn eprint(&mut self, text: &str) {
         self.rest.eprint(text);
-    }
-    fn unix_seconds(&self) -> u64 {
-        self.rest.unix_seconds()
     }
     fn progress(&mut self, _: &Progress) {}
 }

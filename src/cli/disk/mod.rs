@@ -13,7 +13,7 @@ mod steps;
 
 use crate::models;
 use crate::script::access::policy::{Access, Grant, Policy, RECORD, Refusal};
-use crate::script::world::{Content, Files, normalized};
+use crate::script::world::{Content, FileReader, normalized};
 use place::Place;
 use record::{Lines, Record};
 use std::collections::BTreeSet;
@@ -198,13 +198,13 @@ fn written_down(own: &Path, lines: Lines) -> io::Result<()> {
     }
 }
 
-impl Files for Disk {
+impl FileReader for Disk {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         if let Some(bytes) = models::read(path) {
             return Ok(bytes.to_vec());
         }
         match self.is_named_device(Access::Read, path) {
-            true => super::named::read(path),
+            true => super::device::read(path),
             false => self.to_read(path)?.read(),
         }
     }

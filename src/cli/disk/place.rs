@@ -29,7 +29,7 @@ pub(super) struct Place {
     missing: Vec<OsString>,
     name: OsString,
     /// The path without links and dots.
-    pub(super) real: PathBuf,
+    pub real: PathBuf,
     kind: Option<FileType>,
     mode: u32,
 }
@@ -188,7 +188,7 @@ impl Place {
     }
 
     /// Writes beside the file and renames, so that an interrupted write leaves the old file whole.
-    /// `note` is told of the new file before it takes the name.
+    /// `note` is called with the new file before it takes the name.
     pub(super) fn write(
         &self,
         content: Content<'_>,

@@ -12,13 +12,13 @@ use std::path::{Path, PathBuf};
 /// An entry of a folder, which may not exist yet.
 pub(super) struct Place {
     /// The path without links and dots.
-    pub(super) real: PathBuf,
+    pub real: PathBuf,
     kind: Option<fs::FileType>,
 }
 
 impl Place {
     /// Resolves an absolute path; a link at its end is followed if `follows`.
-    pub(super) fn of(path: &Path, follows: bool) -> io::Result<Place> {
+    pub fn of(path: &Path, follows: bool) -> io::Result<Place> {
         let path = &crate::script::world::normalized(path);
         let found = fs::symlink_metadata(path).ok();
         let is_link = found.as_ref().is_some_and(|found| found.is_symlink());
@@ -40,11 +40,11 @@ impl Place {
         Err(io::ErrorKind::NotFound.into())
     }
 
-    pub(super) fn exists(&self) -> bool {
+    pub fn exists(&self) -> bool {
         self.kind.is_some()
     }
 
-    pub(super) fn is_folder(&self) -> bool {
+    pub fn is_folder(&self) -> bool {
         self.kind.is_some_and(|kind| kind.is_dir())
     }
 
@@ -52,14 +52,14 @@ impl Place {
         self.kind.is_some_and(|kind| !kind.is_dir() && !kind.is_file())
     }
 
-    pub(super) fn read(&self) -> io::Result<Vec<u8>> {
+    pub fn read(&self) -> io::Result<Vec<u8>> {
         if self.is_device() {
             return Err(Refusal::System.into());
         }
         fs::read(&self.real)
     }
 
-    pub(super) fn list(&self) -> io::Result<Vec<String>> {
+    pub fn list(&self) -> io::Result<Vec<String>> {
         let mut names = Vec::new();
         for entry in fs::read_dir(&self.real)? {
             names.push(entry?.file_name().to_string_lossy().into_owned());
@@ -68,7 +68,7 @@ impl Place {
         Ok(names)
     }
 
-    pub(super) fn write(
+    pub fn write(
         &self,
         content: Content<'_>,
         note: impl FnOnce(&File) -> io::Result<()>,
@@ -90,18 +90,18 @@ impl Place {
         written
     }
 
-    pub(super) fn open_to_append(&self, _shared: bool) -> io::Result<File> {
+    pub fn open_to_append(&self, _shared: bool) -> io::Result<File> {
         if self.is_device() {
             return Err(Refusal::System.into());
         }
         OpenOptions::new().append(true).create(true).open(&self.real)
     }
 
-    pub(super) fn remove(&self) -> io::Result<()> {
+    pub fn remove(&self) -> io::Result<()> {
         if self.is_folder() { fs::remove_dir(&self.real) } else { fs::remove_file(&self.real) }
     }
 
-    pub(super) fn create_folders(self) -> io::Result<Vec<PathBuf>> {
+    pub fn create_folders(self) -> io::Result<Vec<PathBuf>> {
         let missing = self.real.ancestors().take_while(|folder| !folder.exists());
         let new = missing.map(Path::to_owned).collect();
         fs::create_dir_all(&self.real)?;

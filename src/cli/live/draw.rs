@@ -176,7 +176,7 @@ fn bar(spread: &Spread, width: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::script::world::Progress;
+    use crate::script::runs::view::Progress;
     use ratatui::Terminal;
     use ratatui::backend::TestBackend;
 

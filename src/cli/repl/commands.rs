@@ -52,7 +52,7 @@ fn run(session: &mut Session, text: &str) -> Option<u8> {
     }
     let status = session.run_text("prompt", text);
     // What was shown at the prompt has been read.
-    session.messages.forget_unread();
+    session.output.messages.forget_unread();
     status.exit.map(|_| status.code)
 }
 

@@ -10,8 +10,8 @@ use std::path::PathBuf;
 
 /// A statement compared with the result that its script embeds.
 pub(super) struct Judged {
-    pub(super) statement: String,
-    pub(super) judgement: Judgement,
+    pub statement: String,
+    pub judgement: Judgement,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]

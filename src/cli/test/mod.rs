@@ -164,9 +164,9 @@ impl Ran {
         let mut session =
             session::open(global, world).with_options(Options { dialect, echo, ..options });
         let start = session.world.current_dir();
-        session.transcript = Some(Transcript::default());
+        session.output.transcript = Some(Transcript::default());
         let status = session.run_file(Path::new(name));
-        let transcript = session.transcript.take().unwrap_or_default();
+        let transcript = session.output.transcript.take().unwrap_or_default();
         let text = without_folders(&transcript.to_string(), &start, &start.join("results"));
         let printed = printed.lock().map_or(String::new(), |printed| printed.clone());
         Ok(Ran {

@@ -13,11 +13,11 @@ const MAX_DEPTH: usize = 20;
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Case {
     /// The class.
-    pub(super) model: String,
+    pub model: String,
     /// The reference results, if the collection holds them.
-    pub(super) reference: Option<PathBuf>,
+    pub reference: Option<PathBuf>,
     /// The list of the signals to compare.
-    pub(super) signals: Option<PathBuf>,
+    pub signals: Option<PathBuf>,
 }
 
 /// All cases below a folder whose models' names contain a text, by name.

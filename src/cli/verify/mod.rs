@@ -14,7 +14,7 @@ use crate::script::Session;
 use crate::script::access::policy::Grant;
 use crate::script::models::verification;
 use crate::script::models::verification::{Reference, Stage, Stuck};
-use crate::script::world::Progress;
+use crate::script::runs::view::Progress;
 use crate::source::Span;
 use cases::Case;
 use clap::{Args, ValueHint};

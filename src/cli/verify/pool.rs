@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 /// Stack of a case, bytes.
 const STACK: usize = 128 << 20;
 
-/// Waiting time for a case that was told to end, before the next one begins.
+/// Waiting time for a case that was asked to end, before the next one begins.
 const GRACE: Duration = Duration::from_secs(5);
 
 /// Who works on a case, and how far the work is.
@@ -19,7 +19,7 @@ pub(super) struct Watch {
     /// The stages entered and when, seconds after the beginning.
     entered: Mutex<Vec<(Stage, Instant)>>,
     /// Whether the work is no longer wanted.
-    pub(super) cancel: Arc<AtomicBool>,
+    pub cancel: Arc<AtomicBool>,
 }
 
 /// How the work on a case ended.
@@ -99,7 +99,7 @@ fn within<T: Send + 'static>(
         Err(mpsc::RecvTimeoutError::Disconnected) => Ended::Panicked,
         Err(mpsc::RecvTimeoutError::Timeout) => {
             watch.cancel.store(true, Ordering::Relaxed);
-            // What cannot be told to end is left alone.
+            // What cannot be asked to end is left alone.
             let _ = receiver.recv_timeout(GRACE);
             Ended::TimedOut
         }

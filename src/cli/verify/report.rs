@@ -10,14 +10,14 @@ use std::fmt::Write;
 #[derive(Debug, Serialize)]
 pub(super) struct Row {
     /// The class.
-    pub(super) model: String,
+    pub model: String,
     /// What became of it.
     #[serde(flatten)]
-    pub(super) outcome: Outcome,
+    pub outcome: Outcome,
     /// Seconds from the class to the program, if it got there.
-    pub(super) compile_seconds: Option<f64>,
+    pub compile_seconds: Option<f64>,
     /// Seconds of the simulation, if it got to its end.
-    pub(super) simulate_seconds: Option<f64>,
+    pub simulate_seconds: Option<f64>,
 }
 
 /// What became of a case.

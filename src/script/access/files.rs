@@ -1,10 +1,11 @@
 //! Files as commands see them: found, read and written with errors that say what to do.
 
-use super::policy::{Access, Refusal, refusal_of};
+use super::faults::{cannot, plain};
+use super::policy::Access;
 use crate::diag::Fault;
 use crate::results::{Format, ResultTable};
 use crate::script::Session;
-use crate::script::errors::{FILE_ERROR, REFUSED};
+use crate::script::errors::FILE_ERROR;
 use crate::script::world::normalized;
 use crate::syntax;
 use crate::value::Value;
@@ -16,7 +17,7 @@ impl Session {
     /// folders of the scripts being run, innermost first. `None` if it is nowhere.
     pub fn find_file(&self, path: &Path) -> Option<PathBuf> {
         let path = self.expanded(path);
-        let folders = self.frames.iter().rev().map(|frame| frame.folder.join(&path));
+        let folders = self.execution.folders().map(|folder| folder.join(&path));
         std::iter::once(self.world.absolute(&path))
             .chain(folders.map(|candidate| normalized(&candidate)))
             .find(|candidate| self.world.exists(candidate))
@@ -74,7 +75,7 @@ impl Session {
     }
 
     /// Whether a folder (`Some(true)`) or a file has this path, as a script asks: what may not be
-    /// read is not told either. That the folders above the working directory exist is no secret.
+    /// read stays unknown. That the folders above the working directory exist is no secret.
     pub(in crate::script) fn kind_of(&self, path: &Path) -> Result<Option<bool>, Fault> {
         let path = normalized(&self.world.absolute(&self.expanded(path)));
         if !self.world.current_dir().starts_with(&path) {
@@ -113,37 +114,7 @@ impl Session {
             _ => PathBuf::from(text),
         }
     }
-}
 
-/// A path without `file://` and Windows' separators.
-pub(in crate::script) fn plain(path: &str) -> String {
-    path.strip_prefix("file://").unwrap_or(path).replace('\\', "/")
-}
-
-/// The fault of a file that the system does not let us use.
-pub(in crate::script) fn cannot(verb: &str, path: &Path, error: &io::Error) -> Fault {
-    if let Some(refusal) = refusal_of(error) {
-        return refused(refusal, path);
-    }
-    let reason = match error.kind() {
-        io::ErrorKind::NotFound => "it does not exist".to_owned(),
-        io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
-        io::ErrorKind::IsADirectory => "it is a directory".to_owned(),
-        io::ErrorKind::NotADirectory => "a part of its path is not a directory".to_owned(),
-        _ => error.to_string().to_lowercase(),
-    };
-    Fault::new(FILE_ERROR, format!("cannot {verb} `{}`: {reason}", path.display()))
-}
-
-/// The fault of a file that the policy does not let us use.
-fn refused(refusal: Refusal, path: &Path) -> Fault {
-    let verb = if refusal.is_of() == Access::Read { "read" } else { "changed" };
-    let verb = if refusal == Refusal::System { "opened" } else { verb };
-    let message = format!("`{}` cannot be {verb}: {}", path.display(), refusal.reason());
-    Fault::new(REFUSED, message).help_if(refusal.help().map(str::to_owned))
-}
-
-impl Session {
     /// Removes a file or an empty directory.
     pub(in crate::script) fn remove_file(&mut self, path: &Path) -> Result<(), Fault> {
         self.may(Access::Write, path)?;

@@ -1,5 +1,8 @@
 //! What scripts and models may read, write and remove: files, permissions, the policy.
 
-pub(in crate::script) mod files;
-pub(in crate::script) mod permissions;
+pub mod faults;
+mod files;
+mod grants;
+pub mod permissions;
 pub mod policy;
+pub mod process;

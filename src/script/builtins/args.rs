@@ -16,7 +16,7 @@ pub struct Args {
 
 impl Args {
     /// The arguments of a call of `header`.
-    pub(super) fn new(header: Arc<Function>, values: Vec<Value>) -> Args {
+    pub fn new(header: Arc<Function>, values: Vec<Value>) -> Args {
         Args { header, values: values.into_iter().map(Some).collect() }
     }
 

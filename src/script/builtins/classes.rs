@@ -7,7 +7,7 @@ use crate::diag::{Diagnostic, Fault};
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::script::errors::BAD_ARGUMENT;
-use crate::script::models::retranslation::{modification_at, no_modification};
+use crate::script::models::modification::{modification_at, no_modification};
 use crate::script::models::simulation;
 use crate::script::{Dialect, Session};
 use crate::source::SourceId;
@@ -43,10 +43,10 @@ pub(super) const FAMILY: Family = Family {
 /// The definition of a loaded class, or of one that can be.
 fn definition(session: &mut Session, name: &Name) -> Result<Arc<ClassDefinition>, Failure> {
     if !session.find_class(name)? {
-        return Err(session.unknown_class(name).into());
+        return Err(session.classes.unknown_class(name).into());
     }
     let found = session.library().definition(name);
-    found.ok_or_else(|| session.unknown_class(name).into())
+    found.ok_or_else(|| session.classes.unknown_class(name).into())
 }
 
 /// The same as a negative answer: `None` and the reason reported.
@@ -140,9 +140,9 @@ fn get_component_count(session: &mut Session, mut args: Args) -> Result<Value, F
 
 /// A component with its clause and the section it stands in.
 pub(super) struct Component<'c> {
-    pub(super) clause: &'c ComponentClause,
-    pub(super) one: &'c ComponentDeclaration,
-    pub(super) protected: bool,
+    pub clause: &'c ComponentClause,
+    pub one: &'c ComponentDeclaration,
+    pub protected: bool,
 }
 
 /// The names of the components that a class declares itself.

@@ -247,7 +247,7 @@ impl Tube {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)))
     }
 
-    /// The reference at a time, held constant outside.
+    /// The reference at a time, constant outside.
     fn at(&self, time: f64) -> f64 {
         let after = self.time.partition_point(|t| *t <= time);
         match (after.checked_sub(1), self.time.get(after)) {

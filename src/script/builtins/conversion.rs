@@ -1,4 +1,4 @@
-//! Numbers as texts, as Dymola's scripts write them.
+//! Numbers as strings, as Dymola's scripts write them.
 
 use super::{Args, Builtin, Failure, Family};
 use crate::script::Session;

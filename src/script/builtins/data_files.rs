@@ -1,7 +1,7 @@
 //! Dymola's package `DataFiles`: matrices in MAT and CSV files.
 
 use super::matrices::{read_file, write_matrix};
-use super::strings::texts;
+use super::strings::string_array;
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::script::errors::BAD_ARGUMENT;
@@ -111,7 +111,7 @@ end readCSVheaders;
 "#;
 
 fn read_csv_headers(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    Ok(texts(columns(session, &mut args)?.into_iter().map(|(name, _)| name)))
+    Ok(string_array(columns(session, &mut args)?.into_iter().map(|(name, _)| name)))
 }
 
 const WRITE_CSV_MATRIX: &str = r#"

@@ -1,19 +1,16 @@
 //! The programs that OpenModelica's `buildModel` makes of models. None is written here: a command
 //! that would run one is answered by simulating the translated model.
 
+use super::built_models::{self, Executable, init_file};
 use super::openmodelica;
 use super::simflags::SimulationFlags;
 use super::{Args, Builtin, Failure, Family};
-use crate::diag::{At, Diagnostic, Fault};
+use crate::diag::{At, Diagnostic};
+use crate::fault;
 use crate::script::errors::BAD_ARGUMENT;
-use crate::script::models::simulation::{Translated, Wishes};
 use crate::script::{Dialect, Session};
 use crate::value::Value;
-use crate::{bail, fault};
-use regex::Regex;
-use std::collections::BTreeMap;
 use std::path::Path;
-use std::sync::Arc;
 
 /// The commands of this file.
 pub(super) const FAMILY: Family = Family {
@@ -25,58 +22,6 @@ pub(super) const FAMILY: Family = Family {
 /// The exit status of a simulation program that failed.
 const FAILED: i32 = 255;
 
-/// A model as it was built.
-#[derive(Clone)]
-pub(super) struct Executable {
-    /// The model, whatever becomes of its class afterwards.
-    pub(super) model: Arc<Translated>,
-    /// The settings of the simulation.
-    pub(super) wishes: Wishes,
-    /// The ending of its result file.
-    pub(super) format: String,
-    /// The names that are stored.
-    pub(super) filter: Regex,
-    /// Flags that every run has.
-    pub(super) flags: String,
-}
-
-/// The models that were built, by the names of their programs, and what scripts wrote into their
-/// init files.
-#[derive(Default)]
-struct Built {
-    programs: BTreeMap<String, Executable>,
-    init_files: BTreeMap<String, Vec<(String, f64)>>,
-}
-
-/// Notes a model that was built, and returns the name of its init file.
-pub(super) fn keep(session: &mut Session, prefix: &str, program: Executable) -> String {
-    let built = session.extension::<Built>();
-    let init_file = init_file(prefix);
-    built.init_files.insert(init_file.clone(), Vec::new());
-    built.programs.insert(prefix.to_owned(), program);
-    init_file
-}
-
-fn init_file(prefix: &str) -> String {
-    format!("{prefix}_init.xml")
-}
-
-/// Puts the values of the init file that flags name among them.
-///
-/// # Errors
-/// No script has made such a file.
-pub(super) fn preset(session: &mut Session, flags: &mut SimulationFlags) -> Result<(), Fault> {
-    let Some(file) = flags.init_file.clone() else { return Ok(()) };
-    let Some(values) = session.extension::<Built>().init_files.get(&file) else {
-        bail!(
-            BAD_ARGUMENT,
-            "the init file `{file}` does not exist; create it with `setInitXmlStartValue`"
-        );
-    };
-    flags.preset(values);
-    Ok(())
-}
-
 /// The exit status of a command that runs the program of a model that was built; `None` for any
 /// other command.
 pub(super) fn answered(session: &mut Session, command: &str) -> Option<i32> {
@@ -84,7 +29,7 @@ pub(super) fn answered(session: &mut Session, command: &str) -> Option<i32> {
     let (first, flags) = words.split_first()?;
     let name = first.strip_prefix("./").or(first.strip_prefix(".\\")).unwrap_or(first);
     let name = name.strip_suffix(".exe").unwrap_or(name);
-    let program = session.extension::<Built>().programs.get(name)?.clone();
+    let program = built_models::program(session, name)?;
     let done = run(session, name, &program, flags);
     if let Some(file) = output {
         let written = session.write_file(Path::new(&file), b"");
@@ -105,7 +50,7 @@ fn run(
     flags.init_file.get_or_insert_with(|| init_file(name));
     let file = format!("{name}_res.{}", program.format);
     let wanted = (file.as_str(), &program.filter);
-    openmodelica::run(session, &program.model, &program.wishes, flags, wanted).map(|_| ())
+    openmodelica::run(session, &program.model, &program.options, flags, wanted).map(|_| ())
 }
 
 /// The words of a command line and the file that its output goes to; `None` if it is more than one
@@ -157,15 +102,14 @@ fn set_init_xml_start_value(session: &mut Session, mut args: Args) -> Result<Val
         session.report_fault(fault!(BAD_ARGUMENT, "`startValue` is not a number: `{value}`"));
         return Ok(false.into());
     };
-    let init_files = &mut session.extension::<Built>().init_files;
-    let Some(mut values) = init_files.get(&file).cloned() else {
+    let Some(mut values) = built_models::init_file_values(session, &file) else {
         session.report_fault(fault!(BAD_ARGUMENT, "no built model has the init file `{file}`";
             help: "call `buildModel` first"));
         return Ok(false.into());
     };
     values.retain(|(known, _)| *known != name);
     values.push((name, number));
-    init_files.insert(output, values);
+    built_models::keep_init_file(session, output, values);
     Ok(true.into())
 }
 

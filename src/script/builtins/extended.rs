@@ -186,7 +186,7 @@ fn simulated(
     for (name, value) in names.iter().zip(values) {
         session.set_parameter(name, *value)?;
     }
-    let done = run_model(session, model, &request.wishes, &request.file);
+    let done = run_model(session, model, &request.options, &request.file);
     Ok(session.or_report_all(done))
 }
 
@@ -206,8 +206,8 @@ fn each_linearized(
 ) -> Result<(bool, Vec<f64>), Failure> {
     check_count(names, values.columns)?;
     let mut all = Vec::with_capacity(values.rows * finals.len());
-    let (mut ok, mut wishes) = (true, request.wishes.clone());
-    wishes.stop = wishes.stop.or(wishes.start).or(Some(0.0));
+    let (mut ok, mut options) = (true, request.options.clone());
+    options.stop = options.stop.or(options.start).or(Some(0.0));
     let is_translated = translated_model(session, &request.problem).is_some();
     for row in 0..values.rows {
         let numbers = values.row(row);
@@ -215,7 +215,7 @@ fn each_linearized(
         let done = match is_translated {
             true => {
                 others.into_iter().try_for_each(|(_, (n, v))| session.set_parameter(n, *v))?;
-                let linear = linearized(session, &wishes);
+                let linear = linearized(session, &options);
                 session.or_report_all(linear)
             }
             false => None,

@@ -4,7 +4,7 @@ use super::strings::text;
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
-use crate::script::access::files::cannot;
+use crate::script::access::faults::cannot;
 use crate::script::errors::FILE_ERROR;
 use crate::script::{Dialect, Session};
 use crate::value::Value;

@@ -2,6 +2,7 @@
 //! generation of the genetic algorithm. The same functions as Modelica code lie in
 //! `models/GAPILib`.
 
+use super::inputs;
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
@@ -153,19 +154,19 @@ fn acquired(state: bool, x: Vec<f64>, y: Vec<f64>) -> Value {
     Value::Tuple(vec![state.into(), sizes.into(), x.into(), y.into()])
 }
 
-const EVAL: &str = r#"
+const EVAL: &str = concat!(
+    r#"
 function Eval "Simulates the model with the genes of each individual, in parallel."
-  input String SimuPath "path of the model's file or package folder; empty if the model is already loaded";
-  input String SimuCaseStudyName "name of the model to simulate, optionally with a modification";
-  input Any Xexp "Real[:]: array of experimental X data";
-  input Any New_Generation "Real[:,:]: complete set of population values, one individual in each row";
-  input String Parameter_Names[:] = fill("", 0) "the estimated parameters, one per column; empty: the model's top-level tunable parameters in order of declaration";
-  input String X_Name = "time" "the variable whose values Xexp contains";
-  input String Y_Name = "" "the measured variable; empty: the model's only top-level output";
-  output Real DATASim_Int[:,:] "Y_Name interpolated at Xexp, one individual in each row; NaN where the simulation failed";
+"#,
+    inputs::model!(),
+    r#"  input Any New_Generation "Real[:,:]: complete set of population values, one individual in each row";
+"#,
+    inputs::variables!(),
+    r#"  output Real DATASim_Int[:,:] "Y_Name interpolated at Xexp, one individual in each row; NaN where the simulation failed";
   output String Messages[:] "empty where the simulation succeeded";
 end Eval;
-"#;
+"#,
+);
 
 fn eval(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let request = take_request(&mut args)?;
@@ -342,23 +343,23 @@ pub(super) fn genes(minima: &[f64], maxima: &[f64], n_genes: usize) -> Result<Ve
     ranges.map(|(k, (&min, &max))| Gene::new(format!("parameter {}", k + 1), min, max)).collect()
 }
 
-const REFINE: &str = r#"
+const REFINE: &str = concat!(
+    r#"
 function Refine "Nonlinear least squares: moves individuals to a local optimum by the Levenberg-Marquardt method."
-  input String SimuPath "path of the model's file or package folder; empty if the model is already loaded";
-  input String SimuCaseStudyName "name of the model to simulate, optionally with a modification";
-  input Any Xexp "Real[:]: array of experimental X data";
-  input Any Yexp "Real[:]: array of experimental Y data";
+"#,
+    inputs::model!(),
+    r#"  input Any Yexp "Real[:]: array of experimental Y data";
   input Any Individuals "Real[:,:]: starting points, one individual in each row";
   input Any Param_Min "Real[:]: lower bound of every parameter";
   input Any Param_Max "Real[:]: upper bound of every parameter; a positive range wider than a decade is searched on a logarithmic scale";
-  input String Parameter_Names[:] = fill("", 0) "the estimated parameters, one per column; empty: the model's top-level tunable parameters in order of declaration";
-  input String X_Name = "time" "the variable whose values Xexp contains";
-  input String Y_Name = "" "the measured variable; empty: the model's only top-level output";
-  output Real Refined[:] "the best individual found";
+"#,
+    inputs::variables!(),
+    r#"  output Real Refined[:] "the best individual found";
   output Real Fit_Refined "its sum of squared differences";
   output Integer Simulations "number of simulations used";
 end Refine;
-"#;
+"#,
+);
 
 fn refine(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let request = take_request(&mut args)?;

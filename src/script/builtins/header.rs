@@ -79,7 +79,7 @@ fn value_type(clause: &ComponentClause) -> ValueType {
     }
 }
 
-/// Whether the input carries `annotation(optional = true)`: then the command can tell whether it
+/// Whether the input carries `annotation(optional = true)`: then the command knows whether it
 /// was given.
 fn is_optional(declaration: &ComponentDeclaration) -> bool {
     let Some(annotation) = &declaration.comment.annotation else { return false };

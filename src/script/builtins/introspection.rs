@@ -1,7 +1,7 @@
-//! Questions about loaded classes: what they are, and what their texts say.
+//! Questions about loaded classes: what they are, and what their source text says.
 
 use super::classes::{Component, asked, components};
-use super::strings::{text, texts};
+use super::strings::{string_array, text};
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::name::Name;
@@ -206,7 +206,7 @@ fn get_class_information(session: &mut Session, mut args: Args) -> Result<Value,
         false.into(),
     ];
     values.extend(place(start).into_iter().chain(place(end)));
-    values.push(texts(dims));
+    values.push(string_array(dims));
     values.push(super::loading::is_protected(session, &name).into());
     values.extend([is_documentation.into(), text(said("version")), text(said("preferredView"))]);
     Ok(Value::Tuple(values))
@@ -328,10 +328,10 @@ end getNthConnection;
 "#;
 
 fn get_nth_connection(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let Some(class) = class(session, &mut args)? else { return Ok(texts([])) };
+    let Some(class) = class(session, &mut args)? else { return Ok(string_array([])) };
     let (all, n): (_, i64) = (connections(&class), args.take("index")?);
     match usize::try_from(n - 1).ok().and_then(|at| all.into_iter().nth(at)) {
-        Some(found) => Ok(texts(found)),
+        Some(found) => Ok(string_array(found)),
         None => bail!(BAD_ARGUMENT, "`{}` has no connection {n}", class.name.node),
     }
 }
@@ -364,7 +364,7 @@ fn get_documentation_annotation(session: &mut Session, mut args: Args) -> Result
         let all = documentation.iter().flat_map(|whole| &whole.arguments).filter_map(named);
         all.filter(|(known, _)| known == name).find_map(|(_, m)| string(m)).unwrap_or_default()
     };
-    Ok(texts([said("info"), said("revisions"), said("__OpenModelica_infoHeader")]))
+    Ok(string_array([said("info"), said("revisions"), said("__OpenModelica_infoHeader")]))
 }
 
 const CLASS_ANNOTATION_EXISTS: &str = r#"
@@ -441,7 +441,7 @@ fn get_component_modifier_names(session: &mut Session, mut args: Args) -> Result
     let wanted: String = args.take("componentName")?;
     let class = class(session, &mut args)?;
     let arguments = class.as_deref().and_then(|class| modification_of(class, &wanted));
-    Ok(texts(arguments.map_or(Vec::new(), |whole| modified_names("", &whole.arguments))))
+    Ok(string_array(arguments.map_or(Vec::new(), |whole| modified_names("", &whole.arguments))))
 }
 
 const GET_COMPONENT_MODIFIER_VALUE: &str = r#"
@@ -517,7 +517,7 @@ fn get_extends_modifier_names(session: &mut Session, mut args: Args) -> Result<V
     let class = class(session, &mut args)?;
     let of_base = |extends: &&Extends| extends.base.name == base;
     let found = class.as_deref().and_then(|class| extends(class).find(of_base));
-    Ok(texts(found.map_or(Vec::new(), |e| modified_names("", &e.modification))))
+    Ok(string_array(found.map_or(Vec::new(), |e| modified_names("", &e.modification))))
 }
 
 const IS_PARAMETER: &str = r#"

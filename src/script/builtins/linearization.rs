@@ -1,7 +1,7 @@
 //! The commands that linearize models.
 
 use super::methods::with_method_of_ours;
-use super::openmodelica::{completed, shown, simulation_result, wishes, write_results};
+use super::openmodelica::{completed, options, shown, simulation_result, write_results};
 use super::simflags::SimulationFlags;
 use super::simulation::{Request, translated_model};
 use super::{Args, Builtin, Failure, Family};
@@ -12,7 +12,7 @@ use crate::name::Name;
 use crate::script::access::policy::Grant;
 use crate::script::models::linearization::{Linear, linearized};
 use crate::script::models::simulation;
-use crate::script::models::simulation::Wishes;
+use crate::script::models::simulation::SimulationOptions;
 use crate::script::{Dialect, Session};
 use crate::value::Value;
 use nalgebra::DMatrix;
@@ -53,8 +53,8 @@ fn linearize_model(session: &mut Session, mut args: Args) -> Result<Value, Failu
     if translated_model(session, &request.problem).is_none() {
         return Ok(false.into());
     }
-    request.wishes.stop = request.wishes.stop.or(request.wishes.start).or(Some(0.0));
-    let linear = linearized(session, &request.wishes);
+    request.options.stop = request.options.stop.or(request.options.start).or(Some(0.0));
+    let linear = linearized(session, &request.options);
     let Some(linear) = session.or_report_all(linear) else { return Ok(false.into()) };
     let file = match request.file.ends_with(".mat") {
         true => request.file,
@@ -110,14 +110,14 @@ end linearize;
 
 fn linearize(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let class: Name = args.take("className")?;
-    let wishes = wishes(&mut args)?;
+    let options = options(&mut args)?;
     let prefix: String = args.take("fileNamePrefix")?;
     let format: String = args.take("outputFormat")?;
     let filter: String = args.take("variableFilter")?;
     let flags: String = args.take("simflags")?;
     let prefix = if prefix.is_empty() { class.to_string() } else { prefix };
     let file = format!("{prefix}_res.{format}");
-    let done = translated_and_linearized(session, &class, &wishes, &flags, &file);
+    let done = translated_and_linearized(session, &class, &options, &flags, &file);
     let (file, used, messages) = match done {
         Ok(used) => {
             let file = session.world.absolute(Path::new(&file)).display().to_string();
@@ -126,7 +126,7 @@ fn linearize(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         Err(errors) => {
             let messages = errors.iter().map(|error| format!("{}\n", error.message)).collect();
             session.or_report_all::<()>(Err(errors));
-            (String::new(), completed(&wishes, &Experiment::default()), messages)
+            (String::new(), completed(&options, &Experiment::default()), messages)
         }
     };
     let options = shown(&used, &prefix, &format, &filter, &flags);
@@ -139,18 +139,18 @@ const FILE: &str = "linearized_model.mo";
 fn translated_and_linearized(
     session: &mut Session,
     class: &Name,
-    wishes: &Wishes,
+    options: &SimulationOptions,
     flags: &str,
     file: &str,
-) -> Result<Wishes, Vec<Diagnostic>> {
+) -> Result<SimulationOptions, Vec<Diagnostic>> {
     let model = simulation::translate(session, &class.to_string())?;
     let at = session.call_site();
     let flags = SimulationFlags::parse(flags).at(at).map_err(|error| vec![error])?;
-    let wishes = flags.applied_to(completed(wishes, &model.program.experiment()));
-    let wishes = with_method_of_ours(session, wishes);
+    let options = flags.applied_to(completed(options, &model.program.experiment()));
+    let options = with_method_of_ours(session, options);
     let before = session.current_values();
     let set = flags.apply(session).at(at);
-    let linear = set.map_err(|error| vec![error]).and_then(|()| linearized(session, &wishes));
+    let linear = set.map_err(|error| vec![error]).and_then(|()| linearized(session, &options));
     session.restore_values(before);
     let linear = linear?;
     if !session.world.exists(Path::new(FILE)) {
@@ -160,7 +160,7 @@ fn translated_and_linearized(
     let written = write_results(session, &linear.results, file)
         .and_then(|()| session.write_file(Path::new(FILE), as_model(&linear, class).as_bytes()));
     written.at(at).map_err(|error| vec![error])?;
-    Ok(wishes)
+    Ok(options)
 }
 
 /// The model as Modelica.

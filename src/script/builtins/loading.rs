@@ -48,8 +48,8 @@ impl Session {
             Ok(value) => Some(value),
             Err(errors) => {
                 // The script that is being stopped says that it was interrupted.
-                let told = errors.into_iter().filter(|error| error.code != INTERRUPTED);
-                told.for_each(|error| self.report(error));
+                let reported = errors.into_iter().filter(|error| error.code != INTERRUPTED);
+                reported.for_each(|error| self.report(error));
                 None
             }
         }
@@ -108,7 +108,7 @@ fn is_loaded(session: &mut Session, name: &Name) -> bool {
     let found = session.find_class(name);
     let found = session.or_report_all(found);
     if found == Some(false) {
-        let fault = session.unknown_class(name);
+        let fault = session.classes.unknown_class(name);
         session.report_fault(fault);
     }
     found == Some(true)

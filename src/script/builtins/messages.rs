@@ -34,11 +34,11 @@ end getMessagesString;
 
 fn get_error_string(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let warnings_as_errors = args.take("warningsAsErrors")?;
-    Ok(text(session.messages.take_text(&session.sources, warnings_as_errors)))
+    Ok(text(session.output.messages.take_text(&session.sources, warnings_as_errors)))
 }
 
 fn get_messages_string(session: &mut Session, _: Args) -> Result<Value, Failure> {
-    Ok(text(session.messages.take_text(&session.sources, false)))
+    Ok(text(session.output.messages.take_text(&session.sources, false)))
 }
 
 const GET_LAST_ERROR: &str = r#"
@@ -48,7 +48,7 @@ end getLastError;
 "#;
 
 fn get_last_error(session: &mut Session, _: Args) -> Result<Value, Failure> {
-    Ok(text(session.messages.take_last_error()))
+    Ok(text(session.output.messages.take_last_error()))
 }
 
 const COUNT_MESSAGES: &str = r#"
@@ -60,7 +60,7 @@ end countMessages;
 "#;
 
 fn count_messages(session: &mut Session, _: Args) -> Result<Value, Failure> {
-    let [notes, warnings, errors] = session.messages.counts();
+    let [notes, warnings, errors] = session.output.messages.counts();
     let all = [notes + warnings + errors, errors, warnings];
     Ok(Value::Tuple(all.map(|count| Value::Integer(count as i64)).to_vec()))
 }
@@ -78,6 +78,6 @@ end clearlog;
 "#;
 
 fn clear_messages(session: &mut Session, _: Args) -> Result<Value, Failure> {
-    session.messages.clear();
+    session.output.messages.clear();
     Ok(Value::Boolean(true))
 }

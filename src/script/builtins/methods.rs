@@ -2,7 +2,7 @@
 
 use crate::script::Session;
 use crate::script::errors::METHOD_REPLACED;
-use crate::script::models::simulation::Wishes;
+use crate::script::models::simulation::SimulationOptions;
 
 /// Methods that keep the tolerance with implicit formulas, or that choose between formulas.
 const IMPLICIT: &[&str] = &[
@@ -32,17 +32,20 @@ const IMPLICIT: &[&str] = &[
 /// Methods that keep the tolerance with explicit formulas.
 const EXPLICIT: &[&str] = &["cerk23", "cerk34", "cerk45", "dopri853", "godess"];
 
-/// The wishes with a method that there is; said when it is another one than asked for.
-pub(super) fn with_method_of_ours(session: &mut Session, wishes: Wishes) -> Wishes {
-    let Some(wanted) = wishes.method.as_deref() else { return wishes };
+/// The options with a method that there is; said when it is another one than asked for.
+pub(super) fn with_method_of_ours(
+    session: &mut Session,
+    options: SimulationOptions,
+) -> SimulationOptions {
+    let Some(wanted) = options.method.as_deref() else { return options };
     let is_in = |names: &[&str]| names.iter().any(|name| name.eq_ignore_ascii_case(wanted));
     let ours = match () {
         () if is_in(IMPLICIT) => "dassl",
         () if is_in(EXPLICIT) => "dopri5",
-        () => return wishes,
+        () => return options,
     };
     let text =
         format!("the integration method `{wanted}` is not available; `{ours}` is used instead");
     session.note(METHOD_REPLACED, text);
-    Wishes { method: Some(ours.to_owned()), ..wishes }
+    SimulationOptions { method: Some(ours.to_owned()), ..options }
 }

@@ -2,6 +2,7 @@
 //! header in Modelica and implemented in Rust beside it, one file per family.
 
 mod args;
+mod built_models;
 mod classes;
 mod clock;
 mod comparison;
@@ -9,10 +10,12 @@ mod conversion;
 mod data_files;
 mod executable;
 mod extended;
+pub mod extensions;
 mod files;
 mod gapilib;
 mod header;
 mod initial;
+mod inputs;
 mod installation;
 mod introspection;
 mod linearization;
@@ -60,7 +63,7 @@ use std::sync::{Arc, LazyLock, OnceLock};
 pub struct Builtin {
     /// Its declaration: a Modelica function without an algorithm. Inputs of type `TypeName` and
     /// `VariableName` are not evaluated; `annotation(optional = true)` marks those whose absence
-    /// the command can tell ([`Args::optional`]).
+    /// the command knows ([`Args::optional`]).
     pub header: &'static str,
     /// Its work. Returns as many values as the header has outputs: none and several as a
     /// [`Value::Tuple`].

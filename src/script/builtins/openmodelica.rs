@@ -1,6 +1,6 @@
 //! Models as OpenModelica's scripts handle them.
 
-use super::executable::{self, Executable};
+use super::built_models::{self, Executable};
 use super::methods::with_method_of_ours;
 use super::simflags::SimulationFlags;
 use super::{Args, Builtin, Failure, Family};
@@ -12,7 +12,7 @@ use crate::name::{Ident, Name};
 use crate::results::{ResultTable, Values};
 use crate::script::errors::BAD_ARGUMENT;
 use crate::script::models::simulation;
-use crate::script::models::simulation::{Translated, Wishes};
+use crate::script::models::simulation::{SimulationOptions, Translated};
 use crate::script::openmodelica::flat_model::{flat_text, trivial_equations};
 use crate::script::{Dialect, Session};
 use crate::value::{FromValue, RecordValue, Value, check_length};
@@ -66,7 +66,7 @@ end simulate;
 
 fn simulate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let class: Name = args.take("className")?;
-    let wishes = wishes(&mut args)?;
+    let options = options(&mut args)?;
     let prefix: String = args.take("fileNamePrefix")?;
     let format: String = args.take("outputFormat")?;
     let flags: String = args.take("simflags")?;
@@ -76,24 +76,24 @@ fn simulate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let file = format!("{prefix}_res.{format}");
     let done = flags_of(session, &flags).and_then(|flags| {
         let model = simulation::translate(session, &class.to_string())?;
-        run(session, &model, &wishes, flags, (&file, &filter))
+        run(session, &model, &options, flags, (&file, &filter))
     });
     let messages = match &done {
         Ok(_) => String::new(),
         Err(_) => format!("Failed to build model: {class}"),
     };
-    let (result_file, wishes) = match session.or_report_all(done) {
+    let (result_file, options) = match session.or_report_all(done) {
         Some((used, file)) => (session.world.absolute(file.as_ref()).display().to_string(), used),
-        None => (String::new(), completed(&wishes, &Experiment::default())),
+        None => (String::new(), completed(&options, &Experiment::default())),
     };
-    let options = shown(&wishes, &prefix, &format, &given, &flags);
+    let options = shown(&options, &prefix, &format, &given, &flags);
     Ok(simulation_result([result_file, options, messages]))
 }
 
 /// The record that simulations return.
-pub(super) fn simulation_result(texts: [String; 3]) -> Value {
+pub(super) fn simulation_result(strings: [String; 3]) -> Value {
     let names = ["resultFile", "simulationOptions", "messages"].map(Ident::new);
-    let fields = names.into_iter().zip(texts.map(Value::from));
+    let fields = names.into_iter().zip(strings.map(Value::from));
     Value::Record(RecordValue {
         type_name: Name::parse("SimulationResult"),
         fields: fields.collect::<IndexMap<Ident, Value>>(),
@@ -130,43 +130,43 @@ fn build_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
     let class: Name = args.take("className")?;
     let prefix: String = args.take("fileNamePrefix")?;
     let prefix = if prefix.is_empty() { class.to_string() } else { prefix };
-    let (wanted, format) = (wishes(&mut args)?, args.take("outputFormat")?);
+    let (wanted, format) = (options(&mut args)?, args.take("outputFormat")?);
     let filter = filter(&args.take::<String>("variableFilter")?)?;
     let flags = args.take("simflags")?;
     let done = simulation::translate_anew(session, &class.to_string());
     let Some(model) = session.or_report_all(done) else {
         return Ok(vec![String::new(), String::new()].into());
     };
-    let program = Executable { model, wishes: wanted, format, filter, flags };
-    let init_file = executable::keep(session, &prefix, program);
+    let program = Executable { model, options: wanted, format, filter, flags };
+    let init_file = built_models::keep(session, &prefix, program);
     Ok(vec![prefix, init_file].into())
 }
 
-pub(super) fn wishes(args: &mut Args) -> Result<Wishes, Failure> {
+pub(super) fn options(args: &mut Args) -> Result<SimulationOptions, Failure> {
     let intervals: Option<i64> = args.optional("numberOfIntervals")?;
-    Ok(Wishes {
+    Ok(SimulationOptions {
         start: args.optional("startTime")?,
         stop: args.optional("stopTime")?,
         intervals: intervals.and_then(|count| usize::try_from(count).ok()),
         tolerance: args.optional("tolerance")?,
         method: args.optional("method")?,
-        ..Wishes::default()
+        ..SimulationOptions::default()
     })
 }
 
 /// The settings of a simulation: what is given, what the experiment annotation says, and what is
 /// the default in OpenModelica.
-pub(super) fn completed(wishes: &Wishes, experiment: &Experiment) -> Wishes {
-    let start = wishes.start.or(experiment.start_time).unwrap_or(0.0);
-    let stop = wishes.stop.or(experiment.stop_time).unwrap_or(start + 1.0);
+pub(super) fn completed(options: &SimulationOptions, experiment: &Experiment) -> SimulationOptions {
+    let start = options.start.or(experiment.start_time).unwrap_or(0.0);
+    let stop = options.stop.or(experiment.stop_time).unwrap_or(start + 1.0);
     let interval = experiment.interval.filter(|interval| *interval > 0.0);
     let intervals = interval.map(|interval| ((stop - start) / interval).round().max(1.0) as usize);
-    Wishes {
+    SimulationOptions {
         start: Some(start),
         stop: Some(stop),
-        intervals: wishes.intervals.or(intervals).or(Some(500)),
-        tolerance: wishes.tolerance.or(experiment.tolerance).or(Some(1e-6)),
-        ..wishes.clone()
+        intervals: options.intervals.or(intervals).or(Some(500)),
+        tolerance: options.tolerance.or(experiment.tolerance).or(Some(1e-6)),
+        ..options.clone()
     }
 }
 
@@ -182,19 +182,19 @@ fn flags_of(session: &Session, flags: &str) -> Result<SimulationFlags, Vec<Diagn
 pub(super) fn run(
     session: &mut Session,
     model: &Arc<Translated>,
-    wishes: &Wishes,
+    options: &SimulationOptions,
     mut flags: SimulationFlags,
     (file, filter): (&str, &Regex),
-) -> Result<(Wishes, String), Vec<Diagnostic>> {
+) -> Result<(SimulationOptions, String), Vec<Diagnostic>> {
     let at = session.call_site();
     let one = |error: Diagnostic| vec![error];
-    executable::preset(session, &mut flags).at(at).map_err(one)?;
+    built_models::preset(session, &mut flags).at(at).map_err(one)?;
     simulation::look_at(session, model);
-    let wishes = completed(wishes, &model.program.experiment());
+    let options = completed(options, &model.program.experiment());
     let file = flags.result.as_deref().unwrap_or(file);
     let before = session.current_values();
     let set = flags.apply(session).at(at);
-    let applied = with_method_of_ours(session, flags.applied_to(wishes.clone()));
+    let applied = with_method_of_ours(session, flags.applied_to(options.clone()));
     let done = set.and_then(|()| simulation::simulate(session, model, &applied));
     session.restore_values(before);
     let mut done = done.map_err(one)?;
@@ -205,7 +205,7 @@ pub(super) fn run(
         begun_and_ended(&mut done.table);
     }
     write_results(session, &done.table, file).at(at).map_err(one)?;
-    Ok((wishes, file.to_owned()))
+    Ok((options, file.to_owned()))
 }
 
 /// A simulation that ends where it begins has two rows, the beginning and the end.
@@ -236,7 +236,7 @@ pub(super) fn write_results(
 
 /// The settings of a simulation as `simulationOptions` has them.
 pub(super) fn shown(
-    wishes: &Wishes,
+    options: &SimulationOptions,
     prefix: &str,
     format: &str,
     filter: &str,
@@ -247,11 +247,11 @@ pub(super) fn shown(
         "startTime = {}, stopTime = {}, numberOfIntervals = {}, tolerance = {}, method = '{}', \
          fileNamePrefix = '{prefix}', options = '', outputFormat = '{format}', \
          variableFilter = '{filter}', cflags = '', simflags = '{flags}'",
-        number(wishes.start),
-        number(wishes.stop),
-        wishes.intervals.map_or(String::new(), |count| count.to_string()),
-        number(wishes.tolerance),
-        wishes.method.as_deref().unwrap_or("dassl"),
+        number(options.start),
+        number(options.stop),
+        options.intervals.map_or(String::new(), |count| count.to_string()),
+        number(options.tolerance),
+        options.method.as_deref().unwrap_or("dassl"),
     )
 }
 

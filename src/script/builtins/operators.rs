@@ -5,6 +5,7 @@
 //! and returns the seed that goes on.
 
 use super::gapilib::{WholeNumbers, check_size, genes, genomes_value, row, take_genomes};
+use super::inputs;
 use super::{Args, Builtin, Failure, Family};
 use crate::diag::{Diagnostic, Fault};
 use crate::eval;
@@ -123,17 +124,26 @@ impl Operator {
     }
 }
 
-/// The generator of a call.
-fn generator(args: &mut Args) -> Result<Mrg32k3a, Fault> {
-    let seed: Vec<f64> = args.take("Seed")?;
-    Mrg32k3a::new(&seed)
+/// The random numbers of a call.
+struct Draws {
+    rng: Mrg32k3a,
+    /// The state of the generator at the beginning.
+    before: [f64; 6],
 }
 
-/// The outputs of a call that has drawn numbers.
-fn drawn(session: &mut Session, value: Value, before: [f64; 6], rng: &Mrg32k3a) -> Value {
-    let site = session.site_of_call();
-    session.identification().recorder.seeded(before, rng.state(), site);
-    Value::Tuple(vec![value, row(rng.state().to_vec())])
+impl Draws {
+    fn take(args: &mut Args) -> Result<Draws, Fault> {
+        let seed: Vec<f64> = args.take("Seed")?;
+        let rng = Mrg32k3a::new(&seed)?;
+        Ok(Draws { before: rng.state(), rng })
+    }
+
+    /// The outputs of the call: its value and the seed that goes on.
+    fn outputs(&self, session: &mut Session, value: Value) -> Value {
+        let site = session.site_of_call();
+        session.identification().recorder.seeded(self.before, self.rng.state(), site);
+        Value::Tuple(vec![value, row(self.rng.state().to_vec())])
+    }
 }
 
 fn count(args: &mut Args, name: &str) -> Result<usize, Fault> {
@@ -144,17 +154,20 @@ fn count(args: &mut Args, name: &str) -> Result<usize, Fault> {
     }
 }
 
-const SAMPLING: &str = r#"
+const SAMPLING: &str = concat!(
+    r#"
 function Op_Sampling "Samples random individuals, as for the first generation."
   input String Operator "name with settings, such as \"latin_hypercube\", or your own function";
   input Integer N_Individuals "number of individuals";
-  input Real Param_Min[:] "lower bounds of the search ranges";
-  input Real Param_Max[:] "upper bounds of the search ranges";
-  input Any Seed "Real[1,6]: seed, as for Ram_Gen_ARENA";
-  output Real Population[:,:] "one individual in each row";
-  output Real Seed_Next[:,:] "Real[1,6]: generator state to pass to the next call";
-end Op_Sampling;
-"#;
+"#,
+    inputs::ranges!(),
+    inputs::seed!(),
+    r#"  output Real Population[:,:] "one individual in each row";
+"#,
+    inputs::next_seed!(),
+    r#"end Op_Sampling;
+"#,
+);
 
 fn sample(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let mut operator = Operator::take(session, &mut args, "sampling")?;
@@ -166,32 +179,35 @@ fn sample(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         return Err(Fault::new(SIZE_MISMATCH, "the search ranges are empty").into());
     }
     session.identification().recorder.searched(&minima, &maxima);
-    let mut rng = generator(&mut args)?;
-    let before = rng.state();
+    let mut draws = Draws::take(&mut args)?;
     let genomes = match operator.function.clone() {
         None => operators::sampling(operator.choice.clone())
-            .and_then(|own| own.sample(&genes, individuals, &mut rng)),
+            .and_then(|own| own.sample(&genes, individuals, &mut draws.rng)),
         Some(function) => sampling::sample_by(
             &mut |inputs| operator.call(session, &function, genes.len(), inputs),
             &genes,
             individuals,
-            &mut rng,
+            &mut draws.rng,
         ),
     };
     let genomes = genomes.map_err(|fault| operator.failure(fault))?;
-    Ok(drawn(session, genomes_value(genomes), before, &rng))
+    Ok(draws.outputs(session, genomes_value(genomes)))
 }
 
-const SELECTION: &str = r#"
+const SELECTION: &str = concat!(
+    r#"
 function Op_Selection "Selects parents by fitness."
   input String Operator "name with settings, such as \"tournament(size = 3)\", or your own function";
   input Any Fit "Real[:]: fitness of all individuals, in any order; smaller is better";
   input Integer Parents "number of parents";
-  input Any Seed "Real[1,6]: seed, as for Ram_Gen_ARENA";
-  output Integer Places[:] "row numbers of the parents; 1 and 2 mate, 3 and 4, and so on";
-  output Real Seed_Next[:,:] "Real[1,6]: generator state to pass to the next call";
-end Op_Selection;
-"#;
+"#,
+    inputs::seed!(),
+    r#"  output Integer Places[:] "row numbers of the parents; 1 and 2 mate, 3 and 4, and so on";
+"#,
+    inputs::next_seed!(),
+    r#"end Op_Selection;
+"#,
+);
 
 fn select(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let mut operator = Operator::take(session, &mut args, "selection")?;
@@ -204,34 +220,36 @@ fn select(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         )
         .into());
     }
-    let mut rng = generator(&mut args)?;
-    let before = rng.state();
+    let mut draws = Draws::take(&mut args)?;
     let places = match operator.function.clone() {
         None => operators::selection(operator.choice.clone())
-            .and_then(|own| own.select(&fitness, parents, &mut rng)),
+            .and_then(|own| own.select(&fitness, parents, &mut draws.rng)),
         Some(function) => selection::select_by(
             &mut |inputs| operator.call(session, &function, 0, inputs),
             &fitness,
             parents,
-            &mut rng,
+            &mut draws.rng,
         ),
     };
     let places = places.map_err(|fault| operator.failure(fault))?;
     let places: Vec<i64> = places.into_iter().map(|k| k as i64 + 1).collect();
-    Ok(drawn(session, places.into(), before, &rng))
+    Ok(draws.outputs(session, places.into()))
 }
 
-const CROSSOVER: &str = r#"
+const CROSSOVER: &str = concat!(
+    r#"
 function Op_Crossover "Crossover of parents in adjacent rows; one child per parent."
   input String Operator "name with settings, such as \"sbx(eta = 5)\" or \"blend(probability = 0.9)\", or your own function";
   input Any Parents "Real[:,:]: rows 1 and 2 mate, rows 3 and 4, and so on; a last row without partner mates with row 1";
-  input Real Param_Min[:] "lower bounds of the search ranges";
-  input Real Param_Max[:] "upper bounds of the search ranges";
-  input Any Seed "Real[1,6]: seed, as for Ram_Gen_ARENA";
-  output Real Children[:,:] "one child in each row";
-  output Real Seed_Next[:,:] "Real[1,6]: generator state to pass to the next call";
-end Op_Crossover;
-"#;
+"#,
+    inputs::ranges!(),
+    inputs::seed!(),
+    r#"  output Real Children[:,:] "one child in each row";
+"#,
+    inputs::next_seed!(),
+    r#"end Op_Crossover;
+"#,
+);
 
 fn cross(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let mut operator = Operator::take(session, &mut args, "crossover")?;
@@ -239,45 +257,47 @@ fn cross(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let n_genes = parents.n_genes();
     let genes =
         genes(&args.take::<Vec<f64>>("Param_Min")?, &args.take::<Vec<f64>>("Param_Max")?, n_genes)?;
-    let mut rng = generator(&mut args)?;
-    let before = rng.state();
+    let mut draws = Draws::take(&mut args)?;
     let children = match operator.function.clone() {
         None => {
             let mut choice = operator.choice.clone();
             let probability = choice.options.take("probability", 0.0..=1.0, 1.0)?;
             let own = operators::crossover(choice)?;
-            let own = own.for_run(n_genes, &mut rng).unwrap_or(own);
+            let own = own.for_run(n_genes, &mut draws.rng).unwrap_or(own);
             crossover::cross_rows(&parents, |first, second| {
-                if probability == 1.0 || rng.uniform() < probability {
-                    own.cross(Parents { first, second, genes: &genes }, &mut rng)?;
+                if probability == 1.0 || draws.rng.uniform() < probability {
+                    own.cross(Parents { first, second, genes: &genes }, &mut draws.rng)?;
                 }
                 Ok(())
             })
         }
         Some(function) => crossover::cross_rows(&parents, |first, second| {
             let mut call = |inputs: &[f64]| operator.call(session, &function, n_genes, inputs);
-            crossover::cross_by(&mut call, first, second, &genes, &mut rng)
+            crossover::cross_by(&mut call, first, second, &genes, &mut draws.rng)
         }),
     };
     let children = children.map_err(|fault| operator.failure(fault))?;
-    Ok(drawn(session, genomes_value(children), before, &rng))
+    Ok(draws.outputs(session, genomes_value(children)))
 }
 
-const MUTATION: &str = r#"
+const MUTATION: &str = concat!(
+    r#"
 function Op_Mutation "Mutates each gene with probability F_Mut."
   input String Operator "name with settings, such as \"gaussian(sigma = 0.05)\", or your own function";
   input Any Nparameters "Real[:,:]: individuals, one in each row";
   input Real F_Mut "mutation probability of each gene, 0 to 1";
-  input Real Param_Min[:] "lower bounds of the search ranges";
-  input Real Param_Max[:] "upper bounds of the search ranges";
-  input Any Seed "Real[1,6]: seed, as for Ram_Gen_ARENA";
-  input Integer Elitism = 0 "number of first rows that are not changed";
+"#,
+    inputs::ranges!(),
+    inputs::seed!(),
+    r#"  input Integer Elitism = 0 "number of first rows that are not changed";
   input Integer Cycle = 1 "generation number, from 1, for operators that depend on it";
   input Integer N_Cycles = 100 "total number of generations";
   output Real Mutated[:,:] "the individuals after mutation";
-  output Real Seed_Next[:,:] "Real[1,6]: generator state to pass to the next call";
-end Op_Mutation;
-"#;
+"#,
+    inputs::next_seed!(),
+    r#"end Op_Mutation;
+"#,
+);
 
 fn mutate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let mut operator = Operator::take(session, &mut args, "mutation")?;
@@ -289,8 +309,7 @@ fn mutate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let maxima: Vec<f64> = args.take("Param_Max")?;
     let genes = genes(&minima, &maxima, n_genes)?;
     session.identification().recorder.searched(&minima, &maxima);
-    let mut rng = generator(&mut args)?;
-    let before = rng.state();
+    let mut draws = Draws::take(&mut args)?;
     let elites = count(&mut args, "Elitism")?;
     let (cycle, cycles) = (count(&mut args, "Cycle")?, count(&mut args, "N_Cycles")?);
     let generation = cycle.saturating_sub(1) as u64;
@@ -302,19 +321,19 @@ fn mutate(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     for k in elites..genomes.len() {
         let genome = genomes.row_mut(k);
         let mutated = match (&own, operator.function.clone()) {
-            (Some(own), _) => own.mutate(Child { genome, genes: &genes, rate, course }, &mut rng),
+            (Some(own), _) => own.mutate(Child { genome, genes: &genes, rate, course }, &mut draws.rng),
             (None, Some(function)) => mutation::mutate_by(
                 &mut |inputs| operator.call(session, &function, n_genes, inputs),
                 genome,
                 &genes,
                 [rate, course.fraction()],
-                &mut rng,
+                &mut draws.rng,
             ),
             (None, None) => Ok(()),
         };
         mutated.map_err(|fault| operator.failure(fault))?;
     }
-    Ok(drawn(session, genomes_value(genomes), before, &rng))
+    Ok(draws.outputs(session, genomes_value(genomes)))
 }
 
 const SURVIVAL: &str = r#"

@@ -4,7 +4,7 @@
 use super::{Args, Builtin, Failure, Family};
 use crate::codegen::VariableInfo;
 use crate::results::ResultTable;
-use crate::script::models::simulation::{Translated, state_names};
+use crate::script::models::simulation::Translated;
 use crate::script::{Dialect, Session};
 use crate::syntax::ast::CausalityPrefix;
 use crate::value::Value;
@@ -123,8 +123,8 @@ pub(super) fn stored(
     grid: &[f64],
 ) -> ResultTable {
     let kinds = *session.extension::<Kinds>();
-    let hides = session.flags.get("Advanced.StoreProtectedVariables") == Some(&false.into());
-    let states: HashSet<&str> = state_names(model).map(|name| &**name).collect();
+    let hides = session.workspace.flag("Advanced.StoreProtectedVariables") == Some(&false.into());
+    let states: HashSet<&str> = model.state_names().map(|name| &**name).collect();
     let variables = model.program.variables().iter();
     let protected: HashSet<&str> =
         variables.clone().filter(|variable| variable.protected).map(|v| &*v.name).collect();

@@ -33,9 +33,13 @@ fn run_script(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         session.script_not_run();
         return Ok(session.succeeded(Err(missing)));
     }
-    session.silent += usize::from(silent);
+    if silent {
+        session.execution.descend();
+    }
     let done = session.run_nested(&script);
-    session.silent -= usize::from(silent);
+    if silent {
+        session.execution.ascend();
+    }
     done.map(|()| true.into())
 }
 

@@ -54,7 +54,7 @@ end clearVariables;
 "#;
 
 fn clear_variables(session: &mut Session, _: Args) -> Result<Value, Failure> {
-    session.scope.clear();
+    session.workspace.variables.clear();
     Ok(true.into())
 }
 
@@ -67,7 +67,7 @@ end echo;
 
 fn echo(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let wanted: bool = args.take("setEcho")?;
-    session.muted = !wanted;
+    session.output.set_muted(!wanted);
     Ok(wanted.into())
 }
 
@@ -78,7 +78,8 @@ end listVariables;
 "#;
 
 fn list_variables(session: &mut Session, _: Args) -> Result<Value, Failure> {
-    let names: Vec<String> = session.scope.iter().map(|(name, _)| name.to_string()).collect();
+    let names: Vec<String> =
+        session.workspace.variables.iter().map(|(name, _)| name.to_string()).collect();
     Ok(names.into())
 }
 
@@ -103,7 +104,7 @@ fn variables(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let patterns: Vec<String> = args.take("variables")?;
     let is_script = file.ends_with(".mos");
     let listing: String =
-        patterns.iter().map(|pattern| session.listing(pattern, !is_script)).collect();
+        patterns.iter().map(|pattern| session.workspace.listing(pattern, !is_script)).collect();
     if file.is_empty() {
         session.print(&listing);
         return Ok(true.into());
@@ -122,8 +123,8 @@ end savelog;
 fn savelog(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let file: String = args.take("logfile")?;
     let contents = match file.ends_with(".mos") {
-        true => session.log.statements(&session.sources),
-        false => session.log.text(&session.sources),
+        true => session.output.log().statements(&session.sources),
+        false => session.output.log().text(&session.sources),
     };
     let written = session.write_file(file.as_ref(), contents.as_bytes());
     Ok(session.succeeded(written))
@@ -144,7 +145,7 @@ end setDebugFlags;
 "#;
 
 const SET_COMPILER_FLAGS: &str = r#"
-function setCompilerFlags "Accepts flags of a C compiler; they have no effect: there is no C compiler here."
+function setCompilerFlags "Accepts flags of a C compiler; they have no effect: models are compiled to machine code without a C compiler."
   input String compilerFlags;
   output Boolean success;
 end setCompilerFlags;

@@ -5,7 +5,7 @@ use crate::bail;
 use crate::diag::Fault;
 use crate::script::Session;
 use crate::script::errors::{BAD_ARGUMENT, NO_WINDOW};
-use crate::script::models::simulation::Wishes;
+use crate::script::models::simulation::SimulationOptions;
 
 /// What `simflags` asks for.
 #[derive(Debug, Default, PartialEq)]
@@ -17,9 +17,9 @@ pub(super) struct SimulationFlags {
     tolerance: Option<f64>,
     method: Option<String>,
     /// `-r`: the file for the results.
-    pub(super) result: Option<String>,
+    pub result: Option<String>,
     /// `-f`: the init file, of which the values are known that scripts wrote into it.
-    pub(super) init_file: Option<String>,
+    pub init_file: Option<String>,
     idle: Vec<String>,
 }
 
@@ -41,7 +41,7 @@ impl SimulationFlags {
         SimulationFlags::of_words(text.split_whitespace())
     }
 
-    /// The same from words that were told apart before.
+    /// The same from separate words.
     pub(super) fn of_words<'w>(
         words: impl Iterator<Item = &'w str>,
     ) -> Result<SimulationFlags, Fault> {
@@ -120,20 +120,20 @@ impl SimulationFlags {
 
     /// The settings of a simulation, complete, with those of the flags. The length of the output
     /// intervals stays unless it is given.
-    pub(super) fn applied_to(&self, wishes: Wishes) -> Wishes {
-        let length = match (wishes.start, wishes.stop, wishes.intervals) {
+    pub(super) fn applied_to(&self, options: SimulationOptions) -> SimulationOptions {
+        let length = match (options.start, options.stop, options.intervals) {
             (Some(start), Some(stop), Some(count)) => Some((stop - start) / count as f64),
-            _ => wishes.interval,
+            _ => options.interval,
         };
         let moved = self.start.is_some() || self.stop.is_some() || self.step.is_some();
-        Wishes {
-            start: self.start.or(wishes.start),
-            stop: self.stop.or(wishes.stop),
-            intervals: wishes.intervals.filter(|_| !moved),
+        SimulationOptions {
+            start: self.start.or(options.start),
+            stop: self.stop.or(options.stop),
+            intervals: options.intervals.filter(|_| !moved),
             interval: self.step.or(length),
-            tolerance: self.tolerance.or(wishes.tolerance),
-            method: self.method.clone().or(wishes.method),
-            ..wishes
+            tolerance: self.tolerance.or(options.tolerance),
+            method: self.method.clone().or(options.method),
+            ..options
         }
     }
 }
@@ -141,7 +141,7 @@ impl SimulationFlags {
 #[cfg(test)]
 mod tests {
     use super::SimulationFlags;
-    use crate::script::models::simulation::Wishes;
+    use crate::script::models::simulation::SimulationOptions;
 
     #[test]
     fn flags_are_read_in_all_their_forms() {
@@ -161,8 +161,12 @@ mod tests {
 
     #[test]
     fn the_length_of_output_intervals_stays() {
-        let whole =
-            Wishes { start: Some(0.0), stop: Some(1.0), intervals: Some(10), ..Wishes::default() };
+        let whole = SimulationOptions {
+            start: Some(0.0),
+            stop: Some(1.0),
+            intervals: Some(10),
+            ..SimulationOptions::default()
+        };
         let flags = SimulationFlags::parse("-stopTime=2").expect("flags");
         let applied = flags.applied_to(whole.clone());
         assert_eq!((applied.stop, applied.intervals), (Some(2.0), None));

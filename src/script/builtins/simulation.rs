@@ -6,7 +6,7 @@ use crate::diag::{At, Diagnostic, Fault};
 use crate::results::{self, ResultTable};
 use crate::script::errors::NO_TRANSLATED_MODEL;
 use crate::script::models::simulation;
-use crate::script::models::simulation::{Simulated, Translated, Wishes};
+use crate::script::models::simulation::{Simulated, SimulationOptions, Translated};
 use crate::script::{Dialect, Session};
 use crate::value::Value;
 use std::path::PathBuf;
@@ -27,18 +27,18 @@ pub(super) const FAMILY: Family = Family {
 
 /// What `experiment` set for the simulations that say nothing else.
 #[derive(Default)]
-struct Experiment(Wishes);
+struct Experiment(SimulationOptions);
 
 /// The settings of the last simulation, which `simulate()` repeats.
 #[derive(Default)]
-struct LastRun(Wishes);
+struct LastRun(SimulationOptions);
 
 /// The next simulations begin at `start` and, where it is given, end at `stop`; the other settings
 /// stay what they are.
 pub(super) fn begin_at(session: &mut Session, start: f64, stop: Option<f64>) {
-    let set = |wishes: &mut Wishes| {
-        wishes.start = Some(start);
-        wishes.stop = stop.or(wishes.stop);
+    let set = |options: &mut SimulationOptions| {
+        options.start = Some(start);
+        options.stop = stop.or(options.stop);
     };
     set(&mut session.extension::<Experiment>().0);
     set(&mut session.extension::<LastRun>().0);
@@ -47,29 +47,29 @@ pub(super) fn begin_at(session: &mut Session, start: f64, stop: Option<f64>) {
 /// What `simulateModel` and its relatives are asked for.
 pub(super) struct Request {
     /// The model; empty for the one used last.
-    pub(super) problem: String,
+    pub problem: String,
     /// How it is simulated.
-    pub(super) wishes: Wishes,
+    pub options: SimulationOptions,
     /// The result file.
-    pub(super) file: String,
+    pub file: String,
 }
 
 impl Request {
     /// The inputs that the headers of all of them begin with.
     pub(super) fn take(session: &mut Session, args: &mut Args) -> Result<Request, Fault> {
-        let wishes = wishes(session, args)?;
-        Ok(Request { wishes, problem: args.take("problem")?, file: args.take("resultFile")? })
+        let options = options(session, args)?;
+        Ok(Request { options, problem: args.take("problem")?, file: args.take("resultFile")? })
     }
 
     /// The times of the output grid.
     pub(super) fn grid(&self, model: &Translated) -> Result<Vec<f64>, Fault> {
-        grid(model, &self.wishes)
+        grid(model, &self.options)
     }
 }
 
 /// The times of the output grid.
-fn grid(model: &Translated, wishes: &Wishes) -> Result<Vec<f64>, Fault> {
-    let settings = simulation::settings(&model.program.experiment(), wishes)?;
+fn grid(model: &Translated, options: &SimulationOptions) -> Result<Vec<f64>, Fault> {
+    let settings = simulation::settings(&model.program.experiment(), options)?;
     let point = |number| settings.output.point(settings.start, settings.stop, number);
     Ok((0..).map_while(point).collect())
 }
@@ -91,8 +91,8 @@ end simulateModel;
 
 fn simulate_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let request = Request::take(session, &mut args)?;
-    *session.extension::<LastRun>() = LastRun(request.wishes.clone());
-    let done = run(session, &request.problem, &request.wishes, &request.file);
+    *session.extension::<LastRun>() = LastRun(request.options.clone());
+    let done = run(session, &request.problem, &request.options, &request.file);
     Ok(session.or_report_all(done).is_some().into())
 }
 
@@ -103,8 +103,8 @@ end simulate;
 "#;
 
 fn simulate(session: &mut Session, _: Args) -> Result<Value, Failure> {
-    let wishes = session.extension::<LastRun>().0.clone();
-    let done = run(session, "", &wishes, "dsres");
+    let options = session.extension::<LastRun>().0.clone();
+    let done = run(session, "", &options, "dsres");
     Ok(session.or_report_all(done).is_some().into())
 }
 
@@ -138,7 +138,7 @@ fn check_model(session: &mut Session, mut args: Args) -> Result<Value, Failure> 
     if args.take("simulate")?
         && let Ok(model) = done
     {
-        let simulated = simulation::simulate(session, &model, &Wishes::default());
+        let simulated = simulation::simulate(session, &model, &SimulationOptions::default());
         done = simulated.map(|_| model).map_err(|error| vec![error]);
     }
     Ok(session.or_report_all(done).is_some().into())
@@ -158,7 +158,7 @@ end experiment;
 "#;
 
 fn experiment(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    let wishes = Wishes {
+    let options = SimulationOptions {
         start: args.optional("StartTime")?,
         stop: args.optional("StopTime")?,
         intervals: positive(args.optional("NumberOfIntervals")?),
@@ -166,23 +166,23 @@ fn experiment(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
         method: args.optional("Algorithm")?.filter(|method: &String| !method.is_empty()),
         tolerance: args.optional("Tolerance")?,
         fixed_step: args.optional("FixedStepSize")?,
-        ..Wishes::default()
+        ..SimulationOptions::default()
     };
-    let wishes = with_method_of_ours(session, wishes);
-    *session.extension::<LastRun>() = LastRun(wishes.clone());
-    *session.extension::<Experiment>() = Experiment(wishes);
+    let options = with_method_of_ours(session, options);
+    *session.extension::<LastRun>() = LastRun(options.clone());
+    *session.extension::<Experiment>() = Experiment(options);
     Ok(true.into())
 }
 
 /// The arguments that all simulations share; what they leave open `experiment` may have said.
-fn wishes(session: &mut Session, args: &mut Args) -> Result<Wishes, Fault> {
+fn options(session: &mut Session, args: &mut Args) -> Result<SimulationOptions, Fault> {
     let set = session.extension::<Experiment>().0.clone();
     let method: Option<String> = args.optional("method")?;
     // What the call itself says goes before what `experiment` has said.
     let own = positive(args.optional("numberOfIntervals")?);
     let interval = args.optional("outputInterval")?.filter(|interval| *interval > 0.0);
     let intervals = if interval.is_some() { own } else { own.or(set.intervals) };
-    let wishes = Wishes {
+    let options = SimulationOptions {
         start: args.optional("startTime")?.or(set.start),
         stop: args.optional("stopTime")?.or(set.stop),
         intervals,
@@ -190,9 +190,9 @@ fn wishes(session: &mut Session, args: &mut Args) -> Result<Wishes, Fault> {
         method: method.filter(|method| !method.is_empty()).or(set.method),
         tolerance: args.optional("tolerance")?.or(set.tolerance),
         fixed_step: args.optional("fixedstepsize")?.or(set.fixed_step),
-        ..Wishes::default()
+        ..SimulationOptions::default()
     };
-    Ok(with_method_of_ours(session, wishes))
+    Ok(with_method_of_ours(session, options))
 }
 
 fn positive(count: Option<i64>) -> Option<usize> {
@@ -220,22 +220,22 @@ pub(super) fn translated_model(session: &mut Session, problem: &str) -> Option<A
 fn run(
     session: &mut Session,
     problem: &str,
-    wishes: &Wishes,
+    options: &SimulationOptions,
     file: &str,
 ) -> Result<Simulated, Vec<Diagnostic>> {
     let model = model(session, problem)?;
-    run_model(session, &model, wishes, file)
+    run_model(session, &model, options, file)
 }
 
 /// Simulates and writes the result file.
 pub(super) fn run_model(
     session: &mut Session,
     model: &Translated,
-    wishes: &Wishes,
+    options: &SimulationOptions,
     file: &str,
 ) -> Result<Simulated, Vec<Diagnostic>> {
-    let simulated = simulation::simulate(session, model, wishes).map_err(|error| vec![error])?;
-    let grid = grid(model, wishes).at(session.call_site()).map_err(|error| vec![error])?;
+    let simulated = simulation::simulate(session, model, options).map_err(|error| vec![error])?;
+    let grid = grid(model, options).at(session.call_site()).map_err(|error| vec![error])?;
     let table = super::output::stored(session, model, &simulated.table, &grid);
     let written = write(session, table, file).at(session.call_site());
     written.map_err(|error| vec![error])?;

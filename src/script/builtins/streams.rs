@@ -1,6 +1,6 @@
-//! `Modelica.Utilities.Streams`: texts on the terminal and in files, line by line.
+//! `Modelica.Utilities.Streams`: text on the terminal and in files, line by line.
 
-use super::strings::{text, texts};
+use super::strings::{string_array, text};
 use super::{Args, Builtin, Failure, Family};
 use crate::bail;
 use crate::diag::Fault;
@@ -68,7 +68,7 @@ end readFile;
 "#;
 
 fn read_file(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    Ok(texts(lines(session, &mut args)?))
+    Ok(string_array(lines(session, &mut args)?))
 }
 
 const READ_LINE: &str = r#"

@@ -280,7 +280,7 @@ fn sort(_: &mut Session, mut args: Args) -> Result<Value, Failure> {
         true => strings.sort(),
         false => strings.sort_by_key(|string| string.to_lowercase()),
     }
-    Ok(texts(strings))
+    Ok(string_array(strings))
 }
 
 const HASH_STRING: &str = r#"
@@ -332,7 +332,7 @@ pub(super) fn text(string: String) -> Value {
 }
 
 /// Strings as a vector.
-pub(super) fn texts(strings: impl IntoIterator<Item = String>) -> Value {
+pub(super) fn string_array(strings: impl IntoIterator<Item = String>) -> Value {
     let elements = strings.into_iter().map(Into::into).collect();
     Value::Array(ArrayValue::vector(Elements::String(elements)))
 }

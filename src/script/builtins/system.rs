@@ -3,7 +3,6 @@
 use super::strings::text;
 use super::{Args, Builtin, Failure, Family, executable};
 use crate::diag::Fault;
-use crate::script::session::Stop;
 use crate::script::{Dialect, Session};
 use crate::value::Value;
 
@@ -52,7 +51,7 @@ end exit;
 
 fn exit(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
     let status: i64 = args.take("status")?;
-    session.stop = Some(Stop::Exit(i32::try_from(status).unwrap_or(i32::MAX)));
+    session.execution.exit(i32::try_from(status).unwrap_or(i32::MAX));
     Ok(Value::nothing())
 }
 
@@ -91,7 +90,8 @@ fn status(session: &mut Session, args: &mut Args, input: &str) -> Result<i32, Fa
     if let Some(status) = executable::answered(session, &command) {
         return Ok(status);
     }
-    let (status, printed) = session.run_system_command(&command)?;
+    let (status, printed) =
+        session.process.run(&mut *session.world, session.options.permissions, &command)?;
     session.print(&String::from_utf8_lossy(&printed));
     Ok(status)
 }
@@ -118,7 +118,8 @@ fn system_openmodelica(session: &mut Session, mut args: Args) -> Result<Value, F
         session.write_file(file.as_ref(), b"")?;
         return Ok(i64::from(status).into());
     }
-    let (status, printed) = session.run_system_command(&command)?;
+    let (status, printed) =
+        session.process.run(&mut *session.world, session.options.permissions, &command)?;
     session.write_file(file.as_ref(), &printed)?;
     Ok(i64::from(status).into())
 }
@@ -132,7 +133,7 @@ end setEnvironmentVariable;
 "#;
 
 fn set_environment_variable(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    session.environment.insert(args.take("name")?, args.take("content")?);
+    session.process.set(args.take("name")?, args.take("content")?);
     Ok(Value::nothing())
 }
 
@@ -145,7 +146,7 @@ end setEnvironmentVar;
 "#;
 
 fn set_environment_var(session: &mut Session, mut args: Args) -> Result<Value, Failure> {
-    session.environment.insert(args.take("var")?, args.take("value")?);
+    session.process.set(args.take("var")?, args.take("value")?);
     Ok(true.into())
 }
 

@@ -172,11 +172,11 @@ fn convert_clear(_: &mut Session, _: Args) -> Result<Value, Failure> {
 
 fn names(args: &mut Args, input: &str) -> Result<Vec<Name>, Fault> {
     let value: Value = args.take(input)?;
-    let texts: Vec<String> = match value {
+    let names: Vec<String> = match value {
         Value::String(text) => vec![text.to_string()],
         other => crate::value::FromValue::from_value(other)?,
     };
-    Ok(texts.iter().map(|text| Name::parse(text)).collect())
+    Ok(names.iter().map(|name| Name::parse(name)).collect())
 }
 
 /// `p=value`, or `p` alone.
@@ -203,12 +203,12 @@ fn run_conversion_script(session: &mut Session, mut args: Args) -> Result<Value,
     let package: Name = args.take("packageToConvert")?;
     let script: String = args.take("scriptFile")?;
     if session.library().definition(&package).is_none() {
-        return Err(session.unknown_class(&package).into());
+        return Err(session.classes.unknown_class(&package).into());
     }
     let outer = std::mem::replace(&mut session.extension::<Chosen>().0, package.first());
-    session.silent += 1;
+    session.execution.descend();
     let done = session.run_nested(&script);
-    session.silent -= 1;
+    session.execution.ascend();
     session.extension::<Chosen>().0 = outer;
     done.map(|()| true.into())
 }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// Names looked up before.
 #[derive(Default)]
-pub(in crate::script) struct Callees {
+pub struct Callees {
     state: (u64, Dialect),
     known: FxHashMap<Name, Option<Known>>,
     /// Those of one identifier, found without making a name of it.
@@ -39,18 +39,13 @@ impl Known {
 
 impl Callees {
     /// What the name stood for at this revision of the classes; `None` if that is not known.
-    pub(super) fn get(
-        &mut self,
-        name: &Name,
-        revision: u64,
-        dialect: Dialect,
-    ) -> Option<Option<Callee>> {
+    pub fn get(&mut self, name: &Name, revision: u64, dialect: Dialect) -> Option<Option<Callee>> {
         self.keep_up(revision, dialect);
         Some(self.known.get(name)?.as_ref().map(Known::callee))
     }
 
     /// As [`Callees::get`], of a name of one identifier.
-    pub(super) fn get_simple(
+    pub fn get_simple(
         &mut self,
         name: Ident,
         revision: u64,
@@ -68,17 +63,17 @@ impl Callees {
     }
 
     /// Remembers an answer.
-    pub(super) fn put(&mut self, name: &Name, callee: Option<&Callee>) {
+    pub fn put(&mut self, name: &Name, callee: Option<&Callee>) {
         self.known.insert(name.clone(), callee.map(Known::of));
     }
 
     /// Remembers the answer to a name of one identifier.
-    pub(super) fn put_simple(&mut self, name: Ident, callee: Option<&Callee>) {
+    pub fn put_simple(&mut self, name: Ident, callee: Option<&Callee>) {
         self.simple.insert(name, callee.map(Known::of));
     }
 
     /// Forgets everything.
-    pub(in crate::script) fn clear(&mut self) {
+    pub fn clear(&mut self) {
         self.known.clear();
         self.simple.clear();
     }

@@ -4,42 +4,23 @@ use crate::diag::{Diagnostic, Fault};
 use crate::eval::{self, Function, FunctionComponent, ValueType};
 use crate::name::{Ident, Name};
 use crate::script::Session;
-use crate::script::models::classes::first_fault;
 use crate::source::{SourceId, Span};
 use crate::syntax;
 use crate::syntax::ast::ComponentReference;
 use crate::value::{EnumerationDefinition, EnumerationValue, Step, Value, construct};
-use std::collections::HashMap;
 use std::sync::Arc;
 
 /// The name of the function through which the library is asked: it knows the scopes of packages.
 const ASKING: &str = "'a question'";
 
-/// What the library answered, until its classes change.
-#[derive(Default)]
-pub(in crate::script) struct Answers {
-    types: HashMap<Name, Option<FunctionComponent>>,
-    constants: HashMap<Name, Option<Value>>,
-}
-
-impl Answers {
-    pub(in crate::script) fn clear(&mut self) {
-        self.types.clear();
-        self.constants.clear();
-    }
-}
-
 impl Session {
     /// What a dotted name or the name of an import stands for, if that is a constant of a package,
     /// a field of one, a literal of an enumeration, or an enumeration: all its values.
-    pub(super) fn constant(
-        &mut self,
-        reference: &ComponentReference,
-    ) -> Result<Option<Value>, Fault> {
+    pub fn constant(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Fault> {
         if reference.parts.iter().any(|part| !part.subscripts.is_empty()) {
             return Ok(None);
         }
-        for candidate in self.candidates(&reference.name()) {
+        for candidate in self.workspace.candidates(&reference.name()) {
             if let Some(value) = crate::script::builtins::constant(&candidate) {
                 return Ok(Some(value));
             }
@@ -83,13 +64,13 @@ impl Session {
     ///
     /// # Errors
     /// There is no such class, or it is no type with values.
-    pub(super) fn declared_type(
+    pub fn declared_type(
         &mut self,
         name: &Name,
         span: Span,
     ) -> Result<FunctionComponent, Diagnostic> {
         let mut wrong = None;
-        for candidate in self.candidates(name) {
+        for candidate in self.workspace.candidates(name) {
             if !self.class_exists(&candidate.parts[0].into()) {
                 continue;
             }
@@ -98,24 +79,24 @@ impl Session {
                 Err(error) => _ = wrong.get_or_insert(error),
             }
         }
-        let unknown = || self.unknown_class(name);
+        let unknown = || self.classes.unknown_class(name);
         Err(wrong.map_or_else(unknown, first_fault).at(span))
     }
 
     fn asked_type(&mut self, name: &Name) -> Result<FunctionComponent, Diagnostic> {
-        if let Some(Some(known)) = self.classes.answers.types.get(name) {
+        if let Some(Some(known)) = self.classes.constants.types.get(name) {
             return Ok(known.clone());
         }
         let shown = Name::new(name.parts.iter().copied());
         let function = self.asked(&format!("output .{shown} y;"))?;
         let component = function.and_then(|function| function.outputs.first().cloned());
         component
-            .ok_or_else(|| self.unknown_class(name).at(Span::NONE))
+            .ok_or_else(|| self.classes.unknown_class(name).at(Span::NONE))
             .inspect(|found| self.keep_type(name, Some(found.clone())))
     }
 
     fn keep_type(&mut self, name: &Name, found: Option<FunctionComponent>) {
-        self.classes.answers.types.insert(name.clone(), found);
+        self.classes.constants.types.insert(name.clone(), found);
     }
 
     /// The enumeration of this name, which may be another one's under a new name.
@@ -123,12 +104,12 @@ impl Session {
         if !self.class_exists(name) {
             return None;
         }
-        if !self.classes.answers.types.contains_key(name) {
+        if !self.classes.constants.types.contains_key(name) {
             let is_type = self.is_type(name);
             let found = is_type.then(|| self.asked_type(name).ok()).flatten();
             self.keep_type(name, found);
         }
-        match &self.classes.answers.types.get(name)?.as_ref()?.value_type {
+        match &self.classes.constants.types.get(name)?.as_ref()?.value_type {
             ValueType::Enumeration(definition) => Some(definition.clone()),
             _ => None,
         }
@@ -140,11 +121,11 @@ impl Session {
     }
 
     fn package_constant(&mut self, name: &Name) -> Option<Value> {
-        if let Some(known) = self.classes.answers.constants.get(name) {
+        if let Some(known) = self.classes.constants.constants.get(name) {
             return known.clone();
         }
         let value = self.asked_constant(name);
-        self.classes.answers.constants.insert(name.clone(), value.clone());
+        self.classes.constants.constants.insert(name.clone(), value.clone());
         value
     }
 
@@ -183,4 +164,11 @@ fn value_at(definition: &Arc<EnumerationDefinition>, at: usize) -> Value {
 fn all_values(definition: &Arc<EnumerationDefinition>) -> Result<Value, Fault> {
     let values = (0..definition.literals.len()).map(|at| value_at(definition, at));
     construct::array(values.collect())
+}
+
+/// The message of a diagnostic, for places where only that of the caller is known.
+fn first_fault(diagnostic: Diagnostic) -> Fault {
+    let mut fault = Fault::new(diagnostic.code, diagnostic.message.clone());
+    fault.helps.clone_from(&diagnostic.helps);
+    fault
 }

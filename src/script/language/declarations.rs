@@ -15,13 +15,13 @@ use crate::syntax::ast::{
 impl Session {
     /// Declares the variables of a clause, as a function declares its own: records have the values
     /// that their classes and the modifiers give them (MLS §12.4.4).
-    pub(super) fn declare(&mut self, clause: &ComponentClause) -> Result<(), Diagnostic> {
+    pub fn declare(&mut self, clause: &ComponentClause) -> Result<(), Diagnostic> {
         let (value_type, own_dims) = self.type_of_clause(&clause.type_specifier)?;
         for component in &clause.components {
             let dims = [component.subscripts.as_slice(), &clause.subscripts, &own_dims].concat();
             self.declare_one(component, value_type.clone(), &dims)?;
             if clause.type_prefixes.variability == Some(VariabilityPrefix::Constant) {
-                self.scope.freeze(component.name.node);
+                self.workspace.variables.freeze(component.name.node);
             }
             self.follow_ups.found(component.name.node);
         }

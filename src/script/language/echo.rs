@@ -10,12 +10,12 @@ use crate::value::show::{Style, show};
 
 impl Session {
     fn may_echo(&self) -> bool {
-        self.silent == 0 && !self.muted && self.options.echo != Echo::Nothing
+        self.execution.is_at_top() && !self.output.is_muted() && self.options.echo != Echo::Nothing
     }
 
     /// The statement itself, which Dymola repeats in its log.
-    pub(super) fn echo_input(&mut self, span: Span) {
-        let wanted = self.options.echo == Echo::Everything && self.dialect == Dialect::Dymola;
+    pub fn echo_input(&mut self, span: Span) {
+        let wanted = self.options.echo == Echo::Everything && self.dialect() == Dialect::Dymola;
         if wanted && self.may_echo() {
             let end = if self.sources.is_followed_by(span, ';') { ";" } else { "" };
             let line = format!("{}{end}\n", self.sources.text(span));
@@ -24,8 +24,8 @@ impl Session {
     }
 
     /// The value of an expression that is a statement.
-    pub(super) fn echo_value(&mut self, expression: &Expression, value: &Value) {
-        if self.silent > 0 || self.muted {
+    pub fn echo_value(&mut self, expression: &Expression, value: &Value) {
+        if !self.execution.is_at_top() || self.output.is_muted() {
             return;
         }
         if matches!(value, Value::Tuple(v) if v.is_empty()) {
@@ -36,7 +36,7 @@ impl Session {
         }
         self.echo_finished(expression, value);
         match value {
-            Value::Tuple(values) if self.dialect == Dialect::OpenModelica => {
+            Value::Tuple(values) if self.dialect() == Dialect::OpenModelica => {
                 self.answer_outputs(expression, values);
             }
             value if self.answers_names(expression) => {
@@ -50,8 +50,8 @@ impl Session {
     /// Whether the value is a list of names, which OpenModelica shows without quotes.
     fn answers_names(&self, expression: &Expression) -> bool {
         let ExpressionKind::Call { function, .. } = &expression.kind else { return false };
-        let command = builtins::find(&function.name(), self.dialect);
-        self.dialect == Dialect::OpenModelica
+        let command = builtins::find(&function.name(), self.dialect());
+        self.dialect() == Dialect::OpenModelica
             && self.options.echo != Echo::Nothing
             && command.is_some_and(|command| {
                 let outputs = &command.function().outputs;
@@ -62,13 +62,13 @@ impl Session {
     /// The word that stands in Dymola's log between a simulation and its answer.
     fn echo_finished(&mut self, expression: &Expression, value: &Value) {
         let is_wanted = matches!(self.options.echo, Echo::Everything | Echo::Dialogue)
-            && self.dialect == Dialect::Dymola
+            && self.dialect() == Dialect::Dymola
             && *value == Value::Boolean(true);
         let ExpressionKind::Call { function, .. } = &expression.kind else { return };
         let name = function.name();
         let simulates =
             name.last().is_some_and(|last| matches!(last.as_str(), "simulateModel" | "simulate"));
-        if is_wanted && simulates && builtins::find(&name, self.dialect).is_some() {
+        if is_wanted && simulates && builtins::find(&name, self.dialect()).is_some() {
             self.print("Finished\n");
         }
     }
@@ -76,7 +76,7 @@ impl Session {
     /// Several outputs: OpenModelica shows all of its own commands, the first of other functions.
     fn answer_outputs(&mut self, expression: &Expression, values: &[Value]) {
         let is_command = matches!(&expression.kind, ExpressionKind::Call { function, .. }
-            if builtins::find(&function.name(), self.dialect).is_some());
+            if builtins::find(&function.name(), self.dialect()).is_some());
         match (is_command, values.first()) {
             (false, Some(first)) => self.answer(first),
             _ => {
@@ -88,10 +88,10 @@ impl Session {
     }
 
     /// A first assignment, which Dymola announces; the value, which OpenModelica shows.
-    pub(super) fn echo_assignment(&mut self, name: Ident, is_new: bool) {
-        match self.dialect {
+    pub fn echo_assignment(&mut self, name: Ident, is_new: bool) {
+        match self.dialect() {
             Dialect::OpenModelica if self.may_echo() => {
-                if let Some(value) = self.scope.get(name).cloned() {
+                if let Some(value) = self.workspace.variables.get(name).cloned() {
                     self.answer(&value);
                 }
             }
@@ -101,11 +101,11 @@ impl Session {
     }
 
     /// A variable that an assignment made, as Dymola announces it.
-    pub(super) fn echo_declaration(&mut self, name: Ident) {
-        let wanted = self.dialect == Dialect::Dymola
+    pub fn echo_declaration(&mut self, name: Ident) {
+        let wanted = self.dialect() == Dialect::Dymola
             && matches!(self.options.echo, Echo::Everything | Echo::Dialogue)
             && self.may_echo();
-        let Some(value) = self.scope.get(name).filter(|_| wanted) else { return };
+        let Some(value) = self.workspace.variables.get(name).filter(|_| wanted) else { return };
         let sizes: Vec<String> = value.dims().iter().map(usize::to_string).collect();
         let dims = match sizes.is_empty() {
             true => String::new(),
@@ -118,14 +118,14 @@ impl Session {
     }
 
     /// The empty line that OpenModelica prints for a statement without a value.
-    pub(super) fn echo_nothing(&mut self) {
-        if self.dialect == Dialect::OpenModelica && self.may_echo() {
+    pub fn echo_nothing(&mut self) {
+        if self.dialect() == Dialect::OpenModelica && self.may_echo() {
             self.print("\n");
         }
     }
 
     fn answer(&mut self, value: &Value) {
-        let (style, lead) = match self.dialect {
+        let (style, lead) = match self.dialect() {
             Dialect::Dymola => (Style::Dymola, " = "),
             Dialect::OpenModelica => (Style::OpenModelica, ""),
         };
@@ -134,15 +134,15 @@ impl Session {
             self.world.print(&line);
         }
         let style = if style == Style::Dymola { Style::Transcript } else { style };
-        self.record(&format!("{lead}{}\n", show(value, style)));
+        self.output.record(&format!("{lead}{}\n", show(value, style)));
     }
 
     /// Whether a command only says that it succeeded: `true` from an output named `ok`.
     fn is_plain_success(&mut self, expression: &Expression, value: &Value) -> bool {
         let ExpressionKind::Call { function, .. } = &expression.kind else { return false };
-        self.dialect == Dialect::Dymola
+        self.dialect() == Dialect::Dymola
             && *value == Value::Boolean(true)
-            && builtins::find(&function.name(), self.dialect)
+            && builtins::find(&function.name(), self.dialect())
                 .is_some_and(|id| id.function().outputs.iter().any(|output| output.name == "ok"))
     }
 }

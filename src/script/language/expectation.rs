@@ -47,10 +47,10 @@ pub enum Line {
     Unexpected(String),
 }
 
-/// Lines compared at most; longer texts are compared in order without looking for insertions.
+/// Lines compared at most; longer ones are compared in order without looking for insertions.
 const MAX_LINES: usize = 4000;
 
-/// The lines of both texts in order; `None` if they agree.
+/// The lines of both in order; `None` if they agree.
 pub fn difference(expected: &str, actual: &str, tolerance: Tolerance) -> Option<Vec<Line>> {
     let expected: Vec<&str> = expected.trim_end().lines().map(str::trim_end).collect();
     let actual: Vec<&str> = actual.trim_end().lines().map(str::trim_end).collect();

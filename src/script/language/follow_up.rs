@@ -8,46 +8,46 @@ use std::collections::HashSet;
 
 /// Variables that have no value because their statement failed.
 #[derive(Debug, Default)]
-pub(in crate::script) struct FollowUps {
+pub struct FollowUps {
     missing: HashSet<Ident>,
     /// A script that was not run to its end ran others: anything may be missing.
     anything: bool,
-    told: bool,
+    reported: bool,
 }
 
 impl FollowUps {
     /// Whether `name` would exist had an earlier statement not failed.
-    pub(super) fn is_missing(&self, name: Ident) -> bool {
+    pub fn is_missing(&self, name: Ident) -> bool {
         self.anything || self.missing.contains(&name)
     }
 
     /// A statement gave the variable a value after all.
-    pub(super) fn found(&mut self, name: Ident) {
+    pub fn found(&mut self, name: Ident) {
         if !self.missing.is_empty() {
             self.missing.remove(&name);
         }
     }
 
-    /// Whether this is the first follow-up, the only one that is told.
-    pub(super) fn is_first(&mut self) -> bool {
-        !std::mem::replace(&mut self.told, true)
+    /// Whether this is the first follow-up, the only one that is reported.
+    pub fn is_first(&mut self) -> bool {
+        !std::mem::replace(&mut self.reported, true)
     }
 
-    /// The statement was executed, but not to its end: the scripts that it runs told themselves
+    /// The statement was executed, but not to its end: the scripts that it runs noted themselves
     /// what they did not do.
-    pub(super) fn failed(&mut self, statement: &InteractiveStatement) {
+    pub fn failed(&mut self, statement: &InteractiveStatement) {
         let anything = self.anything;
         self.not_done(std::slice::from_ref(statement));
         self.anything = anything;
     }
 
     /// A script that was asked for was not run at all.
-    pub(super) fn script_not_run(&mut self) {
+    pub fn script_not_run(&mut self) {
         self.anything = true;
     }
 
     /// These statements were not executed.
-    pub(super) fn not_done(&mut self, statements: &[InteractiveStatement]) {
+    pub fn not_done(&mut self, statements: &[InteractiveStatement]) {
         for statement in statements {
             match &statement.kind {
                 InteractiveKind::Statement(statement) => self.statement(statement),

@@ -1,13 +1,14 @@
 //! The session as the host of evaluation: it answers calls, dotted names and questions.
 
+use super::workspace::check_type;
 use crate::diag::{At, Diagnostic, Fault};
 use crate::eval::{Callee, Function, FunctionBody, Host, Scope};
 use crate::external::{Outside, Random};
 use crate::name::{Ident, Name};
-use crate::script::Session;
 use crate::script::builtins;
 use crate::script::builtins::{BuiltinId, Failure};
 use crate::script::errors::INTERRUPTED;
+use crate::script::{Dialect, Session};
 use crate::source::Span;
 use crate::syntax::ast::ComponentReference;
 use crate::value::Value;
@@ -18,21 +19,21 @@ impl Host for Session {
     /// A function of a script or a loaded library first, then a command.
     fn callee(&mut self, name: &Name) -> Result<Option<Callee>, Diagnostic> {
         let revision = self.classes.revision();
-        if let Some(known) = self.callees.get(name, revision, self.dialect) {
+        if let Some(known) = self.workspace.callees.get(name, revision, self.dialect()) {
             return Ok(known);
         }
         let callee = self.look_up_callee(name)?;
-        self.callees.put(name, callee.as_ref());
+        self.workspace.callees.put(name, callee.as_ref());
         Ok(callee)
     }
 
     fn simple_callee(&mut self, name: Ident) -> Result<Option<Callee>, Diagnostic> {
         let revision = self.classes.revision();
-        if let Some(known) = self.callees.get_simple(name, revision, self.dialect) {
+        if let Some(known) = self.workspace.callees.get_simple(name, revision, self.dialect()) {
             return Ok(known);
         }
         let callee = self.callee(&Name::from(name))?;
-        self.callees.put_simple(name, callee.as_ref());
+        self.workspace.callees.put_simple(name, callee.as_ref());
         Ok(callee)
     }
 
@@ -45,11 +46,11 @@ impl Host for Session {
         let Some(id) = BuiltinId::of(header) else {
             unreachable!("`callee` gives out headers of the table only")
         };
-        let outer = std::mem::replace(&mut self.call, span);
+        let around = self.execution.begin_call(span);
         let result = id.run(self, arguments);
-        self.call = outer;
+        self.execution.end_call(around);
         if result.as_ref().is_ok_and(is_success) {
-            self.messages.note_success();
+            self.output.messages.note_success();
         }
         match result {
             Ok(Value::Tuple(values)) => Ok(values),
@@ -77,22 +78,22 @@ impl Host for Session {
         span: Span,
         scope: &mut Scope,
     ) -> Result<Vec<Value>, Diagnostic> {
-        let outer = std::mem::replace(&mut self.in_function, !scope.is_script());
-        if !self.in_function {
-            std::mem::swap(&mut self.scope, scope);
+        let outer = self.execution.set_in_function(!scope.is_script());
+        if !self.execution.is_in_function() {
+            std::mem::swap(&mut self.workspace.variables, scope);
         }
-        self.silent += 1;
+        self.execution.descend();
         let result = self.call_builtin(header, arguments, span);
-        self.silent -= 1;
-        if !self.in_function {
-            std::mem::swap(&mut self.scope, scope);
+        self.execution.ascend();
+        if !self.execution.is_in_function() {
+            std::mem::swap(&mut self.workspace.variables, scope);
         }
-        self.in_function = outer;
+        self.execution.set_in_function(outer);
         result
     }
 
     fn variable(&mut self, reference: &ComponentReference) -> Result<Option<Value>, Diagnostic> {
-        if let Some(value) = self.flag(reference) {
+        if let Some(value) = self.workspace.flag_at(reference) {
             return Ok(Some(value));
         }
         if let Some(value) = self.constant(reference).at(reference.span)? {
@@ -125,7 +126,9 @@ impl Host for Session {
         before: Option<&Value>,
         value: &Value,
     ) -> Result<(), Fault> {
-        self.check_kind(name, before, value)?;
+        if self.dialect() == Dialect::Dymola {
+            check_type(name, before, value)?;
+        }
         self.follow_ups.found(name);
         self.share_with_model(name, value)
     }
@@ -140,12 +143,12 @@ impl Host for Session {
         names
     }
 
-    fn loop_turn(&mut self, turn: usize, turns: Option<usize>) {
-        self.loop_turn = Some((turn, turns));
+    fn loop_turn(&mut self, iteration: usize, iterations: Option<usize>) {
+        self.execution.iterate((iteration, iterations));
     }
 
     fn interrupted(&mut self) -> Option<Fault> {
-        match self.is_interrupted() || self.stop.is_some() {
+        match self.is_interrupted() || self.execution.stop().is_some() {
             true => Some(Fault::new(INTERRUPTED, "interrupted")),
             false => None,
         }
@@ -184,7 +187,7 @@ impl Outside for Session {
     }
 
     fn random(&mut self) -> Result<&mut Random, Fault> {
-        Ok(&mut self.random)
+        Ok(&mut self.workspace.random)
     }
 
     fn is_folder(&mut self, path: &str) -> Result<Option<bool>, Fault> {
@@ -197,12 +200,12 @@ impl Session {
         if let Some(function) = self.loaded_function(name)? {
             return Ok(Some(self.loaded_callee(function)));
         }
-        for candidate in self.candidates(name) {
-            if let Some(id) = builtins::find(&candidate, self.dialect) {
+        for candidate in self.workspace.candidates(name) {
+            if let Some(id) = builtins::find(&candidate, self.dialect()) {
                 return Ok(Some(Callee::Builtin(id.function())));
             }
         }
-        for candidate in self.candidates(name) {
+        for candidate in self.workspace.candidates(name) {
             let is_intrinsic = candidate.is_simple()
                 && crate::functions::names().any(|intrinsic| candidate.parts[0] == intrinsic);
             if !is_intrinsic && self.class_exists(&Name::new(candidate.first())) {
@@ -217,31 +220,17 @@ impl Session {
     /// implementation: the functions of `Modelica.Utilities` are commands, loaded or not.
     fn loaded_callee(&self, function: Arc<Function>) -> Callee {
         let is_utility = function.name.to_string().starts_with("Modelica.Utilities.");
-        let own = builtins::find(&function.name, self.dialect).filter(|_| is_utility);
+        let own = builtins::find(&function.name, self.dialect()).filter(|_| is_utility);
         let command = own.or_else(|| match &function.body {
             FunctionBody::External(external) if external.language.as_deref() == Some("builtin") => {
                 external
                     .function
                     .as_ref()
-                    .and_then(|called| builtins::find(&Name::new([called.node]), self.dialect))
+                    .and_then(|called| builtins::find(&Name::new([called.node]), self.dialect()))
             }
             _ => None,
         });
         command.map_or(Callee::Function(function), |id| Callee::Builtin(id.function()))
-    }
-
-    /// What a name may stand for: itself, and what the imports of the scripts make of it.
-    pub(in crate::script) fn candidates(&self, name: &Name) -> Vec<Name> {
-        let mut all = vec![name.clone()];
-        let Some(first) = name.first().filter(|_| !name.global) else { return all };
-        if let Some(target) = self.imports.get(&first) {
-            let parts = target.parts.iter().chain(&name.parts[1..]);
-            all.push(Name::new(parts.copied()));
-        }
-        for package in &self.open_packages {
-            all.push(Name::new(package.parts.iter().chain(&name.parts).copied()));
-        }
-        all
     }
 }
 

@@ -9,7 +9,7 @@ const MAX_ANSWERS: usize = 4 << 20;
 
 /// What was said and answered at the top level so far.
 #[derive(Debug, Default)]
-pub(in crate::script) struct Log {
+pub struct Log {
     /// Where each statement is written, and where in `answers` its answer begins.
     statements: Vec<(Span, usize)>,
     answers: String,
@@ -18,12 +18,12 @@ pub(in crate::script) struct Log {
 
 impl Log {
     /// Begins the exchange of a statement.
-    pub(super) fn begin(&mut self, statement: Span) {
+    pub fn begin(&mut self, statement: Span) {
         self.statements.push((statement, self.answers.len()));
     }
 
     /// Adds to the answer of the current statement, until the answers are too long.
-    pub(in crate::script) fn answer(&mut self, text: &str) {
+    pub fn answer(&mut self, text: &str) {
         if self.is_full {
             return;
         }
@@ -35,13 +35,13 @@ impl Log {
     }
 
     /// The statements alone, each ended by a semicolon.
-    pub(in crate::script) fn statements(&self, sources: &SourceMap) -> String {
+    pub fn statements(&self, sources: &SourceMap) -> String {
         let each = self.statements.iter().map(|(span, _)| sources.text(*span));
         each.filter(|text| !text.is_empty()).map(|text| format!("{text};\n")).collect()
     }
 
-    /// Statements and answers in turn, as a transcript has them.
-    pub(in crate::script) fn text(&self, sources: &SourceMap) -> String {
+    /// Statements and answers alternately, as a transcript has them.
+    pub fn text(&self, sources: &SourceMap) -> String {
         let starts = self.statements.iter().map(|(_, start)| *start);
         let ends = starts.clone().skip(1).chain([self.answers.len()]);
         // What was answered before the first statement.

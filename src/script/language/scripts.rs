@@ -1,52 +1,22 @@
 //! Scripts that run scripts: finding them, reading each once, and the trace through them.
 
+use super::parsed_scripts::Parsed;
 use crate::bail;
 use crate::diag::{Diagnostic, Fault, suggest};
-use crate::script::access::files::cannot;
+use crate::script::access::faults::cannot;
 use crate::script::access::policy::{Access, Grant};
 use crate::script::builtins::Failure;
 use crate::script::errors::{INTERRUPTED, LIMIT_REACHED, SCRIPT_NOT_FOUND, SCRIPTS_TOO_DEEP};
-use crate::script::session::Stop;
-use crate::script::world::{Stamp, normalized};
+use crate::script::language::execution::Stop;
+use crate::script::world::normalized;
 use crate::script::{Dialect, RunStatus, Session};
 use crate::source::{SourceId, Span};
-use crate::syntax::ast::{Expression, ExpressionKind, InteractiveKind, StatementKind};
 use crate::syntax::{self, ScriptParts, ast};
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Scripts may call each other this deep.
 const MAX_DEPTH: usize = 64;
-
-/// A script being run.
-#[derive(Debug, Clone)]
-pub(in crate::script) struct Frame {
-    /// The folder it lies in.
-    pub(in crate::script) folder: PathBuf,
-}
-
-/// A script that was read.
-struct Parsed {
-    parts: ScriptParts,
-    /// The dialect that it shows: that of the first call or `=` that only one of them has.
-    dialect: Option<Dialect>,
-}
-
-impl Parsed {
-    fn read(source: SourceId, text: &str) -> Result<Parsed, Diagnostic> {
-        let (parts, dialect) = ScriptParts::read(source, text, |one| dialect_of(&one.kind))?;
-        Ok(Parsed { parts, dialect })
-    }
-}
-
-/// Scripts read before, by path, each valid as long as the file's stamp stays; and the paths that
-/// names led to.
-#[derive(Default)]
-pub(in crate::script) struct ParsedScripts {
-    by_path: HashMap<PathBuf, (Option<Stamp>, Arc<Parsed>)>,
-    found: HashMap<(PathBuf, PathBuf, String), PathBuf>,
-}
 
 impl Session {
     /// Runs a script from the command line as the outermost one.
@@ -68,8 +38,7 @@ impl Session {
         match Parsed::read(source, text) {
             Ok(script) => {
                 let folder = self.world.current_dir();
-                let frame = Frame { folder };
-                let done = self.run_script_statements(&script, frame);
+                let done = self.run_script_statements(&script, folder);
                 debug_assert!(done.is_ok(), "the outermost script reports its own errors");
             }
             Err(diagnostic) => self.report(diagnostic),
@@ -84,7 +53,7 @@ impl Session {
 
     /// Runs a script that another one names; its errors end it and come back with a trace.
     pub(in crate::script) fn run_nested(&mut self, name: &str) -> Result<(), Failure> {
-        if self.frames.len() >= MAX_DEPTH {
+        if self.execution.scripts() >= MAX_DEPTH {
             bail!(
                 SCRIPTS_TOO_DEEP,
                 "scripts call each other more than {MAX_DEPTH} levels deep; the last one is \
@@ -92,7 +61,7 @@ impl Session {
                 help: "end the recursion with a condition"
             );
         }
-        let call = self.call;
+        let call = self.call_site();
         let frame_name = format!("script `{name}`");
         let traced = |diagnostics: Vec<Diagnostic>| {
             // A script that calls itself is one line of the trace, however often it does.
@@ -123,20 +92,23 @@ impl Session {
         }
         let script = script?;
         let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
-        let frame = Frame { folder };
-        self.run_script_statements(&script, frame).map_err(|diagnostic| vec![diagnostic])
+        self.run_script_statements(&script, folder).map_err(|diagnostic| vec![diagnostic])
     }
 
     /// Executes the statements of a script. Errors of the outermost one are reported where they
     /// happen; in a nested one the first ends it.
-    fn run_script_statements(&mut self, script: &Parsed, frame: Frame) -> Result<(), Diagnostic> {
-        let outermost = self.frames.is_empty();
+    fn run_script_statements(
+        &mut self,
+        script: &Parsed,
+        folder: PathBuf,
+    ) -> Result<(), Diagnostic> {
+        let outermost = self.execution.scripts() == 0;
         if outermost && self.options.dialect.is_none() {
-            self.dialect = script.dialect.unwrap_or_default();
+            self.recognized = script.dialect.unwrap_or_default();
         }
-        self.frames.push(frame);
+        self.execution.enter(folder);
         let result = self.parts(&script.parts, outermost);
-        self.frames.pop();
+        self.execution.leave();
         result
     }
 
@@ -159,7 +131,7 @@ impl Session {
         outermost: bool,
     ) -> Result<(), Diagnostic> {
         for (at, statement) in statements.iter().enumerate() {
-            if self.stop.is_some() {
+            if self.execution.stop().is_some() {
                 return Ok(());
             }
             if self.world.interrupted() {
@@ -194,13 +166,13 @@ impl Session {
     }
 
     fn interrupt(&mut self, span: Span) {
-        if let (None, Some(reason)) = (self.stop, self.world.stop_reason()) {
-            self.stop = Some(Stop::Error);
+        if let (None, Some(reason)) = (self.execution.stop(), self.world.stop_reason()) {
+            self.execution.stop_for(Stop::Error);
             self.report(Fault::new(LIMIT_REACHED, reason).at(span));
             return;
         }
-        if self.stop.is_none() {
-            self.stop = Some(Stop::Interrupt);
+        if self.execution.stop().is_none() {
+            self.execution.stop_for(Stop::Interrupt);
             let message = "interrupted; results found so far are kept";
             self.report(Fault::new(INTERRUPTED, message).at(span).warning());
         }
@@ -209,15 +181,15 @@ impl Session {
     /// The script of this name: in the folder of the calling script, then in the working
     /// directory; with and without the ending; at last with other letter cases.
     pub(in crate::script) fn find_script(&mut self, name: &str) -> Result<PathBuf, Fault> {
-        let folder = self.frames.last().map(|frame| frame.folder.clone()).unwrap_or_default();
+        let folder = self.execution.folders().next().map(Path::to_path_buf).unwrap_or_default();
         let key = (folder, self.world.current_dir(), name.to_owned());
-        if let Some(path) = self.parsed.found.get(&key)
+        if let Some(path) = self.parsed.found(&key)
             && self.world.exists(path)
         {
             return Ok(path.clone());
         }
         let path = self.search_script(&key.0, name)?;
-        self.parsed.found.insert(key, path.clone());
+        self.parsed.keep_found(key, path.clone());
         Ok(path)
     }
 
@@ -243,7 +215,7 @@ impl Session {
             self.note(SCRIPT_NOT_FOUND, message);
             return Ok(path);
         }
-        // Whether there is a file that may not be read is not told.
+        // Whether there is a file that may not be read stays unknown.
         self.may(Access::Read, &plain)?;
         let fault = Fault::new(SCRIPT_NOT_FOUND, format!("there is no script `{name}`"));
         let [own, working] = folders.each_ref().map(|folder| folder.display());
@@ -280,15 +252,12 @@ impl Session {
 
     fn parsed_script(&mut self, path: &Path) -> Result<Arc<Parsed>, Vec<Diagnostic>> {
         let stamp = self.world.stamp(path);
-        if let Some((known, script)) = self.parsed.by_path.get(path)
-            && *known == stamp
-            && stamp.is_some()
-        {
-            return Ok(script.clone());
+        if let Some(script) = self.parsed.get(path, stamp) {
+            return Ok(script);
         }
         let (source, text) = self.add_file(path).map_err(|fault| vec![fault.at(Span::NONE)])?;
         let script = Arc::new(Parsed::read(source, &text).map_err(|error| vec![error])?);
-        self.parsed.by_path.insert(path.to_path_buf(), (stamp, script.clone()));
+        self.parsed.keep(path, stamp, &script);
         Ok(script)
     }
 
@@ -307,41 +276,5 @@ impl Session {
             self.report(warning.at(Span::new(source, 0, 0)).warning());
         }
         Ok((source, text))
-    }
-}
-
-/// The dialect that a statement shows, if only one of them has it.
-fn dialect_of(kind: &InteractiveKind) -> Option<Dialect> {
-    let call = match kind {
-        InteractiveKind::Expression(expression) => expression,
-        InteractiveKind::Statement(statement) => match &statement.kind {
-            StatementKind::Assign { value, .. } | StatementKind::Call(value) => value,
-            _ => return None,
-        },
-        _ => return None,
-    };
-    let Expression { kind: ExpressionKind::Call { function, arguments }, .. } = call else {
-        return None;
-    };
-    let has_class = arguments
-        .positional
-        .first()
-        .is_some_and(|first| matches!(&first.kind, ExpressionKind::Reference(_)));
-    match function.parts.first()?.name.as_str() {
-        "OpenModelica" => return Some(Dialect::OpenModelica),
-        "DymolaCommands" => return Some(Dialect::Dymola),
-        _ => {}
-    }
-    match function.as_ident()?.as_str() {
-        "loadModel"
-        | "getErrorString"
-        | "loadString"
-        | "buildModel"
-        | "setCommandLineOptions"
-        | "instantiateModel"
-        | "loadFile" => Some(Dialect::OpenModelica),
-        "simulate" | "checkModel" if has_class => Some(Dialect::OpenModelica),
-        "simulateModel" | "translateModel" | "RunScript" | "openModel" => Some(Dialect::Dymola),
-        _ => None,
     }
 }

@@ -5,7 +5,6 @@ use crate::eval::{self, Scope};
 use crate::fault;
 use crate::name::{Ident, Name};
 use crate::script::errors::{BAD_IMPORT, FOLLOW_UP, NO_TRANSLATED_MODEL};
-use crate::script::session::Stop;
 use crate::script::{Session, builtins};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
@@ -31,10 +30,7 @@ impl Session {
     }
 
     fn begin_exchange(&mut self, span: Span) {
-        if let Some(transcript) = &mut self.transcript {
-            transcript.begin(self.sources.text(span));
-        }
-        self.log.begin(span);
+        self.output.begin(&self.sources, span);
     }
 
     fn interactive(&mut self, statement: &InteractiveStatement) -> Result<(), Diagnostic> {
@@ -55,7 +51,8 @@ impl Session {
     fn statement(&mut self, statement: &Statement) -> Result<(), Diagnostic> {
         match &statement.kind {
             StatementKind::Assign { target, .. } => {
-                let is_new = target.as_ident().is_some_and(|name| !self.scope.contains(name));
+                let is_new =
+                    target.as_ident().is_some_and(|name| !self.workspace.variables.contains(name));
                 self.execute(statement)?;
                 if let Some(name) = target.as_ident() {
                     self.echo_assignment(name, is_new);
@@ -64,15 +61,16 @@ impl Session {
             }
             StatementKind::MultiAssign { targets, .. } => {
                 let names = targets.iter().flatten().filter_map(ComponentReference::as_ident);
-                let new: Vec<Ident> = names.filter(|name| !self.scope.contains(*name)).collect();
+                let new: Vec<Ident> =
+                    names.filter(|name| !self.workspace.variables.contains(*name)).collect();
                 self.execute(statement)?;
                 new.into_iter().for_each(|name| self.echo_declaration(name));
                 Ok(())
             }
             _ => {
-                self.silent += 1;
+                self.execution.descend();
                 let done = self.execute(statement);
-                self.silent -= 1;
+                self.execution.ascend();
                 if done.is_ok() {
                     self.echo_nothing();
                 }
@@ -82,7 +80,7 @@ impl Session {
     }
 
     /// The value of an expression among the script's variables.
-    pub(super) fn evaluate(&mut self, expression: &Expression) -> Result<Value, Diagnostic> {
+    pub fn evaluate(&mut self, expression: &Expression) -> Result<Value, Diagnostic> {
         self.with_scope(|scope, session| eval::evaluate(expression, scope, session))
     }
 
@@ -93,14 +91,14 @@ impl Session {
     }
 
     pub(super) fn with_scope<T>(&mut self, work: impl FnOnce(&mut Scope, &mut Session) -> T) -> T {
-        let mut scope = std::mem::take(&mut self.scope);
+        let mut scope = std::mem::take(&mut self.workspace.variables);
         let result = work(&mut scope, self);
-        self.scope = scope;
+        self.workspace.variables = scope;
         result
     }
 
     fn import(&mut self, import: &Import) -> Result<(), Diagnostic> {
-        self.callees.clear();
+        self.workspace.callees.clear();
         match &import.kind {
             ImportKind::Qualified(name) => self.import_as(name.last(), name.clone(), import.span),
             ImportKind::Renaming(alias, name) => {
@@ -108,7 +106,7 @@ impl Session {
             }
             ImportKind::Unqualified(package) => {
                 self.importable(package, import.span)?;
-                self.open_packages.push(package.clone());
+                self.workspace.open_package(package.clone());
                 Ok(())
             }
             ImportKind::Group(package, names) => names.iter().try_for_each(|name| {
@@ -125,7 +123,7 @@ impl Session {
     ) -> Result<(), Diagnostic> {
         self.importable(&name, span)?;
         if let Some(alias) = alias {
-            self.imports.insert(alias, name);
+            self.workspace.import(alias, name);
         }
         Ok(())
     }
@@ -133,7 +131,7 @@ impl Session {
     fn importable(&mut self, name: &Name, span: Span) -> Result<(), Diagnostic> {
         let text = name.to_string();
         let known = builtins::is_package(&text)
-            || builtins::find(name, self.dialect).is_some()
+            || builtins::find(name, self.dialect()).is_some()
             || self.class_exists(name)
             || self.constant(&ComponentReference::from_name(name, span)).at(span)?.is_some();
         if known {
@@ -152,10 +150,10 @@ impl Session {
     ) -> Result<(), Diagnostic> {
         match &*name.node {
             "clear" => self.clear(),
-            "clearlog" => self.messages.clear(),
+            "clearlog" => self.output.messages.clear(),
             "exit" => {
                 let status = argument.node.trim_matches(['(', ')', ' ']).parse().unwrap_or(0);
-                self.stop = Some(Stop::Exit(status));
+                self.execution.exit(status);
             }
             // The grammar knows no other command.
             _ => {
@@ -168,11 +166,7 @@ impl Session {
 
     /// Forgets variables, flags, imports and classes.
     pub(in crate::script) fn clear(&mut self) {
-        self.scope.clear();
-        self.flags.clear();
-        self.imports.clear();
-        self.open_packages.clear();
-        self.callees.clear();
+        self.workspace.clear();
         self.forget_classes();
     }
 
@@ -190,11 +184,11 @@ impl Session {
     pub(in crate::script) fn go_to(&mut self, path: &str) -> Result<(), Fault> {
         let path = self.expanded(Path::new(path));
         let changed = self.world.set_current_dir(&path);
-        changed.map_err(|error| crate::script::access::files::cannot("change to", &path, &error))
+        changed.map_err(|error| crate::script::access::faults::cannot("change to", &path, &error))
     }
 
     /// What a name without a variable stands for in the model translated last, or why nothing.
-    pub(super) fn follow_up(&self, name: Ident, span: Span) -> Option<Diagnostic> {
+    pub fn follow_up(&self, name: Ident, span: Span) -> Option<Diagnostic> {
         if !self.follow_ups.is_missing(name) {
             return None;
         }

@@ -7,10 +7,10 @@ use crate::sim::{DaeSystem, EventOutcome, Failure, Pattern, Side, Treatment};
 /// other variables follow from them. Discrete variables keep the values that initialization gave
 /// them.
 pub(super) struct Continued {
-    /// The system, which can tell its parameters afterwards.
-    pub(super) system: System,
+    /// The system, whose parameters can be read afterwards.
+    pub system: System,
     /// Positions among the states, and values.
-    pub(super) states: Vec<(usize, f64)>,
+    pub states: Vec<(usize, f64)>,
 }
 
 impl DaeSystem for Continued {

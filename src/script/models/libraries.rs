@@ -1,64 +1,20 @@
 //! Libraries: where they are found, and their files as classes are read from them.
 
+use super::library_files::SourceFiles;
 use crate::diag::{Diagnostic, Fault};
 use crate::flatten::LibraryFiles;
 use crate::models;
 use crate::name::{Ident, Name};
 use crate::script::Session;
-use crate::script::access::files::cannot;
 use crate::script::errors::OTHER_VERSION;
-use crate::script::world::{Files, normalized};
-use crate::source::{SourceId, SourceMap, Span};
-use crate::syntax;
+use crate::script::world::normalized;
 use crate::syntax::ast::{
     Annotation, Argument, Binding, ClassDefinition, ClassSpecifier, ExpressionKind, Modification,
     Section,
 };
 use crate::{fault, flatten::Library};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, OnceLock};
-
-/// The texts of one library: decoded, and put among the sources of the session.
-#[derive(Debug)]
-pub(super) struct LibraryTexts {
-    files: Arc<dyn Files>,
-    sources: SourceMap,
-    /// The working directory, to which shown paths are relative.
-    current: PathBuf,
-    /// The warning about the first file that is not UTF-8.
-    encoding: OnceLock<Diagnostic>,
-    warnings: Warnings,
-}
-
-/// What is to be told about the encodings of libraries.
-pub(super) type Warnings = Arc<Mutex<Vec<Diagnostic>>>;
-
-impl LibraryFiles for LibraryTexts {
-    fn read(&self, path: &Path) -> Result<(SourceId, Arc<str>), Fault> {
-        let bytes = self.files.read(path).map_err(|error| cannot("read", path, &error))?;
-        let (text, warning) = syntax::decode(&bytes);
-        let shown = path.strip_prefix(&self.current).unwrap_or(path).display().to_string();
-        let text: Arc<str> = text.into();
-        let source = self.sources.add(shown, text.clone());
-        if let Some(warning) = warning {
-            let warning = warning.at(Span::new(source, 0, 0)).warning();
-            if self.encoding.set(warning.clone()).is_ok()
-                && let Ok(mut warnings) = self.warnings.lock()
-            {
-                warnings.push(warning);
-            }
-        }
-        Ok((source, text))
-    }
-
-    fn list(&self, folder: &Path) -> Vec<String> {
-        self.files.list_dir(folder).unwrap_or_default()
-    }
-
-    fn is_file(&self, path: &Path) -> bool {
-        self.files.is_file(path)
-    }
-}
+use std::sync::Arc;
 
 impl Session {
     /// Makes the packages in a folder loadable by name.
@@ -68,17 +24,16 @@ impl Session {
     }
 
     /// The files of a library that is going to be loaded.
-    pub(super) fn library_texts(&self) -> Arc<dyn LibraryFiles> {
-        Arc::new(LibraryTexts {
-            files: self.world.files(),
-            sources: self.sources.clone(),
-            current: self.world.current_dir(),
-            encoding: OnceLock::new(),
-            warnings: self.classes.warnings.clone(),
-        })
+    pub fn library_files(&self) -> Arc<dyn LibraryFiles> {
+        Arc::new(SourceFiles::new(
+            self.world.reader(),
+            self.sources.clone(),
+            self.world.current_dir(),
+            self.classes.warnings.clone(),
+        ))
     }
 
-    /// The answer of the library to a question, or what is wrong with the texts that it needed for
+    /// The answer of the library to a question, or what is wrong with the files that it needed for
     /// it. Tells the warnings about them.
     pub(in crate::script) fn ask_library<T>(
         &mut self,
@@ -99,7 +54,7 @@ impl Session {
     /// Where the top-level class of this name is: in the library folders, the working directory,
     /// a folder `models` beside the scripts being run or above them, or in the program. A folder
     /// of the version that was asked for comes first, one with the name in other case last.
-    pub(super) fn search_class(&self, name: Ident) -> Option<PathBuf> {
+    pub fn search_class(&self, name: Ident) -> Option<PathBuf> {
         let folders = self.folders();
         let exact = self.classes.versions.get(&name).and_then(|version| {
             let wanted = format!("{name} {version}");
@@ -132,7 +87,7 @@ impl Session {
 
     fn folders(&self) -> Vec<PathBuf> {
         let current = self.world.current_dir();
-        let frames = self.frames.iter().rev().flat_map(|frame| frame.folder.ancestors());
+        let frames = self.execution.folders().flat_map(Path::ancestors);
         let models = frames.chain(current.ancestors()).map(|folder| folder.join("models"));
         let own = self.classes.directories().iter().cloned().chain([current.clone()]);
         let all = own.chain(models).chain([PathBuf::from(models::FOLDER)]);
@@ -173,7 +128,7 @@ impl Session {
     }
 
     /// Notes the versions that loaded packages ask for, and tells if another one is loaded.
-    pub(super) fn note_versions(&mut self, names: &[Name]) {
+    pub fn note_versions(&mut self, names: &[Name]) {
         for name in names {
             let Some(definition) = self.classes.library.definition(name) else { continue };
             for (library, version) in uses(&definition) {
@@ -182,7 +137,7 @@ impl Session {
         }
         for name in names.iter().filter(|name| name.is_simple()) {
             if let Some(fault) = self.other_version(name) {
-                self.report(fault.at(self.call).warning());
+                self.report(fault.at(self.call_site()).warning());
             }
         }
     }
@@ -190,7 +145,7 @@ impl Session {
     /// The `version` annotation of a loaded package; empty without.
     pub(in crate::script) fn class_version(&self, name: &Name) -> Result<String, Fault> {
         let definition = self.classes.library.definition(name);
-        let definition = definition.ok_or_else(|| self.unknown_class(name))?;
+        let definition = definition.ok_or_else(|| self.classes.unknown_class(name))?;
         Ok(version(&definition).unwrap_or_default())
     }
 
@@ -211,7 +166,7 @@ impl Session {
     }
 
     /// Puts the types under their former name into a standard library that lacks them.
-    pub(super) fn supply_units(&mut self, names: &[Name]) -> Result<(), Diagnostic> {
+    pub fn supply_units(&mut self, names: &[Name]) -> Result<(), Diagnostic> {
         let modelica = Name::parse("Modelica");
         let library: &mut Library = &mut self.classes.library;
         let has = |part: &str| library.contains(&modelica.child(Ident::new(part)));
@@ -219,9 +174,9 @@ impl Session {
             return Ok(());
         }
         let path = Path::new(models::FOLDER).join("Modelica").join("SIunits.mo");
-        let texts = self.library_texts();
-        if texts.is_file(&path) {
-            self.classes.library.load_lazily(&texts, &path, &modelica)?;
+        let files = self.library_files();
+        if files.is_file(&path) {
+            self.classes.library.load_lazily(&files, &path, &modelica)?;
         }
         Ok(())
     }

@@ -10,7 +10,7 @@
 //! columns of x and u are found in the same way. The slope of each is a state too: where something
 //! depends on it, the model is no system of this form and is refused.
 
-use super::simulation::{self, Translated, Wishes, state_names};
+use super::simulation::{self, SimulationOptions, Translated};
 use crate::causalize;
 use crate::codegen::{Access, Program};
 use crate::diag::{At, Diagnostic, Fault};
@@ -50,24 +50,27 @@ pub(in crate::script) struct Linear {
 /// A simulation that fails, a singular loop, an output that depends on the slope of an input.
 pub(in crate::script) fn linearized(
     session: &mut Session,
-    wishes: &Wishes,
+    options: &SimulationOptions,
 ) -> Result<Linear, Vec<Diagnostic>> {
     let before = session.current_values();
-    let linear = linearized_variant(session, wishes);
+    let linear = linearized_variant(session, options);
     session.restore_values(before);
     linear
 }
 
-fn linearized_variant(session: &mut Session, wishes: &Wishes) -> Result<Linear, Vec<Diagnostic>> {
+fn linearized_variant(
+    session: &mut Session,
+    options: &SimulationOptions,
+) -> Result<Linear, Vec<Diagnostic>> {
     let at = session.call_site();
     let one = |error: Diagnostic| vec![error];
     let mut inputs = Vec::new();
     let model = session.vary_current(|model| with_states_for_inputs(model, &mut inputs))?;
-    let done = simulation::simulate(session, &model, wishes).map_err(one)?;
+    let done = simulation::simulate(session, &model, options).map_err(one)?;
     let time = done.table.time.last().copied().unwrap_or(0.0);
     let last =
         |name: &str| Ok::<f64, Fault>(done.table.column(name)?.last().copied().unwrap_or(f64::NAN));
-    let y0: Result<Vec<f64>, Fault> = state_names(&model).map(|name| last(name)).collect();
+    let y0: Result<Vec<f64>, Fault> = model.state_names().map(|name| last(name)).collect();
     let y0 = y0.at(at).map_err(one)?;
     let system = session.system_with_values(&model).map_err(one)?;
     let places = Places::of(&model, &inputs).at(at).map_err(one)?;
@@ -220,7 +223,7 @@ struct Places {
 
 impl Places {
     fn of(model: &Translated, inputs: &[String]) -> Result<Places, Fault> {
-        let names: Vec<String> = state_names(model).map(|name| name.to_string()).collect();
+        let names: Vec<String> = model.state_names().map(|name| name.to_string()).collect();
         let access = |name: &str| {
             let at = model.program.find_variable(name)?;
             match model.program.variables()[at].access {
@@ -286,7 +289,7 @@ impl Places {
         };
         let of_x: Vec<(usize, f64)> = self.states.iter().map(|at| (*at, 1.0)).collect();
         let of_y: Vec<usize> = (n..slopes.nrows()).collect();
-        let names: Vec<String> = state_names(model).map(|name| name.to_string()).collect();
+        let names: Vec<String> = model.state_names().map(|name| name.to_string()).collect();
         let states = self.states.iter().map(|at| names[*at].clone()).collect();
         let variables = model.program.variables();
         let outputs = outputs.iter().map(|at| variables[*at].name.to_string()).collect();
@@ -320,7 +323,10 @@ mod tests {
         let mut session = Session::new(Box::new(MemoryWorld::new()));
         session.load_text("m", model).map_err(|_| Vec::new())?;
         simulation::translate(&mut session, "M")?;
-        linearized(&mut session, &Wishes { stop: Some(0.0), ..Wishes::default() })
+        linearized(
+            &mut session,
+            &SimulationOptions { stop: Some(0.0), ..SimulationOptions::default() },
+        )
     }
 
     fn assert_near(actual: &DMatrix<f64>, expected: &[f64]) {

@@ -1,14 +1,21 @@
 //! The models of a session: classes and libraries, translation, simulation, linearization.
 
-pub(in crate::script) mod along;
+mod along;
+pub mod changes;
 pub mod checking;
-pub(in crate::script) mod classes;
-pub(in crate::script) mod continuation;
-pub(in crate::script) mod libraries;
+pub mod classes;
+pub mod compiled;
+pub mod constant_cache;
+mod continuation;
+mod libraries;
+pub mod library_files;
 pub(in crate::script) mod linearization;
-pub(in crate::script) mod measured_units;
-pub(in crate::script) mod resources;
-pub(in crate::script) mod retranslation;
+mod loading;
+mod measured_units;
+pub mod modification;
+mod parameters;
+mod resources;
 pub mod simulation;
 pub(in crate::script) mod static_curve;
+pub mod translated;
 pub mod verification;

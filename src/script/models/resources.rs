@@ -4,9 +4,9 @@ use crate::diag::Fault;
 use crate::external::{Provide, Resources};
 use crate::name::{Ident, Name};
 use crate::script::Session;
-use crate::script::access::files::{cannot, plain};
+use crate::script::access::faults::{cannot, plain};
 use crate::script::errors::FILE_ERROR;
-use crate::script::world::{Files, normalized};
+use crate::script::world::{FileReader, normalized};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// Files of a session as they are looked for in one model.
 #[derive(Debug)]
 struct ModelFiles {
-    files: Arc<dyn Files>,
+    files: Arc<dyn FileReader>,
     /// Where relative paths start: the first folder that has the file.
     folders: Vec<PathBuf>,
     /// The file or folder of each loaded top-level class.
@@ -34,16 +34,16 @@ impl Session {
 
     /// Files for any model: relative paths start from the working directory and the folder of the
     /// script.
-    pub(super) fn resources(&self) -> Resources {
+    pub fn resources(&self) -> Resources {
         self.resources_below(None)
     }
 
     fn resources_below(&self, folder: Option<&Path>) -> Resources {
         let mut folders = vec![self.world.current_dir()];
-        folders.extend(self.frames.iter().rev().map(|frame| frame.folder.clone()));
+        folders.extend(self.execution.folders().map(Path::to_path_buf));
         folders.extend(folder.map(Path::to_path_buf));
         let packages = self.classes.packages();
-        let files = self.world.files();
+        let files = self.world.reader();
         Resources::new(Arc::new(ModelFiles { files, folders, packages }))
     }
 }

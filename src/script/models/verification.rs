@@ -1,6 +1,6 @@
 //! Models against reference results: translated, simulated at the reference's times, compared.
 
-use super::simulation::{self, Wishes};
+use super::simulation::{self, SimulationOptions};
 use crate::causalize;
 use crate::codegen::Program;
 use crate::diag::{Diagnostic, Fault};
@@ -33,7 +33,7 @@ pub enum Stage {
     Compare,
 }
 
-/// What a model is held against.
+/// The reference that a model is compared with.
 #[derive(Debug, Clone, Copy)]
 pub struct Reference<'a> {
     /// The reference results.
@@ -86,7 +86,7 @@ pub fn library(session: &mut Session) -> Arc<Library> {
 
 /// Translates and simulates a class as its experiment annotation says, and compares it with the
 /// reference if there is one: then the reference's time span and points in time count. `enter` is
-/// told each stage as it begins; the flag ends a simulation.
+/// called with each stage as it begins; the flag ends a simulation.
 ///
 /// # Errors
 /// The stage that it did not pass, with everything that is wrong there.
@@ -121,7 +121,7 @@ fn simulate(
     reference: Option<&Reference>,
     cancel: &Arc<AtomicBool>,
 ) -> Result<ResultTable, Diagnostic> {
-    let mut settings = simulation::settings(&program.experiment(), &wishes(program, reference))
+    let mut settings = simulation::settings(&program.experiment(), &options(program, reference))
         .map_err(|fault| fault.at(Span::NONE))?;
     settings.cancel = Some(cancel.clone());
     if let Some(reference) = reference {
@@ -141,13 +141,13 @@ fn simulate(
     Ok(table)
 }
 
-fn wishes(program: &Program, reference: Option<&Reference>) -> Wishes {
+fn options(program: &Program, reference: Option<&Reference>) -> SimulationOptions {
     let time = reference.map_or(&[][..], |reference| &reference.table.time);
-    Wishes {
+    SimulationOptions {
         start: time.first().copied(),
         stop: time.last().copied(),
         tolerance: Some(program.experiment().tolerance.unwrap_or(TOLERANCE)),
-        ..Wishes::default()
+        ..SimulationOptions::default()
     }
 }
 

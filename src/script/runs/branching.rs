@@ -42,7 +42,7 @@ impl Session {
         let Some((_, script)) = branching.pending.take_if(|(at, _)| *at == simulated) else {
             return Ok(());
         };
-        if self.in_function {
+        if self.execution.is_in_function() {
             let reason =
                 "`Eval` is called in a function, whose variables cannot be changed from outside";
             return Err(fault!(CANNOT_BRANCH, "{reason}";

@@ -16,7 +16,7 @@ use crate::identify::problem::{Fingerprint, Origins, first_frame, frame, listed}
 use crate::identify::{FailedSimulation, Simulated};
 use crate::registry::BAD_OPTION;
 use crate::script::builtins::Failure;
-use crate::script::session::Stop;
+use crate::script::language::execution::Stop;
 use crate::script::{Journaling, Session};
 use crate::source::SourceId;
 use serde::{Deserialize, Serialize};
@@ -32,7 +32,7 @@ pub(super) struct Journal {
     replay: VecDeque<Entry>,
     /// What the entries depend on, as it was noted last.
     noted: Origins,
-    /// What the next entry depends on, and how many texts were looked at for it.
+    /// What the next entry depends on, and how many sources were looked at for it.
     origins: Option<(Origins, u32)>,
     /// Answers taken from the earlier run.
     answered: usize,
@@ -44,7 +44,7 @@ enum Entry {
     Simulated { asked: u64, rows: Vec<f64>, failures: Vec<(u32, String, Option<f64>)> },
     /// The user typed this.
     Typed(String),
-    /// What the next answers depend on: the Modelica texts read so far, and the program.
+    /// What the next answers depend on: the Modelica sources read so far, and the program.
     From(Origins),
 }
 
@@ -124,12 +124,12 @@ impl Session {
     }
 
     /// Notes what the user typed during a pause.
-    pub(super) fn journal_typed(&mut self, line: &str) {
+    pub fn journal_typed(&mut self, line: &str) {
         self.note_entry(&Entry::Typed(line.to_owned()), true);
     }
 
     /// What the user typed here in the run that is resumed.
-    pub(super) fn typed_before(&mut self) -> Option<String> {
+    pub fn typed_before(&mut self) -> Option<String> {
         match self.extension::<Journal>().replay.pop_front()? {
             Entry::Typed(line) => Some(line),
             other => {
@@ -148,9 +148,9 @@ impl Session {
         origins
     }
 
-    /// The Modelica texts that were read from the text number `seen` on, as files to name when they
+    /// The Modelica sources that were read from the source number `seen` on, as files to name when they
     /// change.
-    pub(super) fn add_models_read(&self, origins: &mut Origins, seen: &mut u32) {
+    pub fn add_models_read(&self, origins: &mut Origins, seen: &mut u32) {
         while let Some(source) = self.sources.get(SourceId(*seen)) {
             *seen += 1;
             if source.name.ends_with(".mo") {
@@ -179,14 +179,14 @@ impl Session {
     }
 
     /// The earlier run is another one: nothing more is done, and its checkpoint stays as it is.
-    pub(super) fn refuse_to_resume(&mut self) {
+    pub fn refuse_to_resume(&mut self) {
         self.extension::<Journal>().checkpoint = None;
-        self.stop.get_or_insert(Stop::Error);
+        self.execution.stop_for(Stop::Error);
     }
 
     /// Whether the answer taken last from the earlier run is to be computed again: the first and
     /// the last are.
-    pub(super) fn is_to_be_checked(&mut self) -> bool {
+    pub fn is_to_be_checked(&mut self) -> bool {
         let journal = self.extension::<Journal>();
         journal.answered += 1;
         let is_answer = |entry: &Entry| matches!(entry, Entry::Simulated { .. });
@@ -249,7 +249,7 @@ fn close(session: &mut Session) -> Result<(), Diagnostic> {
         return Ok(());
     };
     let is_written = session.world.exists(checkpoint.path());
-    let has_errors = session.messages.unread_errors() > 0;
+    let has_errors = session.output.messages.unread_errors() > 0;
     if session.is_interrupted() || (has_errors && is_written) {
         let now = session.world.monotonic_seconds();
         checkpoint.flush(session, now);

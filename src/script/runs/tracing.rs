@@ -36,13 +36,13 @@ impl Session {
     /// Tells the tracer, if there is one, what the call at hand has done.
     pub(in crate::script) fn traced(
         &mut self,
-        tell: impl FnOnce(&mut Tracer, Place),
+        record: impl FnOnce(&mut Tracer, Place),
     ) -> Result<(), Fault> {
         let Some((path, mut tracer)) = self.extension::<Tracing>().active.take() else {
             return Ok(());
         };
         let place = self.place_of_call(&mut tracer);
-        tell(&mut tracer, place);
+        record(&mut tracer, place);
         let written = match tracer.unwritten() {
             size if size >= PIECE => self.append_file(&path, &tracer.take_bytes()),
             _ => Ok(()),

@@ -1,6 +1,19 @@
 //! A run as it is now: data for whoever draws it while it goes on.
 
-use crate::script::world::Progress;
+/// How far a long piece of work is: data for whoever draws it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Progress {
+    /// What is being done, such as `generation`.
+    pub label: String,
+    /// Units done.
+    pub done: u64,
+    /// Units in all; 0 where not known.
+    pub total: u64,
+    /// The best value so far, smaller is better.
+    pub best: Option<f64>,
+    /// What failed so far.
+    pub failures: u64,
+}
 
 /// What there is to see of a run.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -7,7 +7,7 @@ use crate::ga::Genomes;
 use crate::identify::{Compared, Quantity, Recorder, Study};
 use crate::script::Session;
 use crate::script::builtins::Failure;
-use crate::script::world::Progress;
+use crate::script::runs::view::Progress;
 use crate::syntax;
 
 const HELP: &str = "\
@@ -18,17 +18,17 @@ const PROMPT: &str = "> ";
 
 impl Session {
     /// How far the run is: the generations seen, of as many as the loop that the script is in has
-    /// turns.
-    pub(super) fn show_run(&mut self, study: &Study, genomes: &Genomes) {
-        let turns = match self.loop_turn() {
-            Some((_, Some(turns))) => turns as u64,
+    /// iterations.
+    pub fn show_run(&mut self, study: &Study, genomes: &Genomes) {
+        let iterations = match self.loop_iteration() {
+            Some((_, Some(iterations))) => iterations as u64,
             _ => 0,
         };
         let recorder = &self.identification().recorder;
         let progress = Progress {
             label: "generation".to_owned(),
             done: recorder.history.generations.len() as u64,
-            total: turns,
+            total: iterations,
             best: recorder.best.as_ref().map(|best| best.fitness),
             failures: recorder.failures,
         };
@@ -48,7 +48,7 @@ impl Session {
         if !self.world.wants_pause() {
             return Ok(());
         }
-        if self.in_function {
+        if self.execution.is_in_function() {
             self.world
                 .eprint("`Eval` is called in a function, whose variables cannot be changed\n");
             return Ok(());

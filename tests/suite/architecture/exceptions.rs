@@ -5,7 +5,6 @@
 /// files together.
 pub(super) const CYCLES: &[(&str, &[usize], &str)] = &[
     ("flatten", &[16], "`Instantiation` is one structure for the tree, scopes, types and values"),
-    ("script", &[11], "`Session` has the state of all its parts in one structure"),
 ];
 
 const PER_CASE: &str = "one arm for every case of the enumeration, each short";
@@ -33,10 +32,6 @@ pub(super) const LONG_FUNCTIONS: &[(&str, &str, &str)] = &[
     ("lower/expressions/expression.rs", "lower_kind", PER_CASE),
     ("flatten/vectorization.rs", "vectorized", IN_ORDER),
     ("lower/inline.rs", "statement", PER_CASE),
-    ("script/runs/problem/build.rs", "build", IN_ORDER),
-    ("script/runs/problem/build.rs", "experiment", IN_ORDER),
-    ("script/runs/problem/draft.rs", "experiment", IN_ORDER),
-    ("script/runs/problem/mod.rs", "solve_built", IN_ORDER),
     ("syntax/failure.rs", "described", PER_CASE),
     ("syntax/print/expression.rs", "expression", PER_CASE),
 ];

@@ -1,8 +1,8 @@
 //! Equations of a flat model taken apart into equations of scalars: loops written out, arrays
 //! element by element.
 
-use super::operations::integer;
-use super::parts::{Apart, MAX_SCALARS, Value};
+use super::operations::{MAX_SCALARS, integer};
+use super::parts::{Apart, Value};
 use crate::syntax::ast::{Equation, EquationKind, Expression, ExpressionKind, ForIndex};
 use crate::syntax::visit::Rewrite;
 

@@ -1,12 +1,42 @@
 //! Operators and constructors of arrays, applied to scalars that were taken apart.
 
-use super::parts::{MAX_SCALARS, Parts};
 use crate::source::Span;
 use crate::syntax::ast::{BinaryOperator, Expression, ExpressionKind, UnaryOperator};
+
+/// Scalars that one expression may have.
+pub(super) const MAX_SCALARS: usize = 1 << 16;
 
 /// Operators and operands that the scalars of one expression may have together: products of
 /// matrices grow with every factor.
 const MAX_NODES: usize = 1 << 18;
+
+/// The sizes of an expression and its scalars, row-major.
+#[derive(Debug, Clone)]
+pub(super) struct Parts {
+    pub dims: Vec<usize>,
+    pub scalars: Vec<Expression>,
+}
+
+impl Parts {
+    pub(super) fn scalar(e: Expression) -> Parts {
+        Parts { dims: Vec::new(), scalars: vec![e] }
+    }
+
+    pub(super) fn map(self, each: impl FnMut(Expression) -> Expression) -> Parts {
+        Parts { dims: self.dims, scalars: self.scalars.into_iter().map(each).collect() }
+    }
+
+    /// Parts of equal sizes side by side, in a new first dimension.
+    pub(super) fn stacked(rows: Vec<Parts>) -> Option<Parts> {
+        let inner = rows.first()?.dims.clone();
+        if rows.iter().any(|row| row.dims != inner) {
+            return None;
+        }
+        let dims = [vec![rows.len()], inner].concat();
+        let scalars: Vec<Expression> = rows.into_iter().flat_map(|row| row.scalars).collect();
+        (scalars.len() <= MAX_SCALARS).then_some(Parts { dims, scalars })
+    }
+}
 
 /// How many operators and operands an expression has, at least.
 fn nodes(e: &Expression) -> usize {

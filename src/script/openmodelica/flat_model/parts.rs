@@ -1,6 +1,8 @@
 //! Array expressions of a flat model taken apart into their scalars.
 
-use super::operations::{binary, counted, filled, integer, operation, transposed};
+use super::operations::{
+    MAX_SCALARS, Parts, binary, counted, filled, integer, operation, transposed,
+};
 use crate::flatten::FlatModel;
 use crate::name::Ident;
 use crate::syntax::ast::{
@@ -8,39 +10,8 @@ use crate::syntax::ast::{
 };
 use crate::syntax::visit::{Rewrite, rewrite_expression};
 
-/// Scalars that one expression may have.
-pub(super) const MAX_SCALARS: usize = 1 << 16;
-
 /// Functions whose value has the sizes of their last argument, of which they are one by one.
 const ONE_BY_ONE: &[&str] = &["der", "pre", "noEvent", "smooth", "previous"];
-
-/// The sizes of an expression and its scalars, row-major.
-#[derive(Debug, Clone)]
-pub(super) struct Parts {
-    pub(super) dims: Vec<usize>,
-    pub(super) scalars: Vec<Expression>,
-}
-
-impl Parts {
-    pub(super) fn scalar(e: Expression) -> Parts {
-        Parts { dims: Vec::new(), scalars: vec![e] }
-    }
-
-    pub(super) fn map(self, each: impl FnMut(Expression) -> Expression) -> Parts {
-        Parts { dims: self.dims, scalars: self.scalars.into_iter().map(each).collect() }
-    }
-
-    /// Parts of equal sizes side by side, in a new first dimension.
-    fn stacked(rows: Vec<Parts>) -> Option<Parts> {
-        let inner = rows.first()?.dims.clone();
-        if rows.iter().any(|row| row.dims != inner) {
-            return None;
-        }
-        let dims = [vec![rows.len()], inner].concat();
-        let scalars: Vec<Expression> = rows.into_iter().flat_map(|row| row.scalars).collect();
-        (scalars.len() <= MAX_SCALARS).then_some(Parts { dims, scalars })
-    }
-}
 
 /// What a subscript takes of a dimension.
 enum Pick {
@@ -54,7 +25,7 @@ enum Pick {
 pub(super) struct Apart<'m>(pub(super) &'m FlatModel);
 
 impl Apart<'_> {
-    /// `None` where the text does not tell the scalars, as in a call that returns an array.
+    /// `None` where the scalars are not known, as in a call that returns an array.
     pub(super) fn parts(&self, e: &Expression) -> Option<Parts> {
         match &e.kind {
             ExpressionKind::Reference(reference) => self.reference(reference, e),
@@ -281,15 +252,15 @@ fn size(e: &Expression) -> Option<usize> {
 }
 
 /// The expression with a value in place of a loop variable.
-pub(super) fn with_value(mut e: Expression, name: Ident, value: &Expression) -> Expression {
+fn with_value(mut e: Expression, name: Ident, value: &Expression) -> Expression {
     Value { name, value }.expression(&mut e);
     e
 }
 
 /// Writes a value in place of a loop variable.
 pub(super) struct Value<'v> {
-    pub(super) name: Ident,
-    pub(super) value: &'v Expression,
+    pub name: Ident,
+    pub value: &'v Expression,
 }
 
 impl Rewrite for Value<'_> {
@@ -303,7 +274,7 @@ impl Rewrite for Value<'_> {
     }
 }
 
-/// The element of an array that only a call can tell: `f(x)[2]`.
+/// The element of an array that only a call returns: `f(x)[2]`.
 pub(super) fn selected(e: &Expression, at: &[usize]) -> Expression {
     let index = |value: &usize| {
         Subscript::Index(Expression::new(ExpressionKind::Integer(*value as i64), e.span))

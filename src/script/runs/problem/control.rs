@@ -22,7 +22,7 @@ impl Watched {
         Watched { path, stamp: None, known: IndexMap::new() }
     }
 
-    /// Carries out what has changed in the file; what cannot be is told and left.
+    /// Carries out what has changed in the file; what cannot be is reported and left.
     pub(super) fn apply(&mut self, session: &mut Session, run: &mut Run) {
         let stamp = session.world.stamp(&self.path);
         if stamp.is_none() || stamp == self.stamp {
@@ -49,7 +49,7 @@ impl Watched {
     }
 }
 
-/// Changes one setting; what cannot be is told and left.
+/// Changes one setting; what cannot be is reported and left.
 pub(super) fn change(session: &mut Session, run: &mut Run, setting: &str, value: f64) {
     match run.change(setting, value) {
         Ok(()) => session

@@ -276,70 +276,54 @@ fn experiment(text: &mut String, options: &DraftOptions, flat: &FlatModel, roles
         quoted(&options.data)
     );
     let (x_name, x) = &roles.x;
-    _ = writeln!(
-        text,
-        "x = {{ variable = {}, column = {} }}          # {}{}",
-        quoted(x_name),
-        quoted(&x.name),
-        span(x),
-        conversion(x, x_name, flat)
-    );
+    let entry = format!("x = {{ variable = {}, column = {} }}", quoted(x_name), quoted(&x.name));
+    line(text, &entry, (x_name, x), flat);
     if roles.outputs.is_empty() {
-        text.push_str(
-            "# No column has the name of a variable: write which column contains which variable.\n",
-        );
-        let outputs =
-            flat.variables.values().filter(|v| v.causality == Some(CausalityPrefix::Output));
-        let output = outputs.map(|v| v.name.to_string()).next().unwrap_or_else(|| "y".to_owned());
-        let column = roles.unused.first().map_or("y", |column| column.name.as_str());
-        match roles.unused.len() {
-            1 => {
-                _ = writeln!(
-                    text,
-                    "outputs.{} = {{ column = {} }}          # a guess",
-                    key(&output),
-                    quoted(column)
-                )
-            }
-            _ => {
-                _ = writeln!(text, "# outputs.{} = {{ column = {} }}", key(&output), quoted(column))
-            }
-        }
+        guessed_output(text, flat, roles);
     } else {
         text.push_str(
             "# Measured outputs. For known measurement errors, add `sigma = 0.01` in the unit of \
              the variable.\n",
         );
     }
-    for (name, column) in &roles.outputs {
-        _ = writeln!(
-            text,
-            "outputs.{} = {{ column = {} }}          # {}{}",
-            key(name),
-            quoted(&column.name),
-            span(column),
-            conversion(column, name, flat)
-        );
-    }
+    columns_of(text, "outputs", &roles.outputs, flat);
     if !roles.inputs.is_empty() {
         text.push_str(
             "# Inputs read from columns: `hold` keeps each value until the next, \
                        `linear` interpolates.\n",
         );
     }
-    for (name, column) in &roles.inputs {
-        _ = writeln!(
-            text,
-            "inputs.{} = {{ column = {} }}          # {}{}",
-            key(name),
-            quoted(&column.name),
-            span(column),
-            conversion(column, name, flat)
-        );
-    }
+    columns_of(text, "inputs", &roles.inputs, flat);
     for column in roles.unused.iter().filter(|_| !roles.outputs.is_empty()) {
         _ = writeln!(text, "# not used: column {}, {}", quoted(&column.name), span(column));
     }
+}
+
+/// An entry, with what its column holds and how it is converted.
+fn line(text: &mut String, entry: &str, (name, column): (&str, &DataColumn), flat: &FlatModel) {
+    _ = writeln!(text, "{entry}          # {}{}", span(column), conversion(column, name, flat));
+}
+
+fn columns_of(text: &mut String, table: &str, columns: &[(String, &DataColumn)], flat: &FlatModel) {
+    for (name, column) in columns {
+        let entry = format!("{table}.{} = {{ column = {} }}", key(name), quoted(&column.name));
+        line(text, &entry, (name, column), flat);
+    }
+}
+
+/// Where no column has the name of a variable: an output of the model and a column for it.
+fn guessed_output(text: &mut String, flat: &FlatModel, roles: &Roles<'_>) {
+    text.push_str(
+        "# No column has the name of a variable: write which column contains which variable.\n",
+    );
+    let outputs = flat.variables.values().filter(|v| v.causality == Some(CausalityPrefix::Output));
+    let output = outputs.map(|v| v.name.to_string()).next().unwrap_or_else(|| "y".to_owned());
+    let column = roles.unused.first().map_or("y", |column| column.name.as_str());
+    let entry = format!("outputs.{} = {{ column = {} }}", key(&output), quoted(column));
+    _ = match roles.unused.len() {
+        1 => writeln!(text, "{entry}          # a guess"),
+        _ => writeln!(text, "# {entry}"),
+    };
 }
 
 /// The range of a column with its unit, and how many values are missing.
@@ -362,7 +346,7 @@ fn span(column: &DataColumn) -> String {
 fn conversion(column: &DataColumn, name: &str, flat: &FlatModel) -> String {
     let unit = match name {
         "time" => "s".to_owned(),
-        name => build::unit_in(flat, name),
+        name => super::experiment::unit_in(flat, name),
     };
     match (&column.unit, unit.as_str()) {
         (Some(given), unit) if !unit.is_empty() && given != unit => {

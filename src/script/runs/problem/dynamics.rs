@@ -1,7 +1,7 @@
 //! What happens before and behind an experiment: a steady state before it, and delays of its
 //! measurements. Both become part of the class around the model.
 
-use super::build::Around;
+use super::enclosing_class::EnclosingClass;
 use super::file::{ColumnEntry, DelayEntry, ExperimentEntry, ProblemFile, Role};
 use crate::bail;
 use crate::causalize::CausalizedDae;
@@ -33,7 +33,7 @@ pub(super) fn delayed(
     place: usize,
     entry: &ColumnEntry,
     x_name: &str,
-    around: &mut Around,
+    enclosing: &mut EnclosingClass,
 ) -> Result<String, Fault> {
     let Some(delay) = &entry.delay else { return Ok(y_name.to_owned()) };
     if x_name != "time" {
@@ -69,7 +69,7 @@ pub(super) fn delayed(
     };
     let name = format!("gapi_delayed_{place}");
     // Writing into a String cannot fail.
-    _ = writeln!(around.declarations, "  Real {name} = delay({y_name}, {arguments});");
+    _ = writeln!(enclosing.declarations, "  Real {name} = delay({y_name}, {arguments});");
     Ok(name)
 }
 
@@ -82,7 +82,7 @@ pub(super) fn steady(
     file: &ProblemFile,
     entry: &ExperimentEntry,
     model: &CausalizedDae,
-    around: &mut Around,
+    enclosing: &mut EnclosingClass,
 ) -> Result<(), Fault> {
     let given = file.parameters.iter().find(|(_, parameter)| parameter.initial);
     if let Some(name) = given.map(|(name, _)| name).or_else(|| entry.start.keys().next()) {
@@ -92,10 +92,10 @@ pub(super) fn steady(
         bail!(BAD_OPTION, "`{}` has no states, so `steady_state` has no meaning", file.model; help: "remove `steady_state`");
     }
     let mut released: Vec<String> = Vec::new();
-    around.equations.push_str("initial equation\n");
+    enclosing.equations.push_str("initial equation\n");
     for state in &model.states {
         let name = model.dae.variables[state.0 as usize].name.to_string();
-        _ = writeln!(around.equations, "  der({name}) = 0;");
+        _ = writeln!(enclosing.equations, "  der({name}) = 0;");
         let released_name = match name.split_once('[') {
             None => format!("{name}(fixed = false)"),
             Some((array, rest)) if rest.find(']') == Some(rest.len() - 1) => {
@@ -109,6 +109,6 @@ pub(super) fn steady(
             released.push(released_name);
         }
     }
-    around.modifications.append(&mut released);
+    enclosing.modifications.append(&mut released);
     Ok(())
 }

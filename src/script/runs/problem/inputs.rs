@@ -1,12 +1,12 @@
 //! Inputs of a model that follow recorded columns.
 //!
-//! Between its samples a recorded input was held, by a switch or a controller, or it went on steadily:
+//! Between its samples a recorded input was constant, kept by a switch or a controller, or it went on steadily:
 //! the file does not say which, and a step read as a ramp shifts time constants. An entry says
-//! `interpolation = "hold"` or `"linear"`; else inputs that move in steps are held and others joined by
+//! `interpolation = "hold"` or `"linear"`; else inputs that move in steps are kept constant (zero-order hold) and others joined by
 //! lines, and a note says so.
 
-use super::build::Around;
 use super::data::{self, Notes};
+use super::enclosing_class::EnclosingClass;
 use super::file::{ColumnEntry, ExperimentEntry};
 use crate::bail;
 use crate::diag::Fault;
@@ -17,8 +17,8 @@ use std::fmt::Write;
 /// How an input goes on between its samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Between {
-    Held,
-    Lines,
+    Constant,
+    Linear,
 }
 
 /// Units of inputs by name; empty where the model gives none.
@@ -39,7 +39,7 @@ pub(super) fn inputs(
     table: &MatFile,
     x: (&str, &[f64]),
     unit: UnitOf<'_>,
-    around: &mut Around,
+    enclosing: &mut EnclosingClass,
     notes: &mut Notes,
 ) -> Result<(), Fault> {
     if entry.inputs.is_empty() {
@@ -78,24 +78,30 @@ pub(super) fn inputs(
             );
         }
         let between = between(name, &wanted, &pairs, notes)?;
-        declare(number, name, &pairs, between, around);
+        declare(number, name, &pairs, between, enclosing);
     }
     Ok(())
 }
 
-fn declare(number: usize, name: &str, pairs: &[(f64, f64)], between: Between, around: &mut Around) {
+fn declare(
+    number: usize,
+    name: &str,
+    pairs: &[(f64, f64)],
+    between: Between,
+    enclosing: &mut EnclosingClass,
+) {
     let rows: Vec<String> = pairs.iter().map(|(t, v)| format!("{t:e},{v:e}")).collect();
     let table = format!("gapi_input_{number}");
     let smoothness = match between {
-        Between::Held => "ConstantSegments",
-        Between::Lines => "LinearSegments",
+        Between::Constant => "ConstantSegments",
+        Between::Linear => "LinearSegments",
     };
     _ = writeln!(
-        around.declarations,
+        enclosing.declarations,
         "  Modelica.Blocks.Sources.CombiTimeTable {table}(table = [{}], smoothness = Modelica.Blocks.Types.Smoothness.{smoothness}, extrapolation = Modelica.Blocks.Types.Extrapolation.HoldLastPoint);",
         rows.join(";")
     );
-    around.modifications.push(format!("{name} = {table}.y[1]"));
+    enclosing.modifications.push(format!("{name} = {table}.y[1]"));
 }
 
 /// What an entry says of the values between samples, or what the values look like.
@@ -106,8 +112,8 @@ fn between(
     notes: &mut Notes,
 ) -> Result<Between, Fault> {
     match entry.interpolation.as_deref() {
-        Some("hold") => return Ok(Between::Held),
-        Some("linear") => return Ok(Between::Lines),
+        Some("hold") => return Ok(Between::Constant),
+        Some("linear") => return Ok(Between::Linear),
         Some(other) => bail!(
             BAD_OPTION,
             "the interpolation of the input `{name}` is `{other}`";
@@ -116,20 +122,20 @@ fn between(
         None => {}
     }
     if pairs.windows(2).all(|pair| pair[0].1 == pair[1].1) {
-        return Ok(Between::Held);
+        return Ok(Between::Constant);
     }
     if moves_in_steps(pairs) {
         notes.add(format!(
             "the input `{name}` is piecewise constant: each value is held until the next sample; \
              for linear interpolation write `interpolation = \"linear\"`"
         ));
-        return Ok(Between::Held);
+        return Ok(Between::Constant);
     }
     notes.add(format!(
         "the input `{name}` is interpolated linearly between samples; if each value holds until \
          the next, write `interpolation = \"hold\"`"
     ));
-    Ok(Between::Lines)
+    Ok(Between::Linear)
 }
 
 /// Whether values change like those of a switch: at most half of the intervals change anything, and

@@ -2,8 +2,8 @@
 
 use crate::identify::problem::Run;
 use crate::script::Session;
+use crate::script::runs::view::Progress;
 use crate::script::runs::view::{Fitted, Spread, View, labelled};
-use crate::script::world::Progress;
 
 /// What a pause explains.
 const HELP: &str = "\

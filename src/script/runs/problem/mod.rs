@@ -11,6 +11,8 @@ mod control;
 mod data;
 mod draft;
 mod dynamics;
+mod enclosing_class;
+mod experiment;
 mod file;
 mod inference;
 mod inputs;
@@ -19,6 +21,8 @@ pub(in crate::script) mod operators;
 mod own_fitness;
 pub(in crate::script) mod own_function;
 mod record;
+mod search;
+mod series;
 mod sigma;
 
 use super::checkpoint::{self, Checkpoint, keep_old};
@@ -37,18 +41,13 @@ use crate::value::RecordValue;
 pub use draft::{Draft, DraftOptions, draft};
 
 use build::Built;
-use control::Watched;
-use live::Live;
+use search::Search;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Files that not every run writes.
 const OPTIONAL: [&str; 4] = ["bands.csv", "bootstrap.csv", "posterior.csv", "profiles.csv"];
 /// The journal's file.
 const JOURNAL: &str = "run.journal";
-/// Seconds between two looks at the watched settings.
-const LOOK: f64 = 0.2;
 
 /// How a problem is run.
 #[derive(Debug, Clone, Default)]
@@ -155,15 +154,6 @@ fn solve_text(
     solve_built(session, built, options, every).map_err(one)
 }
 
-/// Lets simulations end when the user asks to or the seconds of the stop conditions have passed, of
-/// which so many are over.
-fn set_timer(session: &Session, run: &mut Run, over: f64) -> Option<Arc<AtomicBool>> {
-    let left = run.problem.stop.seconds.map(|limit| limit - over);
-    let timer = left.and_then(|seconds| session.world.flag_after(seconds));
-    run.evaluation.cancel_by(timer.clone().or_else(|| session.world.interrupt_flag()));
-    timer
-}
-
 fn solve_built(
     session: &mut Session,
     built: Built,
@@ -174,86 +164,48 @@ fn solve_built(
     let folder = session.world.output_dir().join(&options.folder);
     let mut run = Run::new(problem, session.world.threads())?;
     let importance = analysed(session, &run, &folder, options)?;
-    let mut checkpoint = open(session, &mut run, &folder, &origins, options, every)?;
-    let mut watched = options.watch.clone().map(Watched::new);
-    let mut live = Live::default();
-    let before = run.seconds;
-    let mut timer = set_timer(session, &mut run, before);
-    let mut started = session.world.monotonic_seconds();
-    let mut looked = f64::NEG_INFINITY;
-    let (stop, interrupted) = loop {
-        if let Some(fault) = run.fault() {
-            session.world.end_view();
-            // It would fail again in the same way.
-            let _ = session.world.remove(checkpoint.path());
-            return Err(fault);
-        }
-        if let Some(stop) = run.stop() {
-            break (stop, false);
-        }
-        if session.world.interrupted() {
-            break ("interrupted: these are the best values found so far".to_owned(), true);
-        }
-        let seconds = before + session.world.monotonic_seconds() - started;
-        if let Some(watched) = watched.as_mut().filter(|_| seconds - looked > LOOK) {
-            looked = seconds;
-            watched.apply(session, &mut run);
-        }
-        if session.world.wants_pause() {
-            let paused = session.world.monotonic_seconds();
-            if live::pause(session, &mut run) {
-                break (
-                    "stopped by the user: these are the best values found so far".to_owned(),
-                    true,
-                );
-            }
-            started += session.world.monotonic_seconds() - paused;
-            timer = set_timer(session, &mut run, seconds);
-        }
-        let Some(record) = run.step(seconds) else {
-            let is_over = timer.as_ref().is_some_and(|flag| flag.load(Ordering::Relaxed));
-            if is_over && !session.world.interrupted() {
-                break (run.end_by_time(), false);
-            }
-            continue;
-        };
-        checkpoint.note(session, &solving::encode(&record), seconds);
-        live.show(session, &run);
-    };
-    session.world.end_view();
-    run.evaluation.cancel_by(None);
-    checkpoint.flush(session, run.seconds);
-    if !interrupted {
+    let checkpoint = open(session, &mut run, &folder, &origins, options, every)?;
+    let mut search = Search::new(session, run, checkpoint, options.watch.clone());
+    let ending = search.run_to_end(session)?;
+    let Search { mut run, checkpoint, .. } = search;
+    if !ending.is_interrupted {
         solving::conclude(&mut run);
     }
-    let solved = |run: &Run| Solution::of(run, &stop, validated(run, &validation)?);
+    let solved = |run: &Run| Solution::of(run, &ending.reason, validated(run, &validation)?);
     let mut solution = solved(&run)?;
     solution.importance = importance;
-    if options.profile && !interrupted {
+    if options.profile && !ending.is_interrupted {
         solution = solution.with_profiles(&mut run, solved)?;
     }
     let finding = |note| Finding::new(FindingKind::Data, note).severity(Severity::Information);
     solution.findings.extend(notes.into_iter().map(finding));
-    let mut interrupted = interrupted;
-    if !interrupted {
-        run.evaluation.cancel_by(session.world.interrupt_flag());
-        solution.add_inference(&run)?;
-        run.evaluation.cancel_by(None);
-        interrupted = session.world.interrupted();
-    }
+    let is_interrupted = ending.is_interrupted || infer(session, &mut run, &mut solution)?;
     solving::draw_curves(&experiments, &mut solution, &validation);
     session.print(&solution.text());
     write(session, &folder, &solution, run.seconds)?;
+    close(session, &checkpoint, is_interrupted);
+    Ok(solution)
+}
+
+/// Adds what the data say about the parameters; whether the user has interrupted that.
+fn infer(session: &mut Session, run: &mut Run, solution: &mut Solution) -> Result<bool, Fault> {
+    run.evaluation.cancel_by(session.world.interrupt_flag());
+    solution.add_inference(run)?;
+    run.evaluation.cancel_by(None);
+    Ok(session.world.interrupted())
+}
+
+/// Removes the checkpoint of a run that came to its end.
+fn close(session: &mut Session, checkpoint: &Checkpoint, is_interrupted: bool) {
     if let Some(why) = checkpoint.broken() {
         session.report_fault(fault!(BAD_OPTION, "the checkpoint could not be written: {why}"));
     }
-    if interrupted {
+    if is_interrupted {
         session.print("\n  resume the run from here with --resume\n");
     } else if session.world.exists(checkpoint.path()) {
         // What cannot be removed does no harm.
         let _ = session.world.remove(checkpoint.path());
     }
-    Ok(solution)
 }
 
 /// The sensitivity analysis that was asked for, printed and written.

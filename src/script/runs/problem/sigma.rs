@@ -21,7 +21,7 @@ const ESTIMATE: &str = "estimate";
 ///
 /// # Errors
 ///
-/// Numbers that are not positive, texts that are neither a column nor a formula of the output.
+/// Numbers that are not positive, strings that are neither a column nor a formula of the output.
 pub(super) fn sigma(
     entry: Option<&SigmaEntry>,
     name: &str,

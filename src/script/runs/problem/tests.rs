@@ -1,7 +1,7 @@
 //! Problems in files: what experiments can set, and runs that are interrupted.
 
 use super::*;
-use crate::script::world::MemoryWorld;
+use crate::script::world::{Files as _, MemoryWorld};
 
 mod inference;
 
@@ -206,7 +206,7 @@ fn resumes_with(problem: &str, other: (&str, String)) {
     for cut in [journal.len(), journal.len() - 1, journal.len() / 2, begin] {
         let with_journal = || {
             let world = world(&files);
-            let path = crate::script::world::World::output_dir(&world).join(JOURNAL);
+            let path = world.output_dir().join(JOURNAL);
             world.with_file(path, &journal[..cut])
         };
         let refused = run(with_journal(), &RunOptions::default()).unwrap_err();
@@ -214,7 +214,7 @@ fn resumes_with(problem: &str, other: (&str, String)) {
         assert_eq!(run(with_journal(), &resume).unwrap(), whole, "cut at {cut}");
     }
     let other = world(&files);
-    let path = crate::script::world::World::output_dir(&other).join(JOURNAL);
+    let path = other.output_dir().join(JOURNAL);
     let other = other.with_file(path, "something");
     assert!(run(other, &resume).unwrap_err().contains("not a checkpoint"));
 }

@@ -1,203 +1,13 @@
-//! The only door to the outside: files, texts on the terminal, clocks, the interrupt key.
-//!
-//! Nothing below `cli/` touches the system in any other way, so a script runs in a [`MemoryWorld`]
-//! exactly as it runs on a disk.
+//! A world in memory: what tests and documentation run scripts in.
 
-use super::access::policy::{Access, Grant, Policy};
-use super::runs::view::View;
+use super::{Environment, FileReader, Files, Screen, Stamp};
+use crate::script::access::policy::{Access, Grant, Policy};
+use crate::script::runs::view::{Progress, View};
 use std::cell::Cell;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
-use std::fmt;
 use std::io;
-use std::path::{Component, Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
-
-/// How far a long piece of work is: data for whoever draws it.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Progress {
-    /// What is being done, such as `generation`.
-    pub label: String,
-    /// Units done.
-    pub done: u64,
-    /// Units in all; 0 where not known.
-    pub total: u64,
-    /// The best value so far, smaller is better.
-    pub best: Option<f64>,
-    /// What failed so far.
-    pub failures: u64,
-}
-
-/// A stamp of a file's state: another stamp means that the content may have changed. When it was
-/// changed, its size, and how often the world itself has changed files.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Stamp(pub u64, pub u64, pub u64);
-
-/// The files of a world, for reading alone: what a library keeps to read its classes when they are
-/// needed, from any thread. Paths are absolute.
-pub trait Files: fmt::Debug + Send + Sync {
-    /// The bytes of a file.
-    fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
-    /// Names of the entries of a directory, sorted.
-    fn list_dir(&self, path: &Path) -> io::Result<Vec<String>>;
-    /// Whether there is a file of this path that is no directory.
-    fn is_file(&self, path: &Path) -> bool;
-}
-
-/// Writes the content of a file.
-pub type Content<'a> = &'a mut dyn FnMut(&mut dyn io::Write) -> io::Result<()>;
-
-/// Everything that a script can do to the world and learn from it. Paths may be relative to
-/// [`World::current_dir`].
-pub trait World {
-    /// Allows something from here on: whoever starts the run does, never a script.
-    fn grant(&mut self, grant: Grant<'_>);
-    /// Whether a path may be read or written.
-    ///
-    /// # Errors
-    /// What refuses it; see [`refusal_of`](super::access::policy::refusal_of).
-    fn permits(&self, path: &Path, access: Access) -> io::Result<()>;
-    /// The bytes of a file.
-    fn read(&self, path: &Path) -> io::Result<Vec<u8>>;
-    /// Writes a file anew.
-    fn write(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()>;
-    /// Writes a file anew as `content` writes it: whoever has a disk keeps none of it in memory.
-    fn write_with(&mut self, path: &Path, content: Content<'_>) -> io::Result<()> {
-        let mut bytes = Vec::new();
-        content(&mut bytes)?;
-        self.write(path, &bytes)
-    }
-    /// Writes behind the end of a file, which is made if there is none.
-    fn append(&mut self, path: &Path, bytes: &[u8]) -> io::Result<()>;
-    /// Makes what a file holds safe against a power cut.
-    fn sync(&mut self, _path: &Path) -> io::Result<()> {
-        Ok(())
-    }
-    /// Removes a file or an empty directory.
-    fn remove(&mut self, path: &Path) -> io::Result<()>;
-    /// Whether a file or directory of this path exists.
-    fn exists(&self, path: &Path) -> bool;
-    /// Whether it is a directory.
-    fn is_dir(&self, path: &Path) -> bool;
-    /// Whether it is a symbolic link.
-    fn is_link(&self, _path: &Path) -> bool {
-        false
-    }
-    /// A stamp of a file, `None` if there is none.
-    fn stamp(&self, path: &Path) -> Option<Stamp>;
-    /// Names of the entries of a directory, sorted.
-    fn list_dir(&self, path: &Path) -> io::Result<Vec<String>>;
-    /// The files as they are, or as they are now.
-    fn files(&self) -> Arc<dyn Files>;
-    /// Makes a directory and the ones it lies in.
-    fn create_dirs(&mut self, path: &Path) -> io::Result<()>;
-    /// The working directory, absolute.
-    fn current_dir(&self) -> PathBuf;
-    /// Changes the working directory.
-    fn set_current_dir(&mut self, path: &Path) -> io::Result<()>;
-    /// An environment variable that scripts may see.
-    fn env(&self, name: &str) -> Option<String>;
-    /// Text for standard output; no line end is added.
-    fn print(&mut self, text: &str);
-    /// Text for standard error (diagnostics); no line end is added.
-    fn eprint(&mut self, text: &str);
-    /// Seconds since an arbitrary moment, never decreasing.
-    fn monotonic_seconds(&self) -> f64;
-    /// Seconds since an arbitrary moment for work that cannot ask the world, if there is a clock.
-    fn clock(&self) -> Option<fn() -> f64> {
-        None
-    }
-    /// Seconds since 1970-01-01 00:00 UTC. Nothing that must be reproducible may depend on it.
-    fn unix_seconds(&self) -> u64;
-    /// The number of this process, 0 where there is none.
-    fn process_id(&self) -> u32 {
-        0
-    }
-    /// Whether the user asked to stop.
-    fn interrupted(&self) -> bool;
-    /// What becomes true when the user asks to stop, for work that cannot ask the world.
-    fn interrupt_flag(&self) -> Option<Arc<AtomicBool>> {
-        None
-    }
-    /// What becomes true when the user asks to stop or so many seconds have passed; `None` where
-    /// there is no clock that could.
-    fn flag_after(&self, _seconds: f64) -> Option<Arc<AtomicBool>> {
-        None
-    }
-    /// Why the run has to stop although nobody asked, such as a limit of time.
-    fn stop_reason(&self) -> Option<String> {
-        None
-    }
-    /// Runs a command of the operating system with these environment variables besides its own;
-    /// its exit status and what it printed.
-    fn run_command(
-        &mut self,
-        _command: &str,
-        _environment: &BTreeMap<String, String>,
-    ) -> io::Result<(i32, Vec<u8>)> {
-        Err(io::Error::new(
-            io::ErrorKind::Unsupported,
-            "there is no operating system in this environment",
-        ))
-    }
-    /// Number of threads to use, at least 1.
-    fn threads(&self) -> usize;
-    /// Where plots and reports go.
-    fn output_dir(&self) -> PathBuf;
-    /// Shows how far a long piece of work is.
-    fn progress(&mut self, progress: &Progress);
-    /// Whether a view of the run would be drawn now: asked often, so that none is made in vain.
-    fn wants_view(&mut self) -> bool {
-        false
-    }
-    /// Draws the run as it is now.
-    fn show_view(&mut self, _view: &View) {}
-    /// The run has ended: what was drawn goes away.
-    fn end_view(&mut self) {}
-    /// Whether the user wants the run to pause; true once for each time.
-    fn wants_pause(&mut self) -> bool {
-        false
-    }
-    /// A line that the user types during a pause; `None` when nothing more comes.
-    fn ask(&mut self, _prompt: &str) -> Option<String> {
-        None
-    }
-    /// Whether diagnostics may be coloured.
-    fn colour(&self) -> bool {
-        false
-    }
-
-    /// Copies a file over another.
-    fn copy(&mut self, from: &Path, to: &Path) -> io::Result<()> {
-        let bytes = self.read(from)?;
-        self.write(to, &bytes)
-    }
-
-    /// The absolute form of a path: joined to the working directory, `.` and `..` resolved in the
-    /// text.
-    fn absolute(&self, path: &Path) -> PathBuf {
-        normalized(&self.current_dir().join(path))
-    }
-}
-
-/// A path with `.` and `..` resolved in the text.
-pub fn normalized(path: &Path) -> PathBuf {
-    let mut out = PathBuf::new();
-    for component in path.components() {
-        match component {
-            Component::CurDir => {}
-            Component::ParentDir => match out.components().next_back() {
-                Some(Component::Normal(_)) => {
-                    out.pop();
-                }
-                Some(Component::RootDir | Component::Prefix(_)) => {}
-                _ => out.push(component),
-            },
-            _ => out.push(component),
-        }
-    }
-    out
-}
 
 /// What was written to the two streams of a [`MemoryWorld`], readable while a session owns the
 /// world.
@@ -329,7 +139,7 @@ fn names_in<'a>(dir: &Path, paths: impl Iterator<Item = &'a PathBuf>) -> Vec<Str
 #[derive(Debug)]
 struct MemoryFiles(BTreeMap<PathBuf, Vec<u8>>);
 
-impl Files for MemoryFiles {
+impl FileReader for MemoryFiles {
     fn read(&self, path: &Path) -> io::Result<Vec<u8>> {
         self.0.get(path).cloned().ok_or_else(|| missing(path))
     }
@@ -344,7 +154,7 @@ impl Files for MemoryFiles {
     }
 }
 
-impl World for MemoryWorld {
+impl Files for MemoryWorld {
     fn grant(&mut self, grant: Grant<'_>) {
         let real = grant.path().map_or_else(PathBuf::new, |path| self.absolute(path));
         self.policy.grant(grant, real);
@@ -411,7 +221,7 @@ impl World for MemoryWorld {
         }
     }
 
-    fn files(&self) -> Arc<dyn Files> {
+    fn reader(&self) -> Arc<dyn FileReader> {
         Arc::new(MemoryFiles(self.files.clone()))
     }
 
@@ -439,16 +249,14 @@ impl World for MemoryWorld {
         Ok(())
     }
 
+    fn output_dir(&self) -> PathBuf {
+        PathBuf::from("/memory/results")
+    }
+}
+
+impl Environment for MemoryWorld {
     fn env(&self, _name: &str) -> Option<String> {
         None
-    }
-
-    fn print(&mut self, text: &str) {
-        self.streams.with(|streams| streams.0.push_str(text));
-    }
-
-    fn eprint(&mut self, text: &str) {
-        self.streams.with(|streams| streams.1.push_str(text));
     }
 
     fn monotonic_seconds(&self) -> f64 {
@@ -468,9 +276,15 @@ impl World for MemoryWorld {
     fn threads(&self) -> usize {
         1
     }
+}
 
-    fn output_dir(&self) -> PathBuf {
-        PathBuf::from("/memory/results")
+impl Screen for MemoryWorld {
+    fn print(&mut self, text: &str) {
+        self.streams.with(|streams| streams.0.push_str(text));
+    }
+
+    fn eprint(&mut self, text: &str) {
+        self.streams.with(|streams| streams.1.push_str(text));
     }
 
     fn progress(&mut self, _progress: &Progress) {}
@@ -518,11 +332,5 @@ mod tests {
         assert!(world.append(Path::new("x"), b"2").is_ok());
         assert_ne!(before, world.stamp(Path::new("x")));
         assert_eq!(world.stamp(Path::new("y")), None);
-    }
-
-    #[test]
-    fn dots_above_the_root_stay() {
-        assert_eq!(normalized(Path::new("a/../../b")), PathBuf::from("../b"));
-        assert_eq!(normalized(Path::new("/a/./b/../c")), PathBuf::from("/a/c"));
     }
 }

@@ -1,0 +1,156 @@
+//! The state of execution: the scripts being run, the command that was called, and why execution
+//! stops.
+
+use crate::script::options::Strictness;
+use crate::source::Span;
+use std::path::{Path, PathBuf};
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct RunStatus {
+    /// Errors that happened and that the script did not ask for.
+    pub errors: usize,
+    /// Whether Ctrl-C ended it.
+    pub interrupted: bool,
+    /// The argument of `exit`, if it was called.
+    pub exit: Option<i32>,
+    /// The exit code of the process: what `exit` said, 130 when interrupted, 1 with unread
+    /// errors, else 0.
+    pub code: u8,
+}
+
+/// Why statements are no longer executed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stop {
+    /// `exit` was called.
+    Exit(i32),
+    /// Ctrl-C.
+    Interrupt,
+    /// An error with [`Strictness::Strict`].
+    Error,
+}
+
+/// The iteration of a loop, from 0, and the number of iterations if it is known.
+pub type Iteration = (usize, Option<usize>);
+
+/// Where the execution of scripts is.
+#[derive(Debug, Default)]
+pub struct Execution {
+    /// The folders of the scripts that are being run, outermost first.
+    folders: Vec<PathBuf>,
+    stop: Option<Stop>,
+    /// Where the command that is being run was called.
+    call: Option<Span>,
+    /// Whether that was in a function, whose variables the command does not see.
+    in_function: bool,
+    /// How deep the statement being executed lies in loops, branches and nested scripts: answers
+    /// are echoed at depth 0.
+    depth: usize,
+    /// The iteration of the outermost loop being run.
+    iteration: Option<Iteration>,
+}
+
+impl Execution {
+    /// A script that lies in this folder begins.
+    pub fn enter(&mut self, folder: PathBuf) {
+        self.folders.push(folder);
+    }
+
+    /// The innermost script ends.
+    pub fn leave(&mut self) {
+        self.folders.pop();
+    }
+
+    /// How many scripts have called each other.
+    pub fn scripts(&self) -> usize {
+        self.folders.len()
+    }
+
+    /// The folders of the scripts that are being run, innermost first.
+    pub fn folders(&self) -> impl Iterator<Item = &Path> {
+        self.folders.iter().rev().map(PathBuf::as_path)
+    }
+
+    /// Why execution stops, if it does.
+    pub fn stop(&self) -> Option<Stop> {
+        self.stop
+    }
+
+    /// Execution stops, for the first reason that is given.
+    pub fn stop_for(&mut self, reason: Stop) {
+        self.stop.get_or_insert(reason);
+    }
+
+    /// The script asks to end with this status.
+    pub fn exit(&mut self, status: i32) {
+        self.stop = Some(Stop::Exit(status));
+    }
+
+    /// Where the command that is being run was called.
+    pub fn call(&self) -> Span {
+        self.call.unwrap_or(Span::NONE)
+    }
+
+    /// A command is called here; where the one around it was.
+    pub fn begin_call(&mut self, call: Span) -> Option<Span> {
+        self.call.replace(call)
+    }
+
+    /// The command has ended.
+    pub fn end_call(&mut self, around: Option<Span>) {
+        self.call = around;
+    }
+
+    /// Whether the command that is being run was called in a function.
+    pub fn is_in_function(&self) -> bool {
+        self.in_function
+    }
+
+    /// Calls are in a function from here on, or not; how it was before.
+    pub fn set_in_function(&mut self, in_function: bool) -> bool {
+        std::mem::replace(&mut self.in_function, in_function)
+    }
+
+    /// Whether answers are echoed: at the top level.
+    pub fn is_at_top(&self) -> bool {
+        self.depth == 0
+    }
+
+    /// Statements below the top level begin.
+    pub fn descend(&mut self) {
+        self.depth += 1;
+    }
+
+    /// Statements below the top level end.
+    pub fn ascend(&mut self) {
+        self.depth -= 1;
+    }
+
+    /// The iteration of the outermost loop being run.
+    pub fn iteration(&self) -> Option<Iteration> {
+        self.iteration
+    }
+
+    /// The outermost loop is in this iteration.
+    pub fn iterate(&mut self, iteration: Iteration) {
+        self.iteration = Some(iteration);
+    }
+
+    /// How the run ended, with so many errors that the script did not ask for.
+    pub fn end(&mut self, errors: usize, strictness: Strictness) -> RunStatus {
+        let stop = self.stop.take();
+        let interrupted = stop == Some(Stop::Interrupt);
+        let exit = match stop {
+            Some(Stop::Exit(status)) => Some(status),
+            _ => None,
+        };
+        let code = match (stop, strictness) {
+            (Some(Stop::Interrupt), _) => 130,
+            (_, Strictness::Lenient) => 0,
+            (Some(Stop::Exit(status)), _) if status != 0 => status.clamp(1, 255) as u8,
+            (Some(Stop::Error), _) => 1,
+            _ => u8::from(errors > 0),
+        };
+        RunStatus { errors, interrupted, exit, code }
+    }
+}

@@ -1,0 +1,100 @@
+//! What a session answers: standard output and standard error, the transcript, the log, and the
+//! messages that a script can ask for.
+
+use super::log::Log;
+use super::messages::Messages;
+use super::transcript::Transcript;
+use crate::diag::{Diagnostic, render};
+use crate::script::world::Screen;
+use crate::source::{SourceMap, Span};
+use std::collections::{BTreeSet, HashSet};
+
+/// The answers of a session.
+#[derive(Default)]
+pub struct Output {
+    /// What `getErrorString()` and `getLastError()` return.
+    pub messages: Messages,
+    /// Statements and answers, if they are recorded.
+    pub transcript: Option<Transcript>,
+    /// Statements and answers so far, for `savelog`.
+    log: Log,
+    /// Warnings reported, where each is reported once.
+    reported: Option<HashSet<(Span, String)>>,
+    /// Commands whose lack of effect without a window was reported.
+    windowless: BTreeSet<&'static str>,
+    /// `echo(false)` was called.
+    muted: bool,
+}
+
+impl Output {
+    /// A statement of the outermost script begins.
+    pub fn begin(&mut self, sources: &SourceMap, statement: Span) {
+        if let Some(transcript) = &mut self.transcript {
+            transcript.begin(sources.text(statement));
+        }
+        self.log.begin(statement);
+    }
+
+    /// Notes what is printed in the transcript and in the log.
+    pub fn record(&mut self, text: &str) {
+        if let Some(transcript) = &mut self.transcript {
+            transcript.print(text);
+        }
+        self.log.answer(text);
+    }
+
+    /// Shows a diagnostic on the screen, unless it is `quiet` about warnings and notes, and keeps it
+    /// for the script. Returns whether it is an error.
+    pub fn report(
+        &mut self,
+        screen: &mut dyn Screen,
+        sources: &SourceMap,
+        quiet: bool,
+        diagnostic: Diagnostic,
+    ) -> bool {
+        let diagnostic = diagnostic.shortened();
+        let is_error = diagnostic.is_error();
+        let reported = self.reported.as_mut().filter(|_| !is_error);
+        let place = || (diagnostic.span(), diagnostic.message.clone());
+        if reported.is_some_and(|reported| !reported.insert(place())) {
+            return false;
+        }
+        let plain = render::render(&diagnostic, sources, false);
+        match (quiet && !is_error, screen.colour()) {
+            (true, _) => {}
+            (false, true) => screen.eprint(&render::render(&diagnostic, sources, true)),
+            (false, false) => screen.eprint(&plain),
+        }
+        if let Some(transcript) = &mut self.transcript {
+            transcript.report(&plain, diagnostic.code);
+        }
+        self.log.answer(&plain);
+        self.messages.push(diagnostic);
+        is_error
+    }
+
+    /// From here on a warning at the same place is reported once, however many models it concerns.
+    pub fn report_warnings_once(&mut self) {
+        self.reported.get_or_insert_default();
+    }
+
+    /// Whether it is the first time that this command has no effect.
+    pub fn is_first_without_window(&mut self, command: &'static str) -> bool {
+        self.windowless.insert(command)
+    }
+
+    /// Whether `echo(false)` was called.
+    pub fn is_muted(&self) -> bool {
+        self.muted
+    }
+
+    /// `echo` was called.
+    pub fn set_muted(&mut self, muted: bool) {
+        self.muted = muted;
+    }
+
+    /// Statements and answers so far.
+    pub fn log(&self) -> &Log {
+        &self.log
+    }
+}

@@ -1,0 +1,288 @@
+//! Loading classes: from files, folders and libraries, when somebody names them.
+
+use crate::diag::{At, Diagnostic, Fault};
+use crate::eval::Function;
+use crate::flatten::Library;
+use crate::name::{Ident, Name};
+use crate::script::Session;
+use crate::source::{SourceId, Span, Spanned};
+use crate::syntax::ast::ClassDefinition;
+use crate::syntax::{self, Outline};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+impl Session {
+    /// The loaded classes.
+    pub fn library(&mut self) -> &mut Library {
+        &mut self.classes.library
+    }
+
+    /// A number that changes whenever a class is loaded, defined or removed.
+    pub fn library_revision(&self) -> u64 {
+        self.classes.revision()
+    }
+
+    /// Whether classes of this file or package folder are loaded already.
+    pub(in crate::script) fn has_loaded(&self, path: &Path) -> bool {
+        let Some(mut found) = self.find_file(path) else { return false };
+        if found.file_name().is_some_and(|name| name == "package.mo") {
+            found.pop();
+        }
+        self.classes.has_loaded(&found)
+    }
+
+    /// Loads a `.mo` file, or a package from its folder or its `package.mo`, or all that lie in a
+    /// folder, and reads all of it. Returns the names of the classes.
+    ///
+    /// # Errors
+    /// What is wrong with the files; then nothing may be relied on of what they define.
+    pub fn load_path(&mut self, path: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {
+        let Some(mut found) = self.find_file(path) else {
+            return Err(vec![self.missing_file(path).at(self.call_site())]);
+        };
+        if found.file_name().is_some_and(|name| name == "package.mo") {
+            found.pop();
+        }
+        let (mut names, mut errors) = (Vec::new(), Vec::new());
+        for path in self.paths_to_load(found) {
+            match self.load_all_of(&path) {
+                Ok(loaded) => names.extend(loaded),
+                Err(wrong) => errors.extend(wrong),
+            }
+        }
+        if errors.is_empty() { Ok(names) } else { Err(errors) }
+    }
+
+    /// A file or package, or all files and packages of a folder that is no package.
+    fn paths_to_load(&self, path: PathBuf) -> Vec<PathBuf> {
+        let is_package = |path: &Path| self.world.exists(&path.join("package.mo"));
+        if !self.world.is_dir(&path) || is_package(&path) {
+            return vec![path];
+        }
+        let entries = self.world.list_dir(&path).unwrap_or_default().into_iter();
+        let inside = entries.map(|entry| path.join(entry));
+        inside
+            .filter(|path| is_package(path) || path.extension().is_some_and(|e| e == "mo"))
+            .collect()
+    }
+
+    fn load_all_of(&mut self, path: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {
+        if !self.world.is_dir(path) {
+            return self.load_file(path);
+        }
+        let around = self.package_around(path)?;
+        let names = self.load_library(path, &around)?;
+        self.ask_library(|library| {
+            let problems = names.iter().flat_map(|name| library.read_all(name));
+            let problems: Vec<Diagnostic> = problems.collect();
+            if problems.is_empty() { Ok(names) } else { Err(problems) }
+        })
+    }
+
+    /// The package that a file or folder belongs to by its place; the outermost package around it
+    /// is loaded. The empty name if no package is around.
+    fn package_around(&mut self, path: &Path) -> Result<Name, Vec<Diagnostic>> {
+        let is_package = |folder: &&Path| self.world.exists(&folder.join("package.mo"));
+        let folders: Vec<&Path> = path.ancestors().skip(1).take_while(is_package).collect();
+        let Some(root) = folders.last() else { return Ok(Name::default()) };
+        if !self.classes.has_loaded(root) {
+            self.load_library(root, &Name::default())?;
+        }
+        let names = folders.iter().rev().map_while(|folder| self.package_in(folder));
+        Ok(Name::new(names.collect::<Vec<_>>()))
+    }
+
+    /// The name of the package that a folder holds.
+    fn package_in(&self, folder: &Path) -> Option<Ident> {
+        let bytes = self.world.read(&folder.join("package.mo")).ok()?;
+        let (text, _) = syntax::decode(&bytes);
+        let package = Outline::of(&text)?.classes.into_iter().next()?;
+        Some(Ident::new(&text[package.name]))
+    }
+
+    fn load_file(&mut self, path: &Path) -> Result<Vec<Name>, Vec<Diagnostic>> {
+        let (source, text) =
+            self.add_file(path).at(self.call_site()).map_err(|error| vec![error])?;
+        let names = self.load_source(source, &text, Some(path))?;
+        self.classes.note_files(&names, path);
+        Ok(names)
+    }
+
+    /// Loads a package from its folder; its classes are read when they are needed.
+    fn load_library(&mut self, folder: &Path, around: &Name) -> Result<Vec<Name>, Vec<Diagnostic>> {
+        self.classes.invalidate();
+        let files = self.library_files();
+        let one = |error: Diagnostic| vec![error];
+        let names =
+            self.ask_library(|library| library.load_lazily(&files, folder, around).map_err(one))?;
+        self.classes.note_files(&names, folder);
+        self.supply_units(&names).map_err(one)?;
+        self.note_versions(&names);
+        Ok(names)
+    }
+
+    /// Loads classes from a text; `name` stands in diagnostics.
+    pub fn load_text(&mut self, name: &str, text: &str) -> Result<Vec<Name>, Vec<Diagnostic>> {
+        let source = self.sources.add(name, text);
+        self.load_source(source, text, None)
+    }
+
+    fn load_source(
+        &mut self,
+        source: SourceId,
+        text: &str,
+        path: Option<&Path>,
+    ) -> Result<Vec<Name>, Vec<Diagnostic>> {
+        let mut file = syntax::parse_all_of_stored_definition(source, text)?;
+        self.classes.invalidate();
+        let around = path.map_or(Ok(Name::default()), |path| self.package_around(path))?;
+        if !around.parts.is_empty() && file.within.is_none() {
+            file.within = Some(Spanned { node: around, span: Span::new(source, 0, 0) });
+        }
+        if let Some(package) = file.within.as_ref().and_then(|within| within.node.first()) {
+            self.autoload_class(package)?;
+        }
+        let names = self.ask_library(|library| library.load(&file).map_err(|error| vec![error]))?;
+        self.note_versions(&names);
+        Ok(names)
+    }
+
+    /// Loads the top-level class that a name begins with, if it is not loaded and can be found.
+    /// Returns whether something was loaded.
+    pub fn autoload(&mut self, name: &Name) -> Result<bool, Vec<Diagnostic>> {
+        match name.first() {
+            Some(first) => self.autoload_class(first),
+            None => Ok(false),
+        }
+    }
+
+    fn autoload_class(&mut self, name: Ident) -> Result<bool, Vec<Diagnostic>> {
+        if self.classes.defines(name) || self.classes.is_missing(name) {
+            return Ok(false);
+        }
+        let Some(path) = self.search_class(name) else {
+            self.classes.note_nowhere(name);
+            return Ok(false);
+        };
+        if self.world.is_dir(&path) {
+            self.load_library(&path, &Name::default())?;
+        } else {
+            self.load_file(&path)?;
+        }
+        let found = self.classes.defines(name);
+        if !found {
+            self.classes.note_misnamed(name, path);
+        }
+        Ok(found)
+    }
+
+    /// Loads what the library asked for and did not have. Returns whether something was loaded:
+    /// then what failed is worth another attempt.
+    pub fn load_wanted(&mut self) -> Result<bool, Vec<Diagnostic>> {
+        let mut loaded = false;
+        for name in self.classes.library.take_missing() {
+            loaded |= self.autoload_class(name)?;
+        }
+        Ok(loaded)
+    }
+
+    /// Whether a class of this name is loaded or can be.
+    ///
+    /// # Errors
+    /// What is wrong with the files that were read.
+    pub(in crate::script) fn find_class(&mut self, name: &Name) -> Result<bool, Vec<Diagnostic>> {
+        self.autoload(name)?;
+        self.ask_library(|library| Ok(library.contains(name)))
+    }
+
+    /// The same, the errors reported.
+    pub(in crate::script) fn class_exists(&mut self, name: &Name) -> bool {
+        let found = self.find_class(name);
+        self.or_report_all(found).unwrap_or(false)
+    }
+
+    /// A class that a script defines; it replaces one of the same name.
+    pub(in crate::script) fn define_class(
+        &mut self,
+        class: &Arc<ClassDefinition>,
+    ) -> Result<(), Diagnostic> {
+        self.classes.invalidate();
+        self.classes.library.define(class).map(|_| ())
+    }
+
+    /// Whether a class comes from a folder, so that its parts are read when they are needed.
+    pub(in crate::script) fn is_lazy(&self, name: &Name) -> bool {
+        self.classes.file_of(name).is_some_and(|path| self.world.is_dir(path))
+    }
+
+    /// Removes a class; whether there was one.
+    pub(in crate::script) fn remove_class(&mut self, name: &Name) -> bool {
+        self.classes.invalidate();
+        name.is_simple() && name.first().is_some_and(|name| self.classes.library.remove(name))
+    }
+
+    /// Removes all classes.
+    pub(in crate::script) fn forget_classes(&mut self) {
+        self.classes.forget();
+        self.models.forget();
+    }
+
+    /// A function of the loaded classes, looked up from the top level.
+    pub(in crate::script) fn loaded_function(
+        &mut self,
+        name: &Name,
+    ) -> Result<Option<Arc<Function>>, Diagnostic> {
+        for candidate in self.workspace.candidates(name) {
+            if let Some(function) = self.function_named(&candidate)? {
+                return Ok(Some(function));
+            }
+        }
+        Ok(None)
+    }
+
+    pub(in crate::script) fn function_named(
+        &mut self,
+        name: &Name,
+    ) -> Result<Option<Arc<Function>>, Diagnostic> {
+        let first = |mut errors: Vec<Diagnostic>| errors.swap_remove(0);
+        if let Some(copy) = self.classes.copy(name) {
+            return Ok(Some(copy));
+        }
+        loop {
+            let one = |error: Diagnostic| vec![error];
+            match self.ask_library(|library| library.function(name).map_err(one)) {
+                Ok(None) => return Ok(None),
+                Ok(Some(functions)) => {
+                    let own = functions.values().next().cloned();
+                    self.classes.keep_copies(functions);
+                    return Ok(own);
+                }
+                Err(errors) => {
+                    if !self.load_wanted().map_err(first)? {
+                        return Err(first(errors));
+                    }
+                }
+            }
+        }
+    }
+
+    /// The file that a path or a `modelica://Package/…` URI names.
+    pub(in crate::script) fn resource(&mut self, uri: &str) -> Result<PathBuf, Fault> {
+        if let Some(rest) = uri.strip_prefix("modelica://") {
+            let (package, file) = rest.split_once('/').unwrap_or((rest, ""));
+            let package = Name::parse(package);
+            let top = Name::new(package.first());
+            if let (true, Some(folder)) = (self.class_exists(&top), self.classes.file_of(&top)) {
+                let inner = package.parts[1..].iter().map(|part| part.as_str());
+                return Ok(folder.join(inner.collect::<PathBuf>()).join(file));
+            }
+        }
+        let path = Path::new(uri);
+        self.find_file(path).ok_or_else(|| self.missing_file(path))
+    }
+
+    /// The file a class was loaded from, if it was loaded from one.
+    pub(in crate::script) fn source_file(&self, name: &Name) -> Option<PathBuf> {
+        self.classes.file_of(&Name::new(name.first())).cloned()
+    }
+}

@@ -1,0 +1,83 @@
+//! How a session behaves: dialect, echo, strictness, permissions.
+
+use super::access::permissions::Permissions;
+use crate::identify::Probe;
+
+/// The tool whose rules hold where the two differ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Dialect {
+    /// Dymola's.
+    #[default]
+    Dymola,
+    /// OpenModelica's.
+    OpenModelica,
+}
+
+impl Dialect {
+    /// The tool whose it is.
+    pub fn name(self) -> &'static str {
+        match self {
+            Dialect::Dymola => "Dymola",
+            Dialect::OpenModelica => "OpenModelica",
+        }
+    }
+}
+
+/// What is shown without being asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Echo {
+    /// In Dymola's dialect the values of expressions alone; in OpenModelica's everything.
+    #[default]
+    Usual,
+    /// As the dialect's tool answers at its prompt: values and declared variables, not the
+    /// statements, which stand there already.
+    Dialogue,
+    /// Statements and values, as the dialect's tool shows them.
+    Everything,
+    /// Nothing.
+    Nothing,
+}
+
+/// What an error does to a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Strictness {
+    /// The script goes on; the run ends with exit code 1 if nobody read the error.
+    #[default]
+    Usual,
+    /// The first error ends the run.
+    Strict,
+    /// The script goes on and the run ends with exit code 0.
+    Lenient,
+}
+
+/// How a session behaves.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Options {
+    /// The dialect; `None` to recognise it from the script.
+    pub dialect: Option<Dialect>,
+    /// What is shown.
+    pub echo: Echo,
+    /// What an error does.
+    pub strictness: Strictness,
+    /// Whether only errors are written to standard error, no warnings and notes.
+    pub quiet: bool,
+    /// What scripts may do outside.
+    pub permissions: Permissions,
+    /// Whether what the simulations answer is kept on the way.
+    pub journaling: Journaling,
+    /// What ends an identification behind the script's own search.
+    pub probe: Probe,
+}
+
+/// Whether a run of scripts keeps a journal of its simulations in the output folder, from which it
+/// can go on when it was killed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Journaling {
+    /// It does not.
+    #[default]
+    Off,
+    /// It does, written again whenever so many seconds have passed, and begins anew.
+    Fresh(f64),
+    /// It does, and goes on from what an earlier run has left.
+    Resume(f64),
+}

@@ -1,0 +1,137 @@
+//! Measured outputs of one experiment beside the simulation: values in the unit of the model, their
+//! standard deviations, and the rows that are complete.
+
+use super::data::{self, Measured, Notes};
+use super::file::{ColumnEntry, ExperimentEntry, SigmaEntry};
+use super::sigma;
+use crate::bail;
+use crate::diag::Fault;
+use crate::identify::Model;
+use crate::identify::problem::{Observation, Series, Sigma};
+use crate::mat::MatFile;
+use crate::registry::BAD_OPTION;
+use crate::units::in_words;
+
+/// What the outputs of an experiment are compared over.
+pub(super) struct Comparison<'a> {
+    /// The name of the experiment.
+    pub experiment: &'a str,
+    pub entry: &'a ExperimentEntry,
+    pub table: &'a MatFile,
+    pub model: &'a dyn Model,
+    pub x_name: &'a str,
+    /// X in the unit of the model; NaN where it is missing.
+    pub x: Vec<f64>,
+}
+
+impl Comparison<'_> {
+    /// The unit of a variable; empty where it has none.
+    pub(super) fn unit(&self, name: &str) -> String {
+        match name {
+            "time" => "s".to_owned(),
+            name => self.model.unit(name).unwrap_or_default(),
+        }
+    }
+
+    /// The outputs of the experiment, with their names in its class.
+    ///
+    /// # Errors
+    ///
+    /// Columns that are missing or do not fit, deviations and weights that are not positive.
+    pub(super) fn outputs(
+        &self,
+        observed: &[String],
+        notes: &mut Notes,
+    ) -> Result<(Vec<Observation>, Vec<Series>), Fault> {
+        let (mut observations, mut series) = (Vec::new(), Vec::new());
+        for ((y_name, wanted), observed) in self.entry.outputs.iter().zip(observed) {
+            let one = self.output(y_name, &wanted.entry(), notes)?;
+            observations.push(Observation { y_name: observed.clone(), x: one.x.clone() });
+            series.push(one);
+        }
+        Ok((observations, series))
+    }
+
+    fn output(
+        &self,
+        y_name: &str,
+        wanted: &ColumnEntry,
+        notes: &mut Notes,
+    ) -> Result<Series, Fault> {
+        let (table, unit) = (self.table, self.unit(y_name));
+        let column = data::column(table, wanted, y_name, notes)?;
+        let measured = data::in_unit(&column, y_name, &unit, wanted, (table, notes))?;
+        note_unit_of_sigma(y_name, wanted, (&measured, &unit), notes);
+        let count = measured.values.len();
+        data::same_length([self.x_name, y_name], [self.x.len(), count])?;
+        let factor = data::sigma_factor(table, wanted.sigma.as_ref(), &unit, measured.factor);
+        let sigma = sigma::sigma(wanted.sigma.as_ref(), y_name, table, factor, count)?;
+        let complete = |row: &usize| {
+            self.x.get(*row).is_some_and(|x| x.is_finite()) && measured.values[*row].is_finite()
+        };
+        let (rows, missing): (Vec<usize>, Vec<usize>) = (0..count).partition(complete);
+        let sigma = self.of_rows(sigma, y_name, &rows, count)?;
+        if rows.is_empty() {
+            bail!(BAD_OPTION, "`{y_name}` of {} has no points", self.experiment);
+        }
+        let weight = self.weight(y_name, wanted)?;
+        Ok(Series {
+            experiment: self.experiment.to_owned(),
+            y_name: y_name.to_owned(),
+            y_unit: data::shown_unit(&unit, wanted, &column.about),
+            x_name: self.x_name.to_owned(),
+            x_unit: self.unit(self.x_name),
+            file: self.entry.data.display().to_string(),
+            x: rows.iter().map(|row| self.x[*row]).collect(),
+            y: rows.iter().map(|row| measured.values[*row]).collect(),
+            weight,
+            sigma,
+            column: wanted.column.clone().unwrap_or_else(|| y_name.to_owned()),
+            rows: rows.iter().map(|row| row + 1).collect(),
+            missing: missing.iter().map(|row| row + 1).collect(),
+        })
+    }
+
+    /// Given deviations of the rows that are complete, of so many in all.
+    fn of_rows(
+        &self,
+        mut sigma: Sigma,
+        y_name: &str,
+        rows: &[usize],
+        count: usize,
+    ) -> Result<Sigma, Fault> {
+        if let Sigma::Given(values) = &mut sigma {
+            if values.len() != count {
+                bail!(
+                    BAD_OPTION,
+                    "the sigma of `{y_name}` in {} has {} rows, but `{y_name}` has {count}",
+                    self.experiment,
+                    values.len()
+                );
+            }
+            *values = rows.iter().map(|row| values[*row]).collect();
+            values.iter().try_for_each(|value| sigma::positive(y_name, *value))?;
+        }
+        Ok(sigma)
+    }
+
+    fn weight(&self, y_name: &str, wanted: &ColumnEntry) -> Result<f64, Fault> {
+        let weight = wanted.weight.unwrap_or(1.0) * self.entry.weight.unwrap_or(1.0);
+        if !(weight.is_finite() && weight > 0.0) {
+            bail!(BAD_OPTION, "the weight of `{y_name}` in {} is {weight}", self.experiment);
+        }
+        Ok(weight)
+    }
+}
+
+/// Where values were converted, a number for sigma is taken in the unit of the model.
+fn note_unit_of_sigma(
+    y_name: &str,
+    wanted: &ColumnEntry,
+    (measured, unit): (&Measured, &str),
+    notes: &mut Notes,
+) {
+    if let (true, Some(SigmaEntry::Number(sigma))) = (measured.factor != 1.0, &wanted.sigma) {
+        notes.add(format!("the sigma column {sigma} of `{y_name}` is in {}", in_words(unit)));
+    }
+}

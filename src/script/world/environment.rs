@@ -1,0 +1,53 @@
+//! Clocks, the process, its environment variables, and requests to stop.
+
+use std::collections::BTreeMap;
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// The process and the machine that a script runs on.
+pub trait Environment {
+    /// An environment variable that scripts may see.
+    fn env(&self, name: &str) -> Option<String>;
+    /// Seconds since an arbitrary moment, never decreasing.
+    fn monotonic_seconds(&self) -> f64;
+    /// Seconds since an arbitrary moment for work that cannot ask the world, if there is a clock.
+    fn clock(&self) -> Option<fn() -> f64> {
+        None
+    }
+    /// Seconds since 1970-01-01 00:00 UTC. Nothing that must be reproducible may depend on it.
+    fn unix_seconds(&self) -> u64;
+    /// The number of this process, 0 where there is none.
+    fn process_id(&self) -> u32 {
+        0
+    }
+    /// Whether the user asked to stop.
+    fn interrupted(&self) -> bool;
+    /// What becomes true when the user asks to stop, for work that cannot ask the world.
+    fn interrupt_flag(&self) -> Option<Arc<AtomicBool>> {
+        None
+    }
+    /// What becomes true when the user asks to stop or so many seconds have passed; `None` where
+    /// there is no clock that could.
+    fn flag_after(&self, _seconds: f64) -> Option<Arc<AtomicBool>> {
+        None
+    }
+    /// Why the run has to stop although nobody asked, such as a limit of time.
+    fn stop_reason(&self) -> Option<String> {
+        None
+    }
+    /// Runs a command of the operating system with these environment variables besides its own;
+    /// its exit status and what it printed.
+    fn run_command(
+        &mut self,
+        _command: &str,
+        _environment: &BTreeMap<String, String>,
+    ) -> io::Result<(i32, Vec<u8>)> {
+        Err(io::Error::new(
+            io::ErrorKind::Unsupported,
+            "there is no operating system in this environment",
+        ))
+    }
+    /// Number of threads to use, at least 1.
+    fn threads(&self) -> usize;
+}

@@ -1,0 +1,33 @@
+//! What a user sees of a run, and types.
+
+use crate::script::runs::view::{Progress, View};
+
+/// Standard output and standard error, progress, the live view, and a prompt.
+pub trait Screen {
+    /// Text for standard output; no line end is added.
+    fn print(&mut self, text: &str);
+    /// Text for standard error (diagnostics); no line end is added.
+    fn eprint(&mut self, text: &str);
+    /// Shows how far a long piece of work is.
+    fn progress(&mut self, progress: &Progress);
+    /// Whether a view of the run would be drawn now: asked often, so that none is made in vain.
+    fn wants_view(&mut self) -> bool {
+        false
+    }
+    /// Draws the run as it is now.
+    fn show_view(&mut self, _view: &View) {}
+    /// The run has ended: what was drawn goes away.
+    fn end_view(&mut self) {}
+    /// Whether the user wants the run to pause; true once for each time.
+    fn wants_pause(&mut self) -> bool {
+        false
+    }
+    /// A line that the user types during a pause; `None` when nothing more comes.
+    fn ask(&mut self, _prompt: &str) -> Option<String> {
+        None
+    }
+    /// Whether diagnostics may be coloured.
+    fn colour(&self) -> bool {
+        false
+    }
+}
