@@ -3,11 +3,11 @@
 
 use super::balance::Written;
 use super::errors::{NOT_SUPPORTED, TYPE_MISMATCH};
+use super::expressions::resolve::Local;
 use super::flat_expression::literal;
-use super::instance::{MemberState, NodeId};
-use super::instantiation::Instantiation;
-use super::resolve::Local;
-use super::scope::ScopeId;
+use super::instantiate::instance::{MemberState, NodeId};
+use super::instantiate::instantiation::Instantiation;
+use super::lookup::scope::ScopeId;
 use super::{FlatModel, Part};
 use crate::diag::Diagnostic;
 use crate::eval::{FunctionBody, ValueType};
@@ -25,7 +25,7 @@ const MAX_EQUATIONS: usize = 500_000;
 
 impl Instantiation<'_> {
     /// Adds the equations and algorithms of a node and of all below it.
-    pub(super) fn add_equations(
+    pub fn add_equations(
         &mut self,
         node: NodeId,
         model: &mut FlatModel,
@@ -296,7 +296,7 @@ impl Instantiation<'_> {
     }
 
     /// The loop variables of a loop of equations with their ranges.
-    pub(super) fn loop_ranges(
+    pub fn loop_ranges(
         &mut self,
         indices: &[ForIndex],
         body: &[Equation],
@@ -308,7 +308,7 @@ impl Instantiation<'_> {
     }
 
     /// What the body of a loop knows in each of its turns.
-    pub(super) fn turns(
+    pub fn turns(
         &mut self,
         indices: &[ForIndex],
         context: ScopeId,
@@ -342,7 +342,7 @@ impl Instantiation<'_> {
         Ok(())
     }
 
-    pub(super) fn range_values(&mut self, range: &Expression) -> Result<Vec<Value>, Diagnostic> {
+    pub fn range_values(&mut self, range: &Expression) -> Result<Vec<Value>, Diagnostic> {
         match self.flat_value(range)? {
             Value::Array(ArrayValue { dims, elements }) if dims.len() == 1 => {
                 Ok((0..Elements::len(&elements)).map(|at| elements.get(at)).collect())
@@ -388,7 +388,7 @@ impl Instantiation<'_> {
 
     /// Which branch the conditions choose, if all of them up to that one are constants or
     /// parameters with values: `Some(None)` means `else`.
-    pub(super) fn chosen_branch(
+    pub fn chosen_branch(
         &mut self,
         branches: &[(Expression, Vec<Equation>)],
         context: ScopeId,
@@ -417,7 +417,7 @@ impl Instantiation<'_> {
 
     /// Whether an expression has a value at translation: no variable but constants and
     /// parameters, no operator of time.
-    pub(super) fn is_fixed(&mut self, resolved: &Expression) -> bool {
+    pub fn is_fixed(&mut self, resolved: &Expression) -> bool {
         let read = std::mem::take(&mut self.read);
         let fixed = self.known_flat_value(resolved).is_ok();
         self.read = read;
@@ -426,7 +426,7 @@ impl Instantiation<'_> {
 }
 
 /// `Connections.branch(…)` and the like, which are no equations.
-pub(super) fn is_graph_statement(call: &Expression) -> bool {
+pub fn is_graph_statement(call: &Expression) -> bool {
     match &call.kind {
         ExpressionKind::Call { function, .. } => {
             function.parts.len() == 2 && function.parts[0].name == "Connections"

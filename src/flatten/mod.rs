@@ -12,43 +12,27 @@
 //! Not translated, each refused with `unsupported-language` at its place: impure functions
 //! outside parameters, initial sections and when-clauses (§12.3). Clocked expressions (ch. 16), state machines (ch. 17) and the partial application of a
 //! function that is itself an input (§12.4.2) end as names that nothing declares.
+//!
+//! The modules are private: what they declare `pub` is seen in this folder alone.
+#![allow(unreachable_pub, reason = "privacy by module")]
 
 mod balance;
 mod checks;
-mod comprehensions;
 mod connections;
-mod constants;
-mod declarations;
-mod defaults;
-mod deselection;
-mod elements;
-mod enumerations;
 mod equations;
 pub mod errors;
+mod expressions;
 mod flat_expression;
 mod flat_model;
 mod functions;
-mod growth;
-mod implicit_ranges;
-mod inner_outer;
-mod instance;
-mod instantiation;
+mod instantiate;
 mod library;
 mod lookup;
-mod modification;
-mod overloaded_arrays;
-mod overloading;
-mod own_sizes;
-mod paths;
 mod print;
-mod resolve;
-mod scope;
 mod shapes;
-mod specialization;
 mod types;
 mod units;
 mod variables;
-mod vectorization;
 
 pub use balance::LocalBalance;
 pub use flat_model::*;
@@ -63,9 +47,9 @@ use crate::syntax::ast::{
     Restriction, Section, TypeSpecifier, UnaryOperator,
 };
 use errors::{NOT_A_MODEL, TOO_LARGE};
-use instantiation::Instantiation;
-use modification::Modifier;
-use scope::ScopeId;
+use instantiate::instantiation::Instantiation;
+use lookup::modification::Modifier;
+use lookup::scope::ScopeId;
 use std::collections::BTreeSet;
 
 /// Bytes of stack for instantiation, which nests with the expressions and bindings of the model.
@@ -134,7 +118,7 @@ fn flattened(
     let mut tree = Instantiation::new(library);
     let specifier = TypeSpecifier { name: class.clone(), span: Span::NONE };
     let found = tree.lookup_type(ScopeId::TOP, &specifier).map_err(one)?;
-    let lookup::Type::Class(id) = found else {
+    let lookup::names::Type::Class(id) = found else {
         return Err(vec![fault!(NOT_A_MODEL, "`{class}` is a predefined type").at(Span::NONE)]);
     };
     let text = tree.text(id).clone();

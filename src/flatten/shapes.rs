@@ -2,10 +2,10 @@
 //! variables whose values are not known at translation.
 
 use super::balance::path;
-use super::instantiation::{Instantiation, picked};
-use super::modification::Bound;
-use super::resolve::Local;
-use super::scope::ScopeId;
+use super::expressions::resolve::Local;
+use super::instantiate::instantiation::{Instantiation, picked};
+use super::lookup::modification::Bound;
+use super::lookup::scope::ScopeId;
 use crate::diag::Diagnostic;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
@@ -51,7 +51,7 @@ impl Rewrite for Iterators<'_> {
 
 impl Instantiation<'_> {
     /// The sizes of the value that a binding gives; `None` where its text does not tell them.
-    pub(super) fn bound_shape(&mut self, bound: &Bound) -> Result<Option<Vec<usize>>, Diagnostic> {
+    pub fn bound_shape(&mut self, bound: &Bound) -> Result<Option<Vec<usize>>, Diagnostic> {
         let Some(value) = &bound.value else { return Ok(None) };
         let value = picked(value.clone(), &bound.indices);
         let resolved = self.resolve(&value, bound.context, &Local::default())?;
@@ -59,7 +59,7 @@ impl Instantiation<'_> {
     }
 
     /// `size(x, i)` and `size(x)` where only the sizes of `x` are known; `None` for other calls.
-    pub(super) fn size_call(
+    pub fn size_call(
         &mut self,
         name: &str,
         arguments: &Arguments,
@@ -98,7 +98,7 @@ impl Instantiation<'_> {
     }
 
     /// The sizes of a resolved expression; `None` where its text does not tell them.
-    pub(super) fn shape_of(&mut self, e: &Expression) -> Option<Vec<usize>> {
+    pub fn shape_of(&mut self, e: &Expression) -> Option<Vec<usize>> {
         match &e.kind {
             ExpressionKind::Real(_)
             | ExpressionKind::Integer(_)

@@ -3,7 +3,7 @@
 
 use super::balance::path;
 use super::errors::{NOT_CONSTANT, SIZE_MISMATCH, TYPE_MISMATCH};
-use super::instantiation::Instantiation;
+use super::instantiate::instantiation::Instantiation;
 use super::{BaseType, Variability, Variable};
 use crate::diag::Diagnostic;
 use crate::eval::ValueType;
@@ -26,7 +26,7 @@ const SIZE_FUNCTIONS: &[&str] = &["size", "ndims"];
 
 impl Instantiation<'_> {
     /// Refuses a value whose type, dimensions or variability cannot be those of the variable.
-    pub(super) fn check_value(
+    pub fn check_value(
         &self,
         e: &Expression,
         variable: &Variable,
@@ -60,7 +60,7 @@ impl Instantiation<'_> {
     }
 
     /// Refuses an equation between values of different types (MLS §8.3.1).
-    pub(super) fn check_sides(
+    pub fn check_sides(
         &self,
         left: &Expression,
         right: &Expression,
@@ -117,7 +117,7 @@ impl Instantiation<'_> {
     }
 
     /// The element type of an expression; `None` where its text does not show it.
-    pub(super) fn type_of(&self, e: &Expression) -> Option<BaseType> {
+    pub fn type_of(&self, e: &Expression) -> Option<BaseType> {
         match &e.kind {
             ExpressionKind::Real(_) => Some(BaseType::Real),
             ExpressionKind::Integer(_) => Some(BaseType::Integer),
@@ -189,7 +189,7 @@ impl Instantiation<'_> {
     }
 
     /// The number of dimensions of an expression; `None` where its text does not show it.
-    pub(super) fn rank_of(&self, e: &Expression) -> Option<usize> {
+    pub fn rank_of(&self, e: &Expression) -> Option<usize> {
         match &e.kind {
             ExpressionKind::Real(_)
             | ExpressionKind::Integer(_)
@@ -293,7 +293,7 @@ fn may_be_literal(e: &Expression) -> bool {
 }
 
 /// Whether an expression holds no references and calls no functions of a library.
-pub(super) fn has_only_literals(e: &Expression) -> bool {
+pub fn has_only_literals(e: &Expression) -> bool {
     struct References(bool);
     impl Visit for References {
         fn reference(&mut self, _: &ComponentReference) {
@@ -310,7 +310,7 @@ pub(super) fn has_only_literals(e: &Expression) -> bool {
 }
 
 /// The name of a type, for messages.
-pub(super) fn type_name(base: &BaseType) -> String {
+pub fn type_name(base: &BaseType) -> String {
     match base {
         BaseType::Real => "Real".into(),
         BaseType::Integer => "Integer".into(),

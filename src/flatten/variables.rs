@@ -3,11 +3,11 @@
 
 use super::FlatModel;
 use super::errors::{SIZE_MISMATCH, TYPE_MISMATCH};
+use super::expressions::resolve::Local;
 use super::flat_expression::literal;
-use super::instance::{Leaf, MemberState, NodeId, NodeKind};
-use super::instantiation::{ATTRIBUTES, Instantiation, picked};
-use super::modification::Bound;
-use super::resolve::Local;
+use super::instantiate::instance::{Leaf, MemberState, NodeId, NodeKind};
+use super::instantiate::instantiation::{ATTRIBUTES, Instantiation, picked};
+use super::lookup::modification::Bound;
 use super::types::type_name;
 use super::{Attribute, BaseType, Variability, Variable};
 use crate::diag::Diagnostic;
@@ -19,7 +19,7 @@ const DECIDED: [&str; 2] = ["fixed", "stateSelect"];
 
 impl Instantiation<'_> {
     /// Adds the variables of a node and of all below it, in order of declaration.
-    pub(super) fn add_variables(
+    pub fn add_variables(
         &mut self,
         node: NodeId,
         model: &mut FlatModel,

@@ -8,8 +8,8 @@
 
 use super::super::connections::{Connections, Edge, Face};
 use super::super::errors::INVALID_CONNECTION;
-use super::super::instance::{Leaf, MemberState, NodeId, NodeKind};
-use super::super::instantiation::Instantiation;
+use super::super::instantiate::instance::{Leaf, MemberState, NodeId, NodeKind};
+use super::super::instantiate::instantiation::Instantiation;
 use super::super::{BaseType, FlatModel, Variability};
 use super::{plural, scalars_of, size, targets};
 use crate::diag::Diagnostic;
@@ -24,10 +24,10 @@ use std::ops::Range;
 
 /// Which equations and algorithms of the flat model an instance writes itself.
 #[derive(Debug, Clone)]
-pub(in super::super) struct Written {
-    pub(in super::super) node: NodeId,
-    pub(in super::super) equations: Range<usize>,
-    pub(in super::super) algorithms: Range<usize>,
+pub struct Written {
+    pub node: NodeId,
+    pub equations: Range<usize>,
+    pub algorithms: Range<usize>,
 }
 
 /// Local unknowns and equations of one instance of a class.
@@ -92,7 +92,7 @@ impl LocalBalance {
     }
 
     /// What is wrong with the class.
-    pub(super) fn finding(&self) -> String {
+    pub fn finding(&self) -> String {
         let (few, many) = (plural(self.unknowns, "unknown"), plural(self.equations, "equation"));
         format!("`{}` is not locally balanced: it has {few} but {many}", self.class)
     }
@@ -100,7 +100,7 @@ impl LocalBalance {
 
 impl Instantiation<'_> {
     /// The local balance of the model and of its components, as far as it can be told.
-    pub(in super::super) fn local_balances(
+    pub fn local_balances(
         &mut self,
         connections: &Connections,
         model: &FlatModel,

@@ -5,7 +5,7 @@ mod local;
 mod sets;
 
 pub use local::LocalBalance;
-pub(super) use local::Written;
+pub use local::Written;
 
 use super::errors::{UNBALANCED_CLASS, UNBALANCED_MODEL};
 use super::{FlatModel, Variability};
@@ -23,7 +23,7 @@ const MAX_CLASSES: usize = 3;
 
 /// An error if the numbers differ. Where the size of an equation cannot be told from its text, the
 /// model is left to the matching of equations and unknowns.
-pub(super) fn check(model: &FlatModel, classes: &[LocalBalance]) -> Result<(), Diagnostic> {
+pub fn check(model: &FlatModel, classes: &[LocalBalance]) -> Result<(), Diagnostic> {
     let unknowns: usize = model
         .variables
         .values()
@@ -72,7 +72,7 @@ pub(super) fn check(model: &FlatModel, classes: &[LocalBalance]) -> Result<(), D
 /// Warnings about classes that are not balanced by themselves though the model is: their parts
 /// make up for each other. One for each library, as older ones do not know the rule, and about a
 /// part rather than about what holds it.
-pub(super) fn warnings(classes: &[LocalBalance]) -> Vec<Diagnostic> {
+pub fn warnings(classes: &[LocalBalance]) -> Vec<Diagnostic> {
     let mut told = BTreeSet::new();
     let mut found: Vec<&LocalBalance> = unbalanced(classes).collect();
     found.reverse();
@@ -175,7 +175,7 @@ fn reference_dims(reference: &ComponentReference, model: &FlatModel) -> Option<V
 }
 
 /// The name of the variable that a flat reference names, without the last subscripts.
-pub(super) fn path(reference: &ComponentReference) -> String {
+pub fn path(reference: &ComponentReference) -> String {
     let mut path = String::new();
     for (at, part) in reference.parts.iter().enumerate() {
         if at > 0 {

@@ -5,7 +5,7 @@ use indexmap::IndexMap;
 use rustc_hash::FxHashMap;
 
 /// The connected faces, in sets of two or more.
-pub(super) fn of_edges(edges: &[Edge]) -> Vec<Vec<Face>> {
+pub fn of_edges(edges: &[Edge]) -> Vec<Vec<Face>> {
     let mut number: FxHashMap<Face, usize> = FxHashMap::default();
     let mut faces = Vec::new();
     let mut parent: Vec<usize> = Vec::new();

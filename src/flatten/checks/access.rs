@@ -11,7 +11,7 @@ use crate::source::Span;
 use crate::syntax::ast::{Restriction, VariabilityPrefix, Visibility};
 
 /// Checks every name with dots that a class writes.
-pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     for written in names::of(class) {
         let unclear = unqualified(class, &written.name, written.span);
         errors.extend(unclear.or_else(|| path(class, &written)));
@@ -56,7 +56,7 @@ fn unqualified(class: Scope<'_>, name: &Name, span: Span) -> Option<Diagnostic> 
 }
 
 /// The diagnostic for a protected element of a class.
-pub(super) fn protected(name: Ident, class: Scope<'_>, span: Span) -> Diagnostic {
+pub fn protected(name: Ident, class: Scope<'_>, span: Span) -> Diagnostic {
     fault!(PROTECTED_ACCESS, "`{name}` is protected in `{}`", class.name();
         help: "move the declaration before `protected`")
     .at(span)
@@ -105,8 +105,8 @@ fn path(class: Scope<'_>, written: &names::Written) -> Option<Diagnostic> {
 }
 
 /// An element of a class, as names with dots see it.
-pub(super) struct Found {
-    pub(super) visibility: Visibility,
+pub struct Found {
+    pub visibility: Visibility,
     encapsulated: bool,
 }
 
@@ -118,7 +118,7 @@ impl Found {
 }
 
 /// The element of a class, its own or inherited, among those written in its file.
-pub(super) fn element(class: Scope<'_>, name: Ident) -> Option<Found> {
+pub fn element(class: Scope<'_>, name: Ident) -> Option<Found> {
     let declaring = class.library.declaring(class.class, name, true)?;
     own_element(class.of(declaring), name)
 }

@@ -11,7 +11,7 @@ use crate::syntax::ast::{Element, Import, ImportKind, Restriction, Visibility};
 use rustc_hash::FxHashMap;
 
 /// Checks the import clauses of a class.
-pub(super) fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
+pub fn check(class: Scope<'_>, errors: &mut Vec<Diagnostic>) {
     let mut named: FxHashMap<Ident, (Name, Span)> = FxHashMap::default();
     for (_, element) in class.elements() {
         let Element::Import(import) = element else { continue };
@@ -49,13 +49,13 @@ fn named_by(kind: &ImportKind) -> Vec<(Ident, Name)> {
 }
 
 /// Whether an import of a class declares a name.
-pub(super) fn names(class: Scope<'_>, name: Ident) -> bool {
+pub fn names(class: Scope<'_>, name: Ident) -> bool {
     let imports = class.library.class(class.class).imports();
     imports.iter().flat_map(named_by).any(|(own, _)| own == name)
 }
 
 /// The packages from which a class imports everything.
-pub(super) fn unqualified_packages(class: Scope<'_>) -> Vec<Scope<'_>> {
+pub fn unqualified_packages(class: Scope<'_>) -> Vec<Scope<'_>> {
     let imports = class.library.class(class.class).imports();
     let packages = imports.iter().filter_map(|import| match import {
         ImportKind::Unqualified(package) => Some(global(package)),

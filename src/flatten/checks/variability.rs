@@ -25,7 +25,7 @@ const FIXED: &[&str] = &["size", "ndims", "cardinality"];
 
 /// Whether an expression in a class keeps its value during a simulation. Names that the class does
 /// not tell about, and those of the loop variables around, are taken to do so.
-pub(super) fn is_fixed(class: Scope<'_>, loops: &[Ident], expression: &Expression) -> bool {
+pub fn is_fixed(class: Scope<'_>, loops: &[Ident], expression: &Expression) -> bool {
     let mut walk = Walk { class, loops, varies: false };
     walk.expression(expression);
     !walk.varies

@@ -3,10 +3,10 @@
 
 use super::super::equations::is_graph_statement;
 use super::super::errors::{INVALID_CONNECTION, SIZE_MISMATCH};
-use super::super::instance::{MemberState, NodeId};
-use super::super::instantiation::Instantiation;
-use super::super::resolve::Local;
-use super::super::scope::ScopeId;
+use super::super::expressions::resolve::Local;
+use super::super::instantiate::instance::{MemberState, NodeId};
+use super::super::instantiate::instantiation::Instantiation;
+use super::super::lookup::scope::ScopeId;
 use super::ends::{End, Ends};
 use super::sets::Connections;
 use crate::diag::Diagnostic;
@@ -19,22 +19,18 @@ use crate::syntax::ast::{
 use crate::value::Value;
 
 /// A `connect` equation in one instance.
-pub(super) struct Connect {
-    pub(super) left: ComponentReference,
-    pub(super) right: ComponentReference,
-    pub(super) context: ScopeId,
+pub struct Connect {
+    pub left: ComponentReference,
+    pub right: ComponentReference,
+    pub context: ScopeId,
     /// Values of loop variables.
-    pub(super) local: Local,
-    pub(super) span: Span,
+    pub local: Local,
+    pub span: Span,
 }
 
 impl Instantiation<'_> {
     /// All connections below an instance, as sets; errors are added to the list.
-    pub(in super::super) fn connections(
-        &mut self,
-        root: NodeId,
-        errors: &mut Vec<Diagnostic>,
-    ) -> Connections {
+    pub fn connections(&mut self, root: NodeId, errors: &mut Vec<Diagnostic>) -> Connections {
         let mut connections = Connections::default();
         let mut connects = Vec::new();
         self.collect_connections(root, &mut connections, &mut connects, errors);
@@ -234,7 +230,7 @@ impl Instantiation<'_> {
     }
 
     /// The record that an argument of such a statement names; `None` if it does not exist.
-    pub(super) fn overdetermined_argument(
+    pub fn overdetermined_argument(
         &mut self,
         arguments: &Arguments,
         at: usize,

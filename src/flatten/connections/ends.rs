@@ -1,10 +1,10 @@
 //! What a reference in a connection names: connectors, or scalars of connectors.
 
 use super::super::errors::{INVALID_CONNECTION, SIZE_MISMATCH, UNKNOWN_NAME};
-use super::super::instance::{MemberState, NodeId, NodeKind};
-use super::super::instantiation::Instantiation;
-use super::super::resolve::Local;
-use super::super::scope::ScopeId;
+use super::super::expressions::resolve::Local;
+use super::super::instantiate::instance::{MemberState, NodeId, NodeKind};
+use super::super::instantiate::instantiation::Instantiation;
+use super::super::lookup::scope::ScopeId;
 use crate::diag::Diagnostic;
 use crate::fault;
 use crate::source::Span;
@@ -12,7 +12,7 @@ use crate::syntax::ast::{ComponentReference, ReferencePart, Subscript};
 
 /// One connector, or one scalar of a connector that is a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) enum End {
+pub enum End {
     /// A connector with components.
     Composite(NodeId),
     /// A scalar: the variable's node and the place of the element in it, from 0.
@@ -21,18 +21,18 @@ pub(super) enum End {
 
 /// The connectors that a reference names.
 #[derive(Debug, Clone)]
-pub(super) struct Ends {
+pub struct Ends {
     /// Sizes of the dimensions that subscripts leave.
-    pub(super) dims: Vec<usize>,
+    pub dims: Vec<usize>,
     /// One connector for each, the last index fastest.
-    pub(super) ends: Vec<End>,
+    pub ends: Vec<End>,
     /// Whether they are seen from the outside: connectors of the instance itself.
-    pub(super) outside: bool,
+    pub outside: bool,
 }
 
 impl Instantiation<'_> {
     /// The connectors that a reference names; `None` if one of its components does not exist.
-    pub(super) fn ends(
+    pub fn ends(
         &mut self,
         reference: &ComponentReference,
         context: ScopeId,
@@ -158,13 +158,13 @@ impl Instantiation<'_> {
     }
 
     /// Where an end is declared, for messages.
-    pub(super) fn end_path(&self, end: End) -> String {
+    pub fn end_path(&self, end: End) -> String {
         match end {
             End::Composite(node) | End::Scalar(node, _) => self.nodes[node.0].path.clone(),
         }
     }
 
-    pub(super) fn end_span(&self, end: End) -> Span {
+    pub fn end_span(&self, end: End) -> Span {
         match end {
             End::Composite(_) => Span::NONE,
             End::Scalar(node, _) => match &self.nodes[node.0].kind {

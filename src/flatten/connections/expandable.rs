@@ -2,10 +2,10 @@
 //! ones get those of each other; components that nothing connects are left out.
 
 use super::super::errors::INVALID_CONNECTION;
-use super::super::instance::{Declaration, Member, MemberState, NodeId, NodeKind};
-use super::super::instantiation::Instantiation;
-use super::super::modification::Modifier;
-use super::super::scope::ScopeId;
+use super::super::instantiate::instance::{Declaration, Member, MemberState, NodeId, NodeKind};
+use super::super::instantiate::instantiation::Instantiation;
+use super::super::lookup::modification::Modifier;
+use super::super::lookup::scope::ScopeId;
 use super::collect::Connect;
 use super::ends::{End, Ends};
 use super::sets::Connections;
@@ -31,7 +31,7 @@ struct Undeclared {
 
 impl Instantiation<'_> {
     /// Adds to all expandable connectors what connections ask of them.
-    pub(super) fn expand_connectors(&mut self, connects: &[Connect]) -> Result<(), Diagnostic> {
+    pub fn expand_connectors(&mut self, connects: &[Connect]) -> Result<(), Diagnostic> {
         let mut links: Vec<(NodeId, NodeId)> = Vec::new();
         for round in 0..MAX_ROUNDS {
             let mut wanted: IndexMap<(NodeId, Ident), Declaration> = IndexMap::new();
@@ -59,7 +59,7 @@ impl Instantiation<'_> {
         Ok(())
     }
 
-    pub(in super::super) fn is_expandable(&self, node: NodeId) -> bool {
+    pub fn is_expandable(&self, node: NodeId) -> bool {
         self.scope_of(node).is_some_and(|scope| {
             scope != ScopeId::TOP
                 && self.text(scope).restriction() == Restriction::ExpandableConnector
@@ -226,7 +226,7 @@ impl Instantiation<'_> {
     }
 
     /// Leaves out the components of expandable connectors that no connection names.
-    pub(super) fn drop_unconnected(&mut self, node: NodeId, connections: &mut Connections) {
+    pub fn drop_unconnected(&mut self, node: NodeId, connections: &mut Connections) {
         let expandable = self.is_expandable(node);
         let Ok(members) = self.members(node) else { return };
         for (name, state) in members {
@@ -262,7 +262,7 @@ impl Instantiation<'_> {
         }
     }
 
-    pub(in super::super) fn is_inside_expandable(&self, leaf: NodeId) -> bool {
+    pub fn is_inside_expandable(&self, leaf: NodeId) -> bool {
         let mut node = self.nodes[leaf.0].parent;
         while let Some(id) = node {
             if self.is_expandable(id) {

@@ -3,12 +3,12 @@
 
 use super::super::FlatModel;
 use super::super::errors::INVALID_CONNECTION;
+use super::super::expressions::resolve::Local;
 use super::super::flat_expression::flat_reference;
-use super::super::instance::{NodeId, NodeKind};
-use super::super::instantiation::Instantiation;
-use super::super::lookup::Type;
-use super::super::resolve::Local;
-use super::super::scope::ScopeId;
+use super::super::instantiate::instance::{NodeId, NodeKind};
+use super::super::instantiate::instantiation::Instantiation;
+use super::super::lookup::names::Type;
+use super::super::lookup::scope::ScopeId;
 use super::ends::End;
 use super::sets::Connections;
 use crate::diag::Diagnostic;
@@ -35,7 +35,7 @@ struct Edge {
 
 /// The virtual connection graph.
 #[derive(Debug, Default)]
-pub(in super::super) struct Graph {
+pub struct Graph {
     nodes: IndexSet<NodeId>,
     branches: Vec<(NodeId, NodeId)>,
     edges: Vec<Edge>,
@@ -51,43 +51,37 @@ pub(in super::super) struct Graph {
 
 impl Graph {
     /// The redundant records that take part.
-    pub(in super::super) fn nodes(&self) -> impl Iterator<Item = NodeId> {
+    pub fn nodes(&self) -> impl Iterator<Item = NodeId> {
         self.nodes.iter().copied()
     }
 
-    pub(super) fn branch(&mut self, one: NodeId, other: NodeId) {
+    pub fn branch(&mut self, one: NodeId, other: NodeId) {
         self.nodes.extend([one, other]);
         self.branches.push((one, other));
     }
 
-    pub(super) fn root(&mut self, node: NodeId) {
+    pub fn root(&mut self, node: NodeId) {
         self.nodes.insert(node);
         self.definite.push(node);
     }
 
-    pub(super) fn potential_root(&mut self, node: NodeId, priority: i64) {
+    pub fn potential_root(&mut self, node: NodeId, priority: i64) {
         self.nodes.insert(node);
         self.potential.entry(node).or_insert(priority);
     }
 
-    pub(super) fn connect(
-        &mut self,
-        one: NodeId,
-        other: NodeId,
-        outside: (bool, bool),
-        span: Span,
-    ) {
+    pub fn connect(&mut self, one: NodeId, other: NodeId, outside: (bool, bool), span: Span) {
         self.nodes.extend([one, other]);
         self.edges.push(Edge { nodes: (one, other), outside, span });
     }
 
     /// Whether a node was chosen as the root of its tree.
-    pub(super) fn is_root(&self, node: NodeId) -> bool {
+    pub fn is_root(&self, node: NodeId) -> bool {
         self.roots.contains(&node)
     }
 
     /// Whether a node is nearer to the root than the node at the other end of its branch.
-    pub(super) fn is_rooted(&self, node: NodeId) -> bool {
+    pub fn is_rooted(&self, node: NodeId) -> bool {
         let other = self.branches.iter().find_map(|(a, b)| match node {
             node if node == *a => Some(*b),
             node if node == *b => Some(*a),
@@ -190,7 +184,7 @@ impl Sets {
 
 impl Instantiation<'_> {
     /// Chooses the spanning tree and joins the records that it connects.
-    pub(super) fn build_graph(&mut self, connections: &mut Connections) -> Result<(), Diagnostic> {
+    pub fn build_graph(&mut self, connections: &mut Connections) -> Result<(), Diagnostic> {
         let kept = connections.graph.span();
         for edge in kept {
             let (one, other) = edge.nodes;
@@ -208,7 +202,7 @@ impl Instantiation<'_> {
     }
 
     /// Whether the class of a component declares itself redundant.
-    pub(super) fn is_overdetermined(&mut self, node: NodeId) -> Result<bool, Diagnostic> {
+    pub fn is_overdetermined(&mut self, node: NodeId) -> Result<bool, Diagnostic> {
         let Some(class) = self.redundant_class(node) else { return Ok(false) };
         Ok(self.find_class(class, Ident::new(EQUALITY_CONSTRAINT))?.is_some())
     }
@@ -232,7 +226,7 @@ impl Instantiation<'_> {
     }
 
     /// `0 = equalityConstraint(a, b)` for every connection outside the tree.
-    pub(super) fn add_constraint_equations(
+    pub fn add_constraint_equations(
         &mut self,
         connections: &Connections,
         model: &mut FlatModel,
@@ -281,7 +275,7 @@ impl Instantiation<'_> {
 }
 
 /// A call with positional arguments.
-pub(super) fn call(name: &Name, positional: Vec<Expression>, span: Span) -> Expression {
+pub fn call(name: &Name, positional: Vec<Expression>, span: Span) -> Expression {
     let function = ComponentReference::from_name(name, span);
     let arguments = Box::new(Arguments { positional, ..Arguments::default() });
     Expression::new(ExpressionKind::Call { function, arguments }, span)

@@ -15,5 +15,5 @@ mod operators;
 mod sets;
 mod stream;
 
-pub(super) use sets::{Connections, Edge, Face};
-pub(super) use stream::arranged;
+pub use sets::{Connections, Edge, Face};
+pub use stream::arranged;

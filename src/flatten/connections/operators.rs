@@ -2,9 +2,9 @@
 //! `cardinality` (MLS §3.7.4.3), `Connections.isRoot` and `Connections.rooted` (MLS §9.4.1).
 
 use super::super::errors::INVALID_CONNECTION;
-use super::super::instantiation::Instantiation;
-use super::super::resolve::Local;
-use super::super::scope::ScopeId;
+use super::super::expressions::resolve::Local;
+use super::super::instantiate::instantiation::Instantiation;
+use super::super::lookup::scope::ScopeId;
 use super::sets::Connections;
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -14,7 +14,7 @@ use std::rc::Rc;
 
 impl Instantiation<'_> {
     /// The value of such an operator; `None` for any other call.
-    pub(in super::super) fn connection_operator(
+    pub fn connection_operator(
         &mut self,
         span: Span,
         function: &ComponentReference,

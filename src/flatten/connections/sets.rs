@@ -2,8 +2,8 @@
 
 use super::super::errors::INVALID_CONNECTION;
 use super::super::flat_expression::flat_reference;
-use super::super::instance::{MemberState, NodeId, NodeKind};
-use super::super::instantiation::{Instantiation, indices_of};
+use super::super::instantiate::instance::{MemberState, NodeId, NodeKind};
+use super::super::instantiate::instantiation::{Instantiation, indices_of};
 use super::super::{FlatModel, Variability};
 use super::ends::End;
 use super::graph::Graph;
@@ -19,26 +19,26 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 /// A scalar of a connector, seen from one side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(in super::super) struct Face {
+pub struct Face {
     /// The node of the variable.
-    pub(in super::super) leaf: NodeId,
+    pub leaf: NodeId,
     /// The element of the variable, from 0.
-    pub(in super::super) element: usize,
-    pub(in super::super) outside: bool,
+    pub element: usize,
+    pub outside: bool,
 }
 
 /// Two scalars that a connection joins.
 #[derive(Debug, Clone)]
-pub(in super::super) struct Edge {
+pub struct Edge {
     /// The instance whose class writes the connection.
-    pub(in super::super) context: NodeId,
-    pub(in super::super) faces: [Face; 2],
-    pub(in super::super) span: Span,
+    pub context: NodeId,
+    pub faces: [Face; 2],
+    pub span: Span,
 }
 
 /// All connection sets of a model.
 #[derive(Debug, Default)]
-pub(in super::super) struct Connections {
+pub struct Connections {
     faces: Vec<Face>,
     number: FxHashMap<Face, usize>,
     /// The set of each face, as a union-find forest.
@@ -47,13 +47,13 @@ pub(in super::super) struct Connections {
     spans: Vec<Span>,
     /// How often each connector stands in a connection.
     counts: FxHashMap<End, i64>,
-    pub(in super::super) graph: Graph,
+    pub graph: Graph,
     /// The instance whose connections are being made.
-    pub(super) context: Option<NodeId>,
+    pub context: Option<NodeId>,
     /// What was joined, for the balance of each class.
-    pub(in super::super) edges: Vec<Edge>,
+    pub edges: Vec<Edge>,
     /// Variables of expandable connectors that are left out.
-    pub(super) dropped: FxHashSet<NodeId>,
+    pub dropped: FxHashSet<NodeId>,
     /// Members of each set by its representative, made when all connections are known.
     members: Vec<Vec<usize>>,
 }
@@ -95,17 +95,17 @@ impl Connections {
         at
     }
 
-    pub(super) fn count(&mut self, end: End) {
+    pub fn count(&mut self, end: End) {
         *self.counts.entry(end).or_default() += 1;
     }
 
     /// How many connections name a connector (`cardinality`, MLS §3.7.4.3).
-    pub(super) fn cardinality(&self, end: End) -> i64 {
+    pub fn cardinality(&self, end: End) -> i64 {
         self.counts.get(&end).copied().unwrap_or(0)
     }
 
     /// All faces that are connected with a scalar, on either side.
-    pub(super) fn around(&self, leaf: NodeId, element: usize) -> Vec<Face> {
+    pub fn around(&self, leaf: NodeId, element: usize) -> Vec<Face> {
         [false, true]
             .into_iter()
             .flat_map(|outside| self.set_of(Face { leaf, element, outside }))
@@ -113,7 +113,7 @@ impl Connections {
     }
 
     /// Lists the members of the sets.
-    pub(super) fn close(&mut self) {
+    pub fn close(&mut self) {
         for at in 0..self.parent.len() {
             self.parent[at] = self.find(at);
         }
@@ -124,7 +124,7 @@ impl Connections {
     }
 
     /// The set of a face; the face alone if it is not connected.
-    pub(super) fn set_of(&self, face: Face) -> Vec<Face> {
+    pub fn set_of(&self, face: Face) -> Vec<Face> {
         match self.number.get(&face) {
             Some(at) => self.members[self.parent[*at]].iter().map(|at| self.faces[*at]).collect(),
             None => vec![face],
@@ -134,7 +134,7 @@ impl Connections {
 
 impl Instantiation<'_> {
     /// Joins the scalars of two connectors, matched by name (MLS §9.3).
-    pub(super) fn pair(
+    pub fn pair(
         &mut self,
         one: End,
         other: End,
@@ -169,7 +169,7 @@ impl Instantiation<'_> {
         )
     }
 
-    pub(super) fn pair_members(
+    pub fn pair_members(
         &mut self,
         one: NodeId,
         other: NodeId,
@@ -277,7 +277,7 @@ impl Instantiation<'_> {
         Ok(())
     }
 
-    pub(in super::super) fn connection_of(&self, leaf: NodeId) -> Option<ConnectionPrefix> {
+    pub fn connection_of(&self, leaf: NodeId) -> Option<ConnectionPrefix> {
         match &self.nodes[leaf.0].kind {
             NodeKind::Variable(leaf) => leaf.connection,
             NodeKind::Composite(_) => None,
@@ -299,7 +299,7 @@ impl Instantiation<'_> {
     }
 
     /// One scalar of a variable as an expression of flat names.
-    pub(super) fn scalar(&self, leaf: NodeId, element: usize, span: Span) -> Expression {
+    pub fn scalar(&self, leaf: NodeId, element: usize, span: Span) -> Expression {
         let mut reference = flat_reference(&self.nodes[leaf.0].path, span);
         if let NodeKind::Variable(variable) = &self.nodes[leaf.0].kind {
             let dims = &self.variables[variable.variable].0.dims;
@@ -315,7 +315,7 @@ impl Instantiation<'_> {
     }
 
     /// Adds the equations of all sets, and those of flows that are not connected.
-    pub(in super::super) fn add_connection_equations(
+    pub fn add_connection_equations(
         &mut self,
         connections: &Connections,
         model: &mut FlatModel,

@@ -2,8 +2,8 @@
 
 use super::super::FlatModel;
 use super::super::errors::INVALID_CONNECTION;
-use super::super::instance::{MemberState, NodeId, NodeKind};
-use super::super::instantiation::Instantiation;
+use super::super::instantiate::instance::{MemberState, NodeId, NodeKind};
+use super::super::instantiate::instantiation::Instantiation;
 use super::ends::{End, Ends};
 use super::graph::call;
 use super::sets::{Connections, Face};
@@ -25,7 +25,7 @@ const MAX_LEVELS: usize = 50;
 
 impl Instantiation<'_> {
     /// The values of `inStream` or `actualStream` of what a reference names, as one expression.
-    pub(super) fn stream_value(
+    pub fn stream_value(
         &mut self,
         ends: &Ends,
         actual: bool,
@@ -197,7 +197,7 @@ impl Instantiation<'_> {
 
     /// The equations of the connectors of an instance: what leaves through them is the mixture of
     /// all others (MLS §15.2).
-    pub(super) fn add_stream_equations(
+    pub fn add_stream_equations(
         &mut self,
         faces: &[Face],
         connections: &Connections,
@@ -229,11 +229,7 @@ fn sum(so_far: Option<Expression>, term: Expression) -> Expression {
 }
 
 /// Values as an array of these sizes; a single one without dimensions.
-pub(in super::super) fn arranged(
-    mut values: Vec<Expression>,
-    dims: &[usize],
-    span: Span,
-) -> Expression {
+pub fn arranged(mut values: Vec<Expression>, dims: &[usize], span: Span) -> Expression {
     let Some((size, inner)) = dims.split_first() else {
         return match values.len() {
             1 => values.remove(0),

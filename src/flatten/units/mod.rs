@@ -7,7 +7,7 @@ mod expression;
 
 use super::balance::path;
 use super::errors::INCONSISTENT_UNITS;
-use super::instantiation::Instantiation;
+use super::instantiate::instantiation::Instantiation;
 use super::{FlatModel, Variable};
 use crate::diag::Diagnostic;
 use crate::fault;
@@ -48,7 +48,7 @@ fn check(model: &FlatModel) -> Vec<Diagnostic> {
 
 impl Instantiation<'_> {
     /// What does not fit; of an old library, only the first finding.
-    pub(super) fn unit_warnings(&self, model: &FlatModel) -> Vec<Diagnostic> {
+    pub fn unit_warnings(&self, model: &FlatModel) -> Vec<Diagnostic> {
         let found = check(model);
         if found.is_empty() {
             return found;

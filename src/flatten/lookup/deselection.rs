@@ -1,13 +1,13 @@
 //! Selective model extension (MLS §7.4): components and connections that an extends clause leaves
 //! out of its base class, `extends B(break f, break connect(a, b))`.
 
-use super::errors::{TYPE_MISMATCH, UNKNOWN_ELEMENT};
-use super::instance::{Declaration, Shape};
-use super::instantiation::Instantiation;
-use super::lookup::{Predefined, Type};
+use super::names::{Predefined, Type};
 use super::scope::{ScopeId, Text};
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
+use crate::flatten::errors::{TYPE_MISMATCH, UNKNOWN_ELEMENT};
+use crate::flatten::instantiate::instance::{Declaration, Shape};
+use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::name::Ident;
 use crate::source::Spanned;
 use crate::syntax::ast::{
@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 impl Instantiation<'_> {
     /// Whether a class that extends the one in which a connection is written leaves it out.
-    pub(super) fn is_deselected(
+    pub fn is_deselected(
         &self,
         context: ScopeId,
         left: &ComponentReference,
@@ -37,7 +37,7 @@ impl Instantiation<'_> {
     }
 
     /// Each deselection of an extends clause must match something of the base class.
-    pub(super) fn check_deselected(
+    pub fn check_deselected(
         &mut self,
         derived: &Text,
         base: ScopeId,

@@ -2,9 +2,9 @@
 //! modifier, to variables of the model (MLS §12.4.1): the default with the call's own arguments in
 //! place of the inputs is written into the call.
 
-use super::flat_expression::subscripted;
-use super::instantiation::Instantiation;
 use crate::eval::Function;
+use crate::flatten::flat_expression::subscripted;
+use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{Arguments, Expression, ExpressionKind, NamedArgument};
@@ -12,7 +12,7 @@ use crate::syntax::visit::{Rewrite, Visit, rewrite_expression, walk_expression};
 
 impl Instantiation<'_> {
     /// The arguments of a call with such defaults added.
-    pub(super) fn with_defaults(
+    pub fn with_defaults(
         &self,
         function: &Name,
         mut arguments: Arguments,

@@ -1,9 +1,9 @@
 //! The instance tree (MLS §5.6.1): components with their modifiers merged. Data only.
 
-use super::lookup::Predefined;
-use super::modification::Modifier;
-use super::scope::ScopeId;
-use super::{BaseType, Variability};
+use crate::flatten::lookup::modification::Modifier;
+use crate::flatten::lookup::names::Predefined;
+use crate::flatten::lookup::scope::ScopeId;
+use crate::flatten::{BaseType, Variability};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -16,20 +16,20 @@ use std::sync::Arc;
 
 /// A node of the tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) struct NodeId(pub(super) usize);
+pub struct NodeId(pub usize);
 
 /// An instance: of a class with components, or of a predefined type.
 #[derive(Debug, Clone)]
-pub(super) struct Node {
+pub struct Node {
     /// The path from the model, such as `pack.cell[2]`; empty for the model itself.
-    pub(super) path: String,
+    pub path: String,
     /// The instance that holds it.
-    pub(super) parent: Option<NodeId>,
-    pub(super) kind: NodeKind,
+    pub parent: Option<NodeId>,
+    pub kind: NodeKind,
 }
 
 #[derive(Debug, Clone)]
-pub(super) enum NodeKind {
+pub enum NodeKind {
     /// Components, some of them not instantiated yet.
     Composite(Composite),
     /// A variable; its place in the flat model.
@@ -38,38 +38,38 @@ pub(super) enum NodeKind {
 
 /// An instance of a class with components.
 #[derive(Debug, Clone)]
-pub(super) struct Composite {
-    pub(super) scope: ScopeId,
+pub struct Composite {
+    pub scope: ScopeId,
     /// The class that was asked for, without the modifiers of this instance.
-    pub(super) class: ScopeId,
+    pub class: ScopeId,
     /// Its components; `None` as long as nobody asked for one.
-    pub(super) members: Option<IndexMap<Ident, Member>>,
-    pub(super) inherited: Inherited,
+    pub members: Option<IndexMap<Ident, Member>>,
+    pub inherited: Inherited,
     /// Whether its class is a connector, which may be known from a short class only.
-    pub(super) connector: bool,
+    pub connector: bool,
 }
 
 /// What components inherit from the one that holds them.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Inherited {
-    pub(super) variability: Option<Variability>,
-    pub(super) causality: Option<CausalityPrefix>,
-    pub(super) connection: Option<ConnectionPrefix>,
-    pub(super) is_final: bool,
-    pub(super) protected: bool,
-    pub(super) depth: usize,
+pub struct Inherited {
+    pub variability: Option<Variability>,
+    pub causality: Option<CausalityPrefix>,
+    pub connection: Option<ConnectionPrefix>,
+    pub is_final: bool,
+    pub protected: bool,
+    pub depth: usize,
 }
 
 /// A component of a class.
 #[derive(Debug, Clone)]
-pub(super) struct Member {
-    pub(super) declaration: Arc<Declaration>,
-    pub(super) state: MemberState,
+pub struct Member {
+    pub declaration: Arc<Declaration>,
+    pub state: MemberState,
 }
 
 /// How far the instantiation of a component is.
 #[derive(Debug, Clone)]
-pub(super) enum MemberState {
+pub enum MemberState {
     Pending,
     Busy,
     /// A component without dimensions, or whose type is predefined.
@@ -90,7 +90,7 @@ pub(super) enum MemberState {
 
 impl MemberState {
     /// What belongs to the instance that holds the component.
-    pub(super) fn own(self) -> MemberState {
+    pub fn own(self) -> MemberState {
         match self {
             MemberState::Outer(_) => MemberState::Absent,
             MemberState::Both { inner, .. } => *inner,
@@ -99,7 +99,7 @@ impl MemberState {
     }
 
     /// What the name of the component means in its class.
-    pub(super) fn seen(self) -> MemberState {
+    pub fn seen(self) -> MemberState {
         match self {
             MemberState::Outer(state) | MemberState::Both { outer: state, .. } => *state,
             state => state,
@@ -109,27 +109,27 @@ impl MemberState {
 
 /// The declaration of a component with its modifiers merged.
 #[derive(Debug, Clone)]
-pub(super) struct Declaration {
-    pub(super) name: Ident,
-    pub(super) type_specifier: TypeSpecifier,
+pub struct Declaration {
+    pub name: Ident,
+    pub type_specifier: TypeSpecifier,
     /// Where its type is looked up.
-    pub(super) scope: ScopeId,
+    pub scope: ScopeId,
     /// Dimensions of the declaration, those of its type not included, each with its scope.
-    pub(super) dims: Vec<(Subscript, ScopeId)>,
-    pub(super) modifier: Modifier,
-    pub(super) condition: Option<(Expression, ScopeId)>,
-    pub(super) prefixes: ElementPrefixes,
-    pub(super) type_prefixes: TypePrefixes,
-    pub(super) is_final: bool,
-    pub(super) protected: bool,
-    pub(super) evaluate: bool,
-    pub(super) description: Option<Arc<str>>,
-    pub(super) span: Span,
+    pub dims: Vec<(Subscript, ScopeId)>,
+    pub modifier: Modifier,
+    pub condition: Option<(Expression, ScopeId)>,
+    pub prefixes: ElementPrefixes,
+    pub type_prefixes: TypePrefixes,
+    pub is_final: bool,
+    pub protected: bool,
+    pub evaluate: bool,
+    pub description: Option<Arc<str>>,
+    pub span: Span,
 }
 
 /// What a component is made of.
 #[derive(Debug, Clone)]
-pub(super) enum Shape {
+pub enum Shape {
     Predefined(Predefined),
     Enumeration(Arc<EnumerationDefinition>),
     Class(ScopeId),
@@ -141,24 +141,24 @@ pub(super) enum Shape {
 
 /// A variable of the tree.
 #[derive(Debug, Clone)]
-pub(super) struct Leaf {
+pub struct Leaf {
     /// Its place in the list of variables.
-    pub(super) variable: usize,
+    pub variable: usize,
     /// Its binding and attributes as written, resolved when the tree is whole.
-    pub(super) modifier: Modifier,
+    pub modifier: Modifier,
     /// `flow` or `stream`.
-    pub(super) connection: Option<ConnectionPrefix>,
+    pub connection: Option<ConnectionPrefix>,
     /// `input` or `output`, by itself or from what holds it.
-    pub(super) causality: Option<CausalityPrefix>,
+    pub causality: Option<CausalityPrefix>,
     /// Whether its type is a connector.
-    pub(super) connector: bool,
+    pub connector: bool,
     /// The class of its type, if that is not predefined.
-    pub(super) class: Option<ScopeId>,
+    pub class: Option<ScopeId>,
 }
 
 impl Shape {
     /// The predefined type of a variable of this shape; `None` for a class.
-    pub(super) fn base(&self) -> Option<BaseType> {
+    pub fn base(&self) -> Option<BaseType> {
         Some(match self {
             Shape::Predefined(Predefined::Real) => BaseType::Real,
             Shape::Predefined(Predefined::Integer) => BaseType::Integer,

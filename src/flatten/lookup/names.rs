@@ -1,14 +1,14 @@
 //! Looking up names of classes: simple (MLS §5.3.1), composite (§5.3.2), global (§5.3.3) and
 //! imported ones (§5.3.4, §13.2).
 
-use super::errors::{FINAL_OVERRIDE, UNKNOWN_CLASS};
-use super::instantiation::Instantiation;
-use super::library::ClassId;
 use super::modification::{Modifier, Redeclaration, Replacement};
 use super::scope::{Nested, ScopeId, Text};
 use crate::diag::{Diagnostic, suggest};
 use crate::eval;
 use crate::fault;
+use crate::flatten::errors::{FINAL_OVERRIDE, UNKNOWN_CLASS};
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::library::ClassId;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{ClassSpecifier, Constraint, ImportKind, TypeSpecifier};
@@ -17,7 +17,7 @@ use std::rc::Rc;
 
 /// What the name of a type means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Type {
+pub enum Type {
     /// A class in its surroundings.
     Class(ScopeId),
     /// A predefined type (MLS §4.9).
@@ -26,7 +26,7 @@ pub(super) enum Type {
 
 /// The predefined types.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Predefined {
+pub enum Predefined {
     Real,
     Integer,
     Boolean,
@@ -40,7 +40,7 @@ pub(super) enum Predefined {
 }
 
 impl Predefined {
-    pub(super) fn named(name: Ident) -> Option<Predefined> {
+    pub fn named(name: Ident) -> Option<Predefined> {
         match name.as_str() {
             "Real" => Some(Predefined::Real),
             "Integer" => Some(Predefined::Integer),
@@ -54,7 +54,7 @@ impl Predefined {
     }
 
     /// Whether no class can have its name (MLS §4.9).
-    pub(super) fn is_reserved(self) -> bool {
+    pub fn is_reserved(self) -> bool {
         use Predefined::{Boolean, Integer, Real, String};
         matches!(self, Real | Integer | Boolean | String)
     }
@@ -62,7 +62,7 @@ impl Predefined {
 
 impl Instantiation<'_> {
     /// What a type specifier means in a scope; an error with suggestions if nothing.
-    pub(super) fn lookup_type(
+    pub fn lookup_type(
         &mut self,
         scope: ScopeId,
         specifier: &TypeSpecifier,
@@ -74,11 +74,7 @@ impl Instantiation<'_> {
     }
 
     /// What a name means as a class in a scope.
-    pub(super) fn lookup(
-        &mut self,
-        scope: ScopeId,
-        name: &Name,
-    ) -> Result<Option<Type>, Diagnostic> {
+    pub fn lookup(&mut self, scope: ScopeId, name: &Name) -> Result<Option<Type>, Diagnostic> {
         let Some((first, rest)) = name.parts.split_first() else { return Ok(None) };
         let predefined = Predefined::named(*first).filter(|_| rest.is_empty());
         if let Some(reserved) = predefined.filter(|predefined| predefined.is_reserved()) {
@@ -95,7 +91,7 @@ impl Instantiation<'_> {
     }
 
     /// The class of a path of names inside a class.
-    pub(super) fn lookup_inside(
+    pub fn lookup_inside(
         &mut self,
         mut found: Option<Type>,
         path: &[Ident],
@@ -111,7 +107,7 @@ impl Instantiation<'_> {
     }
 
     /// A simple name: declared, inherited or imported by the class or by one that encloses it.
-    pub(super) fn lookup_simple(
+    pub fn lookup_simple(
         &mut self,
         scope: ScopeId,
         name: Ident,
@@ -169,7 +165,7 @@ impl Instantiation<'_> {
     }
 
     /// A class that another declares or inherits, with what replaces it.
-    pub(super) fn find_class(
+    pub fn find_class(
         &mut self,
         scope: ScopeId,
         name: Ident,
@@ -288,7 +284,7 @@ impl Instantiation<'_> {
             }
             Replacement::Component(clause) => {
                 return Err(fault!(
-                    super::errors::TYPE_MISMATCH,
+                    crate::flatten::errors::TYPE_MISMATCH,
                     "class `{}` is redeclared as a component",
                     original.text.name
                 )
@@ -316,7 +312,7 @@ impl Instantiation<'_> {
     }
 
     /// The full names that imports of a class give to a name, the named imports first.
-    pub(super) fn imported_names(&self, scope: ScopeId, name: Ident) -> Vec<Name> {
+    pub fn imported_names(&self, scope: ScopeId, name: Ident) -> Vec<Name> {
         let Some(class) = self.scope(scope).text.as_ref().and_then(|text| text.id) else {
             return Vec::new();
         };
@@ -335,7 +331,7 @@ impl Instantiation<'_> {
     }
 
     /// A class at the top level.
-    pub(super) fn root(&mut self, name: Ident) -> Result<Option<Type>, Diagnostic> {
+    pub fn root(&mut self, name: Ident) -> Result<Option<Type>, Diagnostic> {
         if let Some(known) = self.roots.get(&name) {
             return self.instance(&known.clone()).map(Some);
         }
@@ -354,23 +350,18 @@ impl Instantiation<'_> {
     }
 
     /// The class of a full name, without what modifies it anywhere.
-    pub(super) fn class_named(&mut self, name: &Name) -> Result<Option<Type>, Diagnostic> {
+    pub fn class_named(&mut self, name: &Name) -> Result<Option<Type>, Diagnostic> {
         self.lookup(ScopeId::TOP, &Name { global: true, ..name.clone() })
     }
 
     /// The diagnostic for a class that is not there.
-    pub(super) fn unknown_class(&mut self, scope: ScopeId, name: &Name, span: Span) -> Diagnostic {
+    pub fn unknown_class(&mut self, scope: ScopeId, name: &Name, span: Span) -> Diagnostic {
         let suggestion = self.suggestion(scope, name);
         fault!(UNKNOWN_CLASS, "there is no class `{name}`").help_if(suggestion).at(span)
     }
 
     /// The diagnostic for a function that is not there.
-    pub(super) fn unknown_function(
-        &mut self,
-        scope: ScopeId,
-        name: &Name,
-        span: Span,
-    ) -> Diagnostic {
+    pub fn unknown_function(&mut self, scope: ScopeId, name: &Name, span: Span) -> Diagnostic {
         let builtin = || suggest::did_you_mean(&name.to_string(), eval::intrinsic_names());
         let suggestion = self.suggestion(scope, name).or_else(builtin);
         fault!(UNKNOWN_CLASS, "there is no function `{name}`").help_if(suggestion).at(span)

@@ -1,11 +1,11 @@
 //! Merging modifications (MLS §7.2) and redeclarations (MLS §7.3): outer modifiers override inner
 //! ones, element by element.
 
-use super::errors::{DUPLICATE_ELEMENT, FINAL_OVERRIDE};
-use super::library::ClassId;
 use super::scope::ScopeId;
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::errors::{DUPLICATE_ELEMENT, FINAL_OVERRIDE};
+use crate::flatten::library::ClassId;
 use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -18,35 +18,35 @@ use std::sync::Arc;
 
 /// All that modifies one element, merged.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Modifier {
+pub struct Modifier {
     /// The value behind `=`, with the scope that it was written in.
-    pub(super) binding: Option<Bound>,
+    pub binding: Option<Bound>,
     /// Modifiers of the element's own elements or attributes.
-    pub(super) elements: IndexMap<Ident, Modifier>,
+    pub elements: IndexMap<Ident, Modifier>,
     /// Where the name of the element is written; unknown if several modifiers were merged.
-    pub(super) span: Option<Span>,
+    pub span: Option<Span>,
     /// Whether a `final` forbids outer modifiers.
-    pub(super) is_final: bool,
+    pub is_final: bool,
     /// What stands in the place of the element.
-    pub(super) redeclaration: Option<Redeclaration>,
+    pub redeclaration: Option<Redeclaration>,
 }
 
 /// What an element is redeclared as.
 #[derive(Debug, Clone)]
-pub(super) struct Redeclaration {
-    pub(super) replacement: Replacement,
+pub struct Redeclaration {
+    pub replacement: Replacement,
     /// The scope that it was written in.
-    pub(super) context: ScopeId,
+    pub context: ScopeId,
     /// The inner redeclaration that this one stands over, which a class extends may extend.
-    pub(super) over: Option<Box<Redeclaration>>,
+    pub over: Option<Box<Redeclaration>>,
     /// What modifies the element besides the modifiers of this redeclaration and of those that it
     /// stands over.
-    pub(super) plain: Box<Modifier>,
+    pub plain: Box<Modifier>,
 }
 
 /// The text of a redeclaration.
 #[derive(Debug, Clone)]
-pub(super) enum Replacement {
+pub enum Replacement {
     /// A short class in a modification.
     Class(Arc<ClassElement>),
     /// A class among the elements of a class.
@@ -57,20 +57,20 @@ pub(super) enum Replacement {
 
 /// A value with the scope that it was written in.
 #[derive(Debug, Clone)]
-pub(super) struct Bound {
+pub struct Bound {
     /// The value; `None` for `= break`, which removes an inner one (MLS §7.2.7).
-    pub(super) value: Option<Expression>,
-    pub(super) context: ScopeId,
+    pub value: Option<Expression>,
+    pub context: ScopeId,
     /// `each`: holds for every element of an array.
-    pub(super) each: bool,
+    pub each: bool,
     /// For modifiers of arrays of components: the element of the value that is meant, one index a
     /// dimension, from 1.
-    pub(super) indices: Vec<usize>,
+    pub indices: Vec<usize>,
 }
 
 impl Modifier {
     /// The modifier that a declaration's or an argument's modification writes.
-    pub(super) fn new(
+    pub fn new(
         modification: Option<&Modification>,
         each: bool,
         context: ScopeId,
@@ -88,10 +88,7 @@ impl Modifier {
     }
 
     /// The modifier that stands in parentheses.
-    pub(super) fn of_arguments(
-        arguments: &[Argument],
-        context: ScopeId,
-    ) -> Result<Modifier, Diagnostic> {
+    pub fn of_arguments(arguments: &[Argument], context: ScopeId) -> Result<Modifier, Diagnostic> {
         Modifier::of_each(arguments, false, context)
     }
 
@@ -167,7 +164,7 @@ impl Modifier {
     }
 
     /// Adds the redeclaration of a component by an element of a class.
-    pub(super) fn redeclare_component(
+    pub fn redeclare_component(
         &mut self,
         clause: &ComponentClause,
         component: &ComponentDeclaration,
@@ -183,14 +180,14 @@ impl Modifier {
     }
 
     /// Adds a redeclaration of a class.
-    pub(super) fn redeclare(&mut self, name: Ident, redeclaration: Redeclaration, span: Span) {
+    pub fn redeclare(&mut self, name: Ident, redeclaration: Redeclaration, span: Span) {
         let entry = self.elements.entry(name).or_default();
         entry.redeclaration = Some(redeclaration);
         entry.span = Some(span);
     }
 
     /// Whether both are written alike, wherever they stand.
-    pub(super) fn is_same(&self, other: &Modifier) -> bool {
+    pub fn is_same(&self, other: &Modifier) -> bool {
         let value = |one: &Modifier| {
             one.binding.as_ref().map(|bound| bound.value.as_ref().map(print::expression))
         };
@@ -212,7 +209,7 @@ impl Modifier {
     }
 
     /// Whether it changes nothing.
-    pub(super) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.binding.is_none() && self.elements.is_empty() && self.redeclaration.is_none()
     }
 
@@ -228,7 +225,7 @@ impl Modifier {
     }
 
     /// This modifier with an outer one over it; `name` is the element's, for messages.
-    pub(super) fn overridden_by(
+    pub fn overridden_by(
         mut self,
         mut outer: Modifier,
         name: Ident,
@@ -265,7 +262,7 @@ impl Modifier {
 
     /// The modifier of one element of an array of components: values written without `each` are
     /// arrays, and the element is picked from them.
-    pub(super) fn at_element(&self, indices: &[usize]) -> Modifier {
+    pub fn at_element(&self, indices: &[usize]) -> Modifier {
         let picked = |bound: &Bound| {
             let mut bound = bound.clone();
             if !bound.each {
@@ -289,7 +286,7 @@ impl Modifier {
 
 impl Redeclaration {
     /// A redeclaration of an element that nothing else modifies.
-    pub(super) fn new(replacement: Replacement, context: ScopeId) -> Redeclaration {
+    pub fn new(replacement: Replacement, context: ScopeId) -> Redeclaration {
         Redeclaration { replacement, context, over: None, plain: Box::default() }
     }
 

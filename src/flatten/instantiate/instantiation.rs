@@ -1,28 +1,28 @@
 //! Builds the instance tree (MLS §5.6.1), component by component as they are needed: a parameter
 //! that gives a size may be declared behind the array that it sizes.
 
-use super::balance::Written;
-use super::connections::Connections;
-use super::constants::Read;
-use super::declarations::Expanded;
-use super::errors::{
-    CYCLIC_CLASS, NOT_CONSTANT, PARTIAL_CLASS, SIZE_MISMATCH, TOO_LARGE, TYPE_MISMATCH,
-    UNKNOWN_ELEMENT,
-};
 use super::growth::Growth;
 use super::instance::{
     Composite, Declaration, Inherited, Leaf, Member, MemberState, Node, NodeId, NodeKind, Shape,
 };
-use super::library::Library;
-use super::lookup::Type;
-use super::modification::{Bound, Modifier};
 use super::own_sizes::with_own_sizes;
-use super::resolve::Local;
-use super::scope::{Nested, Scope, ScopeId, Text};
-use super::{BaseType, Variability, Variable};
 use crate::diag::{Diagnostic, suggest};
 use crate::eval::Function;
 use crate::fault;
+use crate::flatten::balance::Written;
+use crate::flatten::connections::Connections;
+use crate::flatten::errors::{
+    CYCLIC_CLASS, NOT_CONSTANT, PARTIAL_CLASS, SIZE_MISMATCH, TOO_LARGE, TYPE_MISMATCH,
+    UNKNOWN_ELEMENT,
+};
+use crate::flatten::expressions::constants::Read;
+use crate::flatten::expressions::resolve::Local;
+use crate::flatten::library::Library;
+use crate::flatten::lookup::declarations::Expanded;
+use crate::flatten::lookup::modification::{Bound, Modifier};
+use crate::flatten::lookup::names::Type;
+use crate::flatten::lookup::scope::{Nested, Scope, ScopeId, Text};
+use crate::flatten::{BaseType, Variability, Variable};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -37,63 +37,63 @@ use std::sync::Arc;
 
 /// The most scalar variables, the most components and the deepest nesting that are built.
 const MAX_SCALARS: usize = 2_000_000;
-pub(super) const MAX_INSTANCES: usize = 1_000_000;
+pub const MAX_INSTANCES: usize = 1_000_000;
 const MAX_DEPTH: usize = 60;
 
 /// The attributes of the predefined types (MLS §4.9).
-pub(super) const ATTRIBUTES: [&str; 9] =
+pub const ATTRIBUTES: [&str; 9] =
     ["quantity", "unit", "displayUnit", "min", "max", "start", "fixed", "nominal", "stateSelect"];
 
 /// The growing tree.
-pub(super) struct Instantiation<'a> {
-    pub(super) library: &'a Library,
-    pub(super) nodes: Vec<Node>,
+pub struct Instantiation<'a> {
+    pub library: &'a Library,
+    pub nodes: Vec<Node>,
     /// Variables with the node of each.
-    pub(super) variables: Vec<(Variable, NodeId)>,
-    pub(super) variable_of: FxHashMap<Arc<str>, usize>,
+    pub variables: Vec<(Variable, NodeId)>,
+    pub variable_of: FxHashMap<Arc<str>, usize>,
     /// Classes in their surroundings; the first is the top.
-    pub(super) scopes: Vec<Scope>,
-    pub(super) roots: FxHashMap<Ident, Rc<Nested>>,
+    pub scopes: Vec<Scope>,
+    pub roots: FxHashMap<Ident, Rc<Nested>>,
     /// Classes found by name in a class and in what encloses it.
-    pub(super) nested: FxHashMap<(ScopeId, Ident), Option<Rc<Nested>>>,
-    pub(super) found: FxHashMap<(ScopeId, Ident), Option<Type>>,
+    pub nested: FxHashMap<(ScopeId, Ident), Option<Rc<Nested>>>,
+    pub found: FxHashMap<(ScopeId, Ident), Option<Type>>,
     /// How many classes are looking up their bases, and how many short classes lead to another.
-    pub(super) searching: usize,
-    pub(super) renaming: usize,
-    pub(super) functions: IndexMap<Name, Option<Arc<Function>>>,
+    pub searching: usize,
+    pub renaming: usize,
+    pub functions: IndexMap<Name, Option<Arc<Function>>>,
     /// The function that alone is asked for; `None` for a model.
-    pub(super) asked_function: Option<Name>,
+    pub asked_function: Option<Name>,
     /// The names under which functions are known.
-    pub(super) function_names: FxHashMap<ScopeId, Name>,
+    pub function_names: FxHashMap<ScopeId, Name>,
     /// The classes of records by the names of their constructors.
-    pub(super) record_scopes: FxHashMap<Name, ScopeId>,
+    pub record_scopes: FxHashMap<Name, ScopeId>,
     /// The instance of the model.
-    pub(super) root_node: NodeId,
+    pub root_node: NodeId,
     /// The simple name of its class.
-    pub(super) model_name: Ident,
-    pub(super) warnings: Vec<Diagnostic>,
+    pub model_name: Ident,
+    pub warnings: Vec<Diagnostic>,
     /// All connections, as soon as the tree is whole.
-    pub(super) connections: Option<Rc<Connections>>,
+    pub connections: Option<Rc<Connections>>,
     /// Which equations each instance wrote, in the order of the flat model.
-    pub(super) written: Vec<Written>,
+    pub written: Vec<Written>,
     /// Variables whose values shaped the model.
-    pub(super) structural: IndexSet<usize>,
+    pub structural: IndexSet<usize>,
     /// Values found so far with the variables that they need; `None` while one is being found.
-    pub(super) values: FxHashMap<usize, Option<(Value, Read)>>,
+    pub values: FxHashMap<usize, Option<(Value, Read)>>,
     /// Variables read by the evaluation that is going on.
-    pub(super) read: Read,
+    pub read: Read,
     /// How deep expressions are being resolved.
-    pub(super) depth: usize,
+    pub depth: usize,
     /// Statements run so far to find values.
-    pub(super) steps: u64,
+    pub steps: u64,
     scalars: usize,
     /// The components that are being completed, outermost first.
-    pub(super) growth: Growth,
+    pub growth: Growth,
 }
 
 impl<'a> Instantiation<'a> {
     /// A tree with the node 0, which has no components: the instance of the top scope.
-    pub(super) fn new(library: &'a Library) -> Instantiation<'a> {
+    pub fn new(library: &'a Library) -> Instantiation<'a> {
         let nowhere = Composite {
             scope: ScopeId::TOP,
             class: ScopeId::TOP,
@@ -133,11 +133,7 @@ impl<'a> Instantiation<'a> {
     }
 
     /// The instance of the model itself, under a modifier.
-    pub(super) fn model(
-        &mut self,
-        class: ScopeId,
-        modifier: Modifier,
-    ) -> Result<NodeId, Diagnostic> {
+    pub fn model(&mut self, class: ScopeId, modifier: Modifier) -> Result<NodeId, Diagnostic> {
         let text = self.text(class);
         let modifier = self
             .scope(class)
@@ -223,12 +219,12 @@ impl<'a> Instantiation<'a> {
     }
 
     /// The instance of a package or class for its constants; nothing in it is built yet.
-    pub(super) fn add_package(&mut self, name: &Name, holder: NodeId) -> NodeId {
+    pub fn add_package(&mut self, name: &Name, holder: NodeId) -> NodeId {
         let path = format!("{PACKAGE_MARK}{name}");
         self.add_node(path, Some(holder), Inherited::default())
     }
 
-    pub(super) fn set_scope(&mut self, node: NodeId, scope: ScopeId) {
+    pub fn set_scope(&mut self, node: NodeId, scope: ScopeId) {
         if let NodeKind::Composite(composite) = &mut self.nodes[node.0].kind {
             composite.scope = scope;
             composite.class = scope;
@@ -242,7 +238,7 @@ impl<'a> Instantiation<'a> {
     }
 
     /// The class of an instance; `None` for a variable.
-    pub(super) fn scope_of(&self, node: NodeId) -> Option<ScopeId> {
+    pub fn scope_of(&self, node: NodeId) -> Option<ScopeId> {
         self.composite_of(node).map(|composite| composite.scope)
     }
 
@@ -270,15 +266,12 @@ impl<'a> Instantiation<'a> {
         Ok(())
     }
 
-    pub(super) fn is_record(&self, scope: ScopeId) -> bool {
+    pub fn is_record(&self, scope: ScopeId) -> bool {
         matches!(self.text(scope).restriction(), Restriction::Record | Restriction::OperatorRecord)
     }
 
     /// The components of an instance, with their states.
-    pub(super) fn members(
-        &mut self,
-        node: NodeId,
-    ) -> Result<Vec<(Ident, MemberState)>, Diagnostic> {
+    pub fn members(&mut self, node: NodeId) -> Result<Vec<(Ident, MemberState)>, Diagnostic> {
         self.fill(node)?;
         let members = self.composite_of(node).and_then(|composite| composite.members.as_ref());
         Ok(members.map_or(Vec::new(), |members| {
@@ -287,7 +280,7 @@ impl<'a> Instantiation<'a> {
     }
 
     /// The declaration of a component of an instance.
-    pub(super) fn declaration_of(&self, node: NodeId, name: Ident) -> Option<Arc<Declaration>> {
+    pub fn declaration_of(&self, node: NodeId, name: Ident) -> Option<Arc<Declaration>> {
         let members = self.composite_of(node)?.members.as_ref()?;
         members.get(&name).map(|member| member.declaration.clone())
     }
@@ -327,7 +320,7 @@ impl<'a> Instantiation<'a> {
         Ok(())
     }
 
-    pub(super) fn composite_of(&self, node: NodeId) -> Option<&Composite> {
+    pub fn composite_of(&self, node: NodeId) -> Option<&Composite> {
         match &self.nodes[node.0].kind {
             NodeKind::Composite(composite) => Some(composite),
             NodeKind::Variable(_) => None,
@@ -335,11 +328,7 @@ impl<'a> Instantiation<'a> {
     }
 
     /// The component of a node, built now if it was not; `None` if there is none of that name.
-    pub(super) fn member(
-        &mut self,
-        node: NodeId,
-        name: Ident,
-    ) -> Result<Option<MemberState>, Diagnostic> {
+    pub fn member(&mut self, node: NodeId, name: Ident) -> Result<Option<MemberState>, Diagnostic> {
         self.fill(node)?;
         let members = self.composite_of(node).and_then(|composite| composite.members.as_ref());
         let Some(member) = members.and_then(|members| members.get(&name)) else {
@@ -367,7 +356,7 @@ impl<'a> Instantiation<'a> {
         built.map(Some)
     }
 
-    pub(super) fn set_state(&mut self, node: NodeId, name: Ident, state: MemberState) {
+    pub fn set_state(&mut self, node: NodeId, name: Ident, state: MemberState) {
         if let NodeKind::Composite(composite) = &mut self.nodes[node.0].kind
             && let Some(member) =
                 composite.members.as_mut().and_then(|members| members.get_mut(&name))
@@ -402,7 +391,7 @@ impl<'a> Instantiation<'a> {
         self.built(node, declared)
     }
 
-    pub(super) fn built(
+    pub fn built(
         &mut self,
         node: NodeId,
         declared: &Declaration,
@@ -418,7 +407,7 @@ impl<'a> Instantiation<'a> {
     }
 
     /// The sizes of a component, those of its type included.
-    pub(super) fn dimensions(
+    pub fn dimensions(
         &mut self,
         declared: &Declaration,
         expanded: &Expanded,
@@ -568,7 +557,7 @@ impl<'a> Instantiation<'a> {
     }
 
     /// A partial class has no instances (MLS §4.7).
-    pub(super) fn check_complete(&self, class: ScopeId, span: Span) -> Result<(), Diagnostic> {
+    pub fn check_complete(&self, class: ScopeId, span: Span) -> Result<(), Diagnostic> {
         let found = self.text(class);
         if found.definition.partial {
             return Err(
@@ -644,12 +633,12 @@ impl<'a> Instantiation<'a> {
     }
 
     /// Whether a node lies in the instance of a package, whose paths begin with its full name.
-    pub(super) fn in_package(&self, node: NodeId) -> bool {
+    pub fn in_package(&self, node: NodeId) -> bool {
         self.nodes[node.0].path.starts_with(PACKAGE_MARK)
     }
 
     /// Builds all components below a node.
-    pub(super) fn complete(&mut self, node: NodeId) -> Result<(), Vec<Diagnostic>> {
+    pub fn complete(&mut self, node: NodeId) -> Result<(), Vec<Diagnostic>> {
         let mut errors = Vec::new();
         let mut at = 0;
         // An `outer` component without an `inner` one adds a component to the model itself.
@@ -704,7 +693,7 @@ const MAX_SELF: usize = 20;
 const PACKAGE_MARK: char = '.';
 
 /// The indices, from 1, of an element in an array, the last dimension fastest.
-pub(super) fn indices_of(mut at: usize, dims: &[usize]) -> Vec<usize> {
+pub fn indices_of(mut at: usize, dims: &[usize]) -> Vec<usize> {
     let mut indices = vec![0; dims.len()];
     for (index, size) in indices.iter_mut().zip(dims).rev() {
         *index = at % size + 1;
@@ -714,7 +703,7 @@ pub(super) fn indices_of(mut at: usize, dims: &[usize]) -> Vec<usize> {
 }
 
 /// The element of a value that belongs to one element of an array of components.
-pub(super) fn picked(value: Expression, indices: &[usize]) -> Expression {
+pub fn picked(value: Expression, indices: &[usize]) -> Expression {
     if indices.is_empty() {
         return value;
     }

@@ -1,17 +1,17 @@
 //! Functions made ready to be called: inherited elements collected, names resolved (MLS ch. 12).
 
-use super::errors::{NOT_SUPPORTED, PROTECTED_ACCESS, TYPE_MISMATCH, UNKNOWN_CLASS};
-use super::flat_expression::literal;
-use super::instance::{MemberState, Shape};
-use super::instantiation::Instantiation;
-use super::library::Library;
-use super::lookup::{Predefined, Type};
-use super::modification::Modifier;
-use super::resolve::Local;
-use super::scope::{ScopeId, Text};
 use crate::diag::Diagnostic;
 use crate::eval::{Compiled, Function, FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
+use crate::flatten::errors::{NOT_SUPPORTED, PROTECTED_ACCESS, TYPE_MISMATCH, UNKNOWN_CLASS};
+use crate::flatten::expressions::resolve::Local;
+use crate::flatten::flat_expression::literal;
+use crate::flatten::instantiate::instance::{MemberState, Shape};
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::library::Library;
+use crate::flatten::lookup::modification::Modifier;
+use crate::flatten::lookup::names::{Predefined, Type};
+use crate::flatten::lookup::scope::{ScopeId, Text};
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
@@ -38,7 +38,7 @@ impl Library {
         if name.first().is_none_or(|first| self.find(&Name::from(first)).is_none()) {
             return Ok(None);
         }
-        super::on_deep_stack(|| self.ready_function(name))?
+        crate::flatten::on_deep_stack(|| self.ready_function(name))?
     }
 
     fn ready_function(
@@ -62,7 +62,7 @@ impl Library {
 impl Instantiation<'_> {
     /// The full name of a called function, which is made ready; a name that no class declares is
     /// left for whoever evaluates (operators and intrinsics).
-    pub(super) fn function_name(
+    pub fn function_name(
         &mut self,
         name: &Name,
         context: ScopeId,
@@ -137,7 +137,7 @@ impl Instantiation<'_> {
     }
 
     /// Makes a function ready and returns its full name; `None` if the class is no function.
-    pub(super) fn function(&mut self, id: ScopeId) -> Result<Option<Name>, Diagnostic> {
+    pub fn function(&mut self, id: ScopeId) -> Result<Option<Name>, Diagnostic> {
         if let Some(known) = self.function_names.get(&id) {
             return Ok(Some(known.clone()));
         }
@@ -276,11 +276,7 @@ impl Instantiation<'_> {
     }
 
     /// The name of a record's constructor, made ready.
-    pub(super) fn record_constructor(
-        &mut self,
-        class: ScopeId,
-        span: Span,
-    ) -> Result<Name, Diagnostic> {
+    pub fn record_constructor(&mut self, class: ScopeId, span: Span) -> Result<Name, Diagnostic> {
         self.function(class)?.ok_or_else(|| {
             fault!(UNKNOWN_CLASS, "`{}` has no constructor", self.text(class).name).at(span)
         })
@@ -517,7 +513,7 @@ impl Instantiation<'_> {
     }
 
     /// Statements with their names resolved.
-    pub(super) fn statements(
+    pub fn statements(
         &mut self,
         statements: &[Statement],
         context: ScopeId,

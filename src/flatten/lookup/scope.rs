@@ -3,14 +3,14 @@
 //! surroundings, such as `Medium` in two tanks, is two scopes.
 
 use super::elements::Elements;
-use super::errors::{CYCLIC_CLASS, TOO_LARGE, TYPE_MISMATCH, UNKNOWN_ELEMENT};
-use super::instance::NodeId;
-use super::instantiation::Instantiation;
-use super::library::ClassId;
-use super::lookup::Type;
 use super::modification::{Modifier, Redeclaration, Replacement};
+use super::names::Type;
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
+use crate::flatten::errors::{CYCLIC_CLASS, TOO_LARGE, TYPE_MISMATCH, UNKNOWN_ELEMENT};
+use crate::flatten::instantiate::instance::NodeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::library::ClassId;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -24,40 +24,40 @@ use std::sync::Arc;
 const MAX_SCOPES: usize = 1_000_000;
 
 /// The most base classes that one class may have, those of its bases included.
-pub(super) const MAX_BASES: usize = 10_000;
+pub const MAX_BASES: usize = 10_000;
 
 /// A class in its surroundings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(super) struct ScopeId(pub(super) u32);
+pub struct ScopeId(pub u32);
 
 impl ScopeId {
     /// The scope of the whole library, in which the top-level classes stand.
-    pub(super) const TOP: ScopeId = ScopeId(0);
+    pub const TOP: ScopeId = ScopeId(0);
 }
 
 /// The text of a class.
 #[derive(Debug, Clone)]
-pub(super) struct Text {
+pub struct Text {
     /// Full name, for messages and as the name of functions and records.
-    pub(super) name: Name,
-    pub(super) definition: Arc<ClassDefinition>,
+    pub name: Name,
+    pub definition: Arc<ClassDefinition>,
     /// The class of the library; `None` for one that stands in a modification.
-    pub(super) id: Option<ClassId>,
+    pub id: Option<ClassId>,
     /// For `extends M(…)` (MLS §7.3.1): the class that it extends and replaces.
-    pub(super) extended: Option<Rc<Nested>>,
+    pub extended: Option<Rc<Nested>>,
 }
 
 impl Text {
-    pub(super) fn restriction(&self) -> Restriction {
+    pub fn restriction(&self) -> Restriction {
         self.definition.restriction
     }
 
-    pub(super) fn span(&self) -> Span {
+    pub fn span(&self) -> Span {
         self.definition.name.span
     }
 
     /// The sections of a long class; none for a short one.
-    pub(super) fn sections(&self) -> &[Section] {
+    pub fn sections(&self) -> &[Section] {
         match &self.definition.specifier {
             ClassSpecifier::Long(long) => &long.sections,
             _ => &[],
@@ -65,7 +65,7 @@ impl Text {
     }
 
     /// The elements with whether they are protected, in order.
-    pub(super) fn elements(&self) -> impl Iterator<Item = (bool, &Element)> {
+    pub fn elements(&self) -> impl Iterator<Item = (bool, &Element)> {
         self.sections().iter().flat_map(|section| {
             let (protected, elements) = match section {
                 Section::Elements { visibility, elements } => {
@@ -80,34 +80,34 @@ impl Text {
 
 /// A class declared in another, with all that replaces or modifies it there.
 #[derive(Debug)]
-pub(super) struct Nested {
-    pub(super) text: Text,
+pub struct Nested {
+    pub text: Text,
     /// The scope in which its text stands.
-    pub(super) parent: ScopeId,
+    pub parent: ScopeId,
     /// Modifiers over its own.
-    pub(super) modifier: Modifier,
+    pub modifier: Modifier,
     /// Modifiers under its own: those of a constraining clause (MLS §7.3.2).
-    pub(super) defaults: Modifier,
-    pub(super) outer: bool,
-    pub(super) inner: bool,
-    pub(super) instance: std::cell::Cell<Option<Type>>,
+    pub defaults: Modifier,
+    pub outer: bool,
+    pub inner: bool,
+    pub instance: std::cell::Cell<Option<Type>>,
 }
 
 /// A class in its surroundings.
 #[derive(Debug)]
-pub(super) struct Scope {
-    pub(super) text: Option<Text>,
+pub struct Scope {
+    pub text: Option<Text>,
     /// The scope in which the text stands; `None` for the top.
-    pub(super) parent: Option<ScopeId>,
+    pub parent: Option<ScopeId>,
     /// The instance whose components the names in the text mean; that of the derived class for a
     /// base class.
-    pub(super) node: NodeId,
-    pub(super) modifier: Modifier,
-    pub(super) defaults: Modifier,
+    pub node: NodeId,
+    pub modifier: Modifier,
+    pub defaults: Modifier,
     /// The class that extends this one here.
-    pub(super) derived: Option<ScopeId>,
+    pub derived: Option<ScopeId>,
     /// What the extends clause of that class leaves out of this one.
-    pub(super) deselected: Vec<Deselection>,
+    pub deselected: Vec<Deselection>,
     bases: Stage<Rc<[ScopeId]>>,
     elements: Stage<Rc<Elements>>,
 }
@@ -123,32 +123,32 @@ enum Stage<T> {
 }
 
 impl Instantiation<'_> {
-    pub(super) fn scope(&self, id: ScopeId) -> &Scope {
+    pub fn scope(&self, id: ScopeId) -> &Scope {
         &self.scopes[id.0 as usize]
     }
 
     /// The text of a scope; that of the top is not asked for.
-    pub(super) fn text(&self, id: ScopeId) -> &Text {
+    pub fn text(&self, id: ScopeId) -> &Text {
         self.scope(id).text.as_ref().expect("only the top scope has no text")
     }
 
     /// The full name of a class that stands in a scope; a modifier of a simulated model stands in
     /// that of the whole library.
-    pub(super) fn name_within(&self, scope: ScopeId, name: Ident) -> Name {
+    pub fn name_within(&self, scope: ScopeId, name: Ident) -> Name {
         let text = self.scope(scope).text.as_ref();
         text.map_or_else(|| Name::from(name), |text| text.name.child(name))
     }
 
     /// The instance whose components a scope's names mean.
-    pub(super) fn node_of(&self, id: ScopeId) -> NodeId {
+    pub fn node_of(&self, id: ScopeId) -> NodeId {
         self.scope(id).node
     }
 
-    pub(super) fn is_encapsulated(&self, id: ScopeId) -> bool {
+    pub fn is_encapsulated(&self, id: ScopeId) -> bool {
         self.scope(id).text.as_ref().is_none_or(|text| text.definition.encapsulated)
     }
 
-    pub(super) fn add_scope(
+    pub fn add_scope(
         &mut self,
         text: Text,
         parent: ScopeId,
@@ -177,7 +177,7 @@ impl Instantiation<'_> {
     }
 
     /// The top scope, without a class.
-    pub(super) fn top_scope() -> Scope {
+    pub fn top_scope() -> Scope {
         Scope {
             text: None,
             parent: None,
@@ -193,7 +193,7 @@ impl Instantiation<'_> {
 
     /// What a nested class is here: a scope of its own, or that of the class that it is another
     /// name of.
-    pub(super) fn instance(&mut self, nested: &Rc<Nested>) -> Result<Type, Diagnostic> {
+    pub fn instance(&mut self, nested: &Rc<Nested>) -> Result<Type, Diagnostic> {
         if let Some(known) = nested.instance.get() {
             return Ok(known);
         }
@@ -252,7 +252,7 @@ impl Instantiation<'_> {
     /// The base classes of a scope in the order of its extends clauses, each as a scope of its
     /// own; none while they are being looked up, for names that a base class itself needs
     /// (MLS §5.6.1.4).
-    pub(super) fn bases(&mut self, id: ScopeId) -> Result<Rc<[ScopeId]>, Diagnostic> {
+    pub fn bases(&mut self, id: ScopeId) -> Result<Rc<[ScopeId]>, Diagnostic> {
         match &self.scope(id).bases {
             Stage::Done(bases) => return Ok(bases.clone()),
             Stage::Busy => return Ok(Rc::new([])),
@@ -409,7 +409,7 @@ impl Instantiation<'_> {
     }
 
     /// The components of a class, inherited ones included.
-    pub(super) fn elements(&mut self, id: ScopeId) -> Result<Rc<Elements>, Diagnostic> {
+    pub fn elements(&mut self, id: ScopeId) -> Result<Rc<Elements>, Diagnostic> {
         match &self.scope(id).elements {
             Stage::Done(elements) => return Ok(elements.clone()),
             Stage::Failed(error) => return Err((**error).clone()),
@@ -431,7 +431,7 @@ impl Instantiation<'_> {
     }
 
     /// An error if a class has no element of a name that a modifier names.
-    pub(super) fn check_modified(
+    pub fn check_modified(
         &mut self,
         id: ScopeId,
         name: Ident,

@@ -2,15 +2,15 @@
 //! where the element is an expression of the loop variables, and are written out where a loop
 //! variable chooses a component of an array of components, which only a number can.
 
-use super::BaseType;
-use super::errors::TOO_LARGE;
-use super::flat_expression::literal;
-use super::instantiation::Instantiation;
 use super::resolve::Local;
-use super::scope::ScopeId;
 use crate::diag::Diagnostic;
 use crate::eval::ValueType;
 use crate::fault;
+use crate::flatten::BaseType;
+use crate::flatten::errors::TOO_LARGE;
+use crate::flatten::flat_expression::literal;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::lookup::scope::ScopeId;
 use crate::source::Span;
 use crate::syntax::ast::{Arguments, Expression, ExpressionKind, ForIndex};
 use crate::syntax::visit::Visit;
@@ -22,7 +22,7 @@ const MAX_ELEMENTS: usize = 100_000;
 
 impl Instantiation<'_> {
     /// `{element for i in range}`.
-    pub(super) fn comprehension(
+    pub fn comprehension(
         &mut self,
         element: &Expression,
         indices: &[ForIndex],
@@ -48,7 +48,7 @@ impl Instantiation<'_> {
     }
 
     /// The arguments of a call, the element of a reduction among them.
-    pub(super) fn arguments(
+    pub fn arguments(
         &mut self,
         arguments: &Arguments,
         context: ScopeId,
@@ -92,7 +92,7 @@ impl Instantiation<'_> {
     }
 
     /// The iterators with resolved ranges, and what their body knows.
-    pub(super) fn iterators(
+    pub fn iterators(
         &mut self,
         indices: &[ForIndex],
         context: ScopeId,

@@ -6,11 +6,11 @@
 //! reached (D. E. Knuth, "Estimating the efficiency of backtrack programs", Math. Comp. 29 (1975)
 //! 121-136, without chance).
 
-use super::errors::TOO_LARGE;
 use super::instance::{Declaration, MemberState, NodeId, Shape};
 use super::instantiation::{Instantiation, MAX_INSTANCES};
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::errors::TOO_LARGE;
 use crate::source::Span;
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ const SURELY: usize = 1_000_000_000;
 
 /// The components that are being completed, outermost first.
 #[derive(Debug, Default)]
-pub(super) struct Growth {
+pub struct Growth {
     levels: Vec<Level>,
     /// How many components there were at the last estimate.
     estimated: usize,
@@ -52,12 +52,12 @@ struct Expected {
 
 impl Growth {
     /// A component begins to be completed.
-    pub(super) fn enter(&mut self, holder: NodeId, member: usize, elements: usize, before: usize) {
+    pub fn enter(&mut self, holder: NodeId, member: usize, elements: usize, before: usize) {
         self.levels.push(Level { holder, member, elements, before });
     }
 
     /// It is complete.
-    pub(super) fn leave(&mut self) {
+    pub fn leave(&mut self) {
         self.levels.pop();
     }
 }
@@ -65,7 +65,7 @@ impl Growth {
 impl Instantiation<'_> {
     /// An error if the components that are being completed lead to more than a model may have.
     /// Asked after the completion of each, it is answered whenever their number has doubled.
-    pub(super) fn check_growth(&mut self) -> Result<(), Diagnostic> {
+    pub fn check_growth(&mut self) -> Result<(), Diagnostic> {
         let count = self.nodes.len();
         if count < UNSUSPICIOUS.max(2 * self.growth.estimated) {
             return Ok(());

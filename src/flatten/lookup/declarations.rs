@@ -2,16 +2,16 @@
 //! what their types are made of (MLS §4.6).
 
 use super::elements::Elements;
-use super::errors::{
-    CYCLIC_CLASS, DUPLICATE_ELEMENT, FINAL_OVERRIDE, NOT_SUPPORTED, TOO_LARGE, TYPE_MISMATCH,
-};
-use super::instance::{Declaration, Shape};
-use super::instantiation::Instantiation;
-use super::lookup::{Predefined, Type};
 use super::modification::{Modifier, Redeclaration, Replacement};
+use super::names::{Predefined, Type};
 use super::scope::{MAX_BASES, ScopeId, Text};
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::errors::{
+    CYCLIC_CLASS, DUPLICATE_ELEMENT, FINAL_OVERRIDE, NOT_SUPPORTED, TOO_LARGE, TYPE_MISMATCH,
+};
+use crate::flatten::instantiate::instance::{Declaration, Shape};
+use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -29,19 +29,19 @@ const STATE_SELECT: &[&str] = &["never", "avoid", "default", "prefer", "always"]
 const ASSERTION_LEVEL: &[&str] = &["warning", "error"];
 
 /// What the type of a component is made of.
-pub(super) struct Expanded {
-    pub(super) shape: Shape,
-    pub(super) dims: Vec<(Subscript, ScopeId)>,
-    pub(super) modifier: Modifier,
-    pub(super) causality: Option<CausalityPrefix>,
-    pub(super) connection: Option<ConnectionPrefix>,
-    pub(super) connector: bool,
+pub struct Expanded {
+    pub shape: Shape,
+    pub dims: Vec<(Subscript, ScopeId)>,
+    pub modifier: Modifier,
+    pub causality: Option<CausalityPrefix>,
+    pub connection: Option<ConnectionPrefix>,
+    pub connector: bool,
     /// The class that the type names, if it is not predefined.
-    pub(super) class: Option<ScopeId>,
+    pub class: Option<ScopeId>,
 }
 
 impl Instantiation<'_> {
-    pub(super) fn find_elements(&mut self, id: ScopeId) -> Result<Elements, Diagnostic> {
+    pub fn find_elements(&mut self, id: ScopeId) -> Result<Elements, Diagnostic> {
         let text = self.text(id).clone();
         let bases = self.bases(id)?;
         let mut bases = bases.iter();
@@ -135,7 +135,7 @@ impl Instantiation<'_> {
                 if !inherited {
                     let class = &self.text(id).name;
                     return Err(fault!(
-                        super::errors::UNKNOWN_ELEMENT,
+                        crate::flatten::errors::UNKNOWN_ELEMENT,
                         "`{class}` does not inherit a component `{name}` to redeclare"
                     )
                     .at(component.name.span));
@@ -258,13 +258,13 @@ impl Instantiation<'_> {
 
     /// Follows the short classes of a component's type down to what it is made of, collecting
     /// modifiers (outer over inner) and dimensions.
-    pub(super) fn expand(&mut self, declared: &Declaration) -> Result<Expanded, Diagnostic> {
+    pub fn expand(&mut self, declared: &Declaration) -> Result<Expanded, Diagnostic> {
         let found = self.lookup_type(declared.scope, &declared.type_specifier)?;
         self.expand_type(found, &declared.type_specifier, declared.modifier.clone())
     }
 
     /// As [`Instantiation::expand`], from what a type specifier means.
-    pub(super) fn expand_type(
+    pub fn expand_type(
         &mut self,
         mut found: Type,
         specifier: &TypeSpecifier,
@@ -354,7 +354,7 @@ impl Instantiation<'_> {
 
     /// The predefined type that a long class extends, directly or through others, if it does:
     /// `type T extends Real(…); end T;`, or a class of external objects.
-    pub(super) fn predefined_base(
+    pub fn predefined_base(
         &mut self,
         id: ScopeId,
         text: &Text,
@@ -384,7 +384,7 @@ impl Instantiation<'_> {
     }
 
     /// The enumeration that a type is, through short classes; `None` if it is anything else.
-    pub(super) fn enumeration(
+    pub fn enumeration(
         &mut self,
         found: Type,
         span: Span,
@@ -504,7 +504,7 @@ fn predefined_shape(
             Ok(Shape::Enumeration(language_enumeration("AssertionLevel", ASSERTION_LEVEL)))
         }
         Predefined::ExternalObject => {
-            Err(fault!(super::errors::PARTIAL_CLASS, "`ExternalObject` is partial";
+            Err(fault!(crate::flatten::errors::PARTIAL_CLASS, "`ExternalObject` is partial";
                 help: "use a class that extends it")
             .at(specifier.span))
         }

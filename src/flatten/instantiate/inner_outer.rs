@@ -1,14 +1,14 @@
 //! `inner` and `outer` components (MLS §5.4): an outer component is another name of the inner one
 //! of that name in the nearest enclosing instance.
 
-use super::BaseType;
-use super::errors::{PARTIAL_CLASS, TYPE_MISMATCH, UNKNOWN_NAME};
 use super::instance::{Declaration, Member, MemberState, NodeId, NodeKind, Shape};
 use super::instantiation::Instantiation;
-use super::library::Habit;
-use super::modification::Modifier;
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::BaseType;
+use crate::flatten::errors::{PARTIAL_CLASS, TYPE_MISMATCH, UNKNOWN_NAME};
+use crate::flatten::library::Habit;
+use crate::flatten::lookup::modification::Modifier;
 use crate::name::Ident;
 use crate::source::Span;
 use crate::syntax::ast::{CausalityPrefix, ElementPrefixes};
@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 impl Instantiation<'_> {
     /// What an outer component of an instance means.
-    pub(super) fn outer(
+    pub fn outer(
         &mut self,
         node: NodeId,
         declared: &Declaration,
@@ -77,7 +77,7 @@ impl Instantiation<'_> {
 
     /// Of an outer component only what its own class declares can be named, whatever else the inner
     /// one has.
-    pub(super) fn check_outer_element(
+    pub fn check_outer_element(
         &mut self,
         node: NodeId,
         outer: Ident,

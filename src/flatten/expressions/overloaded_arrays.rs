@@ -1,11 +1,11 @@
 //! Operations on arrays of operator records that follow from those of their elements: sums
 //! (MLS §10.3.4) and products with matrices (MLS §14.4).
 
-use super::errors::{SIZE_MISMATCH, TYPE_MISMATCH};
-use super::instantiation::Instantiation;
 use super::resolve::Local;
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::errors::{SIZE_MISMATCH, TYPE_MISMATCH};
+use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{BinaryOperator, Expression, ExpressionKind};
@@ -13,7 +13,7 @@ use crate::syntax::ast::{BinaryOperator, Expression, ExpressionKind};
 impl Instantiation<'_> {
     /// `sum(argument)` by the operators '+' and '0' of the record; `None` where the argument has
     /// no records.
-    pub(super) fn overloaded_sum(
+    pub fn overloaded_sum(
         &mut self,
         argument: &Expression,
         local: &Local,
@@ -43,7 +43,7 @@ impl Instantiation<'_> {
     }
 
     /// The product of a matrix with a vector or a matrix of records; `None` for other operands.
-    pub(super) fn overloaded_product(
+    pub fn overloaded_product(
         &mut self,
         left: &Expression,
         right: &Expression,

@@ -1,12 +1,12 @@
 //! Calls of functions with arrays where scalars are expected: one call for each element
 //! (MLS §12.4.6).
 
-use super::errors::SIZE_MISMATCH;
-use super::flat_expression::subscripted;
-use super::instantiation::{Instantiation, indices_of};
 use crate::diag::Diagnostic;
 use crate::eval::FunctionBody;
 use crate::fault;
+use crate::flatten::errors::SIZE_MISMATCH;
+use crate::flatten::flat_expression::subscripted;
+use crate::flatten::instantiate::instantiation::{Instantiation, indices_of};
 use crate::name::Name;
 use crate::source::Span;
 use crate::syntax::ast::{Arguments, ComponentReference, Expression, ExpressionKind, Subscript};
@@ -16,7 +16,7 @@ const MAX_CALLS: usize = 100_000;
 
 impl Instantiation<'_> {
     /// A call with resolved arguments as an array of calls; `None` if it is one call.
-    pub(super) fn vectorized(
+    pub fn vectorized(
         &mut self,
         name: &Name,
         arguments: &Arguments,
@@ -78,7 +78,7 @@ impl Instantiation<'_> {
             Expression::new(ExpressionKind::Call { function, arguments: Box::new(one) }, span)
         });
         let calls = calls.collect();
-        Ok(Some(super::connections::arranged(calls, &dims, span)))
+        Ok(Some(crate::flatten::connections::arranged(calls, &dims, span)))
     }
 
     /// The sizes that an argument has beyond those of its input, if it has more.

@@ -1,17 +1,17 @@
 //! Values known at translation: constants of packages, and parameters that shape the model
 //! (MLS §3.8, §4.5).
 
-use super::errors::{NOT_CONSTANT, TOO_LARGE, TYPE_MISMATCH};
-use super::instance::{NodeId, NodeKind};
-use super::instantiation::{Instantiation, picked};
-use super::lookup::Type;
 use super::resolve::Local;
-use super::scope::ScopeId;
-use super::{BaseType, Variability};
 use crate::budget;
 use crate::diag::{Diagnostic, Fault};
 use crate::eval::{Callee, Function, Host, Scope, evaluate};
 use crate::fault;
+use crate::flatten::errors::{NOT_CONSTANT, TOO_LARGE, TYPE_MISMATCH};
+use crate::flatten::instantiate::instance::{NodeId, NodeKind};
+use crate::flatten::instantiate::instantiation::{Instantiation, picked};
+use crate::flatten::lookup::names::Type;
+use crate::flatten::lookup::scope::ScopeId;
+use crate::flatten::{BaseType, Variability};
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -23,7 +23,7 @@ use std::sync::Arc;
 
 impl Instantiation<'_> {
     /// The value of an expression that shapes the model; the parameters that it needs are marked.
-    pub(super) fn structural_value(
+    pub fn structural_value(
         &mut self,
         e: &Expression,
         context: ScopeId,
@@ -36,7 +36,7 @@ impl Instantiation<'_> {
     }
 
     /// The value of an expression whose names are resolved already.
-    pub(super) fn flat_value(&mut self, e: &Expression) -> Result<Value, Diagnostic> {
+    pub fn flat_value(&mut self, e: &Expression) -> Result<Value, Diagnostic> {
         let outer = std::mem::take(&mut self.read);
         let value = self.known_flat_value(e);
         let read = std::mem::replace(&mut self.read, outer);
@@ -45,25 +45,21 @@ impl Instantiation<'_> {
     }
 
     /// The value of an expression of flat names of constants and parameters.
-    pub(super) fn known_flat_value(&mut self, e: &Expression) -> Result<Value, Diagnostic> {
+    pub fn known_flat_value(&mut self, e: &Expression) -> Result<Value, Diagnostic> {
         let local = Local { values: true, flat: true, ..Local::default() };
         let resolved = self.resolve(e, self.flat_scope(), &local)?;
         evaluate(&resolved, &mut Scope::script(), &mut Functions(self))
     }
 
     /// The value of an expression of constants and parameters.
-    pub(super) fn known_value(
-        &mut self,
-        e: &Expression,
-        context: ScopeId,
-    ) -> Result<Value, Diagnostic> {
+    pub fn known_value(&mut self, e: &Expression, context: ScopeId) -> Result<Value, Diagnostic> {
         let local = Local { values: true, ..Local::default() };
         let resolved = self.resolve(e, context, &local)?;
         evaluate(&resolved, &mut Scope::script(), &mut Functions(self))
     }
 
     /// The value of a constant or parameter, by its place.
-    pub(super) fn value(&mut self, variable: usize, span: Span) -> Result<Value, Diagnostic> {
+    pub fn value(&mut self, variable: usize, span: Span) -> Result<Value, Diagnostic> {
         match self.values.get(&variable) {
             Some(Some((value, read))) => {
                 self.read.extend(read.iter().copied());
@@ -121,7 +117,7 @@ impl Instantiation<'_> {
     }
 
     /// A constant of a package, or a literal of an enumeration, as its value.
-    pub(super) fn constant(
+    pub fn constant(
         &mut self,
         reference: &ComponentReference,
         context: ScopeId,
@@ -258,11 +254,7 @@ impl Instantiation<'_> {
     }
 
     /// Whether a class has a component of this name, itself or inherited.
-    pub(super) fn has_component(
-        &mut self,
-        scope: ScopeId,
-        name: Ident,
-    ) -> Result<bool, Diagnostic> {
+    pub fn has_component(&mut self, scope: ScopeId, name: Ident) -> Result<bool, Diagnostic> {
         if scope == ScopeId::TOP {
             return Ok(false);
         }
@@ -280,7 +272,7 @@ impl Instantiation<'_> {
     }
 
     /// The scope in which flat names mean variables.
-    pub(super) fn flat_scope(&self) -> ScopeId {
+    pub fn flat_scope(&self) -> ScopeId {
         self.scope_of(self.root_node).unwrap_or(ScopeId::TOP)
     }
 }
@@ -301,14 +293,14 @@ fn fitting(value: Value, base: &BaseType, dims: &[usize], each: bool) -> Result<
     match &value {
         Value::Array(array) if array.dims == dims => Ok(value),
         Value::Array(array) => Err(fault!(
-            super::errors::SIZE_MISMATCH,
+            crate::flatten::errors::SIZE_MISMATCH,
             "the value has the sizes {:?}, but the declaration has {dims:?}",
             array.dims
         )),
         _ if dims.is_empty() => Ok(value),
         _ if each => ArrayValue::filled(dims.to_vec(), &value).map(Value::Array),
         _ => Err(fault!(
-            super::errors::SIZE_MISMATCH,
+            crate::flatten::errors::SIZE_MISMATCH,
             "the value is a scalar, but the declaration has the sizes {dims:?}"
         )),
     }
@@ -367,4 +359,4 @@ impl Host for Functions<'_, '_> {
 }
 
 /// Variables read while a value is found.
-pub(super) type Read = IndexSet<usize>;
+pub type Read = IndexSet<usize>;

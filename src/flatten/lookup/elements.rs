@@ -4,8 +4,8 @@
 //! A class shares what its first base class has: a chain of a thousand extends clauses is as long as
 //! what is written in it, and not the square of that.
 
-use super::instance::Declaration;
 use super::scope::ScopeId;
+use crate::flatten::instantiate::instance::Declaration;
 use crate::name::Ident;
 use indexmap::IndexMap;
 use std::rc::Rc;
@@ -16,7 +16,7 @@ const MAX_PARTS: usize = 64;
 
 /// The components of a class and the classes that its equations come from.
 #[derive(Debug, Default)]
-pub(super) struct Elements {
+pub struct Elements {
     /// What the first base class gives.
     shared: Option<Rc<Elements>>,
     parts: usize,
@@ -28,7 +28,7 @@ pub(super) struct Elements {
 
 impl Elements {
     /// All of another class, which nothing comes before.
-    pub(super) fn sharing(base: &Rc<Elements>) -> Elements {
+    pub fn sharing(base: &Rc<Elements>) -> Elements {
         if base.parts < MAX_PARTS {
             let shared = Some(base.clone());
             return Elements {
@@ -44,49 +44,49 @@ impl Elements {
     }
 
     /// Whether it has no components and comes from no class.
-    pub(super) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.shared.is_none() && self.components.is_empty() && self.lineage.is_empty()
     }
 
     /// The declaration of a component.
-    pub(super) fn get(&self, name: Ident) -> Option<&Arc<Declaration>> {
+    pub fn get(&self, name: Ident) -> Option<&Arc<Declaration>> {
         let parts = std::iter::successors(Some(self), |part| part.shared.as_deref());
         parts.into_iter().find_map(|part| part.components.get(&name))
     }
 
     /// Whether there is a component of a name.
-    pub(super) fn contains(&self, name: Ident) -> bool {
+    pub fn contains(&self, name: Ident) -> bool {
         self.get(name).is_some()
     }
 
     /// The components in order, inherited ones first.
-    pub(super) fn iter(&self) -> impl Iterator<Item = (Ident, &Arc<Declaration>)> {
+    pub fn iter(&self) -> impl Iterator<Item = (Ident, &Arc<Declaration>)> {
         let components = self.parts().into_iter().flat_map(|part| &part.components);
         components.map(|(name, declaration)| (*name, declaration))
     }
 
     /// Their names.
-    pub(super) fn names(&self) -> impl Iterator<Item = Ident> {
+    pub fn names(&self) -> impl Iterator<Item = Ident> {
         self.iter().map(|(name, _)| name)
     }
 
     /// The classes that equations come from, bases first, the class itself last.
-    pub(super) fn lineage(&self) -> impl Iterator<Item = ScopeId> {
+    pub fn lineage(&self) -> impl Iterator<Item = ScopeId> {
         self.parts().into_iter().flat_map(|part| part.lineage.iter().copied())
     }
 
     /// How many classes equations come from.
-    pub(super) fn bases(&self) -> usize {
+    pub fn bases(&self) -> usize {
         self.bases
     }
 
     /// Adds a component that is not there yet.
-    pub(super) fn add(&mut self, declaration: Arc<Declaration>) {
+    pub fn add(&mut self, declaration: Arc<Declaration>) {
         self.components.insert(declaration.name, declaration);
     }
 
     /// Adds a class that equations come from.
-    pub(super) fn add_base(&mut self, base: ScopeId) {
+    pub fn add_base(&mut self, base: ScopeId) {
         self.lineage.push(base);
         self.bases += 1;
     }

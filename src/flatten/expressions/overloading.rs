@@ -1,15 +1,15 @@
 //! Overloaded operators of operator records (MLS ch. 14): an operation on records becomes a call of
 //! the one function of its operator that fits the operands, or, on arrays, one call for each element.
 
-use super::BaseType;
-use super::errors::{SIZE_MISMATCH, TYPE_MISMATCH};
-use super::instantiation::Instantiation;
-use super::lookup::Type;
 use super::resolve::Local;
-use super::scope::ScopeId;
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionComponent, ValueType};
 use crate::fault;
+use crate::flatten::BaseType;
+use crate::flatten::errors::{SIZE_MISMATCH, TYPE_MISMATCH};
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::lookup::names::Type;
+use crate::flatten::lookup::scope::ScopeId;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 impl Instantiation<'_> {
     /// `left operator right` as a call, if one of the operands is a record.
-    pub(super) fn overloaded_binary(
+    pub fn overloaded_binary(
         &mut self,
         operator: BinaryOperator,
         left: &Expression,
@@ -80,7 +80,7 @@ impl Instantiation<'_> {
     }
 
     /// `-operand` as a call, if the operand is a record.
-    pub(super) fn overloaded_unary(
+    pub fn overloaded_unary(
         &mut self,
         sign: &str,
         operand: &Expression,
@@ -114,13 +114,13 @@ impl Instantiation<'_> {
     }
 
     /// The record that an expression, or the elements of an array constructor, are of.
-    pub(super) fn record_of(&self, e: &Expression, local: &Local) -> Option<Name> {
+    pub fn record_of(&self, e: &Expression, local: &Local) -> Option<Name> {
         record_name(self.element_type_of(e, local).as_ref())
     }
 
     /// The constructor of an operator record that fits resolved arguments; `None` if it has none,
     /// or none that fits, and the record's own constructor is meant.
-    pub(super) fn overloaded_constructor(
+    pub fn overloaded_constructor(
         &mut self,
         class: ScopeId,
         arguments: &Arguments,
@@ -137,7 +137,7 @@ impl Instantiation<'_> {
         Ok(None)
     }
 
-    pub(super) fn operator_call(
+    pub fn operator_call(
         &mut self,
         record: &Name,
         sign: &str,
@@ -233,7 +233,7 @@ impl Instantiation<'_> {
     }
 
     /// The type of a resolved expression, records included; `None` where its text does not tell.
-    pub(super) fn value_type_of(&self, e: &Expression, local: &Local) -> Option<ValueType> {
+    pub fn value_type_of(&self, e: &Expression, local: &Local) -> Option<ValueType> {
         match &e.kind {
             ExpressionKind::Call { function, .. } => {
                 if let Some(Some(function)) = self.functions.get(&function.name()) {

@@ -1,16 +1,16 @@
 //! Enumerations and Boolean as ranges, sizes and subscripts (MLS §10.1, §10.5, §11.2.2.2), and
 //! their conversions (§4.9.5.2, §4.9.5.3). In the flat model the literals are their ordinals.
 
-use super::BaseType;
-use super::errors::TYPE_MISMATCH;
-use super::instance::NodeId;
-use super::instantiation::Instantiation;
-use super::lookup::{Predefined, Type};
 use super::resolve::Local;
-use super::scope::ScopeId;
 use crate::diag::Diagnostic;
 use crate::eval::ValueType;
 use crate::fault;
+use crate::flatten::BaseType;
+use crate::flatten::errors::TYPE_MISMATCH;
+use crate::flatten::instantiate::instance::NodeId;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::lookup::names::{Predefined, Type};
+use crate::flatten::lookup::scope::ScopeId;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -23,7 +23,7 @@ const MAX_CHAIN: usize = 100;
 
 impl Instantiation<'_> {
     /// All values of the type that an expression names, as a vector; `None` if it names none.
-    pub(super) fn type_range(
+    pub fn type_range(
         &mut self,
         e: &Expression,
         context: ScopeId,
@@ -64,7 +64,7 @@ impl Instantiation<'_> {
     }
 
     /// Whether the subscripts of one dimension of a component are of type Boolean.
-    pub(super) fn is_sized_by_boolean(
+    pub fn is_sized_by_boolean(
         &mut self,
         node: NodeId,
         name: Ident,
@@ -76,7 +76,7 @@ impl Instantiation<'_> {
 
     /// A dimension that is sized by an enumeration or by Boolean has subscripts of that type alone
     /// (MLS §10.5).
-    pub(super) fn check_subscript_types(
+    pub fn check_subscript_types(
         &mut self,
         node: NodeId,
         part: &ReferencePart,
@@ -112,7 +112,7 @@ impl Instantiation<'_> {
     }
 
     /// Subscripts of Boolean as places: `false` is the first (MLS §10.5).
-    pub(super) fn boolean_subscript(&self, index: Expression, local: &Local) -> Expression {
+    pub fn boolean_subscript(&self, index: Expression, local: &Local) -> Expression {
         if self.value_type_of(&index, local) != Some(ValueType::Boolean) {
             return index;
         }
@@ -136,7 +136,7 @@ impl Instantiation<'_> {
     }
 
     /// `E(i)`, `Integer(e)` and `String(e)` of enumerations; `None` for any other call.
-    pub(super) fn conversion(
+    pub fn conversion(
         &mut self,
         span: Span,
         function: &ComponentReference,
@@ -214,12 +214,16 @@ impl Instantiation<'_> {
         };
         let names = ExpressionKind::Array(definition.literals.iter().map(name).collect());
         let base = Expression::new(names, span);
-        Ok(Some(super::flat_expression::subscripted(base, vec![Subscript::Index(resolved)], span)))
+        Ok(Some(crate::flatten::flat_expression::subscripted(
+            base,
+            vec![Subscript::Index(resolved)],
+            span,
+        )))
     }
 }
 
 /// `false` and `true` as a vector.
-pub(super) fn all_booleans(span: Span) -> Expression {
+pub fn all_booleans(span: Span) -> Expression {
     let truth = |truth| Expression::new(ExpressionKind::Boolean(truth), span);
     Expression::new(ExpressionKind::Array(vec![truth(false), truth(true)]), span)
 }

@@ -2,11 +2,11 @@
 //! the called function in which they are written out, with what a partial application binds as
 //! further inputs.
 
-use super::errors::TYPE_MISMATCH;
-use super::instantiation::Instantiation;
 use crate::diag::Diagnostic;
 use crate::eval::{Function, FunctionBody, FunctionComponent, ValueType};
 use crate::fault;
+use crate::flatten::errors::TYPE_MISMATCH;
+use crate::flatten::instantiate::instantiation::Instantiation;
 use crate::name::{Ident, Name};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
@@ -42,7 +42,7 @@ impl Passed {
 impl Instantiation<'_> {
     /// The function and the arguments of a call without functions among the arguments. A call
     /// inside a function that passes on an input of its own stays until that function is copied.
-    pub(super) fn specialized(
+    pub fn specialized(
         &mut self,
         name: Name,
         arguments: Arguments,

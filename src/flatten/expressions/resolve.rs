@@ -1,14 +1,14 @@
 //! Resolves the names in expressions: components become their flat paths, constants of packages
 //! their values, functions their full names (MLS §5.3, §5.6.2).
 
-use super::errors::{NOT_CONSTANT, NOT_SUPPORTED, TOO_LARGE, UNKNOWN_NAME};
-use super::flat_expression::subscripted;
-use super::instantiation::Instantiation;
-use super::lookup::Type;
-use super::scope::ScopeId;
 use crate::diag::{Diagnostic, suggest};
 use crate::eval::{self, ValueType};
 use crate::fault;
+use crate::flatten::errors::{NOT_CONSTANT, NOT_SUPPORTED, TOO_LARGE, UNKNOWN_NAME};
+use crate::flatten::flat_expression::subscripted;
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::lookup::names::Type;
+use crate::flatten::lookup::scope::ScopeId;
 use crate::name::{Ident, Name};
 use crate::source::Span;
 use crate::syntax::ast::{
@@ -24,31 +24,31 @@ const MAX_DEPTH: usize = 400;
 
 /// What the resolution of an expression knows besides its scope.
 #[derive(Clone, Default)]
-pub(super) struct Local {
+pub struct Local {
     /// Loop variables and variables of a function, innermost last; those of an unrolled loop with
     /// their value.
-    pub(super) names: Vec<(Ident, Option<Expression>)>,
+    pub names: Vec<(Ident, Option<Expression>)>,
     /// Inputs of a function.
-    pub(super) read_only: Vec<Ident>,
+    pub read_only: Vec<Ident>,
     /// Types of the variables of a function.
-    pub(super) types: Rc<Vec<(Ident, ValueType)>>,
+    pub types: Rc<Vec<(Ident, ValueType)>>,
     /// Whether variables are replaced by their values, which must be constant.
-    pub(super) values: bool,
+    pub values: bool,
     /// Whether impure functions may be called: in parameters, initial sections and when-clauses
     /// (MLS §12.3).
-    pub(super) impure: bool,
+    pub impure: bool,
     /// Whether names are flat paths, to which protected components are no secret.
-    pub(super) flat: bool,
+    pub flat: bool,
 }
 
 impl Local {
     /// What a local name stands for, if there is one: its value where it has one.
-    pub(super) fn get(&self, name: Ident) -> Option<&Option<Expression>> {
+    pub fn get(&self, name: Ident) -> Option<&Option<Expression>> {
         self.names.iter().rev().find(|(known, _)| *known == name).map(|(_, value)| value)
     }
 
     /// Whether a subscript needs a local name that has no value yet.
-    pub(super) fn is_open(&self, subscript: &Subscript) -> bool {
+    pub fn is_open(&self, subscript: &Subscript) -> bool {
         let mut names = OpenNames { local: self, found: false };
         if let Subscript::Index(e) = subscript {
             names.expression(e);
@@ -57,7 +57,7 @@ impl Local {
     }
 
     /// This with more names that stay as they are.
-    pub(super) fn with(&self, names: impl IntoIterator<Item = Ident>) -> Local {
+    pub fn with(&self, names: impl IntoIterator<Item = Ident>) -> Local {
         let mut local = self.clone();
         local.names.extend(names.into_iter().map(|name| (name, None)));
         local
@@ -80,7 +80,7 @@ impl Visit for OpenNames<'_> {
 
 impl Instantiation<'_> {
     /// The expression with its names resolved.
-    pub(super) fn resolve(
+    pub fn resolve(
         &mut self,
         e: &Expression,
         context: ScopeId,
@@ -219,7 +219,7 @@ impl Instantiation<'_> {
         if let ExpressionKind::Boolean(truth) = condition.kind {
             return Some(truth);
         }
-        if !super::types::has_only_literals(condition) {
+        if !crate::flatten::types::has_only_literals(condition) {
             return None;
         }
         match self.flat_value(condition) {
@@ -228,7 +228,7 @@ impl Instantiation<'_> {
         }
     }
 
-    pub(super) fn all(
+    pub fn all(
         &mut self,
         expressions: &[Expression],
         context: ScopeId,
@@ -237,7 +237,7 @@ impl Instantiation<'_> {
         expressions.iter().map(|e| self.resolve(e, context, local)).collect()
     }
 
-    pub(super) fn named_arguments(
+    pub fn named_arguments(
         &mut self,
         named: &[NamedArgument],
         context: ScopeId,
@@ -252,7 +252,7 @@ impl Instantiation<'_> {
             .collect()
     }
 
-    pub(super) fn subscripts(
+    pub fn subscripts(
         &mut self,
         subscripts: &[Subscript],
         context: ScopeId,
@@ -371,7 +371,7 @@ impl Instantiation<'_> {
     }
 
     /// A reference as an expression: `time`, a loop variable, a component or a constant.
-    pub(super) fn reference(
+    pub fn reference(
         &mut self,
         reference: &ComponentReference,
         context: ScopeId,
@@ -419,11 +419,7 @@ impl Instantiation<'_> {
     }
 
     /// The diagnostic for a name that is neither a component nor a constant.
-    pub(super) fn unknown_name(
-        &self,
-        reference: &ComponentReference,
-        context: ScopeId,
-    ) -> Diagnostic {
+    pub fn unknown_name(&self, reference: &ComponentReference, context: ScopeId) -> Diagnostic {
         let name = reference.name();
         let known = self.component_names(self.node_of(context));
         let first = name.first().map_or("", Ident::as_str);

@@ -1,13 +1,13 @@
 //! Ranges that a loop does not write and its body shows: the sizes of the arrays that its variable
 //! is a subscript of (MLS §11.2.2.1).
 
-use super::errors::{NOT_CONSTANT, SIZE_MISMATCH};
-use super::instance::{MemberState, NodeKind};
-use super::instantiation::Instantiation;
 use super::resolve::Local;
-use super::scope::ScopeId;
 use crate::diag::Diagnostic;
 use crate::fault;
+use crate::flatten::errors::{NOT_CONSTANT, SIZE_MISMATCH};
+use crate::flatten::instantiate::instance::{MemberState, NodeKind};
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::lookup::scope::ScopeId;
 use crate::name::{Ident, Name};
 use crate::syntax::ast::{
     Arguments, ComponentReference, Expression, ExpressionKind, ForIndex, ReferencePart, Subscript,
@@ -60,7 +60,7 @@ impl Visit for Uses {
 impl Instantiation<'_> {
     /// The loop variables with ranges; those that are not written are found by letting `visit` look
     /// through the body.
-    pub(super) fn with_ranges(
+    pub fn with_ranges(
         &mut self,
         indices: &[ForIndex],
         context: ScopeId,

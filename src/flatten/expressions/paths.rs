@@ -1,14 +1,16 @@
 //! References followed through the components of instances, to variables, to the elements of arrays
 //! of components, and to records as a whole (MLS §5.3.2, §10.5).
 
-use super::errors::{NOT_CONSTANT, NOT_SUPPORTED, PROTECTED_ACCESS, SIZE_MISMATCH, UNKNOWN_NAME};
-use super::flat_expression::{at_end, flat_reference, literal, subscripted};
-use super::instance::{MemberState, NodeId, NodeKind};
-use super::instantiation::Instantiation;
 use super::resolve::Local;
-use super::scope::ScopeId;
 use crate::diag::{Diagnostic, suggest};
 use crate::fault;
+use crate::flatten::errors::{
+    NOT_CONSTANT, NOT_SUPPORTED, PROTECTED_ACCESS, SIZE_MISMATCH, UNKNOWN_NAME,
+};
+use crate::flatten::flat_expression::{at_end, flat_reference, literal, subscripted};
+use crate::flatten::instantiate::instance::{MemberState, NodeId, NodeKind};
+use crate::flatten::instantiate::instantiation::Instantiation;
+use crate::flatten::lookup::scope::ScopeId;
 use crate::name::Ident;
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{
@@ -19,7 +21,7 @@ use crate::value::Value;
 
 impl Instantiation<'_> {
     /// Follows a reference through the components of a node.
-    pub(super) fn walk(
+    pub fn walk(
         &mut self,
         node: NodeId,
         parts: &[ReferencePart],
@@ -104,7 +106,7 @@ impl Instantiation<'_> {
 
     /// The elements of an array of components that subscripts choose: for every dimension the
     /// indices, and whether the dimension stays.
-    pub(super) fn choose(
+    pub fn choose(
         &mut self,
         dims: &[usize],
         subscripts: &[Subscript],
@@ -249,7 +251,7 @@ impl Instantiation<'_> {
     }
 
     /// A component of a value.
-    pub(super) fn field_of(
+    pub fn field_of(
         &mut self,
         base: &Expression,
         name: Ident,
@@ -347,7 +349,7 @@ impl Instantiation<'_> {
         self.declaration_of(node, name).is_some_and(|declaration| declaration.protected)
     }
 
-    pub(super) fn unknown_component(&self, node: NodeId, name: Ident, span: Span) -> Diagnostic {
+    pub fn unknown_component(&self, node: NodeId, name: Ident, span: Span) -> Diagnostic {
         let text = self.scope_of(node).and_then(|scope| self.scope(scope).text.as_ref());
         let Some(text) = text else {
             return fault!(UNKNOWN_NAME, "`{name}` is unknown").at(span);
@@ -360,7 +362,7 @@ impl Instantiation<'_> {
             .at(span)
     }
 
-    pub(super) fn component_names(&self, node: NodeId) -> Vec<Ident> {
+    pub fn component_names(&self, node: NodeId) -> Vec<Ident> {
         let members = self.composite_of(node).and_then(|composite| composite.members.as_ref());
         members.map_or(Vec::new(), |members| members.keys().copied().collect())
     }

@@ -1,0 +1,9 @@
+//! Classes: found by name, with the modifiers and redeclarations that reach them, their base classes
+//! and their elements (MLS §5.3, ch. 7).
+
+pub mod declarations;
+pub mod deselection;
+pub mod elements;
+pub mod modification;
+pub mod names;
+pub mod scope;
